@@ -1,0 +1,145 @@
+"""The simulation chain (Fig. 2): input/output model, flex spline and gauges in a row, for many runs at once."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import reduce
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.dynamics import PHI_IN, Drive, Motion, run, steady_state
+from swgsim.effects.base import Effect
+from swgsim.flexspline import solve_flex_spline
+from swgsim.gear import Gear, OperatingPoint
+from swgsim.influence import InfluenceMap, harmonics, influence_map
+from swgsim.acquisition import Window
+
+SECTORS = 100
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run of the chain.
+
+    Attributes
+    ----------
+    gear : Gear
+    point : OperatingPoint
+    effects : tuple of Effect
+    start_angle : float
+        Wave-generator angle at which the window opens [rad].
+    """
+
+    gear: Gear
+    point: OperatingPoint
+    effects: tuple[Effect, ...] = ()
+    start_angle: float = 0.0
+
+    @property
+    def affected_gear(self) -> Gear:
+        """The gear with the parameters that the effects change."""
+        return reduce(lambda gear, effect: effect.gear(gear), self.effects, self.gear)
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """What the chain puts out.
+
+    Attributes
+    ----------
+    signals : array (run, sensor, time)
+        [mV/V].
+    motion : Motion
+        Of the distinct motions.
+    of_run : array (run,)
+        Which motion belongs to each run.
+    """
+
+    signals: Float[np.ndarray, "run 5 time"]
+    motion: Motion
+    of_run: np.ndarray
+
+    @property
+    def efficiency(self) -> Float[np.ndarray, " run"]:
+        """P_out / P_in over whole revolutions."""
+        return self.motion.efficiency[self.of_run]
+
+
+def simulate(runs: Sequence[Run], window: Window, sectors: int = SECTORS) -> Simulation:
+    """Simulate many runs; what runs have in common is computed once.
+
+    Parameters
+    ----------
+    runs : sequence of Run
+    window : Window
+    sectors : int
+        Sectors of the flex spline's truss, even.
+
+    Returns
+    -------
+    Simulation
+        Ideal signals: noise, quantisation and disturbance are for the acquisition.
+    """
+    if not runs:
+        raise ValueError("no runs to simulate: the grid is empty; give it gears, classes, variants and operating points")
+    gears = [r.affected_gear for r in runs]
+    motions, of_run = _distinct([(g.transmission, r.point, r.start_angle) for g, r in zip(gears, runs, strict=True)])
+    structures, structure_of_run = _distinct([
+        (g.flex_spline, g.transmission.alpha_tooth, g.wave_generator, g.gauges, tuple(filter(_touches_structure, r.effects)))
+        for g, r in zip(gears, runs, strict=True)
+    ])  # fmt: skip
+    motion = _motion(motions, window)
+    maps = [
+        influence_map(solve_flex_spline(hat, alpha_tooth, sectors), wave_generator, gauges, effects)
+        for hat, alpha_tooth, wave_generator, gauges, effects in structures
+    ]
+    signals = np.empty((len(runs), 5, window.samples))
+    for m in range(len(motions)):
+        rows = np.flatnonzero(of_run == m)
+        angle, torque = motion.phi_in[m, : window.samples], motion.T_out[m, : window.samples]
+        signals[rows] = evaluate([maps[s] for s in structure_of_run[rows]], angle, torque)
+    return Simulation(signals, motion, of_run)
+
+
+def evaluate(
+    maps: Sequence[InfluenceMap], psi: Float[np.ndarray, " time"], T_out: Float[np.ndarray, " time"]
+) -> Float[np.ndarray, "map 5 time"]:
+    """The signals of several structures along one motion, s = A(psi) + T_out B(psi)."""
+    coefficients = np.stack([m.coefficients for m in maps])
+    count = _significant(coefficients)
+    turns = harmonics(psi, count)
+    real = np.concatenate([turns.real, -turns.imag])
+    coefficients = coefficients[..., :count]
+    weights = np.concatenate([coefficients.real, coefficients.imag], axis=-1)
+    A, B = np.moveaxis((weights.reshape(-1, 2 * count) @ real).reshape(*weights.shape[:-1], -1), 1, 0)
+    return A + T_out * B
+
+
+def _significant(coefficients: np.ndarray, tolerance: float = 1e-8) -> int:
+    """Number of leading orders that matter relative to the largest signal at full load."""
+    full_load = np.abs(coefficients) * np.array([1.0, 70.0])[:, None, None]
+    size = full_load.max(axis=tuple(range(full_load.ndim - 1)))
+    return int(np.flatnonzero(size > tolerance * size.max())[-1]) + 1
+
+
+def _touches_structure(effect: Effect) -> bool:
+    """Whether an effect overrides a place of the flex spline rather than of the drive alone."""
+    places = ("wave_generator", "mesh", "cracks")
+    return any(getattr(type(effect), place) is not getattr(Effect, place) for place in places)
+
+
+def _distinct(keys: list) -> tuple[list, np.ndarray]:
+    """The distinct keys in order of appearance, and the index of each key among them."""
+    index: dict = {}
+    where = np.array([index.setdefault(key, len(index)) for key in keys])
+    return list(index), where
+
+
+def _motion(motions: list, window: Window) -> Motion:
+    """Steady motion of each distinct (transmission, operating point, start angle) over the window."""
+    drive = Drive([m[0] for m in motions], [m[1] for m in motions])
+    start = np.array([m[2] for m in motions])
+    state = steady_state(drive)
+    if np.any(start):
+        state = drive.step(state, drive.torques(state), start / drive.omega)
+    return run(drive, state, 1 / window.rate, window.samples)

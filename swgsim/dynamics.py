@@ -1,0 +1,248 @@
+"""Dynamic input/output model of the gear, eqs. (1)-(6), batched over runs.
+
+Frame. The flex spline is clamped, so phi_in is the angle of the wave generator relative to the flex spline (the angle
+the gauges see) and phi_out that of the circular spline, the output. Eqs. (3) and (6) are written for angles relative to
+the circular spline, phi_in - phi_out and -phi_out. The equations of motion follow by virtual work of T_stiff on
+Delta phi_k and of T_fric on phi_b:
+
+    J_in  phi_in''  = T_in - tan(alpha_in) T_stiff
+    J_out phi_out'' = T_out - T_load,   T_out = T_stiff / tan(alpha_tooth) - T_fric / sin(alpha_tooth)
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.gear import OperatingPoint, Transmission
+
+# Friction changes its sign smoothly below this sliding speed [rad/s], far under that of any operating point.
+SLIDING_SPEED = 1e-3
+
+# Steps of the integrator per revolution of the wave generator, at least: 24 per cycle of the kinematic error's order 4.
+STEPS_PER_REVOLUTION = 96
+
+PHI_IN, OMEGA_IN, PHI_OUT, OMEGA_OUT, SPEED_ERROR = range(5)
+State = Float[np.ndarray, "5 run"]
+
+
+@dataclass(frozen=True)
+class Torques:
+    """Torques [N m] and sliding speed [rad/s] at one instant, each an array (run,)."""
+
+    T_in: Float[np.ndarray, " run"]
+    T_stiff: Float[np.ndarray, " run"]
+    T_fric: Float[np.ndarray, " run"]
+    T_out: Float[np.ndarray, " run"]
+    sliding: Float[np.ndarray, " run"]
+
+
+class Drive:
+    """The equations of motion of many runs at once.
+
+    The rows of the state are phi_in, omega_in, phi_out, omega_out and the integral of the speed error that the speed
+    control of the input keeps.
+
+    Parameters
+    ----------
+    transmissions, points : sequences of equal length
+        One gear and one operating point per run.
+    """
+
+    def __init__(self, transmissions: Sequence[Transmission], points: Sequence[OperatingPoint]) -> None:
+        if not transmissions or len(transmissions) != len(points):
+            raise ValueError(f"{len(transmissions)} gears and {len(points)} operating points: expected one each per run")
+        self.transmissions, self.points = tuple(transmissions), tuple(points)
+        numbers = [f.name for f in fields(Transmission) if f.name != "kinematic_error"]
+        self.p = p = {name: np.array([getattr(t, name) for t in transmissions], float) for name in numbers}
+        self.omega = np.array([point.omega_in for point in points])
+        self.T_load = np.array([point.T_out for point in points])
+        self.sin_t, self.cos_t, self.tan_t = (f(p["alpha_tooth"]) for f in (np.sin, np.cos, np.tan))
+        self.tan_in = 1 / ((p["N"] + 1) * self.tan_t)
+        rate = 2 * np.pi * p["control_frequency"]
+        self.gain_p, self.gain_i = 2 * p["control_damping"] * rate * p["J_in"], rate**2 * p["J_in"]
+        self.error = self._error_amplitudes()
+
+    def _error_amplitudes(self) -> dict[int, Float[np.ndarray, "2 run"]]:
+        """Cosine and sine amplitude of the kinematic error per order, in the unit of the twist."""
+        amplitudes: dict[int, np.ndarray] = {}
+        for i, transmission in enumerate(self.transmissions):
+            for term in transmission.kinematic_error:
+                pair = amplitudes.setdefault(term.order, np.zeros((2, len(self))))
+                pair[:, i] += term.amplitude / self.tan_t[i] * np.array([np.sin(term.phase), np.cos(term.phase)])
+        return amplitudes
+
+    def __len__(self) -> int:
+        return len(self.omega)
+
+    @property
+    def period(self) -> Float[np.ndarray, " run"]:
+        """Time of one revolution of the wave generator [s]."""
+        return 2 * np.pi / self.omega
+
+    def repeated(self, times: int) -> "Drive":
+        """The same runs several times over."""
+        return Drive(self.transmissions * times, self.points * times)
+
+    def phi_err(self, phi_in: Float[np.ndarray, " run"]) -> Float[np.ndarray, " run"]:
+        """Kinematic error profile in the unit of the twist [rad]; an error e at the output counts e / tan(alpha_tooth)."""
+        error = np.zeros_like(phi_in)
+        for order, (cosine, sine) in self.error.items():
+            error += cosine * np.cos(order * phi_in) + sine * np.sin(order * phi_in)
+        return error
+
+    def torques(self, state: State) -> Torques:
+        """All torques: eqs. (2), (3), (5), (6) and the control law."""
+        phi_in, omega_in, phi_out, omega_out, speed_error = state
+        p = self.p
+        # Eq. (3) with phi_in - phi_out and -phi_out in place of phi_in and phi_out.
+        twist = self.tan_in * phi_in - phi_out / self.tan_t + self.phi_err(phi_in)
+        T_stiff = (p["k1"] + p["k2"] * twist * twist) * twist
+        sliding = omega_out / self.sin_t
+        sense = np.tanh(sliding / SLIDING_SPEED)
+        friction = (p["b1"] + p["b2"] * sliding * sliding) * sliding
+        friction += sense * (p["b0"] + p["b3"] * np.sin(p["theta_b"] - phi_out))
+        # The massless tooth is in equilibrium, T_stiff = F_n sin(alpha) + T_fric cos(alpha), on either flank.
+        F_n = np.abs(T_stiff - friction * self.cos_t) / (self.sin_t + p["mu"] * sense * self.cos_t)
+        T_fric = friction + p["mu"] * sense * F_n
+        T_out = T_stiff / self.tan_t - T_fric / self.sin_t
+        T_in = self.gain_p * (self.omega - omega_in) + self.gain_i * speed_error
+        return Torques(T_in, T_stiff, T_fric, T_out, sliding)
+
+    def derivative(self, state: State, torques: Torques) -> State:
+        """Eq. (1)."""
+        rate = np.empty_like(state)
+        rate[PHI_IN] = state[OMEGA_IN]
+        rate[OMEGA_IN] = (torques.T_in - self.tan_in * torques.T_stiff) / self.p["J_in"]
+        rate[PHI_OUT] = state[OMEGA_OUT]
+        rate[OMEGA_OUT] = (torques.T_out - self.T_load) / self.p["J_out"]
+        rate[SPEED_ERROR] = self.omega - state[OMEGA_IN]
+        return rate
+
+    def step(self, state: State, torques: Torques, dt: Float[np.ndarray, " run"]) -> State:
+        """One step of the classical Runge-Kutta method of order 4; ``torques`` are those at ``state``."""
+        k1 = self.derivative(state, torques)
+        middle = state + 0.5 * dt * k1
+        k2 = self.derivative(middle, self.torques(middle))
+        middle = state + 0.5 * dt * k2
+        k3 = self.derivative(middle, self.torques(middle))
+        end = state + dt * k3
+        k4 = self.derivative(end, self.torques(end))
+        return state + dt / 6 * (k1 + 2 * (k2 + k3) + k4)
+
+    def at_rest_in_rotating_frame(self) -> State:
+        """Uniform rotation with the load in equilibrium, phi_in = 0: the start of the search for the steady state."""
+        p, speed = self.p, self.omega / (self.p["N"] + 1)
+        sliding = speed / self.sin_t
+        friction = (p["b1"] + p["b2"] * sliding**2) * sliding + p["b0"] + p["b3"] * np.sin(p["theta_b"])
+        T_fric = (friction + p["mu"] * self.T_load / self.cos_t) / (1 - p["mu"] * self.tan_t)
+        T_stiff = self.tan_t * (self.T_load + T_fric / self.sin_t)
+        twist = T_stiff / p["k1"]
+        for _ in range(8):
+            twist -= ((p["k1"] + p["k2"] * twist**2) * twist - T_stiff) / (p["k1"] + 3 * p["k2"] * twist**2)
+        phi_out = self.tan_t * (self.phi_err(np.zeros_like(twist)) - twist)
+        return np.stack([0 * twist, self.omega, phi_out, speed, self.tan_in * T_stiff / self.gain_i])
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Motion of many runs over a window; arrays (run, time), the last point closes the window.
+
+    Attributes
+    ----------
+    phi_in : array
+        Angle of the wave generator relative to the flex spline [rad].
+    omega_in, omega_out : arrays
+        Angular speeds [rad/s].
+    T_in, T_out : arrays
+        Torque at the input and transmitted to the output [N m].
+    dt : float
+        Time between points [s].
+    """
+
+    phi_in: Float[np.ndarray, "run time"]
+    omega_in: Float[np.ndarray, "run time"]
+    omega_out: Float[np.ndarray, "run time"]
+    T_in: Float[np.ndarray, "run time"]
+    T_out: Float[np.ndarray, "run time"]
+    dt: float
+
+    @property
+    def efficiency(self) -> Float[np.ndarray, " run"]:
+        """P_out / P_in over the largest whole number of wave-generator revolutions in the window."""
+        angle = self.phi_in - self.phi_in[:, :1]
+        turns = np.floor(angle[:, -1] / (2 * np.pi) + 1e-9)
+        if turns.min() < 1:
+            short = float(angle[:, -1].min() / (2 * np.pi))
+            raise ValueError(f"window of {short:.2f} revolutions: efficiency needs at least one; lengthen the window")
+        end = 2 * np.pi * turns
+        return _energy(self.T_out * self.omega_out, angle, end) / _energy(self.T_in * self.omega_in, angle, end)
+
+
+def _energy(power: np.ndarray, angle: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """Integral of each row's power up to the angle ``end``, in units of the time step."""
+    total = np.zeros_like(power)
+    np.cumsum(0.5 * (power[:, 1:] + power[:, :-1]), axis=1, out=total[:, 1:])
+    return np.array([np.interp(e, row_angle, row) for e, row_angle, row in zip(end, angle, total, strict=True)])
+
+
+def run(drive: Drive, state: State, dt: float, count: int) -> Motion:
+    """Integrate ``count`` steps of ``dt`` seconds from a state and keep every step."""
+    substeps = int(np.ceil(dt / (drive.period.min() / STEPS_PER_REVOLUTION) - 1e-9))
+    step = np.full(len(drive), dt / substeps)
+    kept = np.empty((5, count + 1, len(drive)))
+    for i in range(count + 1):
+        torques = drive.torques(state)
+        kept[:, i] = state[PHI_IN], state[OMEGA_IN], state[OMEGA_OUT], torques.T_in, torques.T_out
+        if i < count:
+            state = drive.step(state, torques, step)
+            for _ in range(substeps - 1):
+                state = drive.step(state, drive.torques(state), step)
+    return Motion(*np.ascontiguousarray(np.swapaxes(kept, 1, 2)), dt)
+
+
+def steady_state(drive: Drive, tolerance: float = 1e-10) -> State:
+    """The state at phi_in = 0 that repeats after one revolution of the wave generator (shooting).
+
+    The friction that varies over an output revolution (b3) changes so slowly that it counts as constant here.
+
+    Raises
+    ------
+    RuntimeError
+        If Newton's method does not settle; it names the worst run.
+    """
+    unknown = [OMEGA_IN, PHI_OUT, OMEGA_OUT, SPEED_ERROR]
+    size, runs = len(unknown), len(drive)
+    slow = drive.omega / (drive.p["N"] + 1)
+    scale = np.stack([drive.omega, 0 * slow + 2 * np.pi / (drive.p["N"] + 1), slow, drive.T_load / drive.gain_i + 1e-3])
+    goal = np.stack([2 * np.pi + 0 * slow, 0 * slow, 2 * np.pi / (drive.p["N"] + 1), 0 * slow])
+    state = drive.at_rest_in_rotating_frame()
+
+    # The return map is nearly linear: its Jacobian at the start, by differences, serves all iterations.
+    nudged = np.tile(state, size + 1)
+    for i, row in enumerate(unknown):
+        nudged[row, (i + 1) * runs : (i + 2) * runs] += 1e-6 * scale[i]
+    change = (_one_revolution(drive.repeated(size + 1), nudged) - nudged)[:4].reshape(4, size + 1, runs)
+    inverse = np.linalg.inv(np.stack([((change[:, i + 1] - change[:, 0]) / (1e-6 * scale[i])).T for i in range(size)], 2))
+    miss = change[:, 0] - goal
+    for _ in range(30):
+        correction = np.einsum("rij,jr->ir", inverse, miss)
+        state[unknown] -= correction
+        worst = np.abs(correction / scale).max(axis=0)
+        if worst.max() < tolerance:
+            return state
+        miss = (_one_revolution(drive, state) - state)[:4] - goal
+    i = int(worst.argmax())
+    raise RuntimeError(
+        f"no steady state for {drive.points[i]} with {drive.transmissions[i]}: relative correction {worst[i]:.1e}, "
+        f"limit {tolerance:.0e}; check friction, stiffness and speed control"
+    )
+
+
+def _one_revolution(drive: Drive, state: State) -> State:
+    """The state one nominal revolution later."""
+    step = drive.period / STEPS_PER_REVOLUTION
+    for _ in range(STEPS_PER_REVOLUTION):
+        state = drive.step(state, drive.torques(state), step)
+    return state

@@ -1,0 +1,41 @@
+"""Fault: eccentric wave generator."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.checks import require
+from swgsim.effects.base import Effect
+
+
+@dataclass(frozen=True)
+class EccentricWaveGenerator(Effect):
+    """The axis of the wave generator is off centre by u_ecc = [r, theta, 0] (section II-B), fixed to the flex spline.
+
+    Signature: opposite offsets of opposite gauges (order 0 at pattern cos beta), and order 1 and 3 because the lobe
+    that sinks deeper carries more load. Typical: 0.02 to 0.15 mm; assembly tolerances allow 0.010 to 0.034 mm.
+
+    Attributes
+    ----------
+    r : float
+        Eccentricity [m], from 0 to 0.15 mm; beyond, the teeth of one lobe would leave engagement.
+    theta : float
+        Its direction [rad].
+    """
+
+    r: float
+    theta: float
+
+    def __post_init__(self) -> None:
+        require("the eccentric wave generator", "r", self.r, low=0, high=0.15e-3)
+        require("the eccentric wave generator", "theta", self.theta)
+
+    def wave_generator(
+        self,
+        displacement: Float[np.ndarray, "psi theta"],
+        psi: Float[np.ndarray, " psi"],
+        theta: Float[np.ndarray, " theta"],
+    ) -> Float[np.ndarray, "psi theta"]:
+        """The displacement plus the radial part of the shift."""
+        return displacement + self.r * np.cos(theta - self.theta)

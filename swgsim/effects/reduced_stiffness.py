@@ -1,0 +1,30 @@
+"""Fault: reduced stiffness."""
+
+from dataclasses import dataclass, replace
+
+from swgsim.checks import require
+from swgsim.effects.base import Effect
+from swgsim.gear import Gear
+
+
+@dataclass(frozen=True)
+class ReducedStiffness(Effect):
+    """The linear stiffness k1 of eq. (2) drops, as in the first hours of run-in (section II-A, Fig. 4).
+
+    Signature: the torque ripple that the kinematic error excites changes slightly, seen best in s0. Typical: -20 %.
+
+    Attributes
+    ----------
+    k1_ratio : float
+        Remaining share of the healthy k1, from 0.5 (below, the gear is broken rather than worn) to 1.
+    """
+
+    k1_ratio: float
+
+    def __post_init__(self) -> None:
+        require("reduced stiffness", "k1_ratio", self.k1_ratio, low=0.5, high=1)
+
+    def gear(self, gear: Gear) -> Gear:
+        """The gear with less linear stiffness."""
+        transmission = gear.transmission
+        return replace(gear, transmission=replace(transmission, k1=self.k1_ratio * transmission.k1))

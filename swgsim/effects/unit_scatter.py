@@ -1,0 +1,30 @@
+"""Effect: scatter of the gear's parameters from one recording to the next."""
+
+from dataclasses import dataclass, replace
+
+from swgsim.checks import require
+from swgsim.effects.base import Effect
+from swgsim.gear import Gear
+
+
+@dataclass(frozen=True)
+class UnitScatter(Effect):
+    """Damping and stiffness of the same gear differ a little between recordings (grease, seating); an estimate.
+
+    Attributes
+    ----------
+    b1_ratio, k1_ratio : float
+        Factors on b1 and k1, from 0.8 to 1.2.
+    """
+
+    b1_ratio: float
+    k1_ratio: float
+
+    def __post_init__(self) -> None:
+        require("the unit scatter", "b1_ratio", self.b1_ratio, low=0.8, high=1.2)
+        require("the unit scatter", "k1_ratio", self.k1_ratio, low=0.8, high=1.2)
+
+    def gear(self, gear: Gear) -> Gear:
+        """The gear with both parameters scaled."""
+        t = gear.transmission
+        return replace(gear, transmission=replace(t, b1=self.b1_ratio * t.b1, k1=self.k1_ratio * t.k1))

@@ -1,0 +1,139 @@
+"""Influence maps: a gauge signal as a periodic function of the wave-generator angle, s(psi, T) = A(psi) + T B(psi).
+
+For one structure the truss is linear, so its answer to the wave generator (A) and to a unit output torque (B) is
+computed once over the angle and a recording is the evaluation of both along phi_in(t) and T_out(t).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Complex, Float
+from scipy import linalg
+
+from swgsim.cyclic import order_weights, orders
+from swgsim.effects.base import Crack, Effect
+from swgsim.flexspline import BAND, TEETH, WAVE_GENERATOR, FlexSpline
+from swgsim.gauges import GaugeSet, offsets
+from swgsim.gear import WaveGenerator
+
+# Highest order per wave-generator revolution that the maps keep, and the angles at which they are sampled.
+ORDERS = 64
+ANGLES = 256
+
+
+@dataclass(frozen=True)
+class InfluenceMap:
+    """Fourier coefficients of A [mV/V] and B [mV/V per N m] over the wave-generator angle.
+
+    Attributes
+    ----------
+    coefficients : array (2, sensor, order)
+        For A and B; the signal is the real part of sum_k c_k exp(i k psi).
+    """
+
+    coefficients: Complex[np.ndarray, "2 5 order"]
+
+    def __call__(self, psi: Float[np.ndarray, " time"]) -> Float[np.ndarray, "2 5 time"]:
+        """A and B at given angles [rad]."""
+        return (self.coefficients @ harmonics(psi, self.coefficients.shape[-1])).real
+
+
+def harmonics(psi: Float[np.ndarray, " time"], count: int) -> Complex[np.ndarray, "order time"]:
+    """exp(i k psi) for k = 0 .. count - 1, by repeated multiplication."""
+    turns = np.ones((count, len(psi)), complex)
+    turns[1:] = np.exp(1j * psi)
+    return np.multiply.accumulate(turns, axis=0)
+
+
+def ellipse(wave_generator: WaveGenerator, radius: float, angle: np.ndarray) -> np.ndarray:
+    """Radial displacement [m] by an elliptical wave generator, at angles from its major axis [rad].
+
+    The semi-axes are radius +- w0; the mean is taken off, as the rim bends without stretching.
+    """
+    a, b = radius + wave_generator.w0, radius - wave_generator.w0
+    around = np.linspace(0, 2 * np.pi, 64, endpoint=False)
+
+    def polar(x: np.ndarray) -> np.ndarray:
+        return a * b / np.hypot(b * np.cos(x), a * np.sin(x))
+
+    return polar(angle) - polar(around).mean()
+
+
+def boundary_conditions(
+    flex: FlexSpline, wave_generator: WaveGenerator, effects: Sequence[Effect], psi: Float[np.ndarray, " psi"]
+) -> tuple[Float[np.ndarray, "psi theta"], Float[np.ndarray, "psi theta"]]:
+    """Imposed radial displacement [m] and tangential tooth force per output torque [N/(N m)] of each sector.
+
+    The load sharing follows the local engagement depth, which is the imposed displacement where it points outwards:
+    for the ideal gear F ~ cos 2 theta over +-45 degrees of each lobe.
+    """
+    theta = flex.sector.pitch * np.arange(flex.sector.count)
+    displacement = ellipse(wave_generator, flex.sector.hat.radius, theta - psi[:, None])
+    for effect in effects:
+        displacement = effect.wave_generator(displacement, psi, theta)
+    share = np.maximum(displacement, 0)
+    for effect in effects:
+        share = effect.mesh(share, psi, theta)
+    return displacement, share / (share.sum(axis=1, keepdims=True) * flex.tooth_radius)
+
+
+def influence_map(
+    flex: FlexSpline, wave_generator: WaveGenerator, gauges: GaugeSet, effects: Sequence[Effect] = ()
+) -> InfluenceMap:
+    """The influence map of one structure.
+
+    Parameters
+    ----------
+    flex : FlexSpline
+    wave_generator : WaveGenerator
+    gauges : GaugeSet
+    effects : sequence of Effect
+        Those that touch wave generator, mesh or structure.
+    """
+    psi = 2 * np.pi / ANGLES * np.arange(ANGLES)
+    sectors = flex.sector.count
+    loads = boundary_conditions(flex, wave_generator, effects, psi)
+    amplitudes = np.stack([np.fft.rfft(load, axis=1) for load in loads]) / sectors * order_weights(sectors)
+    response = flex.gauge_response(gauges)
+    cracks = [crack for effect in effects for crack in effect.cracks()]
+    values = np.stack([
+        (amplitude @ response[:, :, load]).real + _cracked(flex, response, amplitude, load, cracks)
+        for load, amplitude in zip((WAVE_GENERATOR, TEETH), amplitudes, strict=True)
+    ])  # fmt: skip
+    values[0] += offsets(gauges)
+    coefficients = np.fft.rfft(values, axis=1)[:, : ORDERS + 1] / ANGLES
+    coefficients[:, 1:] *= 2
+    return InfluenceMap(np.swapaxes(coefficients, 1, 2))
+
+
+def _cracked(
+    flex: FlexSpline,
+    response: Complex[np.ndarray, "order 5 load"],
+    amplitude: Complex[np.ndarray, "psi order"],
+    load: int,
+    cracks: Sequence[Crack],
+) -> Float[np.ndarray, "psi 5"] | float:
+    """What the cracks add to the signals under one load.
+
+    A crack takes the stiffness D from the columns of nodes on its two sides. With the compliance C between these nodes
+    and their displacements u0 in the sound structure, u = (1 - C D)^-1 u0 and D u are the forces that act on the sound
+    structure in place of the crack (Woodbury: no new factorisation).
+    """
+    if not cracks:
+        return 0.0
+    sector = flex.sector
+    columns = np.array([(gap, gap + 1) for gap in (int(crack.angle // sector.pitch) for crack in cracks)]).ravel()
+    turns = np.exp(1j * sector.pitch * np.outer(columns, orders(sector.count)))
+    loss = linalg.block_diag(*[(1 - _remaining(crack, flex)) * flex.crossing_stiffness for crack in cracks])
+    sound = np.concatenate([((amplitude * turn) @ flex.fields[:, flex.band, load]).real for turn in turns], axis=1)
+    compliance = np.block([[flex.band_compliance[(i - j) % sector.count] for j in columns] for i in columns])
+    forces = loss @ np.linalg.solve(np.eye(len(loss)) - compliance @ loss, sound.T)
+    signal = np.fft.irfft(response[:, :, BAND:], sector.count, axis=0)[-columns % sector.count]
+    return np.tensordot(forces.reshape(*signal.shape[::2], -1), signal, axes=((0, 1), (0, 2)))
+
+
+def _remaining(crack: Crack, flex: FlexSpline) -> float:
+    """Remaining stiffness of the bars across a crack: one tooth pitch of their length is weakened."""
+    tooth_pitch = 2 * np.pi / flex.sector.hat.teeth
+    return flex.sector.pitch / (flex.sector.pitch + (1 / crack.stiffness_ratio - 1) * tooth_pitch)

@@ -1,0 +1,226 @@
+"""Geometry of the silk-hat flex spline as a space truss that repeats around the circumference.
+
+The wall is a two-layer lattice. Bars run in circumferential and meridional direction and along both diagonals of every
+cell, each direction once within the two layers and once crossing from one layer to the other, plus bars through the
+thickness. The areas follow from equating the strain energy of the lattice with that of an isotropic plate
+(A. Hrennikoff, J. Appl. Mech. 8 (1941) A169), which for bars means Poisson's ratio 1/3. With two thirds of the
+stiffness in the crossing bars, which bending does not strain, both the membrane stiffness E t and the bending stiffness
+E t^3 / 12 of the plate come out right with the two layers on the two surfaces of the wall.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from swgsim.truss import Truss
+
+CROSSING = 2 / 3
+INNER, OUTER = 0, 1
+
+
+@dataclass(frozen=True)
+class SilkHat:
+    """Dimensions of the flex spline [m] and its steel.
+
+    The default is a size 17, ratio 100 gear. The pitch radius (1.7 in / 2), wall and contact width follow physics.md
+    section 2; sleeve length and collar are estimates for a short hat.
+
+    Attributes
+    ----------
+    radius : float
+        Mid-surface radius of the sleeve.
+    length : float
+        Length of the sleeve, from the collar (z = 0) to the open end.
+    fillet : float
+        Radius of the mid-surface where the sleeve turns into the collar.
+    band : float
+        Width of the band at the open end that touches the wave generator and carries the teeth.
+    clamp_radius : float
+        Radius at which the collar is clamped to the housing.
+    wall, collar : float
+        Thickness of sleeve and collar.
+    E : float
+        Young's modulus [Pa]; 40CrNiMoA.
+    teeth : int
+        Number of teeth of the flex spline.
+    """
+
+    radius: float = 21.2e-3
+    length: float = 25e-3
+    band: float = 11e-3
+    fillet: float = 1.5e-3
+    clamp_radius: float = 31e-3
+    wall: float = 0.43e-3
+    collar: float = 0.8e-3
+    E: float = 209e9
+    teeth: int = 200
+
+    def __post_init__(self) -> None:
+        for name in ("radius", "length", "band", "fillet", "clamp_radius", "wall", "collar", "E", "teeth"):
+            if not getattr(self, name) > 0:
+                raise ValueError(f"{name} of the flex spline is {getattr(self, name)}, must be above 0")
+        if self.band + self.fillet >= self.length:
+            raise ValueError(f"band {self.band} m and fillet {self.fillet} m must fit the length {self.length} m")
+        if self.clamp_radius <= self.radius + self.fillet:
+            raise ValueError(
+                f"clamp radius {self.clamp_radius} m must be above radius and fillet, {self.radius + self.fillet} m"
+            )
+
+
+@dataclass(frozen=True)
+class Sector:
+    """One of ``count`` equal sectors of the truss; bars lead to the same or to the next sector.
+
+    Attributes
+    ----------
+    nodes : array (node, 3)
+        Radius, angle (0) and axial position of the nodes of the sector [m, rad, m]; node ``2 m + layer`` is point m of
+        the meridian, which runs from the open end over the corner to the clamped edge.
+    bars : array (bar, 3)
+        First node, second node, and 1 where the second node belongs to the next sector.
+    stiffness : array (bar,)
+        E A / L [N/m].
+    clamped, band : boolean arrays (node,)
+        Nodes on the clamped edge; nodes (of both layers) where wave generator and teeth act.
+    """
+
+    hat: SilkHat
+    count: int
+    nodes: Float[np.ndarray, "node 3"]
+    bars: Int[np.ndarray, "bar 3"]
+    stiffness: Float[np.ndarray, " bar"]
+    clamped: Bool[np.ndarray, " node"]
+    band: Bool[np.ndarray, " node"]
+
+    @property
+    def pitch(self) -> float:
+        """Angle of one sector [rad]."""
+        return 2 * np.pi / self.count
+
+    def layer(self, layer: int) -> Bool[np.ndarray, " node"]:
+        """Mask of the nodes of one layer (INNER or OUTER)."""
+        return np.arange(len(self.nodes)) % 2 == layer
+
+    def positions(self, sector: int | np.ndarray) -> Float[np.ndarray, "node 3"]:
+        """Cartesian positions of the nodes in a sector [m]."""
+        r, _, z = self.nodes.T
+        angle = self.pitch * sector
+        return np.stack([r * np.cos(angle), r * np.sin(angle), z], axis=1)
+
+    def truss(self) -> Truss:
+        """The whole flex spline; node ``i`` of sector ``k`` is node ``k * len(nodes) + i``."""
+        n = len(self.nodes)
+        nodes = np.concatenate([self.positions(k) for k in range(self.count)])
+        k = np.arange(self.count)[:, None]
+        first = (k * n + self.bars[:, 0]).ravel()
+        second = ((k + self.bars[:, 2]) % self.count * n + self.bars[:, 1]).ravel()
+        return Truss(nodes, np.stack([first, second], axis=1), np.tile(self.stiffness, self.count))
+
+
+def meridian(hat: SilkHat, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Mid-surface points (r, z) [m], unit normals and wall thickness [m] from the open end to the clamped edge.
+
+    Sleeve, fillet and collar; the spacing follows the circumferential one so that cells stay nearly square. The
+    thickness goes linearly from wall to collar along the fillet.
+    """
+    pitch = 2 * np.pi / count
+    step = pitch * hat.radius
+    z_band = hat.length - hat.band
+
+    def cells(length: float) -> int:
+        return max(1, round(length / step))
+
+    band_z = np.linspace(hat.length, z_band, cells(hat.band) + 1)[:-1]
+    sleeve_z = np.linspace(z_band, hat.fillet, cells(z_band - hat.fillet) + 1)[:-1]
+    angle = np.linspace(0, np.pi / 2, cells(hat.fillet * np.pi / 2) + 1)[:-1]
+    edge = hat.radius + hat.fillet
+    collar_r = np.geomspace(edge, hat.clamp_radius, max(3, round(np.log(hat.clamp_radius / edge) / pitch)) + 1)
+
+    z_straight = np.concatenate([band_z, sleeve_z])
+    arc = np.stack([edge - hat.fillet * np.cos(angle), hat.fillet * (1 - np.sin(angle))], axis=1)
+    points = np.concatenate([
+        np.stack([np.full_like(z_straight, hat.radius), z_straight], axis=1),
+        arc,
+        np.stack([collar_r, np.zeros_like(collar_r)], axis=1),
+    ])  # fmt: skip
+    turn = np.concatenate([np.zeros_like(z_straight), angle, np.full_like(collar_r, np.pi / 2)])
+    normals = np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    thickness = hat.wall + (hat.collar - hat.wall) * turn / (np.pi / 2)
+    return points, normals, thickness
+
+
+def sector(hat: SilkHat, count: int) -> Sector:
+    """One sector of the flex spline's truss.
+
+    Parameters
+    ----------
+    hat : SilkHat
+    count : int
+        Number of sectors around the circumference: even, at least 24.
+
+    Raises
+    ------
+    ValueError
+        If the count is odd or too small, or the cells become too oblong for a lattice.
+    """
+    if count % 2 or count < 24:
+        raise ValueError(f"{count} sectors: the number must be even and at least 24")
+    points, normals, thickness = meridian(hat, count)
+    offset = 0.5 * thickness[:, None] * normals
+    pair = np.stack([points - offset, points + offset], axis=1)  # (meridian, layer, rz)
+    r, z = pair.reshape(-1, 2).T
+    nodes = np.stack([r, np.zeros_like(r), z], axis=1)
+
+    bars, stiffness = _cells(hat.E, points, thickness, 2 * np.pi / count)
+    on_edge = np.repeat(np.arange(len(points)) == len(points) - 1, 2)
+    on_band = np.repeat((points[:, 1] >= hat.length - hat.band - 1e-9), 2)
+    return Sector(hat, count, nodes, bars, stiffness, on_edge, on_band)
+
+
+def _cells(E: float, points: np.ndarray, thickness: np.ndarray, pitch: float) -> tuple[np.ndarray, np.ndarray]:
+    """Bars of one sector (first, second, next sector?) and their stiffness [N/m], summed over the cells they border."""
+    stiffness: dict[tuple[int, int, int], float] = {}
+
+    def add(first: tuple[int, int, int], second: tuple[int, int, int], value: float) -> None:
+        """A bar between (meridian point, layer, sector) and another."""
+        if first[2]:
+            first, second = second, first
+        bar = (2 * first[0] + first[1], 2 * second[0] + second[1], second[2] - first[2])
+        stiffness[bar] = stiffness.get(bar, 0.0) + value
+
+    def connect(a: tuple[int, int], b: tuple[int, int], area: float, length: float, t: float) -> None:
+        """The four bars between meridian points (point, sector) that replace plate material of E area / length."""
+        # A crossing bar is longer than its projection onto the wall: L^2 / length^2 makes up for its inclination.
+        inclined = (length**2 + t**2) / length**2
+        for here, there in ((INNER, INNER), (OUTER, OUTER), (INNER, OUTER), (OUTER, INNER)):
+            share = (1 - CROSSING) / 2 if here == there else CROSSING / 2 * inclined
+            add((a[0], here, a[1]), (b[0], there, b[1]), share * E * area / length)
+
+    for m in range(len(points) - 1):
+        width = pitch * 0.5 * (points[m, 0] + points[m + 1, 0])
+        height = float(np.linalg.norm(points[m + 1] - points[m]))
+        t = 0.5 * (thickness[m] + thickness[m + 1])
+        across, along, diagonal = (t * breadth for breadth in _plate_lattice(width, height))
+        for point in (m, m + 1):
+            connect((point, 0), (point, 1), 0.5 * across, pitch * points[point, 0], t)
+            add((point, INNER, 0), (point, OUTER, 0), 100 * E * width * height / t)
+        connect((m, 0), (m + 1, 0), along, height, t)
+        connect((m, 0), (m + 1, 1), diagonal, np.hypot(width, height), t)
+        connect((m, 1), (m + 1, 0), diagonal, np.hypot(width, height), t)
+    return np.array(list(stiffness)), np.array(list(stiffness.values()))
+
+
+def _plate_lattice(a: float, b: float) -> tuple[float, float, float]:
+    """Bar areas per wall thickness [m] of a cell a x b [m]: along a, along b, and of each diagonal.
+
+    Energy equivalence with plane stress at Poisson's ratio 1/3, where C11 = 9/8 E and C12 = G = 3/8 E.
+    """
+    if not 1 / np.sqrt(3) < a / b < np.sqrt(3):
+        raise ValueError(
+            f"a cell of {a:.3e} m x {b:.3e} m is too oblong for a lattice (aspect ratio {a / b:.2f}, limits 0.58 and "
+            "1.73): change the number of sectors"
+        )
+    c2, s2 = a**2 / (a**2 + b**2), b**2 / (a**2 + b**2)
+    diagonal = 3 / (16 * c2 * s2) * a * b / np.hypot(a, b)
+    return (9 - 3 * c2 / s2) / 8 * b, (9 - 3 * s2 / c2) / 8 * a, diagonal

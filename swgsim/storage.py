@@ -1,0 +1,156 @@
+"""Recordings on disk: one HDF5 file laid out as NetCDF-4, so that xarray opens it, sealed with a SHA-256.
+
+The first 512 bytes (the HDF5 user block) hold the SHA-256 of all that follows; every read checks it.
+"""
+
+import hashlib
+import os
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pandas as pd
+
+from swgsim.recordings import CLASSES, COLUMNS, SENSORS, Recordings
+
+SEAL_SIZE = 512
+SEAL_START = b"swgsim recordings, sha256 "
+
+
+def write(path: Path, blocks: Iterable[Recordings], rows: int) -> None:
+    """Write recordings block by block; the file is complete or absent.
+
+    Parameters
+    ----------
+    path : Path
+    blocks : iterable of Recordings
+        Of the same rate, window and attributes; those of the first count.
+    rows : int
+        Number of recordings in all blocks together.
+
+    Raises
+    ------
+    ValueError
+        If the blocks do not hold exactly ``rows`` recordings.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    aside = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    try:
+        with h5py.File(aside, "w", userblock_size=SEAL_SIZE) as file:
+            done = 0
+            for block in blocks:
+                if not done:
+                    _lay_out(file, block, rows)
+                if done + len(block) > rows:
+                    raise ValueError(f"{path}: more than the {rows} recordings announced")
+                where = slice(done, done + len(block))
+                file["signals"][where] = block.signals
+                for name in COLUMNS:
+                    values = block.table[name].cat.codes if name == "label" else block.table[name]
+                    file[name][where] = values.to_numpy()
+                done += len(block)
+        if done != rows:
+            raise ValueError(f"{path}: {done} recordings found, {rows} announced")
+        with aside.open("r+b") as raw:
+            raw.seek(SEAL_SIZE)
+            seal = SEAL_START + hashlib.file_digest(raw, "sha256").hexdigest().encode() + b"\n"
+            raw.seek(0)
+            raw.write(seal.ljust(SEAL_SIZE, b" "))
+            raw.flush()
+            os.fsync(raw.fileno())
+        os.replace(aside, path)
+    finally:
+        aside.unlink(missing_ok=True)
+
+
+def _lay_out(file: h5py.File, first: Recordings, rows: int) -> None:
+    """Create all variables with their dimensions, units and descriptions."""
+    samples = first.signals.shape[2]
+    file.attrs.update({"Conventions": "CF-1.11", "title": "strain wave gear gauge signals", **first.attributes})
+    file.attrs["sampling_rate_hz"] = first.rate
+    coordinates = {
+        "sample": (np.arange(rows), "1", "number of the recording"),
+        "sensor": (np.array(SENSORS, dtype=h5py.string_dtype()), "1", "strain-gauge bridge"),
+        "time": (np.arange(samples) / first.rate, "s", "time since the trigger"),
+    }
+    for name, (values, units, long_name) in coordinates.items():
+        variable = file.create_dataset(name, data=values)
+        variable.make_scale(name)
+        variable.attrs.update({"units": units, "long_name": long_name})
+    shape, dimensions = (rows, len(SENSORS), samples), ("sample", "sensor", "time")
+    signals = file.create_dataset("signals", shape, "f4", chunks=(1, *shape[1:]), fletcher32=True)
+    signals.attrs.update({"units": "mV/V", "long_name": "bridge signal"})
+    variables = [(signals, dimensions)]
+    for name, column in COLUMNS.items():
+        variable = file.create_dataset(name, (rows,), column.dtype, chunks=(min(rows, 4096),), fletcher32=True)
+        variable.attrs.update({"units": column.units, "long_name": column.long_name})
+        variables.append((variable, ("sample",)))
+    file["label"].attrs["flag_values"] = np.arange(len(CLASSES), dtype="i1")
+    file["label"].attrs["flag_meanings"] = " ".join(CLASSES)
+    for variable, names in variables:
+        for axis, name in enumerate(names):
+            variable.dims[axis].attach_scale(file[name])
+
+
+def digest(path: Path) -> str:
+    """The SHA-256 that the file says it has.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    ValueError
+        If it is not a file of recordings.
+    """
+    with path.open("rb") as raw:
+        seal = raw.read(SEAL_SIZE)
+    if len(seal) < SEAL_SIZE or not seal.startswith(SEAL_START):
+        raise ValueError(f"{path}: not a file of recordings (its first {SEAL_SIZE} bytes are no seal); generate it again")
+    return seal[len(SEAL_START) :].split()[0].decode(errors="replace")
+
+
+def verify(path: Path) -> None:
+    """Raise a ValueError naming the file unless its contents have the SHA-256 that its seal says."""
+    said = digest(path)
+    with path.open("rb") as raw:
+        raw.seek(SEAL_SIZE)
+        found = hashlib.file_digest(raw, "sha256").hexdigest()
+    if found != said:
+        raise ValueError(
+            f"{path}: damaged or truncated, SHA-256 found {found[:12]}…, expected {said[:12]}…; generate it again"
+        )
+
+
+def read(path: Path) -> Recordings:
+    """All recordings of a file.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    ValueError
+        If it is damaged or no file of recordings; the message names it.
+    """
+    return next(blocks(path))
+
+
+def blocks(path: Path, rows: int | None = None) -> Iterator[Recordings]:
+    """The recordings of a file in blocks of so many rows (all at once by default), checked first."""
+    verify(path)
+    with h5py.File(path) as file:
+        rate = float(file.attrs["sampling_rate_hz"])
+        attributes = {name: value for name, value in file.attrs.items() if isinstance(value, str)}
+        total = len(file["signals"])
+        for start in range(0, total, rows or total):
+            where = slice(start, start + (rows or total))
+            columns = {name: file[name][where] for name in COLUMNS}
+            columns["label"] = pd.Categorical.from_codes(columns["label"], categories=list(CLASSES))
+            columns["reference"] = columns["reference"].astype(bool)
+            yield Recordings(file["signals"][where], pd.DataFrame(columns), rate, attributes)
+
+
+def count(path: Path) -> int:
+    """Number of recordings in a file."""
+    with h5py.File(path) as file:
+        return len(file["signals"])
