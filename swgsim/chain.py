@@ -115,7 +115,7 @@ def evaluate(
     return A + T_out * B
 
 
-def _significant(coefficients: np.ndarray, tolerance: float = 1e-8) -> int:
+def _significant(coefficients: np.ndarray, tolerance: float = 3e-7) -> int:
     """Number of leading orders that matter relative to the largest signal at full load."""
     full_load = np.abs(coefficients) * np.array([1.0, 70.0])[:, None, None]
     size = full_load.max(axis=tuple(range(full_load.ndim - 1)))

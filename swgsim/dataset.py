@@ -15,7 +15,6 @@ from pathlib import Path
 
 import joblib
 import numpy as np
-import pandas as pd
 from threadpoolctl import threadpool_limits
 
 from swgsim import storage
@@ -27,6 +26,7 @@ from swgsim.gear import Gear
 from swgsim.grid import Case, Grid
 from swgsim.recordings import COLUMNS, Recordings, facts
 from swgsim.seeds import generator
+from swgsim.version import code_version
 
 # Recordings per block: bounds the memory whatever the size of the grid, and splits the paper's grid evenly over cores.
 BLOCK = 1140
@@ -46,7 +46,7 @@ class Plan:
     sectors : int
         Sectors of the flex spline's truss.
     configuration : str
-        The choices as text; kept in the file, and what decides whether parts of a killed run still fit.
+        The choices as text; kept in the file.
     """
 
     gears: tuple[Gear, ...]
@@ -67,6 +67,11 @@ class Plan:
         return len(self.gears) * self.grid.count()
 
     @property
+    def attributes(self) -> dict[str, str]:
+        """What the file says of itself; parts of a killed run are used only where it is the same."""
+        return provenance(self.configuration)
+
+    @property
     def blocks(self) -> list[tuple[int, int]]:
         """(gear, first case) of every block."""
         return [(g, first) for g in range(len(self.gears)) for first in range(0, self.grid.count(), BLOCK)]
@@ -75,6 +80,11 @@ class Plan:
         """The planned recordings of a block."""
         gear, first = block
         return list(islice(self.grid.cases(self.gears[gear]), first, first + BLOCK))
+
+
+def provenance(configuration: str) -> dict[str, str]:
+    """Configuration and version of the code, as attributes of a file."""
+    return {"configuration": configuration, "swgsim": code_version()}
 
 
 @dataclass(frozen=True)
@@ -108,7 +118,8 @@ def generate(plan: Plan, path: Path, workers: int, progress: Callable[[int], obj
     float
         Peak memory of all processes together [MiB].
     """
-    parts = path.with_name(f".{path.name}.{hashlib.sha256(plan.configuration.encode()).hexdigest()[:12]}.parts")
+    same = hashlib.sha256("".join(plan.attributes.values()).encode()).hexdigest()[:12]
+    parts = path.with_name(f".{path.name}.{same}.parts")
     parts.mkdir(parents=True, exist_ok=True)
     files = [parts / f"{number:06d}.npz" for number in range(len(plan.blocks))]
     todo = [i for i, file in enumerate(files) if not file.exists()]
@@ -118,8 +129,7 @@ def generate(plan: Plan, path: Path, workers: int, progress: Callable[[int], obj
     for done, used in joblib.Parallel(n_jobs=min(workers, max(len(todo), 1)), return_as="generator_unordered")(jobs):
         peak[used.process] = max(used.peak_memory_mib, peak.get(used.process, 0))
         progress(done)
-    attributes = {"configuration": plan.configuration}
-    storage.write(path, (_read_part(file, plan.window.rate, attributes) for file in files), len(plan))
+    storage.write(path, (_read_part(file, plan) for file in files), len(plan))
     shutil.rmtree(parts)
     peak[os.getpid()] = usage().peak_memory_mib
     return sum(peak.values())
@@ -142,7 +152,7 @@ def disturb(source: Path, path: Path, disturbance: Disturbance, configuration: s
                 for seed, n_in_rpm in zip(block.table["seed"], block.table["n_in_rpm"], strict=True)
             ])  # fmt: skip
             signals = (block.signals + added).astype("f4")
-            yield Recordings(signals, block.table, block.rate, {"configuration": configuration})
+            yield Recordings(signals, block.table, block.rate, provenance(configuration))
             progress(len(block))
 
     storage.write(path, disturbed(), storage.count(source))
@@ -160,10 +170,10 @@ def _make_part(plan: Plan, block: tuple[int, int], file: Path) -> tuple[int, Usa
     return len(recordings), usage()
 
 
-def _read_part(file: Path, rate: float, attributes: dict[str, str]) -> Recordings:
+def _read_part(file: Path, plan: Plan) -> Recordings:
     with np.load(file, allow_pickle=False) as part:
         table = facts({name: part[name] for name in COLUMNS})
-        return Recordings(part["signals"], table, rate, attributes)
+        return Recordings(part["signals"], table, plan.window.rate, plan.attributes)
 
 
 def record(plan: Plan, cases: list[Case]) -> Recordings:
@@ -193,7 +203,7 @@ def record(plan: Plan, cases: list[Case]) -> Recordings:
         "reference": [case.reference for case in cases],
         "seed": np.array([case.seed for case in cases], dtype="u8"),
     })  # fmt: skip
-    return Recordings(signals, table, plan.window.rate, {"configuration": plan.configuration})
+    return Recordings(signals, table, plan.window.rate, plan.attributes)
 
 
 def _acquire(plan: Plan, cases: list[Case], simulation: Simulation) -> tuple[np.ndarray, np.ndarray]:

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Complex, Float
 
 from swgsim.gear import OperatingPoint, Transmission
 
@@ -64,13 +64,13 @@ class Drive:
         self.gain_p, self.gain_i = 2 * p["control_damping"] * rate * p["J_in"], rate**2 * p["J_in"]
         self.error = self._error_amplitudes()
 
-    def _error_amplitudes(self) -> dict[int, Float[np.ndarray, "2 run"]]:
-        """Cosine and sine amplitude of the kinematic error per order, in the unit of the twist."""
+    def _error_amplitudes(self) -> dict[int, Complex[np.ndarray, " run"]]:
+        """Amplitude and phase of the kinematic error per order, in the unit of the twist."""
         amplitudes: dict[int, np.ndarray] = {}
         for i, transmission in enumerate(self.transmissions):
             for term in transmission.kinematic_error:
-                pair = amplitudes.setdefault(term.order, np.zeros((2, len(self))))
-                pair[:, i] += term.amplitude / self.tan_t[i] * np.array([np.sin(term.phase), np.cos(term.phase)])
+                row = amplitudes.setdefault(term.order, np.zeros(len(self), complex))
+                row[i] += term.amplitude / self.tan_t[i] * np.exp(1j * term.phase)
         return amplitudes
 
     def __len__(self) -> int:
@@ -88,8 +88,9 @@ class Drive:
     def phi_err(self, phi_in: Float[np.ndarray, " run"]) -> Float[np.ndarray, " run"]:
         """Kinematic error profile in the unit of the twist [rad]; an error e at the output counts e / tan(alpha_tooth)."""
         error = np.zeros_like(phi_in)
-        for order, (cosine, sine) in self.error.items():
-            error += cosine * np.cos(order * phi_in) + sine * np.sin(order * phi_in)
+        turn = np.exp(1j * phi_in)
+        for order, amplitude in self.error.items():
+            error += (amplitude * turn**order).imag
         return error
 
     def torques(self, state: State) -> Torques:

@@ -18,7 +18,7 @@ from swgsim.silk_hat import INNER, OUTER, Sector, SilkHat, sector
 WAVE_GENERATOR, TEETH, BAND = 0, 1, 2
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FlexSpline:
     """Solved flex spline.
 
@@ -43,10 +43,6 @@ class FlexSpline:
     def tooth_radius(self) -> float:
         """Radius at which the tooth forces act [m]."""
         return self.sector.hat.radius + self.sector.hat.wall / 2
-
-    def gauge_response(self, gauges: GaugeSet) -> Complex[np.ndarray, "order 5 load"]:
-        """Bridge signals per load and circumferential order [mV/V per m, per N]."""
-        return bridges(gauges, strain_rows(self.sector, gauges.radius) @ self.fields)
 
     @cached_property
     def crossing_stiffness(self) -> Float[np.ndarray, "twoband twoband"]:
@@ -78,6 +74,12 @@ class FlexSpline:
         n, k = cyclic.orders(self.sector.count), np.arange(self.sector.count)
         around = np.exp(1j * self.sector.pitch * np.outer(k, n))
         return (around @ per_order).real.reshape(self.sector.count, -1, 3)
+
+
+@lru_cache(maxsize=64)
+def gauge_response(flex: FlexSpline, gauges: GaugeSet) -> Complex[np.ndarray, "order 5 load"]:
+    """Bridge signals per load and circumferential order [mV/V per m, per N]."""
+    return bridges(gauges, strain_rows(flex.sector, gauges.radius) @ flex.fields)
 
 
 def prescribed(sector: Sector) -> Bool[np.ndarray, " dof"]:

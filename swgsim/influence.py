@@ -6,6 +6,7 @@ computed once over the angle and a recording is the evaluation of both along phi
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from jaxtyping import Complex, Float
@@ -13,13 +14,17 @@ from scipy import linalg
 
 from swgsim.cyclic import order_weights, orders
 from swgsim.effects.base import Crack, Effect
-from swgsim.flexspline import BAND, TEETH, WAVE_GENERATOR, FlexSpline
+from swgsim.flexspline import BAND, TEETH, WAVE_GENERATOR, FlexSpline, gauge_response
 from swgsim.gauges import GaugeSet, offsets
 from swgsim.gear import WaveGenerator
 
 # Highest order per wave-generator revolution that the maps keep, and the angles at which they are sampled.
-ORDERS = 64
+ORDERS = 100
 ANGLES = 256
+PSI = 2 * np.pi / ANGLES * np.arange(ANGLES)
+
+# Points per sector at which the tooth forces are sampled; odd, so that one is at the node.
+SUBDIVISION = 5
 
 
 @dataclass(frozen=True)
@@ -46,36 +51,63 @@ def harmonics(psi: Float[np.ndarray, " time"], count: int) -> Complex[np.ndarray
     return np.multiply.accumulate(turns, axis=0)
 
 
-def ellipse(wave_generator: WaveGenerator, radius: float, angle: np.ndarray) -> np.ndarray:
-    """Radial displacement [m] by an elliptical wave generator, at angles from its major axis [rad].
+def ellipse(
+    wave_generator: WaveGenerator, radius: float, psi: Float[np.ndarray, " psi"], theta: Float[np.ndarray, " theta"]
+) -> Float[np.ndarray, "psi theta"]:
+    """Radial displacement [m] of the sleeve by the elliptical wave generator whose major axis is at psi.
 
     The semi-axes are radius +- w0; the mean is taken off, as the rim bends without stretching.
     """
     a, b = radius + wave_generator.w0, radius - wave_generator.w0
-    around = np.linspace(0, 2 * np.pi, 64, endpoint=False)
 
     def polar(x: np.ndarray) -> np.ndarray:
         return a * b / np.hypot(b * np.cos(x), a * np.sin(x))
 
-    return polar(angle) - polar(around).mean()
+    mean = polar(np.linspace(0, 2 * np.pi, 64, endpoint=False)).mean()
+    return polar(theta - psi[:, None]) - mean
+
+
+def fine_angles(sectors: int) -> Float[np.ndarray, " theta"]:
+    """Angles [rad] around the circumference, SUBDIVISION to a sector, centred on its nodes."""
+    inside = (np.arange(SUBDIVISION) - SUBDIVISION // 2) / SUBDIVISION
+    return (2 * np.pi / sectors * (np.arange(sectors)[:, None] + inside)).ravel()
+
+
+@lru_cache(maxsize=16)
+def _sampled_ellipse(wave_generator: WaveGenerator, radius: float, sectors: int) -> Float[np.ndarray, "psi theta"]:
+    """The ellipse at the angles at which maps are sampled; the same for all structures of a gear."""
+    return ellipse(wave_generator, radius, PSI, fine_angles(sectors))
 
 
 def boundary_conditions(
-    flex: FlexSpline, wave_generator: WaveGenerator, effects: Sequence[Effect], psi: Float[np.ndarray, " psi"]
-) -> tuple[Float[np.ndarray, "psi theta"], Float[np.ndarray, "psi theta"]]:
+    flex: FlexSpline,
+    displacement: Float[np.ndarray, "psi theta"],
+    effects: Sequence[Effect],
+    psi: Float[np.ndarray, " psi"],
+) -> tuple[Float[np.ndarray, "psi sector"], Float[np.ndarray, "psi sector"]]:
     """Imposed radial displacement [m] and tangential tooth force per output torque [N/(N m)] of each sector.
 
     The load sharing follows the local engagement depth, which is the imposed displacement where it points outwards:
-    for the ideal gear F ~ cos 2 theta over +-45 degrees of each lobe.
+    for the ideal gear F ~ cos 2 theta over +-45 degrees of each lobe. A sector takes the force over its width, so that
+    the signals do not ripple with the passing of nodes.
+
+    Parameters
+    ----------
+    displacement : array (psi, theta)
+        By the ideal wave generator, at :func:`fine_angles` [m].
+    effects : sequence of Effect
+    psi : array (psi,)
+        Wave-generator angles relative to the flex spline [rad].
     """
-    theta = flex.sector.pitch * np.arange(flex.sector.count)
-    displacement = ellipse(wave_generator, flex.sector.hat.radius, theta - psi[:, None])
+    theta = fine_angles(flex.sector.count)
     for effect in effects:
         displacement = effect.wave_generator(displacement, psi, theta)
     share = np.maximum(displacement, 0)
     for effect in effects:
         share = effect.mesh(share, psi, theta)
-    return displacement, share / (share.sum(axis=1, keepdims=True) * flex.tooth_radius)
+    share = share.reshape(len(psi), flex.sector.count, SUBDIVISION).sum(axis=2)
+    at_nodes = displacement[:, SUBDIVISION // 2 :: SUBDIVISION]
+    return at_nodes, share / (share.sum(axis=1, keepdims=True) * flex.tooth_radius)
 
 
 def influence_map(
@@ -91,11 +123,11 @@ def influence_map(
     effects : sequence of Effect
         Those that touch wave generator, mesh or structure.
     """
-    psi = 2 * np.pi / ANGLES * np.arange(ANGLES)
     sectors = flex.sector.count
-    loads = boundary_conditions(flex, wave_generator, effects, psi)
+    displacement = _sampled_ellipse(wave_generator, flex.sector.hat.radius, sectors)
+    loads = boundary_conditions(flex, displacement, effects, PSI)
     amplitudes = np.stack([np.fft.rfft(load, axis=1) for load in loads]) / sectors * order_weights(sectors)
-    response = flex.gauge_response(gauges)
+    response = gauge_response(flex, gauges)
     cracks = [crack for effect in effects for crack in effect.cracks()]
     values = np.stack([
         (amplitude @ response[:, :, load]).real + _cracked(flex, response, amplitude, load, cracks)
@@ -125,7 +157,7 @@ def _cracked(
     sector = flex.sector
     columns = np.array([(gap, gap + 1) for gap in (int(crack.angle // sector.pitch) for crack in cracks)]).ravel()
     turns = np.exp(1j * sector.pitch * np.outer(columns, orders(sector.count)))
-    loss = linalg.block_diag(*[(1 - _remaining(crack, flex)) * flex.crossing_stiffness for crack in cracks])
+    loss = linalg.block_diag(*[(1 - remaining_stiffness(crack, flex)) * flex.crossing_stiffness for crack in cracks])
     sound = np.concatenate([((amplitude * turn) @ flex.fields[:, flex.band, load]).real for turn in turns], axis=1)
     compliance = np.block([[flex.band_compliance[(i - j) % sector.count] for j in columns] for i in columns])
     forces = loss @ np.linalg.solve(np.eye(len(loss)) - compliance @ loss, sound.T)
@@ -133,7 +165,7 @@ def _cracked(
     return np.tensordot(forces.reshape(*signal.shape[::2], -1), signal, axes=((0, 1), (0, 2)))
 
 
-def _remaining(crack: Crack, flex: FlexSpline) -> float:
+def remaining_stiffness(crack: Crack, flex: FlexSpline) -> float:
     """Remaining stiffness of the bars across a crack: one tooth pitch of their length is weakened."""
     tooth_pitch = 2 * np.pi / flex.sector.hat.teeth
     return flex.sector.pitch / (flex.sector.pitch + (1 / crack.stiffness_ratio - 1) * tooth_pitch)

@@ -138,16 +138,22 @@ def read(path: Path) -> Recordings:
 def blocks(path: Path, rows: int | None = None) -> Iterator[Recordings]:
     """The recordings of a file in blocks of so many rows (all at once by default), checked first."""
     verify(path)
+    said = attributes(path)
     with h5py.File(path) as file:
         rate = float(file.attrs["sampling_rate_hz"])
-        attributes = {name: value for name, value in file.attrs.items() if isinstance(value, str)}
         total = len(file["signals"])
         for start in range(0, total, rows or total):
             where = slice(start, start + (rows or total))
             columns = {name: file[name][where] for name in COLUMNS}
             columns["label"] = pd.Categorical.from_codes(columns["label"], categories=list(CLASSES))
             columns["reference"] = columns["reference"].astype(bool)
-            yield Recordings(file["signals"][where], pd.DataFrame(columns), rate, attributes)
+            yield Recordings(file["signals"][where], pd.DataFrame(columns), rate, said)
+
+
+def attributes(path: Path) -> dict[str, str]:
+    """What a file says of itself: configuration and version of the code."""
+    with h5py.File(path) as file:
+        return {name: value for name, value in file.attrs.items() if isinstance(value, str)}
 
 
 def count(path: Path) -> int:

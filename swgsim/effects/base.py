@@ -29,7 +29,7 @@ class Effect:
     """A physical effect; a subclass overrides only the places of the chain that it touches.
 
     The methods of this base class change nothing. Fields over the circumference are sampled at the wave-generator
-    angles ``psi`` (relative to the flex spline) and at the angles ``theta`` of the sectors of the truss.
+    angles ``psi`` (relative to the flex spline) and at equally spaced angles ``theta`` around it.
     """
 
     def gear(self, gear: Gear) -> Gear:
@@ -51,7 +51,7 @@ class Effect:
         psi: Float[np.ndarray, " psi"],
         theta: Float[np.ndarray, " theta"],
     ) -> Float[np.ndarray, "psi theta"]:
-        """Share of the tangential force that each sector's teeth carry; the chain scales the shares to sum to one."""
+        """Share of the tangential force that is carried at each angle; the chain scales the shares to sum to one."""
         return share
 
     def cracks(self) -> tuple[Crack, ...]:

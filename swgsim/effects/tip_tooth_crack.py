@@ -43,7 +43,7 @@ class TipToothCrack(Effect):
         psi: Float[np.ndarray, " psi"],
         theta: Float[np.ndarray, " theta"],
     ) -> Float[np.ndarray, "psi theta"]:
-        """The shares with less force on the cracked teeth; a sector loses what it holds of their width."""
+        """The shares with less force on the cracked teeth; a sampled angle loses what it holds of their width."""
         pitch = theta[1] - theta[0]
         width = self.teeth * 2 * np.pi / self.flex_spline_teeth
         distance = np.abs((theta - self.theta + np.pi) % (2 * np.pi) - np.pi)

@@ -1,0 +1,16 @@
+"""Generate a data set: python scripts/generate.py grid=paper condition=clean"""
+
+import hydra
+from omegaconf import DictConfig, OmegaConf
+
+from swgsim.generation import run
+
+
+@hydra.main(version_base="1.3", config_path="../conf", config_name="generate")
+def main(cfg: DictConfig) -> None:
+    """Resolve the configuration and run the job."""
+    run(OmegaConf.to_container(cfg, resolve=True))
+
+
+if __name__ == "__main__":
+    main()

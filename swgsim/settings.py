@@ -1,0 +1,93 @@
+"""Where configuration meets code: mappings (conf/*.yaml) to the objects of this package."""
+
+from collections.abc import Mapping
+from dataclasses import fields
+from typing import Any, TypeVar
+
+import yaml
+
+from swgsim.acquisition import Window
+from swgsim.bench import Bench
+from swgsim.dataset import Plan
+from swgsim.disturbance import Disturbance
+from swgsim.faults import Variants
+from swgsim.gauges import GaugeSet
+from swgsim.gear import Gear, KinematicError, OperatingPoint, Transmission, WaveGenerator
+from swgsim.grid import Grid
+from swgsim.population import Population
+from swgsim.silk_hat import SilkHat
+
+T = TypeVar("T")
+Config = Mapping[str, Any]
+
+
+def build(kind: type[T], config: Config, **given: Any) -> T:
+    """An object of a dataclass from a mapping; lists become tuples.
+
+    Raises
+    ------
+    ValueError
+        If the mapping has a key that the class does not know; it lists the choices.
+    """
+    names = [f.name for f in fields(kind)]  # type: ignore[arg-type]
+    for key in config:
+        if key not in names:
+            raise ValueError(f"unknown choice {key!r} of {kind.__name__}; choose from {', '.join(names)}")
+    values = {key: tuple(value) if isinstance(value, list) else value for key, value in config.items()}
+    return kind(**(values | given))
+
+
+def gear(config: Config) -> Gear:
+    """A gear (conf/gear)."""
+    transmission = dict(config.get("transmission", {}))
+    if "kinematic_error" in transmission:
+        transmission["kinematic_error"] = [build(KinematicError, term) for term in transmission["kinematic_error"]]
+    parts = {
+        "transmission": build(Transmission, transmission),
+        "flex_spline": build(SilkHat, config.get("flex_spline", {})),
+        "wave_generator": build(WaveGenerator, config.get("wave_generator", {})),
+        "gauges": build(GaugeSet, config.get("gauges", {})),
+    }
+    return build(Gear, {key: value for key, value in config.items() if key not in parts}, **parts)
+
+
+def grid(config: Config) -> Grid:
+    """A grid (conf/grid)."""
+    points = tuple(OperatingPoint(n, T) for n in config["speeds_rpm"] for T in config["loads_nm"])
+    severities = {label: tuple(levels) for label, levels in config["severities"].items()}
+    variants = Variants(config["variants"], config["positions"], severities, config["drawn"])
+    return Grid(
+        points, variants, tuple(config["classes"]), config["references"], config["scatter"], seed=config["seed"]
+    )
+
+
+def gears(config: Config) -> tuple[Gear, ...]:
+    """The gears of a configuration: those listed, or those drawn around the first one."""
+    listed = tuple(gear(each) for each in config["gears"].values() if each)
+    if not config["grid"]["population"]:
+        return listed
+    return build(Population, config["grid"]["population"]).draw(listed[0], config["grid"]["seed"])
+
+
+def plan(config: Config) -> Plan:
+    """The plan of a data set (conf/generate.yaml), without its disturbance."""
+    bench = config["condition"]["bench"]
+    return Plan(
+        gears=gears(config),
+        grid=grid(config["grid"]),
+        window=build(Window, config["window"]),
+        bench=build(Bench, bench) if bench else None,
+        sectors=config["mesh"]["sectors"],
+        configuration=as_text(config),
+    )
+
+
+def disturbance(config: Config) -> Disturbance | None:
+    """The disturbance of a condition, if it has one."""
+    chosen = config["condition"]["disturbance"]
+    return build(Disturbance, chosen) if chosen else None
+
+
+def as_text(config: Config) -> str:
+    """The choices that recordings depend on, as YAML: all but where files lie and how many processes work."""
+    return yaml.safe_dump({key: value for key, value in config.items() if key not in ("data", "workers")})
