@@ -1,18 +1,18 @@
 """The simulation chain (Fig. 2): input/output model, flex spline and gauges in a row, for many runs at once."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import reduce
 
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.dynamics import PHI_IN, Drive, Motion, run, steady_state
+from swgsim.acquisition import Window
+from swgsim.dynamics import Drive, Motion, run, steady_state
 from swgsim.effects.base import Effect
 from swgsim.flexspline import solve_flex_spline
 from swgsim.gear import Gear, OperatingPoint
 from swgsim.influence import InfluenceMap, harmonics, influence_map
-from swgsim.acquisition import Window
 
 SECTORS = 100
 
@@ -81,13 +81,12 @@ def simulate(runs: Sequence[Run], window: Window, sectors: int = SECTORS) -> Sim
         Ideal signals: noise, quantisation and disturbance are for the acquisition.
     """
     if not runs:
-        raise ValueError("no runs to simulate: the grid is empty; give it gears, classes, variants and operating points")
+        raise ValueError(
+            "no runs to simulate: the grid is empty; give it gears, classes, variants and operating points"
+        )
     gears = [r.affected_gear for r in runs]
     motions, of_run = _distinct([(g.transmission, r.point, r.start_angle) for g, r in zip(gears, runs, strict=True)])
-    structures, structure_of_run = _distinct([
-        (g.flex_spline, g.transmission.alpha_tooth, g.wave_generator, g.gauges, tuple(filter(_touches_structure, r.effects)))
-        for g, r in zip(gears, runs, strict=True)
-    ])  # fmt: skip
+    structures, structure_of_run = _distinct([_structure(g, r.effects) for g, r in zip(gears, runs, strict=True)])
     motion = _motion(motions, window)
     maps = [
         influence_map(solve_flex_spline(hat, alpha_tooth, sectors), wave_generator, gauges, effects)
@@ -120,6 +119,12 @@ def _significant(coefficients: np.ndarray, tolerance: float = 3e-7) -> int:
     full_load = np.abs(coefficients) * np.array([1.0, 70.0])[:, None, None]
     size = full_load.max(axis=tuple(range(full_load.ndim - 1)))
     return int(np.flatnonzero(size > tolerance * size.max())[-1]) + 1
+
+
+def _structure(gear: Gear, effects: Sequence[Effect]) -> tuple:
+    """All that an influence map depends on, but for the mesh."""
+    touching = tuple(filter(_touches_structure, effects))
+    return gear.flex_spline, gear.transmission.alpha_tooth, gear.wave_generator, gear.gauges, touching
 
 
 def _touches_structure(effect: Effect) -> bool:

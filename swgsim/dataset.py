@@ -164,8 +164,9 @@ def _make_part(plan: Plan, block: tuple[int, int], file: Path) -> tuple[int, Usa
         recordings = record(plan, plan.cases(block))
     aside = file.with_name(f".{file.name}.{os.getpid()}.tmp")
     with aside.open("wb") as raw:
-        columns = {name: recordings.table[name].to_numpy() for name in COLUMNS if name != "label"}
-        np.savez(raw, signals=recordings.signals, label=np.asarray(recordings.table["label"], "U"), **columns)
+        columns = {name: recordings.table[name].to_numpy() for name in COLUMNS}
+        columns["label"] = columns["label"].astype("U")
+        np.savez(raw, allow_pickle=False, signals=recordings.signals, **columns)
     os.replace(aside, file)
     return len(recordings), usage()
 

@@ -73,4 +73,3 @@ class DirectSolver:
             loads = T_out[i] * force[i, :, None] * self.unit_force
             signals[:, i] = self.rows @ self.factorised.solve(loads.ravel(), moved.ravel())
         return signals + offsets(self.gear.gauges)[:, None]
-

@@ -3,9 +3,9 @@
 Frame. The flex spline is clamped, so phi_in is the angle of the wave generator relative to the flex spline (the angle
 the gauges see) and phi_out that of the circular spline, the output. Eqs. (3) and (6) are written for angles relative to
 the circular spline, phi_in - phi_out and -phi_out. The equations of motion follow by virtual work of T_stiff on
-Delta phi_k and of T_fric on phi_b:
+Delta phi_k and of T_fric on phi_b; as phi_err is a function of phi_in, its slope is part of the input's lever:
 
-    J_in  phi_in''  = T_in - tan(alpha_in) T_stiff
+    J_in  phi_in''  = T_in - (tan(alpha_in) + dphi_err/dphi_in) T_stiff
     J_out phi_out'' = T_out - T_load,   T_out = T_stiff / tan(alpha_tooth) - T_fric / sin(alpha_tooth)
 """
 
@@ -29,9 +29,10 @@ State = Float[np.ndarray, "5 run"]
 
 @dataclass(frozen=True)
 class Torques:
-    """Torques [N m] and sliding speed [rad/s] at one instant, each an array (run,)."""
+    """Torques [N m] and sliding speed [rad/s] at one instant, each an array (run,); T_wedge is the wave generator's."""
 
     T_in: Float[np.ndarray, " run"]
+    T_wedge: Float[np.ndarray, " run"]
     T_stiff: Float[np.ndarray, " run"]
     T_fric: Float[np.ndarray, " run"]
     T_out: Float[np.ndarray, " run"]
@@ -52,7 +53,9 @@ class Drive:
 
     def __init__(self, transmissions: Sequence[Transmission], points: Sequence[OperatingPoint]) -> None:
         if not transmissions or len(transmissions) != len(points):
-            raise ValueError(f"{len(transmissions)} gears and {len(points)} operating points: expected one each per run")
+            raise ValueError(
+                f"{len(transmissions)} gears and {len(points)} operating points: expected one each per run"
+            )
         self.transmissions, self.points = tuple(transmissions), tuple(points)
         numbers = [f.name for f in fields(Transmission) if f.name != "kinematic_error"]
         self.p = p = {name: np.array([getattr(t, name) for t in transmissions], float) for name in numbers}
@@ -85,20 +88,23 @@ class Drive:
         """The same runs several times over."""
         return Drive(self.transmissions * times, self.points * times)
 
-    def phi_err(self, phi_in: Float[np.ndarray, " run"]) -> Float[np.ndarray, " run"]:
-        """Kinematic error profile in the unit of the twist [rad]; an error e at the output counts e / tan(alpha_tooth)."""
-        error = np.zeros_like(phi_in)
+    def phi_err(self, phi_in: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Kinematic error profile in the unit of the twist [rad], and its slope; e at the output counts e / tan(alpha)."""
+        error, slope = np.zeros_like(phi_in), np.zeros_like(phi_in)
         turn = np.exp(1j * phi_in)
         for order, amplitude in self.error.items():
-            error += (amplitude * turn**order).imag
-        return error
+            term = amplitude * turn**order
+            error += term.imag
+            slope += order * term.real
+        return error, slope
 
     def torques(self, state: State) -> Torques:
         """All torques: eqs. (2), (3), (5), (6) and the control law."""
         phi_in, omega_in, phi_out, omega_out, speed_error = state
         p = self.p
         # Eq. (3) with phi_in - phi_out and -phi_out in place of phi_in and phi_out.
-        twist = self.tan_in * phi_in - phi_out / self.tan_t + self.phi_err(phi_in)
+        phi_err, slope = self.phi_err(phi_in)
+        twist = self.tan_in * phi_in - phi_out / self.tan_t + phi_err
         T_stiff = (p["k1"] + p["k2"] * twist * twist) * twist
         sliding = omega_out / self.sin_t
         sense = np.tanh(sliding / SLIDING_SPEED)
@@ -109,13 +115,13 @@ class Drive:
         T_fric = friction + p["mu"] * sense * F_n
         T_out = T_stiff / self.tan_t - T_fric / self.sin_t
         T_in = self.gain_p * (self.omega - omega_in) + self.gain_i * speed_error
-        return Torques(T_in, T_stiff, T_fric, T_out, sliding)
+        return Torques(T_in, (self.tan_in + slope) * T_stiff, T_stiff, T_fric, T_out, sliding)
 
     def derivative(self, state: State, torques: Torques) -> State:
         """Eq. (1)."""
         rate = np.empty_like(state)
         rate[PHI_IN] = state[OMEGA_IN]
-        rate[OMEGA_IN] = (torques.T_in - self.tan_in * torques.T_stiff) / self.p["J_in"]
+        rate[OMEGA_IN] = (torques.T_in - torques.T_wedge) / self.p["J_in"]
         rate[PHI_OUT] = state[OMEGA_OUT]
         rate[OMEGA_OUT] = (torques.T_out - self.T_load) / self.p["J_out"]
         rate[SPEED_ERROR] = self.omega - state[OMEGA_IN]
@@ -142,7 +148,7 @@ class Drive:
         twist = T_stiff / p["k1"]
         for _ in range(8):
             twist -= ((p["k1"] + p["k2"] * twist**2) * twist - T_stiff) / (p["k1"] + 3 * p["k2"] * twist**2)
-        phi_out = self.tan_t * (self.phi_err(np.zeros_like(twist)) - twist)
+        phi_out = self.tan_t * (self.phi_err(np.zeros_like(twist))[0] - twist)
         return np.stack([0 * twist, self.omega, phi_out, speed, self.tan_in * T_stiff / self.gain_i])
 
 
@@ -200,7 +206,8 @@ def run(drive: Drive, state: State, dt: float, count: int) -> Motion:
             state = drive.step(state, torques, step)
             for _ in range(substeps - 1):
                 state = drive.step(state, drive.torques(state), step)
-    return Motion(*np.ascontiguousarray(np.swapaxes(kept, 1, 2)), dt)
+    phi_in, omega_in, omega_out, T_in, T_out = np.ascontiguousarray(np.swapaxes(kept, 1, 2))
+    return Motion(phi_in, omega_in, omega_out, T_in, T_out, dt)
 
 
 def steady_state(drive: Drive, tolerance: float = 1e-10) -> State:
@@ -225,7 +232,9 @@ def steady_state(drive: Drive, tolerance: float = 1e-10) -> State:
     for i, row in enumerate(unknown):
         nudged[row, (i + 1) * runs : (i + 2) * runs] += 1e-6 * scale[i]
     change = (_one_revolution(drive.repeated(size + 1), nudged) - nudged)[:4].reshape(4, size + 1, runs)
-    inverse = np.linalg.inv(np.stack([((change[:, i + 1] - change[:, 0]) / (1e-6 * scale[i])).T for i in range(size)], 2))
+    inverse = np.linalg.inv(
+        np.stack([((change[:, i + 1] - change[:, 0]) / (1e-6 * scale[i])).T for i in range(size)], 2)
+    )
     miss = change[:, 0] - goal
     for _ in range(30):
         correction = np.einsum("rij,jr->ir", inverse, miss)

@@ -77,7 +77,9 @@ class Variants:
             raise ValueError(f"{self.count} variants at {self.positions} positions: the grid is empty, use at least 1")
         unknown = set(self.severities) ^ set(FAULTS)
         if unknown:
-            raise ValueError(f"severities for {sorted(self.severities)}, expected one list for each of {sorted(FAULTS)}")
+            raise ValueError(
+                f"severities for {sorted(self.severities)}, expected one list for each of {sorted(FAULTS)}"
+            )
         for label, levels in self.severities.items():
             located = label not in WITHOUT_POSITION
             if located and not self.drawn and len(levels) * self.positions != self.count:

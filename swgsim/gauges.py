@@ -90,9 +90,7 @@ def strain_rows(sector: Sector, radius: float) -> Complex[np.ndarray, "order 3 d
     return rows
 
 
-def bridges(
-    gauges: GaugeSet, strain: Complex[np.ndarray, "order 3 load"]
-) -> Complex[np.ndarray, "order 5 load"]:
+def bridges(gauges: GaugeSet, strain: Complex[np.ndarray, "order 3 load"]) -> Complex[np.ndarray, "order 5 load"]:
     """Bridge signals [mV/V] per circumferential order from the strains at angle 0.
 
     A pair of grids at +-45 degrees feels the difference of their strains, in an ideal pair the shear strain; a grid

@@ -1,7 +1,6 @@
 """The job of scripts/generate.py: a data set from a configuration, unless it is there already."""
 
 import json
-import os
 import time
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,6 +11,7 @@ from tqdm import tqdm
 
 from swgsim import settings, storage
 from swgsim.dataset import disturb, generate, provenance, usage
+from swgsim.files import write_json
 
 
 def run(config: Mapping[str, Any]) -> dict[str, Any]:
@@ -53,9 +53,7 @@ def run(config: Mapping[str, Any]) -> dict[str, Any]:
         "peak_memory_mib": round(peak, 1),
         "cores": joblib.cpu_count(),
     }
-    aside = summary.with_name(f".{summary.name}.{os.getpid()}.tmp")
-    aside.write_text(json.dumps(result, indent=2) + "\n")
-    os.replace(aside, summary)
+    write_json(summary, result)
     print(f"{path}: {len(plan)} recordings in {seconds:.1f} s, peak memory {peak:.0f} MiB")
     return result
 

@@ -81,7 +81,7 @@ def _lay_out(file: h5py.File, first: Recordings, rows: int) -> None:
     shape, dimensions = (rows, len(SENSORS), samples), ("sample", "sensor", "time")
     signals = file.create_dataset("signals", shape, "f4", chunks=(1, *shape[1:]), fletcher32=True)
     signals.attrs.update({"units": "mV/V", "long_name": "bridge signal"})
-    variables = [(signals, dimensions)]
+    variables: list[tuple[h5py.Dataset, tuple[str, ...]]] = [(signals, dimensions)]
     for name, column in COLUMNS.items():
         variable = file.create_dataset(name, (rows,), column.dtype, chunks=(min(rows, 4096),), fletcher32=True)
         variable.attrs.update({"units": column.units, "long_name": column.long_name})
@@ -106,7 +106,9 @@ def digest(path: Path) -> str:
     with path.open("rb") as raw:
         seal = raw.read(SEAL_SIZE)
     if len(seal) < SEAL_SIZE or not seal.startswith(SEAL_START):
-        raise ValueError(f"{path}: not a file of recordings (its first {SEAL_SIZE} bytes are no seal); generate it again")
+        raise ValueError(
+            f"{path}: not a file of recordings (its first {SEAL_SIZE} bytes are no seal); generate it again"
+        )
     return seal[len(SEAL_START) :].split()[0].decode(errors="replace")
 
 
@@ -145,7 +147,7 @@ def blocks(path: Path, rows: int | None = None) -> Iterator[Recordings]:
         for start in range(0, total, rows or total):
             where = slice(start, start + (rows or total))
             columns = {name: file[name][where] for name in COLUMNS}
-            columns["label"] = pd.Categorical.from_codes(columns["label"], categories=list(CLASSES))
+            columns["label"] = pd.Categorical.from_codes(columns["label"], categories=pd.Index(CLASSES))
             columns["reference"] = columns["reference"].astype(bool)
             yield Recordings(file["signals"][where], pd.DataFrame(columns), rate, said)
 

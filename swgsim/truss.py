@@ -79,7 +79,7 @@ class Factorised:
     def solve(
         self, forces: Float[np.ndarray, " dof"], displacements: Float[np.ndarray, " dof"]
     ) -> Float[np.ndarray, " dof"]:
-        """Displacements [m] under nodal forces [N] on the free and displacements [m] of the given degrees of freedom."""
+        """Displacements [m] under forces [N] on the free and displacements [m] of the given degrees of freedom."""
         u = displacements.copy()
         u[self.free] = self.factor.solve(forces[self.free] - self.coupling @ displacements[self.given])
         return u

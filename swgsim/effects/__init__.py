@@ -6,6 +6,7 @@ from swgsim.effects.eccentric_wave_generator import EccentricWaveGenerator
 from swgsim.effects.reduced_damping import ReducedDamping
 from swgsim.effects.reduced_stiffness import ReducedStiffness
 from swgsim.effects.root_tooth_crack import RootToothCrack
+from swgsim.effects.run_in import RunIn
 from swgsim.effects.tip_tooth_crack import TipToothCrack
 from swgsim.effects.unit_scatter import UnitScatter
 from swgsim.effects.warm_grease import WarmGrease
@@ -18,6 +19,7 @@ __all__ = [
     "ReducedDamping",
     "ReducedStiffness",
     "RootToothCrack",
+    "RunIn",
     "TipToothCrack",
     "UnitScatter",
     "WarmGrease",

@@ -1,0 +1,57 @@
+# "make help" lists the targets. SMALL=1 takes the small grid.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/ready
+GRID := $(if $(SMALL),small,paper)
+
+export MLFLOW_DISABLE_TELEMETRY := true
+
+.DEFAULT_GOAL := help
+.PHONY: help install data experiments report paper test lint benchmark convergence ui clean
+
+help:  ## this list
+	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-12s %s\n", $$1, $$2}'
+
+$(READY): pyproject.toml constraints.txt
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
+	touch $@
+
+install: $(READY)  ## virtual environment with everything in it
+
+data: $(READY)  ## the clean and the disturbed data set
+	$(BIN)/python scripts/generate.py grid=$(GRID) condition=clean
+	$(BIN)/python scripts/generate.py grid=$(GRID) condition=disturbed
+
+experiments: data  ## the paper's Tables VII to X, every job a run in MLflow
+	for table in table7 table8 table9 table10; do \
+	    $(BIN)/python scripts/train.py experiment=$$table grid=$(GRID) || exit 1; \
+	done
+
+report: $(READY)  ## report/index.html and report/report.json from what has been run
+	$(BIN)/python scripts/report.py grid=$(GRID)
+
+paper: experiments  ## from nothing to the paper's tables beside ours (SMALL=1: a small grid, under a minute)
+	$(BIN)/python scripts/report.py grid=$(GRID)
+	@echo "open report/index.html; 'make ui' shows the runs"
+
+test: $(READY)  ## all tests
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile -q
+
+lint: $(READY)  ## style and types
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+benchmark: $(READY)  ## the chain against the obvious ways of doing the same
+	$(BIN)/python scripts/benchmark.py
+
+convergence: $(READY)  ## gauge signals against the mesh of the flex spline
+	$(BIN)/python -m swgsim.convergence
+
+ui: $(READY)  ## the runs in the MLflow page, on this machine only
+	$(BIN)/python scripts/ui.py
+
+clean:  ## remove data sets, runs and reports
+	rm -rf data mlruns report outputs

@@ -1,0 +1,123 @@
+"""One evaluation for every method: fit and score on each split."""
+
+import time
+import warnings
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from jaxtyping import Float, Int
+
+from learn.classical import Classifier
+from learn.splits import Split
+
+
+@dataclass(frozen=True)
+class SplitScore:
+    """Accuracy on the two sides of a split [%], time to fit [s], and whether the optimiser came to its end."""
+
+    name: str
+    train: float
+    test: float
+    fit_seconds: float
+    converged: bool
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Scores of one method.
+
+    Attributes
+    ----------
+    scores : tuple of SplitScore
+        One per split.
+    classes : tuple of str
+        Names of the classes in the order in which the data set has them, which is that of the confusion matrix.
+    confusion : array (true, predicted)
+        Number of tested rows, summed over the splits.
+    """
+
+    scores: tuple[SplitScore, ...]
+    classes: tuple[str, ...]
+    confusion: Int[np.ndarray, "true predicted"]
+
+    def recall(self) -> Mapping[str, float]:
+        """Share of the tested rows of each class that were recognised [%]; classes that were tested only."""
+        tested = self.confusion.sum(axis=1)
+        return {
+            name: 100 * float(self.confusion[i, i] / tested[i]) for i, name in enumerate(self.classes) if tested[i] > 0
+        }
+
+    def metrics(self) -> dict[str, float]:
+        """All figures, to three decimals, under names that MLflow accepts; scores are averages over splits [%]."""
+        recall = self.recall()
+        exact = {
+            "train_score": float(np.mean([s.train for s in self.scores])),
+            "test_score": float(np.mean([s.test for s in self.scores])),
+            "balanced_accuracy": float(np.mean(list(recall.values()))),
+            "fit_seconds": sum(s.fit_seconds for s in self.scores),
+            "converged": float(all(s.converged for s in self.scores)),
+            **{f"test/{metric_key(s.name)}": s.test for s in self.scores},
+            **{f"recall/{name}": value for name, value in recall.items()},
+        }
+        return {name: round(value, 3) for name, value in exact.items()}
+
+
+def metric_key(split: str) -> str:
+    """The name of a split in the spelling of metrics, where neither ``,`` nor ``>`` may stand.
+
+    >>> metric_key("1,2->3")
+    '1_2_to_3'
+    """
+    return split.replace(",", "_").replace("->", "_to_").replace(" ", "_")
+
+
+def evaluate(
+    features: Float[np.ndarray, "row feature"],
+    labels: np.ndarray,
+    splits: Iterable[Split],
+    method: Callable[[], Classifier],
+) -> Evaluation:
+    """Train a fresh `method` on the training rows of every split and score it on both sides.
+
+    Parameters
+    ----------
+    features : array (row, feature)
+    labels : array (row,)
+        Class names.
+    splits : iterable of Split
+    method : callable
+        Makes an untrained classifier.
+    """
+    classes = pd.Index(pd.unique(labels))
+    confusion = np.zeros((len(classes), len(classes)), dtype=np.int64)
+    scores = []
+    for split in splits:
+        classifier = method()
+        start = time.perf_counter()
+        _fit(classifier, features[split.train], labels[split.train])
+        seconds = time.perf_counter() - start
+        predicted = classifier.predict(features[split.test])
+        truth = labels[split.test]
+        np.add.at(confusion, (classes.get_indexer(truth), classes.get_indexer(predicted)), 1)
+        train_score = np.mean(classifier.predict(features[split.train]) == labels[split.train])
+        test_score = np.mean(predicted == truth)
+        scores.append(
+            SplitScore(split.name, 100 * float(train_score), 100 * float(test_score), seconds, _converged(classifier))
+        )
+    return Evaluation(tuple(scores), tuple(map(str, classes)), confusion)
+
+
+def _fit(classifier: Classifier, features: np.ndarray, labels: np.ndarray) -> None:
+    """Fit; an optimiser that stops at its bound is no warning here but the metric ``converged``."""
+    from sklearn.exceptions import ConvergenceWarning
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ConvergenceWarning)
+        classifier.fit(features, labels)
+
+
+def _converged(classifier: Classifier) -> bool:
+    bound = getattr(classifier, "max_iter", -1)
+    return bound < 0 or int(np.max(getattr(classifier, "n_iter_", 0))) < bound

@@ -1,0 +1,184 @@
+"""Features of eqs. 7 to 9 and the feature selections of Table III."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from jaxtyping import Float
+
+from learn.references import healthy_reference
+from swgsim.recordings import SENSORS, Recordings
+
+SPECTRA = {"none": (), "gauges": SENSORS, "differences": ("ds13", "ds24")}
+EFFICIENCIES = ("eta_rel", "eta2_rel")
+
+
+@dataclass(frozen=True)
+class Selection:
+    """A feature selection of Table III.
+
+    Attributes
+    ----------
+    name : str
+        Its name, ``selection_1`` to ``selection_3`` for the paper's.
+    statistics : bool
+        Mean and variance of every gauge signal.
+    spectrum : {"none", "gauges", "differences"}
+        DFT of nothing, of every gauge signal, or of the differences of opposite gauges (eq. 8).
+    efficiency : {"eta_rel", "eta2_rel"}
+        Relative efficiency, or its fourth root (eq. 9).
+    orders : int
+        DFT components per signal: the multiples 1 to `orders` of the wave generator's speed n_in. The paper does not
+        say how many it takes.
+    floor : float
+        Smallest magnitude of a healthy mean or DFT component [mV/V] that eq. 7 divides by; its square for a variance.
+        Where symmetry makes the healthy value vanish, eq. 7 would divide by rounding errors instead. The default,
+        1e-6, bounds the quotient and touches nothing that could be measured: of an amplifier's noise of 5e-4 mV/V a
+        window of 600 samples leaves 3e-5.
+
+    Raises
+    ------
+    ValueError
+        If a value is not one of the choices or out of its limits.
+    """
+
+    name: str
+    statistics: bool
+    spectrum: str
+    efficiency: str
+    orders: int = 6
+    floor: float = 1e-6
+
+    def __post_init__(self) -> None:
+        if self.spectrum not in SPECTRA:
+            raise ValueError(f"unknown spectrum {self.spectrum!r}; choose from {', '.join(SPECTRA)}")
+        if self.efficiency not in EFFICIENCIES:
+            raise ValueError(f"unknown efficiency {self.efficiency!r}; choose from {', '.join(EFFICIENCIES)}")
+        if self.orders < 1:
+            raise ValueError(f"{self.orders} DFT orders, at least 1 is needed; take spectrum=none to do without")
+        if not self.floor > 0:
+            raise ValueError(f"floor {self.floor} mV/V must be above 0, else eq. 7 may divide by zero; 1e-6 is usual")
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the features, in their order."""
+        statistics = [f"{symbol}({s})" for symbol in ("m_rel", "var_rel") for s in SENSORS] if self.statistics else []
+        spectrum = [f"DFT_rel({s})[{k}]" for s in SPECTRA[self.spectrum] for k in range(1, self.orders + 1)]
+        return (*statistics, *spectrum, self.efficiency)
+
+    @property
+    def floors(self) -> Float[np.ndarray, " quantity"]:
+        """Floor of each signal feature: mV/V, or its square for the variances."""
+        statistics = np.repeat([self.floor, self.floor**2], len(SENSORS)) if self.statistics else np.empty(0)
+        return np.append(statistics, np.full(len(SPECTRA[self.spectrum]) * self.orders, self.floor))
+
+
+def whole_revolutions(speed_rpm: float, rate: float, length: int) -> int:
+    """Samples in the largest whole number of wave-generator revolutions that a window of `length` samples holds.
+
+    >>> whole_revolutions(2000.0, rate=10_000.0, length=650)
+    600
+
+    Raises
+    ------
+    ValueError
+        If the window is shorter than one revolution.
+    """
+    revolution = 60 * rate / speed_rpm
+    count = int(length / revolution + 1e-9)
+    if count < 1:
+        raise ValueError(
+            f"the window of {length} samples holds {length / revolution:.2f} revolutions at {speed_rpm:g} rpm and "
+            f"{rate:g} Hz, at least 1 is needed: record {int(np.ceil(revolution))} samples or more"
+        )
+    return round(count * revolution)
+
+
+def amplitudes(
+    signals: Float[np.ndarray, "sample channel time"], speed_rpm: float, rate: float, orders: int
+) -> Float[np.ndarray, "sample channel order"]:
+    """DFT magnitude of the zero-mean signals at the orders 1 to `orders` of the speed n_in [unit of signals].
+
+    A sine of amplitude a at an integer order gives a at that order and 0 at the others when the signals span whole
+    revolutions.
+
+    Raises
+    ------
+    ValueError
+        If the highest order is not below half the sampling rate.
+    """
+    highest = orders * speed_rpm / 60
+    if not highest < rate / 2:
+        raise ValueError(
+            f"order {orders} at {speed_rpm:g} rpm lies at {highest:g} Hz, the limit is half the sampling rate, "
+            f"{rate / 2:g} Hz: take fewer orders or a higher sampling rate"
+        )
+    length = signals.shape[-1]
+    turns = np.arange(length) * speed_rpm / 60 / rate
+    waves = np.exp(-2j * np.pi * np.outer(turns, np.arange(1, orders + 1)))  # (time, order)
+    zero_mean = signals - signals.mean(axis=-1, keepdims=True)
+    return np.hypot(zero_mean @ waves.real, zero_mean @ waves.imag) * (2 / length)
+
+
+def signal_quantities(recordings: Recordings, selection: Selection) -> Float[np.ndarray, "sample quantity"]:
+    """The selection's means and variances [mV/V, squared], and DFT magnitudes [mV/V] before they are set in relation.
+
+    All are taken over the largest whole number of revolutions at the recording's desired speed.
+    """
+    result = np.empty((len(recordings), len(selection.floors)))
+    speeds = recordings.table["n_in_rpm"].to_numpy()
+    for speed in np.unique(speeds):
+        rows = speeds == speed
+        length = whole_revolutions(float(speed), recordings.rate, recordings.signals.shape[-1])
+        s = recordings.signals[rows, :, :length].astype(np.float64)
+        quantities = [s.mean(axis=-1), s.var(axis=-1)] if selection.statistics else []
+        if selection.spectrum != "none":
+            channels = s if selection.spectrum == "gauges" else s[:, 1:3] - s[:, 3:5]  # eq. 8: s1 - s3, s2 - s4
+            quantities.append(amplitudes(channels, float(speed), recordings.rate, selection.orders).reshape(len(s), -1))
+        result[rows] = np.concatenate([np.empty((len(s), 0)), *quantities], axis=1)
+    return result
+
+
+@dataclass(frozen=True)
+class LearningSet:
+    """Features of samples, dimensionless, in the columns that ``Selection.names`` names; and their facts."""
+
+    features: Float[np.ndarray, "sample feature"]
+    table: pd.DataFrame
+
+
+def learning_set(blocks: Iterable[Recordings], selection: Selection) -> LearningSet:
+    """Features of all samples relative to the healthy reference of their own gear and operating point.
+
+    Eq. 7, component by component, as 1 + (m - m_healthy) / m_healthy: the divisor alone is kept from falling below the
+    selection's floor, so a healthy recording gives 1 also where the healthy value vanishes.
+
+    Parameters
+    ----------
+    blocks : iterable of Recordings
+        The recordings of a data set, samples and references, in one block or in many that are dropped one by one.
+    selection : Selection
+
+    Raises
+    ------
+    ValueError
+        If a gear has no reference at an operating point, if its reference efficiency is not above 0, or if the window
+        holds no whole revolution.
+    """
+    parts = [(signal_quantities(block, selection), block.table) for block in blocks]
+    quantities = np.concatenate([part[0] for part in parts])
+    facts = pd.concat([part[1] for part in parts], ignore_index=True)
+    is_reference = facts["reference"].to_numpy()
+    references, samples = facts[is_reference], facts[~is_reference].reset_index(drop=True)
+
+    healthy = healthy_reference(quantities[is_reference], references, samples)
+    divisor = np.copysign(np.maximum(np.abs(healthy), selection.floors), healthy)
+    relative = 1 + (quantities[~is_reference] - healthy) / divisor  # eq. 7
+
+    eta_healthy = healthy_reference(references[["efficiency"]].to_numpy(), references, samples)
+    if not (eta_healthy > 0).all():
+        raise ValueError(f"healthy reference efficiency {eta_healthy.min():g} found, eq. 7 needs one above 0")
+    eta_rel = samples[["efficiency"]].to_numpy() / eta_healthy
+    last = eta_rel if selection.efficiency == "eta_rel" else np.abs(1 - eta_rel) ** 0.25  # eq. 9
+    return LearningSet(np.concatenate([relative, last], axis=1), samples)

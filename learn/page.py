@@ -1,0 +1,103 @@
+"""The page on which MLflow opens: saved views with the metrics and parameters that matter.
+
+MLflow (3.15 and later) keeps a saved view as a tag of the experiment: a header and, compressed, the state of the
+table. The format is not documented; ``tests/test_tracking.py`` guards it.
+"""
+
+import base64
+import contextlib
+import json
+import os
+import subprocess
+import sys
+import time
+import zlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from learn.tracking import Store
+
+METRICS = ("test_score", "train_score", "fit_seconds")
+WHAT = ("classifier", "features", "protocol", "condition", "grid")  # the name of a run begins with its study
+SIZES = ("hidden_layers", "neurons", "kernel", "trees", "depth", "neighbours")
+
+
+@dataclass(frozen=True)
+class View:
+    """A saved view of the table of runs: which runs, in which order, with which parameters beside the metrics."""
+
+    key: str
+    name: str
+    filter: str
+    order_by: str
+    parameters: tuple[str, ...]
+
+
+SCORES = View("scores", "Scores", "tags.kind = 'job'", "metrics.`test_score`", WHAT)
+SWEEPS = View("sweeps", "Sweeps", "", "attributes.start_time", WHAT)
+STUDIES = View(
+    "studies",
+    "Preliminary studies",
+    "tags.kind = 'job' and params.features = 'selection_3' and params.condition = 'disturbed'"
+    " and params.protocol = 'random_folds'",
+    "metrics.`test_score`",
+    ("classifier", *(f"classifier.{size}" for size in SIZES)),
+)
+VIEWS = (SCORES, SWEEPS, STUDIES)
+
+
+def state(view: View) -> dict[str, Any]:
+    """The state of MLflow's table of runs that shows the view."""
+    return {
+        "searchFilter": view.filter,
+        "orderByKey": view.order_by,
+        "orderByAsc": False,
+        "selectedColumns": [*(f"params.`{p}`" for p in view.parameters), *(f"metrics.`{m}`" for m in METRICS)],
+    }
+
+
+def encode(state: Mapping[str, Any]) -> str:
+    """The state as MLflow writes it: deflated JSON in base64 behind the word ``deflate;``.
+
+    >>> decode(encode({"orderByAsc": False}))
+    {'orderByAsc': False}
+    """
+    return "deflate;" + base64.b64encode(zlib.compress(json.dumps(state).encode())).decode()
+
+
+def decode(text: str) -> dict[str, Any]:
+    """Inverse of :func:`encode`."""
+    result: dict[str, Any] = json.loads(zlib.decompress(base64.b64decode(text.removeprefix("deflate;"))))
+    return result
+
+
+def save_views(store: Store) -> None:
+    """Put the views into the experiment, where the page also lists them under Views."""
+    for view in VIEWS:
+        now = int(1000 * time.time())
+        value = {"name": view.name, "createdAt": now, "updatedAt": now, "state": encode(state(view))}
+        store.client.set_experiment_tag(store.experiment_id, f"mlflow.sharedViewState.{view.key}", json.dumps(value))
+
+
+def link(store: Store, server: str, view: View = SCORES) -> str:
+    """Address of the view on an MLflow server such as ``http://127.0.0.1:5050``."""
+    return (
+        f"{server}/#/experiments/{store.experiment_id}/runs?workflowType=machine_learning&viewStateShareKey={view.key}"
+    )
+
+
+def serve(store: Store, host: str, port: int) -> None:
+    """Run MLflow's page for a local store until it is interrupted; with a server, only print the links.
+
+    One worker and no job execution: three processes instead of fifteen.
+    """
+    save_views(store)
+    server = f"http://{host}:{port}" if store.folder else store.uri
+    for view in VIEWS:
+        print(f"{view.name}: {link(store, server, view)}", flush=True)
+    if store.folder:
+        command = [sys.executable, "-m", "mlflow", "ui", "--workers", "1", "--host", host, "--port", str(port)]
+        light = {"MLFLOW_SERVER_ENABLE_JOB_EXECUTION": "false"}
+        with contextlib.suppress(KeyboardInterrupt):
+            subprocess.run([*command, "--backend-store-uri", store.uri], env={**os.environ, **light}, check=False)

@@ -1,0 +1,202 @@
+"""MLflow behind a few functions: the store, the run of a job, the run of a sweep, and the query for finished runs."""
+
+import logging
+import os
+import sqlite3
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+os.environ.setdefault("MLFLOW_DISABLE_TELEMETRY", "true")  # read when mlflow is imported
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from mlflow import MlflowClient
+
+EXPERIMENT = "strain wave gears"
+
+
+@dataclass(frozen=True)
+class Store:
+    """Where runs are kept.
+
+    Attributes
+    ----------
+    uri : str
+        Address for MLflow.
+    experiment : str
+        Name of the MLflow experiment that holds all runs.
+    folder : Path or None
+        Folder of a local store: its database and, beside it, the artifacts. None with a server.
+    """
+
+    uri: str
+    experiment: str = EXPERIMENT
+    folder: Path | None = None
+
+    @cached_property
+    def client(self) -> "MlflowClient":
+        """The client of this store; the database of a local store is created when it does not exist.
+
+        Two processes that create a database at the same time destroy each other's, so a sweep calls this in its
+        parent process before any job starts.
+        """
+        from mlflow import MlflowClient
+
+        if self.folder is None or (self.folder / "mlflow.db").exists():
+            return MlflowClient(tracking_uri=self.uri)
+        self.folder.mkdir(parents=True, exist_ok=True)
+        for chatty in ("alembic", "mlflow.store.db"):
+            logging.getLogger(chatty).setLevel(logging.WARNING)
+        client = MlflowClient(tracking_uri=self.uri)
+        client.search_experiments()
+        with closing(sqlite3.connect(self.folder / "mlflow.db")) as database:
+            database.execute("pragma journal_mode=wal")  # readers and writers do not wait for each other
+        return client
+
+    @cached_property
+    def experiment_id(self) -> str:
+        """Number of the experiment, which is created when it does not exist."""
+        found = self.client.get_experiment_by_name(self.experiment)
+        if found:
+            return str(found.experiment_id)
+        artifacts = (self.folder / "artifacts").as_uri() if self.folder else None
+        return str(self.client.create_experiment(self.experiment, artifact_location=artifacts))
+
+
+def local_store(folder: str, experiment: str = EXPERIMENT) -> Store:
+    """A store in a folder of this machine: an SQLite database with the artifacts beside it."""
+    path = Path(folder).resolve()
+    return Store(f"sqlite:///{path / 'mlflow.db'}", experiment, path)
+
+
+def server_store(uri: str, experiment: str = EXPERIMENT) -> Store:
+    """A store behind an MLflow server.
+
+    Raises
+    ------
+    ValueError
+        If the address is not one of a server.
+    """
+    if not uri.startswith(("http://", "https://")):
+        raise ValueError(
+            f"tracking.uri={uri!r} is no address of a server: give one like http://host:5000, or tracking=local"
+        )
+    return Store(uri, experiment)
+
+
+class Run:
+    """A run in progress, to be filled once with all there is to say."""
+
+    def __init__(self, store: Store, run_id: str) -> None:
+        self._client, self._id = store.client, run_id
+
+    def record(self, metrics: Mapping[str, float], figures: Mapping[str, "Figure"]) -> None:
+        """Keep the metrics in one transaction and the figures under their path among the artifacts."""
+        from mlflow.entities import Metric
+
+        now = int(1000 * time.time())
+        self._client.log_batch(self._id, metrics=[Metric(name, value, now, 0) for name, value in metrics.items()])
+        for path, figure in figures.items():
+            self._client.log_figure(self._id, figure, path)
+
+
+@contextmanager
+def job_run(
+    store: Store, name: str, key: str, parameters: Mapping[str, Any], config: Mapping[str, Any], tags: Mapping[str, str]
+) -> Iterator[Run]:
+    """The run of one job: finished at the end, failed after an exception, and left running by a killed job.
+
+    Parameters
+    ----------
+    store : Store
+    name : str
+        Name of the run.
+    key : str
+        What :func:`finished_metrics` finds it by.
+    parameters : mapping
+        Parameters by which the run is looked up and compared; ``study`` names the sweep that it belongs to.
+    config : mapping
+        Resolved configuration, kept as ``config.yaml``.
+    tags : mapping
+        Further facts.
+    """
+    from mlflow.entities import Param
+
+    parent = _open_sweep_of(store, parameters["study"])
+    everything = {"kind": "job", "key": key, **tags, **({"mlflow.parentRunId": parent} if parent else {})}
+    run_id = store.client.create_run(store.experiment_id, tags=everything, run_name=name).info.run_id
+    try:
+        store.client.log_batch(run_id, params=[Param(name, str(value)) for name, value in parameters.items()])
+        store.client.log_dict(run_id, dict(config), "config.yaml")
+        yield Run(store, run_id)
+    except BaseException:
+        store.client.set_terminated(run_id, "FAILED")
+        raise
+    store.client.set_terminated(run_id)
+
+
+def finished_metrics(store: Store, key: str) -> dict[str, float] | None:
+    """The metrics of a finished job, or None if there is none with this key."""
+    runs = store.client.search_runs(
+        [store.experiment_id], f"tags.kind = 'job' and tags.key = '{key}' and attributes.status = 'FINISHED'"
+    )
+    return dict(runs[0].data.metrics) if runs else None
+
+
+def open_sweep(store: Store, study: str) -> None:
+    """Create the store if need be, and open the run that the jobs of a study belong to; a study has one for ever."""
+    found = store.client.search_runs([store.experiment_id], _sweep_of(study))
+    if found:
+        store.client.update_run(found[0].info.run_id, "RUNNING")
+    else:
+        store.client.create_run(store.experiment_id, tags={"kind": "sweep", "study": study}, run_name=study)
+
+
+def close_sweep(store: Store, study: str) -> None:
+    """Mark the run of a study as finished."""
+    run_id = _open_sweep_of(store, study)
+    if run_id:
+        store.client.set_terminated(run_id)
+
+
+def _open_sweep_of(store: Store, study: str) -> str | None:
+    open_runs = store.client.search_runs([store.experiment_id], f"{_sweep_of(study)} and attributes.status = 'RUNNING'")
+    return str(open_runs[0].info.run_id) if open_runs else None
+
+
+def _sweep_of(study: str) -> str:
+    return f"tags.kind = 'sweep' and tags.study = '{study}'"
+
+
+def finished_runs(store: Store, **parameters: str) -> pd.DataFrame:
+    """The newest finished run of every configuration, one row each, newest first.
+
+    Parameters
+    ----------
+    store : Store
+    **parameters : str
+        Values that parameters must have, such as ``grid="paper"``.
+
+    Returns
+    -------
+    DataFrame
+        Columns are the parameters (text), the metrics (numbers) and ``data_digest``; empty if there is no run.
+    """
+    conditions = [f"params.{name} = '{value}'" for name, value in parameters.items()]
+    query = " and ".join(["tags.kind = 'job'", "attributes.status = 'FINISHED'", *conditions])
+    runs = store.client.search_runs(
+        [store.experiment_id], query, max_results=50_000, order_by=["attributes.start_time DESC"]
+    )
+    newest: dict[tuple[tuple[str, str], ...], Any] = {}
+    for run in runs:
+        newest.setdefault(tuple(sorted(run.data.params.items())), run)
+    return pd.DataFrame(
+        [{**r.data.params, **r.data.metrics, "data_digest": r.data.tags["data_digest"]} for r in newest.values()]
+    )

@@ -1,0 +1,39 @@
+"""Measure the chain against the obvious ways of doing the same: python scripts/benchmark.py"""
+
+from dataclasses import replace
+from pathlib import Path
+
+import hydra
+import numpy as np
+from omegaconf import DictConfig, OmegaConf
+
+from swgsim import benchmark, settings
+from swgsim.files import write_json
+
+
+@hydra.main(version_base="1.3", config_path="../conf", config_name="benchmark")
+def main(cfg: DictConfig) -> None:
+    """Print both ratios and keep them as <report>/benchmark.json."""
+    config = OmegaConf.to_container(cfg, resolve=True)
+    report = Path(config.pop("report"))
+    plan = settings.plan(config)
+    nominal = plan.gears[0].transmission
+    stiffnesses = [replace(nominal, k1=ratio * nominal.k1) for ratio in np.linspace(0.8, 1.0, 120)]
+    result = {
+        "chain_vs_solve_per_step": benchmark.chain_vs_solve_per_step(plan),
+        "integrator_vs_solve_ivp": benchmark.integrator_vs_solve_ivp(stiffnesses, plan.grid.points),
+    }
+    chain, integrator = result.values()
+    print(
+        f"chain against one sparse solve per sample: {chain['ratio']:,.0f} times faster, "
+        f"largest difference {chain['max_relative_difference']:.1e} of the amplitude"
+    )
+    print(
+        f"batched integrator against solve_ivp: {integrator['ratio']:,.0f} times faster, "
+        f"largest error {integrator['max_relative_error']:.1e} of the ripple"
+    )
+    write_json(report / "benchmark.json", result)
+
+
+if __name__ == "__main__":
+    main()

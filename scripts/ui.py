@@ -1,0 +1,17 @@
+"""Serve MLflow's page on this machine and print the link to the table of scores."""
+
+import hydra
+from omegaconf import DictConfig, OmegaConf
+
+
+@hydra.main(version_base="1.3", config_path="../conf", config_name="ui")
+def main(config: DictConfig) -> None:
+    """Serve until interrupted."""
+    from learn.page import serve
+    from learn.settings import store
+
+    serve(store(OmegaConf.to_container(config.tracking)), config.host, config.port)  # type: ignore[arg-type]
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,108 @@
+"""The chain and its integrator against the obvious ways of doing the same, as ratios measured in one run."""
+
+import time
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from scipy.integrate import solve_ivp
+from threadpoolctl import threadpool_limits
+
+from swgsim.acquisition import Window
+from swgsim.chain import simulate
+from swgsim.dataset import Plan
+from swgsim.direct import DirectSolver
+from swgsim.dynamics import OMEGA_IN, OMEGA_OUT, Drive, run, steady_state
+from swgsim.flexspline import solve_flex_spline
+from swgsim.gear import OperatingPoint, Transmission
+
+# Instants of each recording that the slow way solves; its time is scaled up to all of them.
+INSTANTS = 40
+
+
+def chain_vs_solve_per_step(plan: Plan) -> dict[str, Any]:
+    """The chain on one gear's grid against one sparse solve per sample on the same truss, factorised once.
+
+    Returns
+    -------
+    dict
+        ratio of the times per recording; max_relative_difference, the largest difference of a signal over its
+        amplitude, over one run of every class at its first severity and at its last.
+    """
+    gear = plan.gears[0]
+    runs = [case.run for case in plan.grid.cases(gear)]
+    with threadpool_limits(1):
+        start = time.perf_counter()
+        simulation = simulate(runs, plan.window, plan.sectors)
+        chain = (time.perf_counter() - start) / len(runs)
+
+        flex = solve_flex_spline(gear.flex_spline, gear.transmission.alpha_tooth, plan.sectors)
+        instants = np.linspace(0, plan.window.samples - 1, INSTANTS).astype(int)
+        seconds, differences = [], []
+        for i in _extremes(plan):
+            solver = DirectSolver(flex, runs[i].affected_gear, runs[i].effects)
+            motion, row = simulation.motion, simulation.of_run[i]
+            start = time.perf_counter()
+            direct = solver.signals(motion.phi_in[row, instants], motion.T_out[row, instants])
+            seconds.append(time.perf_counter() - start)
+            fast = simulation.signals[i][:, instants]
+            amplitude = 0.5 * np.ptp(simulation.signals[i, 1:], axis=1).min()
+            differences.append(np.abs(fast - direct).max() / amplitude)
+    solve = np.median(seconds) / INSTANTS * plan.window.samples
+    return {
+        "ratio": float(solve / chain),
+        "max_relative_difference": float(max(differences)),
+        "seconds_per_recording": {"chain": chain, "solve_per_step": float(solve)},
+        "recordings": len(runs),
+    }
+
+
+def _extremes(plan: Plan) -> Sequence[int]:
+    """Numbers of the first and the last case of every class at the last operating point."""
+    cases = list(plan.grid.cases(plan.gears[0]))
+    last = plan.grid.points[-1]
+    chosen = []
+    for label in plan.grid.classes:
+        numbers = [i for i, c in enumerate(cases) if c.variant.label == label and c.run.point == last]
+        chosen += [numbers[0], numbers[-1]]
+    return chosen
+
+
+def integrator_vs_solve_ivp(transmissions: Sequence[Transmission], points: Sequence[OperatingPoint]) -> dict[str, Any]:
+    """The batched Runge-Kutta integrator against scipy's solve_ivp (DOP853, rtol 1e-10) run by run.
+
+    Returns
+    -------
+    dict
+        ratio of the times per run over the same window from the same state; max_relative_error, the largest error of
+        T_out and of the speeds over their own ripple.
+    """
+    window = Window()
+    pairs = [(t, point) for t in transmissions for point in points]
+    drive = Drive([t for t, _ in pairs], [point for _, point in pairs])
+    with threadpool_limits(1):
+        state = steady_state(drive)
+        start = time.perf_counter()
+        motion = run(drive, state, 1 / window.rate, window.samples)
+        batched = (time.perf_counter() - start) / len(pairs)
+        seconds, errors = [], []
+        for i in range(len(points)):
+            single = Drive([pairs[i][0]], [pairs[i][1]])
+
+            def rate(_: float, y: np.ndarray, single: Drive = single) -> np.ndarray:
+                column = y[:, None]
+                return single.derivative(column, single.torques(column))[:, 0]
+
+            end = np.append(window.time, window.samples / window.rate)
+            start = time.perf_counter()
+            exact = solve_ivp(rate, (0, end[-1]), state[:, i], "DOP853", end, rtol=1e-10, atol=1e-12).y
+            seconds.append(time.perf_counter() - start)
+            T_out = np.array([single.torques(column[:, None]).T_out[0] for column in exact.T])
+            both = ((motion.T_out, T_out), (motion.omega_in, exact[OMEGA_IN]), (motion.omega_out, exact[OMEGA_OUT]))
+            errors += [np.abs(ours[i] - theirs).max() / np.ptp(theirs) for ours, theirs in both]
+    return {
+        "ratio": float(np.mean(seconds) / batched),
+        "max_relative_error": float(max(errors)),
+        "seconds_per_run": {"batched": batched, "solve_ivp": float(np.mean(seconds))},
+        "runs": len(pairs),
+    }

@@ -1,0 +1,15 @@
+"""The benchmark compares like with like; its ratios are not tested, its differences are."""
+
+from dataclasses import replace
+
+from chain_fixtures import small_plan
+
+from swgsim import benchmark
+
+
+def test_chain_and_direct_solver_agree(monkeypatch: object) -> None:
+    monkeypatch.setattr(benchmark, "INSTANTS", 4)
+    result = benchmark.chain_vs_solve_per_step(replace(small_plan(), sectors=100))
+    assert result["max_relative_difference"] < 1e-5
+    assert result["recordings"] == small_plan().grid.count()
+    assert result["ratio"] > 1

@@ -1,0 +1,115 @@
+"""The chain as a whole: what each fault does to signals and efficiency, and what it leaves alone."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from chain_fixtures import GEAR, SECTORS, amplitude
+
+from swgsim.acquisition import Window
+from swgsim.chain import Run, simulate
+from swgsim.effects import (
+    EccentricWaveGenerator,
+    Effect,
+    ReducedDamping,
+    ReducedStiffness,
+    RootToothCrack,
+    TipToothCrack,
+    WarmGrease,
+)
+from swgsim.gear import OperatingPoint
+
+POINT = OperatingPoint(2000, 39)
+WINDOW = Window()
+
+
+def signals(*effects: Effect, point: OperatingPoint = POINT) -> np.ndarray:
+    return simulate([Run(GEAR, point, effects)], WINDOW, SECTORS).signals[0]
+
+
+def test_signals_are_sinusoids_of_order_two() -> None:
+    s = signals()
+    lines = np.abs(np.fft.rfft(s[1] - s[1].mean()))
+    assert lines.argmax() == 2 * 2  # two revolutions in the window
+    assert lines[4] > 5 * np.delete(lines, 4).max()
+
+
+def test_window_opens_at_the_index_whatever_the_damping() -> None:
+    runs = [Run(GEAR, POINT), Run(GEAR, POINT, (ReducedDamping(0.67),))]
+    motion = simulate(runs, WINDOW, SECTORS).motion
+    np.testing.assert_allclose(motion.phi_in[:, 0], 0, atol=1e-12)
+
+
+def test_reduced_damping_leaves_gauges_and_raises_efficiency() -> None:
+    result = simulate([Run(GEAR, POINT), Run(GEAR, POINT, (ReducedDamping(2 / 3),))], WINDOW, SECTORS)
+    healthy, faulty = result.signals
+    assert np.abs(faulty - healthy).max() < 0.01 * amplitude(healthy[1])
+    assert result.efficiency[1] / result.efficiency[0] > 1.02
+
+
+def test_reduced_stiffness_shows_in_the_torque_bridge_only_slightly() -> None:
+    healthy, faulty = signals(), signals(ReducedStiffness(0.8))
+    ripple = amplitude(faulty[0]) / amplitude(healthy[0]) - 1
+    assert 0.01 < abs(ripple) < 0.5
+    assert abs(amplitude(faulty[1]) / amplitude(healthy[1]) - 1) < abs(ripple) / 10
+
+
+def test_eccentricity_offsets_opposite_gauges_in_opposite_senses() -> None:
+    change = (signals(EccentricWaveGenerator(1e-4, np.pi / 2)) - signals()).mean(axis=1)
+    assert change[1] * change[3] < 0
+    assert abs(change[1]) > 0.1 * amplitude(signals()[1])
+    assert abs(change[0]) < 0.01 * abs(change[1])
+
+
+def test_root_crack_changes_all_amplitudes_and_tip_crack_less() -> None:
+    healthy = signals()
+    root, tip = signals(RootToothCrack(0.01, 0.5)), signals(TipToothCrack(1.0, 0.5, 4))
+    change = [abs(amplitude(f[s]) / amplitude(h[s]) - 1) for f, h in ((root, healthy),) for s in range(5)]
+    assert min(change) > 0.005
+    assert np.abs(tip - healthy).max() < np.abs(root - healthy).max()
+
+
+def test_tip_crack_deviates_only_while_a_lobe_passes() -> None:
+    """Three quarters of the deviation energy of the nearest gauge fall into two fifths of the time."""
+    s = signals(TipToothCrack(1.0, 0.0, 4), point=OperatingPoint(2000, 70)) - signals(point=OperatingPoint(2000, 70))
+    energy = np.sort((s[1] - np.median(s[1])) ** 2)[::-1]
+    assert energy[: int(0.4 * len(energy))].sum() > 0.75 * energy.sum()
+
+
+def test_warm_grease_mimics_reduced_damping() -> None:
+    """12 to 20 K more take a third of b1: the same signals and efficiency as the fault."""
+    warm = WarmGrease(np.log(1.5) / 0.025)
+    assert 12 < warm.dT < 20
+    result = simulate([Run(GEAR, POINT, (e,)) for e in (warm, ReducedDamping(2 / 3))], WINDOW, SECTORS)
+    np.testing.assert_allclose(result.signals[0], result.signals[1], atol=1e-9)
+
+
+def test_shared_work_changes_nothing() -> None:
+    runs = [Run(GEAR, p, e) for p in (POINT, OperatingPoint(4000, 7)) for e in ((), (RootToothCrack(0.05, 1.0),))]
+    together = simulate(runs, WINDOW, SECTORS)
+    for i, one in enumerate(runs):
+        alone = simulate([one], WINDOW, SECTORS)
+        np.testing.assert_allclose(together.signals[i], alone.signals[0], rtol=0, atol=1e-7)
+        assert together.efficiency[i] == pytest.approx(alone.efficiency[0], rel=1e-9)
+
+
+def test_gauge_errors_act_as_they_should() -> None:
+    gauges = GEAR.gauges
+    run = Run(GEAR, POINT)
+    changed = [
+        replace(gauges, gain=(1.0, 1.02, 1.0, 1.0, 1.0)),
+        replace(gauges, offset=(0.0, 0.01, 0.0, 0.0, 0.0)),
+        replace(gauges, active_arms=(4, 4, 2, 2, 2)),
+    ]
+    base, gain, offset, full = (
+        simulate([replace(run, gear=replace(GEAR, gauges=g))], WINDOW, SECTORS).signals[0, 1]
+        for g in (gauges, *changed)
+    )
+    np.testing.assert_allclose(gain, 1.02 * base, rtol=1e-6)
+    np.testing.assert_allclose(offset, base + 0.01, atol=1e-12)
+    np.testing.assert_allclose(full, 2 * base, rtol=1e-6)
+
+
+def test_empty_grid_is_refused() -> None:
+    with pytest.raises(ValueError, match="the grid is empty"):
+        simulate([], WINDOW)

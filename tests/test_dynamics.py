@@ -1,0 +1,131 @@
+"""The input/output model: energy, limits, convergence, agreement with solve_ivp."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from swgsim.benchmark import integrator_vs_solve_ivp
+from swgsim.dynamics import OMEGA_IN, OMEGA_OUT, PHI_IN, PHI_OUT, SPEED_ERROR, Drive, run, steady_state
+from swgsim.gear import OperatingPoint, Transmission
+
+NOMINAL = Transmission()
+POINTS = tuple(OperatingPoint(n, T) for n in (2000, 4000) for T in (7, 39, 70))
+FRICTIONLESS = replace(NOMINAL, b0=0, b1=0, b2=0, b3=0, mu=0)
+
+
+def test_without_friction_the_efficiency_is_one() -> None:
+    drive = Drive([FRICTIONLESS] * 6, POINTS)
+    assert run(drive, steady_state(drive), 1e-4, 600).efficiency == pytest.approx(1, abs=1e-6)
+
+
+def test_efficiency_of_uniform_rotation_in_closed_form() -> None:
+    """With no kinematic error, eta = T / (T + T_fric / sin a), T_fric = (B + mu T / cos a) / (1 - mu tan a)."""
+    t = replace(NOMINAL, kinematic_error=(), b3=0.0)
+    drive = Drive([t] * 6, POINTS)
+    measured = run(drive, steady_state(drive), 1e-4, 600).efficiency
+    for point, value in zip(POINTS, measured, strict=True):
+        sliding = point.omega_in / (t.N + 1) / np.sin(t.alpha_tooth)
+        friction = (t.b0 + t.b1 * sliding + t.mu * point.T_out / np.cos(t.alpha_tooth)) / (
+            1 - t.mu * np.tan(t.alpha_tooth)
+        )
+        assert value == pytest.approx(point.T_out / (point.T_out + friction / np.sin(t.alpha_tooth)), rel=1e-6)
+
+
+def test_energy_balance_closes() -> None:
+    """Input work is output work, friction heat, and the change of kinetic, elastic energy, along a transient."""
+    t = replace(NOMINAL, b2=-1e-3)  # friction that grows less than linearly
+    drive = Drive([t], [POINTS[1]])
+    state = steady_state(drive)
+    state[OMEGA_OUT] *= 1.02  # off the steady state, so that stored energy changes
+    dt, steps = 2e-5, 3000
+    power, energy = [], []
+    for _ in range(steps + 1):
+        torques = drive.torques(state)
+        heat = torques.T_fric * torques.sliding
+        power.append((torques.T_in * state[OMEGA_IN] - drive.T_load * state[OMEGA_OUT] - heat)[0])
+        twist = drive.tan_in * state[PHI_IN] - state[PHI_OUT] / drive.tan_t + drive.phi_err(state[PHI_IN])[0]
+        elastic = 0.5 * t.k1 * twist**2 + 0.25 * t.k2 * twist**4
+        energy.append((0.5 * t.J_in * state[OMEGA_IN] ** 2 + 0.5 * t.J_out * state[OMEGA_OUT] ** 2 + elastic)[0])
+        state = drive.step(state, torques, np.array([dt]))
+    work = np.trapezoid(power, dx=dt)
+    assert energy[-1] - energy[0] == pytest.approx(work, abs=1e-5 * np.ptp(energy))
+    assert np.ptp(energy) > 1e-3
+
+
+def test_steady_state_is_where_a_long_transient_ends() -> None:
+    point = POINTS[4]
+    # b3 varies over an output revolution: there is a strictly periodic state only without it.
+    drive = Drive([replace(NOMINAL, b3=0.0)], [point])
+    state = steady_state(drive)
+    start = drive.at_rest_in_rotating_frame()[:, 0]
+
+    def rate(_: float, y: np.ndarray) -> np.ndarray:
+        return drive.derivative(y[:, None], drive.torques(y[:, None]))[:, 0]
+
+    revolutions = 150
+    end = solve_ivp(rate, (0, revolutions * drive.period[0]), start, "DOP853", rtol=1e-9, atol=1e-11).y[:, -1]
+    # The transient may end at another phase; compare after turning on to phi_in = 0 of the next revolution.
+    passes = [lambda _, y, k=revolutions + 1: y[PHI_IN] - 2 * np.pi * k]
+    passes[0].terminal = True
+    end = solve_ivp(rate, (0, 3 * drive.period[0]), end, "DOP853", events=passes, rtol=1e-9, atol=1e-11).y[:, -1]
+    assert end[OMEGA_IN] == pytest.approx(state[OMEGA_IN, 0], rel=1e-6)
+    assert end[OMEGA_OUT] == pytest.approx(state[OMEGA_OUT, 0], rel=1e-5)
+    assert end[SPEED_ERROR] == pytest.approx(state[SPEED_ERROR, 0], rel=1e-5)
+
+
+def test_integrator_agrees_with_solve_ivp() -> None:
+    assert integrator_vs_solve_ivp([NOMINAL] * 20, POINTS[:2])["max_relative_error"] < 1e-6
+
+
+def test_integrator_converges_at_fourth_order() -> None:
+    drive = Drive([NOMINAL], [POINTS[4]])
+    start = steady_state(drive)
+    ends = []
+    for steps in (25, 50, 100):
+        state = start.copy()
+        for _ in range(steps):
+            state = drive.step(state, drive.torques(state), drive.period / steps)
+        ends.append(state[OMEGA_OUT, 0])
+    assert np.log2(abs(ends[0] - ends[1]) / abs(ends[1] - ends[2])) == pytest.approx(4, abs=0.4)
+
+
+def test_b1_is_set_to_claim_c6() -> None:
+    """One third less b1 raises the efficiency by 7 %, relative, in the mean over the paper's operating points."""
+    less = replace(NOMINAL, b1=2 / 3 * NOMINAL.b1)
+    drive = Drive([NOMINAL] * 6 + [less] * 6, POINTS * 2)
+    healthy, reduced = run(drive, steady_state(drive), 1e-4, 600).efficiency.reshape(2, 6)
+    assert np.mean(reduced / healthy - 1) == pytest.approx(0.07, abs=5e-4)
+
+
+def test_speed_is_controlled_to_the_set_point() -> None:
+    drive = Drive([NOMINAL] * 6, POINTS)
+    motion = run(drive, steady_state(drive), 1e-4, 600)
+    np.testing.assert_allclose(motion.omega_in[:, :600].mean(axis=1), [p.omega_in for p in POINTS], rtol=1e-4)
+    np.testing.assert_allclose(motion.T_out[:, :600].mean(axis=1), [p.T_out for p in POINTS], rtol=1e-2)
+
+
+def test_window_shorter_than_a_revolution_has_no_efficiency() -> None:
+    drive = Drive([NOMINAL], [POINTS[0]])
+    with pytest.raises(ValueError, match=r"window of 0\.33 revolutions.*lengthen"):
+        _ = run(drive, steady_state(drive), 1e-4, 100).efficiency
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("k1", -1.0), ("J_out", 0.0), ("b1", -0.1), ("mu", np.nan), ("b2", np.inf)]
+)
+def test_impossible_parameters_are_named(name: str, value: float) -> None:
+    with pytest.raises(ValueError, match=f"{name} of the transmission is {value}"):
+        replace(NOMINAL, **{name: value})
+
+
+@pytest.mark.parametrize(("n", "T"), [(0, 39), (8000, 39), (2000, -1), (2000, 200), (np.nan, 39)])
+def test_operating_points_beyond_the_catalogue_are_refused(n: float, T: float) -> None:
+    with pytest.raises(ValueError, match="must be a finite number from"):
+        OperatingPoint(n, T)
+
+
+def test_gears_and_points_must_match() -> None:
+    with pytest.raises(ValueError, match="1 gears and 2 operating points"):
+        Drive([NOMINAL], list(POINTS[:2]))

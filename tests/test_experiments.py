@@ -1,0 +1,102 @@
+"""Every experiment file runs on a small grid, and a parallel sweep neither locks nor loses runs."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from fabricated import recordings
+from hydra import compose, initialize_config_dir
+from omegaconf import OmegaConf
+
+from learn import job, tracking
+from learn.sweep import named_on_command_line
+from swgsim import storage
+
+ROOT = Path(__file__).parents[1]
+EXPERIMENTS = sorted(p.stem for p in (ROOT / "conf" / "experiment").glob("*.yaml"))
+
+
+@pytest.fixture(scope="module")
+def data(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("data")
+    for condition, disturbance in (("clean", 0.0), ("disturbed", 0.002)):
+        made = recordings(variants=4, disturbance=disturbance)
+        storage.write(folder / f"small-{condition}.h5", [made], len(made))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    return tmp_path_factory.mktemp("runs")
+
+
+def composed(*overrides, **options):
+    with initialize_config_dir(str(ROOT / "conf"), version_base="1.3"):
+        return compose("train", list(overrides), **options)
+
+
+def jobs(experiment):
+    """As many jobs as it takes to use every value that the experiment sweeps once."""
+    config = composed(f"experiment={experiment}", return_hydra_config=True)
+    sweep = {key: values.split(",") for key, values in config.hydra.sweeper.params.items()}
+    for number in range(max(map(len, sweep.values()))):
+        yield [f"{key}={values[number % len(values)]}" for key, values in sweep.items()]
+
+
+@pytest.mark.parametrize("experiment", EXPERIMENTS)
+def test_every_experiment_runs_on_a_small_grid(experiment, data, runs):
+    where = ["grid=small", f"data={data}", f"tracking.folder={runs}"]
+    for overrides in jobs(experiment):
+        config = composed(f"experiment={experiment}", *overrides, *where)
+        metrics = job.run(OmegaConf.to_container(config, resolve=True))
+        assert 0 <= metrics["test_score"] <= 100
+    found = tracking.finished_runs(tracking.local_store(str(runs)), study=experiment)
+    assert len(found) == len(list(jobs(experiment)))
+
+
+def train(*arguments):
+    command = [sys.executable, str(ROOT / "scripts" / "train.py"), *arguments]
+    return subprocess.run(command, capture_output=True, text=True, cwd=ROOT, check=False)
+
+
+def test_parallel_sweep_loses_no_run_and_a_second_one_does_only_what_is_new(data, tmp_path):
+    where = ["grid=small", f"data={data}", f"tracking.folder={tmp_path / 'runs'}", f"hydra.sweep.dir={tmp_path}"]
+    sweep = ["-m", "experiment=table10", "hydra.launcher.n_jobs=2", *where]
+
+    first = train(*sweep, "classifier=nb,knn")
+    assert first.returncode == 0, first.stderr
+    store = tracking.local_store(str(tmp_path / "runs"))
+    found = tracking.finished_runs(store)
+    assert sorted(zip(found["classifier"], found["features"], strict=True)) == [
+        ("knn", "selection_1"),
+        ("knn", "selection_3"),
+        ("nb", "selection_1"),
+        ("nb", "selection_3"),
+    ]
+    assert {"test/1_2_to_3", "test/2_3_to_1", "test/1_3_to_2"} < set(found.columns)
+
+    second = train(*sweep, "classifier=nb,knn,rf")
+    assert second.stdout.count("done before") == 4
+    assert len(tracking.finished_runs(store)) == 6
+
+    children = store.client.search_runs([store.experiment_id], "tags.kind = 'job'")
+    assert len(children) == 6
+    assert len({run.data.tags["mlflow.parentRunId"] for run in children}) == 1
+    artifacts = {a.path for a in store.client.list_artifacts(children[0].info.run_id)}
+    assert artifacts == {"config.yaml", "figures"}
+
+
+def test_command_line_wins_over_the_sweep_of_an_experiment():
+    assert named_on_command_line(["experiment=table7", "classifier=rf,knn", "+new=1"]) == [
+        "experiment",
+        "classifier",
+        "new",
+    ]
+
+
+def test_unknown_choice_is_answered_with_the_list():
+    answer = train("classifier=forest")
+    assert answer.returncode != 0
+    assert "Could not find 'classifier/forest'" in answer.stderr
+    assert all(name in answer.stderr for name in ("knn", "mlp", "nb", "rf", "svm"))

@@ -1,0 +1,61 @@
+"""Every choice in conf/ makes an object, and a wrong one is answered with the choices there are."""
+
+from pathlib import Path
+
+import pytest
+import yaml
+
+from learn import settings
+
+CONF = Path(__file__).parents[1] / "conf"
+MAKERS = {
+    "features": settings.selection,
+    "classifier": settings.classifier,
+    "protocol": settings.protocol,
+    "tracking": settings.store,
+}
+
+
+@pytest.mark.parametrize("path", [p for group in MAKERS for p in sorted((CONF / group).glob("*.yaml"))], ids=str)
+def test_every_choice_of_the_configuration_makes_an_object(path):
+    config = yaml.safe_load(path.read_text().replace("${seed}", "0"))
+    assert config["name"] == path.stem
+    assert MAKERS[path.parent.name](config) is not None
+
+
+@pytest.mark.parametrize(
+    ("maker", "config", "message"),
+    [
+        (settings.classifier, {"name": "forest"}, "unknown classifier 'forest'; choose from mlp, svm, rf, knn, nb"),
+        (
+            settings.classifier,
+            {"name": "rf", "tress": 3},
+            "unknown option 'tress' of classifier rf; choose from trees, depth",
+        ),
+        (settings.classifier, {"name": "nb", "trees": 3}, "unknown option 'trees' of classifier nb; choose from none"),
+        (
+            settings.protocol,
+            {"name": "folds"},
+            "unknown protocol 'folds'; choose from random_folds, grouped_folds, leave_one",
+        ),
+        (settings.store, {"name": "cloud"}, "unknown tracking 'cloud'; choose from local, server"),
+        (settings.store, {"name": "server", "uri": "host"}, "tracking.uri='host' is no address of a server"),
+        (
+            settings.selection,
+            {"name": "x", "order": 3},
+            "unknown option 'order' of features; choose from name, statistics",
+        ),
+    ],
+)
+def test_a_wrong_choice_is_answered_with_the_choices(maker, config, message):
+    with pytest.raises(ValueError, match=message):
+        maker(config)
+
+
+def test_a_missing_data_set_is_answered_with_those_that_exist_and_the_command(tmp_path):
+    (tmp_path / "small-clean.h5").touch()
+    config = {"data": str(tmp_path), "grid": "paper", "condition": "clean"}
+    with pytest.raises(
+        ValueError, match=r"data sets in .*: small-clean. Make it with .*generate.py grid=paper condition=clean"
+    ):
+        settings.data_set(config)

@@ -1,0 +1,100 @@
+"""Runs are kept, found again and shown."""
+
+import json
+import sqlite3
+from contextlib import closing
+
+import pytest
+
+from learn import identity, page, tracking
+
+PARAMETERS = {"study": "table7", "grid": "small", "classifier": "rf"}
+
+
+@pytest.fixture(scope="module")
+def store(tmp_path_factory):
+    return tracking.local_store(str(tmp_path_factory.mktemp("store") / "runs"))
+
+
+def keep(store, key, metrics, **parameters):
+    values = {**PARAMETERS, **parameters}
+    with tracking.job_run(store, key, key, values, {"seed": 0}, {"data_digest": "d"}) as run:
+        run.record(metrics, {})
+
+
+def test_a_finished_job_is_found_by_its_key_a_failed_or_killed_one_is_not(store):
+    keep(store, "good", {"test_score": 99.5})
+    with pytest.raises(ZeroDivisionError), tracking.job_run(store, "bad", "bad", PARAMETERS, {}, {}):
+        1 / 0  # noqa: B018
+    assert tracking.finished_metrics(store, "good") == {"test_score": 99.5}
+    assert tracking.finished_metrics(store, "bad") is None
+    store.client.create_run(store.experiment_id, tags={"kind": "job", "key": "killed"})  # stays running
+    assert tracking.finished_metrics(store, "killed") is None
+    assert tracking.finished_metrics(store, "other") is None
+
+
+def test_the_newest_run_of_a_configuration_comes_first_and_alone(store):
+    keep(store, "old", {"test_score": 1.0}, grid="paper")
+    keep(store, "new", {"test_score": 2.0}, grid="paper")
+    keep(store, "knn", {"test_score": 3.0}, grid="paper", classifier="knn")
+    runs = tracking.finished_runs(store, grid="paper")
+    assert runs[["classifier", "test_score"]].to_numpy().tolist() == [["knn", 3.0], ["rf", 2.0]]
+    assert tracking.finished_runs(store, grid="sampled").empty
+
+
+def test_jobs_of_a_sweep_are_its_children_and_a_study_has_one_sweep(store):
+    for job in ("first", "second"):
+        tracking.open_sweep(store, "table9")
+        keep(store, job, {"test_score": 5.0}, study="table9")
+        tracking.close_sweep(store, "table9")
+    sweeps = store.client.search_runs([store.experiment_id], "tags.kind = 'sweep' and tags.study = 'table9'")
+    assert [s.info.status for s in sweeps] == ["FINISHED"]
+    jobs = store.client.search_runs([store.experiment_id], "params.study = 'table9'")
+    assert {j.data.tags["mlflow.parentRunId"] for j in jobs} == {sweeps[0].info.run_id}
+
+
+def test_database_lets_readers_and_writers_work_side_by_side(store):
+    assert store.experiment_id
+    with closing(sqlite3.connect(store.folder / "mlflow.db")) as database:
+        assert database.execute("pragma journal_mode").fetchone() == ("wal",)
+
+
+def test_artifacts_lie_beside_the_database(store):
+    experiment = store.client.get_experiment(store.experiment_id)
+    assert experiment.artifact_location == (store.folder / "artifacts").as_uri()
+
+
+def test_saved_views_are_written_as_mlflow_reads_them(store):
+    page.save_views(store)
+    tags = store.client.get_experiment(store.experiment_id).tags
+    saved = json.loads(tags["mlflow.sharedViewState.scores"])
+    assert saved["name"] == "Scores"
+    assert saved["state"].startswith("deflate;")
+    table = page.decode(saved["state"])
+    assert "metrics.`test_score`" in table["selectedColumns"]
+    assert "params.`classifier`" in table["selectedColumns"]
+    assert table["searchFilter"] == "tags.kind = 'job'"
+
+
+def test_the_installed_mlflow_knows_saved_views():
+    from importlib.resources import files
+
+    scripts = (files("mlflow") / "server" / "js" / "build" / "static" / "js").iterdir()
+    text = "".join(
+        s.read_text(encoding="utf-8") for s in scripts if s.name.startswith("main") and s.name.endswith(".js")
+    )
+    for word in ("mlflow.sharedViewState.", "viewStateShareKey", "deflate;", "selectedColumns", "searchFilter"):
+        assert word in text
+
+
+def test_link_names_the_view(store):
+    assert page.link(store, "http://host:1").endswith("workflowType=machine_learning&viewStateShareKey=scores")
+
+
+def test_key_depends_on_what_decides_the_result_only():
+    config = {"seed": 0, "classifier": {"name": "rf"}, "data": "data", "tracking": {"name": "local"}}
+    key = identity.job_key(config, "digest")
+    assert len(key) == 16
+    assert identity.job_key({**config, "data": "elsewhere", "tracking": {"name": "server"}}, "digest") == key
+    assert identity.job_key({**config, "seed": 1}, "digest") != key
+    assert identity.job_key(config, "another digest") != key
