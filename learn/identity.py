@@ -9,7 +9,15 @@ from pathlib import Path
 from typing import Any
 
 WHEREABOUTS = ("data", "tracking")  # parts of a configuration that no result depends on
-PRESENTATION = ("figures.py", "paper.py", "report.py", "page.py")  # modules that only show results
+PRESENTATION = (  # modules that only show results
+    "choices.py",
+    "claims.py",
+    "feature_claims.py",
+    "figures.py",
+    "page.py",
+    "paper.py",
+    "report.py",
+)
 
 
 def decisive(config: Mapping[str, Any]) -> dict[str, Any]:

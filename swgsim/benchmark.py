@@ -10,11 +10,12 @@ from threadpoolctl import threadpool_limits
 
 from swgsim.acquisition import Window
 from swgsim.chain import simulate
-from swgsim.dataset import Plan
 from swgsim.direct import DirectSolver
-from swgsim.dynamics import OMEGA_IN, OMEGA_OUT, Drive, run, steady_state
+from swgsim.dynamics import OMEGA_IN, OMEGA_OUT, Drive
 from swgsim.flexspline import solve_flex_spline
 from swgsim.gear import OperatingPoint, Transmission
+from swgsim.motion import run, steady_state
+from swgsim.plan import Plan
 
 # Instants of each recording that the slow way solves; its time is scaled up to all of them.
 INSTANTS = 40

@@ -8,11 +8,12 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.acquisition import Window
-from swgsim.dynamics import Drive, Motion, run, steady_state
+from swgsim.dynamics import Drive
 from swgsim.effects.base import Effect
 from swgsim.flexspline import solve_flex_spline
 from swgsim.gear import Gear, OperatingPoint
 from swgsim.influence import InfluenceMap, harmonics, influence_map
+from swgsim.motion import Motion, run, steady_state
 
 SECTORS = 100
 

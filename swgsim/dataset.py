@@ -10,7 +10,6 @@ import resource
 import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from itertools import islice
 from pathlib import Path
 
 import joblib
@@ -18,73 +17,11 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from swgsim import storage
-from swgsim.acquisition import Window
-from swgsim.bench import Bench
-from swgsim.chain import SECTORS, Simulation, simulate
 from swgsim.disturbance import Disturbance
-from swgsim.gear import Gear
-from swgsim.grid import Case, Grid
+from swgsim.plan import BLOCK, Plan, provenance
+from swgsim.record import record
 from swgsim.recordings import COLUMNS, Recordings, facts
 from swgsim.seeds import generator
-from swgsim.version import code_version
-
-# Recordings per block: bounds the memory whatever the size of the grid, and splits the paper's grid evenly over cores.
-BLOCK = 1140
-
-
-@dataclass(frozen=True)
-class Plan:
-    """All that determines the recordings of a data set.
-
-    Attributes
-    ----------
-    gears : tuple of Gear
-    grid : Grid
-    window : Window
-    bench : Bench or None
-        The imperfections of a real test bench, if any.
-    sectors : int
-        Sectors of the flex spline's truss.
-    configuration : str
-        The choices as text; kept in the file.
-    """
-
-    gears: tuple[Gear, ...]
-    grid: Grid
-    window: Window
-    bench: Bench | None = None
-    sectors: int = SECTORS
-    configuration: str = ""
-
-    def __post_init__(self) -> None:
-        numbers = [gear.number for gear in self.gears]
-        if not numbers:
-            raise ValueError("no gears: the grid is empty, choose at least one")
-        if len(set(numbers)) < len(numbers):
-            raise ValueError(f"gear numbers {numbers} are not distinct: every gear needs a number of its own")
-
-    def __len__(self) -> int:
-        return len(self.gears) * self.grid.count()
-
-    @property
-    def attributes(self) -> dict[str, str]:
-        """What the file says of itself; parts of a killed run are used only where it is the same."""
-        return provenance(self.configuration)
-
-    @property
-    def blocks(self) -> list[tuple[int, int]]:
-        """(gear, first case) of every block."""
-        return [(g, first) for g in range(len(self.gears)) for first in range(0, self.grid.count(), BLOCK)]
-
-    def cases(self, block: tuple[int, int]) -> list[Case]:
-        """The planned recordings of a block."""
-        gear, first = block
-        return list(islice(self.grid.cases(self.gears[gear]), first, first + BLOCK))
-
-
-def provenance(configuration: str) -> dict[str, str]:
-    """Configuration and version of the code, as attributes of a file."""
-    return {"configuration": configuration, "swgsim": code_version()}
 
 
 @dataclass(frozen=True)
@@ -175,47 +112,3 @@ def _read_part(file: Path, plan: Plan) -> Recordings:
     with np.load(file, allow_pickle=False) as part:
         table = facts({name: part[name] for name in COLUMNS})
         return Recordings(part["signals"], table, plan.window.rate, plan.attributes)
-
-
-def record(plan: Plan, cases: list[Case]) -> Recordings:
-    """The recordings of some cases of a plan."""
-    runs = [case.run for case in cases]
-    temperature = np.full(len(cases), np.nan)
-    if plan.bench:
-        gears = list(dict.fromkeys(run.gear for run in runs))
-        units = {gear: plan.bench.unit(gear, generator("unit", plan.grid.seed, gear.number)) for gear in gears}
-        for i, case in enumerate(cases):
-            gear, imperfections = units[case.run.gear]
-            planned = type(case.run)(gear, case.run.point, (*imperfections, *case.run.effects))
-            runs[i], temperature[i] = plan.bench.run(planned, generator("bench run", case.seed))
-    simulation = simulate(runs, plan.window, plan.sectors)
-    signals, efficiency = _acquire(plan, cases, simulation)
-    variants = [case.variant for case in cases]
-    table = facts({
-        "gear": [case.run.gear.number for case in cases],
-        "label": [variant.label for variant in variants],
-        "variant": [variant.number for variant in variants],
-        "severity": [variant.severity for variant in variants],
-        "position": [variant.position for variant in variants],
-        "n_in_rpm": [case.run.point.n_in_rpm for case in cases],
-        "T_out_nm": [case.run.point.T_out for case in cases],
-        "efficiency": efficiency,
-        "temperature_c": temperature,
-        "reference": [case.reference for case in cases],
-        "seed": np.array([case.seed for case in cases], dtype="u8"),
-    })  # fmt: skip
-    return Recordings(signals, table, plan.window.rate, plan.attributes)
-
-
-def _acquire(plan: Plan, cases: list[Case], simulation: Simulation) -> tuple[np.ndarray, np.ndarray]:
-    """Signals (float32) and efficiency as the acquisition delivers them."""
-    signals = np.empty(simulation.signals.shape, "f4")
-    efficiency = simulation.efficiency.copy()
-    T_in, T_out = simulation.motion.T_in.mean(axis=1), simulation.motion.T_out.mean(axis=1)
-    for i, (case, ideal, motion) in enumerate(zip(cases, simulation.signals, simulation.of_run, strict=True)):
-        rng = generator("acquisition", case.seed)
-        if plan.bench:
-            ideal = plan.bench.signals(ideal, rng)
-            efficiency[i] = plan.bench.efficiency(efficiency[i], T_in[motion], T_out[motion], rng)
-        signals[i] = plan.window.acquire(ideal, rng)
-    return signals, efficiency

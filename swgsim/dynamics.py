@@ -20,9 +20,6 @@ from swgsim.gear import OperatingPoint, Transmission
 # Friction changes its sign smoothly below this sliding speed [rad/s], far under that of any operating point.
 SLIDING_SPEED = 1e-3
 
-# Steps of the integrator per revolution of the wave generator, at least: 24 per cycle of the kinematic error's order 4.
-STEPS_PER_REVOLUTION = 96
-
 PHI_IN, OMEGA_IN, PHI_OUT, OMEGA_OUT, SPEED_ERROR = range(5)
 State = Float[np.ndarray, "5 run"]
 
@@ -89,7 +86,7 @@ class Drive:
         return Drive(self.transmissions * times, self.points * times)
 
     def phi_err(self, phi_in: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Kinematic error profile in the unit of the twist [rad], and its slope; e at the output counts e / tan(alpha)."""
+        """Kinematic error [rad] in the unit of the twist, where e at the output is e / tan(alpha), and its slope."""
         error, slope = np.zeros_like(phi_in), np.zeros_like(phi_in)
         turn = np.exp(1j * phi_in)
         for order, amplitude in self.error.items():
@@ -150,109 +147,3 @@ class Drive:
             twist -= ((p["k1"] + p["k2"] * twist**2) * twist - T_stiff) / (p["k1"] + 3 * p["k2"] * twist**2)
         phi_out = self.tan_t * (self.phi_err(np.zeros_like(twist))[0] - twist)
         return np.stack([0 * twist, self.omega, phi_out, speed, self.tan_in * T_stiff / self.gain_i])
-
-
-@dataclass(frozen=True)
-class Motion:
-    """Motion of many runs over a window; arrays (run, time), the last point closes the window.
-
-    Attributes
-    ----------
-    phi_in : array
-        Angle of the wave generator relative to the flex spline [rad].
-    omega_in, omega_out : arrays
-        Angular speeds [rad/s].
-    T_in, T_out : arrays
-        Torque at the input and transmitted to the output [N m].
-    dt : float
-        Time between points [s].
-    """
-
-    phi_in: Float[np.ndarray, "run time"]
-    omega_in: Float[np.ndarray, "run time"]
-    omega_out: Float[np.ndarray, "run time"]
-    T_in: Float[np.ndarray, "run time"]
-    T_out: Float[np.ndarray, "run time"]
-    dt: float
-
-    @property
-    def efficiency(self) -> Float[np.ndarray, " run"]:
-        """P_out / P_in over the largest whole number of wave-generator revolutions in the window."""
-        angle = self.phi_in - self.phi_in[:, :1]
-        turns = np.floor(angle[:, -1] / (2 * np.pi) + 1e-9)
-        if turns.min() < 1:
-            short = float(angle[:, -1].min() / (2 * np.pi))
-            raise ValueError(f"window of {short:.2f} revolutions: efficiency needs at least one; lengthen the window")
-        end = 2 * np.pi * turns
-        return _energy(self.T_out * self.omega_out, angle, end) / _energy(self.T_in * self.omega_in, angle, end)
-
-
-def _energy(power: np.ndarray, angle: np.ndarray, end: np.ndarray) -> np.ndarray:
-    """Integral of each row's power up to the angle ``end``, in units of the time step."""
-    total = np.zeros_like(power)
-    np.cumsum(0.5 * (power[:, 1:] + power[:, :-1]), axis=1, out=total[:, 1:])
-    return np.array([np.interp(e, row_angle, row) for e, row_angle, row in zip(end, angle, total, strict=True)])
-
-
-def run(drive: Drive, state: State, dt: float, count: int) -> Motion:
-    """Integrate ``count`` steps of ``dt`` seconds from a state and keep every step."""
-    substeps = int(np.ceil(dt / (drive.period.min() / STEPS_PER_REVOLUTION) - 1e-9))
-    step = np.full(len(drive), dt / substeps)
-    kept = np.empty((5, count + 1, len(drive)))
-    for i in range(count + 1):
-        torques = drive.torques(state)
-        kept[:, i] = state[PHI_IN], state[OMEGA_IN], state[OMEGA_OUT], torques.T_in, torques.T_out
-        if i < count:
-            state = drive.step(state, torques, step)
-            for _ in range(substeps - 1):
-                state = drive.step(state, drive.torques(state), step)
-    phi_in, omega_in, omega_out, T_in, T_out = np.ascontiguousarray(np.swapaxes(kept, 1, 2))
-    return Motion(phi_in, omega_in, omega_out, T_in, T_out, dt)
-
-
-def steady_state(drive: Drive, tolerance: float = 1e-10) -> State:
-    """The state at phi_in = 0 that repeats after one revolution of the wave generator (shooting).
-
-    The friction that varies over an output revolution (b3) changes so slowly that it counts as constant here.
-
-    Raises
-    ------
-    RuntimeError
-        If Newton's method does not settle; it names the worst run.
-    """
-    unknown = [OMEGA_IN, PHI_OUT, OMEGA_OUT, SPEED_ERROR]
-    size, runs = len(unknown), len(drive)
-    slow = drive.omega / (drive.p["N"] + 1)
-    scale = np.stack([drive.omega, 0 * slow + 2 * np.pi / (drive.p["N"] + 1), slow, drive.T_load / drive.gain_i + 1e-3])
-    goal = np.stack([2 * np.pi + 0 * slow, 0 * slow, 2 * np.pi / (drive.p["N"] + 1), 0 * slow])
-    state = drive.at_rest_in_rotating_frame()
-
-    # The return map is nearly linear: its Jacobian at the start, by differences, serves all iterations.
-    nudged = np.tile(state, size + 1)
-    for i, row in enumerate(unknown):
-        nudged[row, (i + 1) * runs : (i + 2) * runs] += 1e-6 * scale[i]
-    change = (_one_revolution(drive.repeated(size + 1), nudged) - nudged)[:4].reshape(4, size + 1, runs)
-    inverse = np.linalg.inv(
-        np.stack([((change[:, i + 1] - change[:, 0]) / (1e-6 * scale[i])).T for i in range(size)], 2)
-    )
-    miss = change[:, 0] - goal
-    for _ in range(30):
-        correction = np.einsum("rij,jr->ir", inverse, miss)
-        state[unknown] -= correction
-        worst = np.abs(correction / scale).max(axis=0)
-        if worst.max() < tolerance:
-            return state
-        miss = (_one_revolution(drive, state) - state)[:4] - goal
-    i = int(worst.argmax())
-    raise RuntimeError(
-        f"no steady state for {drive.points[i]} with {drive.transmissions[i]}: relative correction {worst[i]:.1e}, "
-        f"limit {tolerance:.0e}; check friction, stiffness and speed control"
-    )
-
-
-def _one_revolution(drive: Drive, state: State) -> State:
-    """The state one nominal revolution later."""
-    step = drive.period / STEPS_PER_REVOLUTION
-    for _ in range(STEPS_PER_REVOLUTION):
-        state = drive.step(state, drive.torques(state), step)
-    return state

@@ -10,8 +10,9 @@ import joblib
 from tqdm import tqdm
 
 from swgsim import settings, storage
-from swgsim.dataset import disturb, generate, provenance, usage
+from swgsim.dataset import disturb, generate, usage
 from swgsim.files import write_json
+from swgsim.plan import provenance
 
 
 def run(config: Mapping[str, Any]) -> dict[str, Any]:

@@ -8,12 +8,12 @@ import yaml
 
 from swgsim.acquisition import Window
 from swgsim.bench import Bench
-from swgsim.dataset import Plan
 from swgsim.disturbance import Disturbance
 from swgsim.faults import Variants
 from swgsim.gauges import GaugeSet
 from swgsim.gear import Gear, KinematicError, OperatingPoint, Transmission, WaveGenerator
 from swgsim.grid import Grid
+from swgsim.plan import Plan
 from swgsim.population import Population
 from swgsim.silk_hat import SilkHat
 

@@ -6,12 +6,12 @@ from functools import cache
 import numpy as np
 
 from swgsim.acquisition import Window
-from swgsim.dataset import Plan
 from swgsim.faults import Variants
 from swgsim.flexspline import FlexSpline, solve_flex_spline
 from swgsim.gear import Gear, OperatingPoint
 from swgsim.grid import Grid
 from swgsim.influence import InfluenceMap, influence_map
+from swgsim.plan import Plan
 
 GEAR = Gear()
 SECTORS = 60

@@ -10,11 +10,13 @@ import numpy as np
 import pytest
 from chain_fixtures import small_plan
 
-from swgsim import dataset, storage
+from swgsim import plan as plans
+from swgsim import storage
 from swgsim.bench import Bench
-from swgsim.dataset import disturb, generate, record
+from swgsim.dataset import disturb, generate
 from swgsim.disturbance import Disturbance
 from swgsim.population import Population
+from swgsim.record import record
 
 
 def nothing(_: int) -> None:
@@ -49,8 +51,8 @@ def test_a_killed_run_resumes_to_the_same_bytes(tmp_path: Path) -> None:
         "import sys; sys.path[:0] = ['tests']\n"
         "from pathlib import Path\n"
         "from chain_fixtures import small_plan\n"
-        "from swgsim import dataset\n"
-        "dataset.BLOCK = 4\n"
+        "from swgsim import dataset, plan\n"
+        "plan.BLOCK = 4\n"
         "report = lambda n: print(n, flush=True)\n"
         "dataset.generate(small_plan(), Path(sys.argv[1]), 1, report)\n"
     )
@@ -74,7 +76,7 @@ def test_a_killed_run_resumes_to_the_same_bytes(tmp_path: Path) -> None:
 
 
 def test_parts_of_other_choices_are_not_mixed_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(dataset, "BLOCK", 8)
+    monkeypatch.setattr(plans, "BLOCK", 8)
     path = tmp_path / "a.h5"
     other = tmp_path / ".a.h5.0123456789ab.parts"
     other.mkdir()

@@ -7,8 +7,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from swgsim.benchmark import integrator_vs_solve_ivp
-from swgsim.dynamics import OMEGA_IN, OMEGA_OUT, PHI_IN, PHI_OUT, SPEED_ERROR, Drive, run, steady_state
+from swgsim.dynamics import OMEGA_IN, OMEGA_OUT, PHI_IN, PHI_OUT, SPEED_ERROR, Drive
 from swgsim.gear import OperatingPoint, Transmission
+from swgsim.motion import run, steady_state
 
 NOMINAL = Transmission()
 POINTS = tuple(OperatingPoint(n, T) for n in (2000, 4000) for T in (7, 39, 70))

@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from swgsim import storage
-from swgsim.dataset import record
+from swgsim.record import record
 from swgsim.recordings import COLUMNS, Recordings, facts
 
 

@@ -1,0 +1,69 @@
+"""The plan of a data set: all that determines its recordings, in blocks of bounded size."""
+
+from dataclasses import dataclass
+from itertools import islice
+
+from swgsim.acquisition import Window
+from swgsim.bench import Bench
+from swgsim.chain import SECTORS
+from swgsim.gear import Gear
+from swgsim.grid import Case, Grid
+from swgsim.version import code_version
+
+# Recordings per block: bounds the memory whatever the size of the grid, and splits the paper's grid evenly over cores.
+BLOCK = 1140
+
+
+@dataclass(frozen=True)
+class Plan:
+    """All that determines the recordings of a data set.
+
+    Attributes
+    ----------
+    gears : tuple of Gear
+    grid : Grid
+    window : Window
+    bench : Bench or None
+        The imperfections of a real test bench, if any.
+    sectors : int
+        Sectors of the flex spline's truss.
+    configuration : str
+        The choices as text; kept in the file.
+    """
+
+    gears: tuple[Gear, ...]
+    grid: Grid
+    window: Window
+    bench: Bench | None = None
+    sectors: int = SECTORS
+    configuration: str = ""
+
+    def __post_init__(self) -> None:
+        numbers = [gear.number for gear in self.gears]
+        if not numbers:
+            raise ValueError("no gears: the grid is empty, choose at least one")
+        if len(set(numbers)) < len(numbers):
+            raise ValueError(f"gear numbers {numbers} are not distinct: every gear needs a number of its own")
+
+    def __len__(self) -> int:
+        return len(self.gears) * self.grid.count()
+
+    @property
+    def attributes(self) -> dict[str, str]:
+        """What the file says of itself; parts of a killed run are used only where it is the same."""
+        return provenance(self.configuration)
+
+    @property
+    def blocks(self) -> list[tuple[int, int]]:
+        """(gear, first case) of every block."""
+        return [(g, first) for g in range(len(self.gears)) for first in range(0, self.grid.count(), BLOCK)]
+
+    def cases(self, block: tuple[int, int]) -> list[Case]:
+        """The planned recordings of a block."""
+        gear, first = block
+        return list(islice(self.grid.cases(self.gears[gear]), first, first + BLOCK))
+
+
+def provenance(configuration: str) -> dict[str, str]:
+    """Configuration and version of the code, as attributes of a file."""
+    return {"configuration": configuration, "swgsim": code_version()}

@@ -1,0 +1,53 @@
+"""From planned cases to recordings: bench, chain, acquisition and facts."""
+
+import numpy as np
+
+from swgsim.chain import Run, Simulation, simulate
+from swgsim.grid import Case
+from swgsim.plan import Plan
+from swgsim.recordings import Recordings, facts
+from swgsim.seeds import generator
+
+
+def record(plan: Plan, cases: list[Case]) -> Recordings:
+    """The recordings of some cases of a plan."""
+    runs = [case.run for case in cases]
+    temperature = np.full(len(cases), np.nan)
+    if plan.bench:
+        gears = list(dict.fromkeys(run.gear for run in runs))
+        units = {gear: plan.bench.unit(gear, generator("unit", plan.grid.seed, gear.number)) for gear in gears}
+        for i, case in enumerate(cases):
+            gear, imperfections = units[case.run.gear]
+            planned = Run(gear, case.run.point, (*imperfections, *case.run.effects))
+            runs[i], temperature[i] = plan.bench.run(planned, generator("bench run", case.seed))
+    simulation = simulate(runs, plan.window, plan.sectors)
+    signals, efficiency = _acquire(plan, cases, simulation)
+    variants = [case.variant for case in cases]
+    table = facts({
+        "gear": [case.run.gear.number for case in cases],
+        "label": [variant.label for variant in variants],
+        "variant": [variant.number for variant in variants],
+        "severity": [variant.severity for variant in variants],
+        "position": [variant.position for variant in variants],
+        "n_in_rpm": [case.run.point.n_in_rpm for case in cases],
+        "T_out_nm": [case.run.point.T_out for case in cases],
+        "efficiency": efficiency,
+        "temperature_c": temperature,
+        "reference": [case.reference for case in cases],
+        "seed": np.array([case.seed for case in cases], dtype="u8"),
+    })  # fmt: skip
+    return Recordings(signals, table, plan.window.rate, plan.attributes)
+
+
+def _acquire(plan: Plan, cases: list[Case], simulation: Simulation) -> tuple[np.ndarray, np.ndarray]:
+    """Signals (float32) and efficiency as the acquisition delivers them."""
+    signals = np.empty(simulation.signals.shape, "f4")
+    efficiency = simulation.efficiency.copy()
+    T_in, T_out = simulation.motion.T_in.mean(axis=1), simulation.motion.T_out.mean(axis=1)
+    for i, (case, ideal, motion) in enumerate(zip(cases, simulation.signals, simulation.of_run, strict=True)):
+        rng = generator("acquisition", case.seed)
+        if plan.bench:
+            ideal = plan.bench.signals(ideal, rng)
+            efficiency[i] = plan.bench.efficiency(efficiency[i], T_in[motion], T_out[motion], rng)
+        signals[i] = plan.window.acquire(ideal, rng)
+    return signals, efficiency
