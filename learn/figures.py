@@ -33,21 +33,22 @@ def pictures(
         style.Picture(
             "Fig. 7: DFT of different sensor signals",
             "Magnitude at the multiples of the input speed, on a logarithmic scale. Look at order 2, the wave "
-            "generator's two lobes: it dominates s1 (b) and all but cancels in the differences (c, d), so that there "
-            "the three faults of the flex spline stand out. Damping and stiffness stay with the healthy gear.",
+            "generator's two lobes: it dominates s1 (b) and is far smaller in the differences (c, d), where the three "
+            "faults of the flex spline stand out at order 2, 4 and above. Damping and stiffness stay with the healthy "
+            "gear.",
             style.png(spectra(examples, speed_rpm, clean.rate)),
         ),
         style.Picture(
             "Fig. 8: non-disturbed and disturbed data",
-            f"A healthy recording and the same one with eq. (10). The disturbance is at most {ratio:.2%} of the largest "
-            "signal's amplitude, so the curves coincide on the left; the difference on the right shows the offset and "
-            "the sub-harmonics, of which two are not periodic in the window.",
+            f"A healthy recording and the same one with eq. (10). The disturbance is at most {100 * ratio:.2f} % of "
+            "the largest signal's amplitude, so the curves coincide on the left; the difference on the right shows the "
+            "offset and the sub-harmonics, of which two are not periodic in the window.",
             style.png(disturbance(clean, disturbed)),
         ),
         style.Picture(
             "What the random forest recognises",
-            "Share of each class that is recognised, for every row of experiments of the paper's tables (new gear: mean "
-            "of the three). Look for the dark cells: these are the classes that the features do not tell apart.",
+            "Share of each class that is recognised, for every row of experiments of the paper's tables (new gear: "
+            "mean of the three). Look for the dark cells: these are the classes that the features do not tell apart.",
             style.png(recall(runs)),
         ),
     ]

@@ -11,7 +11,7 @@ from swgsim.flexspline import FlexSpline, prescribed, tooth_forces
 from swgsim.gauges import bridges, offsets, strain_rows
 from swgsim.gear import Gear
 from swgsim.influence import boundary_conditions, ellipse, fine_angles, remaining_stiffness
-from swgsim.silk_hat import INNER
+from swgsim.lattice import INNER
 from swgsim.truss import Factorised, Truss
 
 

@@ -13,7 +13,8 @@ from jaxtyping import Bool, Complex, Float, Int
 
 from swgsim import cyclic
 from swgsim.gauges import GaugeSet, bridges, strain_rows
-from swgsim.silk_hat import INNER, OUTER, Sector, SilkHat, sector
+from swgsim.lattice import INNER, OUTER
+from swgsim.silk_hat import Sector, SilkHat, sector
 
 WAVE_GENERATOR, TEETH, BAND = 0, 1, 2
 

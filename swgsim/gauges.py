@@ -12,8 +12,9 @@ from jaxtyping import Complex, Float
 
 from swgsim.checks import require, require_positive
 from swgsim.cyclic import orders
+from swgsim.lattice import INNER
 from swgsim.recordings import SENSORS
-from swgsim.silk_hat import INNER, Sector
+from swgsim.silk_hat import Sector
 
 # Angles of the grid pairs of each sensor [rad] and the number of active bridge arms.
 LAYOUT = tuple(np.pi / 4 + np.pi / 2 * np.arange(4) if s == 0 else np.array([np.pi / 2 * (s - 1)]) for s in range(5))
