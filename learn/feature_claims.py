@@ -30,8 +30,8 @@ class Features:
         Facts of the samples.
     departure : array (sample,)
         Largest change of a DFT line of s1 - s3 or s2 - s4 against the healthy gear [mV/V].
-    relative : array (sample, line)
-        The lines by eq. (7).
+    lines, relative : arrays (sample, line)
+        The lines [mV/V], and by eq. (7).
     eta_rel : array (sample,)
     healthy_odd : float
         Largest line of odd order of the healthy gears [mV/V].
@@ -39,6 +39,7 @@ class Features:
 
     table: pd.DataFrame
     departure: Float[np.ndarray, " sample"]
+    lines: Float[np.ndarray, "sample line"]
     relative: Float[np.ndarray, "sample line"]
     eta_rel: Float[np.ndarray, " sample"]
     healthy_odd: float
@@ -55,6 +56,7 @@ def features_of(blocks: Sequence[Recordings]) -> Features:
     return Features(
         learning.table,
         np.abs(lines[~reference] - healthy).max(axis=1),
+        lines[~reference],
         learning.features[:, :-1],
         learning.features[:, -1],
         float(healthy[:, odd].max()),
@@ -71,7 +73,9 @@ def separation(features: Features) -> Finding:
     label = features.table["label"].astype(str)
     departs = pd.Series(features.departure > RESOLUTION)
     visible = {str(name): float(share) for name, share in departs.groupby(label).mean().items()}
-    correct = _nearest_has_same_class(features)
+    correct, absolute = (
+        _nearest_has_same_class(features.table, values) for values in (features.relative, features.lines)
+    )
     seen = float(np.mean([visible[name] for name in SEPARATE]))
     silent = max(visible[name] for name in ALIKE) <= 0.05
     low = min(SEPARATE, key=lambda name: visible[name])
@@ -82,10 +86,10 @@ def separation(features: Features) -> Finding:
         "stiffness do not, and need the efficiency.",
         f"of all variants of the three faults at least 90 % depart from healthy by more than {RESOLUTION:g} mV/V "
         "(three times an amplifier's noise) and at least 90 % have a variant of their own class as nearest "
-        "neighbour; of the other two at most 5 % depart",
+        "neighbour by eq. (7); of the other two at most 5 % depart",
         bool(seen >= 0.9 and correct >= 0.9 and silent),
         ", ".join(f"{name.replace('_', ' ')} {percent(share)}" for name, share in visible.items() if name != "healthy")
-        + f" depart; nearest neighbour of the same class {percent(correct)}",
+        + f" depart; nearest neighbour of the same class {percent(correct)} by eq. (7), {percent(absolute)} in mV/V",
         (
             "Damping and stiffness change the load only, which opposite gauges share, so it cancels in the "
             "differences. "
@@ -118,12 +122,12 @@ def fourth_root(features: Features) -> Finding:
     )
 
 
-def _nearest_has_same_class(features: Features) -> float:
+def _nearest_has_same_class(table: pd.DataFrame, values: Float[np.ndarray, "sample line"]) -> float:
     """Share of the separating faults' recordings whose nearest other one, same gear and point, is of their class."""
-    chosen = features.table["label"].isin(SEPARATE)
+    chosen = table["label"].isin(SEPARATE)
     correct = []
-    for _, rows in features.table[chosen].groupby(["gear", "n_in_rpm", "T_out_nm"]).groups.items():
-        X, label = features.relative[rows], features.table["label"].loc[rows].astype(str).to_numpy()
+    for _, rows in table[chosen].groupby(["gear", "n_in_rpm", "T_out_nm"]).groups.items():
+        X, label = values[rows], table["label"].loc[rows].astype(str).to_numpy()
         distance = np.linalg.norm(X[:, None] - X[None], axis=2)
         np.fill_diagonal(distance, np.inf)
         correct.append(label[distance.argmin(axis=1)] == label)

@@ -13,8 +13,9 @@ from swgsim.effects.base import Effect
 class EccentricWaveGenerator(Effect):
     """The axis of the wave generator is off centre by u_ecc = [r, theta, 0] (section II-B), fixed to the flex spline.
 
-    Signature: opposite offsets of opposite gauges (order 0 at pattern cos beta), and order 1 and 3 because the lobe
-    that sinks deeper carries more load. Typical: 0.02 to 0.15 mm; assembly tolerances allow 0.010 to 0.034 mm.
+    Signature: opposite offsets of opposite gauges, a pattern of one wave around the collar, and changed even orders
+    under load, because the lobe that sinks deeper carries more of it; no odd orders, as the two lobes are alike.
+    Typical: 0.02 to 0.15 mm; assembly tolerances allow 0.010 to 0.034 mm.
 
     Attributes
     ----------
