@@ -26,7 +26,7 @@ def main(cfg: DictConfig) -> None:
     chain, integrator = result.values()
     print(
         f"chain against one sparse solve per sample: {chain['ratio']:,.0f} times faster, "
-        f"largest difference {chain['max_relative_difference']:.1e} of the amplitude"
+        f"largest difference {chain['max_relative_difference']:.1e} of the signal"
     )
     print(
         f"batched integrator against solve_ivp: {integrator['ratio']:,.0f} times faster, "

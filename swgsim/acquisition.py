@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.checks import require, require_positive
+from swgsim.checks import require, require_integer, require_positive
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Window:
 
     def __post_init__(self) -> None:
         require_positive("the window", rate=self.rate)
-        require("the window", "samples", self.samples, low=2, high=10_000_000)
+        require_integer("the window", "samples", self.samples, low=2, high=10_000_000)
         require("the window", "noise", self.noise, low=0, high=10)
         require("the window", "quantum", self.quantum, low=0, high=10)
 

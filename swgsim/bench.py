@@ -10,8 +10,48 @@ from jaxtyping import Float
 
 from swgsim.chain import Run
 from swgsim.checks import require
-from swgsim.effects import CamForm, EccentricWaveGenerator, Effect, WarmGrease
+from swgsim.effects import CamForm, EccentricWaveGenerator, Effect, OutputPosition, WarmGrease
 from swgsim.gear import Gear, OperatingPoint
+
+# From .. to, for each magnitude: beyond, the linear models of the chain no longer hold.
+LIMITS = {
+    "eccentricity": (0, 50e-6),
+    "cam_form": (0, 20e-6),
+    "gauge_position": (0, 0.05),
+    "load": (0, 0.05),
+    "speed": (0, 0.02),
+    "index_angle": (0, 0.1),
+    "output_angle": (0, 6.2832),
+    "temperature": (0, 15),
+    "reference_temperature": (-40, 120),
+    "temperature_error": (0, 20),
+    "grease_exponent": (0, 0.1),
+    "noise": (0, 0.1),
+    "zero_drift": (0, 0.1),
+    "flange_in": (0, 0.02),
+    "flange_out": (0, 1),
+    "flange_in_bias": (0, 0.02),
+    "flange_out_bias": (0, 1),
+    "speed_reading": (0, 0.01),
+}
+
+
+@dataclass(frozen=True)
+class Session:
+    """What stays with all recordings of one session: the bias of the torque flanges [N m]."""
+
+    T_in: float
+    T_out: float
+
+
+@dataclass(frozen=True)
+class Shaft:
+    """Mean power [W] at the input and mean speeds [rad/s] of one run, and its true efficiency."""
+
+    P_in: float
+    omega_in: float
+    omega_out: float
+    efficiency: float
 
 
 @dataclass(frozen=True)
@@ -30,6 +70,8 @@ class Bench:
         Relative error of load and speed against the set point (DY11).
     index_angle : float
         Jitter of the trigger [rad].
+    output_angle : float
+        Where the output stands at the trigger, drawn evenly from 0 to this [rad] (DY5).
     temperature : float
         Of the gear about ``reference_temperature`` [K] (DY3).
     reference_temperature : float
@@ -43,7 +85,11 @@ class Bench:
     zero_drift : float
         Drift of each bridge's zero between recordings [mV/V] (SE5).
     flange_in, flange_out : float
-        Error of the torque flanges [N m]; 0.1 % of a 2 N m and a 100 N m flange (DY14).
+        Error of the torque flanges from one recording to the next [N m] (DY14).
+    flange_in_bias, flange_out_bias : float
+        Their error over a whole session [N m]; the references of a gear are one session, its samples another (DY14).
+    speed_reading : float
+        Relative error of the ratio of the measured speeds.
     """
 
     eccentricity: float = 10e-6
@@ -52,19 +98,23 @@ class Bench:
     load: float = 0.005
     speed: float = 0.001
     index_angle: float = 0.0035
+    output_angle: float = 6.2832
     temperature: float = 4.0
     reference_temperature: float = 25.0
     temperature_error: float = 1.0
     grease_exponent: float = 0.025
     noise: float = 0.001
     zero_drift: float = 0.001
-    flange_in: float = 0.002
-    flange_out: float = 0.1
+    flange_in: float = 0.001
+    flange_out: float = 0.05
+    flange_in_bias: float = 0.002
+    flange_out_bias: float = 0.1
+    speed_reading: float = 1e-4
 
     def __post_init__(self) -> None:
         for f in fields(self):
-            if f.name != "reference_temperature":
-                require("the bench", f.name, getattr(self, f.name), low=0, high=20)
+            low, high = LIMITS[f.name]
+            require("the bench", f.name, getattr(self, f.name), low, high)
 
     def unit(self, gear: Gear, rng: np.random.Generator) -> tuple[Gear, tuple[Effect, ...]]:
         """One physical unit of a gear: its own gauge positions and the small imperfections that stay with it."""
@@ -76,6 +126,10 @@ class Bench:
         )
         return replace(gear, gauges=replace(gear.gauges, position=tuple(position))), imperfections
 
+    def session(self, rng: np.random.Generator) -> Session:
+        """One session of recordings."""
+        return Session(rng.normal(0, self.flange_in_bias), rng.normal(0, self.flange_out_bias))
+
     def run(self, planned: Run, rng: np.random.Generator) -> tuple[Run, float]:
         """The run as it really takes place, and the temperature as its sensor shows it [degC]."""
         point = OperatingPoint(
@@ -83,7 +137,8 @@ class Bench:
             planned.point.T_out * (1 + self.load * rng.standard_normal()),
         )
         warmer = self.temperature * rng.standard_normal()
-        effects = (*planned.effects, WarmGrease(warmer, self.grease_exponent))
+        whereabouts = OutputPosition(rng.uniform(0, self.output_angle))
+        effects = (*planned.effects, WarmGrease(warmer, self.grease_exponent), whereabouts)
         start = self.index_angle * rng.standard_normal()
         shown = self.reference_temperature + warmer + self.temperature_error * rng.standard_normal()
         return replace(planned, point=point, effects=effects, start_angle=start), shown
@@ -95,6 +150,9 @@ class Bench:
         drift = rng.normal(0, self.zero_drift, (len(ideal), 1))
         return ideal + drift + rng.normal(0, self.noise, ideal.shape)
 
-    def efficiency(self, true: float, T_in: float, T_out: float, rng: np.random.Generator) -> float:
-        """The efficiency as the torque flanges show it."""
-        return true * (1 + rng.normal(0, self.flange_out) / T_out) / (1 + rng.normal(0, self.flange_in) / T_in)
+    def efficiency(self, shaft: Shaft, session: Session, rng: np.random.Generator) -> float:
+        """The efficiency as torque flanges and encoders show it."""
+        P_in = shaft.P_in + (session.T_in + rng.normal(0, self.flange_in)) * shaft.omega_in
+        P_out = shaft.P_in * shaft.efficiency
+        P_out += (session.T_out + rng.normal(0, self.flange_out)) * shaft.omega_out
+        return P_out / P_in * (1 + rng.normal(0, self.speed_reading))

@@ -13,9 +13,12 @@ from swgsim.effects.base import Effect
 from swgsim.flexspline import solve_flex_spline
 from swgsim.gear import Gear, OperatingPoint
 from swgsim.influence import InfluenceMap, harmonics, influence_map
-from swgsim.motion import Motion, run, steady_state
+from swgsim.motion import Motion, advance, run, steady_state
 
 SECTORS = 100
+
+# Orders of an influence map below this share of the largest one are left out.
+NEGLIGIBLE = 1e-8
 
 
 @dataclass(frozen=True)
@@ -106,20 +109,19 @@ def evaluate(
 ) -> Float[np.ndarray, "map 5 time"]:
     """The signals of several structures along one motion, s = A(psi) + T_out B(psi)."""
     coefficients = np.stack([m.coefficients for m in maps])
-    count = _significant(coefficients)
-    turns = harmonics(psi, count)
+    kept = _significant(coefficients, np.abs(T_out).max())
+    turns = harmonics(psi, kept)
     real = np.concatenate([turns.real, -turns.imag])
-    coefficients = coefficients[..., :count]
-    weights = np.concatenate([coefficients.real, coefficients.imag], axis=-1)
-    A, B = np.moveaxis((weights.reshape(-1, 2 * count) @ real).reshape(*weights.shape[:-1], -1), 1, 0)
+    weights = np.concatenate([coefficients[..., kept].real, coefficients[..., kept].imag], axis=-1)
+    A, B = np.moveaxis((weights.reshape(-1, len(real)) @ real).reshape(*weights.shape[:-1], -1), 1, 0)
     return A + T_out * B
 
 
-def _significant(coefficients: np.ndarray, tolerance: float = 3e-7) -> int:
-    """Number of leading orders that matter relative to the largest signal at full load."""
-    full_load = np.abs(coefficients) * np.array([1.0, 70.0])[:, None, None]
-    size = full_load.max(axis=tuple(range(full_load.ndim - 1)))
-    return int(np.flatnonzero(size > tolerance * size.max())[-1]) + 1
+def _significant(coefficients: np.ndarray, T_out: float) -> np.ndarray:
+    """The orders that matter relative to the largest signal; sound gears have even ones only, and few of them."""
+    size = np.abs(coefficients) * np.array([1.0, T_out])[:, None, None]
+    size = size.max(axis=tuple(range(size.ndim - 1)))
+    return np.flatnonzero(size > NEGLIGIBLE * size.max())
 
 
 def _structure(gear: Gear, effects: Sequence[Effect]) -> tuple:
@@ -147,5 +149,5 @@ def _motion(motions: list, window: Window) -> Motion:
     start = np.array([m[2] for m in motions])
     state = steady_state(drive)
     if np.any(start):
-        state = drive.step(state, drive.torques(state), start / drive.omega)
+        state = advance(drive, state, start)
     return run(drive, state, 1 / window.rate, window.samples)

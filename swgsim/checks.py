@@ -1,16 +1,45 @@
-"""Checks of physical limits; every message names the value, the limit and so the remedy."""
+"""Checks of values and their physical limits; every message names the value, the limit and so the remedy."""
 
+from collections.abc import Iterable
 from math import isfinite
+from numbers import Integral, Real
+from typing import Any
 
 
-def require(owner: str, name: str, value: float, low: float = float("-inf"), high: float = float("inf")) -> None:
-    """Raise a ValueError unless ``value`` is finite and within [low, high]."""
-    if not (isfinite(value) and low <= value <= high):
-        raise ValueError(f"{name} of {owner} is {value}, must be a finite number from {low:g} to {high:g}")
+def require(owner: str, name: str, value: Any, low: float = float("-inf"), high: float = float("inf")) -> None:
+    """Raise a ValueError unless ``value`` is a finite number within [low, high]."""
+    if not (_is_number(value) and isfinite(value) and low <= value <= high):
+        raise ValueError(f"{name} of {owner} is {value!r}, must be a finite number from {low:g} to {high:g}")
 
 
-def require_positive(owner: str, **values: float) -> None:
-    """Raise a ValueError naming the first value that is not finite and above 0."""
+def require_positive(owner: str, **values: Any) -> None:
+    """Raise a ValueError naming the first value that is not a finite number above 0."""
     for name, value in values.items():
-        if not (isfinite(value) and value > 0):
-            raise ValueError(f"{name} of {owner} is {value}, must be a finite number above 0")
+        if not (_is_number(value) and isfinite(value) and value > 0):
+            raise ValueError(f"{name} of {owner} is {value!r}, must be a finite number above 0")
+
+
+def require_integer(owner: str, name: str, value: Any, low: int, high: int) -> None:
+    """Raise a ValueError unless ``value`` is an integer within [low, high]."""
+    if not (isinstance(value, Integral) and not isinstance(value, bool) and low <= int(value) <= high):
+        raise ValueError(f"{name} of {owner} is {value!r}, must be an integer from {low} to {high}")
+
+
+def require_range(owner: str, name: str, value: Any, low: float, high: float) -> None:
+    """Raise a ValueError unless ``value`` is a pair of numbers in ascending order within [low, high]."""
+    if not isinstance(value, tuple) or len(value) != 2 or not all(_is_number(v) for v in value):
+        raise ValueError(f"{name} of {owner} is {value!r}, must be a pair of numbers: from, to")
+    if not low <= value[0] <= value[1] <= high:
+        raise ValueError(f"{name} of {owner} is {value!r}, must ascend and stay from {low:g} to {high:g}")
+
+
+def require_known(owner: str, given: Iterable[str], known: Iterable[str]) -> None:
+    """Raise a ValueError naming the first of ``given`` that is not known, with the list of choices."""
+    known = list(known)
+    for name in given:
+        if name not in known:
+            raise ValueError(f"unknown choice {name!r} of {owner}; choose from {', '.join(known)}")
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool)

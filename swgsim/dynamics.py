@@ -88,9 +88,9 @@ class Drive:
     def phi_err(self, phi_in: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Kinematic error [rad] in the unit of the twist, where e at the output is e / tan(alpha), and its slope."""
         error, slope = np.zeros_like(phi_in), np.zeros_like(phi_in)
-        turn = np.exp(1j * phi_in)
+        turns = {1: np.exp(1j * phi_in)}
         for order, amplitude in self.error.items():
-            term = amplitude * turn**order
+            term = amplitude * _power(turns, order)
             error += term.imag
             slope += order * term.real
         return error, slope
@@ -107,7 +107,7 @@ class Drive:
         sense = np.tanh(sliding / SLIDING_SPEED)
         friction = (p["b1"] + p["b2"] * sliding * sliding) * sliding
         friction += sense * (p["b0"] + p["b3"] * np.sin(p["theta_b"] - phi_out))
-        # The massless tooth is in equilibrium, T_stiff = F_n sin(alpha) + T_fric cos(alpha), on either flank.
+        # The massless tooth is in equilibrium, T_stiff = F_n sin(alpha) + T_fric cos(alpha), on the driving flank.
         F_n = np.abs(T_stiff - friction * self.cos_t) / (self.sin_t + p["mu"] * sense * self.cos_t)
         T_fric = friction + p["mu"] * sense * F_n
         T_out = T_stiff / self.tan_t - T_fric / self.sin_t
@@ -135,6 +135,15 @@ class Drive:
         k4 = self.derivative(end, self.torques(end))
         return state + dt / 6 * (k1 + 2 * (k2 + k3) + k4)
 
+    @property
+    def resonance(self) -> Float[np.ndarray, " run"]:
+        """Natural frequency of input and output against the gear's stiffness at the load [Hz]."""
+        _, _, phi_out, _, _ = self.at_rest_in_rotating_frame()
+        twist = -phi_out / self.tan_t + self.phi_err(np.zeros_like(phi_out))[0]
+        stiffness = (self.p["k1"] + 3 * self.p["k2"] * twist**2) / self.tan_t**2
+        reflected = (self.p["N"] + 1) ** 2 * self.p["J_in"]
+        return np.sqrt(stiffness * (1 / reflected + 1 / self.p["J_out"])) / (2 * np.pi)
+
     def at_rest_in_rotating_frame(self) -> State:
         """Uniform rotation with the load in equilibrium, phi_in = 0: the start of the search for the steady state."""
         p, speed = self.p, self.omega / (self.p["N"] + 1)
@@ -147,3 +156,10 @@ class Drive:
             twist -= ((p["k1"] + p["k2"] * twist**2) * twist - T_stiff) / (p["k1"] + 3 * p["k2"] * twist**2)
         phi_out = self.tan_t * (self.phi_err(np.zeros_like(twist))[0] - twist)
         return np.stack([0 * twist, self.omega, phi_out, speed, self.tan_in * T_stiff / self.gain_i])
+
+
+def _power(known: dict[int, np.ndarray], order: int) -> np.ndarray:
+    """An integer power by repeated multiplication (a complex power is much slower); keeps what it finds."""
+    if order not in known:
+        known[order] = _power(known, order // 2) * _power(known, order - order // 2)
+    return known[order]

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from swgsim.checks import require_integer, require_known
 from swgsim.effects import (
     EccentricWaveGenerator,
     Effect,
@@ -21,12 +22,9 @@ FAULTS: Mapping[str, Callable[[float, float], Effect]] = {
     "reduced_stiffness": lambda severity, _: ReducedStiffness(severity),
     "eccentric_wave_generator": EccentricWaveGenerator,
     "root_tooth_crack": RootToothCrack,
-    "tip_tooth_crack": lambda severity, position: TipToothCrack(severity, position, teeth=TIP_CRACK_TEETH),
+    "tip_tooth_crack": TipToothCrack,
 }
 WITHOUT_POSITION = ("reduced_damping", "reduced_stiffness")
-
-# The paper's truss loads a node where several teeth are; four of 200 teeth lie within the one to ten of FE studies.
-TIP_CRACK_TEETH = 4
 
 
 @dataclass(frozen=True)
@@ -73,14 +71,18 @@ class Variants:
     drawn: bool = False
 
     def __post_init__(self) -> None:
-        if self.count < 1 or self.positions < 1:
-            raise ValueError(f"{self.count} variants at {self.positions} positions: the grid is empty, use at least 1")
+        require_integer("the grid", "variants", self.count, low=1, high=1_000_000)
+        require_integer("the grid", "positions", self.positions, low=1, high=100_000)
+        if not isinstance(self.drawn, bool):
+            raise ValueError(f"drawn of the grid is {self.drawn!r}, must be true or false")
         unknown = set(self.severities) ^ set(FAULTS)
         if unknown:
             raise ValueError(
                 f"severities for {sorted(self.severities)}, expected one list for each of {sorted(FAULTS)}"
             )
         for label, levels in self.severities.items():
+            if not levels:
+                raise ValueError(f"{label}: no severities, give at least one")
             located = label not in WITHOUT_POSITION
             if located and not self.drawn and len(levels) * self.positions != self.count:
                 raise ValueError(
@@ -97,8 +99,7 @@ class Variants:
         ValueError
             If the class is unknown; it lists the classes.
         """
-        if label not in CLASSES:
-            raise ValueError(f"unknown class {label!r}; choose from {', '.join(CLASSES)}")
+        require_known("the classes", [label], CLASSES)
         for number in range(self.count):
             if label == "healthy":
                 yield Variant(label, number, np.nan, np.nan, ())

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from math import pi, tan
 
-from swgsim.checks import require, require_positive
+from swgsim.checks import require, require_integer, require_positive
 from swgsim.gauges import GaugeSet
 from swgsim.silk_hat import SilkHat
 
@@ -15,6 +15,12 @@ class KinematicError:
     order: int
     amplitude: float
     phase: float = 0.0
+
+    def __post_init__(self) -> None:
+        owner = "the kinematic error"
+        require_integer(owner, "order", self.order, low=1, high=20)
+        require(owner, "amplitude", self.amplitude, low=0, high=0.01)
+        require(owner, "phase", self.phase)
 
 
 @dataclass(frozen=True)
@@ -65,7 +71,8 @@ class Transmission:
 
     def __post_init__(self) -> None:
         owner = "the transmission"
-        positive = ("N", "k1", "J_in", "J_out", "control_frequency", "control_damping")
+        require_integer(owner, "N", self.N, low=30, high=320)
+        positive = ("k1", "J_in", "J_out", "control_frequency", "control_damping")
         require_positive(owner, **{name: getattr(self, name) for name in positive})
         for name in ("k2", "b0", "b1", "b3", "mu"):
             require(owner, name, getattr(self, name), low=0)
@@ -110,6 +117,14 @@ class Gear:
     flex_spline: SilkHat = field(default_factory=SilkHat)
     wave_generator: WaveGenerator = field(default_factory=WaveGenerator)
     gauges: GaugeSet = field(default_factory=GaugeSet)
+
+    def __post_init__(self) -> None:
+        require_integer("the gear", "number", self.number, low=1, high=2**31 - 1)
+        teeth, N = self.flex_spline.teeth, self.transmission.N
+        if teeth != 2 * N:
+            raise ValueError(
+                f"{teeth} teeth do not fit the ratio N = {N}: with two lobes a flex spline has 2 N = {2 * N}"
+            )
 
 
 @dataclass(frozen=True)

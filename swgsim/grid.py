@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from swgsim.chain import Run
-from swgsim.checks import require
-from swgsim.effects import UnitScatter
+from swgsim.checks import require, require_integer, require_known
+from swgsim.effects import ParameterScatter
 from swgsim.faults import Variant, Variants
 from swgsim.gear import Gear, OperatingPoint
 from swgsim.recordings import CLASSES
@@ -61,10 +61,12 @@ class Grid:
     def __post_init__(self) -> None:
         if not self.points or not self.classes:
             raise ValueError(f"{len(self.points)} operating points x {len(self.classes)} classes: the grid is empty")
-        unknown = [label for label in self.classes if label not in CLASSES]
-        if unknown:
-            raise ValueError(f"unknown class {unknown[0]!r}; choose from {', '.join(CLASSES)}")
-        require("the grid", "references", self.references, low=1, high=10_000)
+        require_known("the classes", self.classes, CLASSES)
+        for name, values in (("operating points", self.points), ("classes", self.classes)):
+            if len(set(values)) < len(values):
+                raise ValueError(f"{name} of the grid repeat: {values}; name each once")
+        require_integer("the grid", "references", self.references, low=1, high=10_000)
+        require_integer("the grid", "seed", self.seed, low=0, high=2**63)
         require("the grid", "scatter", self.scatter, low=0, high=0.05)
 
     def cases(self, gear: Gear) -> Iterator[Case]:
@@ -87,5 +89,5 @@ class Grid:
             effects = variant.effects
             if self.scatter:
                 b1_ratio, k1_ratio = np.clip(generator("scatter", seed).normal(1, self.scatter, 2), 0.8, 1.2)
-                effects = (*effects, UnitScatter(float(b1_ratio), float(k1_ratio)))
+                effects = (*effects, ParameterScatter(float(b1_ratio), float(k1_ratio)))
             yield Case(Run(gear, point, effects), variant, reference, seed)

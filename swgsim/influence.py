@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from jaxtyping import Complex, Float
+from jaxtyping import Complex, Float, Int
 from scipy import linalg
 
 from swgsim.cyclic import order_weights, orders
@@ -19,7 +19,7 @@ from swgsim.gauges import GaugeSet, offsets
 from swgsim.gear import WaveGenerator
 
 # Highest order per wave-generator revolution that the maps keep, and the angles at which they are sampled.
-ORDERS = 100
+ORDERS = 120
 ANGLES = 256
 PSI = 2 * np.pi / ANGLES * np.arange(ANGLES)
 
@@ -41,14 +41,18 @@ class InfluenceMap:
 
     def __call__(self, psi: Float[np.ndarray, " time"]) -> Float[np.ndarray, "2 5 time"]:
         """A and B at given angles [rad]."""
-        return (self.coefficients @ harmonics(psi, self.coefficients.shape[-1])).real
+        return (self.coefficients @ harmonics(psi, np.arange(self.coefficients.shape[-1]))).real
 
 
-def harmonics(psi: Float[np.ndarray, " time"], count: int) -> Complex[np.ndarray, "order time"]:
-    """exp(i k psi) for k = 0 .. count - 1, by repeated multiplication."""
-    turns = np.ones((count, len(psi)), complex)
-    turns[1:] = np.exp(1j * psi)
-    return np.multiply.accumulate(turns, axis=0)
+def harmonics(psi: Float[np.ndarray, " time"], orders: Int[np.ndarray, " order"]) -> Complex[np.ndarray, "order time"]:
+    """exp(i k psi) for ascending orders k, by repeated multiplication."""
+    turns = np.empty((len(orders), len(psi)), complex)
+    steps = np.diff(orders, prepend=0)
+    powers = {step: np.exp(1j * step * psi) for step in set(steps.tolist())}
+    before: np.ndarray | float = 1.0
+    for turn, step in zip(turns, steps.tolist(), strict=True):
+        before = np.multiply(before, powers[step], out=turn)
+    return turns
 
 
 def ellipse(
@@ -155,7 +159,7 @@ def _cracked(
     if not cracks:
         return 0.0
     sector = flex.sector
-    columns = np.array([(gap, gap + 1) for gap in (int(crack.angle // sector.pitch) for crack in cracks)]).ravel()
+    columns = np.array([(gap, gap + 1) for gap in (sector.gap(crack.angle) for crack in cracks)]).ravel()
     turns = np.exp(1j * sector.pitch * np.outer(columns, orders(sector.count)))
     loss = linalg.block_diag(*[(1 - remaining_stiffness(crack, flex)) * flex.crossing_stiffness for crack in cracks])
     sound = np.concatenate([((amplitude * turn) @ flex.fields[:, flex.band, load]).real for turn in turns], axis=1)

@@ -7,8 +7,10 @@ from jaxtyping import Float
 
 from swgsim.dynamics import OMEGA_IN, OMEGA_OUT, PHI_IN, PHI_OUT, SPEED_ERROR, Drive, State
 
-# Steps of the integrator per revolution of the wave generator, at least: 24 per cycle of the kinematic error's order 4.
+# Steps of the integrator, at least: 24 per cycle of the kinematic error's order 4, and 40 per cycle of the resonance.
 STEPS_PER_REVOLUTION = 96
+STEPS_PER_OSCILLATION = 40
+MOST_STEPS = 20_000
 
 
 @dataclass(frozen=True)
@@ -41,7 +43,7 @@ class Motion:
         turns = np.floor(angle[:, -1] / (2 * np.pi) + 1e-9)
         if turns.min() < 1:
             short = float(angle[:, -1].min() / (2 * np.pi))
-            raise ValueError(f"window of {short:.2f} revolutions: efficiency needs at least one; lengthen the window")
+            raise ValueError(f"window of {short:.4f} revolutions: efficiency needs at least one; lengthen the window")
         end = 2 * np.pi * turns
         return _energy(self.T_out * self.omega_out, angle, end) / _energy(self.T_in * self.omega_in, angle, end)
 
@@ -53,9 +55,35 @@ def _energy(power: np.ndarray, angle: np.ndarray, end: np.ndarray) -> np.ndarray
     return np.array([np.interp(e, row_angle, row) for e, row_angle, row in zip(end, angle, total, strict=True)])
 
 
+def steps_per_revolution(drive: Drive) -> int:
+    """Steps that every run of a batch takes per revolution of the wave generator.
+
+    Raises
+    ------
+    ValueError
+        If a run turns so slowly, or is so stiff, that it would need more than MOST_STEPS.
+    """
+    needed = np.ceil(STEPS_PER_OSCILLATION * drive.resonance * drive.period)
+    i = int(needed.argmax())
+    if needed[i] > MOST_STEPS:
+        raise ValueError(
+            f"{drive.points[i].n_in_rpm} rpm with a resonance of {drive.resonance[i]:.3g} Hz needs {needed[i]:.0f} "
+            f"steps per revolution, limit {MOST_STEPS}: raise speed or inertia, or lower the stiffness"
+        )
+    return max(STEPS_PER_REVOLUTION, int(needed[i]))
+
+
+def advance(drive: Drive, state: State, angle: Float[np.ndarray, " run"]) -> State:
+    """The state of each run when the wave generator has turned on by about an angle [rad], which may be negative."""
+    steps = int(np.ceil(np.abs(angle).max() / (2 * np.pi) * steps_per_revolution(drive)))
+    for _ in range(steps):
+        state = drive.step(state, drive.torques(state), angle / drive.omega / steps)
+    return state
+
+
 def run(drive: Drive, state: State, dt: float, count: int) -> Motion:
     """Integrate ``count`` steps of ``dt`` seconds from a state and keep every step."""
-    substeps = int(np.ceil(dt / (drive.period.min() / STEPS_PER_REVOLUTION) - 1e-9))
+    substeps = int(np.ceil(dt / (drive.period / steps_per_revolution(drive)).min() - 1e-9))
     step = np.full(len(drive), dt / substeps)
     kept = np.empty((5, count + 1, len(drive)))
     for i in range(count + 1):
@@ -90,7 +118,10 @@ def steady_state(drive: Drive, tolerance: float = 1e-10) -> State:
     nudged = np.tile(state, size + 1)
     for i, row in enumerate(unknown):
         nudged[row, (i + 1) * runs : (i + 2) * runs] += 1e-6 * scale[i]
-    change = (_one_revolution(drive.repeated(size + 1), nudged) - nudged)[:4].reshape(4, size + 1, runs)
+    turn = np.full(runs, 2 * np.pi)
+    change = (advance(drive.repeated(size + 1), nudged, np.tile(turn, size + 1)) - nudged)[:4].reshape(
+        4, size + 1, runs
+    )
     inverse = np.linalg.inv(
         np.stack([((change[:, i + 1] - change[:, 0]) / (1e-6 * scale[i])).T for i in range(size)], 2)
     )
@@ -101,17 +132,9 @@ def steady_state(drive: Drive, tolerance: float = 1e-10) -> State:
         worst = np.abs(correction / scale).max(axis=0)
         if worst.max() < tolerance:
             return state
-        miss = (_one_revolution(drive, state) - state)[:4] - goal
+        miss = (advance(drive, state, turn) - state)[:4] - goal
     i = int(worst.argmax())
     raise RuntimeError(
         f"no steady state for {drive.points[i]} with {drive.transmissions[i]}: relative correction {worst[i]:.1e}, "
         f"limit {tolerance:.0e}; check friction, stiffness and speed control"
     )
-
-
-def _one_revolution(drive: Drive, state: State) -> State:
-    """The state one nominal revolution later."""
-    step = drive.period / STEPS_PER_REVOLUTION
-    for _ in range(STEPS_PER_REVOLUTION):
-        state = drive.step(state, drive.torques(state), step)
-    return state

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from swgsim.checks import require
+from swgsim.checks import require, require_integer, require_range
 from swgsim.gear import Gear
 from swgsim.seeds import generator
 
@@ -29,13 +29,15 @@ class Population:
     b1_ratio: tuple[float, float] = (0.8, 1.2)
     k1_ratio: tuple[float, float] = (0.8, 1.2)
     gain: float = 0.005
-    offset: float = 0.01
+    offset: float = 0.004
     position: float = 0.005
     grid_angle: float = 0.005
     kinematic_error: tuple[float, float] = (0.5, 1.5)
 
     def __post_init__(self) -> None:
-        require("the population", "count", self.count, low=1, high=100_000)
+        require_integer("the population", "count", self.count, low=1, high=100_000)
+        for name in ("b1_ratio", "k1_ratio", "kinematic_error"):
+            require_range("the population", name, getattr(self, name), low=0.1, high=10)
         for name in ("gain", "offset", "position", "grid_angle"):
             require("the population", name, getattr(self, name), low=0, high=0.2)
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from swgsim.bench import Shaft
 from swgsim.chain import Run, Simulation, simulate
 from swgsim.grid import Case
 from swgsim.plan import Plan
@@ -43,11 +44,15 @@ def _acquire(plan: Plan, cases: list[Case], simulation: Simulation) -> tuple[np.
     """Signals (float32) and efficiency as the acquisition delivers them."""
     signals = np.empty(simulation.signals.shape, "f4")
     efficiency = simulation.efficiency.copy()
-    T_in, T_out = simulation.motion.T_in.mean(axis=1), simulation.motion.T_out.mean(axis=1)
-    for i, (case, ideal, motion) in enumerate(zip(cases, simulation.signals, simulation.of_run, strict=True)):
+    motion = simulation.motion
+    P_in = (motion.T_in * motion.omega_in).mean(axis=1)
+    omega_in, omega_out = motion.omega_in.mean(axis=1), motion.omega_out.mean(axis=1)
+    for i, (case, ideal, m) in enumerate(zip(cases, simulation.signals, simulation.of_run, strict=True)):
         rng = generator("acquisition", case.seed)
         if plan.bench:
+            session = plan.bench.session(generator("session", plan.grid.seed, case.run.gear.number, case.reference))
             ideal = plan.bench.signals(ideal, rng)
-            efficiency[i] = plan.bench.efficiency(efficiency[i], T_in[motion], T_out[motion], rng)
+            shaft = Shaft(P_in[m], omega_in[m], omega_out[m], efficiency[i])
+            efficiency[i] = plan.bench.efficiency(shaft, session, rng)
         signals[i] = plan.window.acquire(ideal, rng)
     return signals, efficiency

@@ -8,6 +8,7 @@ import yaml
 
 from swgsim.acquisition import Window
 from swgsim.bench import Bench
+from swgsim.checks import require_known
 from swgsim.disturbance import Disturbance
 from swgsim.faults import Variants
 from swgsim.gauges import GaugeSet
@@ -16,6 +17,22 @@ from swgsim.grid import Grid
 from swgsim.plan import Plan
 from swgsim.population import Population
 from swgsim.silk_hat import SilkHat
+
+# What a file of conf/grid holds.
+GRID = (
+    "name",
+    "speeds_rpm",
+    "loads_nm",
+    "classes",
+    "variants",
+    "positions",
+    "severities",
+    "drawn",
+    "references",
+    "scatter",
+    "seed",
+    "population",
+)
 
 T = TypeVar("T")
 Config = Mapping[str, Any]
@@ -29,10 +46,7 @@ def build(kind: type[T], config: Config, **given: Any) -> T:
     ValueError
         If the mapping has a key that the class does not know; it lists the choices.
     """
-    names = [f.name for f in fields(kind)]  # type: ignore[arg-type]
-    for key in config:
-        if key not in names:
-            raise ValueError(f"unknown choice {key!r} of {kind.__name__}; choose from {', '.join(names)}")
+    require_known(kind.__name__, config, [f.name for f in fields(kind)])  # type: ignore[arg-type]
     values = {key: tuple(value) if isinstance(value, list) else value for key, value in config.items()}
     return kind(**(values | given))
 
@@ -53,6 +67,10 @@ def gear(config: Config) -> Gear:
 
 def grid(config: Config) -> Grid:
     """A grid (conf/grid)."""
+    require_known("the grid", config, GRID)
+    for name in ("speeds_rpm", "loads_nm", "classes"):
+        if not isinstance(config[name], list):
+            raise ValueError(f"{name} of the grid is {config[name]!r}, must be a list such as [{config[name]}]")
     points = tuple(OperatingPoint(n, T) for n in config["speeds_rpm"] for T in config["loads_nm"])
     severities = {label: tuple(levels) for label, levels in config["severities"].items()}
     variants = Variants(config["variants"], config["positions"], severities, config["drawn"])

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from swgsim.checks import require, require_integer, require_positive
 from swgsim.lattice import wall_bars
 from swgsim.truss import Truss
 
@@ -47,9 +48,12 @@ class SilkHat:
     teeth: int = 200
 
     def __post_init__(self) -> None:
-        for name in ("radius", "length", "band", "fillet", "clamp_radius", "wall", "collar", "E", "teeth"):
-            if not getattr(self, name) > 0:
-                raise ValueError(f"{name} of the flex spline is {getattr(self, name)}, must be above 0")
+        lengths = ("radius", "length", "fillet", "band", "clamp_radius", "wall", "collar")
+        require_positive("the flex spline", E=self.E, **{name: getattr(self, name) for name in lengths})
+        require_integer("the flex spline", "teeth", self.teeth, low=60, high=640)
+        for name in ("wall", "collar"):
+            # Thicker than this it is no shell; thinner, the lattice's bars are all but parallel to it.
+            require("the flex spline", name, getattr(self, name), low=self.radius / 500, high=self.radius / 5)
         if self.band + self.fillet >= self.length:
             raise ValueError(f"band {self.band} m and fillet {self.fillet} m must fit the length {self.length} m")
         if self.clamp_radius <= self.radius + self.fillet:
@@ -87,6 +91,10 @@ class Sector:
     def pitch(self) -> float:
         """Angle of one sector [rad]."""
         return 2 * np.pi / self.count
+
+    def gap(self, angle: float) -> int:
+        """The sector whose gap to the next one begins at or holds an angle [rad]."""
+        return int(np.floor(angle / self.pitch + 1e-9)) % self.count
 
     def layer(self, layer: int) -> Bool[np.ndarray, " node"]:
         """Mask of the nodes of one layer (INNER or OUTER)."""
@@ -154,8 +162,9 @@ def sector(hat: SilkHat, count: int) -> Sector:
     ValueError
         If the count is odd or too small, or the cells become too oblong for a lattice.
     """
-    if count % 2 or count < 24:
-        raise ValueError(f"{count} sectors: the number must be even and at least 24")
+    require_integer("the mesh", "sectors", count, low=24, high=2000)
+    if count % 2:
+        raise ValueError(f"sectors of the mesh is {count}, must be even: the wave generator has two lobes")
     points, normals, thickness = meridian(hat, count)
     offset = 0.5 * thickness[:, None] * normals
     pair = np.stack([points - offset, points + offset], axis=1)  # (meridian, layer, rz)

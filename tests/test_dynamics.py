@@ -8,8 +8,8 @@ from scipy.integrate import solve_ivp
 
 from swgsim.benchmark import integrator_vs_solve_ivp
 from swgsim.dynamics import OMEGA_IN, OMEGA_OUT, PHI_IN, PHI_OUT, SPEED_ERROR, Drive
-from swgsim.gear import OperatingPoint, Transmission
-from swgsim.motion import run, steady_state
+from swgsim.gear import KinematicError, OperatingPoint, Transmission
+from swgsim.motion import advance, run, steady_state, steps_per_revolution
 
 NOMINAL = Transmission()
 POINTS = tuple(OperatingPoint(n, T) for n in (2000, 4000) for T in (7, 39, 70))
@@ -107,9 +107,36 @@ def test_speed_is_controlled_to_the_set_point() -> None:
     np.testing.assert_allclose(motion.T_out[:, :600].mean(axis=1), [p.T_out for p in POINTS], rtol=1e-2)
 
 
+@pytest.mark.parametrize("n_in_rpm", [20, 60, 2000])
+def test_steady_state_repeats_at_any_speed(n_in_rpm: float) -> None:
+    """One revolution on, with steps five times as fine, the state is the same."""
+    drive = Drive([replace(NOMINAL, b3=0.0)], [OperatingPoint(n_in_rpm, 39)])
+    start = state = steady_state(drive)
+    steps = 5 * steps_per_revolution(drive)
+    speeds = []
+    for _ in range(steps):
+        state = drive.step(state, drive.torques(state), drive.period / steps)
+        speeds.append(state[OMEGA_OUT, 0])
+    assert abs(state[OMEGA_OUT, 0] - start[OMEGA_OUT, 0]) < 1e-4 * np.ptp(speeds)
+
+
+def test_a_large_start_angle_is_reached_along_the_motion() -> None:
+    drive = Drive([replace(NOMINAL, b3=0.0)], [POINTS[4]])
+    whole = run(drive, steady_state(drive), 1e-4, 600)
+    later = run(drive, advance(drive, steady_state(drive), np.array([np.pi])), 1e-4, 100)
+    at = np.interp(later.phi_in[0], whole.phi_in[0], whole.T_out[0])
+    np.testing.assert_allclose(later.T_out[0], at, atol=2e-3 * np.ptp(whole.T_out))
+
+
+def test_too_stiff_or_too_slow_names_the_resonance() -> None:
+    drive = Drive([replace(NOMINAL, J_out=1e-6)], [OperatingPoint(100, 39)])
+    with pytest.raises(ValueError, match=r"100 rpm with a resonance of .* Hz needs .* limit 20000"):
+        steady_state(drive)
+
+
 def test_window_shorter_than_a_revolution_has_no_efficiency() -> None:
     drive = Drive([NOMINAL], [POINTS[0]])
-    with pytest.raises(ValueError, match=r"window of 0\.33 revolutions.*lengthen"):
+    with pytest.raises(ValueError, match=r"window of 0\.33.. revolutions.*lengthen"):
         _ = run(drive, steady_state(drive), 1e-4, 100).efficiency
 
 
@@ -117,8 +144,14 @@ def test_window_shorter_than_a_revolution_has_no_efficiency() -> None:
     ("name", "value"), [("k1", -1.0), ("J_out", 0.0), ("b1", -0.1), ("mu", np.nan), ("b2", np.inf)]
 )
 def test_impossible_parameters_are_named(name: str, value: float) -> None:
-    with pytest.raises(ValueError, match=f"{name} of the transmission is {value}"):
+    with pytest.raises(ValueError, match=f"{name} of the transmission is {value!r}"):
         replace(NOMINAL, **{name: value})
+
+
+@pytest.mark.parametrize(("order", "amplitude"), [(0, 1e-4), (-2, 1e-4), (2, np.nan), (2, -1e-4)])
+def test_kinematic_error_needs_whole_orders_and_amplitudes(order: int, amplitude: float) -> None:
+    with pytest.raises(ValueError, match="of the kinematic error is"):
+        KinematicError(order, amplitude)
 
 
 @pytest.mark.parametrize(("n", "T"), [(0, 39), (8000, 39), (2000, -1), (2000, 200), (np.nan, 39)])

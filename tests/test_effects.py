@@ -8,11 +8,11 @@ from swgsim.effects import (
     CamForm,
     EccentricWaveGenerator,
     Effect,
+    ParameterScatter,
     ReducedDamping,
     ReducedStiffness,
     RootToothCrack,
     TipToothCrack,
-    UnitScatter,
     WarmGrease,
 )
 from swgsim.faults import FAULTS, Variants
@@ -25,10 +25,10 @@ EFFECTS = [
     TipToothCrack(0.5, 1.0),
     CamForm(3, 2e-6),
     WarmGrease(10.0),
-    UnitScatter(1.01, 0.99),
+    ParameterScatter(1.01, 0.99),
 ]
 PLACES = {
-    "gear": (ReducedDamping, ReducedStiffness, WarmGrease, UnitScatter),
+    "gear": (ReducedDamping, ReducedStiffness, WarmGrease, ParameterScatter),
     "wave_generator": (EccentricWaveGenerator, CamForm),
     "mesh": (TipToothCrack,),
     "cracks": (RootToothCrack,),
@@ -68,7 +68,7 @@ def test_beyond_physical_limits_the_error_names_the_limit(make: object, message:
 
 def test_tip_crack_takes_the_width_of_its_teeth() -> None:
     theta = 2 * np.pi / 1000 * np.arange(1000)
-    share = TipToothCrack(1.0, 1.0, teeth=4).mesh(np.ones((1, 1000)), np.zeros(1), theta)
+    share = TipToothCrack(1.0, 1.0, width=4 * 2 * np.pi / 200).mesh(np.ones((1, 1000)), np.zeros(1), theta)
     assert 1000 - share.sum() == pytest.approx(1000 * 4 / 200)
 
 
@@ -91,9 +91,9 @@ def test_damping_and_stiffness_take_even_steps_without_position() -> None:
 def test_bad_variants_are_refused() -> None:
     with pytest.raises(ValueError, match="2 severities x 20 positions do not make 60 variants"):
         Variants(60, 20, SEVERITIES)
-    with pytest.raises(ValueError, match="the grid is empty"):
+    with pytest.raises(ValueError, match="variants of the grid is 0, must be an integer from 1"):
         Variants(0, 1, SEVERITIES)
-    with pytest.raises(ValueError, match="unknown class 'broken'; choose from healthy"):
+    with pytest.raises(ValueError, match="unknown choice 'broken' of the classes; choose from healthy"):
         next(Variants(40, 20, SEVERITIES).of("broken", np.random.default_rng(0)))
     with pytest.raises(ValueError, match="expected one list for each of"):
         Variants(40, 20, {"reduced_damping": (0.7, 0.9)})

@@ -14,7 +14,7 @@ FAULTS = [
     (),
     (EccentricWaveGenerator(1e-4, 0.3),),
     (RootToothCrack(0.02, 2.3),),
-    (TipToothCrack(1.0, 0.3, 4),),
+    (TipToothCrack(1.0, 0.3),),
     (RootToothCrack(0.1, 1.0), RootToothCrack(0.05, 4.0), CamForm(3, 2e-6, 0.4)),
 ]
 
@@ -40,18 +40,23 @@ def test_torque_bridge_is_nearly_flat() -> None:
     assert amplitude(B[0]) < 0.02 * B[0].mean()
 
 
-@pytest.mark.parametrize("make", [lambda t: RootToothCrack(0.05, t), lambda t: TipToothCrack(1.0, t, 4)])
+@pytest.mark.parametrize("make", [lambda t: RootToothCrack(0.05, t), lambda t: TipToothCrack(1.0, t)])
 def test_a_crack_one_gauge_pitch_further_permutes_the_gauges(make: object) -> None:
     """Turning crack and wave generator by a quarter turn gives s_(i+1) what s_i had."""
-    first, turned = map_of(make(0.35)), map_of(make(0.35 + np.pi / 2))
-    before, after = first(PSI), turned(PSI + np.pi / 2)
-    for now, then in ((2, 1), (3, 2), (4, 3), (1, 4), (0, 0)):
-        np.testing.assert_allclose(after[:, now], before[:, then], atol=1e-6 * np.abs(before).max())
+    for sectors in (60, 100):
+        for position in (0.0, 0.35, *2 * np.pi / 20 * np.arange(1, 5)):
+            first, turned = (map_of(make(angle), sectors=sectors) for angle in (position, position + np.pi / 2))
+            before, after = first(PSI), turned(PSI + np.pi / 2)
+            for now, then in ((2, 1), (3, 2), (4, 3), (1, 4), (0, 0)):
+                np.testing.assert_allclose(after[:, now], before[:, then], atol=1e-9 * np.abs(before).max())
 
 
 def test_torque_adds_up_and_shifts_superpose() -> None:
-    """The truss is linear: two eccentricities move the unloaded signals by the sum of both."""
+    """The truss is linear: the signals of two eccentricities add up, and those of a load and of no load."""
     one, two = EccentricWaveGenerator(3e-5, 0.2), EccentricWaveGenerator(5e-5, 2.0)
+    direct = DirectSolver(flex_spline(), GEAR, (one,))
+    unloaded, half, full = (direct.signals(PSI[:4], np.full(4, load)) for load in (0.0, 35.0, 70.0))
+    np.testing.assert_allclose(full - unloaded, 2 * (half - unloaded), atol=1e-12)
     sound, first, second, both = (m(PSI)[0] for m in (map_of(), map_of(one), map_of(two), map_of(one, two)))
     np.testing.assert_allclose(both - sound, (first - sound) + (second - sound), atol=1e-12)
 

@@ -10,7 +10,7 @@ from swgsim.gear import Gear
 
 @dataclass(frozen=True)
 class Crack:
-    """Hoop bars between two neighbouring teeth that lost stiffness.
+    """The bars of the toothed band that cross from one sector to the next lost stiffness.
 
     Attributes
     ----------

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.checks import require
+from swgsim.checks import require, require_integer
 from swgsim.effects.base import Effect
 
 
@@ -30,7 +30,7 @@ class CamForm(Effect):
     phase: float = 0.0
 
     def __post_init__(self) -> None:
-        require("the cam form", "n", self.n, low=1, high=12)
+        require_integer("the cam form", "n", self.n, low=1, high=12)
         require("the cam form", "amplitude", self.amplitude, low=0, high=20e-6)
         require("the cam form", "phase", self.phase)
 

@@ -8,6 +8,9 @@ from jaxtyping import Float
 from swgsim.checks import require
 from swgsim.effects.base import Effect
 
+# Pitch of one tooth of 200 [rad].
+TOOTH = 2 * np.pi / 200
+
 
 @dataclass(frozen=True)
 class TipToothCrack(Effect):
@@ -21,21 +24,19 @@ class TipToothCrack(Effect):
         Share of the tooth's force that is lost, from 0 to 1.
     theta : float
         Position of the tooth [rad].
-    teeth : int
-        Number of neighbouring teeth that are affected, from 1 to 10 (FE studies: one to ten of 200).
-    flex_spline_teeth : int
-        Number of teeth all around.
+    width : float
+        Angle of the affected teeth [rad], from one to ten teeth of 200, as in FE studies. The paper loads a node of its
+        truss, which stands for several teeth; the default is four of 200.
     """
 
     force_loss: float
     theta: float
-    teeth: int = 1
-    flex_spline_teeth: int = 200
+    width: float = 4 * TOOTH
 
     def __post_init__(self) -> None:
         require("the tip tooth crack", "force_loss", self.force_loss, low=0, high=1)
         require("the tip tooth crack", "theta", self.theta)
-        require("the tip tooth crack", "teeth", self.teeth, low=1, high=10)
+        require("the tip tooth crack", "width", self.width, low=TOOTH, high=10 * TOOTH)
 
     def mesh(
         self,
@@ -45,7 +46,6 @@ class TipToothCrack(Effect):
     ) -> Float[np.ndarray, "psi theta"]:
         """The shares with less force on the cracked teeth; a sampled angle loses what it holds of their width."""
         pitch = theta[1] - theta[0]
-        width = self.teeth * 2 * np.pi / self.flex_spline_teeth
         distance = np.abs((theta - self.theta + np.pi) % (2 * np.pi) - np.pi)
-        covered = np.clip((width + pitch) / 2 - distance, 0, min(width, pitch)) / pitch
+        covered = np.clip((self.width + pitch) / 2 - distance, 0, min(self.width, pitch)) / pitch
         return share * (1 - self.force_loss * covered)

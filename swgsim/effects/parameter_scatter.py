@@ -8,7 +8,7 @@ from swgsim.gear import Gear
 
 
 @dataclass(frozen=True)
-class UnitScatter(Effect):
+class ParameterScatter(Effect):
     """Damping and stiffness of the same gear differ a little between recordings (grease, seating); an estimate.
 
     Attributes
@@ -21,8 +21,8 @@ class UnitScatter(Effect):
     k1_ratio: float
 
     def __post_init__(self) -> None:
-        require("the unit scatter", "b1_ratio", self.b1_ratio, low=0.8, high=1.2)
-        require("the unit scatter", "k1_ratio", self.k1_ratio, low=0.8, high=1.2)
+        require("the parameter scatter", "b1_ratio", self.b1_ratio, low=0.8, high=1.2)
+        require("the parameter scatter", "k1_ratio", self.k1_ratio, low=0.8, high=1.2)
 
     def gear(self, gear: Gear) -> Gear:
         """The gear with both parameters scaled."""
