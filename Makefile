@@ -4,11 +4,15 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/ready
 GRID := $(if $(SMALL),small,paper)
+TABLES := table7 table8 table9 table10
+CORES := $(shell nproc)
+# The four tables run side by side and share the cores; with two of them every table has one process.
+JOBS := $(shell echo $$(( ($(CORES) + 3) / 4 )))
 
 export MLFLOW_DISABLE_TELEMETRY := true
 
 .DEFAULT_GOAL := help
-.PHONY: help install data experiments report paper test lint benchmark convergence ui clean
+.PHONY: help install data experiments report paper test lint benchmark convergence docs ui clean $(TABLES)
 
 help:  ## this list
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-12s %s\n", $$1, $$2}'
@@ -25,9 +29,10 @@ data: $(READY)  ## the clean and the disturbed data set
 	$(BIN)/python scripts/generate.py grid=$(GRID) condition=disturbed
 
 experiments: data  ## the paper's Tables VII to X, every job a run in MLflow
-	for table in table7 table8 table9 table10; do \
-	    $(BIN)/python scripts/train.py experiment=$$table grid=$(GRID) || exit 1; \
-	done
+	@$(MAKE) --no-print-directory --jobs=$(CORES) $(TABLES)
+
+$(TABLES): $(READY)
+	$(BIN)/python scripts/train.py experiment=$@ grid=$(GRID) hydra.launcher.n_jobs=$(JOBS)
 
 report: $(READY)  ## report/index.html and report/report.json from what has been run
 	$(BIN)/python scripts/report.py grid=$(GRID)
@@ -50,6 +55,9 @@ benchmark: $(READY)  ## the chain against the obvious ways of doing the same
 
 convergence: $(READY)  ## gauge signals against the mesh of the flex spline
 	$(BIN)/python -m swgsim.convergence
+
+docs: $(READY)  ## the picture of the README
+	$(BIN)/python -m swgsim.flexspline_figures docs/flexspline.png
 
 ui: $(READY)  ## the runs in the MLflow page, on this machine only
 	$(BIN)/python scripts/ui.py

@@ -6,6 +6,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from threadpoolctl import threadpool_limits
+
 from learn import identity, settings, tracking
 from learn.evaluation import evaluate
 from learn.features import LearningSet, Selection, learning_set
@@ -57,7 +59,8 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
         return done
 
     tags = {"data_digest": digest, "code_version": identity.code_version()}
-    with tracking.job_run(store, name, key, parameters, config, tags) as record:
+    # One thread to a job: jobs run side by side, and threads of several would wait for each other.
+    with threadpool_limits(1), tracking.job_run(store, name, key, parameters, config, tags) as record:
         data = learning_set_of(path, digest, selection)
         splits = protocol.split(data.features, data.table)
         evaluation = evaluate(data.features, data.table["label"].astype(str).to_numpy(), splits, method)

@@ -1,5 +1,6 @@
 """MLflow behind a few functions: the store, the run of a job, the run of a sweep, and the query for finished runs."""
 
+import fcntl
 import logging
 import os
 import sqlite3
@@ -44,30 +45,30 @@ class Store:
     def client(self) -> "MlflowClient":
         """The client of this store; the database of a local store is created when it does not exist.
 
-        Two processes that create a database at the same time destroy each other's, so a sweep calls this in its
-        parent process before any job starts.
+        Two processes that create a database at the same time would destroy each other's, so they take turns.
         """
         from mlflow import MlflowClient
 
-        if self.folder is None or (self.folder / "mlflow.db").exists():
+        if self.folder is None:
             return MlflowClient(tracking_uri=self.uri)
         self.folder.mkdir(parents=True, exist_ok=True)
         for chatty in ("alembic", "mlflow.store.db"):
             logging.getLogger(chatty).setLevel(logging.WARNING)
-        client = MlflowClient(tracking_uri=self.uri)
-        client.search_experiments()
-        with closing(sqlite3.connect(self.folder / "mlflow.db")) as database:
-            database.execute("pragma journal_mode=wal")  # readers and writers do not wait for each other
+        with (self.folder / "creation.lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            client = MlflowClient(tracking_uri=self.uri)
+            client.search_experiments()
+            if not client.get_experiment_by_name(self.experiment):
+                client.create_experiment(self.experiment, artifact_location=(self.folder / "artifacts").as_uri())
+            with closing(sqlite3.connect(self.folder / "mlflow.db")) as database:
+                database.execute("pragma journal_mode=wal")  # readers and writers do not wait for each other
         return client
 
     @cached_property
     def experiment_id(self) -> str:
         """Number of the experiment, which is created when it does not exist."""
         found = self.client.get_experiment_by_name(self.experiment)
-        if found:
-            return str(found.experiment_id)
-        artifacts = (self.folder / "artifacts").as_uri() if self.folder else None
-        return str(self.client.create_experiment(self.experiment, artifact_location=artifacts))
+        return str(found.experiment_id if found else self.client.create_experiment(self.experiment))
 
 
 def local_store(folder: str, experiment: str = EXPERIMENT) -> Store:

@@ -6,6 +6,7 @@ from functools import reduce
 
 import numpy as np
 from jaxtyping import Float
+from threadpoolctl import threadpool_limits
 
 from swgsim.acquisition import Window
 from swgsim.dynamics import Drive
@@ -69,8 +70,11 @@ class Simulation:
         return self.motion.efficiency[self.of_run]
 
 
+@threadpool_limits.wrap(limits=1)
 def simulate(runs: Sequence[Run], window: Window, sectors: int = SECTORS) -> Simulation:
     """Simulate many runs; what runs have in common is computed once.
+
+    One thread: the matrices are small, and the result must not depend on the number of cores.
 
     Parameters
     ----------

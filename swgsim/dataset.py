@@ -1,10 +1,9 @@
 """Data sets on disk: generated block by block, in parallel, resumable, the same bytes whatever happened on the way.
 
-Every block is one part file, written aside and renamed. When all parts are there they are joined to one file. A run
-that was killed finds the parts of the same configuration and goes on with the missing ones.
+Every block is one part, a file of recordings like the data set itself. When all parts are there they are joined to one
+file. Where a run was killed, the next one keeps the parts that are whole and of the same plan, and makes the others.
 """
 
-import hashlib
 import os
 import resource
 import shutil
@@ -18,9 +17,10 @@ from threadpoolctl import threadpool_limits
 
 from swgsim import storage
 from swgsim.disturbance import Disturbance
-from swgsim.plan import BLOCK, Plan, provenance
+from swgsim.grid import Case
+from swgsim.plan import Plan, block_size, provenance
 from swgsim.record import record
-from swgsim.recordings import COLUMNS, Recordings, facts
+from swgsim.recordings import Recordings
 from swgsim.seeds import generator
 
 
@@ -32,13 +32,31 @@ class Usage:
     peak_memory_mib: float
 
 
+@dataclass(frozen=True)
+class Part:
+    """A part that is there now.
+
+    Attributes
+    ----------
+    rows : int
+        Its recordings.
+    flaw : str
+        Why the file that a killed run left had to be made again; empty where it had not.
+    usage : Usage
+    """
+
+    rows: int
+    flaw: str
+    usage: Usage
+
+
 def usage() -> Usage:
     """That of this process."""
     return Usage(os.getpid(), resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
 
 
 def generate(plan: Plan, path: Path, workers: int, progress: Callable[[int], object]) -> float:
-    """Generate a data set.
+    """Generate a data set; one process at a time may (:func:`swgsim.files.sole_maker`).
 
     Parameters
     ----------
@@ -55,18 +73,18 @@ def generate(plan: Plan, path: Path, workers: int, progress: Callable[[int], obj
     float
         Peak memory of all processes together [MiB].
     """
-    same = hashlib.sha256("".join(plan.attributes.values()).encode()).hexdigest()[:12]
-    parts = path.with_name(f".{path.name}.{same}.parts")
-    parts.mkdir(parents=True, exist_ok=True)
-    files = [parts / f"{number:06d}.npz" for number in range(len(plan.blocks))]
-    todo = [i for i, file in enumerate(files) if not file.exists()]
-    progress(len(plan) - sum(len(plan.cases(plan.blocks[i])) for i in todo))
-    jobs = (joblib.delayed(_make_part)(plan, plan.blocks[i], files[i]) for i in todo)
+    parts = path.with_name(f".{path.name}.parts")
+    files = [parts / f"{number:06d}.h5" for number in range(plan.block_count)]
+    jobs = (
+        joblib.delayed(_part)(plan, cases, file, os.getpid()) for cases, file in zip(plan.blocks(), files, strict=True)
+    )
     peak: dict[int, float] = {}
-    for done, used in joblib.Parallel(n_jobs=min(workers, max(len(todo), 1)), return_as="generator_unordered")(jobs):
-        peak[used.process] = max(used.peak_memory_mib, peak.get(used.process, 0))
-        progress(done)
-    storage.write(path, (_read_part(file, plan) for file in files), len(plan))
+    for part in joblib.Parallel(n_jobs=min(workers, len(files)), return_as="generator_unordered")(jobs):
+        if part.flaw:
+            print(f"{part.flaw}; it has been made again")
+        peak[part.usage.process] = max(part.usage.peak_memory_mib, peak.get(part.usage.process, 0))
+        progress(part.rows)
+    storage.write(path, map(storage.read, files), len(plan))
     shutil.rmtree(parts)
     peak[os.getpid()] = usage().peak_memory_mib
     return sum(peak.values())
@@ -80,35 +98,42 @@ def disturb(source: Path, path: Path, disturbance: Disturbance, configuration: s
     source, path : Path
         The clean file and the one to make.
     """
+    rows, sensors, samples = storage.shape(source)
 
     def disturbed() -> Iterator[Recordings]:
-        for block in storage.blocks(source, BLOCK):
-            time = np.arange(block.signals.shape[2]) / block.rate
+        for block in storage.blocks(source, block_size(samples)):
+            time = np.arange(samples) / block.rate
             added = np.stack([
-                disturbance.draw(generator("disturbance", seed), block.signals.shape[1], n_in_rpm, time)
+                disturbance.draw(generator("disturbance", seed), sensors, n_in_rpm, time)
                 for seed, n_in_rpm in zip(block.table["seed"], block.table["n_in_rpm"], strict=True)
             ])  # fmt: skip
             signals = (block.signals + added).astype("f4")
             yield Recordings(signals, block.table, block.rate, provenance(configuration))
             progress(len(block))
 
-    storage.write(path, disturbed(), storage.count(source))
+    storage.write(path, disturbed(), rows)
 
 
-def _make_part(plan: Plan, block: tuple[int, int], file: Path) -> tuple[int, Usage]:
-    """Simulate one block and keep it; one thread, so that the bytes do not depend on the number of cores."""
-    with threadpool_limits(1):
-        recordings = record(plan, plan.cases(block))
-    aside = file.with_name(f".{file.name}.{os.getpid()}.tmp")
-    with aside.open("wb") as raw:
-        columns = {name: recordings.table[name].to_numpy() for name in COLUMNS}
-        columns["label"] = columns["label"].astype("U")
-        np.savez(raw, allow_pickle=False, signals=recordings.signals, **columns)
-    os.replace(aside, file)
-    return len(recordings), usage()
+def _part(plan: Plan, cases: list[Case], file: Path, maker: int) -> Part:
+    """Simulate one block and keep it, unless that is done; ``maker`` is the process that makes the data set."""
+    flaw = _flaw(plan, cases, file) if file.exists() else ""
+    if flaw or not file.exists():
+        with threadpool_limits(1):  # so that the bytes do not depend on the number of cores
+            recordings = record(plan, cases)
+        if maker not in (os.getpid(), os.getppid()):
+            os._exit(1)  # The maker was killed and this worker is left over: the next one may be at this very part.
+        storage.write(file, [recordings], len(recordings))
+    return Part(len(cases), flaw, usage())
 
 
-def _read_part(file: Path, plan: Plan) -> Recordings:
-    with np.load(file, allow_pickle=False) as part:
-        table = facts({name: part[name] for name in COLUMNS})
-        return Recordings(part["signals"], table, plan.window.rate, plan.attributes)
+def _flaw(plan: Plan, cases: list[Case], file: Path) -> str:
+    """Why a part that was found is not what the plan says; empty if it is."""
+    try:
+        part = storage.read(file)
+    except ValueError as damage:
+        return str(damage)
+    if not plan.attributes.items() <= part.attributes.items():
+        return f"{file}: made by other choices or code"
+    if part.signals.shape[2] != plan.window.samples or list(part.table["seed"]) != [case.seed for case in cases]:
+        return f"{file}: not the recordings that belong there"
+    return ""

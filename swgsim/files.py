@@ -1,17 +1,78 @@
-"""Files that are complete or absent."""
+"""Files that are complete or absent, and that one process at a time makes."""
 
+import fcntl
 import json
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """A file aside to write; when that has succeeded it takes the place of ``path``.
+
+    Its name is always the same, so that what a killed process leaves is overwritten and not kept for ever.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    aside = path.with_name(f".{path.name}.tmp")
+    try:
+        yield aside
+        with aside.open("r+b") as raw:
+            os.fsync(raw.fileno())
+        os.replace(aside, path)
+    finally:
+        aside.unlink(missing_ok=True)
+
+
+@contextmanager
+def sole_maker(path: Path) -> Iterator[None]:
+    """Be the only process that makes ``path``; a process that is killed gives this up by itself.
+
+    Raises
+    ------
+    RuntimeError
+        If another process is making it.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    lock = path.with_name(f".{path.name}.lock")
+    with _locked(lock, path):
+        try:
+            yield
+        finally:
+            lock.unlink(missing_ok=True)
+
+
+def _locked(lock: Path, path: Path) -> IO[bytes]:
+    """The lock file, open and locked until it is closed."""
+    while True:
+        raw = lock.open("wb")
+        try:
+            fcntl.flock(raw, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raw.close()
+            raise RuntimeError(
+                f"another process is making {path}: wait for it, or choose another folder with data=..."
+            ) from None
+        if _is_at(raw, lock):
+            return raw
+        # Its last owner removed it after it was opened here: such a lock keeps nobody out.
+        raw.close()
+
+
+def _is_at(raw: IO[bytes], path: Path) -> bool:
+    """Whether an open file is still the one at a path."""
+    try:
+        return os.path.samestat(os.fstat(raw.fileno()), path.stat())
+    except FileNotFoundError:
+        return False
 
 
 def write_text(path: Path, text: str) -> None:
     """Write aside, then rename."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    aside = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    aside.write_text(text, encoding="utf-8")
-    os.replace(aside, path)
+    with replacing(path) as aside:
+        aside.write_text(text, encoding="utf-8")
 
 
 def write_json(path: Path, value: Any) -> None:

@@ -94,3 +94,12 @@ def _grid_pair(axes: mpl.axes.Axes, angle: float, radius: float, colour: str, na
             middle = centre + 1.7 * side * tangent + stroke * across
             ends = np.stack([middle - 1.2 * along, middle + 1.2 * along])
             axes.plot(*ends.T, color=colour, linewidth=1.8, label=name if name and side == 1 and not stroke else None)
+
+
+if __name__ == "__main__":
+    import sys
+    from pathlib import Path
+
+    from swgsim.chain import SECTORS
+
+    Path(sys.argv[1]).write_bytes(style.png(deformed(Gear(), SECTORS)))

@@ -1,6 +1,7 @@
 """The job of scripts/generate.py: a data set from a configuration, unless it is there already."""
 
 import json
+import re
 import time
 from collections.abc import Mapping
 from pathlib import Path
@@ -11,42 +12,50 @@ from tqdm import tqdm
 
 from swgsim import settings, storage
 from swgsim.dataset import disturb, generate, usage
-from swgsim.files import write_json
-from swgsim.plan import provenance
+from swgsim.files import sole_maker, write_json
+from swgsim.plan import Plan, provenance
 
 
 def run(config: Mapping[str, Any]) -> dict[str, Any]:
     """Generate the data set ``<data>/<grid>-<condition>.h5``.
 
-    The disturbed one is made from the clean one of the same choices, which is generated first where it is missing.
+    The disturbed one is made from the clean one of the same choices, which is generated first where it is missing. One
+    of the same name that was made by other choices or code is replaced.
 
     Returns
     -------
     dict
         path, recordings, seconds, recordings_per_second, peak_memory_mib, cores; also kept beside the data set as JSON.
     """
-    name = f"{config['grid']['name']}-{config['condition']['name']}"
-    path = Path(config["data"]) / f"{name}.h5"
+    workers = _workers(config)
+    path = Path(config["data"]) / f"{_name(config, 'grid')}-{_name(config, 'condition')}.h5"
     summary = path.with_suffix(".json")
-    configuration = settings.as_text(config)
-    if is_current(path, configuration) and summary.exists():
+    if is_current(path, settings.as_text(config)) and summary.exists():
         print(f"{path} is there already, made by the same choices and code")
         return dict(json.loads(summary.read_text()))
+    plan = settings.plan(config)
+    with sole_maker(path):
+        result = _make(config, plan, path, workers)
+        write_json(summary, result)
+    print("{path}: {recordings} recordings in {seconds:.1f} s, peak memory {peak_memory_mib:.0f} MiB".format(**result))
+    return result
 
-    plan, disturbance = settings.plan(config), settings.disturbance(config)
-    workers = config["workers"] or joblib.cpu_count()
+
+def _make(config: Mapping[str, Any], plan: Plan, path: Path, workers: int) -> dict[str, Any]:
+    """Make the data set and sum up what that took."""
+    disturbance = settings.disturbance(config)
     if disturbance:
         clean = dict(config) | {"condition": {"name": "clean", "bench": None, "disturbance": None}}
         source = Path(run(clean)["path"])
     start = time.perf_counter()
-    with tqdm(total=len(plan), desc=name, unit=" recordings") as bar:
+    with tqdm(total=len(plan), desc=path.stem, unit=" recordings") as bar:
         if disturbance:
-            disturb(source, path, disturbance, configuration, bar.update)
+            disturb(source, path, disturbance, plan.configuration, bar.update)
             peak = usage().peak_memory_mib
         else:
             peak = generate(plan, path, workers, bar.update)
     seconds = time.perf_counter() - start
-    result = {
+    return {
         "path": str(path),
         "recordings": len(plan),
         "seconds": round(seconds, 3),
@@ -54,9 +63,24 @@ def run(config: Mapping[str, Any]) -> dict[str, Any]:
         "peak_memory_mib": round(peak, 1),
         "cores": joblib.cpu_count(),
     }
-    write_json(summary, result)
-    print(f"{path}: {len(plan)} recordings in {seconds:.1f} s, peak memory {peak:.0f} MiB")
-    return result
+
+
+def _name(config: Mapping[str, Any], group: str) -> str:
+    """The name of what is chosen from a group; it becomes part of the file's name."""
+    name = config[group]["name"]
+    if not (isinstance(name, str) and re.fullmatch(r"[\w.-]+", name)):
+        raise ValueError(f"name of the {group} is {name!r}, must be of letters, digits, '_', '-' and '.' only")
+    return name
+
+
+def _workers(config: Mapping[str, Any]) -> int:
+    """Processes to use: as chosen, or one per core."""
+    chosen = config["workers"]
+    if chosen is None:
+        return joblib.cpu_count()
+    if not isinstance(chosen, int) or isinstance(chosen, bool) or chosen < 1:
+        raise ValueError(f"workers is {chosen!r}, must be an integer from 1, or null for one per core")
+    return chosen
 
 
 def is_current(path: Path, configuration: str) -> bool:
@@ -68,5 +92,8 @@ def is_current(path: Path, configuration: str) -> bool:
     except ValueError as damage:
         print(damage)
         return False
-    said = storage.attributes(path)
-    return all(said.get(key) == value for key, value in provenance(configuration).items())
+    said, now = storage.attributes(path), provenance(configuration)
+    other = [what for key, what in (("configuration", "choices"), ("swgsim", "code")) if said.get(key) != now[key]]
+    if other:
+        print(f"{path} was made by other {' and '.join(other)} and is replaced")
+    return not other

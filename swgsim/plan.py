@@ -1,7 +1,9 @@
 """The plan of a data set: all that determines its recordings, in blocks of bounded size."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice
+from math import ceil
 
 from swgsim.acquisition import Window
 from swgsim.bench import Bench
@@ -12,6 +14,8 @@ from swgsim.version import code_version
 
 # Recordings per block: bounds the memory whatever the size of the grid, and splits the paper's grid evenly over cores.
 BLOCK = 1140
+# Samples up to which a block holds that many recordings; of longer windows it holds fewer.
+BLOCK_SAMPLES = 600
 
 
 @dataclass(frozen=True)
@@ -54,14 +58,21 @@ class Plan:
         return provenance(self.configuration)
 
     @property
-    def blocks(self) -> list[tuple[int, int]]:
-        """(gear, first case) of every block."""
-        return [(g, first) for g in range(len(self.gears)) for first in range(0, self.grid.count(), BLOCK)]
+    def block_count(self) -> int:
+        """Number of blocks; a block holds recordings of one gear."""
+        return len(self.gears) * ceil(self.grid.count() / block_size(self.window.samples))
 
-    def cases(self, block: tuple[int, int]) -> list[Case]:
-        """The planned recordings of a block."""
-        gear, first = block
-        return list(islice(self.grid.cases(self.gears[gear]), first, first + BLOCK))
+    def blocks(self) -> Iterator[list[Case]]:
+        """The planned recordings, block by block."""
+        for gear in self.gears:
+            cases = self.grid.cases(gear)
+            while block := list(islice(cases, block_size(self.window.samples))):
+                yield block
+
+
+def block_size(samples: int) -> int:
+    """Recordings per block of a window of so many samples."""
+    return max(1, min(BLOCK, BLOCK * BLOCK_SAMPLES // samples))
 
 
 def provenance(configuration: str) -> dict[str, str]:

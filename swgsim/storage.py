@@ -4,7 +4,6 @@ The first 512 bytes (the HDF5 user block) hold the SHA-256 of all that follows; 
 """
 
 import hashlib
-import os
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
@@ -12,6 +11,7 @@ import h5py
 import numpy as np
 import pandas as pd
 
+from swgsim.files import replacing
 from swgsim.recordings import CLASSES, COLUMNS, SENSORS, Recordings
 
 SEAL_SIZE = 512
@@ -34,9 +34,7 @@ def write(path: Path, blocks: Iterable[Recordings], rows: int) -> None:
     ValueError
         If the blocks do not hold exactly ``rows`` recordings.
     """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    aside = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
+    with replacing(path) as aside:
         with h5py.File(aside, "w", userblock_size=SEAL_SIZE) as file:
             done = 0
             for block in blocks:
@@ -57,11 +55,6 @@ def write(path: Path, blocks: Iterable[Recordings], rows: int) -> None:
             seal = SEAL_START + hashlib.file_digest(raw, "sha256").hexdigest().encode() + b"\n"
             raw.seek(0)
             raw.write(seal.ljust(SEAL_SIZE, b" "))
-            raw.flush()
-            os.fsync(raw.fileno())
-        os.replace(aside, path)
-    finally:
-        aside.unlink(missing_ok=True)
 
 
 def _lay_out(file: h5py.File, first: Recordings, rows: int) -> None:
@@ -158,7 +151,9 @@ def attributes(path: Path) -> dict[str, str]:
         return {name: value for name, value in file.attrs.items() if isinstance(value, str)}
 
 
-def count(path: Path) -> int:
-    """Number of recordings in a file."""
+def shape(path: Path) -> tuple[int, int, int]:
+    """Number of recordings in a file, of their sensors and of their samples; the file is checked first."""
+    verify(path)
     with h5py.File(path) as file:
-        return len(file["signals"])
+        rows, sensors, samples = file["signals"].shape
+    return rows, sensors, samples

@@ -3,20 +3,25 @@
 import signal
 import subprocess
 import sys
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from chain_fixtures import small_plan
 
+from swgsim import dataset, storage
 from swgsim import plan as plans
-from swgsim import storage
+from swgsim.acquisition import Window
 from swgsim.bench import Bench
 from swgsim.dataset import disturb, generate
 from swgsim.disturbance import Disturbance
+from swgsim.grid import Case
+from swgsim.plan import Plan, block_size
 from swgsim.population import Population
 from swgsim.record import record
+from swgsim.recordings import Recordings
 
 
 def nothing(_: int) -> None:
@@ -25,9 +30,64 @@ def nothing(_: int) -> None:
 
 @pytest.fixture(scope="module")
 def clean(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The small plan's data set, made in small blocks and never interrupted."""
     path = tmp_path_factory.mktemp("data") / "clean.h5"
-    generate(small_plan(), path, 1, nothing)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(plans, "BLOCK", 10)
+        generate(small_plan(), path, 1, nothing)
     return path
+
+
+@pytest.fixture
+def small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Six blocks in the small plan: 10, 10 and 8 recordings of each gear."""
+    monkeypatch.setattr(plans, "BLOCK", 10)
+
+
+@pytest.fixture
+def made(clean: Path, monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Seeds of the recordings that this process makes; those of the small plan are remembered, not simulated."""
+    known = storage.read(clean)
+    seeds: list[int] = []
+
+    def remembered(plan: Plan, cases: list[Case]) -> Recordings:
+        seeds.extend(case.seed for case in cases)
+        if plan != small_plan():
+            return record(plan, cases)
+        return replace(known.where(known.table["seed"].isin(seeds[-len(cases) :])), attributes=plan.attributes)
+
+    monkeypatch.setattr(dataset, "record", remembered)
+    return seeds
+
+
+def kill(program: str, path: Path, lines: int) -> None:
+    """Run a program that makes a data set from the small plan; kill it with -9 when it has printed so many lines."""
+    head = (
+        "import sys, time; sys.path[:0] = ['tests']\n"
+        "from pathlib import Path\n"
+        "from chain_fixtures import small_plan\n"
+        "from swgsim import dataset, plan, storage\n"
+        "plan.BLOCK = 10\n"
+    )
+    command = [sys.executable, "-c", head + program, str(path)]
+    with subprocess.Popen(command, cwd=Path(__file__).parent.parent, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        for _ in range(lines):
+            assert process.stdout.readline()
+        process.send_signal(signal.SIGKILL)
+
+
+def stop(plan: Plan, path: Path, blocks: int) -> list[Path]:
+    """Begin to make a data set; stop when so many blocks are there. Their files."""
+
+    def progress(_: int) -> None:
+        if len(list(parts.glob("*.h5"))) == blocks:
+            raise KeyboardInterrupt
+
+    parts = path.with_name(f".{path.name}.parts")
+    with pytest.raises(KeyboardInterrupt):
+        generate(plan, path, 1, progress)
+    return sorted(parts.glob("*.h5"))
 
 
 def test_grid_is_complete(clean: Path) -> None:
@@ -39,51 +99,141 @@ def test_grid_is_complete(clean: Path) -> None:
     assert table["seed"].is_unique
 
 
-def test_same_bytes_with_one_or_two_workers(clean: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(("samples", "recordings"), [(2, 1140), (600, 1140), (3600, 190), (10_000_000, 1)])
+def test_blocks_of_long_windows_hold_fewer_recordings(samples: int, recordings: int) -> None:
+    assert block_size(samples) == recordings
+
+
+def test_blocks_hold_the_whole_plan_gear_by_gear(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(plans, "BLOCK", 10)
+    plan = small_plan()
+    blocks = list(plan.blocks())
+    assert [len(block) for block in blocks] == [10, 10, 8, 10, 10, 8]
+    assert len(blocks) == plan.block_count
+    assert [case for block in blocks for case in block] == [
+        case for gear in plan.gears for case in plan.grid.cases(gear)
+    ]
+
+
+@pytest.mark.usefixtures("small_blocks")
+def test_same_bytes_with_two_workers(clean: Path, tmp_path: Path) -> None:
     again = tmp_path / "clean.h5"
     generate(small_plan(), again, 2, nothing)
     assert again.read_bytes() == clean.read_bytes()
 
 
-def test_a_killed_run_resumes_to_the_same_bytes(tmp_path: Path) -> None:
-    """Killed with -9 while blocks are being made; the second run only makes what is missing."""
+@pytest.mark.usefixtures("small_blocks")
+def test_a_run_killed_between_blocks_resumes(clean: Path, tmp_path: Path, made: list[int]) -> None:
+    path = tmp_path / "killed.h5"
     program = (
-        "import sys; sys.path[:0] = ['tests']\n"
-        "from pathlib import Path\n"
-        "from chain_fixtures import small_plan\n"
-        "from swgsim import dataset, plan\n"
-        "plan.BLOCK = 4\n"
-        "report = lambda n: print(n, flush=True)\n"
+        "report = lambda n: (print(n, flush=True), time.sleep(0.5))\n"
         "dataset.generate(small_plan(), Path(sys.argv[1]), 1, report)\n"
     )
-    root = Path(__file__).parent.parent
-    command = [sys.executable, "-c", program]
-    whole, killed = tmp_path / "whole.h5", tmp_path / "killed.h5"
-    subprocess.run([*command, str(whole)], cwd=root, check=True, capture_output=True)
-    with subprocess.Popen([*command, str(killed)], cwd=root, stdout=subprocess.PIPE, text=True) as process:
-        assert process.stdout is not None
-        for _ in range(4):
-            process.stdout.readline()
-        process.send_signal(signal.SIGKILL)
-    assert not killed.exists()
-    parts = list(tmp_path.glob(".killed.h5.*.parts/*.npz"))
-    assert parts
-    kept = {part: part.stat().st_mtime_ns for part in parts}
-    resumed = subprocess.run([*command, str(killed)], cwd=root, check=True, capture_output=True, text=True)
-    assert int(resumed.stdout.split()[0]) == 4 * len(kept)
-    assert killed.read_bytes() == whole.read_bytes()
-    assert not list(tmp_path.glob(".*"))
-
-
-def test_parts_of_other_choices_are_not_mixed_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(plans, "BLOCK", 8)
-    path = tmp_path / "a.h5"
-    other = tmp_path / ".a.h5.0123456789ab.parts"
-    other.mkdir()
-    (other / "000000.npz").write_bytes(b"parts of another configuration")
+    kill(program, path, lines=3)
+    assert not path.exists()
+    kept = {seed for part in tmp_path.glob(".killed.h5.parts/*.h5") for seed in storage.read(part).table["seed"]}
+    assert len(kept) >= 10 + 10 + 8
     generate(small_plan(), path, 1, nothing)
-    assert len(storage.read(path)) == len(small_plan())
-    assert (other / "000000.npz").exists()
+    assert kept.isdisjoint(made)
+    assert len(kept) + len(made) == len(small_plan())
+    assert path.read_bytes() == clean.read_bytes()
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.usefixtures("small_blocks")
+def test_a_run_killed_while_blocks_are_joined_resumes(clean: Path, tmp_path: Path, made: list[int]) -> None:
+    path = tmp_path / "killed.h5"
+    program = (
+        "read, write = storage.read, storage.write\n"
+        "def slow(part):\n"
+        "    print('joins', part, flush=True)\n"
+        "    time.sleep(0.5)\n"
+        "    return read(part)\n"
+        "storage.read = slow\n"
+        "dataset.generate(small_plan(), Path(sys.argv[1]), 1, lambda n: None)\n"
+    )
+    kill(program, path, lines=3)
+    assert {p.name for p in tmp_path.iterdir()} == {".killed.h5.parts", ".killed.h5.tmp"}
+    generate(small_plan(), path, 1, nothing)
+    assert not made
+    assert path.read_bytes() == clean.read_bytes()
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def truncated(part: Path, _: Path) -> None:
+    part.write_bytes(part.read_bytes()[:-1])
+
+
+def emptied(part: Path, _: Path) -> None:
+    part.write_bytes(b"")
+
+
+def flipped(part: Path, _: Path) -> None:
+    content = bytearray(part.read_bytes())
+    content[len(content) // 2] ^= 1
+    part.write_bytes(content)
+
+
+def copied_from_another_block(part: Path, other: Path) -> None:
+    part.write_bytes(other.read_bytes())
+
+
+@pytest.mark.usefixtures("small_blocks")
+@pytest.mark.parametrize("damage", [truncated, emptied, flipped, copied_from_another_block])
+def test_a_bad_part_is_named_and_made_again(
+    damage: Callable[[Path, Path], None],
+    clean: Path,
+    tmp_path: Path,
+    made: list[int],
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    path = tmp_path / "a.h5"
+    parts = stop(small_plan(), path, 3)
+    damage(parts[1], parts[2])
+    made.clear()
+    generate(small_plan(), path, 1, nothing)
+    answer = capsys.readouterr().out.splitlines()
+    assert len(answer) == 1
+    assert answer[0].startswith(f"{parts[1]}: ")
+    assert answer[0].endswith("made again")
+    assert len(made) == len(small_plan()) - (10 + 8)
+    assert path.read_bytes() == clean.read_bytes()
+
+
+@pytest.mark.usefixtures("small_blocks")
+@pytest.mark.parametrize(
+    "changes",
+    [{"window": Window(noise=1e-3), "configuration": "small test plan with noise"}, {"window": Window(samples=700)}],
+)
+def test_parts_of_other_choices_are_not_mixed_in(
+    changes: dict, clean: Path, tmp_path: Path, made: list[int], capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "a.h5"
+    others = stop(small_plan(**changes), path, 2)
+    made.clear()
+    generate(small_plan(), path, 1, nothing)
+    assert len(made) == len(small_plan())
+    assert capsys.readouterr().out.count("made again") == len(others)
+    assert path.read_bytes() == clean.read_bytes()
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_nothing_is_left_of_a_plan_that_fails(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="must be even"):
+        generate(small_plan(sectors=33), tmp_path / "a.h5", 1, nothing)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_worker_that_outlives_its_run_writes_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def leave(_: int) -> None:
+        raise SystemExit
+
+    monkeypatch.setattr("os._exit", leave)
+    plan, file = small_plan(), tmp_path / "000000.h5"
+    no_process = 0
+    with pytest.raises(SystemExit):
+        dataset._part(plan, next(plan.blocks())[:2], file, no_process)
+    assert not file.exists()
 
 
 def test_disturbed_is_clean_plus_equation_10(clean: Path, tmp_path: Path) -> None:
@@ -109,7 +259,7 @@ def test_equation_10_has_the_orders_it_says() -> None:
 
 def test_bench_varies_what_clean_repeats() -> None:
     plan = small_plan()
-    cases = [c for c in plan.cases((0, 0)) if c.variant.label == "healthy"][:8]
+    cases = [c for c in next(plan.blocks()) if c.variant.label == "healthy"][:8]
     clean, bench = record(plan, cases), record(replace(plan, bench=Bench()), cases)
     assert len(np.unique(clean.signals[:, 1, 0])) == 2  # one value for each operating point
     assert len(np.unique(bench.signals[:, 1, 0])) == len(cases)
@@ -120,9 +270,9 @@ def test_bench_varies_what_clean_repeats() -> None:
 
 
 def test_a_silent_bench_records_the_clean_signals() -> None:
-    silent = Bench(*[0.0] * 7, 25.0, *[0.0] * 6)
+    silent = Bench(**{field.name: 0.0 for field in fields(Bench)})
     plan = small_plan()
-    cases = plan.cases((0, 0))[:6]
+    cases = next(plan.blocks())[:6]
     np.testing.assert_allclose(
         record(replace(plan, bench=silent), cases).signals, record(plan, cases).signals, atol=1e-7
     )
@@ -140,7 +290,7 @@ def test_drawn_variants_and_scatter_vary_the_healthy_recordings() -> None:
     plan = small_plan()
     variants = replace(plan.grid.variants, drawn=True)
     plan = replace(plan, grid=replace(plan.grid, variants=variants, scatter=0.005))
-    recordings = record(plan, plan.cases((0, 0)))
+    recordings = record(plan, next(plan.blocks()))
     healthy = recordings.where(recordings.table["label"] == "healthy")
     assert healthy.table["efficiency"].is_unique
     located = recordings.table.dropna(subset="position")

@@ -17,7 +17,7 @@ from swgsim.recordings import COLUMNS, Recordings, facts
 @pytest.fixture(scope="module")
 def recordings() -> Recordings:
     plan = small_plan()
-    return record(plan, plan.cases((0, 0))[:6])
+    return record(plan, next(plan.blocks())[:6])
 
 
 @pytest.fixture(scope="module")
@@ -83,6 +83,14 @@ def test_nothing_is_left_of_a_failed_write(tmp_path: Path, recordings: Recording
     with pytest.raises(ValueError, match="more than the 5 recordings"):
         storage.write(tmp_path / "a.h5", [recordings], 5)
     assert not list(tmp_path.iterdir())
+
+
+def test_what_a_killed_write_left_is_replaced(tmp_path: Path, path: Path, recordings: Recordings) -> None:
+    again = tmp_path / "a.h5"
+    (tmp_path / ".a.h5.tmp").write_bytes(path.read_bytes()[:5000])
+    storage.write(again, [recordings.where(np.arange(4)), recordings.where(np.arange(4, 6))], 6)
+    assert list(tmp_path.iterdir()) == [again]
+    assert again.read_bytes() == path.read_bytes()
 
 
 def test_signals_that_are_no_numbers_are_named(recordings: Recordings) -> None:
