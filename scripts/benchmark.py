@@ -5,6 +5,7 @@ from pathlib import Path
 
 import hydra
 import numpy as np
+from misspelt import answered
 from omegaconf import DictConfig, OmegaConf
 
 from swgsim import benchmark, settings
@@ -36,4 +37,4 @@ def main(cfg: DictConfig) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    answered(main, "benchmark")

@@ -1,6 +1,7 @@
 """Generate a data set: python scripts/generate.py grid=paper condition=clean"""
 
 import hydra
+from misspelt import answered
 from omegaconf import DictConfig, OmegaConf
 
 from swgsim.generation import run
@@ -13,4 +14,4 @@ def main(cfg: DictConfig) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    answered(main, "generate")

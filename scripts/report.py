@@ -9,6 +9,7 @@ from typing import Any
 import hydra
 import pandas as pd
 import yaml
+from misspelt import answered
 from omegaconf import DictConfig, OmegaConf
 
 from learn import figures as learning_figures
@@ -128,4 +129,4 @@ def main(config: DictConfig) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    answered(main, "report")

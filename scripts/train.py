@@ -1,6 +1,7 @@
 """Train and judge classifiers: one job, a sweep with -m, or an experiment such as experiment=table7."""
 
 import hydra
+from misspelt import answered
 from omegaconf import DictConfig, OmegaConf
 
 
@@ -13,4 +14,4 @@ def main(config: DictConfig) -> float:
 
 
 if __name__ == "__main__":
-    main()
+    answered(main, "train")

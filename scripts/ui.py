@@ -1,6 +1,7 @@
 """Serve MLflow's page on this machine and print the link to the table of scores."""
 
 import hydra
+from misspelt import answered
 from omegaconf import DictConfig, OmegaConf
 
 
@@ -14,4 +15,4 @@ def main(config: DictConfig) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    answered(main, "ui")

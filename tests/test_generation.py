@@ -165,3 +165,19 @@ def test_a_lock_that_its_owner_removes_meanwhile_keeps_others_out(
             pass
         assert lock.exists()
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("script", "word", "choices"),
+    [
+        ("generate", "conditon=bench", "condition, data, gears, grid"),
+        ("generate", "grid.varients=3", "speeds_rpm, variants"),
+        ("train", "clasifier=rf", "classifier, condition, data"),
+    ],
+)
+def test_a_misspelt_key_is_answered_with_the_keys(script: str, word: str, choices: str) -> None:
+    command = [sys.executable, f"scripts/{script}.py", word]
+    answer = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert answer.returncode != 0
+    assert f"unknown choice '{word.split('=')[0].split('.')[-1]}'; choose from" in answer.stderr
+    assert choices in answer.stderr

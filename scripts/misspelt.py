@@ -1,0 +1,39 @@
+"""Answers a misspelt choice on the command line with the list of choices; Hydra does so for files of a group only."""
+
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from hydra import compose, initialize_config_dir
+from hydra.core.global_hydra import GlobalHydra
+from hydra.core.override_parser.overrides_parser import OverridesParser
+
+CONF = Path(__file__).parent.parent / "conf"
+
+
+def answered(main: Callable[[], object], config_name: str) -> None:
+    """Run a Hydra main; where it fails, name the choices of every key that does not exist."""
+    try:
+        main()
+    except SystemExit as stop:
+        if stop.code:
+            for answer in unknown(config_name, [word for word in sys.argv[1:] if not word.startswith("-")]):
+                print(answer, file=sys.stderr)
+        raise
+
+
+def unknown(config_name: str, words: list[str]) -> Iterator[str]:
+    """One sentence for each override whose key the configuration does not have."""
+    GlobalHydra.instance().clear()
+    with initialize_config_dir(str(CONF), version_base="1.3"):
+        config = compose(config_name)
+    for override in OverridesParser.create().parse_overrides(words):
+        key = override.key_or_group
+        if override.is_add() or override.is_delete() or "@" in key or key.startswith("hydra") or (CONF / key).is_dir():
+            continue
+        node = config
+        for part in key.split("."):
+            if part not in node:
+                yield f"unknown choice {part!r}; choose from {', '.join(sorted(map(str, node)))}"
+                break
+            node = node[part]
