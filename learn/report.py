@@ -247,6 +247,6 @@ def _table(name: str, comparison: Comparison) -> dict[str, Any]:
 def _folds(frame: pd.DataFrame) -> list[tuple[str, ...]]:
     return [
         (words(row["features"]), row["classifier"].upper(), *(f"{row[c]:.1f}" for c in ("random", "grouped")),
-         f"{row['difference']:+.1f}")
+         f"{round(row['difference'], 1) + 0.0:+.1f}")  # + 0.0: no minus zero
         for row in frame.sort_index().reset_index().to_dict("records")
     ]  # fmt: skip
