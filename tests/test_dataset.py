@@ -4,7 +4,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -267,15 +267,6 @@ def test_bench_varies_what_clean_repeats() -> None:
     assert clean.table["temperature_c"].isna().all()
     relative = bench.table["efficiency"] / clean.table["efficiency"] - 1
     assert 0 < relative.abs().max() < 0.3
-
-
-def test_a_silent_bench_records_the_clean_signals() -> None:
-    silent = Bench(**{field.name: 0.0 for field in fields(Bench)})
-    plan = small_plan()
-    cases = next(plan.blocks())[:6]
-    np.testing.assert_allclose(
-        record(replace(plan, bench=silent), cases).signals, record(plan, cases).signals, atol=1e-7
-    )
 
 
 def test_population_keeps_its_first_gears_when_it_grows() -> None:
