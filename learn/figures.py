@@ -34,8 +34,8 @@ def pictures(
             "Fig. 7: DFT of different sensor signals",
             "Magnitude at the multiples of the input speed, on a logarithmic scale. Look at order 2, the wave "
             "generator's two lobes: it dominates s1 (b) and is far smaller in the differences (c, d), where the three "
-            "faults of the flex spline stand out at order 2, 4 and above. Damping and stiffness stay with the healthy "
-            "gear.",
+            "faults of the flex spline stand out at even orders, the tip crack least. Damping and stiffness stay "
+            "with the healthy gear.",
             style.png(spectra(examples, speed_rpm, clean.rate)),
         ),
         style.Picture(

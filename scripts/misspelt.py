@@ -7,6 +7,8 @@ from pathlib import Path
 from hydra import compose, initialize_config_dir
 from hydra.core.global_hydra import GlobalHydra
 from hydra.core.override_parser.overrides_parser import OverridesParser
+from hydra.core.override_parser.types import Override
+from hydra.errors import ConfigCompositionException
 
 CONF = Path(__file__).parent.parent / "conf"
 
@@ -22,14 +24,27 @@ def answered(main: Callable[[], object], config_name: str) -> None:
         raise
 
 
+def _is_group(override: Override) -> bool:
+    return (CONF / override.key_or_group).is_dir()
+
+
+def _first(override: Override) -> str:
+    """An override with the first of the values that it sweeps."""
+    return override.input_line.split(",")[0]
+
+
 def unknown(config_name: str, words: list[str]) -> Iterator[str]:
     """One sentence for each override whose key the configuration does not have."""
+    overrides = OverridesParser.create().parse_overrides(words)
     GlobalHydra.instance().clear()
-    with initialize_config_dir(str(CONF), version_base="1.3"):
-        config = compose(config_name)
-    for override in OverridesParser.create().parse_overrides(words):
+    try:
+        with initialize_config_dir(str(CONF), version_base="1.3"):
+            config = compose(config_name, [_first(override) for override in overrides if _is_group(override)])
+    except ConfigCompositionException:
+        return  # a file of a group that does not exist: Hydra has listed those that do
+    for override in overrides:
         key = override.key_or_group
-        if override.is_add() or override.is_delete() or "@" in key or key.startswith("hydra") or (CONF / key).is_dir():
+        if override.is_add() or override.is_delete() or key.startswith("hydra") or _is_group(override):
             continue
         node = config
         for part in key.split("."):

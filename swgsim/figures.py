@@ -57,7 +57,8 @@ def pictures(subject: Subject) -> list[style.Picture]:
             "Influence maps: a signal is A(ψ) + T B(ψ)",
             "Above: the wave generator alone (A) and one N m of output torque (B); s0 is nearly constant in both, "
             "s1 to s4 go around twice per revolution. Below: what three faults change at s1. The eccentric wave "
-            "generator shifts A, the root crack changes both, the tip crack B only, while a lobe is at the tooth.",
+            "generator shifts A and, through the load sharing, changes B; the root crack changes both, the tip crack B "
+            "only, while a lobe is at the tooth.",
             style.png(influence_maps(subject)),
         ),
         style.Picture(
