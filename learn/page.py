@@ -19,7 +19,7 @@ from typing import Any
 from learn.tracking import Store
 
 METRICS = ("test_score", "train_score", "fit_seconds")
-WHAT = ("classifier", "features", "protocol", "condition", "grid")  # the name of a run begins with its study
+WHAT = ("classifier", "features", "protocol", "condition")  # the name of a run begins with its study
 SIZES = ("hidden_layers", "neurons", "kernel", "trees", "depth", "neighbours")
 
 
@@ -34,17 +34,20 @@ class View:
     parameters: tuple[str, ...]
 
 
-SCORES = View("scores", "Scores", "tags.kind = 'job'", "metrics.`test_score`", WHAT)
-SWEEPS = View("sweeps", "Sweeps", "", "attributes.start_time", WHAT)
+PAPER = "tags.kind = 'job' and params.grid = 'paper'"
+OTHER = "tags.kind = 'job' and params.grid != 'paper'"
+SCORES = View("scores", "Scores", PAPER, "metrics.`test_score`", WHAT)
+OTHER_GRIDS = View("other_grids", "Scores on other grids", OTHER, "metrics.`test_score`", ("grid", *WHAT))
+SWEEPS = View("sweeps", "Sweeps", "", "attributes.start_time", ("grid", *WHAT))
 STUDIES = View(
     "studies",
     "Preliminary studies",
-    "tags.kind = 'job' and params.features = 'selection_3' and params.condition = 'disturbed'"
+    f"{PAPER} and params.features = 'selection_3' and params.condition = 'disturbed'"
     " and params.protocol = 'random_folds'",
     "metrics.`test_score`",
     ("classifier", *(f"classifier.{size}" for size in SIZES)),
 )
-VIEWS = (SCORES, SWEEPS, STUDIES)
+VIEWS = (SCORES, SWEEPS, STUDIES, OTHER_GRIDS)
 
 
 def state(view: View) -> dict[str, Any]:

@@ -1,5 +1,6 @@
 """What happens around the jobs of a sweep: the store is made ready before they start, their common run closed after."""
 
+import os
 from typing import Any
 
 from hydra.core.override_parser.overrides_parser import OverridesParser
@@ -14,25 +15,31 @@ class Sweep(Callback):
 
     def on_multirun_start(self, config: DictConfig, **_: Any) -> None:
         """Let the command line win over the experiment's own sweep, and open the study's run in a store that exists."""
+        named = named_on_command_line(list(config.hydra.overrides.task))
         with open_dict(config.hydra.sweeper):
-            for key in named_on_command_line(list(config.hydra.overrides.task)):
-                config.hydra.sweeper.params.pop(key, None)
-        store = _store(config)
-        tracking.open_sweep(store, config.study)
-        page.save_views(store)
+            swept = config.hydra.sweeper.params or {}  # None without an experiment
+            for key in named:
+                swept.pop(key, None)
+        try:
+            store = _store(config)
+            os.environ[tracking.SWEEP] = tracking.open_sweep(store, config.study, named.get("grid", config.grid.name))
+            page.save_views(store)
+        except ValueError as error:  # of which Hydra would make a warning, and start the jobs
+            raise SystemExit(str(error)) from error
 
     def on_multirun_end(self, config: DictConfig, **_: Any) -> None:
         """Close the study's run."""
-        tracking.close_sweep(_store(config), config.study)
+        tracking.close_sweep(_store(config), os.environ.pop(tracking.SWEEP))
 
 
-def named_on_command_line(overrides: list[str]) -> list[str]:
-    """The keys that the overrides set.
+def named_on_command_line(overrides: list[str]) -> dict[str, str]:
+    """The keys that the overrides set, with their values as written.
 
     >>> named_on_command_line(["experiment=table7", "classifier=rf,knn"])
-    ['experiment', 'classifier']
+    {'experiment': 'table7', 'classifier': 'rf,knn'}
     """
-    return [override.key_or_group for override in OverridesParser.create().parse_overrides(overrides)]
+    parsed = OverridesParser.create().parse_overrides(overrides)
+    return {override.key_or_group: str(override.input_line).partition("=")[2] for override in parsed}
 
 
 def _store(config: DictConfig) -> tracking.Store:

@@ -15,12 +15,15 @@ from typing import TYPE_CHECKING, Any
 import pandas as pd
 
 os.environ.setdefault("MLFLOW_DISABLE_TELEMETRY", "true")  # read when mlflow is imported
+os.environ.setdefault("MLFLOW_HTTP_REQUEST_MAX_RETRIES", "2")  # an absent server is reported in seconds, not minutes
+os.environ.setdefault("MLFLOW_HTTP_REQUEST_TIMEOUT", "20")  # [s]
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from mlflow import MlflowClient
 
 EXPERIMENT = "strain wave gears"
+SWEEP = "STRAIN_WAVE_GEARS_SWEEP"  # environment variable, which worker processes inherit: the run that jobs belong to
 
 
 @dataclass(frozen=True)
@@ -46,11 +49,25 @@ class Store:
         """The client of this store; the database of a local store is created when it does not exist.
 
         Two processes that create a database at the same time would destroy each other's, so they take turns.
+
+        Raises
+        ------
+        ValueError
+            If the server does not answer.
         """
         from mlflow import MlflowClient
+        from mlflow.exceptions import MlflowException
 
         if self.folder is None:
-            return MlflowClient(tracking_uri=self.uri)
+            client = MlflowClient(tracking_uri=self.uri)
+            try:
+                client.get_experiment_by_name(self.experiment)
+            except MlflowException as error:
+                raise ValueError(
+                    f"no MLflow server answers at tracking.uri={self.uri}: start it, correct the address, "
+                    "or use tracking=local"
+                ) from error
+            return client
         self.folder.mkdir(parents=True, exist_ok=True)
         for chatty in ("alembic", "mlflow.store.db"):
             logging.getLogger(chatty).setLevel(logging.WARNING)
@@ -114,6 +131,8 @@ def job_run(
 ) -> Iterator[Run]:
     """The run of one job: finished at the end, failed after an exception, and left running by a killed job.
 
+    It is a child of the run that the environment variable ``SWEEP`` names; a job outside a sweep has no parent.
+
     Parameters
     ----------
     store : Store
@@ -122,7 +141,7 @@ def job_run(
     key : str
         What :func:`finished_metrics` finds it by.
     parameters : mapping
-        Parameters by which the run is looked up and compared; ``study`` names the sweep that it belongs to.
+        Parameters by which the run is looked up and compared.
     config : mapping
         Resolved configuration, kept as ``config.yaml``.
     tags : mapping
@@ -130,7 +149,7 @@ def job_run(
     """
     from mlflow.entities import Param
 
-    parent = _open_sweep_of(store, parameters["study"])
+    parent = os.environ.get(SWEEP)
     everything = {"kind": "job", "key": key, **tags, **({"mlflow.parentRunId": parent} if parent else {})}
     run_id = store.client.create_run(store.experiment_id, tags=everything, run_name=name).info.run_id
     try:
@@ -151,29 +170,21 @@ def finished_metrics(store: Store, key: str) -> dict[str, float] | None:
     return dict(runs[0].data.metrics) if runs else None
 
 
-def open_sweep(store: Store, study: str) -> None:
-    """Create the store if need be, and open the run that the jobs of a study belong to; a study has one for ever."""
-    found = store.client.search_runs([store.experiment_id], _sweep_of(study))
-    if found:
-        store.client.update_run(found[0].info.run_id, "RUNNING")
-    else:
-        store.client.create_run(store.experiment_id, tags={"kind": "sweep", "study": study}, run_name=study)
+def open_sweep(store: Store, study: str, grid: str) -> str:
+    """Open the run that the jobs of a study on a grid belong to, for ever the same one, and return its id."""
+    sweep = {"kind": "sweep", "study": study, "grid": grid}
+    query = " and ".join(f"tags.{name} = '{value}'" for name, value in sweep.items())
+    found = store.client.search_runs([store.experiment_id], query, order_by=["attributes.start_time DESC"])
+    if not found:
+        return str(store.client.create_run(store.experiment_id, tags=sweep, run_name=f"{study} {grid}").info.run_id)
+    run_id = str(found[0].info.run_id)
+    store.client.update_run(run_id, "RUNNING")
+    return run_id
 
 
-def close_sweep(store: Store, study: str) -> None:
-    """Mark the run of a study as finished."""
-    run_id = _open_sweep_of(store, study)
-    if run_id:
-        store.client.set_terminated(run_id)
-
-
-def _open_sweep_of(store: Store, study: str) -> str | None:
-    open_runs = store.client.search_runs([store.experiment_id], f"{_sweep_of(study)} and attributes.status = 'RUNNING'")
-    return str(open_runs[0].info.run_id) if open_runs else None
-
-
-def _sweep_of(study: str) -> str:
-    return f"tags.kind = 'sweep' and tags.study = '{study}'"
+def close_sweep(store: Store, run_id: str) -> None:
+    """Mark the run of a sweep as finished; jobs of another sweep of the same study may still join it."""
+    store.client.set_terminated(run_id)
 
 
 def finished_runs(store: Store, **parameters: str) -> pd.DataFrame:

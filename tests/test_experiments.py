@@ -87,12 +87,28 @@ def test_parallel_sweep_loses_no_run_and_a_second_one_does_only_what_is_new(data
     assert artifacts == {"config.yaml", "figures"}
 
 
+def test_a_sweep_without_an_experiment_is_kept_as_one(data, tmp_path):
+    where = ["grid=small", f"data={data}", f"tracking.folder={tmp_path / 'runs'}", f"hydra.sweep.dir={tmp_path}"]
+    answer = train("-m", "classifier=nb,knn", "hydra.launcher.n_jobs=2", *where)
+    assert answer.returncode == 0, answer.stderr
+    assert "Callback" not in answer.stderr
+    store = tracking.local_store(str(tmp_path / "runs"))
+    (sweep,) = store.client.search_runs([store.experiment_id], "tags.kind = 'sweep'")
+    assert (sweep.info.run_name, sweep.info.status) == ("trial small", "FINISHED")
+    children = store.client.search_runs([store.experiment_id], "tags.kind = 'job'")
+    assert [run.data.tags["mlflow.parentRunId"] for run in children] == [sweep.info.run_id] * 2
+
+
+def test_a_sweep_stops_at_the_start_if_the_server_is_absent():
+    answer = train("-m", "classifier=nb,knn", "tracking=server", "tracking.uri=http://127.0.0.1:9")
+    assert answer.returncode != 0
+    assert "no MLflow server answers at tracking.uri=http://127.0.0.1:9" in answer.stderr
+    assert "Callback" not in answer.stderr
+
+
 def test_command_line_wins_over_the_sweep_of_an_experiment():
-    assert named_on_command_line(["experiment=table7", "classifier=rf,knn", "+new=1"]) == [
-        "experiment",
-        "classifier",
-        "new",
-    ]
+    named = named_on_command_line(["experiment=table7", "classifier=rf,knn", "+new=1", "~old"])
+    assert named == {"experiment": "table7", "classifier": "rf,knn", "new": "1", "old": ""}
 
 
 def test_unknown_choice_is_answered_with_the_list():

@@ -1,7 +1,9 @@
 """Runs are kept, found again and shown."""
 
 import json
+import socket
 import sqlite3
+import time
 from contextlib import closing
 
 import pytest
@@ -42,15 +44,46 @@ def test_the_newest_run_of_a_configuration_comes_first_and_alone(store):
     assert tracking.finished_runs(store, grid="sampled").empty
 
 
-def test_jobs_of_a_sweep_are_its_children_and_a_study_has_one_sweep(store):
-    for job in ("first", "second"):
-        tracking.open_sweep(store, "table9")
-        keep(store, job, {"test_score": 5.0}, study="table9")
-        tracking.close_sweep(store, "table9")
-    sweeps = store.client.search_runs([store.experiment_id], "tags.kind = 'sweep' and tags.study = 'table9'")
-    assert [s.info.status for s in sweeps] == ["FINISHED"]
-    jobs = store.client.search_runs([store.experiment_id], "params.study = 'table9'")
-    assert {j.data.tags["mlflow.parentRunId"] for j in jobs} == {sweeps[0].info.run_id}
+def parent(store, key):
+    (run,) = store.client.search_runs([store.experiment_id], f"tags.key = '{key}'")
+    return run.data.tags.get("mlflow.parentRunId")
+
+
+def test_sweeps_of_one_study_at_once_share_a_run_that_keeps_their_jobs_after_one_has_closed_it(store, monkeypatch):
+    first, second = (tracking.open_sweep(store, "table9", "small") for _ in range(2))
+    assert first == second
+    monkeypatch.setenv(tracking.SWEEP, first)
+    keep(store, "early", {"test_score": 5.0}, study="table9")
+    tracking.close_sweep(store, first)
+    assert store.client.get_run(first).info.status == "FINISHED"
+    keep(store, "late", {"test_score": 5.0}, study="table9")
+    assert parent(store, "early") == parent(store, "late") == first
+    assert tracking.open_sweep(store, "table9", "small") == first
+    assert store.client.get_run(first).info.status == "RUNNING"
+
+
+def test_a_study_has_a_sweep_for_each_grid(store):
+    sweeps = {grid: tracking.open_sweep(store, "table8", grid) for grid in ("small", "paper")}
+    assert {store.client.get_run(run_id).info.run_name for run_id in sweeps.values()} == {
+        "table8 small",
+        "table8 paper",
+    }
+
+
+def test_a_single_job_has_no_parent(store):
+    tracking.open_sweep(store, "table10", "small")
+    keep(store, "single", {"test_score": 5.0}, study="table10")
+    assert parent(store, "single") is None
+
+
+def test_an_absent_server_is_reported_soon_with_the_remedy():
+    with socket.socket() as unused:  # bound, but nobody listens
+        unused.bind(("127.0.0.1", 0))
+        uri = f"http://127.0.0.1:{unused.getsockname()[1]}"
+        start = time.monotonic()
+        with pytest.raises(ValueError, match=f"{uri}: start it.*tracking=local"):
+            tracking.finished_metrics(tracking.server_store(uri), "key")
+    assert time.monotonic() - start < 15
 
 
 def test_database_lets_readers_and_writers_work_side_by_side(store):
@@ -73,7 +106,18 @@ def test_saved_views_are_written_as_mlflow_reads_them(store):
     table = page.decode(saved["state"])
     assert "metrics.`test_score`" in table["selectedColumns"]
     assert "params.`classifier`" in table["selectedColumns"]
-    assert table["searchFilter"] == "tags.kind = 'job'"
+
+
+def test_the_table_of_scores_does_not_mix_grids(store):
+    for grid in ("paper", "sampled"):
+        keep(store, f"on {grid}", {"test_score": 4.0}, grid=grid)
+
+    def grids(view):
+        return {run.data.params["grid"] for run in store.client.search_runs([store.experiment_id], view.filter)}
+
+    assert grids(page.SCORES) == {"paper"}
+    assert grids(page.OTHER_GRIDS) >= {"sampled"}
+    assert "paper" not in grids(page.OTHER_GRIDS)
 
 
 def test_the_installed_mlflow_knows_saved_views():
