@@ -59,7 +59,7 @@ class Drive:
         self.omega = np.array([point.omega_in for point in points])
         self.T_load = np.array([point.T_out for point in points])
         self.sin_t, self.cos_t, self.tan_t = (f(p["alpha_tooth"]) for f in (np.sin, np.cos, np.tan))
-        self.tan_in = 1 / ((p["N"] + 1) * self.tan_t)
+        self.tan_in = 1 / ((p["N"] + 1) * self.tan_t)  # eq. (4)
         rate = 2 * np.pi * p["control_frequency"]
         self.gain_p, self.gain_i = 2 * p["control_damping"] * rate * p["J_in"], rate**2 * p["J_in"]
         self.error = self._error_amplitudes()

@@ -1,7 +1,7 @@
 """A gear and its operating point: immutable, SI units, the paper's symbols."""
 
 from dataclasses import dataclass, field
-from math import pi, tan
+from math import pi
 
 from swgsim.checks import require, require_integer, require_positive
 from swgsim.gauges import GaugeSet
@@ -79,11 +79,6 @@ class Transmission:
         require(owner, "b2", self.b2)
         require(owner, "theta_b", self.theta_b)
         require(owner, "alpha_tooth", self.alpha_tooth, low=0.05, high=1.5)
-
-    @property
-    def tan_alpha_in(self) -> float:
-        """Slope of the wave-generator wedge, eq. (4)."""
-        return 1 / ((self.N + 1) * tan(self.alpha_tooth))
 
 
 @dataclass(frozen=True)
