@@ -8,6 +8,7 @@ import pandas as pd
 from jaxtyping import Float
 
 from learn.references import healthy_reference
+from swgsim.orders import order_lines, whole_revolutions
 from swgsim.recordings import SENSORS, Recordings
 
 SPECTRA = {"none": (), "gauges": SENSORS, "differences": ("ds13", "ds24")}
@@ -74,53 +75,6 @@ class Selection:
         return np.append(statistics, np.full(len(SPECTRA[self.spectrum]) * self.orders, self.floor))
 
 
-def whole_revolutions(speed_rpm: float, rate: float, length: int) -> int:
-    """Samples in the largest whole number of wave-generator revolutions that a window of `length` samples holds.
-
-    >>> whole_revolutions(2000.0, rate=10_000.0, length=650)
-    600
-
-    Raises
-    ------
-    ValueError
-        If the window is shorter than one revolution.
-    """
-    revolution = 60 * rate / speed_rpm
-    count = int(length / revolution + 1e-9)
-    if count < 1:
-        raise ValueError(
-            f"the window of {length} samples holds {length / revolution:.2f} revolutions at {speed_rpm:g} rpm and "
-            f"{rate:g} Hz, at least 1 is needed: record {int(np.ceil(revolution))} samples or more"
-        )
-    return round(count * revolution)
-
-
-def amplitudes(
-    signals: Float[np.ndarray, "sample channel time"], speed_rpm: float, rate: float, orders: int
-) -> Float[np.ndarray, "sample channel order"]:
-    """DFT magnitude of the zero-mean signals at the orders 1 to `orders` of the speed n_in [unit of signals].
-
-    A sine of amplitude a at an integer order gives a at that order and 0 at the others when the signals span whole
-    revolutions.
-
-    Raises
-    ------
-    ValueError
-        If the highest order is not below half the sampling rate.
-    """
-    highest = orders * speed_rpm / 60
-    if not highest < rate / 2:
-        raise ValueError(
-            f"order {orders} at {speed_rpm:g} rpm lies at {highest:g} Hz, the limit is half the sampling rate, "
-            f"{rate / 2:g} Hz: take fewer orders or a higher sampling rate"
-        )
-    length = signals.shape[-1]
-    turns = np.arange(length) * speed_rpm / 60 / rate
-    waves = np.exp(-2j * np.pi * np.outer(turns, np.arange(1, orders + 1)))  # (time, order)
-    zero_mean = signals - signals.mean(axis=-1, keepdims=True)
-    return np.hypot(zero_mean @ waves.real, zero_mean @ waves.imag) * (2 / length)
-
-
 def signal_quantities(recordings: Recordings, selection: Selection) -> Float[np.ndarray, "sample quantity"]:
     """The selection's means and variances [mV/V, squared], and DFT magnitudes [mV/V] before they are set in relation.
 
@@ -135,7 +89,8 @@ def signal_quantities(recordings: Recordings, selection: Selection) -> Float[np.
         quantities = [s.mean(axis=-1), s.var(axis=-1)] if selection.statistics else []
         if selection.spectrum != "none":
             channels = s if selection.spectrum == "gauges" else s[:, 1:3] - s[:, 3:5]  # eq. 8: s1 - s3, s2 - s4
-            quantities.append(amplitudes(channels, float(speed), recordings.rate, selection.orders).reshape(len(s), -1))
+            lines = order_lines(channels, float(speed), recordings.rate, selection.orders)
+            quantities.append(np.abs(lines[:, :, 1:]).reshape(len(s), -1))
         result[rows] = np.concatenate([np.empty((len(s), 0)), *quantities], axis=1)
     return result
 

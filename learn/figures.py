@@ -7,8 +7,8 @@ import pandas as pd
 from jaxtyping import Float
 from matplotlib.figure import Figure
 
-from learn.features import whole_revolutions
 from swgsim import style
+from swgsim.orders import whole_revolutions
 from swgsim.recordings import CLASSES, SENSORS, Recordings
 
 HIGHEST_ORDER = 8

@@ -15,6 +15,8 @@ SHOWING = (
     "figures.py",
     "finding.py",
     "flexspline_figures.py",
+    "oracle.py",
+    "orders.py",
     "stiffness.py",
     "style.py",
 )

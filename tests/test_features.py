@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fabricated import RATE, recordings
+from fabricated import recordings
 
-from learn.features import Selection, amplitudes, learning_set, whole_revolutions
+from learn.features import Selection, learning_set
 from learn.references import healthy_reference
 
 SELECTIONS = (
@@ -26,24 +26,6 @@ def changed(original, rows, **columns):
     for name, value in columns.items():
         table.loc[rows, name] = value
     return replace(original, table=table)
-
-
-@pytest.mark.parametrize("speed", [2000.0, 4000.0])
-def test_amplitude_of_a_sine_stands_at_its_order_and_nowhere_else(speed):
-    turns = np.arange(600) * speed / 60 / RATE
-    signal = 3.0 + 0.5 * np.sin(2 * np.pi * 2 * turns + 0.3) + 0.2 * np.cos(2 * np.pi * 5 * turns)
-    np.testing.assert_allclose(amplitudes(signal[None, None], speed, RATE, 6)[0, 0], [0, 0.5, 0, 0, 0.2, 0], atol=1e-14)
-
-
-def test_amplitudes_equal_the_fast_fourier_transform():
-    signals = np.random.default_rng(0).standard_normal((3, 5, 600))
-    expected = np.abs(np.fft.rfft(signals))[:, :, 4:25:4] * 2 / 600  # 4 revolutions: order k is bin 4 k
-    np.testing.assert_allclose(amplitudes(signals, 4000.0, RATE, 6), expected, atol=1e-14)
-
-
-@pytest.mark.parametrize(("length", "samples"), [(600, 600), (650, 600), (899, 600), (300, 300)])
-def test_window_is_cut_to_whole_revolutions(length, samples):
-    assert whole_revolutions(2000.0, RATE, length) == samples
 
 
 def test_samples_after_the_last_whole_revolution_do_not_count():
