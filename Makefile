@@ -5,6 +5,14 @@ BIN := $(VENV)/bin
 READY := $(VENV)/ready
 GRID := $(if $(SMALL),small,paper)
 TABLES := table7 table8 table9 table10
+# The study of transfer: gears to judge, experiments in the order of the report; the small form leaves some out.
+GEARS := $(if $(SMALL),gears_small,gears)
+FOREIGN := $(if $(SMALL),,far-bench few-bench few-noisy few-other_day)
+ON_GEARS := zero_shot $(if $(SMALL),,inputs inputs_features no_reference) transfer_network transfer_forest \
+            $(if $(SMALL),,transfer_cnn transfer_map transfer_map_foreign)
+ON_PAPER := zero_shot_disturbed $(if $(SMALL),,forest_robustness network_robustness)
+comma := ,
+QUICK := $(if $(SMALL),protocol=new_gears_small shots=[1$(comma)2] draws=1)
 CORES := $(shell nproc)
 # The four tables run side by side and share the cores; with two of them every table has one process.
 JOBS := $(shell echo $$(( ($(CORES) + 3) / 4 )))
@@ -12,7 +20,7 @@ JOBS := $(shell echo $$(( ($(CORES) + 3) / 4 )))
 export MLFLOW_DISABLE_TELEMETRY := true
 
 .DEFAULT_GOAL := help
-.PHONY: help install data experiments report paper test lint benchmark convergence docs ui clean $(TABLES)
+.PHONY: help install data experiments report paper transfer test lint benchmark convergence docs ui clean $(TABLES)
 
 help:  ## this list
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-12s %s\n", $$1, $$2}'
@@ -42,6 +50,17 @@ paper: $(READY)  ## from nothing to the paper's tables beside ours (SMALL=1: a s
 	    $(BIN)/python scripts/report.py grid=$(GRID) started=$$started
 	@echo "open report/index.html; 'make ui' shows the runs"
 
+transfer: $(READY)  ## beyond the paper: networks, transfer to gears never seen, report/transfer.html (SMALL=1: two minutes)
+	@started=$$(date +%s) && set -e; \
+	$(BIN)/python scripts/generate.py grid=$(GRID) condition=disturbed; \
+	for set in $(GEARS)-bench $(FOREIGN); do $(BIN)/python scripts/generate.py grid=$${set%-*} condition=$${set##*-}; done; \
+	$(BIN)/python scripts/oracle.py grid=$(GEARS); \
+	for name in $(ON_PAPER); do $(BIN)/python scripts/train.py experiment=$$name grid=$(GRID); done; \
+	for name in $(ON_GEARS); do $(BIN)/python scripts/train.py experiment=$$name grid=$(GEARS) $(QUICK); done; \
+	$(BIN)/python scripts/train.py experiment=harder_splits grid=$(GEARS); \
+	$(BIN)/python scripts/transfer_report.py grid=$(GEARS) paper=$(GRID) started=$$started
+	@echo "open report/transfer.html; 'make ui' shows the runs"
+
 test: $(READY)  ## all tests
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile -q
 
@@ -63,4 +82,4 @@ ui: $(READY)  ## the runs in the MLflow page, on this machine only
 	$(BIN)/python scripts/ui.py
 
 clean:  ## remove data sets, runs and reports
-	rm -rf data mlruns report outputs
+	rm -rf data mlruns models report outputs

@@ -12,6 +12,8 @@ from jaxtyping import Float, Int
 from learn.classical import Classifier
 from learn.splits import Split
 
+FACTS = ["gear", "label", "variant", "severity", "n_in_rpm", "T_out_nm"]
+
 
 @dataclass(frozen=True)
 class SplitScore:
@@ -36,11 +38,23 @@ class Evaluation:
         Names of the classes in the order in which the data set has them, which is that of the confusion matrix.
     confusion : array (true, predicted)
         Number of tested rows, summed over the splits.
+    tested : array (test,)
+        Their row numbers, split by split.
+    probabilities : array (test, class)
+        What the method says of them; a method without probabilities is certain.
     """
 
     scores: tuple[SplitScore, ...]
     classes: tuple[str, ...]
     confusion: Int[np.ndarray, "true predicted"]
+    tested: Int[np.ndarray, " test"]
+    probabilities: Float[np.ndarray, "test class"]
+
+    def predictions(self, table: pd.DataFrame) -> pd.DataFrame:
+        """Facts of the tested rows of the data set's table, and one column per class with its probability."""
+        facts = table.loc[self.tested, FACTS].reset_index(names="row")
+        said = pd.DataFrame(self.probabilities.astype("f4"), columns=list(self.classes))
+        return facts.assign(label=facts["label"].astype(str)).join(said)
 
     def recall(self) -> Mapping[str, float]:
         """Share of the tested rows of each class that were recognised [%]; classes that were tested only."""
@@ -92,21 +106,34 @@ def evaluate(
     """
     classes = pd.Index(pd.unique(labels))
     confusion = np.zeros((len(classes), len(classes)), dtype=np.int64)
-    scores = []
+    scores, tested, said = [], [], []
     for split in splits:
         classifier = method()
         start = time.perf_counter()
         _fit(classifier, features[split.train], labels[split.train])
         seconds = time.perf_counter() - start
-        predicted = classifier.predict(features[split.test])
-        truth = labels[split.test]
-        np.add.at(confusion, (classes.get_indexer(truth), classes.get_indexer(predicted)), 1)
+        probabilities = _probabilities(classifier, features[split.test], classes)
+        truth = classes.get_indexer(labels[split.test])
+        predicted = probabilities.argmax(axis=1)
+        np.add.at(confusion, (truth, predicted), 1)
         train_score = np.mean(classifier.predict(features[split.train]) == labels[split.train])
         test_score = np.mean(predicted == truth)
         scores.append(
             SplitScore(split.name, 100 * float(train_score), 100 * float(test_score), seconds, _converged(classifier))
         )
-    return Evaluation(tuple(scores), tuple(map(str, classes)), confusion)
+        tested.append(split.test)
+        said.append(probabilities)
+    return Evaluation(tuple(scores), tuple(map(str, classes)), confusion, np.concatenate(tested), np.concatenate(said))
+
+
+def _probabilities(classifier: Classifier, X: np.ndarray, classes: pd.Index) -> Float[np.ndarray, "row class"]:
+    """Probability of every class; 1 for the class that a method without probabilities names."""
+    result = np.zeros((len(X), len(classes)))
+    if hasattr(classifier, "predict_proba") and hasattr(classifier, "classes_"):
+        result[:, classes.get_indexer(pd.Index(classifier.classes_))] = classifier.predict_proba(X)
+    else:
+        result[np.arange(len(X)), classes.get_indexer(pd.Index(classifier.predict(X)))] = 1
+    return result
 
 
 def _fit(classifier: Classifier, features: np.ndarray, labels: np.ndarray) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 from jaxtyping import Float
 
-from learn.features import Selection, learning_set, signal_quantities
+from learn.features import Selection, signal_quantities
 from learn.references import healthy_reference
 from swgsim.finding import Finding, percent
 from swgsim.recordings import Recordings
@@ -47,7 +47,7 @@ class Features:
 
 def features_of(blocks: Sequence[Recordings]) -> Features:
     """The features of a clean data set."""
-    learning = learning_set(blocks, SPECTRUM)
+    learning = SPECTRUM.learning_set(blocks)
     lines = np.concatenate([signal_quantities(block, SPECTRUM) for block in blocks])
     facts = pd.concat([block.table for block in blocks], ignore_index=True)
     reference = facts["reference"].to_numpy()

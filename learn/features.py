@@ -7,12 +7,13 @@ import numpy as np
 import pandas as pd
 from jaxtyping import Float
 
+from learn.inputs import Layout, LearningSet
 from learn.references import healthy_reference
 from swgsim.orders import order_lines, whole_revolutions
 from swgsim.recordings import SENSORS, Recordings
 
-SPECTRA = {"none": (), "gauges": SENSORS, "differences": ("ds13", "ds24")}
-EFFICIENCIES = ("eta_rel", "eta2_rel")
+SPECTRA = {"none": (), "gauges": SENSORS, "differences": ("ds13", "ds24"), "both": (*SENSORS, "ds13", "ds24")}
+EFFICIENCIES = {"none": (), "eta_rel": ("eta_rel",), "eta2_rel": ("eta2_rel",), "both": ("eta_rel", "eta2_rel")}
 
 
 @dataclass(frozen=True)
@@ -25,10 +26,10 @@ class Selection:
         Its name, ``selection_1`` to ``selection_3`` for the paper's.
     statistics : bool
         Mean and variance of every gauge signal.
-    spectrum : {"none", "gauges", "differences"}
-        DFT of nothing, of every gauge signal, or of the differences of opposite gauges (eq. 8).
-    efficiency : {"eta_rel", "eta2_rel"}
-        Relative efficiency, or its fourth root (eq. 9).
+    spectrum : {"none", "gauges", "differences", "both"}
+        DFT of nothing, of every gauge signal, of the differences of opposite gauges (eq. 8), or of both.
+    efficiency : {"none", "eta_rel", "eta2_rel", "both"}
+        Nothing, the relative efficiency, the fourth root of its change (eq. 9), or both.
     orders : int
         DFT components per signal: the multiples 1 to `orders` of the wave generator's speed n_in. The paper does not
         say how many it takes.
@@ -66,7 +67,44 @@ class Selection:
         """Names of the features, in their order."""
         statistics = [f"{symbol}({s})" for symbol in ("m_rel", "var_rel") for s in SENSORS] if self.statistics else []
         spectrum = [f"DFT_rel({s})[{k}]" for s in SPECTRA[self.spectrum] for k in range(1, self.orders + 1)]
-        return (*statistics, *spectrum, self.efficiency)
+        return (*statistics, *spectrum, *EFFICIENCIES[self.efficiency])
+
+    def learning_set(self, blocks: Iterable[Recordings]) -> LearningSet:
+        """Features of all samples relative to the healthy reference of their own gear and operating point.
+
+        Eq. 7, component by component, as 1 + (m - m_healthy) / m_healthy: the divisor alone is kept from falling
+        below the floor, so a healthy recording gives 1 also where the healthy value vanishes.
+
+        Parameters
+        ----------
+        blocks : iterable of Recordings
+            The recordings of a data set, samples and references, in one block or in many that are dropped one by one.
+
+        Raises
+        ------
+        ValueError
+            If a gear has no reference at an operating point, if its reference efficiency is not above 0, or if the
+            window holds no whole revolution.
+        """
+        parts = [(signal_quantities(block, self), block.table) for block in blocks]
+        quantities = np.concatenate([part[0] for part in parts])
+        facts = pd.concat([part[1] for part in parts], ignore_index=True)
+        is_reference = facts["reference"].to_numpy()
+        references, samples = facts[is_reference], facts[~is_reference].reset_index(drop=True)
+
+        healthy = healthy_reference(quantities[is_reference], references, samples)
+        divisor = np.copysign(np.maximum(np.abs(healthy), self.floors), healthy)
+        relative = 1 + (quantities[~is_reference] - healthy) / divisor  # eq. 7
+
+        eta_healthy = healthy_reference(references[["efficiency"]].to_numpy(), references, samples)
+        if not (eta_healthy > 0).all():
+            raise ValueError(f"healthy reference efficiency {eta_healthy.min():g} found, eq. 7 needs one above 0")
+        eta_rel = samples[["efficiency"]].to_numpy() / eta_healthy
+        efficiency = {"eta_rel": eta_rel, "eta2_rel": np.abs(1 - eta_rel) ** 0.25}  # eq. 9
+        last = [efficiency[name] for name in EFFICIENCIES[self.efficiency]]
+        # Networks on signals may take the features before the efficiency for one: a row of numbers.
+        layout = Layout(1, relative.shape[1])
+        return LearningSet(np.concatenate([relative, *last], axis=1), samples, self.names, layout)
 
     @property
     def floors(self) -> Float[np.ndarray, " quantity"]:
@@ -88,52 +126,9 @@ def signal_quantities(recordings: Recordings, selection: Selection) -> Float[np.
         s = recordings.signals[rows, :, :length].astype(np.float64)
         quantities = [s.mean(axis=-1), s.var(axis=-1)] if selection.statistics else []
         if selection.spectrum != "none":
-            channels = s if selection.spectrum == "gauges" else s[:, 1:3] - s[:, 3:5]  # eq. 8: s1 - s3, s2 - s4
-            lines = order_lines(channels, float(speed), recordings.rate, selection.orders)
+            differences = s[:, 1:3] - s[:, 3:5]  # eq. 8: s1 - s3, s2 - s4
+            channels = {"gauges": s, "differences": differences, "both": np.concatenate([s, differences], axis=1)}
+            lines = order_lines(channels[selection.spectrum], float(speed), recordings.rate, selection.orders)
             quantities.append(np.abs(lines[:, :, 1:]).reshape(len(s), -1))
         result[rows] = np.concatenate([np.empty((len(s), 0)), *quantities], axis=1)
     return result
-
-
-@dataclass(frozen=True)
-class LearningSet:
-    """Features of samples, dimensionless, in the columns that ``Selection.names`` names; and their facts."""
-
-    features: Float[np.ndarray, "sample feature"]
-    table: pd.DataFrame
-
-
-def learning_set(blocks: Iterable[Recordings], selection: Selection) -> LearningSet:
-    """Features of all samples relative to the healthy reference of their own gear and operating point.
-
-    Eq. 7, component by component, as 1 + (m - m_healthy) / m_healthy: the divisor alone is kept from falling below the
-    selection's floor, so a healthy recording gives 1 also where the healthy value vanishes.
-
-    Parameters
-    ----------
-    blocks : iterable of Recordings
-        The recordings of a data set, samples and references, in one block or in many that are dropped one by one.
-    selection : Selection
-
-    Raises
-    ------
-    ValueError
-        If a gear has no reference at an operating point, if its reference efficiency is not above 0, or if the window
-        holds no whole revolution.
-    """
-    parts = [(signal_quantities(block, selection), block.table) for block in blocks]
-    quantities = np.concatenate([part[0] for part in parts])
-    facts = pd.concat([part[1] for part in parts], ignore_index=True)
-    is_reference = facts["reference"].to_numpy()
-    references, samples = facts[is_reference], facts[~is_reference].reset_index(drop=True)
-
-    healthy = healthy_reference(quantities[is_reference], references, samples)
-    divisor = np.copysign(np.maximum(np.abs(healthy), selection.floors), healthy)
-    relative = 1 + (quantities[~is_reference] - healthy) / divisor  # eq. 7
-
-    eta_healthy = healthy_reference(references[["efficiency"]].to_numpy(), references, samples)
-    if not (eta_healthy > 0).all():
-        raise ValueError(f"healthy reference efficiency {eta_healthy.min():g} found, eq. 7 needs one above 0")
-    eta_rel = samples[["efficiency"]].to_numpy() / eta_healthy
-    last = eta_rel if selection.efficiency == "eta_rel" else np.abs(1 - eta_rel) ** 0.25  # eq. 9
-    return LearningSet(np.concatenate([relative, last], axis=1), samples)

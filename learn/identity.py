@@ -8,7 +8,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-WHEREABOUTS = ("data", "tracking")  # parts of a configuration that no result depends on
+WHEREABOUTS = ("data", "models", "tracking")  # parts of a configuration that no result depends on
 PRESENTATION = (  # modules that only show results
     "choices.py",
     "claims.py",
@@ -35,7 +35,7 @@ def job_key(config: Mapping[str, Any], data_digest: str) -> str:
 def code_version() -> str:
     """Digest of the sources of this package, but for those that only show results, and of the libraries below it."""
     digest = hashlib.sha256()
-    for library in ("numpy", "scikit-learn"):
+    for library in ("numpy", "scikit-learn", "torch"):
         digest.update(f"{library} {version(library)}".encode())
     for source in sorted(Path(__file__).parent.glob("*.py")):
         if source.name not in PRESENTATION:

@@ -1,4 +1,4 @@
-"""One job: a classifier on a feature selection of a data set under a protocol, kept as one MLflow run."""
+"""One job: a method on a representation of a data set under a protocol, kept as one MLflow run."""
 
 import logging
 from collections.abc import Mapping
@@ -8,21 +8,19 @@ from typing import Any
 
 from threadpoolctl import threadpool_limits
 
-from learn import identity, settings, tracking
-from learn.evaluation import evaluate
-from learn.features import LearningSet, Selection, learning_set
+from learn import few_shot, identity, settings, tracking, zero_shot
+from learn.inputs import LearningSet, Representation, beside_foreign
 from swgsim import storage
 
 log = logging.getLogger(__name__)
 
-
 BLOCK = 1024  # recordings in memory at a time
 
 
-@lru_cache(maxsize=8)
-def learning_set_of(path: Path, digest: str, selection: Selection) -> LearningSet:
-    """The features of a data set; computed once per process while the file's digest stays the same."""
-    return learning_set(storage.blocks(path, BLOCK), selection)
+@lru_cache(maxsize=4)
+def learning_set_of(path: Path, digest: str, representation: Representation) -> LearningSet:
+    """The inputs of a data set; computed once per process while the file's digest stays the same."""
+    return representation.learning_set(storage.blocks(path, BLOCK))
 
 
 def run(config: Mapping[str, Any]) -> dict[str, float]:
@@ -31,27 +29,32 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
     Returns
     -------
     dict
-        The metrics: scores [%] and the time to fit [s], as :meth:`learn.evaluation.Evaluation.metrics` names them.
+        The metrics: scores [%] and the time to fit [s], as :meth:`learn.evaluation.Evaluation.metrics` and
+        :meth:`learn.adapting.Adapted.metrics` name them; and ``trial/1`` and so on, the scores of the options that were
+        tried on development gears.
 
     Raises
     ------
     ValueError
         If a choice is unknown, with the list of choices, or the data set does not exist, with the command to make it.
     """
-    from learn.confusion import picture
-
     chosen = {group: config[group]["name"] for group in ("grid", "condition")}  # what is in them, the data set holds
     config = {**config, **chosen}
-    selection = settings.selection(config["features"])
-    protocol = settings.protocol(config["protocol"])
-    method = settings.classifier(config["classifier"])
-    path = settings.data_set(config)
-    digest = storage.digest(path)
+    representation = settings.representation(config["features"])
+    settings.protocol(config["protocol"])
+    settings.classifier(config["classifier"])
+    if config["adaptation"]["name"] != "none":
+        settings.adaptation(config["adaptation"])
+    paths = [settings.data_set(config)]
+    if config["target"]:
+        grid, _, condition = config["target"].rpartition("-")
+        paths.append(settings.data_set({**config, "grid": grid, "condition": condition}))
+    digests = [storage.digest(path) for path in paths]
+    digest = digests[0] if len(digests) == 1 else "+".join(digests)
     store = settings.store(config["tracking"])
 
     parameters = identity.flat(identity.decisive(config))
-    options = [f"{key}={value}" for key, value in config["classifier"].items() if key not in ("name", "seed")]
-    name = " ".join(["{study} {classifier} {features} {protocol}".format(**parameters), *options])
+    name = run_name(config, parameters)
     key = identity.job_key(config, digest)
     done = tracking.finished_metrics(store, key)
     if done:
@@ -61,10 +64,19 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
     tags = {"data_digest": digest, "code_version": identity.code_version()}
     # One thread to a job: jobs run side by side, and threads of several would wait for each other.
     with threadpool_limits(1), tracking.job_run(store, name, key, parameters, config, tags) as record:
-        data = learning_set_of(path, digest, selection)
-        splits = protocol.split(data.features, data.table)
-        evaluation = evaluate(data.features, data.table["label"].astype(str).to_numpy(), splits, method)
-        metrics = evaluation.metrics()
-        record.record(metrics, {"figures/confusion.png": picture(evaluation, name)})
-    log.info("%s: test score %.2f %% in %.1f s", name, metrics["test_score"], metrics["fit_seconds"])
+        data, *foreign = [learning_set_of(*each, representation) for each in zip(paths, digests, strict=True)]
+        for gears in foreign:
+            data = beside_foreign(data, gears)
+        judge = zero_shot if config["adaptation"]["name"] == "none" else few_shot
+        metrics, figures, tables = judge.results(config, data)
+        record.record(metrics, figures, tables)
+    log.info("%s: test score %.2f %%", name, metrics["test_score"])
     return metrics
+
+
+def run_name(config: Mapping[str, Any], parameters: Mapping[str, Any]) -> str:
+    """Name of a job's run: study, method and inputs, and the options of the method."""
+    groups = ["study", "classifier", "features", "protocol"]
+    groups += ["adaptation"] if parameters["adaptation"] != "none" else []
+    options = [f"{k}={v}" for k, v in config["classifier"].items() if k not in ("name", "seed", "trials")]
+    return " ".join([*(str(parameters[group]) for group in groups), *options])

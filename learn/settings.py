@@ -4,34 +4,61 @@ import inspect
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from learn import classical
+from learn import classical, neural, strong
 from learn.features import Selection
+from learn.harder_splits import LeaveOperatingPointOut, LeaveSeverityOut
+from learn.harmonics import Harmonics
+from learn.inputs import NO_SIGNAL, Layout, Representation
+from learn.levels import NewGears
+from learn.lines import ResidualLines
+from learn.rocket import MiniRocket
+from learn.signals import Signals
 from learn.splits import GroupedFolds, LeaveOneGearOut, RandomFolds, Splitting
 from learn.tracking import Store, local_store, server_store
+
+if TYPE_CHECKING:
+    from learn.transfer import Adaptation
+
+NO_OPTIONS = ("name", "trials", "shots")  # of a file in conf: what is not for the object itself
 
 T = TypeVar("T")
 Config = Mapping[str, Any]
 
+REPRESENTATIONS: Mapping[str, Callable[..., Representation]] = {
+    **dict.fromkeys(("raw", "differenced", "residual"), Signals),
+    "lines": ResidualLines,
+    "harmonics": Harmonics,
+}
 CLASSIFIERS: Mapping[str, Callable[..., classical.Classifier]] = {
     "mlp": classical.multi_layer_perceptron,
     "svm": classical.support_vector_machine,
     "rf": classical.random_forest,
     "knn": classical.nearest_neighbours,
     "nb": classical.naive_bayes,
+    "logistic_regression": strong.logistic_regression,
+    "gradient_boosting": strong.gradient_boosting,
+    "extra_trees": strong.extra_trees,
+    "minirocket": MiniRocket,
+    "perceptron": neural.neural_perceptron,
+    "cnn": neural.convolutional_network,
 }
 PROTOCOLS: Mapping[str, Callable[..., Splitting]] = {
     "random_folds": RandomFolds,
     "grouped_folds": GroupedFolds,
     "leave_one_gear_out": LeaveOneGearOut,
+    "new_gears": NewGears,
+    "leave_severity_out": LeaveSeverityOut,
+    "leave_operating_point_out": LeaveOperatingPointOut,
 }
 STORES: Mapping[str, Callable[..., Store]] = {"local": local_store, "server": server_store}
 
 
-def selection(config: Config) -> Selection:
-    """The feature selection of ``conf/features``."""
-    return _configured("features", Selection, config)()
+def representation(config: Config) -> Representation:
+    """What methods see, of ``conf/features``; a name that is none of the known ones is a selection of one's own."""
+    name = str(config.get("name"))
+    return _configured(f"features {name}", REPRESENTATIONS.get(name, Selection), config)()
 
 
 def protocol(config: Config) -> Splitting:
@@ -39,9 +66,29 @@ def protocol(config: Config) -> Splitting:
     return _chosen("protocol", PROTOCOLS, config)()
 
 
-def classifier(config: Config) -> Callable[[], classical.Classifier]:
-    """A maker of untrained classifiers of ``conf/classifier``."""
-    return _chosen("classifier", CLASSIFIERS, config)
+def classifier(config: Config, layout: Layout = NO_SIGNAL) -> Callable[..., classical.Classifier]:
+    """A maker of untrained classifiers of ``conf/classifier``; it takes options in place of those configured.
+
+    Methods that know signals are told where in a row the signal is.
+    """
+    name = str(config.get("name"))
+    kind = _known("classifier", CLASSIFIERS, name)
+    options = {key: value for key, value in config.items() if key not in NO_OPTIONS}
+    make = _configured(f"classifier {name}", kind, options)
+    knows_signals = "channels" in inspect.signature(kind).parameters
+    return partial(make, channels=layout.channels, points=layout.points) if knows_signals else make
+
+
+def adaptation(config: Config) -> Callable[..., "Adaptation"]:
+    """A maker of the adaptation of ``conf/adaptation``; it takes options in place of those configured."""
+    from learn.adaptations import ADAPTATIONS  # with torch, which takes seconds
+
+    return _chosen("adaptation", ADAPTATIONS, config)
+
+
+def trials(config: Config) -> list[dict[str, Any]]:
+    """The options that are tried on development gears, ``trials`` of a method's file; one empty trial for none."""
+    return [dict(options) for options in config.get("trials") or [{}]]
 
 
 def store(config: Config) -> Store:
@@ -68,14 +115,21 @@ def data_set(config: Config) -> Path:
     return path
 
 
-def _chosen(kind: str, choices: Mapping[str, Callable[..., T]], config: Config) -> Callable[[], T]:
+def _chosen(kind: str, choices: Mapping[str, Callable[..., T]], config: Config) -> Callable[..., T]:
     name = str(config.get("name"))
+    factory = _known(kind, choices, name)
+    return _configured(
+        f"{kind} {name}", factory, {k: v for k, v in config.items() if k not in ("name", "trials", "shots")}
+    )
+
+
+def _known(kind: str, choices: Mapping[str, T], name: str) -> T:
     if name not in choices:
         raise ValueError(f"unknown {kind} {name!r}; choose from {', '.join(choices)}")
-    return _configured(f"{kind} {name}", choices[name], {k: v for k, v in config.items() if k != "name"})
+    return choices[name]
 
 
-def _configured(kind: str, factory: Callable[..., T], options: Config) -> Callable[[], T]:
+def _configured(kind: str, factory: Callable[..., T], options: Config) -> Callable[..., T]:
     known = inspect.signature(factory).parameters
     for option in options:
         if option not in known:

@@ -4,6 +4,7 @@ import fcntl
 import logging
 import os
 import sqlite3
+import tempfile
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import closing, contextmanager
@@ -115,14 +116,21 @@ class Run:
     def __init__(self, store: Store, run_id: str) -> None:
         self._client, self._id = store.client, run_id
 
-    def record(self, metrics: Mapping[str, float], figures: Mapping[str, "Figure"]) -> None:
-        """Keep the metrics in one transaction and the figures under their path among the artifacts."""
+    def record(
+        self, metrics: Mapping[str, float], figures: Mapping[str, "Figure"], tables: Mapping[str, pd.DataFrame]
+    ) -> None:
+        """Keep the metrics in one transaction; figures and tables (Parquet) under their path among the artifacts."""
         from mlflow.entities import Metric
 
         now = int(1000 * time.time())
         self._client.log_batch(self._id, metrics=[Metric(name, value, now, 0) for name, value in metrics.items()])
         for path, figure in figures.items():
             self._client.log_figure(self._id, figure, path)
+        with tempfile.TemporaryDirectory() as folder:
+            for path, table in tables.items():
+                file = Path(folder) / Path(path).name
+                table.to_parquet(file)
+                self._client.log_artifact(self._id, str(file), str(Path(path).parent))
 
 
 @contextmanager
@@ -199,7 +207,8 @@ def finished_runs(store: Store, **parameters: str) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        Columns are the parameters (text), the metrics (numbers) and ``data_digest``; empty if there is no run.
+        Columns are the parameters (text), the metrics (numbers), ``data_digest`` and ``run_id``; empty if there is no
+        run.
     """
     conditions = [f"params.{name} = '{value}'" for name, value in parameters.items()]
     query = " and ".join(["tags.kind = 'job'", "attributes.status = 'FINISHED'", *conditions])
@@ -210,5 +219,14 @@ def finished_runs(store: Store, **parameters: str) -> pd.DataFrame:
     for run in runs:
         newest.setdefault(tuple(sorted(run.data.params.items())), run)
     return pd.DataFrame(
-        [{**r.data.params, **r.data.metrics, "data_digest": r.data.tags["data_digest"]} for r in newest.values()]
+        [
+            {**r.data.params, **r.data.metrics, "data_digest": r.data.tags["data_digest"], "run_id": r.info.run_id}
+            for r in newest.values()
+        ]
     )
+
+
+def table_of(store: Store, run_id: str, path: str) -> pd.DataFrame:
+    """A table that a run keeps among its artifacts."""
+    with tempfile.TemporaryDirectory() as folder:
+        return pd.read_parquet(store.client.download_artifacts(run_id, path, folder))

@@ -8,13 +8,14 @@ import numpy as np
 from misspelt import answered
 from omegaconf import DictConfig, OmegaConf
 
+from learn import training_benchmark
 from swgsim import benchmark, settings
 from swgsim.files import write_json
 
 
 @hydra.main(version_base="1.3", config_path="../conf", config_name="benchmark")
 def main(cfg: DictConfig) -> None:
-    """Print both ratios and keep them as <report>/benchmark.json."""
+    """Print the ratios and keep them as <report>/benchmark.json."""
     config = OmegaConf.to_container(cfg, resolve=True)
     report = Path(config.pop("report"))
     plan = settings.plan(config)
@@ -25,6 +26,7 @@ def main(cfg: DictConfig) -> None:
         "integrator_vs_solve_ivp": benchmark.integrator_vs_solve_ivp(stiffnesses, plan.grid.points),
     }
     chain, integrator = result.values()
+    result["training"] = training = training_benchmark.measure()
     print(
         f"chain against one sparse solve per sample: {chain['ratio']:,.0f} times faster, "
         f"largest difference {chain['max_relative_difference']:.1e} of the signal"
@@ -32,6 +34,11 @@ def main(cfg: DictConfig) -> None:
     print(
         f"batched integrator against solve_ivp: {integrator['ratio']:,.0f} times faster, "
         f"largest error {integrator['max_relative_error']:.1e} of the ripple"
+    )
+    print(
+        f"training a convolutional network on {training['recordings']} recordings: {training['seconds']:.1f} s, "
+        f"{training['over_bare_step']:.2f} times the bare step; a DataLoader loop takes "
+        f"{training['dataloader_loop_over_ours']:.2f} times as long"
     )
     write_json(report / "benchmark.json", result)
 

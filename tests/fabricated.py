@@ -57,3 +57,18 @@ def _signal(gear: int, speed: float, load: float, label: str, severity: float, l
     elif label == "tip_tooth_crack":
         s[1:4:2] += 0.02 * severity * np.exp(-50 * np.sin((turns - gauge[1:4:2]) / 2) ** 2)
     return s, efficiency
+
+
+def of_lines(lines: np.ndarray, length: int = 600, **columns: object) -> Recordings:
+    """Recordings whose order lines (sample, sensor, order) are given; columns of facts in place of those of a dull one.
+
+    Signals stay in double precision, so that tests may ask for results to rounding.
+    """
+    dull = {
+        "gear": 1, "label": "healthy", "variant": 0, "severity": 0.0, "position": np.nan, "n_in_rpm": SPEEDS[0],
+        "T_out_nm": 39.0, "efficiency": 0.7, "temperature_c": np.nan, "reference": False, "seed": 0,
+    }  # fmt: skip
+    table = facts({name: np.broadcast_to(value, len(lines)) for name, value in {**dull, **columns}.items()})
+    angle = 2 * np.pi * table["n_in_rpm"].to_numpy()[:, None] / 60 * np.arange(length) / RATE  # (sample, time)
+    waves = np.exp(1j * angle[:, None] * np.arange(lines.shape[-1])[:, None])  # (sample, order, time)
+    return Recordings((lines @ waves).real, table, RATE)

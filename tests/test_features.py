@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from fabricated import recordings
 
-from learn.features import Selection, learning_set
+from learn.features import Selection
 from learn.references import healthy_reference
 
 SELECTIONS = (
@@ -17,7 +17,7 @@ SELECTIONS = (
 
 
 def features(data, selection):
-    return learning_set([data], selection).features
+    return selection.learning_set([data]).features
 
 
 def changed(original, rows, **columns):
@@ -108,7 +108,7 @@ def test_blocks_give_what_the_whole_gives():
     data = recordings(gears=2, disturbance=0.01)
     blocks = [data.where(rows) for rows in np.array_split(np.arange(len(data)), 7)]
     for selection in SELECTIONS:
-        whole, parts = learning_set([data], selection), learning_set(blocks, selection)
+        whole, parts = selection.learning_set([data]), selection.learning_set(blocks)
         np.testing.assert_allclose(parts.features, whole.features, rtol=1e-9)
         assert parts.table.equals(whole.table)
 
@@ -130,7 +130,7 @@ def test_reference_efficiency_must_be_positive():
     ("change", "message"),
     [
         ({"spectrum": "sums"}, "unknown spectrum 'sums'; choose from none, gauges, differences"),
-        ({"efficiency": "eta"}, "unknown efficiency 'eta'; choose from eta_rel, eta2_rel"),
+        ({"efficiency": "eta"}, "unknown efficiency 'eta'; choose from none, eta_rel, eta2_rel, both"),
         ({"orders": 0}, "0 DFT orders, at least 1"),
         ({"floor": 0.0}, "floor 0.0 mV/V must be above 0"),
     ],

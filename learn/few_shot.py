@@ -1,0 +1,60 @@
+"""The job of an adaptation: train on every fold's source gears, adapt to each gear left out, judge it."""
+
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+
+from learn import identity, settings
+from learn.inputs import LearningSet
+from learn.levels import Episode, NewGears
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from learn.adapting import Adapted
+
+TRIED_SHOTS = 5  # options are tried on development gears with so many shots at most, or else with the fewest
+
+
+def results(
+    config: Mapping[str, Any], data: LearningSet
+) -> tuple[dict[str, float], dict[str, "Figure"], dict[str, pd.DataFrame]]:
+    """Metrics, figures and tables of a resolved configuration of ``conf/train.yaml``.
+
+    Raises
+    ------
+    ValueError
+        If the protocol leaves no gears to adapt to.
+    """
+    from learn import models
+    from learn.adapting import adapt_and_judge
+    from learn.choosing import choose
+
+    protocol = settings.protocol(config["protocol"])
+    if not isinstance(protocol, NewGears):
+        raise ValueError(
+            f"protocol {config['protocol']['name']} leaves no gear to adapt to: take new_gears, or adaptation=none"
+        )
+    make, adaptation = settings.classifier(config["classifier"], data.layout), config["adaptation"]
+    source = json.dumps([config["classifier"], identity.code_version()], sort_keys=True)
+
+    def source_model(X: np.ndarray, y: np.ndarray) -> Any:
+        return models.trained(Path(config["models"]), source, make(), X, y)
+
+    def adapted(episodes: Iterable[Episode], options: Mapping[str, Any], shots: Sequence[int], draws: int) -> "Adapted":
+        return adapt_and_judge(data, episodes, source_model, settings.adaptation(adaptation)(**options), shots, draws)
+
+    def score(options: Mapping[str, Any]) -> float:
+        shots = adaptation["shots"]
+        few = max((number for number in shots if number <= TRIED_SHOTS), default=min(shots))
+        return 100 - adapted(protocol.development_episodes(data.table), options, [few], draws=1).mean_error()
+
+    trials = settings.trials(adaptation) if protocol.development else [{}]
+    options, scores = choose(trials, score)
+    judged = adapted(protocol.episodes(data.table), options, adaptation["shots"], config["draws"])
+    metrics = judged.metrics() | {f"trial/{i}": round(score, 3) for i, score in enumerate(scores, start=1)}
+    return metrics, {}, {"tables/specimens.parquet": judged.specimens, "tables/gears.parquet": judged.gears}

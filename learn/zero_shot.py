@@ -1,0 +1,45 @@
+"""The job of a method without adaptation: train on every split's training rows, judge its test rows."""
+
+from collections.abc import Mapping
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+from learn import settings
+from learn.inputs import LearningSet
+from learn.levels import NewGears
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def results(
+    config: Mapping[str, Any], data: LearningSet
+) -> tuple[dict[str, float], dict[str, "Figure"], dict[str, pd.DataFrame]]:
+    """Metrics, figures and tables of a resolved configuration of ``conf/train.yaml``."""
+    from learn.choosing import choose
+    from learn.confusion import picture
+    from learn.evaluation import Evaluation, evaluate
+
+    protocol = settings.protocol(config["protocol"])
+    make = settings.classifier(config["classifier"], data.layout)
+    y = data.table["label"].astype(str).to_numpy()
+
+    def evaluated(splits: Any, options: Mapping[str, Any]) -> Evaluation:
+        return evaluate(data.features, y, splits, partial(make, **options))
+
+    options: Mapping[str, Any] = {}
+    scores: list[float] = []
+    if isinstance(protocol, NewGears) and protocol.development:
+        splits = list(protocol.development_splits(data.table))
+        trials = settings.trials(config["classifier"])
+        options, scores = choose(trials, lambda options: evaluated(splits, options).metrics()["test_score"])
+    evaluation = evaluated(protocol.split(data.features, data.table), options)
+
+    metrics = evaluation.metrics() | {f"trial/{i}": score for i, score in enumerate(scores, start=1)}
+    title = "{study}: {classifier[name]}, {features[name]}".format(**config)
+    predictions = (
+        {"tables/predictions.parquet": evaluation.predictions(data.table)} if isinstance(protocol, NewGears) else {}
+    )
+    return metrics, {"figures/confusion.png": picture(evaluation, title)}, predictions

@@ -1,0 +1,119 @@
+"""The oracle: probabilities of the classes for one who knows the gear, all faults and the statistics of the bench.
+
+On average no classifier errs less; the oracle's errors tell how much of a classifier's are those of the task itself.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+from jaxtyping import Float
+
+from swgsim.bench import Session
+from swgsim.gear import Gear
+from swgsim.oracle_cells import Resolution
+from swgsim.oracle_model import ORDERS, Expectation, bench_of, expectations, observations
+from swgsim.oracle_point import PointModel
+from swgsim.orders import whole_revolutions
+from swgsim.plan import Plan
+from swgsim.recordings import CLASSES, SENSORS, Recordings
+from swgsim.seeds import generator
+
+# Where the logarithm of the efficiency and the temperature stand in an observation.
+EFFICIENCY, TEMPERATURE = -2, -1
+
+
+def point_model(plan: Plan, gear: Gear, expected: Expectation, session_known: bool) -> PointModel:
+    """The distributions at one operating point: what is expected, plus all that is added to a recording.
+
+    Parameters
+    ----------
+    session_known : bool
+        Whether the oracle also knows the bias of the torque flanges during the session of the gear's samples.
+
+    Raises
+    ------
+    ValueError
+        If nothing random is added to some part of the observation, which would then tell all.
+    """
+    bench, point = bench_of(plan), expected.point
+    mean = expected.healthy.mean(axis=0)
+    length = whole_revolutions(point.n_in_rpm, plan.window.rate, plan.window.samples)
+    white = (bench.noise**2 + plan.window.noise**2 + plan.window.quantum**2 / 12) / length
+    means = np.arange(len(SENSORS)) * (ORDERS + 1)
+    added = np.full(len(mean), 2 * white)
+    added[means] = white + bench.zero_drift**2
+
+    T_out = point.T_out
+    T_in = T_out / ((gear.transmission.N + 1) * np.exp(mean[EFFICIENCY]))
+    session = Session(0.0, 0.0)
+    added[EFFICIENCY] = (bench.flange_out / T_out) ** 2 + (bench.flange_in / T_in) ** 2 + bench.speed_reading**2
+    if session_known:
+        session = bench.session(generator("session", plan.grid.seed, gear.number, False))
+    else:
+        added[EFFICIENCY] += (bench.flange_out_bias / T_out) ** 2 + (bench.flange_in_bias / T_in) ** 2
+    mean[EFFICIENCY] += np.log1p(session.T_out / T_out) - np.log1p(session.T_in / T_in)
+    added[TEMPERATURE] = bench.temperature_error**2
+    if not (added > 0).all():
+        raise ValueError(
+            "the bench adds nothing random to the signals, the efficiency or the temperature, and the oracle would be "
+            "infinitely sure: give it noise, flange_in or flange_out, and temperature_error above 0"
+        )
+    return PointModel(mean, np.cov(expected.healthy, rowvar=False) + np.diag(added), expected.faults)
+
+
+def judge(
+    plan: Plan, gear: Gear, expected: Sequence[Expectation], samples: Recordings, session_known: bool
+) -> Float[np.ndarray, "sample class"]:
+    """Posterior probability of each of CLASSES for samples of one gear of which this is expected.
+
+    Raises
+    ------
+    ValueError
+        If a recording is a reference, or of another gear or operating point.
+    """
+    table = samples.table
+    if table["reference"].any():
+        raise ValueError(
+            f"{table['reference'].sum()} of the recordings are references, which are of another session: leave them "
+            "out with recordings.samples"
+        )
+    x = observations(samples)
+    found = np.full((len(x), len(CLASSES)), np.nan)
+    for at_point in expected:
+        point = at_point.point
+        here = (table["n_in_rpm"] == point.n_in_rpm) & (table["T_out_nm"] == point.T_out)
+        rows = np.flatnonzero(here & (table["gear"] == gear.number))
+        found[rows] = np.exp(point_model(plan, gear, at_point, session_known).log_posterior(x[rows]))
+    _require_all_judged(found, table)
+    return found
+
+
+def posteriors(
+    plan: Plan, samples: Recordings, session_known: bool, resolution: Resolution | None = None
+) -> Float[np.ndarray, "sample class"]:
+    """Posterior probability of each of CLASSES for samples of a data set that was made by this plan.
+
+    Raises
+    ------
+    ValueError
+        If the plan has no bench, a grid that is not drawn, or not the gear or the operating point of a recording.
+    """
+    found = np.full((len(samples), len(CLASSES)), np.nan)
+    for gear in plan.gears:
+        rows = np.flatnonzero(samples.table["gear"] == gear.number)
+        if len(rows):
+            expected = expectations(plan, gear, resolution or Resolution())
+            found[rows] = judge(plan, gear, expected, samples.where(rows), session_known)
+    _require_all_judged(found, samples.table)
+    return found
+
+
+def _require_all_judged(found: Float[np.ndarray, "sample class"], table: pd.DataFrame) -> None:
+    left = np.flatnonzero(np.isnan(found).any(axis=1))
+    if len(left):
+        gear, speed, load = table[["gear", "n_in_rpm", "T_out_nm"]].iloc[left[0]]
+        raise ValueError(
+            f"recording {left[0]} is of gear {gear:g} at {speed:g} rpm and {load:g} N m, which the plan does not have: "
+            "judge the recordings of a data set by its own plan"
+        )

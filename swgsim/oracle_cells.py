@@ -1,0 +1,142 @@
+"""Fault classes as even mixtures of cells in severity and position, for the oracle."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from itertools import product
+from math import log, sqrt
+
+import numpy as np
+from jaxtyping import Float
+from scipy.interpolate import KroghInterpolator
+
+from swgsim.checks import require_integer
+from swgsim.faults import FAULTS, WITHOUT_POSITION, Variant
+
+# A uniform distribution of width 1 has this standard deviation.
+UNIFORM = 1 / sqrt(12)
+
+# Classes whose signals change steadily with the position.
+TURNING = ("eccentric_wave_generator", "tip_tooth_crack")
+
+# Classes interpolated over the logarithm of the severity: a crack opens like one over its remaining stiffness. Of the
+# largest change, about 400 standard deviations of the noise, three nodes then miss 2 at most, instead of 20.
+RELATIVE = ("root_tooth_crack",)
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """How finely the oracle knows what it knows.
+
+    Attributes
+    ----------
+    draws : int
+        Healthy runs that give mean and covariance of a gear at an operating point.
+    nodes : int
+        Severities of each class at which faults are simulated; between them a polynomial interpolates.
+    severities : mapping
+        Fault class to its number of cells between the extremes of the severity.
+    positions : mapping
+        Fault class to its number of cells around the flex spline, for the classes of TURNING; the root tooth crack has
+        one for each gap of the mesh, within which its position changes nothing.
+    """
+
+    draws: int = 200
+    nodes: int = 3
+    severities: Mapping[str, int] = field(
+        default_factory=lambda: {
+            "reduced_damping": 24,
+            "reduced_stiffness": 24,
+            "eccentric_wave_generator": 6,
+            "root_tooth_crack": 6,
+            "tip_tooth_crack": 6,
+        }
+    )
+    positions: Mapping[str, int] = field(
+        default_factory=lambda: {"eccentric_wave_generator": 24, "tip_tooth_crack": 48}
+    )
+
+    def __post_init__(self) -> None:
+        require_integer("the oracle", "draws", self.draws, low=20, high=100_000)
+        require_integer("the oracle", "nodes", self.nodes, low=2, high=10)
+        for name, low, expected in (("severities", 1, tuple(FAULTS)), ("positions", 3, TURNING)):
+            counts: Mapping[str, int] = getattr(self, name)
+            if set(counts) != set(expected):
+                raise ValueError(f"{name} of the oracle for {sorted(counts)}, expected one for each of {expected}")
+            for label, count in counts.items():
+                require_integer("the oracle", f"{name} of {label}", count, low=low, high=10_000)
+
+
+@dataclass(frozen=True)
+class Cells:
+    """A fault class of one gear at one operating point.
+
+    Attributes
+    ----------
+    shift : array (cell, feature)
+        Change of the observation by the fault in the middle of each cell.
+    spread : array (cell, direction, feature)
+        Standard deviation of the change within a cell along severity and, where it matters, position.
+    """
+
+    shift: Float[np.ndarray, "cell feature"]
+    spread: Float[np.ndarray, "cell direction feature"]
+
+
+@dataclass(frozen=True)
+class Partition:
+    """The cells of a fault class, and the faults to simulate for them.
+
+    Attributes
+    ----------
+    label : str
+    low, high : float
+        Extremes of the severity.
+    severities, positions, nodes : int
+        Cells along either, and simulated severities.
+    """
+
+    label: str
+    low: float
+    high: float
+    severities: int
+    positions: int
+    nodes: int
+
+    @classmethod
+    def of(cls, label: str, levels: tuple[float, ...], resolution: Resolution, sectors: int) -> "Partition":
+        """Of a class with these levels of severity, on a mesh."""
+        positions = dict.fromkeys(WITHOUT_POSITION, 1) | {"root_tooth_crack": sectors} | dict(resolution.positions)
+        return cls(label, min(levels), max(levels), resolution.severities[label], positions[label], resolution.nodes)
+
+    def variants(self) -> list[Variant]:
+        """The faults to simulate: at every node of the severity, in the middle of each cell of the position."""
+        severity = np.exp(self._nodes) if self.label in RELATIVE else self._nodes
+        position = 2 * np.pi * (np.arange(self.positions) + 0.5) / self.positions
+        return [
+            Variant(self.label, number, s, p, (FAULTS[self.label](s, p),))
+            for number, (s, p) in enumerate(product(severity.tolist(), position.tolist()))
+        ]
+
+    def cells(self, change: Float[np.ndarray, "variant feature"]) -> Cells:
+        """The cells from the change of the observation by each simulated fault.
+
+        Within a cell the change is linear: along the severity it follows the ends of the cell, along the position the
+        neighbours, which close around the flex spline.
+        """
+        change = change.reshape(len(self._nodes), self.positions, -1)
+        polynomial = KroghInterpolator(self._nodes, change)
+        bounds = np.linspace(self.low, self.high, 2 * self.severities + 1)  # ends and middles of the cells in turn
+        values = polynomial(np.log(bounds) if self.label in RELATIVE else bounds)
+        shift = values[1::2]
+        directions = [np.diff(values[::2], axis=0)]
+        if self.label in TURNING:
+            directions.append((np.roll(shift, -1, axis=1) - np.roll(shift, 1, axis=1)) / 2)
+        spread = UNIFORM * np.stack(directions, axis=2)
+        return Cells(shift.reshape(-1, shift.shape[2]), spread.reshape(-1, *spread.shape[2:]))
+
+    @property
+    def _nodes(self) -> Float[np.ndarray, " node"]:
+        """Chebyshev nodes between the extremes of the severity, or of its logarithm; one if the extremes are equal."""
+        low, high = (log(self.low), log(self.high)) if self.label in RELATIVE else (self.low, self.high)
+        inside = np.cos(np.pi * (np.arange(self.nodes) + 0.5) / self.nodes)
+        return np.unique((low + high + (high - low) * inside) / 2)

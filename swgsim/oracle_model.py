@@ -1,0 +1,148 @@
+"""What the oracle expects of a gear: healthy runs that vary as on the bench, and the changes by every fault.
+
+An observation holds the order lines 0 to ORDERS of the five gauges [mV/V], real parts before imaginary ones, then the
+logarithm of the efficiency and the temperature as shown [degC].
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from itertools import chain, product
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.bench import Bench
+from swgsim.chain import Run
+from swgsim.effects import Effect, ParameterScatter
+from swgsim.faults import FAULTS, Variant
+from swgsim.gear import Gear, OperatingPoint
+from swgsim.grid import Case
+from swgsim.oracle_cells import Cells, Partition, Resolution
+from swgsim.orders import lines_of
+from swgsim.plan import Plan
+from swgsim.record import record
+from swgsim.recordings import Recordings
+from swgsim.seeds import generator, seed_hash
+
+# Highest order that the oracle looks at.
+ORDERS = 12
+
+# What is added to a recording after the chain, and what moves the run itself; a unit's imperfections are neither.
+ADDED = (
+    "noise",
+    "zero_drift",
+    "flange_in",
+    "flange_out",
+    "flange_in_bias",
+    "flange_out_bias",
+    "temperature_error",
+    "speed_reading",
+)
+MOVING = ("load", "speed", "index_angle", "output_angle", "temperature")
+
+
+@dataclass(frozen=True)
+class Expectation:
+    """Observations of one gear at one operating point before anything is added to them.
+
+    Attributes
+    ----------
+    point : OperatingPoint
+    healthy : array (draw, feature)
+        Of healthy runs that vary as on the bench.
+    faults : mapping
+        Fault class to its cells.
+    """
+
+    point: OperatingPoint
+    healthy: Float[np.ndarray, "draw feature"]
+    faults: Mapping[str, Cells]
+
+
+def bench_of(plan: Plan) -> Bench:
+    """The bench of a plan.
+
+    Raises
+    ------
+    ValueError
+        If it has none.
+    """
+    if plan.bench is None:
+        raise ValueError("the oracle needs the statistics of a bench and the plan has none: choose condition=bench")
+    return plan.bench
+
+
+def expectations(plan: Plan, gear: Gear, resolution: Resolution) -> list[Expectation]:
+    """What is to be expected of a gear at every operating point of the plan.
+
+    Raises
+    ------
+    ValueError
+        If the plan has no bench, no healthy class, or fault variants that are not drawn.
+    """
+    bench = bench_of(plan)
+    if "healthy" not in plan.grid.classes:
+        raise ValueError(f"no 'healthy' among the classes {plan.grid.classes}, to which the oracle compares: add it")
+    if not plan.grid.variants.drawn:
+        raise ValueError(
+            "the fault variants of this grid are a list (drawn is false), while the oracle spreads each class evenly "
+            "between its extremes: choose a grid whose variants are drawn, such as grid=sampled"
+        )
+    varying = _with_bench(plan, replace(bench, **dict.fromkeys(ADDED, 0.0)))
+    still = _with_bench(plan, replace(bench, **dict.fromkeys(ADDED + MOVING, 0.0)))
+    sound = Variant("healthy", 0, np.nan, np.nan, ())
+    draws = [replace(sound, number=number) for number in range(resolution.draws)]
+    healthy = _observed(varying, gear, draws, plan.grid.scatter)
+    partitions = {
+        label: Partition.of(label, plan.grid.variants.severities[label], resolution, plan.sectors)
+        for label in FAULTS
+        if label in plan.grid.classes
+    }
+    variants = {label: partition.variants() for label, partition in partitions.items()}
+    # All at once, as what runs have in common is computed once.
+    found = _observed(still, gear, [sound, *chain.from_iterable(variants.values())])
+    ends = np.cumsum([len(each) for each in variants.values()], dtype=int)
+    pieces = np.split(found[:, 1:] - found[:, :1], ends, axis=1)  # and an empty one after the last end
+    changes = dict(zip(variants, pieces, strict=False))
+    return [
+        Expectation(point, healthy[i], {label: each.cells(changes[label][i]) for label, each in partitions.items()})
+        for i, point in enumerate(plan.grid.points)
+    ]
+
+
+def observations(recordings: Recordings) -> Float[np.ndarray, "sample feature"]:
+    """What the oracle looks at.
+
+    Raises
+    ------
+    ValueError
+        If an efficiency is not above 0.
+    """
+    table = recordings.table
+    efficiency = table["efficiency"].to_numpy()
+    if not (efficiency > 0).all():
+        raise ValueError(f"efficiency {efficiency.min():g} found, the oracle takes its logarithm: leave out low loads")
+    lines = lines_of(recordings, ORDERS)
+    parts = (lines.real.reshape(len(lines), -1), lines.imag[:, :, 1:].reshape(len(lines), -1))
+    return np.column_stack([*parts, np.log(efficiency), table["temperature_c"]])
+
+
+def _with_bench(plan: Plan, bench: Bench) -> Plan:
+    """The plan on another bench, without what the window adds."""
+    return replace(plan, bench=bench, window=replace(plan.window, noise=0.0, quantum=0.0))
+
+
+def _observed(
+    plan: Plan, gear: Gear, variants: Iterable[Variant], scatter: float = 0.0
+) -> Float[np.ndarray, "point variant feature"]:
+    """Observations of simulated recordings of a gear, whose draws are other ones than those of the data set."""
+    cases = []
+    for point, variant in product(plan.grid.points, variants):
+        seed = seed_hash("oracle", plan.grid.seed, gear.number, variant.number, point.n_in_rpm, point.T_out)
+        effects: tuple[Effect, ...] = variant.effects
+        if scatter:
+            b1_ratio, k1_ratio = np.clip(generator("scatter", seed).normal(1, scatter, 2), 0.8, 1.2)
+            effects = (*effects, ParameterScatter(float(b1_ratio), float(k1_ratio)))
+        cases.append(Case(Run(gear, point, effects), variant, False, seed))
+    found = observations(record(plan, cases))
+    return found.reshape(len(plan.grid.points), -1, found.shape[1])
