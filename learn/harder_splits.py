@@ -125,7 +125,7 @@ class LeaveOperatingPointOut:
             raise ValueError(
                 f"{len(points)} operating point found, leaving one out needs at least 2: take a grid with more"
             )
-        group = _dealt(table, self.folds, "groups", self.seed)
+        group = _dealt(table, self.folds, "folds", self.seed)
         for number, (speed, load) in enumerate(points):
             here, chosen = point == number, group == number % self.folds
             name = f"{_written(speed)} rpm, {_written(load)} N m"
@@ -137,15 +137,16 @@ def _written(value: float) -> str:
     return np.format_float_positional(value, trim="-")
 
 
-def _dealt(table: pd.DataFrame, number: int, purpose: str, seed: int) -> Int[np.ndarray, " row"]:
+def _dealt(table: pd.DataFrame, number: int, what: str, seed: int) -> Int[np.ndarray, " row"]:
     """Which of `number` groups each row's specimen is in; those of each gear and class are dealt evenly, at random."""
     group = np.empty(len(table), dtype=int)
-    for (gear, label), rows in table.groupby(["gear", "label"], observed=True).indices.items():
+    for rows in table.groupby(["gear", "label"], observed=True).indices.values():
+        gear, label = table["gear"].iloc[rows[0]], table["label"].iloc[rows[0]]
         variants, variant = np.unique(table["variant"].to_numpy()[rows], return_inverse=True)
         if len(variants) < number:
             raise ValueError(
-                f"gear {gear} has {len(variants)} variants of {label}, fewer than {number} {purpose}: "
-                f"take fewer or more variants"
+                f"gear {gear} has {len(variants)} variants of {label}, fewer than {number} {what}: "
+                f"take fewer {what} or more variants"
             )
-        group[rows] = generator(purpose, seed, gear, label).permutation(len(variants))[variant] % number
+        group[rows] = generator(f"dealt into {what}", seed, gear, label).permutation(len(variants))[variant] % number
     return group

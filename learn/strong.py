@@ -30,7 +30,7 @@ def gradient_boosting(
     )
 
 
-def extra_trees(trees: int = 300, smallest_leaf: int = 1, columns: float | str = "sqrt", seed: int = 0) -> Classifier:
+def extra_trees(trees: int = 100, smallest_leaf: int = 1, columns: float | str = "sqrt", seed: int = 0) -> Classifier:
     """Extremely randomised trees at full depth; every split considers a share `columns` of the features."""
     from sklearn.ensemble import ExtraTreesClassifier
 

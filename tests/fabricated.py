@@ -23,7 +23,7 @@ def recordings(
     for gear, (speed, load) in product(range(1, gears + 1), product(SPEEDS, LOADS)):
         for label, variant, reference in _specimens(variants, references):
             rng = generator("fabricated", gear, speed, load, label, variant, reference)
-            severity = 0.0 if label == "healthy" else (variant + 1) / variants
+            severity = 0.0 if label == "healthy" else (variant + 1) / (variants + 1)
             s, efficiency = _signal(gear, speed, load, label, severity, length)
             signals.append(s + disturbance * rng.standard_normal((5, 1)))
             rows.append((gear, label, variant, severity, speed, load, efficiency, reference, int(rng.integers(2**63))))

@@ -13,8 +13,8 @@ from sklearn.base import clone
 from sklearn.ensemble import RandomForestClassifier
 
 from learn import few_shot, job, settings, tracking
-from learn.adapting import adapt_and_judge
 from learn.adaptations import ADAPTATIONS
+from learn.adapting import adapt_and_judge
 from learn.fine_tuning import FineTuning
 from learn.harmonics import Harmonics
 from learn.inputs import LearningSet
@@ -134,7 +134,8 @@ def test_errors_are_counted_by_specimen_and_by_gear(numbered):
     np.testing.assert_allclose(adapted.gears["error"], adapted.gears["gear"].map(expected))
     assert adapted.gears[["gear", "shots"]].apply(tuple, axis=1).is_unique
     metrics = adapted.metrics()
-    assert set(metrics) == {"test_score", "error/0_shots", "error/1_shots", "forgotten/0_shots", "forgotten/1_shots"}
+    each = {f"{name}/{number}_shots" for name in ("error", "unadapted", "forgotten") for number in (0, 1)}
+    assert set(metrics) == {"test_score", *each}
     assert metrics["test_score"] == pytest.approx(100 - adapted.mean_error(), abs=1e-3)
     assert metrics["forgotten/0_shots"] == 0
 
@@ -176,7 +177,9 @@ def test_the_source_model_itself_forgets_nothing_and_one_that_is_tuned_does(data
         for steps in (0, 20)
     )
     assert (still["forgotten"] == 0).all()
+    assert (still["error"] == still["unadapted"]).all()
     assert (tuned["forgotten"] != 0).any()
+    assert (tuned["unadapted"] == still["unadapted"]).all()
 
 
 def test_without_rows_kept_out_nothing_is_said_of_forgetting(data):
@@ -231,18 +234,25 @@ def folder(made, tmp_path_factory):
 FOREST_JOB = ("classifier=rf", "classifier.trees=10")
 
 
-def test_a_job_keeps_its_tables_and_is_done_once(folder, monkeypatch):
-    config = composed(folder, *FOREST_JOB, "adaptation=leaf_relabelling")
-    metrics = job.run(config)
-    assert {"test_score", "error/1_shots", "error/2_shots", "forgotten/1_shots", "trial/1", "trial/4"} <= set(metrics)
+@pytest.fixture(scope="module")
+def finished(folder):
+    """Configuration and metrics of a job."""
+    trials = "adaptation.trials=[{strength: 1.0}, {strength: 30.0}]"
+    config = composed(folder, *FOREST_JOB, "adaptation=leaf_relabelling", trials)
+    return config, job.run(config)
+
+
+def test_a_job_keeps_its_tables_and_is_done_once(finished, monkeypatch):
+    config, metrics = finished
+    assert {"test_score", "error/1_shots", "error/2_shots", "forgotten/1_shots", "trial/1", "trial/2"} <= set(metrics)
 
     store = tracking.local_store(config["tracking"]["folder"])
     (run,) = tracking.finished_runs(store, adaptation="leaf_relabelling").itertuples()
-    gears = tracking.table_of(store, run.run_id, "gears.parquet")
+    gears = tracking.table_of(store, run.run_id, "tables/gears.parquet")
     assert gears[["gear", "shots"]].to_numpy().tolist() == [[g, k] for g in (1, 2) for k in (1, 2)]
     assert 100 - gears["error"].mean() == pytest.approx(metrics["test_score"], abs=1e-3)
-    specimens = tracking.table_of(store, run.run_id, "specimens.parquet")
-    assert list(specimens.columns) == ["gear", "label", "variant", "shots", "error"]
+    specimens = tracking.table_of(store, run.run_id, "tables/specimens.parquet")
+    assert list(specimens.columns) == ["gear", "label", "variant", "shots", "error", "unadapted"]
     assert len(specimens) == 2 * 2 * 6 * 3  # gears, numbers of shots, classes, judged variants
     np.testing.assert_allclose(
         specimens.groupby(["gear", "shots"])["error"].mean(), gears.set_index(["gear", "shots"])["error"]
@@ -252,19 +262,15 @@ def test_a_job_keeps_its_tables_and_is_done_once(folder, monkeypatch):
     assert job.run(config) == pytest.approx(metrics)
 
 
-def test_methods_adapt_the_same_source_models(folder):
-    kept = folder / "models"
-    for adaptation in ("leaf_relabelling", "added_trees"):
-        job.run(composed(folder, *FOREST_JOB, f"adaptation={adaptation}", "seed=1"))
-        files = {path.name: path.stat().st_mtime_ns for path in kept.iterdir()}
-        if adaptation == "leaf_relabelling":
-            before = files
-    assert files == before
+def test_another_method_adapts_the_same_source_models_and_one_without_labels_does_its_job_too(folder, finished):
+    def kept():
+        return {path.name: path.stat().st_mtime_ns for path in (folder / "models").iterdir()}
 
-
-def test_a_method_without_labels_does_its_job(folder):
-    metrics = job.run(composed(folder, *FOREST_JOB, "adaptation=coral"))
-    assert {"test_score", "error/0_shots", "forgotten/0_shots"} <= set(metrics)
+    before = kept()
+    metrics = job.run(composed(folder, *FOREST_JOB, "adaptation=coral", "adaptation.trials=null"))
+    assert kept() == before
+    assert len(before) == 2 + 2  # folds of the judged gears and of the development gears
+    assert metrics["unadapted/0_shots"] == finished[1]["unadapted/1_shots"]
     assert "error/1_shots" not in metrics
 
 
@@ -273,7 +279,7 @@ def test_a_job_without_adaptation_is_judged_on_the_same_rows(folder):
     job.run(config)
     store = tracking.local_store(config["tracking"]["folder"])
     (run,) = tracking.finished_runs(store, adaptation="none").itertuples()
-    predictions = tracking.table_of(store, run.run_id, "predictions.parquet")
+    predictions = tracking.table_of(store, run.run_id, "tables/predictions.parquet")
     data = job.learning_set_of(
         folder / "small-clean.h5",
         storage.digest(folder / "small-clean.h5"),

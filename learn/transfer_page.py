@@ -1,0 +1,79 @@
+"""The report of the transfer study as one HTML page and as JSON."""
+
+import base64
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from learn.transfer_sentences import Goal
+from swgsim.style import Picture
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of text; the first `left` columns are aligned to the left, rows whose number is in `strong` are bold."""
+
+    header: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    note: str = ""
+    left: int = 1
+    strong: frozenset[int] = frozenset()
+
+
+@dataclass(frozen=True)
+class Listed:
+    """Sentences as a list."""
+
+    items: Sequence[str]
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of the page: paragraphs (text), lists, tables and pictures in their order."""
+
+    key: str
+    title: str
+    parts: Sequence[str | Listed | Table | Picture]
+
+
+@dataclass(frozen=True)
+class TransferReport:
+    """All that the report of the transfer study says.
+
+    Attributes
+    ----------
+    content : mapping
+        ``transfer.json``.
+    goals : sequence of Goal
+    plain : sequence of str
+        How the best methods were chosen, and where a fancy method does not beat the simple one.
+    levels : sequence of (str, str)
+        Levels of target information with what each means.
+    sections : sequence of Section
+    """
+
+    content: Mapping[str, Any]
+    goals: Sequence[Goal]
+    plain: Sequence[str]
+    levels: Sequence[tuple[str, str]]
+    sections: Sequence[Section]
+
+    def json(self) -> str:
+        """``transfer.json``."""
+        return json.dumps(dict(self.content), indent=2, allow_nan=False) + "\n"
+
+    def html(self) -> str:
+        """``transfer.html``: one file, pictures inside."""
+        environment = Environment(
+            loader=PackageLoader("learn", ""),
+            autoescape=True,
+            undefined=StrictUndefined,
+            trim_blocks=True,
+            lstrip_blocks=True,
+        )
+        environment.filters["data_uri"] = lambda raw: "data:image/png;base64," + base64.b64encode(raw).decode()
+        environment.filters["kind"] = lambda part: type(part).__name__
+        return environment.get_template("transfer_report.html.jinja").render(report=self)

@@ -1,0 +1,107 @@
+"""The section of the report that a practitioner reads: what the best method finds and how far it can be trusted."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+
+from learn import judging_figures as figures
+from learn.calibration import expected_calibration_error, negative_log_likelihood, reliability
+from learn.decisions import class_numbers, probabilities
+from learn.detection import detected, false_alarm_rate, recall_by_cell, worst_cell
+from learn.selective import area_under_risk, coverage_at, risk_coverage
+from learn.transfer_judging import conformal, found_sizes, physics_checked
+from learn.transfer_page import Listed, Section, Table
+from learn.transfer_sentences import number
+from swgsim.style import words
+
+NOMINAL = 0.9
+
+
+def section(best: str, predictions: Mapping[str, pd.DataFrame], refitted: str, drops: pd.DataFrame) -> Section:
+    """What a practitioner reads.
+
+    Parameters
+    ----------
+    best : str
+        The method to look at.
+    predictions : mapping
+        Method or oracle to its table of predictions; all are judged for calibration and selective decisions.
+    refitted : str
+        Method whose features were permuted.
+    drops : DataFrame
+        Of :func:`learn.transfer_judging.importance`.
+    """
+    chosen = predictions[best]
+    alarms = false_alarm_rate(chosen)
+    worst = worst_cell(chosen)
+    curves = {name: _risk(table) for name, table in predictions.items()}
+    bins = {name: reliability(probabilities(table), class_numbers(table)) for name, table in predictions.items()}
+    return Section(
+        "practice",
+        "What a practitioner reads",
+        [
+            f"All of this is {best}, level Z1, on gears never seen.",
+            Table(
+                ["fault", "taken for any fault [%]", "a90", "a90/95", "where a size is not given"],
+                found_sizes(chosen),
+                "a90: size of which 90 % of recordings are found; a90/95: the same with 95 % confidence. Sizes as in the "
+                "picture below, in SI units or as a share.",
+            ),
+            figures.pod_curves(chosen, detected(chosen)),
+            f"False alarms: {number(alarms['rate'], alarms['low'], alarms['high'], unit=' %')} of healthy recordings, in "
+            f"{alarms['alarming_gears']:.0f} of {alarms['gears']:.0f} gears. Worst cell: {words(str(worst['label']))} at "
+            f"{worst['n_in_rpm']:g} rpm and {worst['T_out_nm']:g} N m, {worst['recall']:.1f} % of {worst['recordings']} "
+            "recordings recognised.",
+            figures.cell_recall(recall_by_cell(chosen)),
+            _calibration(predictions, bins, curves),
+            figures.reliability_diagram(bins),
+            figures.risk_coverage_curves(curves),
+            _sets(chosen),
+            f"Which features carry the decision: {refitted}, trained anew on the first fold; one group of features at a "
+            "time is exchanged between recordings of the same operating point.",
+            figures.importance_map(drops),
+            Listed(physics_checked(drops)),
+        ],
+    )
+
+
+def _risk(predictions: pd.DataFrame) -> pd.DataFrame:
+    said = probabilities(predictions)
+    return risk_coverage(said.max(axis=1), said.argmax(axis=1) == class_numbers(predictions))
+
+
+def _calibration(
+    predictions: Mapping[str, pd.DataFrame], bins: Mapping[str, pd.DataFrame], curves: Mapping[str, pd.DataFrame]
+) -> Table:
+    """Calibration error, likelihood, and what can be decided, per method."""
+    rows = [
+        [
+            name,
+            f"{expected_calibration_error(bins[name]):.1f}",
+            f"{negative_log_likelihood(probabilities(table), class_numbers(table)):.2f}",
+            f"{100 * area_under_risk(curves[name]):.1f}",
+            f"{100 * coverage_at(curves[name], 0.05):.0f}",
+            f"{100 * coverage_at(curves[name], 0.01):.0f}",
+        ]
+        for name, table in predictions.items()
+    ]
+    return Table(
+        ["method", "calibration error [points]", "negative log-likelihood [nat]", "area under risk and coverage [%]",
+         "decided at 5 % error [%]", "decided at 1 % error [%]"], rows,
+        "Probabilities as each method gives them, without a temperature.",
+    )  # fmt: skip
+
+
+def _sets(predictions: pd.DataFrame) -> str:
+    """Coverage and size of conformal sets, in words."""
+    sets = conformal(predictions, NOMINAL)
+    if sets["mean_size"].min() >= len(predictions["label"].unique()):
+        return f"Sets of classes: {len(sets)} gears are too few to promise {100 * NOMINAL:.0f} %, every set holds all."
+    spread = f"{100 * sets['coverage'].min():.0f} to {100 * sets['coverage'].max():.0f} %"
+    return (
+        f"Sets of classes that shall hold the truth in {100 * NOMINAL:.0f} % of recordings of a new gear, the threshold of "
+        f"every gear from the other {len(sets) - 1}: they hold it in {100 * sets['coverage'].mean():.1f} % "
+        f"({spread} in single gears), with {sets['mean_size'].mean():.2f} classes on average and "
+        f"{100 * np.mean(sets['empty']):.1f} % of sets without a class."
+    )
