@@ -12,7 +12,8 @@ ON_GEARS := zero_shot $(if $(SMALL),,inputs inputs_features no_reference) transf
             $(if $(SMALL),,transfer_cnn transfer_map transfer_map_foreign)
 ON_PAPER := zero_shot_disturbed $(if $(SMALL),,forest_robustness network_robustness)
 comma := ,
-QUICK := $(if $(SMALL),protocol=new_gears_small shots=[1$(comma)2] draws=1)
+QUICK := $(if $(SMALL),shots=[1$(comma)2] draws=1 protocol.folds=2 protocol.development=0 \
+         protocol.labelled=2 protocol.unlabelled=1 protocol.kept_out=1)
 CORES := $(shell nproc)
 # The four tables run side by side and share the cores; with two of them every table has one process.
 JOBS := $(shell echo $$(( ($(CORES) + 3) / 4 )))

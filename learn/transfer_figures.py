@@ -80,9 +80,9 @@ def order_spectrum(residuals: pd.DataFrame) -> style.Picture:
     """Amplitude by order; the parameter is that of :func:`learn.transfer_map_figures.spectrum`."""
     drawn = map_figures.spectrum(residuals)
     return style.Picture(
-        "Disturbance and faults lie on different orders",
-        "Mean amplitude at the multiples of the wave generator's speed, on a logarithmic scale. Look at the grey bars: "
-        "they stand on order 0 and the low and odd orders, while the faults rise above healthy on the even ones "
-        "(shaded).",
+        "On which orders the disturbance and the faults lie",
+        "Mean amplitude at the multiples of the wave generator's speed, on a logarithmic scale. Look where the grey "
+        "bars are high and where faults rise above healthy (even orders are shaded): where only the faults do, a "
+        "feature sees the fault and not the disturbance.",
         style.png(drawn),
     )

@@ -104,12 +104,16 @@ def pays(scenarios: pd.DataFrame) -> Figure:
         for height, value in zip(y, difference, strict=True):
             if np.isfinite(value):
                 text = f"{value:+.1f}".replace("-", "\N{MINUS SIGN}")
-                axes.annotate(text, (1, height), xytext=(column, 0), xycoords=("axes fraction", "data"), va="center",
-                              textcoords="offset points", ha="right", fontsize=9, color=LOSS if value > 0 else GAIN)  # fmt: skip
+                axes.annotate(
+                    text, (1, height), xytext=(column, 0), xycoords=("axes fraction", "data"), va="center", ha="right",
+                    textcoords="offset points", fontsize=9, color=LOSS if value > 0 else GAIN,
+                )  # fmt: skip
     heads = y[first] - 1
     for column, text in ((44, "points to\nunadapted"), (108, "points to\nfrom scratch")):
-        axes.annotate(text, (1, 1), xytext=(column, 3), xycoords="axes fraction", textcoords="offset points", ha="right",
-                      va="bottom", fontsize=8.5)  # fmt: skip
+        axes.annotate(
+            text, (1, 1), xytext=(column, 3), xycoords="axes fraction", textcoords="offset points", ha="right",
+            va="bottom", fontsize=8.5,
+        )  # fmt: skip
     axes.set_yticks(y, rows["text"])
     for head, scenario in zip(heads, rows.loc[first, "scenario"], strict=True):
         axes.annotate(scenario, (0.012, head), xycoords=("axes fraction", "data"), va="center", fontweight="bold")

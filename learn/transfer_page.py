@@ -45,6 +45,8 @@ class TransferReport:
 
     Attributes
     ----------
+    grid : str
+        Name of the grid of the judged gears.
     content : mapping
         ``transfer.json``.
     goals : sequence of Goal
@@ -55,6 +57,7 @@ class TransferReport:
     sections : sequence of Section
     """
 
+    grid: str
     content: Mapping[str, Any]
     goals: Sequence[Goal]
     plain: Sequence[str]

@@ -9,9 +9,8 @@ from learn import transfer_figures as figures
 from learn.judging_figures import difference_forest
 from learn.transfer_page import Section, Table
 from learn.transfer_results import FOREST, ORACLE, ZeroShot, best_adapted
-from learn.transfer_sentences import DISTURBED_GOAL, FORGETTING_GOAL, NETWORK, listed, number, of_row
+from learn.transfer_sentences import DISTURBED_GOAL, FORGETTING_GOAL, listed, number, of_row
 from learn.transfer_studies import INPUTS, NETWORKS, best_disturbed
-from swgsim.style import words
 
 METHODS: Mapping[str, str] = {"mlp": "MLP", "cnn": "CNN", "minirocket": "MiniRocket"}
 
@@ -23,7 +22,10 @@ def levels(labelled: int | None) -> list[tuple[str, str]]:
         ("Z0", "nothing: models see the recording as it is"),
         ("Z1", "healthy acquisitions of the gear, its reference: a commissioning run. The paper assumes as much"),
         ("Z2", "besides, recordings of the gear without labels, of all classes"),
-        ("Z3", "besides, K labelled specimens of each class, the shots; a shot is one specimen at all operating points"),
+        (
+            "Z3",
+            "besides, K labelled specimens of each class, the shots; a shot is one specimen at all operating points",
+        ),
         ("Z4", f"besides, {pool} of each class: what labels of the gear can give at most"),
     ]
 
@@ -46,7 +48,9 @@ def disturbed(cases: pd.DataFrame, spectrum: pd.DataFrame | None, efficiency_cha
         Largest relative change of an efficiency by the disturbance.
     """
     best = best_disturbed(cases)
-    numbers = [[name, *(f"{value:.1f}" for value in row)] for name, row in zip(cases.index, cases.to_numpy(), strict=True)]
+    numbers = [
+        [name, *(f"{value:.1f}" for value in row)] for name, row in zip(cases.index, cases.to_numpy(), strict=True)
+    ]
     held = bool((cases.loc[best] >= DISTURBED_GOAL).all())
     solved = "solves" if held else "does not quite solve"
     parts: list = [
@@ -68,20 +72,19 @@ def why_disturbance_spares(spectrum: pd.DataFrame, efficiency_change: float) -> 
     table = spectrum.pivot(index="order", columns="source", values="amplitude")
     faults = table.drop(columns="disturbance")
     even = [order for order in table.index if order > 0 and order % 2 == 0]
-    low = [order for order in table.index if order in (0, 1)]
-    reached = faults.loc[even].max(axis="rows") / table.loc[even, "disturbance"].max()
+    noise = 1e3 * table["disturbance"]  # µV/V
+    reached = 1e3 * faults.loc[even].max(axis="rows") / noise[even].max()
     above, below = reached.index[reached > 1], reached.index[reached <= 1]
-    same = efficiency_change == 0
+    hidden = f"; that of {listed(below)} does not" if len(below) else ""
+    if efficiency_change == 0:
+        efficiency = "The efficiency is not disturbed at all, so any change of it is seen."
+    else:
+        efficiency = f"The efficiency is disturbed by up to {efficiency_change:.1e}, relative."
     return (
-        "Why: eq. 10 adds a mean and the orders 1, 1/2, 1/3 and 1/4. Mean amplitude that it puts on orders 0 and 1: "
-        f"{' and '.join(f'{1e3 * table.loc[o, "disturbance"]:.2f}' for o in low)} µV/V; on the even orders from 2 on at "
-        f"most {1e3 * table.loc[even, 'disturbance'].max():.3f} µV/V. On these the largest line of {listed(above)} "
-        f"stands above it"
-        + (f", that of {listed(below)} does not" if len(below) else "")
-        + ". The efficiency is "
-        + ("not disturbed at all, so that any change of it is seen." if same
-           else f"changed by the disturbance by up to {efficiency_change:.1e}, relative.")
-    )  # fmt: skip
+        f"Why: eq. 10 adds a mean and the orders 1, 1/2, 1/3 and 1/4. Its mean amplitude is {noise[0]:.2f} µV/V on order "
+        f"0 and {noise[1]:.2f} µV/V on order 1, and at most {noise[even].max():.3f} µV/V on the even orders from 2 on. "
+        f"There the largest line of {listed(above)} stands above it{hidden}. {efficiency}"
+    )
 
 
 def new_gears(zero: ZeroShot, no_reference: Mapping[str, str]) -> Section:
@@ -179,7 +182,9 @@ def _forgetting(forgotten: pd.DataFrame) -> list:
         return ["What adapting forgets was not measured: the protocol keeps no variant of the source gears out."]
     wide = kept.pivot(index="method", columns="shots", values="forgotten")
     worst = kept.groupby("method")["worst"].max()
-    rows = [[str(m), *("-" if np.isnan(v) else f"{v:+.1f}" for v in wide.loc[m]), f"{worst[m]:+.1f}"] for m in wide.index]
+    rows = [
+        [str(m), *("-" if np.isnan(v) else f"{v:+.1f}" for v in wide.loc[m]), f"{worst[m]:+.1f}"] for m in wide.index
+    ]
     header = ["method", *("Z2" if k == 0 else f"K = {k}" for k in wide.columns), "worst gear"]
     note = (
         f"Accuracy lost on variants of the source gears that no model was trained on [points], mean over the judged gears; "
@@ -193,7 +198,7 @@ def where_it_pays(table: pd.DataFrame) -> Section:
     """The map of scenarios."""
     rows = [
         [r["scenario"], r["method"], f"{r['shots']}", f"{r['unadapted']:.1f}", f"{r['error']:.1f}",
-         number(r["gain"], r["low"], r["high"]), _verdict(r)]
+         number(r["gain"], r["low"], r["high"]), _verdict(r["low"], r["high"])]
         for r in table.to_dict("records")
     ]  # fmt: skip
     transferred = table[~table["method"].str.endswith(": from scratch")]
@@ -207,11 +212,11 @@ def where_it_pays(table: pd.DataFrame) -> Section:
     return Section("map", "Where transfer pays", parts)
 
 
-def _verdict(row: Mapping[str, float]) -> str:
+def _verdict(low: float, high: float) -> str:
     """Whether adapting helps, from the interval of the change."""
-    if not np.isfinite(row["high"]):
+    if not np.isfinite(high):
         return "too few gears"
-    return "yes" if row["high"] < 0 else "harms" if row["low"] > 0 else "not clearly"
+    return "yes" if high < 0 else "harms" if low > 0 else "not clearly"
 
 
 def harder(parts: Mapping[str, pd.DataFrame]) -> Section:
@@ -240,12 +245,12 @@ def size(table: pd.DataFrame) -> Section:
             for r in table.to_dict("records")]  # fmt: skip
     header = ["classifier", "setting", "trees or neurons", "same gears [%]", "unseen gear [%]", "gap [points]"]
     return Section(
-        "size", "Size and robustness", [" ".join(sentences), figures.robustness_against_size(table), Table(header, rows, left=2)]
+        "size",
+        "Size and robustness",
+        [" ".join(sentences), figures.robustness_against_size(table), Table(header, rows, left=2)],
     )
 
 
 def made(facts: Sequence[tuple[str, str]]) -> Section:
     """How it was made."""
     return Section("made", "How it was made", [Table(["what", "how"], [list(fact) for fact in facts], left=2)])
-
-

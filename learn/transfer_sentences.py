@@ -157,8 +157,9 @@ def fancy_against_simple(zero: ZeroShot, networks: pd.DataFrame, few: pd.DataFra
     sentences = []
     if SIMPLE in zero.methods.index:
         others = [m for m in zero.methods.index if m.endswith(" on harmonics") and m != SIMPLE]
-        beside = pd.DataFrame({m: zero.difference(m, SIMPLE) for m in others}).T
-        sentences.append(_sorted_out(beside, f"Beside {SIMPLE}", "errors"))
+        if others:
+            beside = pd.DataFrame({m: zero.difference(m, SIMPLE) for m in others}).T
+            sentences.append(_sorted_out(beside, f"Beside {SIMPLE}"))
     classical = [m for m in zero.methods.index if m not in (NETWORK, FOREST)]
     if NETWORK in zero.methods.index and classical:
         simple = str(zero.methods.loc[classical, "value"].idxmin())
@@ -166,12 +167,12 @@ def fancy_against_simple(zero: ZeroShot, networks: pd.DataFrame, few: pd.DataFra
         verb = "beats" if row["high"] < 0 else "does not beat"
         sentences.append(f"{NETWORK} {verb} {simple}: {of_row(row)} points of difference.")
     if len(networks):
-        sentences.append(_sorted_out(networks, "Beside the MLP on the same input, with efficiency", "errors"))
+        sentences.append(_sorted_out(networks, "Beside the MLP on the same input, with efficiency"))
     for shots, name in ((0, "unlabelled recordings (Z2)"), (GOAL_SHOTS, f"{GOAL_SHOTS} labelled specimens (Z3)")):
         here = few[(few["shots"] == shots) & ~few["method"].str.endswith(": from scratch")].set_index("method")
         if len(here):
             gains = here[["gain", "gain_low", "gain_high"]].set_axis(["value", "low", "high"], axis="columns")
-            sentences.append(_sorted_out(gains, f"Beside its own source model, with {name}", "errors"))
+            sentences.append(_sorted_out(gains, f"Beside its own source model, with {name}"))
     sentences.extend(_beside_no_transfer(zero, few))
     return sentences
 
@@ -200,16 +201,15 @@ def _beside_no_transfer(zero: ZeroShot, few: pd.DataFrame) -> list[str]:
     return sentences
 
 
-def _sorted_out(table: pd.DataFrame, beside: str, what: str) -> str:
+def _sorted_out(table: pd.DataFrame, beside: str) -> str:
     """Which methods make clearly fewer errors and which do not."""
-    better, others = clear(table)
-    figures = [f"{name} ({table.loc[name, 'value']:+.1f})" for name in others]
+    better, others = (_with_value(table, names) for names in clear(table))
     return (
-        f"{beside}, clearly fewer {what} (whole 95 % interval below 0, points): {listed(with_value(table, better))}; "
-        f"not clearly: {listed(figures)}."
+        f"{beside}, clearly fewer errors (whole 95 % interval below 0, points): {listed(better)}; "
+        f"not clearly: {listed(others)}."
     )
 
 
-def with_value(table: pd.DataFrame, names: Sequence[str]) -> list[str]:
+def _with_value(table: pd.DataFrame, names: Sequence[str]) -> list[str]:
     """Names with their difference."""
     return [f"{name} ({table.loc[name, 'value']:+.1f})" for name in names]

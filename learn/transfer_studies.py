@@ -93,7 +93,9 @@ def networks_compared(runs: pd.DataFrame, predictions: Mapping[str, pd.DataFrame
     DataFrame
         Index ``CNN on raw signals`` and so on; ``value``, ``low``, ``high`` [points].
     """
-    named = by_method(runs[~runs["features.efficiency"].isin(["False", "none"])].rename(index=str).rename_axis("key").reset_index())
+    named = by_method(
+        runs[~runs["features.efficiency"].isin(["False", "none"])].rename(index=str).rename_axis("key").reset_index()
+    )
     rows = {}
     for features, of_input in named.groupby("features"):
         simple = of_input.index[of_input["classifier"] == "perceptron"]

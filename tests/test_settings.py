@@ -9,14 +9,15 @@ from learn import settings
 
 CONF = Path(__file__).parents[1] / "conf"
 MAKERS = {
-    "features": settings.selection,
+    "features": settings.representation,
     "classifier": settings.classifier,
+    "adaptation": settings.adaptation,
     "protocol": settings.protocol,
     "tracking": settings.store,
 }
 
 
-@pytest.mark.parametrize("path", [p for group in MAKERS for p in sorted((CONF / group).glob("*.yaml"))], ids=str)
+@pytest.mark.parametrize("path", [p for group in MAKERS for p in sorted((CONF / group).glob("*.yaml")) if p.stem != "none"], ids=str)
 def test_every_choice_of_the_configuration_makes_an_object(path):
     config = yaml.safe_load(path.read_text().replace("${seed}", "0"))
     assert config["name"] == path.stem
@@ -41,9 +42,9 @@ def test_every_choice_of_the_configuration_makes_an_object(path):
         (settings.store, {"name": "cloud"}, "unknown tracking 'cloud'; choose from local, server"),
         (settings.store, {"name": "server", "uri": "host"}, "tracking.uri='host' is no address of a server"),
         (
-            settings.selection,
+            settings.representation,
             {"name": "x", "order": 3},
-            "unknown option 'order' of features; choose from name, statistics",
+            "unknown option 'order' of features x; choose from name, statistics",
         ),
     ],
 )
