@@ -103,7 +103,7 @@ class Selection:
         efficiency = {"eta_rel": eta_rel, "eta2_rel": np.abs(1 - eta_rel) ** 0.25}  # eq. 9
         last = [efficiency[name] for name in EFFICIENCIES[self.efficiency]]
         # Networks on signals may take the features before the efficiency for one: a row of numbers.
-        layout = Layout(1, relative.shape[1])
+        layout = Layout(1, relative.shape[1], periodic=False)
         return LearningSet(np.concatenate([relative, *last], axis=1), samples, self.names, layout)
 
     @property

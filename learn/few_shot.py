@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -40,13 +41,26 @@ def results(
             f"protocol {config['protocol']['name']} leaves no gear to adapt to: take new_gears, or adaptation=none"
         )
     make, adaptation = settings.classifier(config["classifier"], data.layout), config["adaptation"]
-    source = json.dumps([config["classifier"], identity.code_version()], sort_keys=True)
+    y = data.table["label"].astype(str).to_numpy()
 
-    def source_model(X: np.ndarray, y: np.ndarray) -> Any:
-        return models.trained(Path(config["models"]), source, make(), X, y)
+    def source_model(X: np.ndarray, y: np.ndarray, **options: Any) -> Any:
+        identity_of_source = json.dumps([config["classifier"], options, identity.code_version()], sort_keys=True)
+        return models.trained(Path(config["models"]), identity_of_source, make(**options), X, y)
+
+    def source_score(options: Mapping[str, Any]) -> float:
+        shares = [
+            np.mean(source_model(data.features[train], y[train], **options).predict(data.features[test]) == y[test])
+            for _, train, test in protocol.development_splits(data.table)
+        ]
+        return 100 * float(np.mean(shares))
+
+    # The source model is the one that is judged without adaptation: its options are chosen in the same way.
+    source_trials = settings.trials(config["classifier"]) if protocol.development else [{}]
+    source_options, _ = choose(source_trials, source_score)
+    source = partial(source_model, **source_options)
 
     def adapted(episodes: Iterable[Episode], options: Mapping[str, Any], shots: Sequence[int], draws: int) -> "Adapted":
-        return adapt_and_judge(data, episodes, source_model, settings.adaptation(adaptation)(**options), shots, draws)
+        return adapt_and_judge(data, episodes, source, settings.adaptation(adaptation)(**options), shots, draws)
 
     def score(options: Mapping[str, Any]) -> float:
         shots = adaptation["shots"]

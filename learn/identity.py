@@ -25,6 +25,7 @@ PRESENTATION = (  # modules that only show results
     "paper.py",
     "report.py",
     "selective.py",
+    "transfer_adapted.py",
     "transfer_content.py",
     "transfer_curve_figures.py",
     "transfer_figures.py",

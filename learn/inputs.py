@@ -12,10 +12,15 @@ from swgsim.recordings import Recordings
 
 
 class Layout(NamedTuple):
-    """How a row begins: `channels` times `points` values of signal, channel after channel; side inputs follow."""
+    """How a row begins: `channels` times `points` values of signal, channel after channel; side inputs follow.
+
+    The points of a periodic signal are angles of a revolution; of one that is not they are features in a row, each with
+    a scale of its own.
+    """
 
     channels: int = 0
     points: int = 0
+    periodic: bool = True
 
     @property
     def columns(self) -> int:

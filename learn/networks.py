@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import cast
+from typing import Literal, cast
 
 import numpy as np
 import torch
@@ -37,7 +37,8 @@ class Network(nn.Module):
     width, classes, columns : int
         Number of features, of classes and of columns of the input.
     channels, points : int
-        Of the signal in the first channels*points columns; 0 channels if there is none.
+        Of the signal in the first channels*points columns, whose points are alike and share a scale; 0 channels if
+        there is none.
     """
 
     def __init__(
@@ -99,17 +100,21 @@ def _positive(
 
 
 class Convolutions(nn.Module):
-    """Circular convolutions over the revolution, pooled over the angle and joined by the side columns.
+    """Convolutions over the revolution, pooled over the angle and joined by the side columns.
 
-    The signal is periodic in the angle, hence the circular padding. With strides of 2 in three blocks, the output stays
-    the same under circular shifts of the scaled signal by whole multiples of 8 points, and under no others.
+    A signal that is periodic in the angle is padded with itself. With strides of 2 in three blocks, the output stays
+    the same under circular shifts of the scaled signal by whole multiples of 8 points, and under no others. What is
+    not periodic is padded with zeros.
     """
 
-    def __init__(self, channels: int, points: int, side: int, width: int, dropout: float) -> None:
+    def __init__(self, channels: int, points: int, side: int, width: int, dropout: float, periodic: bool) -> None:
         super().__init__()
         self.channels, self.points = channels, points
+        mode: Literal["circular", "zeros"] = "circular" if periodic else "zeros"
         self.blocks = nn.Sequential(
-            *_block(channels, width, 9), *_block(width, 2 * width, 5), *_block(2 * width, 2 * width, 5)
+            *_block(channels, width, 9, mode),
+            *_block(width, 2 * width, 5, mode),
+            *_block(2 * width, 2 * width, 5, mode),
         )
         self.side = nn.Sequential(nn.Linear(side, 32), nn.ReLU()) if side else nn.Identity()
         joined = 4 * width + (32 if side else 0)
@@ -122,14 +127,14 @@ class Convolutions(nn.Module):
         return cast(Tensor, self.joined(torch.cat([angle.mean(2), angle.amax(2), self.side(X[:, end:])], dim=1)))
 
 
-def _block(channels: int, width: int, kernel: int) -> list[nn.Module]:
-    convolution = nn.Conv1d(channels, width, kernel, 2, kernel // 2, bias=False, padding_mode="circular")
+def _block(channels: int, width: int, kernel: int, mode: Literal["circular", "zeros"]) -> list[nn.Module]:
+    convolution = nn.Conv1d(channels, width, kernel, 2, kernel // 2, bias=False, padding_mode=mode)
     return [convolution, nn.BatchNorm1d(width), nn.ReLU()]
 
 
 def perceptron(
     columns: int, classes: int, layers: int = 2, neurons: int = 256, dropout: float = 0.3,
-    *, channels: int = 0, points: int = 0, seed: int = 0,
+    *, channels: int = 0, points: int = 0, periodic: bool = True, seed: int = 0,
 ) -> Network:  # fmt: skip
     """Fully connected layers of ReLU units.
 
@@ -141,8 +146,8 @@ def perceptron(
         Hidden layers and units in each.
     dropout : float
         Share of the units that training leaves out at a time.
-    channels, points : int
-        Of the signal; they matter for its scaling only.
+    channels, points, periodic : int, int, bool
+        Of the signal; they matter for its scaling only: the points of a periodic one are alike and share a scale.
     seed : int
         Of the initial weights.
     """
@@ -157,38 +162,42 @@ def perceptron(
             for before, after in pairwise(widths)
             for layer in (nn.Linear(before, after), nn.ReLU(), nn.Dropout(dropout))
         ]
-        return Network(nn.Sequential(*hidden), neurons, classes, columns, channels, points)
+        return Network(nn.Sequential(*hidden), neurons, classes, columns, channels * periodic, points * periodic)
 
 
 def convolutional(
-    channels: int, points: int, columns: int, classes: int, width: int = 32, dropout: float = 0.2, *, seed: int = 0
-) -> Network:
+    channels: int, points: int, columns: int, classes: int, width: int = 32, dropout: float = 0.2,
+    *, periodic: bool = True, seed: int = 0,
+) -> Network:  # fmt: skip
     """Three blocks of convolutions over the angle, pooled; see :class:`Convolutions`.
 
     Parameters
     ----------
     channels, points : int
-        Of the signal; points are a multiple of 8.
+        Of the signal; points of a periodic one are a multiple of 8.
     columns, classes : int
         Of the input, signal included, and of the output.
     width : int
         Filters of the first block; the other two have twice as many.
     dropout : float
         Share of the pooled features that training leaves out at a time.
+    periodic : bool
+        Whether the points are angles of a revolution; else they are unlike, as features in a row are, and each has a
+        scale of its own.
     seed : int
         Of the initial weights.
     """
     owner = "the convolutional network"
     _require_common(owner, columns, classes, channels, points, dropout)
-    if channels < 1 or points % STRIDE:
+    if channels < 1 or (periodic and points % STRIDE):
         raise ValueError(
             f"{owner} is given {channels} channels of {points} points, needs a signal whose points are a multiple of "
             f"{STRIDE}, for three blocks halve the revolution; without a signal take the perceptron"
         )
     require_integer(owner, "width", width, low=1, high=1024)
     with seeded(seed_hash("initial weights", seed)):
-        body = Convolutions(channels, points, columns - channels * points, width, dropout)
-        return Network(body, FEATURES, classes, columns, channels, points)
+        body = Convolutions(channels, points, columns - channels * points, width, dropout, periodic)
+        return Network(body, FEATURES, classes, columns, channels * periodic, points * periodic)
 
 
 def _require_common(owner: str, columns: int, classes: int, channels: int, points: int, dropout: float) -> None:

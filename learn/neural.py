@@ -109,26 +109,29 @@ class NeuralClassifier:
 
 
 def neural_perceptron(
-    channels: int = 0, points: int = 0, layers: int = 2, neurons: int = 256, dropout: float = 0.3,
-    epochs: int = 15, batch: int = 256, rate: float = 3e-3, decay: float = 1e-2, seed: int = 0, device: str = "auto",
+    channels: int = 0, points: int = 0, periodic: bool = True, layers: int = 2, neurons: int = 256,
+    dropout: float = 0.3, epochs: int = 15, batch: int = 256, rate: float = 3e-3, decay: float = 1e-2, seed: int = 0,
+    device: str = "auto",
 ) -> NeuralClassifier:  # fmt: skip
     """A perceptron; see :func:`learn.networks.perceptron` and :class:`learn.training.Recipe`."""
     from learn.networks import Architecture
     from learn.training import Recipe
 
-    options = {"channels": channels, "points": points, "layers": layers, "neurons": neurons, "dropout": dropout}
+    signal = {"channels": channels, "points": points, "periodic": periodic}
+    options = {**signal, "layers": layers, "neurons": neurons, "dropout": dropout}
     return NeuralClassifier(Architecture("perceptron", options), Recipe(epochs, batch, rate, decay), seed, device)
 
 
 def convolutional_network(
-    channels: int, points: int, width: int = 32, dropout: float = 0.2,
+    channels: int, points: int, periodic: bool = True, width: int = 32, dropout: float = 0.2,
     epochs: int = 15, batch: int = 256, rate: float = 3e-3, decay: float = 1e-2, seed: int = 0, device: str = "auto",
 ) -> NeuralClassifier:  # fmt: skip
     """Convolutions over the angle; see :func:`learn.networks.convolutional` and :class:`learn.training.Recipe`."""
     from learn.networks import Architecture
     from learn.training import Recipe
 
-    options = {"channels": channels, "points": points, "width": width, "dropout": dropout}
+    signal = {"channels": channels, "points": points, "periodic": periodic}
+    options = {**signal, "width": width, "dropout": dropout}
     return NeuralClassifier(Architecture("convolutional", options), Recipe(epochs, batch, rate, decay), seed, device)
 
 

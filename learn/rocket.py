@@ -1,5 +1,6 @@
 """MiniRocket: thousands of fixed convolutions of the signal, pooled, and a ridge classifier on them (by aeon)."""
 
+import warnings
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -20,6 +21,8 @@ class MiniRocket:
     ----------
     channels, points : int
         Each row begins with so many channels of so many points; side inputs follow.
+    periodic : bool
+        Whether the points of a channel are alike and share a scale.
     kernels : int
         Features that the convolutions make.
     seed : int
@@ -32,6 +35,7 @@ class MiniRocket:
 
     channels: int
     points: int
+    periodic: bool = True
     kernels: int = 1008
     seed: int = 0
     classes_: np.ndarray = field(init=False, repr=False)
@@ -51,11 +55,12 @@ class MiniRocket:
         from sklearn.preprocessing import FunctionTransformer, RobustScaler, StandardScaler
 
         signal, side = self._split(X)
-        # One scale per channel, as for the networks: what differs between windows stays in them.
-        self._centre = signal.mean(axis=(0, 2), keepdims=True)
-        self._scale = signal.std(axis=(0, 2), keepdims=True) + np.finfo(np.float32).tiny
-        self._rocket = _transformer(self.kernels, self.seed).fit(self._scaled(signal))
-        convolved = self._rocket.transform(self._scaled(signal))
+        # One scale for all rows: what differs between windows stays in them.
+        alike = (0, 2) if self.periodic else 0
+        self._centre = signal.mean(axis=alike, keepdims=True)
+        self._scale = signal.std(axis=alike, keepdims=True) + np.finfo(np.float32).tiny
+        self._rocket = _transformer(self.kernels, self.seed)
+        convolved = self._convolved(signal, fit=True)
         self._of_rocket = StandardScaler().fit(convolved)
         self._of_side = make_pipeline(RobustScaler(), FunctionTransformer(np.arcsinh)).fit(side) if side.size else None
         features = self._joined(convolved, side)
@@ -67,7 +72,7 @@ class MiniRocket:
     def predict_proba(self, X: Float[np.ndarray, "row column"]) -> Float[np.ndarray, "row class"]:
         """Probability of each class: a logistic regression on the ridge's decision values."""
         signal, side = self._split(X)
-        features = self._joined(self._rocket.transform(self._scaled(signal)), side)
+        features = self._joined(self._convolved(signal), side)
         return self._probability.predict_proba(self._ridge.decision_function(features))
 
     def predict(self, X: Float[np.ndarray, "row column"]) -> np.ndarray:
@@ -79,8 +84,14 @@ class MiniRocket:
         signal = X[:, :columns].reshape(len(X), self.channels, self.points)
         return signal.astype(np.float32), X[:, columns:]
 
-    def _scaled(self, signal: np.ndarray) -> np.ndarray:
-        return (signal - self._centre) / self._scale
+    def _convolved(self, signal: np.ndarray, fit: bool = False) -> np.ndarray:
+        scaled = (signal - self._centre) / self._scale
+        with warnings.catch_warnings():
+            # A recording like its reference has a residual of zeros, which is as it should be.
+            warnings.filterwarnings(
+                "ignore", message="Data seen by instance of MiniRocket has one or more case/channel"
+            )
+            return self._rocket.fit_transform(scaled) if fit else self._rocket.transform(scaled)
 
     def _joined(self, convolved: np.ndarray, side: np.ndarray) -> np.ndarray:
         parts = [self._of_rocket.transform(convolved)]

@@ -76,7 +76,7 @@ def classifier(config: Config, layout: Layout = NO_SIGNAL) -> Callable[..., clas
     options = {key: value for key, value in config.items() if key not in NO_OPTIONS}
     make = _configured(f"classifier {name}", kind, options)
     knows_signals = "channels" in inspect.signature(kind).parameters
-    return partial(make, channels=layout.channels, points=layout.points) if knows_signals else make
+    return partial(make, **layout._asdict()) if knows_signals else make
 
 
 def adaptation(config: Config) -> Callable[..., "Adaptation"]:

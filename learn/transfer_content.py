@@ -1,7 +1,7 @@
 """What ``transfer.json`` holds, and how the study was made."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +14,10 @@ from learn.transfer_results import (
     SHOTS,
     ZeroShot,
     best_adapted,
+    figure,
     finite,
     interval,
+    row_of,
 )
 from learn.transfer_studies import PAPER_FOREST, best_disturbed, nested_inputs
 
@@ -32,12 +34,12 @@ def content(
     seconds: float,
 ) -> dict[str, Any]:
     """All of ``transfer.json``; errors in points, accuracies in per cent, None for an interval that is unknown."""
-    best, errors = zero.table.loc[zero.best], zero.table["value"]
+    best = row_of(zero.table, zero.best)
     solved = best_disturbed(cases)
     adapted = {shots: row for shots in SHOTS if (row := best_adapted(few, shots)) is not None}
     return {
         "z1": {
-            "forest_error": finite(errors[FOREST]),
+            "forest_error": finite(figure(zero.table, FOREST)),
             "best_method": zero.best,
             "best_error": finite(best["value"]),
             "ratio": finite(best["ratio"]),
@@ -54,17 +56,17 @@ def content(
             }
             for shots, row in adapted.items()
         },
-        "oracle_error": finite(errors[ORACLE]),
-        "oracle_session_error": finite(errors[ORACLE_OF_SESSION]),
+        "oracle_error": finite(figure(zero.table, ORACLE)),
+        "oracle_session_error": finite(figure(zero.table, ORACLE_OF_SESSION)),
         "gears": zero.gears,
         "inputs": nested_inputs(inputs, efficiency=True),
         "inputs_without_efficiency": nested_inputs(inputs, efficiency=False),
         "cnn_fit": {name: fit[name] for name in CNN_FIT},
         "disturbed": {
-            "z1": [round(value, 3) for value in cases.loc[solved]],
+            "z1": row_of(cases, solved).round(3).tolist(),
             "z1_method": solved,
-            "forest_paper": [round(value, 3) for value in cases.loc[PAPER_FOREST]],
-            "forest_in_the_paper": [round(value, 3) for value in cases.iloc[0]],
+            "forest_paper": row_of(cases, PAPER_FOREST).round(3).tolist(),
+            "forest_in_the_paper": cases.iloc[0].round(3).tolist(),
         },
         "seconds": round(seconds, 1),
     }
@@ -86,6 +88,7 @@ def how_made(
     data: Mapping[str, Any],
     run: pd.Series,
     judged: int,
+    trials: Sequence[int],
     fit: Mapping[str, Any],
     seconds: float,
     seconds_are: str,
@@ -101,6 +104,8 @@ def how_made(
         Parameters of a run with adaptation.
     judged : int
         Judged gears.
+    trials : sequence of int
+        How many options were tried, of every method that has options.
     fit : mapping
         Of :func:`cnn_fit`.
     seconds : float
@@ -109,6 +114,7 @@ def how_made(
     versions : mapping
     """
     grid = data["grid"]
+    tried = " or ".join(map(str, sorted(set(trials)))) or "none"
     gears = grid["population"]["count"] if grid.get("population") else len(data["gears"])
     points = f"{len(grid['speeds_rpm'])} speeds and {len(grid['loads_nm'])} loads" if "loads_nm" in grid else "grid"
     return [
@@ -119,15 +125,17 @@ def how_made(
         ("specimens", f"{grid['variants']} of each class and gear; operating points: {points}"),
         (
             "pools of a judged gear",
-            f"of each class {run['protocol.labelled']} labelled, {run['protocol.unlabelled']} unlabelled, the others judged; "
+            f"of each class {run['protocol.labelled']} labelled, {run['protocol.unlabelled']} unlabelled, the "
+            "others judged; "
             f"{run['protocol.kept_out']} of each source gear are never trained on",
         ),
-        ("options", "the same number of trials, four, for every method that has options, on development gears"),
+        ("options", f"{tried} tried on development gears for every one of {len(trials)} methods that has options"),
         ("shots", f"{run['shots']}, {run['draws']} nested draws, the same for all methods"),
         ("seed", str(run["seed"])),
         (
             "CNN, one fit",
-            f"{fit['recordings']} recordings in {fit['seconds']:.1f} s; an epoch takes {fit['over_bare_step']:.2f} times the "
+            f"{fit['recordings']} recordings in {fit['seconds']:.1f} s; an epoch takes "
+            f"{fit['over_bare_step']:.2f} times the "
             f"bare steps, the usual loop {fit['dataloader_loop_over_ours']:.2f} times ours",
         ),
         ("seconds", f"{seconds:.0f} ({seconds_are})"),

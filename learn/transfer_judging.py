@@ -19,6 +19,7 @@ from learn.job import learning_set_of
 from learn.levels import NewGears
 from learn.selective import conformal_threshold, prediction_sets, set_figures
 from learn.tracking import Store
+from learn.transfer_results import row_of
 from swgsim import storage
 from swgsim.seeds import generator
 from swgsim.style import words
@@ -30,6 +31,7 @@ EFFICIENCY, RIPPLE, OFFSETS, SHAPE, POINT = (
     "even orders around the circumference",
     "operating point",
 )
+REPEATS = 5  # permutations of each group
 # Names of features to their group, the first that fits.
 GROUPS: Mapping[str, str] = {
     EFFICIENCY: r"eta|viscous",
@@ -67,7 +69,8 @@ def found_sizes(predictions: pd.DataFrame) -> list[tuple[str, ...]]:
     for row in detection_table(predictions, taken_for_a_fault(predictions), by=()).to_dict("records"):
         unit = UNITS.get(row["label"], "")
         sizes = ["-" if np.isnan(row[name]) else f"{row[name]:.3g}{unit}" for name in ("a90", "a90_95")]
-        rows.append((words(row["label"]), f"{row['hits']:.1f}", *sizes, row["reason"]))
+        why = [text.replace("_", "/") for text in str(row["reason"]).split("; ") if not text.startswith("a50")]
+        rows.append((words(row["label"]), f"{row['hits']:.1f}", *sizes, "; ".join(why)))
     return rows
 
 
@@ -83,7 +86,10 @@ def conformal(predictions: pd.DataFrame, nominal: float = 0.9) -> pd.DataFrame:
 
 
 def importance(store: Store, run: pd.Series, data: Path) -> pd.DataFrame:
-    """Drop of recall when a group of features says nothing, of a method refitted on the first fold.
+    """Drop of every fault's recall when a group of features says nothing, of a method refitted on the first fold.
+
+    Features are exchanged between a fault's recordings and healthy ones only: those of other faults would make it look
+    like another fault, and every group would seem to matter.
 
     Parameters
     ----------
@@ -105,12 +111,17 @@ def importance(store: Store, run: pd.Series, data: Path) -> pd.DataFrame:
     y = chosen.table["label"].astype(str).to_numpy()
     model = settings.classifier(config["classifier"], chosen.layout)(**options_of(config, run, protocol))
     model.fit(chosen.features[split.train], y[split.train])
-    judged = chosen.table.iloc[split.test]
-    blocks = judged.groupby(list(OPERATING_POINT)).ngroup().to_numpy()
-    rng = generator("report", "importance")
-    return grouped_permutation(
-        model, chosen.features[split.test], y[split.test], groups_of(chosen.names), blocks, rng, repeats=5
-    )
+    X, truth = chosen.features[split.test], y[split.test]
+    blocks = chosen.table.iloc[split.test].groupby(list(OPERATING_POINT)).ngroup().to_numpy()
+    parts = []
+    for label in PHYSICS:
+        pair = np.isin(truth, [label, "healthy"])
+        rng = generator("report", "importance", label)
+        drops = grouped_permutation(
+            model, X[pair], truth[pair], groups_of(chosen.names), blocks[pair], rng, repeats=REPEATS
+        )
+        parts.append(drops[drops["label"] == label])
+    return pd.concat(parts, ignore_index=True)
 
 
 def configuration(store: Store, run_id: str) -> dict[str, Any]:
@@ -137,15 +148,18 @@ def physics_checked(drops: pd.DataFrame) -> list[str]:
     for label, (expected, why) in PHYSICS.items():
         if label not in table.index:
             continue
-        largest = table.loc[label].astype(float)
+        largest = row_of(table, label).astype(float)
         group, drop = str(largest.idxmax()), float(largest.max())
         if drop < 1:
             found = f"no single group costs more than {max(drop, 0):.1f} points, several know the same"
         elif group in expected:
-            found = f"{group} carry most ({drop:.1f} points), as its physics says: {why}"
+            found = f"most recall is lost with {group} ({drop:.1f} points), as its physics says: {why}"
         else:
             there = {name: f"{largest[name]:.1f}" for name in expected if name in largest.index}
             beside = ", ".join(f"{name} {value}" for name, value in there.items()) or "not among the features"
-            found = f"{group} carry most ({drop:.1f} points), where its physics would name {' or '.join(expected)} ({beside}): {why}"
+            named = " or ".join(expected)
+            found = (
+                f"most recall is lost with {group} ({drop:.1f} points); its physics names {named} ({beside}), as {why}"
+            )
         sentences.append(f"{words(label)}: {found}.")
     return sentences

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 import pandas as pd
@@ -72,6 +73,16 @@ class ZeroShot:
         return difference(self.errors, method, reference)
 
 
+def row_of(table: pd.DataFrame, name: str) -> pd.Series:
+    """The row of a method."""
+    return cast(pd.Series, table.loc[name])
+
+
+def figure(table: pd.DataFrame, name: str, column: str = "value") -> float:
+    """One figure of a method."""
+    return float(cast(float, table.at[name, column]))
+
+
 def highest(scores: pd.Series) -> str | None:
     """Where the highest score is, None if there is no score."""
     known = scores.dropna()
@@ -81,7 +92,8 @@ def highest(scores: pd.Series) -> str | None:
 def difference(errors: pd.DataFrame, method: str, reference: str) -> pd.Series:
     """``value``, ``low``, ``high`` of a method's error minus that of another on the same specimens [points]."""
     rng = generator("report", "difference", method, reference)
-    return hierarchical_bootstrap(errors[[*SPECIMEN, method, reference]], difference_to(reference), rng).loc[method]
+    both = errors[[*SPECIMEN, method, reference]]
+    return row_of(hierarchical_bootstrap(both, difference_to(reference), rng), method)
 
 
 def zero_shot(errors: pd.DataFrame, development: pd.Series, fit_seconds: pd.Series) -> ZeroShot:
@@ -142,16 +154,21 @@ def few_shot(errors: pd.DataFrame, adapted: Mapping[str, pd.DataFrame]) -> pd.Da
     return pd.concat(rows, ignore_index=True)
 
 
+def least(table: pd.DataFrame, column: str) -> pd.Series:
+    """The row with the smallest value."""
+    return table.iloc[int(table[column].to_numpy().argmin())]
+
+
 def best_adapted(table: pd.DataFrame, shots: int) -> pd.Series | None:
     """The row of the best method that transfers, at a number of shots; None if none was run with so many."""
     here = table[(table["shots"] == shots) & ~table["method"].str.endswith(FROM_SCRATCH)]
-    return None if here.empty else here.loc[here["value"].idxmin()]
+    return None if here.empty else least(here, "value")
 
 
 def forgetting(gears: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
     """Accuracy on the source gears lost by adapting [points]: ``method``, ``shots``, ``forgotten``, ``worst`` gear."""
     rows = [
-        (name, int(shots), float(part.mean()), float(part.max()))
+        (name, int(str(shots)), float(part.mean()), float(part.max()))
         for name, table in gears.items()
         if not name.endswith(FROM_SCRATCH)  # it has never learnt the source gears
         for shots, part in table.groupby("shots")["forgotten"]

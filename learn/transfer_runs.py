@@ -4,6 +4,7 @@ import os
 import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import cast
 
 import pandas as pd
 
@@ -107,13 +108,20 @@ def method_of(run: Mapping[str, object]) -> str:
 
 def by_method(runs: pd.DataFrame) -> pd.DataFrame:
     """The newest run of every method, with the method's name as index."""
-    named = runs.assign(method=[method_of(run) for run in runs.to_dict("records")])
+    names = [method_of(cast(dict[str, object], run)) for run in runs.to_dict("records")]
+    named = runs.assign(method=names)
     return named.drop_duplicates("method").set_index("method")
 
 
 def development_scores(runs: pd.DataFrame) -> pd.Series:
     """The score of the options chosen on development gears [%], NaN for methods with nothing to choose."""
     return runs.filter(regex=r"^trial/").max(axis="columns").astype(float)
+
+
+def trials(runs: pd.DataFrame) -> list[int]:
+    """How many options were tried, of every run that has options."""
+    counts = runs.filter(regex=r"^trial/").notna().sum(axis="columns")
+    return [int(count) for count in counts if count]
 
 
 def tables(store: Store, runs: pd.DataFrame, name: str) -> dict[str, pd.DataFrame]:

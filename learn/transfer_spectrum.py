@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from learn.report import require_same_code
 from learn.residuals import healthy_lines
 from swgsim import storage
 from swgsim.style import words
@@ -26,8 +27,10 @@ def disturbance_beside_faults(clean: Path, disturbed: Path) -> tuple[pd.DataFram
     Raises
     ------
     ValueError
-        If the data sets do not hold the same recordings.
+        If the data sets do not hold the same recordings, or were made by different code.
     """
+    grid = disturbed.stem.removesuffix("-disturbed")
+    require_same_code({path.stem: storage.attributes(path)["swgsim"] for path in (clean, disturbed)}, grid)
     bare = healthy_lines(storage.blocks(clean, BLOCK), ORDERS)
     with_noise = healthy_lines(storage.blocks(disturbed, BLOCK), ORDERS)
     same = ["gear", "label", "variant", "n_in_rpm", "T_out_nm"]

@@ -7,7 +7,7 @@ import pandas as pd
 from learn.bootstrap import specimens
 from learn.evaluation import metric_key
 from learn.paper import paper_table
-from learn.transfer_results import difference, with_intervals
+from learn.transfer_results import difference, row_of, with_intervals
 from learn.transfer_runs import CLASSIFIERS, by_method, method_of, paired
 from swgsim.style import words
 
@@ -23,6 +23,14 @@ NETWORKS: Mapping[str, str] = {"perceptron": "mlp", "cnn": "cnn", "minirocket": 
 SIZES: Mapping[str, tuple[str, str]] = {
     "rf": ("classifier.trees", "classifier.depth"),
     "mlp": ("classifier.neurons", "classifier.hidden_layers"),
+}
+WITHOUT_EFFICIENCY = ("False", "none")
+TARGETS: Mapping[str, str] = {
+    "None": "other gears of the sources' population",
+    "few-bench": "other gears of the sources' population",
+    "far-bench": "gears far outside the sources",
+    "few-noisy": "another noise",
+    "few-other_day": "a reference from another day",
 }
 SCENARIO = ["target", "protocol.sources", "features.acquisitions"]
 
@@ -68,7 +76,7 @@ def inputs(runs: pd.DataFrame, predictions: Mapping[str, pd.DataFrame]) -> pd.Da
         {
             "input": runs["features"].map(INPUTS),
             "method": runs["classifier"].map(NETWORKS),
-            "efficiency": ~runs["features.efficiency"].isin(["False", "none"]),
+            "efficiency": ~runs["features.efficiency"].isin(WITHOUT_EFFICIENCY),
         },
     ).set_axis(runs.index.astype(str))
     facts = facts.drop_duplicates().dropna()
@@ -93,16 +101,14 @@ def networks_compared(runs: pd.DataFrame, predictions: Mapping[str, pd.DataFrame
     DataFrame
         Index ``CNN on raw signals`` and so on; ``value``, ``low``, ``high`` [points].
     """
-    named = by_method(
-        runs[~runs["features.efficiency"].isin(["False", "none"])].rename(index=str).rename_axis("key").reset_index()
-    )
-    rows = {}
-    for features, of_input in named.groupby("features"):
-        simple = of_input.index[of_input["classifier"] == "perceptron"]
-        for method, run in of_input[of_input["classifier"] != "perceptron"].iterrows():
-            if len(simple):
-                tables = {m: specimens(predictions[named.loc[m, "key"]]) for m in (simple[0], method)}
-                rows[method] = difference(paired(tables), str(method), simple[0])
+    given = runs[~runs["features.efficiency"].isin(WITHOUT_EFFICIENCY)].rename(index=str).rename_axis("key")
+    named = by_method(given.reset_index())
+    rows: dict[str, pd.Series] = {}
+    for _, of_input in named.groupby("features"):
+        errors = paired({str(name): specimens(predictions[str(key)]) for name, key in of_input["key"].items()})
+        simple = [str(name) for name in of_input.index[of_input["classifier"] == "perceptron"]]
+        others = [str(name) for name in of_input.index[of_input["classifier"] != "perceptron"]]
+        rows |= {method: difference(errors, method, reference) for reference in simple for method in others}
     return pd.DataFrame(rows).T
 
 
@@ -110,7 +116,7 @@ def scenario_of(run: Mapping[str, object]) -> str:
     """Where a run of the map adapts to and with what, as text.
 
     >>> scenario_of({"target": "far-bench", "protocol.sources": "26", "features.acquisitions": "1"})
-    'far-bench: 26 source gears, 1 reference acquisition'
+    'gears far outside the sources: 26 source gears, 1 reference acquisition'
     """
     sources, acquisitions = (str(run.get(name, "None")) for name in SCENARIO[1:])
     gears = "all source gears" if sources == "None" else f"{sources} source gears"
@@ -119,7 +125,7 @@ def scenario_of(run: Mapping[str, object]) -> str:
     else:
         known = f"{acquisitions} reference acquisition{'' if acquisitions == '1' else 's'}"
     target = str(run.get("target", "None"))
-    return f"{'the same population' if target == 'None' else target}: {gears}, {known}"
+    return f"{TARGETS.get(target, target)}: {gears}, {known}"
 
 
 def transfer_map(runs: pd.DataFrame, adapted: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
@@ -140,17 +146,20 @@ def transfer_map(runs: pd.DataFrame, adapted: Mapping[str, pd.DataFrame]) -> pd.
     """
     rows = []
     for key, run in runs.rename(index=str).iterrows():
-        facts = run.dropna().to_dict()
+        facts = {str(name): value for name, value in run.dropna().items()}
+        order = [facts.get(name, "None") for name in SCENARIO]
+        numbers = [float("inf") if text == "None" else float(str(text)) for text in order[1:]]
         for shots, part in adapted[str(key)].groupby("shots"):
             changed = part.assign(error=part["error"] - part["unadapted"])
-            change = with_intervals({"gain": changed}, "map").loc["gain"]
+            change = row_of(with_intervals({"gain": changed}, "map"), "gain")
             rows.append({
-                "scenario": scenario_of(facts), "method": method_of(facts), "shots": int(shots),
+                "scenario": scenario_of(facts), "method": method_of(facts), "shots": int(str(shots)),
                 "unadapted": float(part["unadapted"].mean()), "error": float(part["error"].mean()),
                 "gain": change["value"], "low": change["low"], "high": change["high"],
+                "order": (str(order[0]), *numbers),
             })  # fmt: skip
     table = pd.DataFrame(rows).drop_duplicates(["scenario", "method", "shots"])
-    return table.sort_values(["scenario", "shots", "method"], ignore_index=True)
+    return table.sort_values(["order", "shots", "method"], ignore_index=True).drop(columns="order")
 
 
 def robustness(runs: pd.DataFrame) -> pd.DataFrame:
@@ -189,6 +198,6 @@ def harder_splits(runs: pd.DataFrame) -> dict[str, pd.DataFrame]:
     parts = {}
     for protocol, of_protocol in runs.groupby("protocol"):
         scores = by_method(of_protocol).filter(regex="^test/").astype(float).dropna(axis="columns", how="all")
-        scores.columns = [name.removeprefix("test/").replace("_", " ") for name in scores]
+        scores.columns = [str(name).removeprefix("test/").replace("_", " ") for name in scores]
         parts[words(str(protocol))] = scores.assign(mean=scores.mean(axis="columns"))
     return parts

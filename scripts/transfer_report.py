@@ -12,7 +12,7 @@ import yaml
 from misspelt import answered
 from omegaconf import DictConfig, OmegaConf
 
-from learn import settings, transfer_practice, transfer_sections, transfer_studies
+from learn import settings, transfer_adapted, transfer_practice, transfer_sections, transfer_studies
 from learn import transfer_results as results
 from learn import transfer_runs as runs_of
 from learn import transfer_sentences as sentences
@@ -85,7 +85,7 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
         transfer_sections.disturbed(cases, spectrum, change),
         transfer_sections.new_gears(zero, no_reference(store, runs, of_inputs, signals)),
         transfer_sections.inputs(inputs),
-        transfer_sections.transfer(zero, few, forgotten, draws),
+        transfer_adapted.transfer(zero, few, forgotten, draws, labelled),
         where_it_pays(store, runs, grids),
         transfer_practice.section(zero.best, judged, refitted, drops),
         harder(runs, grids),
@@ -97,6 +97,7 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
         yaml.safe_load(storage.attributes(paths["bench"])["configuration"]),
         adapted.iloc[0],
         zero.gears,
+        [*runs_of.trials(unadapted), *runs_of.trials(adapted)],
         fit,
         seconds,
         "on the clock" if config["started"] else "the steps added up",
@@ -125,7 +126,7 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
 def no_reference(
     store: Any, runs: pd.DataFrame, of_inputs: pd.DataFrame, signals: Mapping[str, pd.DataFrame]
 ) -> dict[str, str]:
-    """Error of networks on raw signals without and with the healthy reference, as text; empty if the study is missing."""
+    """Error of networks on raw signals without and with the healthy reference, as text; empty without the study."""
     bare = runs_of.of_study(runs, "no_reference")
     if bare.empty:
         return {}
@@ -143,7 +144,7 @@ def where_it_pays(store: Any, runs: pd.DataFrame, grids: Mapping[str, str]) -> S
     found = runs_of.of_study(runs, "transfer_map")
     if found.empty:
         return transfer_sections.left_out("map", "Where transfer pays", runs_of.command("transfer_map", grids))
-    return transfer_sections.where_it_pays(
+    return transfer_adapted.where_it_pays(
         transfer_studies.transfer_map(found, runs_of.tables(store, found, "specimens"))
     )
 

@@ -57,7 +57,9 @@ def jobs(experiment):
 @pytest.mark.parametrize("experiment", EXPERIMENTS)
 def test_every_experiment_runs_on_a_small_grid(experiment, data, runs):
     where = ["grid=small", f"data={data}", f"tracking.folder={runs}", f"models={runs / 'models'}"]
-    few = FEW if composed(f"experiment={experiment}").protocol.name == "new_gears" else []
+    protocol = composed(f"experiment={experiment}").protocol
+    few = FEW if protocol.name == "new_gears" else []
+    few = [*few, "protocol.judged=3"] if protocol.get("judged") else few
     for overrides in jobs(experiment):
         config = composed(f"experiment={experiment}", *few, *overrides, *where)
         metrics = job.run(OmegaConf.to_container(config, resolve=True))

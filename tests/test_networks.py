@@ -109,6 +109,17 @@ def test_a_signal_without_side_columns_and_side_columns_without_a_signal():
         assert made(torch.as_tensor(X, dtype=torch.float32)).shape == (6, 2)
 
 
+def test_features_in_a_row_have_scales_of_their_own_and_any_number():
+    X = np.random.default_rng(0).standard_normal((200, 13)) * np.logspace(-3, 3, 13)
+    for network in (
+        convolutional(1, 12, 13, 2, periodic=False),
+        perceptron(13, 2, channels=1, points=12, periodic=False),
+    ):
+        network.set_scaling(X)
+        np.testing.assert_allclose(network.scale.numpy(), np.logspace(-3, 3, 13), rtol=0.5)
+        assert network(torch.as_tensor(X, dtype=torch.float32)).shape == (200, 2)
+
+
 def test_what_cannot_be_made_is_refused_with_the_remedy():
     with pytest.raises(ValueError, match=r"2 channels of 30 points, needs .* multiple of 8"):
         convolutional(2, 30, 80, classes=3)

@@ -94,6 +94,10 @@ def test_missing_cell_names_the_command():
         report.complete(compare("table9", runs), "table9", "paper")
 
 
+def of_one_class():
+    return Evaluation((), ("a",), np.eye(1, dtype=int), np.zeros(1, dtype=int), np.ones((1, 1)))
+
+
 def store_with_a_run(folder, digest):
     store = tracking.local_store(str(folder))
     parameters = {"study": "table7", "grid": "small", "classifier": "rf", "features": "selection_3",
@@ -102,9 +106,7 @@ def store_with_a_run(folder, digest):
     with tracking.job_run(store, "a run", "key", parameters, {}, tags) as run:
         from learn.confusion import picture
 
-        run.record(
-            {"test_score": 90.0}, {"figures/confusion.png": picture(Evaluation((), ("a",), np.eye(1, dtype=int)), "")}
-        )
+        run.record({"test_score": 90.0}, {"figures/confusion.png": picture(of_one_class(), "")}, {})
     return store
 
 
@@ -188,7 +190,7 @@ def keep_runs_like_the_papers(store, digests):
                 scores = {k: v for k, v in row.items() if isinstance(v, float) and v == v}
                 figures = {"figures/confusion.png": Figure()} if row["classifier"] == "rf" else {}
                 with tracking.job_run(store, "run", "key", {**text, "protocol": folds}, {}, tags) as run:
-                    run.record({"test_score": 50.0, "fit_seconds": 1.0, **recall, **scores}, figures)
+                    run.record({"test_score": 50.0, "fit_seconds": 1.0, **recall, **scores}, figures, {})
 
 
 def test_whole_report_from_a_small_data_set(tmp_path):

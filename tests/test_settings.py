@@ -17,7 +17,9 @@ MAKERS = {
 }
 
 
-@pytest.mark.parametrize("path", [p for group in MAKERS for p in sorted((CONF / group).glob("*.yaml")) if p.stem != "none"], ids=str)
+@pytest.mark.parametrize(
+    "path", [p for group in MAKERS for p in sorted((CONF / group).glob("*.yaml")) if p.stem != "none"], ids=str
+)
 def test_every_choice_of_the_configuration_makes_an_object(path):
     config = yaml.safe_load(path.read_text().replace("${seed}", "0"))
     assert config["name"] == path.stem

@@ -21,7 +21,7 @@ def store(tmp_path_factory):
 def keep(store, key, metrics, **parameters):
     values = {**PARAMETERS, **parameters}
     with tracking.job_run(store, key, key, values, {"seed": 0}, {"data_digest": "d"}) as run:
-        run.record(metrics, {})
+        run.record(metrics, {}, {})
 
 
 def test_a_finished_job_is_found_by_its_key_a_failed_or_killed_one_is_not(store):

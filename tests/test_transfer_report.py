@@ -15,7 +15,7 @@ from fabricated import recordings
 from hydra import compose, initialize_config_dir
 from omegaconf import OmegaConf
 
-from learn import settings, tracking, transfer_judging, transfer_runs, transfer_sections, transfer_studies
+from learn import settings, tracking, transfer_adapted, transfer_judging, transfer_runs, transfer_studies
 from learn import transfer_results as results
 from learn import transfer_sentences as sentences
 from learn.identity import flat
@@ -275,8 +275,8 @@ def test_physics_is_checked_by_the_largest_drop():
             ("efficiency", "reduced_stiffness", 9.0), ("torque ripple", "reduced_stiffness", 4.0),
             ("efficiency", "tip_tooth_crack", 0.2), ("torque ripple", "tip_tooth_crack", 0.1)]  # fmt: skip
     damping, stiffness, tip = transfer_judging.physics_checked(pd.DataFrame(rows, columns=["group", "label", "drop"]))
-    assert "efficiency carry most (30.0 points), as its physics says" in damping
-    assert "its physics would name torque ripple (torque ripple 4.0)" in stiffness
+    assert "most recall is lost with efficiency (30.0 points), as its physics says" in damping
+    assert "its physics names torque ripple (torque ripple 4.0)" in stiffness
     assert "no single group costs more than 0.2 points" in tip
 
 
@@ -299,12 +299,12 @@ def test_map_tells_gain_from_harm():
     specimens, _ = adapted(0.05, 0.2, (5,))
     harmed, _ = adapted(1.5, 0.2, (5,))
     rows = [{"classifier": "perceptron", "features": "harmonics", "adaptation": "replay", "target": target,
-             "protocol.sources": "2", "features.acquisitions": "1"} for target in ("far-bench", "few-bench")]  # fmt: skip
+             "protocol.sources": "2", "features.acquisitions": "1"}
+            for target in ("far-bench", "few-bench")]  # fmt: skip
     table = transfer_studies.transfer_map(pd.DataFrame(rows), {"0": specimens, "1": harmed})
-    assert list(table["scenario"]) == [
-        f"{t}: 2 source gears, 1 reference acquisition" for t in ("far-bench", "few-bench")
-    ]
-    verdicts = [row[-1] for row in transfer_sections.where_it_pays(table).parts[-1].rows]
+    where = ("gears far outside the sources", "other gears of the sources' population")
+    assert list(table["scenario"]) == [f"{target}: 2 source gears, 1 reference acquisition" for target in where]
+    verdicts = [row[-1] for row in transfer_adapted.where_it_pays(table).parts[-1].rows]
     assert verdicts == ["yes", "harms"]
 
 

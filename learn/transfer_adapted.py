@@ -1,0 +1,90 @@
+"""The sections of the report on adapting to a gear: error against shots, what is forgotten, and where it pays."""
+
+import numpy as np
+import pandas as pd
+
+from learn import transfer_figures as figures
+from learn.transfer_page import Section, Table
+from learn.transfer_results import FOREST, FROM_SCRATCH, ORACLE, ZeroShot, best_adapted, figure
+from learn.transfer_sentences import FORGETTING_GOAL, number, of_row
+
+
+def transfer(zero: ZeroShot, few: pd.DataFrame, forgotten: pd.DataFrame, draws: str, labelled: int) -> Section:
+    """Error against shots, per method, and what is forgotten."""
+    curves = few[few["shots"] > 0].rename(columns={"value": "error"})
+    shots = sorted(few["shots"].unique())
+    level = {
+        "paper's forest": figure(zero.table, FOREST),
+        "best without adaptation": figure(zero.table, zero.best),
+        "oracle": figure(zero.table, ORACLE),
+    }
+    said = few.assign(text=[of_row(row) for _, row in few.iterrows()])
+    wide = said.pivot(index="method", columns="shots", values="text").fillna("-")
+    unadapted = few.groupby("method")["unadapted"].first()
+    wide = wide.loc[few.groupby("method")["value"].min().sort_values().index]
+    rows = [[str(m), f"{unadapted[m]:.1f}", *wide.loc[m]] for m in wide.index]
+    parts: list = [
+        "Levels Z2 to Z4 on the bench. Every method starts from a model that was trained on the source gears; "
+        "its options "
+        f"were chosen on development gears. Errors are means over {draws} draws of the shots, the same for all "
+        "methods.",
+    ]
+    if len(curves):
+        parts.append(figures.error_against_shots(curves, level))
+    columns = ["Z2, no label" if k == 0 else f"K = {k}{' (Z4)' if k == labelled else ''}" for k in shots]
+    parts.append(Table(["method", "source model", *columns], rows, "Error [%] with its 95 % interval."))
+    with_labels = [k for k in shots if k > 0]
+    ratio = [[f"K = {k}{' (Z4)' if k == labelled else ''}", str(b["method"]), of_row(b), of_row(b, "ratio_", 2), of_row(b, "gain_")]
+             for k in with_labels if (b := best_adapted(few, int(k))) is not None]  # fmt: skip
+    parts.append(Table(["shots", "best transfer", "error [%]", "ratio to the paper's forest",
+                        "change to its source model [points]"], ratio, left=2))  # fmt: skip
+    parts += _forgetting(forgotten)
+    return Section("transfer", "Transfer", parts)
+
+
+def _forgetting(forgotten: pd.DataFrame) -> list:
+    """Table and picture of the accuracy lost on source gears."""
+    kept = forgotten.dropna(subset=["forgotten"])
+    if kept.empty:
+        return ["What adapting forgets was not measured: the protocol keeps no variant of the source gears out."]
+    wide = kept.pivot(index="method", columns="shots", values="forgotten")
+    worst = kept.groupby("method")["worst"].max()
+    rows = [
+        [str(m), *("-" if np.isnan(v) else f"{v:+.1f}" for v in wide.loc[m]), f"{worst[m]:+.1f}"] for m in wide.index
+    ]
+    header = ["method", *("Z2" if k == 0 else f"K = {k}" for k in wide.columns), "worst gear"]
+    note = (
+        "Accuracy lost on variants of the source gears that no model was trained on [points], mean over the "
+        "judged gears; "
+        f"the goal is {FORGETTING_GOAL:g}. A gear of its own may keep the source model beside the adapted one."
+    )
+    with_labels = kept[kept["shots"] > 0]
+    return [Table(header, rows, note), *([figures.forgotten_against_shots(with_labels)] if len(with_labels) else [])]
+
+
+def where_it_pays(table: pd.DataFrame) -> Section:
+    """The map of scenarios."""
+    rows = [
+        [r["scenario"], r["method"], f"{r['shots']}", f"{r['unadapted']:.1f}", f"{r['error']:.1f}",
+         number(r["gain"], r["low"], r["high"]), _verdict(r["method"], r["low"], r["high"])]
+        for r in table.to_dict("records")
+    ]  # fmt: skip
+    transferred = table[~table["method"].str.endswith(FROM_SCRATCH)]
+    pays = transferred["high"] < 0
+    parts: list = [
+        f"Transfer pays clearly in {int(pays.sum())} of {len(transferred)} cases (a scenario and a number of "
+        "shots): there "
+        "the whole interval of the change that adapting makes to the source model lies below 0.",
+        figures.where_transfer_pays(table),
+        Table(["scenario", "method", "K", "source model [%]", "adapted [%]", "change [points]", "pays"], rows, left=2),
+    ]
+    return Section("map", "Where transfer pays", parts)
+
+
+def _verdict(method: str, low: float, high: float) -> str:
+    """Whether transfer helps, from the interval of the change."""
+    if method.endswith(FROM_SCRATCH):
+        return "-"
+    if not np.isfinite(high):
+        return "too few gears"
+    return "yes" if high < 0 else "harms" if low > 0 else "not clearly"
