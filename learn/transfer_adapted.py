@@ -24,18 +24,16 @@ def transfer(zero: ZeroShot, few: pd.DataFrame, forgotten: pd.DataFrame, draws: 
     wide = wide.loc[few.groupby("method")["value"].min().sort_values().index]
     rows = [[str(m), f"{unadapted[m]:.1f}", *wide.loc[m]] for m in wide.index]
     parts: list = [
-        "Levels Z2 to Z4 on the bench. Every method starts from a model that was trained on the source gears; "
-        "its options "
-        f"were chosen on development gears. Errors are means over {draws} draws of the shots, the same for all "
-        "methods.",
+        "Levels Z2 to Z4 on the bench. Every method starts from a model that was trained on the source gears; its "
+        f"options were chosen on development gears. Errors are means over {draws} draws of the shots, the same for "
+        "all methods.",
     ]
     if len(curves):
         parts.append(figures.error_against_shots(curves, level))
-    columns = ["Z2, no label" if k == 0 else f"K = {k}{' (Z4)' if k == labelled else ''}" for k in shots]
-    parts.append(Table(["method", "source model", *columns], rows, "Error [%] with its 95 % interval."))
-    with_labels = [k for k in shots if k > 0]
-    ratio = [[f"K = {k}{' (Z4)' if k == labelled else ''}", str(b["method"]), of_row(b), of_row(b, "ratio_", 2), of_row(b, "gain_")]
-             for k in with_labels if (b := best_adapted(few, int(k))) is not None]  # fmt: skip
+    names = {k: "Z2, no label" if k == 0 else f"K = {k}{' (Z4)' if k == labelled else ''}" for k in shots}
+    parts.append(Table(["method", "source model", *names.values()], rows, "Error [%] with its 95 % interval."))
+    ratio = [[names[k], str(b["method"]), of_row(b), of_row(b, "ratio_", 2), of_row(b, "gain_")]
+             for k in shots if k > 0 and (b := best_adapted(few, int(k))) is not None]  # fmt: skip
     parts.append(Table(["shots", "best transfer", "error [%]", "ratio to the paper's forest",
                         "change to its source model [points]"], ratio, left=2))  # fmt: skip
     parts += _forgetting(forgotten)
@@ -54,9 +52,8 @@ def _forgetting(forgotten: pd.DataFrame) -> list:
     ]
     header = ["method", *("Z2" if k == 0 else f"K = {k}" for k in wide.columns), "worst gear"]
     note = (
-        "Accuracy lost on variants of the source gears that no model was trained on [points], mean over the "
-        "judged gears; "
-        f"the goal is {FORGETTING_GOAL:g}. A gear of its own may keep the source model beside the adapted one."
+        "Accuracy lost on variants of the source gears that no model was trained on [points], mean over the judged "
+        f"gears; the goal is {FORGETTING_GOAL:g}. A gear of its own may keep the source model beside the adapted one."
     )
     with_labels = kept[kept["shots"] > 0]
     return [Table(header, rows, note), *([figures.forgotten_against_shots(with_labels)] if len(with_labels) else [])]
@@ -72,9 +69,8 @@ def where_it_pays(table: pd.DataFrame) -> Section:
     transferred = table[~table["method"].str.endswith(FROM_SCRATCH)]
     pays = transferred["high"] < 0
     parts: list = [
-        f"Transfer pays clearly in {int(pays.sum())} of {len(transferred)} cases (a scenario and a number of "
-        "shots): there "
-        "the whole interval of the change that adapting makes to the source model lies below 0.",
+        f"Transfer pays clearly in {int(pays.sum())} of {len(transferred)} cases (a scenario and a number of shots): "
+        "there the whole interval of the change that adapting makes to the source model lies below 0.",
         figures.where_transfer_pays(table),
         Table(["scenario", "method", "K", "source model [%]", "adapted [%]", "change [points]", "pays"], rows, left=2),
     ]

@@ -125,18 +125,16 @@ def how_made(
         ("specimens", f"{grid['variants']} of each class and gear; operating points: {points}"),
         (
             "pools of a judged gear",
-            f"of each class {run['protocol.labelled']} labelled, {run['protocol.unlabelled']} unlabelled, the "
-            "others judged; "
-            f"{run['protocol.kept_out']} of each source gear are never trained on",
+            f"of each class {run['protocol.labelled']} labelled, {run['protocol.unlabelled']} unlabelled, the others "
+            f"judged; {run['protocol.kept_out']} of each source gear are never trained on",
         ),
         ("options", f"{tried} tried on development gears for every one of {len(trials)} methods that has options"),
         ("shots", f"{run['shots']}, {run['draws']} nested draws, the same for all methods"),
         ("seed", str(run["seed"])),
         (
             "CNN, one fit",
-            f"{fit['recordings']} recordings in {fit['seconds']:.1f} s; an epoch takes "
-            f"{fit['over_bare_step']:.2f} times the "
-            f"bare steps, the usual loop {fit['dataloader_loop_over_ours']:.2f} times ours",
+            f"{fit['recordings']} recordings in {fit['seconds']:.1f} s; an epoch takes {fit['over_bare_step']:.2f} "
+            f"times the bare steps, the usual loop {fit['dataloader_loop_over_ours']:.2f} times ours",
         ),
         ("seconds", f"{seconds:.0f} ({seconds_are})"),
         ("versions", ", ".join(f"{name} {text}" for name, text in versions.items())),

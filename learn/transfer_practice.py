@@ -45,26 +45,22 @@ def section(best: str, predictions: Mapping[str, pd.DataFrame], refitted: str, d
             Table(
                 ["fault", "taken for any fault [%]", "a90", "a90/95", "where a size is not given"],
                 found_sizes(chosen),
-                "a90: size of which 90 % of recordings are found; a90/95: the same with 95 % confidence. Sizes "
-                "as in the "
-                "picture below, in SI units or as a share.",
+                "a90: size of which 90 % of recordings are found; a90/95: the same with 95 % confidence. Sizes as "
+                "in the picture below, in SI units or as a share.",
                 left=5,
             ),
             figures.pod_curves(chosen, detected(chosen)),
             f"False alarms: {number(alarms['rate'], alarms['low'], alarms['high'], unit=' %')} of healthy "
-            "recordings, in "
-            f"{alarms['alarming_gears']:.0f} of {alarms['gears']:.0f} gears. Worst cell: "
-            f"{words(str(worst['label']))} at "
-            f"{worst['n_in_rpm']:g} rpm and {worst['T_out_nm']:g} N m, {worst['recall']:.1f} % of "
-            f"{worst['recordings']} "
-            "recordings recognised.",
+            f"recordings, in {alarms['alarming_gears']:.0f} of {alarms['gears']:.0f} gears. Worst cell: "
+            f"{words(str(worst['label']))} at {worst['n_in_rpm']:g} rpm and {worst['T_out_nm']:g} N m, "
+            f"{worst['recall']:.1f} % of {worst['recordings']} recordings recognised.",
             figures.cell_recall(recall_by_cell(chosen)),
             _calibration(predictions, bins, curves),
             figures.reliability_diagram(bins),
             figures.risk_coverage_curves(curves),
             _sets(chosen),
-            f"Which features carry which fault: {refitted}, trained anew on the first fold. One group of features at a "
-            "time is exchanged between recordings of a fault and healthy ones at the same operating point.",
+            f"Which features carry which fault: {refitted}, trained anew on the first fold. One group of features at "
+            "a time is exchanged between recordings of a fault and healthy ones at the same operating point.",
             figures.importance_map(drops),
             Listed(physics_checked(drops)),
         ],
@@ -106,8 +102,7 @@ def _sets(predictions: pd.DataFrame) -> str:
     spread = f"{100 * sets['coverage'].min():.0f} to {100 * sets['coverage'].max():.0f} %"
     return (
         f"Sets of classes that shall hold the truth in {100 * NOMINAL:.0f} % of recordings of a new gear, the "
-        "threshold of "
-        f"every gear from the other {len(sets) - 1}: they hold it in {100 * sets['coverage'].mean():.1f} % "
-        f"({spread} in single gears), with {sets['mean_size'].mean():.2f} classes on average and "
+        f"threshold of every gear from the other {len(sets) - 1}: they hold it in {100 * sets['coverage'].mean():.1f} "
+        f"% ({spread} in single gears), with {sets['mean_size'].mean():.2f} classes on average and "
         f"{100 * np.mean(sets['empty']):.1f} % of sets without a class."
     )

@@ -1,4 +1,4 @@
-"""The sections of the report that compare methods: disturbed data, new gears, inputs, transfer, and where it pays."""
+"""The sections of the report on methods without adaptation: disturbed data, new gears, inputs, splits and size."""
 
 from collections.abc import Mapping, Sequence
 
@@ -85,10 +85,9 @@ def why_disturbance_spares(spectrum: pd.DataFrame, efficiency_change: float) -> 
     else:
         efficiency = f"The efficiency is disturbed by up to {efficiency_change:.1e}, relative."
     return (
-        f"Why: eq. 10 adds a mean and the orders 1, 1/2, 1/3 and 1/4. Its mean amplitude is {noise[0]:.2f} µV/V "
-        "on order "
-        f"0 and {noise[1]:.2f} µV/V on order 1, and at most {noise[even].max():.3f} µV/V on the even orders from 2 on. "
-        f"There the largest line of {listed(above)} stands above it{hidden}. {efficiency}"
+        f"Why: eq. 10 adds a mean and the orders 1, 1/2, 1/3 and 1/4. Its mean amplitude is {noise[0]:.2f} µV/V on "
+        f"order 0 and {noise[1]:.2f} µV/V on order 1, and at most {noise[even].max():.3f} µV/V on the even orders "
+        f"from 2 on. There the largest line of {listed(above)} stands above it{hidden}. {efficiency}"
     )
 
 
@@ -112,15 +111,16 @@ def new_gears(zero: ZeroShot, no_reference: Mapping[str, str]) -> Section:
     compared, by_gear = zero.comparison()
     strong = frozenset({list(ordered.index).index(zero.best)})
     parts: list = [
-        f"Level Z1: every method is trained on other gears and judged on the same recordings of {zero.gears} "
-        "gears never "
-        "seen, with noise, jitter, measured efficiency and temperature. Intervals hold 95 % and come from gears, and "
-        f"specimens within them, drawn anew. The {ORACLE} knows the gear and all statistics: no classifier of single "
-        "recordings errs less on average; the second one is told the bias of the torque flanges of the session, too.",
+        f"Level Z1: every method is trained on other gears and judged on the same recordings of {zero.gears} gears "
+        "never seen, with noise, jitter, measured efficiency and temperature. Intervals hold 95 % and come from "
+        f"gears, and specimens within them, drawn anew. The {ORACLE} knows the gear and all statistics: no "
+        "classifier of single recordings errs less on average; the second one is told the bias of the torque "
+        "flanges of the session, too.",
         Table(
             ["method", "error [%]", "ratio to the paper's forest", "ratio to the oracle", "development gears [%]",
              "fit, all folds [s]"], rows,
-            "Bold: the best on the judged gears. Development gears: error of the options that were chosen on them.", strong=strong,
+            "Bold: the best on the judged gears. Development gears: error of the options that were chosen on them.",
+            strong=strong,
         ),
         difference_forest(compared, by_gear, FOREST),
     ]  # fmt: skip
@@ -144,15 +144,15 @@ def inputs(table: pd.DataFrame) -> Section:
     gain = table.pivot_table(index=["input", "method"], columns="efficiency", values="error")
     worth = (gain[False] - gain[True]).dropna() if {True, False} <= set(gain.columns) else pd.Series(dtype=float)
     parts: list = [
-        "Level Z1, error [%] of networks on gears never seen; all trained on the same recordings, ten variants of each "
-        "class and source gear. Features are all of the paper's together; residuals are signals less the healthy "
-        "reference, with errors of load and trigger taken out.",
+        "Level Z1, error [%] of networks on gears never seen; all trained on the same recordings, ten variants of "
+        "each class and source gear. Features are all of the paper's together; residuals are signals less the "
+        "healthy reference, with errors of load and trigger taken out.",
         Table(["input", "efficiency", *(METHODS[m] for m in NETWORKS.values())], rows, left=2),
     ]
     if len(worth):
         parts.append(
-            f"Without the efficiency the error is higher by {worth.min():+.1f} to {worth.max():+.1f} points "
-            f"(mean {worth.mean():+.1f})."
+            f"Without the efficiency the error is higher by {worth.min():+.1f} to {worth.max():+.1f} points (mean "
+            f"{worth.mean():+.1f})."
         )
     shown = table.assign(method=table["method"].map(METHODS))
     return Section("inputs", "Inputs", [*parts, figures.inputs_map(shown)])
@@ -176,10 +176,8 @@ def size(table: pd.DataFrame) -> Section:
         best, smallest = rows.iloc[int(rows["unseen"].to_numpy().argmax())], least(rows, "gap")
         sentences.append(
             f"{classifier}: highest on an unseen gear with {best['setting']}, size {best['size']} "
-            f"({best['unseen']:.1f} %, "
-            f"{best['same']:.1f} % on the same gears); smallest gap with {smallest['setting']}, size "
-            f"{smallest['size']} "
-            f"({smallest['gap']:.1f} points)."
+            f"({best['unseen']:.1f} %, {best['same']:.1f} % on the same gears); smallest gap with "
+            f"{smallest['setting']}, size {smallest['size']} ({smallest['gap']:.1f} points)."
         )
     lines = [[r["classifier"], r["setting"], f"{r['size']}", *(f"{r[c]:.1f}" for c in ("same", "unseen", "gap"))]
             for r in table.to_dict("records")]  # fmt: skip

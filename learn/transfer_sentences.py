@@ -69,10 +69,9 @@ def disturbed(cases: pd.DataFrame) -> Goal:
 
     return Goal(
         bool((cases.loc[best] >= DISTURBED_GOAL).all()),
-        f"The paper's disturbed data, healthy reference known (Z1): {best} recognises {accuracies(best)} % on the gear "
-        f"left out; the paper's forest {accuracies(cases.index[0])} % in the paper and "
-        f"{accuracies(PAPER_FOREST)} % here. "
-        f"Goal: {DISTURBED_GOAL:g} % in all three cases.",
+        f"The paper's disturbed data, healthy reference known (Z1): {best} recognises {accuracies(best)} % on the "
+        f"gear left out; the paper's forest {accuracies(cases.index[0])} % in the paper and "
+        f"{accuracies(PAPER_FOREST)} % here. Goal: {DISTURBED_GOAL:g} % in all three cases.",
     )
 
 
@@ -83,8 +82,7 @@ def against_forest(zero: ZeroShot) -> Goal:
         bool(best["ratio"] <= FOREST_GOAL) if zero.best != FOREST else False,
         f"New gears on the bench, healthy reference known (Z1): {zero.best} errs in {of_row(best, unit=' %')} of the "
         f"recordings of {zero.gears} gears, the paper's forest in {of_row(forest, unit=' %')}: "
-        f"{of_row(best, 'ratio_', 2)} of its error. Goal: at most one third."
-        f"{_oracle_above(zero, FOREST_GOAL)}",
+        f"{of_row(best, 'ratio_', 2)} of its error. Goal: at most one third.{_oracle_above(zero, FOREST_GOAL)}",
     )
 
 
@@ -93,9 +91,9 @@ def against_oracle(zero: ZeroShot) -> Goal:
     best, oracle = row_of(zero.table, zero.best), row_of(zero.table, ORACLE)
     return Goal(
         bool(best["oracle"] <= ORACLE_GOAL),
-        f"The oracle, which knows the gear, the faults and the statistics of the bench, errs in "
-        f"{of_row(oracle, unit=' %')}; {zero.best} makes {of_row(best, 'oracle_', 2)} times its errors. "
-        f"Goal: at most {ORACLE_GOAL:g} times.",
+        "The oracle, which knows the gear, the faults and the statistics of the bench, errs in "
+        f"{of_row(oracle, unit=' %')}; {zero.best} makes {of_row(best, 'oracle_', 2)} times its errors. Goal: at "
+        f"most {ORACLE_GOAL:g} times.",
     )
 
 
@@ -108,8 +106,7 @@ def with_few_shots(zero: ZeroShot, few: pd.DataFrame) -> Goal | None:
         bool(best["ratio"] <= SHOTS_GOAL),
         f"With {GOAL_SHOTS} labelled specimens per class (Z3), {best['method']} errs in {of_row(best, unit=' %')}, "
         f"{of_row(best, 'ratio_', 2)} of the error of the paper's forest without transfer. Goal: at most one "
-        f"fifth."
-        f"{_oracle_above(zero, SHOTS_GOAL)}",
+        f"fifth.{_oracle_above(zero, SHOTS_GOAL)}",
     )
 
 
@@ -122,18 +119,20 @@ def _oracle_above(zero: ZeroShot, goal: float) -> str:
 
 
 def forgetting(few: pd.DataFrame, forgotten: pd.DataFrame) -> Goal | None:
-    """What the best method with five shots forgets; None if none was run with so many."""
+    """What the best method with five shots forgets; None if none was run with so many, or it was not measured."""
     best = best_adapted(few, GOAL_SHOTS)
     if best is None:
         return None
-    lost = forgotten[(forgotten["method"] == best["method"]) & (forgotten["shots"] > 0)]["forgotten"]
+    lost = forgotten[(forgotten["method"] == best["method"]) & (forgotten["shots"] > 0)]["forgotten"].dropna()
+    if lost.empty:
+        return None
     every = forgotten[forgotten["shots"] == GOAL_SHOTS].set_index("method")["forgotten"]
     over = list(every.index[every > FORGETTING_GOAL])
     return Goal(
         bool(lost.max() <= FORGETTING_GOAL),
-        f"Adapted to a new gear, {best['method']} loses at most {lost.max():.1f} points on the source gears (mean over "
-        f"the gears, at any number of shots). Goal: {FORGETTING_GOAL:g} points. With {GOAL_SHOTS} shots these methods "
-        f"lose more: {listed(over)}.",
+        f"Adapted to a new gear, {best['method']} loses at most {lost.max():.1f} points on the source gears (mean "
+        f"over the gears, at any number of shots). Goal: {FORGETTING_GOAL:g} points. With {GOAL_SHOTS} shots these "
+        f"methods lose more: {listed(over)}.",
     )
 
 
@@ -142,23 +141,22 @@ def chosen_by(zero: ZeroShot, development: pd.Series, few: pd.DataFrame) -> list
     best = figure(zero.table, zero.best)
     sentences = [
         "The best methods above are named by the judged gears themselves; to be the smallest of several errors "
-        "flatters "
-        "them a little."
+        "flatters them a little."
     ]
     if zero.chosen:
         error = figure(zero.table, zero.chosen)
         same = "the same one" if zero.chosen == zero.best else f"{error - best:.1f} points more than the best"
         sentences.append(
-            f"The development gears, which are never judged, choose {zero.chosen} without adaptation: "
-            f"{error:.1f} %, {same}."
+            f"The development gears, which are never judged, choose {zero.chosen} without adaptation: {error:.1f} %, "
+            f"{same}."
         )
     with_shots = few[few["shots"] == GOAL_SHOTS]
     adapted = highest(development[development.index.isin(with_shots["method"])])
     here = with_shots[with_shots["method"] == adapted]
     if len(here):
         sentences.append(
-            f"Among the adapted methods they choose {adapted}: {of_row(here.iloc[0], unit=' %')} with "
-            f"{GOAL_SHOTS} shots."
+            f"Among the adapted methods they choose {adapted}: {of_row(here.iloc[0], unit=' %')} with {GOAL_SHOTS} "
+            "shots."
         )
     return sentences
 
@@ -175,7 +173,7 @@ def fancy_against_simple(zero: ZeroShot, networks: pd.DataFrame, few: pd.DataFra
     if NETWORK in zero.methods.index and classical:
         simple = str(zero.methods.loc[classical, "value"].idxmin())
         row = zero.difference(NETWORK, simple)
-        verb = "beats" if row["high"] < 0 else "does not beat"
+        verb = "clearly beats" if row["high"] < 0 else "does not clearly beat"
         sentences.append(f"{NETWORK} {verb} {simple}: {of_row(row)} points of difference.")
     if len(networks):
         sentences.append(_sorted_out(networks, "Beside the MLP on the same input, with efficiency"))
@@ -205,8 +203,8 @@ def _beside_no_transfer(zero: ZeroShot, few: pd.DataFrame) -> list[str]:
         alone = least(here, "value")
         if transfer is not None and alone["value"] <= transfer["value"]:
             sentences.append(
-                f"From {shots} shots on, {alone['method']} ({alone['value']:.1f} %) needs no source gear to be as good "
-                f"as the best transfer ({transfer['value']:.1f} %)."
+                f"From {shots} shots on, {alone['method']} ({alone['value']:.1f} %) needs no source gear to be as "
+                f"good as the best transfer ({transfer['value']:.1f} %)."
             )
             break
     return sentences
@@ -216,8 +214,8 @@ def _sorted_out(table: pd.DataFrame, beside: str) -> str:
     """Which methods make clearly fewer errors and which do not."""
     better, others = (_with_value(table, names) for names in clear(table))
     return (
-        f"{beside}, clearly fewer errors (whole 95 % interval below 0, points): {listed(better)}; "
-        f"not clearly: {listed(others)}."
+        f"{beside}, clearly fewer errors (whole 95 % interval below 0, points): {listed(better)}; not clearly: "
+        f"{listed(others)}."
     )
 
 
