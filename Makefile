@@ -59,7 +59,7 @@ transfer: $(READY)  ## beyond the paper: networks, transfer to gears never seen,
 	for name in $(ON_PAPER); do $(BIN)/python scripts/train.py experiment=$$name grid=$(GRID); done; \
 	for name in $(ON_GEARS); do $(BIN)/python scripts/train.py experiment=$$name grid=$(GEARS) $(QUICK); done; \
 	$(BIN)/python scripts/train.py experiment=harder_splits grid=$(GEARS); \
-	$(BIN)/python scripts/transfer_report.py grid=$(GEARS) paper=$(GRID) started=$$started
+	$(BIN)/python scripts/transfer_report.py grid=$(GEARS) paper_grid=$(GRID) started=$$started
 	@echo "open report/transfer.html; 'make ui' shows the runs"
 
 test: $(READY)  ## all tests

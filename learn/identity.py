@@ -9,36 +9,20 @@ from pathlib import Path
 from typing import Any
 
 WHEREABOUTS = ("data", "models", "tracking")  # parts of a configuration that no result depends on
-PRESENTATION = (  # modules that only show results
+PRESENTATION = (  # modules that only show results, beside the package transfer_report
     "bootstrap.py",
     "calibration.py",
     "choices.py",
     "claims.py",
     "decisions.py",
-    "detection.py",
     "detection_curve.py",
     "feature_claims.py",
     "figures.py",
     "importance.py",
-    "judging_figures.py",
     "page.py",
     "paper.py",
     "report.py",
     "selective.py",
-    "transfer_adapted.py",
-    "transfer_content.py",
-    "transfer_curve_figures.py",
-    "transfer_figures.py",
-    "transfer_judging.py",
-    "transfer_map_figures.py",
-    "transfer_page.py",
-    "transfer_practice.py",
-    "transfer_results.py",
-    "transfer_runs.py",
-    "transfer_sections.py",
-    "transfer_sentences.py",
-    "transfer_spectrum.py",
-    "transfer_studies.py",
 )
 
 

@@ -12,16 +12,19 @@ import yaml
 from misspelt import answered
 from omegaconf import DictConfig, OmegaConf
 
-from learn import settings, transfer_adapted, transfer_practice, transfer_sections, transfer_studies
-from learn import transfer_results as results
-from learn import transfer_runs as runs_of
-from learn import transfer_sentences as sentences
+from learn import settings
 from learn.bootstrap import specimens
 from learn.report import versions
-from learn.transfer_content import cnn_fit, content, how_made
-from learn.transfer_judging import importance
-from learn.transfer_page import Section, TransferReport
-from learn.transfer_spectrum import disturbance_beside_faults
+from learn.transfer_report import adapted as transfer_adapted
+from learn.transfer_report import practice as transfer_practice
+from learn.transfer_report import results, sentences
+from learn.transfer_report import runs as runs_of
+from learn.transfer_report import sections as transfer_sections
+from learn.transfer_report import studies as transfer_studies
+from learn.transfer_report.content import cnn_fit, content, how_made
+from learn.transfer_report.judging import importance
+from learn.transfer_report.page import Section, TransferReport
+from learn.transfer_report.spectrum import disturbance_beside_faults
 from swgsim import storage
 
 

@@ -4,11 +4,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from learn import judging_figures as figures
 from learn.bootstrap import difference_to, gear_errors, paired_comparison
 from learn.calibration import reliability
 from learn.detection import SIZES, recall_by_cell
 from learn.selective import risk_coverage
+from learn.transfer_report import judging_figures as figures
 from swgsim.recordings import CLASSES
 from swgsim.seeds import generator
 

@@ -4,9 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from learn import line_ends, size_figures, transfer_figures
-from learn import transfer_curve_figures as curve_figures
-from learn import transfer_map_figures as map_figures
+from learn.transfer_report import curve_figures, line_ends, map_figures, size_figures
+from learn.transfer_report import figures as transfer_figures
 from swgsim.recordings import CLASSES
 from swgsim.style import CLASS_COLOURS
 

@@ -15,12 +15,15 @@ from fabricated import recordings
 from hydra import compose, initialize_config_dir
 from omegaconf import OmegaConf
 
-from learn import settings, tracking, transfer_adapted, transfer_judging, transfer_runs, transfer_studies
-from learn import transfer_results as results
-from learn import transfer_sentences as sentences
+from learn import settings, tracking
 from learn.identity import flat
 from learn.levels import NewGears
-from learn.transfer_content import content
+from learn.transfer_report import adapted as transfer_adapted
+from learn.transfer_report import judging as transfer_judging
+from learn.transfer_report import results, sentences
+from learn.transfer_report import runs as transfer_runs
+from learn.transfer_report import studies as transfer_studies
+from learn.transfer_report.content import content
 from swgsim import storage
 from swgsim.oracle_job import KNOWN
 from swgsim.recordings import CLASSES

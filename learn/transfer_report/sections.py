@@ -5,12 +5,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from learn import transfer_figures as figures
-from learn.judging_figures import difference_forest
-from learn.transfer_page import Section, Table
-from learn.transfer_results import FOREST, ORACLE, ZeroShot, least, row_of
-from learn.transfer_sentences import DISTURBED_GOAL, listed, number, of_row
-from learn.transfer_studies import INPUTS, NETWORKS, best_disturbed
+from learn.transfer_report import figures
+from learn.transfer_report.judging_figures import difference_forest
+from learn.transfer_report.page import Section, Table
+from learn.transfer_report.results import FOREST, ORACLE, ZeroShot, least, row_of
+from learn.transfer_report.sentences import DISTURBED_GOAL, listed, number, of_row
+from learn.transfer_report.studies import INPUTS, NETWORKS, best_disturbed
 
 METHODS: Mapping[str, str] = {"mlp": "MLP", "cnn": "CNN", "minirocket": "MiniRocket"}
 
@@ -41,7 +41,7 @@ def disturbed(cases: pd.DataFrame, spectrum: pd.DataFrame | None, efficiency_cha
     Parameters
     ----------
     cases : DataFrame
-        Of :func:`learn.transfer_studies.disturbed_cases`.
+        Of :func:`learn.transfer_report.studies.disturbed_cases`.
     spectrum : DataFrame or None
         ``source``, ``order``, ``amplitude`` of the disturbance and of the faults; None without the clean data set.
     efficiency_change : float or None

@@ -5,14 +5,14 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from learn import judging_figures as figures
 from learn.calibration import expected_calibration_error, negative_log_likelihood, reliability
 from learn.decisions import class_numbers, probabilities
 from learn.detection import detected, false_alarm_rate, recall_by_cell, worst_cell
 from learn.selective import area_under_risk, coverage_at, risk_coverage
-from learn.transfer_judging import conformal, found_sizes, physics_checked
-from learn.transfer_page import Listed, Section, Table
-from learn.transfer_sentences import number
+from learn.transfer_report import judging_figures as figures
+from learn.transfer_report.judging import conformal, found_sizes, physics_checked
+from learn.transfer_report.page import Listed, Section, Table
+from learn.transfer_report.sentences import number
 from swgsim.style import words
 
 NOMINAL = 0.9
@@ -30,7 +30,7 @@ def section(best: str, predictions: Mapping[str, pd.DataFrame], refitted: str, d
     refitted : str
         Method whose features were permuted.
     drops : DataFrame
-        Of :func:`learn.transfer_judging.importance`.
+        Of :func:`learn.transfer_report.judging.importance`.
     """
     chosen = predictions[best]
     alarms = false_alarm_rate(chosen)

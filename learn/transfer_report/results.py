@@ -16,7 +16,7 @@ from learn.bootstrap import (
     paired_comparison,
     ratio_to,
 )
-from learn.transfer_runs import paired
+from learn.transfer_report.runs import paired
 from swgsim.seeds import generator
 
 FOREST = "random forest on Selection 1"  # the paper's best on Selection 1, depth 7
@@ -102,7 +102,7 @@ def zero_shot(errors: pd.DataFrame, development: pd.Series, fit_seconds: pd.Seri
     Parameters
     ----------
     errors : DataFrame
-        Of :func:`learn.transfer_runs.paired`, with the columns :data:`FOREST` and :data:`ORACLE`.
+        Of :func:`learn.transfer_report.runs.paired`, with the columns :data:`FOREST` and :data:`ORACLE`.
     development : Series
         Score on development gears of each method [%].
     fit_seconds : Series

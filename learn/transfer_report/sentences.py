@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from learn.transfer_results import FOREST, ORACLE, ZeroShot, best_adapted, clear, figure, highest, least, row_of
-from learn.transfer_studies import PAPER_FOREST, best_disturbed
+from learn.transfer_report.results import FOREST, ORACLE, ZeroShot, best_adapted, clear, figure, highest, least, row_of
+from learn.transfer_report.studies import PAPER_FOREST, best_disturbed
 
 DISTURBED_GOAL = 99.5  # %
 FOREST_GOAL, ORACLE_GOAL, SHOTS_GOAL = 1 / 3, 1.5, 1 / 5

@@ -3,10 +3,10 @@
 import numpy as np
 import pandas as pd
 
-from learn import transfer_figures as figures
-from learn.transfer_page import Section, Table
-from learn.transfer_results import FOREST, FROM_SCRATCH, ORACLE, ZeroShot, best_adapted, figure
-from learn.transfer_sentences import FORGETTING_GOAL, number, of_row
+from learn.transfer_report import figures
+from learn.transfer_report.page import Section, Table
+from learn.transfer_report.results import FOREST, FROM_SCRATCH, ORACLE, ZeroShot, best_adapted, figure
+from learn.transfer_report.sentences import FORGETTING_GOAL, number, of_row
 
 
 def transfer(zero: ZeroShot, few: pd.DataFrame, forgotten: pd.DataFrame, draws: str, labelled: int) -> Section:

@@ -7,8 +7,8 @@ import pandas as pd
 from learn.bootstrap import specimens
 from learn.evaluation import metric_key
 from learn.paper import paper_table
-from learn.transfer_results import difference, row_of, with_intervals
-from learn.transfer_runs import CLASSIFIERS, by_method, method_of, paired
+from learn.transfer_report.results import difference, row_of, with_intervals
+from learn.transfer_report.runs import CLASSIFIERS, by_method, method_of, paired
 from swgsim.style import words
 
 PAPER_FOREST = "random forest on Selection 3"  # the paper's best in Table X

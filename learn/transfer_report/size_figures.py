@@ -7,8 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from learn.line_ends import GREY, End, name_ends
-from learn.transfer_curve_figures import require_rows
+from learn.transfer_report.curve_figures import require_rows
+from learn.transfer_report.line_ends import GREY, End, name_ends
 from swgsim import style
 
 

@@ -8,7 +8,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from learn.line_ends import GREY, End, name_ends
+from learn.transfer_report.line_ends import GREY, End, name_ends
 from swgsim import style
 
 FORESTS = ("random forest", "rf", "extra trees")  # begin the names of these classifiers

@@ -7,7 +7,7 @@ from typing import Any
 
 import pandas as pd
 
-from learn.transfer_results import (
+from learn.transfer_report.results import (
     FOREST,
     ORACLE,
     ORACLE_OF_SESSION,
@@ -19,7 +19,7 @@ from learn.transfer_results import (
     interval,
     row_of,
 )
-from learn.transfer_studies import PAPER_FOREST, best_disturbed, nested_inputs
+from learn.transfer_report.studies import PAPER_FOREST, best_disturbed, nested_inputs
 
 CNN_FIT = ("seconds", "recordings", "samples_per_second", "over_bare_step", "dataloader_loop_over_ours")
 RECORDINGS = 4320  # of the timed fit: two of the paper's gears

@@ -4,14 +4,12 @@ from collections.abc import Mapping
 
 import pandas as pd
 
-from learn import size_figures
-from learn import transfer_curve_figures as curve_figures
-from learn import transfer_map_figures as map_figures
+from learn.transfer_report import curve_figures, map_figures, size_figures
 from swgsim import style
 
 
 def error_against_shots(curves: pd.DataFrame, levels: Mapping[str, float]) -> style.Picture:
-    """Error against labelled variants; the parameters are those of :func:`learn.transfer_curve_figures.error`."""
+    """Error against labelled variants; parameters as of :func:`learn.transfer_report.curve_figures.error`."""
     drawn = curve_figures.error(curves, levels)
     return style.Picture(
         "What labelled variants of a new gear are worth",
@@ -37,7 +35,7 @@ def forgotten_against_shots(curves: pd.DataFrame) -> style.Picture:
 
 
 def inputs_map(inputs: pd.DataFrame) -> style.Picture:
-    """Error of all inputs and methods; the parameter is that of :func:`learn.transfer_map_figures.inputs`."""
+    """Error of all inputs and methods; the parameter is that of :func:`learn.transfer_report.map_figures.inputs`."""
     drawn = map_figures.inputs(inputs)
     best = inputs.sort_values("error").iloc[0]
     return style.Picture(
@@ -50,7 +48,7 @@ def inputs_map(inputs: pd.DataFrame) -> style.Picture:
 
 
 def where_transfer_pays(scenarios: pd.DataFrame) -> style.Picture:
-    """Gains and losses in every scenario; the parameter is that of :func:`learn.transfer_map_figures.pays`."""
+    """Gains and losses in every scenario; the parameter is that of :func:`learn.transfer_report.map_figures.pays`."""
     drawn = map_figures.pays(scenarios)
     rows = map_figures.beside_from_scratch(scenarios.dropna(subset=["error"]))
     worse = int((rows["error"] > rows["unadapted"]).sum())
@@ -65,7 +63,7 @@ def where_transfer_pays(scenarios: pd.DataFrame) -> style.Picture:
 
 
 def robustness_against_size(sizes: pd.DataFrame) -> style.Picture:
-    """Accuracy against size; the parameter is that of :func:`learn.size_figures.against_size`."""
+    """Accuracy against size; the parameter is that of :func:`learn.transfer_report.size_figures.against_size`."""
     drawn = size_figures.against_size(sizes)
     return style.Picture(
         "Does a smaller model carry over better?",
@@ -77,7 +75,7 @@ def robustness_against_size(sizes: pd.DataFrame) -> style.Picture:
 
 
 def order_spectrum(residuals: pd.DataFrame) -> style.Picture:
-    """Amplitude by order; the parameter is that of :func:`learn.transfer_map_figures.spectrum`."""
+    """Amplitude by order; the parameter is that of :func:`learn.transfer_report.map_figures.spectrum`."""
     drawn = map_figures.spectrum(residuals)
     return style.Picture(
         "On which orders the disturbance and the faults lie",

@@ -19,7 +19,7 @@ from learn.job import learning_set_of
 from learn.levels import NewGears
 from learn.selective import conformal_threshold, prediction_sets, set_figures
 from learn.tracking import Store
-from learn.transfer_results import row_of
+from learn.transfer_report.results import row_of
 from swgsim import storage
 from swgsim.seeds import generator
 from swgsim.style import words

@@ -8,7 +8,7 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from learn.transfer_sentences import Goal
+from learn.transfer_report.sentences import Goal
 from swgsim.style import Picture
 
 
@@ -79,4 +79,4 @@ class TransferReport:
         )
         environment.filters["data_uri"] = lambda raw: "data:image/png;base64," + base64.b64encode(raw).decode()
         environment.filters["kind"] = lambda part: type(part).__name__
-        return environment.get_template("transfer_report.html.jinja").render(report=self)
+        return environment.get_template("transfer_report/page.html.jinja").render(report=self)

@@ -5,8 +5,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from learn.line_ends import GREY
-from learn.transfer_curve_figures import FROM_SCRATCH, parts_of, require_rows
+from learn.transfer_report.curve_figures import FROM_SCRATCH, parts_of, require_rows
+from learn.transfer_report.line_ends import GREY
 from swgsim import style
 
 GAIN, LOSS = "#0072B2", "#D55E00"
