@@ -8,7 +8,7 @@ TABLES := table7 table8 table9 table10
 # The study of transfer: gears to judge, experiments in the order of the report; the small form leaves some out.
 GEARS := $(if $(SMALL),gears_small,gears)
 FOREIGN := $(if $(SMALL),,far-bench few-bench few-noisy few-other_day)
-ON_GEARS := zero_shot $(if $(SMALL),,inputs inputs_features no_reference) transfer_network transfer_forest transfer_extra_trees \
+ON_GEARS := zero_shot zero_shot_lines $(if $(SMALL),,zero_shot_signals inputs inputs_features no_reference) transfer_network transfer_forest transfer_extra_trees \
             $(if $(SMALL),,transfer_cnn transfer_map transfer_map_foreign)
 ON_PAPER := zero_shot_disturbed $(if $(SMALL),,forest_robustness network_robustness)
 comma := ,

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from learn.inputs import LearningSet
+from learn.inputs import SPECIMEN, LearningSet
 from learn.levels import Episode, Target
 from learn.transfer import Adaptation, Labelled
 from swgsim.seeds import seed_hash
@@ -79,10 +79,10 @@ def adapt_and_judge(
                     judged.append(adapted.predict(data.features[target.judged]) != y[target.judged])
                     forgotten.append(before - _accuracy(adapted, data, y, episode.kept_out))
                 error = 100 * np.mean(judged, axis=0)
-                facts = data.table.iloc[target.judged][["gear", "label", "variant"]]
+                facts = data.table.iloc[target.judged][list(SPECIMEN)]
                 specimens.append(facts.assign(label=y[target.judged], shots=number, error=error, unadapted=unadapted))
                 gears.append((target.gear, number, error.mean(), unadapted.mean(), float(np.mean(forgotten))))
-    each = pd.concat(specimens).groupby(["gear", "label", "variant", "shots"])[["error", "unadapted"]].mean()
+    each = pd.concat(specimens).groupby([*SPECIMEN, "shots"])[["error", "unadapted"]].mean()
     names = ["gear", "shots", "error", "unadapted", "forgotten"]
     return Adapted(each.reset_index(), pd.DataFrame(gears, columns=names))
 
@@ -91,8 +91,8 @@ def _adapted(
     data: LearningSet, y: np.ndarray, model: Any, kept: Labelled, target: Target, adaptation: Adaptation,
     number: int, draw: int,
 ) -> Any:  # fmt: skip
-    rows = target.shots(data.table, number, draw) if number else np.empty(0, dtype=int)
-    unlabelled = data.features[target.unlabelled if not number else target.unlabelled[:0]]
+    rows = target.shots(data.table, number, draw)
+    unlabelled = data.features[target.unlabelled[: 0 if number else None]]
     seed = seed_hash("adaptation", target.gear, number, draw) % 2**31
     return adaptation.adapt(model, kept, Labelled(data.features[rows], y[rows]), unlabelled, seed)
 

@@ -14,8 +14,8 @@ import pandas as pd
 from jaxtyping import Float
 
 from learn.decisions import decisions, truth
+from learn.inputs import SPECIMEN
 
-SPECIMEN = ("gear", "label", "variant")
 FEWEST_GEARS = 5
 LEVEL = 0.95
 

@@ -10,8 +10,6 @@ from jaxtyping import Float, Int
 
 from swgsim.recordings import CLASSES
 
-OPERATING_POINT = ("n_in_rpm", "T_out_nm")
-
 
 def probabilities(predictions: pd.DataFrame) -> Float[np.ndarray, "row class"]:
     """The predicted probability of every class, in the order of :data:`swgsim.recordings.CLASSES`.

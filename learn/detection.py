@@ -1,43 +1,18 @@
 """How large a fault must be to be found, how often a healthy gear alarms, and where recognition is worst."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from typing import cast
 
 import numpy as np
 import pandas as pd
-from jaxtyping import Bool, Float
+from jaxtyping import Bool
 
 from learn.bootstrap import FEWEST_GEARS
-from learn.decisions import OPERATING_POINT, decisions, truth
+from learn.decisions import decisions, truth
 from learn.detection_curve import detection
+from learn.fault_size import UNITS, size
+from learn.inputs import OPERATING_POINT
 from swgsim.recordings import CLASSES
-
-# A class to its fault's size, which is 0 without the fault and grows with it: the lost share of b1 and of k1, the
-# eccentricity [m], the compliance that the crack adds to a tooth pitch of the rim, and the lost share of tooth force.
-SIZES: Mapping[str, Callable[[np.ndarray], np.ndarray]] = {
-    "reduced_damping": lambda remaining: 1 - remaining,
-    "reduced_stiffness": lambda remaining: 1 - remaining,
-    "eccentric_wave_generator": lambda eccentricity: eccentricity,
-    "root_tooth_crack": lambda remaining: 1 / remaining - 1,
-    "tip_tooth_crack": lambda lost: lost,
-}
-UNITS: Mapping[str, str] = {"eccentric_wave_generator": " m"}
-
-
-def size(label: str, severity: Float[np.ndarray, " row"]) -> Float[np.ndarray, " row"]:
-    """Size of the faults of one class from their severities, as :data:`SIZES` says.
-
-    Raises
-    ------
-    ValueError
-        If the class is no fault, or a size is not above 0, as its logarithm is needed.
-    """
-    if label not in SIZES:
-        raise ValueError(f"{label!r} has no fault size; choose from {', '.join(SIZES)}")
-    sizes = np.asarray(SIZES[label](severity))
-    if not (sizes > 0).all():
-        raise ValueError(f"{label}: a fault of size {sizes.min():g}, must be above 0; call such a specimen healthy")
-    return sizes
 
 
 def detected(predictions: pd.DataFrame) -> Bool[np.ndarray, " row"]:

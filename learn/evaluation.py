@@ -10,9 +10,10 @@ import pandas as pd
 from jaxtyping import Float, Int
 
 from learn.classical import Classifier
+from learn.inputs import OPERATING_POINT, SPECIMEN
 from learn.splits import Split
 
-FACTS = ["gear", "label", "variant", "severity", "n_in_rpm", "T_out_nm"]
+FACTS = [*SPECIMEN, "severity", *OPERATING_POINT]
 
 
 @dataclass(frozen=True)
@@ -110,7 +111,7 @@ def evaluate(
     for split in splits:
         classifier = method()
         start = time.perf_counter()
-        _fit(classifier, features[split.train], labels[split.train])
+        converged = fit(classifier, features[split.train], labels[split.train])
         seconds = time.perf_counter() - start
         probabilities = _probabilities(classifier, features[split.test], classes)
         truth = classes.get_indexer(labels[split.test])
@@ -118,9 +119,7 @@ def evaluate(
         np.add.at(confusion, (truth, predicted), 1)
         train_score = np.mean(classifier.predict(features[split.train]) == labels[split.train])
         test_score = np.mean(predicted == truth)
-        scores.append(
-            SplitScore(split.name, 100 * float(train_score), 100 * float(test_score), seconds, _converged(classifier))
-        )
+        scores.append(SplitScore(split.name, 100 * float(train_score), 100 * float(test_score), seconds, converged))
         tested.append(split.test)
         said.append(probabilities)
     return Evaluation(tuple(scores), tuple(map(str, classes)), confusion, np.concatenate(tested), np.concatenate(said))
@@ -136,15 +135,14 @@ def _probabilities(classifier: Classifier, X: np.ndarray, classes: pd.Index) -> 
     return result
 
 
-def _fit(classifier: Classifier, features: np.ndarray, labels: np.ndarray) -> None:
-    """Fit; an optimiser that stops at its bound is no warning here but the metric ``converged``."""
+def fit(classifier: Classifier, features: np.ndarray, labels: np.ndarray) -> bool:
+    """Fit, and say whether the optimiser came to its end; one that stops at its bound is no warning here."""
     from sklearn.exceptions import ConvergenceWarning
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ConvergenceWarning)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", ConvergenceWarning)
         classifier.fit(features, labels)
-
-
-def _converged(classifier: Classifier) -> bool:
-    bound = getattr(classifier, "max_iter", -1)
-    return bound < 0 or int(np.max(getattr(classifier, "n_iter_", 0))) < bound
+    for other in caught:
+        if not issubclass(other.category, ConvergenceWarning):
+            warnings.warn_explicit(other.message, other.category, other.filename, other.lineno)
+    return not any(issubclass(each.category, ConvergenceWarning) for each in caught)

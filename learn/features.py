@@ -9,6 +9,7 @@ from jaxtyping import Float
 
 from learn.inputs import Layout, LearningSet
 from learn.references import healthy_reference
+from learn.side import operating_point
 from swgsim.orders import order_lines, whole_revolutions
 from swgsim.recordings import SENSORS, Recordings
 
@@ -38,6 +39,8 @@ class Selection:
         Where symmetry makes the healthy value vanish, eq. 7 would divide by rounding errors instead. The default,
         1e-6, bounds the quotient and touches nothing that could be measured: of an amplifier's noise of 5e-4 mV/V a
         window of 600 samples leaves 3e-5.
+    operating_point : bool
+        Speed, load and temperature as well, which the paper's selections do not have.
 
     Raises
     ------
@@ -51,6 +54,7 @@ class Selection:
     efficiency: str
     orders: int = 6
     floor: float = 1e-6
+    operating_point: bool = False
 
     def __post_init__(self) -> None:
         if self.spectrum not in SPECTRA:
@@ -67,7 +71,8 @@ class Selection:
         """Names of the features, in their order."""
         statistics = [f"{symbol}({s})" for symbol in ("m_rel", "var_rel") for s in SENSORS] if self.statistics else []
         spectrum = [f"DFT_rel({s})[{k}]" for s in SPECTRA[self.spectrum] for k in range(1, self.orders + 1)]
-        return (*statistics, *spectrum, *EFFICIENCIES[self.efficiency])
+        side = ("speed", "load", "temperature") if self.operating_point else ()
+        return (*statistics, *spectrum, *EFFICIENCIES[self.efficiency], *side)
 
     def learning_set(self, blocks: Iterable[Recordings]) -> LearningSet:
         """Features of all samples relative to the healthy reference of their own gear and operating point.
@@ -96,12 +101,15 @@ class Selection:
         divisor = np.copysign(np.maximum(np.abs(healthy), self.floors), healthy)
         relative = 1 + (quantities[~is_reference] - healthy) / divisor  # eq. 7
 
-        eta_healthy = healthy_reference(references[["efficiency"]].to_numpy(), references, samples)
+        measured = healthy_reference(references[["efficiency", "temperature_c"]].to_numpy(), references, samples)
+        eta_healthy, temperature_healthy = measured[:, :1], measured[:, 1]
         if not (eta_healthy > 0).all():
             raise ValueError(f"healthy reference efficiency {eta_healthy.min():g} found, eq. 7 needs one above 0")
         eta_rel = samples[["efficiency"]].to_numpy() / eta_healthy
         efficiency = {"eta_rel": eta_rel, "eta2_rel": np.abs(1 - eta_rel) ** 0.25}  # eq. 9
         last = [efficiency[name] for name in EFFICIENCIES[self.efficiency]]
+        if self.operating_point:
+            last += [column[:, None] for column in operating_point(samples, temperature_healthy).values()]
         # Networks on signals may take the features before the efficiency for one: a row of numbers.
         layout = Layout(1, relative.shape[1], periodic=False)
         return LearningSet(np.concatenate([relative, *last], axis=1), samples, self.names, layout)

@@ -11,8 +11,8 @@ import numpy as np
 import pandas as pd
 from jaxtyping import Float, Int
 
-from learn.decisions import OPERATING_POINT
-from learn.detection import size
+from learn.fault_size import size
+from learn.inputs import OPERATING_POINT
 from learn.splits import Split
 from swgsim.checks import require_integer
 from swgsim.seeds import generator

@@ -14,7 +14,7 @@ from jaxtyping import Complex
 
 from learn.inputs import LearningSet
 from learn.lines import parts
-from learn.residuals import healthy_lines, residual
+from learn.residuals import ERRORS, healthy_lines, residual
 from learn.side import Side
 from swgsim.checks import require_integer
 from swgsim.recordings import SENSORS, Recordings
@@ -69,7 +69,7 @@ class Harmonics:
             columns |= parts(f"s0[{order}] / healthy", lines[:, 0, order] * relative)
             columns |= parts(f"mean[{order}] / healthy", around[:, 0, order] * relative)
         columns |= Side(self.efficiency, self.operating_point).columns(healthy)
-        columns |= {"load error": errors[:, 0], "angle error": errors[:, 1]}
+        columns |= dict(zip(ERRORS, errors.T, strict=True))
         return LearningSet(np.column_stack(list(columns.values())), healthy.table, tuple(columns))
 
 

@@ -8,6 +8,8 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from swgsim import orders
+
 WHEREABOUTS = ("data", "models", "tracking")  # parts of a configuration that no result depends on
 PRESENTATION = (  # modules that only show results, beside the package transfer_report
     "bootstrap.py",
@@ -15,6 +17,7 @@ PRESENTATION = (  # modules that only show results, beside the package transfer_
     "choices.py",
     "claims.py",
     "decisions.py",
+    "detection.py",
     "detection_curve.py",
     "feature_claims.py",
     "figures.py",
@@ -23,6 +26,7 @@ PRESENTATION = (  # modules that only show results, beside the package transfer_
     "paper.py",
     "report.py",
     "selective.py",
+    "training_benchmark.py",
 )
 
 
@@ -41,11 +45,12 @@ def job_key(config: Mapping[str, Any], data_digest: str) -> str:
 def code_version() -> str:
     """Digest of the sources of this package, but for those that only show results, and of the libraries below it."""
     digest = hashlib.sha256()
-    for library in ("numpy", "scikit-learn", "torch"):
+    for library in ("numpy", "scipy", "pandas", "scikit-learn", "torch"):
         digest.update(f"{library} {version(library)}".encode())
-    for source in sorted(Path(__file__).parent.glob("*.py")):
-        if source.name not in PRESENTATION:
-            digest.update(source.read_bytes())
+    sources = [source for source in Path(__file__).parent.glob("*.py") if source.name not in PRESENTATION]
+    # The one module of swgsim that is no part of a recording's making, which the data set's own version covers.
+    for source in [*sorted(sources), Path(orders.__file__)]:
+        digest.update(source.read_bytes())
     return digest.hexdigest()[:16]
 
 

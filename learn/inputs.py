@@ -10,6 +10,9 @@ from jaxtyping import Float
 
 from swgsim.recordings import Recordings
 
+OPERATING_POINT = ("n_in_rpm", "T_out_nm")
+SPECIMEN = ("gear", "label", "variant")  # a physical unit, recorded at several operating points
+
 
 class Layout(NamedTuple):
     """How a row begins: `channels` times `points` values of signal, channel after channel; side inputs follow.

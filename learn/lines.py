@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Complex, Float
 
 from learn.inputs import LearningSet
-from learn.residuals import healthy_lines, residual
+from learn.residuals import ERRORS, healthy_lines, residual
 from learn.side import Side
 from swgsim.checks import require_integer
 from swgsim.recordings import SENSORS, Recordings
@@ -53,7 +53,7 @@ class ResidualLines:
                 columns |= parts(f"{name}[{order}]", lines[:, sensor, order])
         columns |= Side(self.efficiency, self.operating_point).columns(healthy)
         if errors is not None:
-            columns |= {"load error": errors[:, 0], "angle error": errors[:, 1]}
+            columns |= dict(zip(ERRORS, errors.T, strict=True))
         return LearningSet(np.column_stack(list(columns.values())), healthy.table, tuple(columns))
 
 

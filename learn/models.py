@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from learn import neural
+from learn.evaluation import fit
 from swgsim.files import replacing
 
 # Types beyond skops' own list that may be in a file: parts of estimators that hold arrays and numbers.
@@ -71,5 +72,6 @@ def trained(folder: Path, identity: str, model: Any, X: np.ndarray, y: np.ndarra
     is_network = isinstance(model, neural.NeuralClassifier)
     path = folder / f"{digest.hexdigest()[:24]}{neural.SUFFIX if is_network else '.skops'}"
     if not path.exists():
-        save(model.fit(X, y), path)
+        fit(model, X, y)
+        save(model, path)
     return load(path, model.device if is_network else "auto")

@@ -4,7 +4,9 @@ import numpy as np
 import pandas as pd
 from jaxtyping import Float
 
-OPERATING_POINT = ["gear", "n_in_rpm", "T_out_nm"]
+from learn.inputs import OPERATING_POINT
+
+HEALTHY = ["gear", *OPERATING_POINT]  # what has a reference of its own
 
 
 def healthy_reference(
@@ -33,12 +35,12 @@ def healthy_reference(
     ValueError
         If a gear has no reference at an operating point of its samples.
     """
-    operating_point = pd.MultiIndex.from_frame(references[OPERATING_POINT])
+    operating_point = pd.MultiIndex.from_frame(references[HEALTHY])
     known = operating_point.unique()
     group = known.get_indexer(operating_point)
-    wanted = known.get_indexer(pd.MultiIndex.from_frame(samples[OPERATING_POINT]))
+    wanted = known.get_indexer(pd.MultiIndex.from_frame(samples[HEALTHY]))
     if (wanted < 0).any():
-        gear, speed, load = samples.iloc[int(np.argmin(wanted))][OPERATING_POINT]
+        gear, speed, load = samples.iloc[int(np.argmin(wanted))][HEALTHY]
         raise ValueError(
             f"gear {gear:g} has no healthy reference at {speed:g} rpm and {load:g} N m: record at least one "
             "acquisition with reference = 1 for every gear and operating point"

@@ -1,28 +1,47 @@
 """Training anew for the target gear: the lines between which transfer has to show what it is worth."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import ceil
 from typing import Any
 
 import numpy as np
 from jaxtyping import Float
 
+from learn.neural import NeuralClassifier
 from learn.transfer import FittedClassifier, Labelled, class_numbers, require_rows, untrained
 from swgsim.checks import require_integer
+
+BATCH = 64
 
 
 @dataclass(frozen=True)
 class FromScratch:
     """The same kind of model trained on the shots alone: what the target gear gives without any transfer.
 
-    With few shots this is the lower line; with all labels of the target gear it is the upper one.
+    With few shots this is the lower line; with all labels of the target gear it shows what they are worth alone.
+
+    Attributes
+    ----------
+    steps : int
+        Least number of steps of a network's optimiser, in batches of 64: its own recipe counts epochs, of which a
+        handful of rows make too few.
     """
+
+    steps: int = 400
+
+    def __post_init__(self) -> None:
+        require_integer("training from scratch", "steps", self.steps, low=1, high=100_000)
 
     def adapt(
         self, source: Any, kept: Labelled, shots: Labelled, unlabelled: Float[np.ndarray, "row column"], seed: int
     ) -> FittedClassifier:
         """A new model, which knows the classes of the shots only."""
         require_rows(self, "shots", len(shots.X))
-        return untrained(source, seed).fit(*shots)
+        fresh = untrained(source, seed)
+        if isinstance(fresh, NeuralClassifier):
+            epochs = max(fresh.recipe.epochs, ceil(self.steps / ceil(len(shots.X) / BATCH)))
+            fresh = replace(fresh, recipe=replace(fresh.recipe, epochs=epochs, batch=min(fresh.recipe.batch, BATCH)))
+        return fresh.fit(*shots)
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+import pandas as pd
 from jaxtyping import Float
 
 from learn.residuals import HealthyLines
@@ -31,7 +32,7 @@ class Side:
         """Named columns, one value per sample."""
         table = healthy.table
         speed, load = table["n_in_rpm"].to_numpy(), table["T_out_nm"].to_numpy()
-        eta, temperature = table["efficiency"].to_numpy(), np.nan_to_num(table["temperature_c"].to_numpy())
+        eta = table["efficiency"].to_numpy()
         columns = {}
         if self.efficiency and self.reference:
             change = np.log(eta / healthy.eta_healthy)
@@ -42,6 +43,11 @@ class Side:
         elif self.efficiency:
             columns["log eta"] = np.log(eta)
         if self.operating_point:
-            columns |= {"speed": speed, "load": load}
-            columns["temperature"] = temperature - self.reference * np.nan_to_num(healthy.temperature_healthy)
+            columns |= operating_point(table, self.reference * healthy.temperature_healthy)
         return columns
+
+
+def operating_point(table: pd.DataFrame, temperature: Float[np.ndarray, " sample"]) -> dict[str, np.ndarray]:
+    """Speed [rpm], load [N m], and temperature against that given [K]; 0 where it was not recorded."""
+    difference = np.nan_to_num(table["temperature_c"].to_numpy() - temperature)
+    return {"speed": table["n_in_rpm"].to_numpy(), "load": table["T_out_nm"].to_numpy(), "temperature": difference}

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from learn.inputs import Layout, LearningSet
-from learn.residuals import healthy_lines, residual
+from learn.residuals import ERRORS, healthy_lines, residual
 from learn.side import Side
 from swgsim.checks import require_integer
 from swgsim.orders import revolution
@@ -68,7 +68,7 @@ class Signals:
             lines = lines[:, 1:3] - lines[:, 3:5]  # eq. 8
         elif self.signal == "residual":
             lines, errors = residual(healthy)
-            side |= {"load error": errors[:, 0], "angle error": errors[:, 1]}
+            side |= dict(zip(ERRORS, errors.T, strict=True))
         signal = revolution(lines, self.points)
         names = [
             f"{channel}({point}/{self.points})" for channel in CHANNELS[self.signal] for point in range(self.points)

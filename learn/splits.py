@@ -11,6 +11,8 @@ import numpy as np
 import pandas as pd
 from jaxtyping import Float, Int
 
+from learn.inputs import SPECIMEN
+
 
 class Split(NamedTuple):
     """Row numbers to train on and to test on."""
@@ -106,7 +108,7 @@ def independent_groups(features: Float[np.ndarray, "row feature"], table: pd.Dat
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    variant = table.groupby(["gear", "label", "variant"], observed=True).ngroup().to_numpy()
+    variant = table.groupby(list(SPECIMEN), observed=True).ngroup().to_numpy()
     _, content = np.unique(np.round(features, 9), axis=0, return_inverse=True)
     node = variant.max() + 1 + content
     size = node.max() + 1

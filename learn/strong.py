@@ -26,8 +26,9 @@ def gradient_boosting(
     from sklearn.ensemble import HistGradientBoostingClassifier
 
     return HistGradientBoostingClassifier(
-        max_iter=rounds, learning_rate=rate, max_leaf_nodes=leaves, max_features=columns, random_state=seed
-    )
+        max_iter=rounds, learning_rate=rate, max_leaf_nodes=leaves, max_features=columns, random_state=seed,
+        early_stopping=False,  # which would set rows aside whose specimens are trained on
+    )  # fmt: skip
 
 
 def extra_trees(trees: int = 100, smallest_leaf: int = 1, columns: float | str = "sqrt", seed: int = 0) -> Classifier:

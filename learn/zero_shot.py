@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pandas as pd
 
 from learn import settings
@@ -34,10 +35,12 @@ def results(
     if isinstance(protocol, NewGears) and protocol.development:
         splits = list(protocol.development_splits(data.table))
         trials = settings.trials(config["classifier"])
-        options, scores = choose(trials, lambda options: evaluated(splits, options).metrics()["test_score"])
+        options, scores = choose(
+            trials, lambda tried: float(np.mean([s.test for s in evaluated(splits, tried).scores]))
+        )
     evaluation = evaluated(protocol.split(data.features, data.table), options)
 
-    metrics = evaluation.metrics() | {f"trial/{i}": score for i, score in enumerate(scores, start=1)}
+    metrics = evaluation.metrics() | {f"trial/{i}": round(score, 3) for i, score in enumerate(scores, start=1)}
     title = "{study}: {classifier[name]}, {features[name]}".format(**config)
     predictions = (
         {"tables/predictions.parquet": evaluation.predictions(data.table)} if isinstance(protocol, NewGears) else {}

@@ -14,7 +14,7 @@ import yaml
 from threadpoolctl import threadpool_limits
 from tqdm import tqdm
 
-from swgsim import settings, storage
+from swgsim import orders, settings, storage
 from swgsim.files import replacing, sole_maker
 from swgsim.gear import Gear
 from swgsim.oracle import judge
@@ -99,7 +99,7 @@ def _chosen(plan: Plan, gears: list[int] | None) -> list[int]:
 def _code() -> str:
     """Version of the chain and of the oracle, which the former leaves out."""
     digest = hashlib.sha256()
-    for file in sorted(Path(__file__).parent.glob("oracle*.py")):
+    for file in sorted([*Path(__file__).parent.glob("oracle*.py"), Path(orders.__file__)]):
         digest.update(file.read_bytes())
     return f"{code_version()}+{digest.hexdigest()[:12]}"
 

@@ -4,17 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from learn.detection import (
-    SIZES,
-    detected,
-    detection_table,
-    false_alarm_rate,
-    identified,
-    recall_by_cell,
-    size,
-    worst_cell,
-)
+from learn.detection import detected, detection_table, false_alarm_rate, identified, recall_by_cell, worst_cell
 from learn.detection_curve import DetectionCurve, detection
+from learn.fault_size import SIZES, size
 from swgsim.faults import FAULTS
 from swgsim.recordings import CLASSES
 from swgsim.seeds import generator

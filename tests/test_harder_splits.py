@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from learn.detection import size
 from learn.evaluation import metric_key
+from learn.fault_size import size
 from learn.harder_splits import LeaveOperatingPointOut, LeaveSeverityOut
 from swgsim.recordings import CLASSES
 

@@ -6,7 +6,8 @@ import pytest
 
 from learn.bootstrap import difference_to, gear_errors, paired_comparison
 from learn.calibration import reliability
-from learn.detection import SIZES, recall_by_cell
+from learn.detection import recall_by_cell
+from learn.fault_size import SIZES
 from learn.selective import risk_coverage
 from learn.transfer_report import judging_figures as figures
 from swgsim.recordings import CLASSES

@@ -7,7 +7,7 @@ import pytest
 from fabricated import of_lines, recordings
 
 from learn.lines import ResidualLines
-from learn.residuals import healthy_lines, residual
+from learn.residuals import Accuracy, healthy_lines, residual
 
 LOADS = np.array([7.0, 20.0, 39.0, 70.0])
 ORDERS = 6
@@ -42,8 +42,11 @@ def beside_references(sample_lines, loads, references=None, reference_loads=LOAD
     )
 
 
-def left_over(data, **options):
-    return residual(healthy_lines([data], ORDERS, **options))
+UNBOUNDED = Accuracy(load=1e4, angle=1e4, speed=1e4, line=1e-4)
+
+
+def left_over(data, accuracy=UNBOUNDED, **options):
+    return residual(healthy_lines([data], ORDERS, **options), accuracy)
 
 
 def test_lines_and_slope_of_the_reference_are_found_at_every_load():

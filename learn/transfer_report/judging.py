@@ -11,10 +11,12 @@ import pandas as pd
 import yaml
 
 from learn import settings
-from learn.decisions import OPERATING_POINT, class_numbers, probabilities
-from learn.detection import UNITS, detection_table
+from learn.decisions import class_numbers, probabilities
 from learn.detection import detected as taken_for_a_fault
+from learn.detection import detection_table
+from learn.fault_size import UNITS
 from learn.importance import grouped_permutation
+from learn.inputs import OPERATING_POINT
 from learn.job import learning_set_of
 from learn.levels import NewGears
 from learn.selective import conformal_threshold, prediction_sets, set_figures

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
 from learn.decisions import truth
-from learn.detection import SIZES, size
 from learn.detection_curve import FOUND, detection
+from learn.fault_size import SIZES, size
 from swgsim import style
 
 # A class to the name of its fault's size, its unit, and the factor to that unit.

@@ -8,8 +8,7 @@ from typing import cast
 
 import pandas as pd
 
-from learn.bootstrap import SPECIMEN
-from learn.decisions import OPERATING_POINT
+from learn.inputs import OPERATING_POINT, SPECIMEN
 from learn.tracking import Store, finished_runs, table_of
 from swgsim.oracle_job import KNOWN
 from swgsim.recordings import CLASSES
@@ -51,7 +50,7 @@ FEATURES: Mapping[str, str] = {
     "lines": "residual lines",
 }
 ADAPTATIONS: Mapping[str, str] = {"l2_sp": "L2-SP", "coral": "CORAL", "structure_transfer": "STRUT"}
-FACTS = ["row", "gear", "label", "variant", "severity", *OPERATING_POINT]
+FACTS = ["row", *SPECIMEN, "severity", *OPERATING_POINT]
 
 
 def command(study: str, grids: Mapping[str, str]) -> str:
