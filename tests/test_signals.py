@@ -39,7 +39,7 @@ def with_facts(data, samples=None, references=None):
 
 @pytest.mark.parametrize(
     ("signal", "channels", "more"),
-    [("raw", 5, ()), ("differenced", 2, ()), ("residual", 5, ("load error", "angle error"))],
+    [("raw", 5, ()), ("differenced", 2, ()), ("residual", 5, ("load error", "angle error", "speed error"))],
 )
 def test_signals_come_channel_by_channel_with_the_side_inputs_behind(signal, channels, more):
     data = recordings(gears=2, variants=2)
