@@ -6,6 +6,7 @@ READY := $(VENV)/ready
 GRID := $(if $(SMALL),small,paper)
 TABLES := table7 table8 table9 table10
 # The study of transfer: gears to judge, experiments in the order of the report; the small form leaves some out.
+STARTED := $(shell date +%s)
 GEARS := $(if $(SMALL),gears_small,gears)
 FOREIGN := $(if $(SMALL),,far-bench few-bench few-noisy few-other_day)
 ON_GEARS := zero_shot zero_shot_lines $(if $(SMALL),,zero_shot_signals inputs inputs_features no_reference) transfer_network transfer_forest transfer_extra_trees \
@@ -51,15 +52,14 @@ paper: $(READY)  ## from nothing to the paper's tables beside ours (SMALL=1: a s
 	    $(BIN)/python scripts/report.py grid=$(GRID) started=$$started
 	@echo "open report/index.html; 'make ui' shows the runs"
 
-transfer: $(READY)  ## beyond the paper: networks, transfer to gears never seen, report/transfer.html (SMALL=1: two minutes)
-	@started=$$(date +%s) && set -e; \
-	$(BIN)/python scripts/generate.py grid=$(GRID) condition=disturbed; \
+transfer: data  ## beyond the paper: networks, transfer to gears never seen, report/transfer.html (SMALL=1: two minutes)
+	@set -e; \
 	for set in $(GEARS)-bench $(FOREIGN); do $(BIN)/python scripts/generate.py grid=$${set%-*} condition=$${set##*-}; done; \
 	$(BIN)/python scripts/oracle.py grid=$(GEARS); \
 	for name in $(ON_PAPER); do $(BIN)/python scripts/train.py experiment=$$name grid=$(GRID); done; \
 	for name in $(ON_GEARS); do $(BIN)/python scripts/train.py experiment=$$name grid=$(GEARS) $(QUICK); done; \
 	$(BIN)/python scripts/train.py experiment=harder_splits grid=$(GEARS); \
-	$(BIN)/python scripts/transfer_report.py grid=$(GEARS) paper_grid=$(GRID) started=$$started
+	$(BIN)/python scripts/transfer_report.py grid=$(GEARS) paper_grid=$(GRID) started=$(STARTED)
 	@echo "open report/transfer.html; 'make ui' shows the runs"
 
 test: $(READY)  ## all tests

@@ -46,6 +46,7 @@ def content(
             "ci95": interval(best, "ratio_"),
             "ratio_to_oracle": finite(best["oracle"]),
             "chosen_on_development_gears": zero.chosen,
+            "chosen_error": finite(figure(zero.table, zero.chosen)) if zero.chosen else None,
         },
         "z3": {
             str(shots): {

@@ -1,7 +1,6 @@
 """The runs that the report of the transfer study rests on: found by study, named by method, paired by specimen."""
 
 import os
-import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import cast
@@ -60,12 +59,11 @@ def command(study: str, grids: Mapping[str, str]) -> str:
 
 
 def present_runs(store: Store, digests: Iterable[str]) -> pd.DataFrame:
-    """The finished runs on the present data sets, newest first; a digest of several data sets counts by any of them."""
+    """The finished runs on the present data sets, newest first; of several data sets, the first counts."""
     runs = finished_runs(store)
     if runs.empty:
         return pd.DataFrame(columns=["study", "data_digest", "run_id"])
-    known = "|".join(map(re.escape, digests))
-    return runs[runs["data_digest"].str.contains(known)].reset_index(drop=True)
+    return runs[runs["data_digest"].str.split("+").str[0].isin(list(digests))].reset_index(drop=True)
 
 
 def of_study(runs: pd.DataFrame, study: str) -> pd.DataFrame:

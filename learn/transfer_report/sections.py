@@ -113,9 +113,10 @@ def new_gears(zero: ZeroShot, no_reference: Mapping[str, str]) -> Section:
     parts: list = [
         f"Level Z1: every method is trained on other gears and judged on the same recordings of {zero.gears} gears "
         "never seen, with noise, jitter, measured efficiency and temperature. Intervals hold 95 % and come from "
-        f"gears, and specimens within them, drawn anew. The {ORACLE} knows the gear and all statistics: no "
-        "classifier of single recordings errs less on average; the second one is told the bias of the torque "
-        "flanges of the session, too.",
+        f"gears, and specimens within them, drawn anew; they are of one trained model per fold, without the "
+        f"scatter of training. The {ORACLE} is Bayes' rule with the gear and all statistics known, with the healthy "
+        "scatter taken for Gaussian: what can be had from single recordings, as nearly as we can tell. The second one "
+        "is told the bias of the torque flanges of the session, too.",
         Table(
             ["method", "error [%]", "ratio to the paper's forest", "ratio to the oracle", "development gears [%]",
              "fit, all folds [s]"], rows,
@@ -126,7 +127,7 @@ def new_gears(zero: ZeroShot, no_reference: Mapping[str, str]) -> Section:
     ]  # fmt: skip
     if no_reference:
         rows = [[name, value] for name, value in no_reference.items()]
-        parts.append(Table(["raw signals without and with the reference", "error [%]"], rows,
+        parts.append(Table(["raw signals; efficiency and temperature without and with reference", "error [%]"], rows,
                            "Level Z0 beside Z1, trained on the same recordings, fewer than above."))  # fmt: skip
     return Section("new", "New gears on the bench", parts)
 
@@ -144,9 +145,10 @@ def inputs(table: pd.DataFrame) -> Section:
     gain = table.pivot_table(index=["input", "method"], columns="efficiency", values="error")
     worth = (gain[False] - gain[True]).dropna() if {True, False} <= set(gain.columns) else pd.Series(dtype=float)
     parts: list = [
-        "Level Z1, error [%] of networks on gears never seen; all trained on the same recordings, ten variants of "
-        "each class and source gear. Features are all of the paper's together; residuals are signals less the "
-        "healthy reference, with errors of load and trigger taken out.",
+        "Error [%] of networks on gears never seen (Z1); all trained on the same recordings, fewer than above. "
+        "Features are all of the paper's together, residuals are signals less the healthy reference, with errors of "
+        "load, trigger and speed taken out. Raw and differenced signals see the reference only through efficiency and "
+        "temperature: without the efficiency they are nearly at level Z0.",
         Table(["input", "efficiency", *(METHODS[m] for m in NETWORKS.values())], rows, left=2),
     ]
     if len(worth):
