@@ -22,3 +22,8 @@ def choose(trials: Sequence[Options], score: Callable[[Options], float]) -> tupl
         return trials[0], []
     scores = [score(options) for options in trials]
     return trials[int(np.argmax(scores))], scores
+
+
+def trial_metrics(scores: Sequence[float]) -> dict[str, float]:
+    """The scores of all trials [%] under names that MLflow accepts."""
+    return {f"trial/{number}": round(score, 3) for number, score in enumerate(scores, start=1)}

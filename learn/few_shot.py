@@ -33,7 +33,7 @@ def results(
     """
     from learn import models
     from learn.adapting import adapt_and_judge
-    from learn.choosing import choose
+    from learn.choosing import choose, trial_metrics
 
     protocol = settings.protocol(config["protocol"])
     if not isinstance(protocol, NewGears):
@@ -70,5 +70,5 @@ def results(
     trials = settings.trials(adaptation) if protocol.development else [{}]
     options, scores = choose(trials, score)
     judged = adapted(protocol.episodes(data.table), options, adaptation["shots"], config["draws"])
-    metrics = judged.metrics() | {f"trial/{i}": round(score, 3) for i, score in enumerate(scores, start=1)}
+    metrics = judged.metrics() | trial_metrics(scores)
     return metrics, {}, {"tables/specimens.parquet": judged.specimens, "tables/gears.parquet": judged.gears}

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from math import ceil
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from jaxtyping import Float
@@ -10,6 +10,9 @@ from jaxtyping import Float
 from learn.neural import NeuralClassifier
 from learn.transfer import FittedClassifier, Labelled, class_numbers, require_rows, untrained
 from swgsim.checks import require_integer
+
+if TYPE_CHECKING:
+    from learn.training import Recipe
 
 BATCH = 64
 
@@ -38,10 +41,14 @@ class FromScratch:
         """A new model, which knows the classes of the shots only."""
         require_rows(self, "shots", len(shots.X))
         fresh = untrained(source, seed)
-        if isinstance(fresh, NeuralClassifier):
-            epochs = max(fresh.recipe.epochs, ceil(self.steps / ceil(len(shots.X) / BATCH)))
-            fresh = replace(fresh, recipe=replace(fresh.recipe, epochs=epochs, batch=min(fresh.recipe.batch, BATCH)))
+        if isinstance(fresh, NeuralClassifier) and _steps(fresh.recipe, len(shots.X)) < self.steps:
+            epochs = ceil(self.steps / ceil(len(shots.X) / BATCH))
+            fresh = replace(fresh, recipe=replace(fresh.recipe, epochs=epochs, batch=BATCH))
         return fresh.fit(*shots)
+
+
+def _steps(recipe: "Recipe", rows: int) -> int:
+    return recipe.epochs * ceil(rows / recipe.batch)
 
 
 @dataclass(frozen=True)

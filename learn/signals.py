@@ -21,8 +21,7 @@ class Signals:
 
     Attributes
     ----------
-    name : str
-    signal : {"raw", "differenced", "residual"}
+    name : {"raw", "differenced", "residual"}
         Five gauges; s1 - s3 and s2 - s4 (eq. 8); or five gauges relative to the healthy reference
         (:func:`learn.residuals.residual`).
     points : int
@@ -41,7 +40,6 @@ class Signals:
     """
 
     name: str
-    signal: str
     points: int = 64
     orders: int = 24
     efficiency: bool = True
@@ -50,10 +48,10 @@ class Signals:
     acquisitions: int | None = None
 
     def __post_init__(self) -> None:
-        if self.signal not in CHANNELS:
-            raise ValueError(f"unknown signal {self.signal!r}; choose from {', '.join(CHANNELS)}")
-        if self.signal == "residual" and not self.reference:
-            raise ValueError("signal=residual is relative to a healthy reference: reference=true, or signal=raw")
+        if self.name not in CHANNELS:
+            raise ValueError(f"unknown signal {self.name!r}; choose from {', '.join(CHANNELS)}")
+        if self.name == "residual" and not self.reference:
+            raise ValueError("features=residual is relative to a healthy reference: reference=true, or features=raw")
         require_integer(self.name, "points", self.points, low=8, high=4096)
         require_integer(self.name, "orders", self.orders, low=1, high=self.points // 2 - 1)
         if self.acquisitions is not None:
@@ -64,14 +62,12 @@ class Signals:
         healthy = healthy_lines(blocks, self.orders, self.acquisitions)
         side = Side(self.efficiency, self.operating_point, self.reference).columns(healthy)
         lines = healthy.lines
-        if self.signal == "differenced":
+        if self.name == "differenced":
             lines = lines[:, 1:3] - lines[:, 3:5]  # eq. 8
-        elif self.signal == "residual":
+        elif self.name == "residual":
             lines, errors = residual(healthy)
             side |= dict(zip(ERRORS, errors.T, strict=True))
         signal = revolution(lines, self.points)
-        names = [
-            f"{channel}({point}/{self.points})" for channel in CHANNELS[self.signal] for point in range(self.points)
-        ]
+        names = [f"{channel}({point}/{self.points})" for channel in CHANNELS[self.name] for point in range(self.points)]
         features = np.column_stack([signal.reshape(len(signal), -1), *side.values()])
         return LearningSet(features, healthy.table, (*names, *side), Layout(signal.shape[1], self.points))

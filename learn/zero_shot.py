@@ -19,7 +19,7 @@ def results(
     config: Mapping[str, Any], data: LearningSet
 ) -> tuple[dict[str, float], dict[str, "Figure"], dict[str, pd.DataFrame]]:
     """Metrics, figures and tables of a resolved configuration of ``conf/train.yaml``."""
-    from learn.choosing import choose
+    from learn.choosing import choose, trial_metrics
     from learn.confusion import picture
     from learn.evaluation import Evaluation, evaluate
 
@@ -40,7 +40,7 @@ def results(
         )
     evaluation = evaluated(protocol.split(data.features, data.table), options)
 
-    metrics = evaluation.metrics() | {f"trial/{i}": round(score, 3) for i, score in enumerate(scores, start=1)}
+    metrics = evaluation.metrics() | trial_metrics(scores)
     title = "{study}: {classifier[name]}, {features[name]}".format(**config)
     predictions = (
         {"tables/predictions.parquet": evaluation.predictions(data.table)} if isinstance(protocol, NewGears) else {}

@@ -86,7 +86,8 @@ def spied(config, data, monkeypatch):
 
 
 def test_options_are_tried_on_development_gears_and_the_best_are_judged(data, tmp_path, monkeypatch):
-    calls, metrics = spied({**configuration(tmp_path), "draws": 2}, data, monkeypatch)
+    # A development gear unlike its sources, so that it matters how much the shots count.
+    calls, metrics = spied({**configuration(tmp_path), "draws": 2}, poisoned(data, [5]), monkeypatch)
     best = max(trials_of(metrics), key=lambda name: metrics[name])
     assert calls[:-1] == [(trial["strength"], [2], 1, {3, 4, 5}) for trial in TRIALS]
     assert calls[-1] == (TRIALS[int(best.removeprefix("trial/")) - 1]["strength"], [1, 2], 2, {1, 2})

@@ -17,7 +17,7 @@ ANGLE = 2 * np.pi * np.arange(POINTS) / POINTS
 
 
 def signals(signal, **options):
-    return Signals(signal, signal, POINTS, ORDERS, **options)
+    return Signals(signal, POINTS, ORDERS, **options)
 
 
 def of(data, representation):
@@ -143,8 +143,8 @@ def test_equal_representations_are_interchangeable():
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"signal": "sum"}, "unknown signal 'sum'; choose from raw, differenced, residual"),
-        ({"reference": False}, "signal=residual is relative to a healthy reference: reference=true, or signal=raw"),
+        ({"name": "sum"}, "unknown signal 'sum'; choose from raw, differenced, residual"),
+        ({"reference": False}, "features=residual is relative to a healthy reference: reference=true, or features=raw"),
         ({"points": 7}, "points of residual is 7, must be an integer from 8 to 4096"),
         ({"points": 5000}, "points of residual is 5000, must be an integer from 8 to 4096"),
         ({"orders": 0}, "orders of residual is 0, must be an integer from 1 to 7"),

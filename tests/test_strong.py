@@ -33,7 +33,7 @@ def configuration(name):
 @pytest.fixture(scope="module")
 def data():
     """Two gears with four variants of each class; speed and load, which the plain methods do not scale, left out."""
-    signals = Signals("raw", "raw", points=16, orders=7, operating_point=False)
+    signals = Signals("raw", points=16, orders=7, operating_point=False)
     return signals.learning_set([recordings(gears=2, variants=4)])
 
 
