@@ -9,8 +9,9 @@ TABLES := table7 table8 table9 table10
 STARTED := $(shell date +%s)
 GEARS := $(if $(SMALL),gears_small,gears)
 FOREIGN := $(if $(SMALL),,far-bench few-bench few-noisy few-other_day)
-ON_GEARS := zero_shot zero_shot_lines $(if $(SMALL),,zero_shot_signals inputs inputs_features no_reference) transfer_network transfer_forest transfer_extra_trees \
-            $(if $(SMALL),,transfer_cnn transfer_map transfer_map_foreign)
+ON_GEARS := zero_shot inputs inputs_features transfer_network transfer_forest \
+            $(if $(SMALL),,zero_shot_lines zero_shot_signals no_reference transfer_extra_trees transfer_cnn) \
+            $(if $(SMALL),,transfer_map transfer_map_foreign)
 ON_PAPER := zero_shot_disturbed $(if $(SMALL),,forest_robustness network_robustness)
 comma := ,
 QUICK := $(if $(SMALL),shots=[1$(comma)2] draws=1 protocol.folds=2 protocol.development=0 \
@@ -58,7 +59,7 @@ transfer: data  ## beyond the paper: networks, transfer to gears never seen, rep
 	$(BIN)/python scripts/oracle.py grid=$(GEARS); \
 	for name in $(ON_PAPER); do $(BIN)/python scripts/train.py experiment=$$name grid=$(GRID); done; \
 	for name in $(ON_GEARS); do $(BIN)/python scripts/train.py experiment=$$name grid=$(GEARS) $(QUICK); done; \
-	$(BIN)/python scripts/train.py experiment=harder_splits grid=$(GEARS); \
+	$(if $(SMALL),,$(BIN)/python scripts/train.py experiment=harder_splits grid=$(GEARS);) \
 	$(BIN)/python scripts/transfer_report.py grid=$(GEARS) paper_grid=$(GRID) started=$(STARTED)
 	@echo "open report/transfer.html; 'make ui' shows the runs"
 
