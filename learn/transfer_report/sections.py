@@ -26,7 +26,7 @@ def levels(labelled: int | None) -> list[tuple[str, str]]:
             "Z3",
             "besides, K labelled specimens of each class, the shots; a shot is one specimen at all operating points",
         ),
-        ("Z4", f"besides, {pool} of each class: what labels of the gear can give at most"),
+        ("Z4", f"besides, {pool} of each class; methods of Z3 and Z4 use no recordings without labels"),
     ]
 
 
