@@ -74,6 +74,7 @@ def measure(recordings: int = 4320, channels: int = 5, points: int = 64, side: i
         lambda: _with_threads(len(os.sched_getaffinity(0)), lambda: bare(THREAD_STEPS)),
     )
     return {
+        "recordings": recordings,
         "seconds": seconds,
         "samples_per_second": recordings * model.recipe.epochs / seconds,
         "over_bare_step": float(np.median(ours / bared)),

@@ -82,7 +82,7 @@ def cnn_fit(benchmark: Path) -> dict[str, Any]:
         from learn.training_benchmark import measure
 
         found = measure(recordings=RECORDINGS)
-    return {"recordings": RECORDINGS, **found}
+    return found
 
 
 def how_made(
