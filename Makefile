@@ -53,7 +53,7 @@ paper: $(READY)  ## from nothing to the paper's tables beside ours (SMALL=1: a s
 	    $(BIN)/python scripts/report.py grid=$(GRID) started=$$started
 	@echo "open report/index.html; 'make ui' shows the runs"
 
-transfer: data  ## beyond the paper: networks, transfer to gears never seen, report/transfer.html (SMALL=1: two minutes)
+transfer: data  ## beyond the paper: networks, transfer to gears never seen, report/transfer.html (SMALL=1: 2 to 3 minutes)
 	@set -e; \
 	for set in $(GEARS)-bench $(FOREIGN); do $(BIN)/python scripts/generate.py grid=$${set%-*} condition=$${set##*-}; done; \
 	$(BIN)/python scripts/oracle.py grid=$(GEARS); \
