@@ -1,20 +1,25 @@
 """The simulation chain (Fig. 2): input/output model, flex spline and gauges in a row, for many runs at once."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import reduce
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache, reduce
 
 import numpy as np
 from jaxtyping import Float
 from threadpoolctl import threadpool_limits
 
 from swgsim.acquisition import Window
-from swgsim.dynamics import Drive
-from swgsim.effects.base import Effect
+from swgsim.conditions import Conditions
+from swgsim.dynamics import Drive, State
+from swgsim.effects.base import Effect, Scene, overrides
 from swgsim.flexspline import solve_flex_spline
-from swgsim.gear import Gear, OperatingPoint
+from swgsim.gauges import GaugeSet
+from swgsim.gear import Gear, OperatingPoint, WaveGenerator
 from swgsim.influence import InfluenceMap, harmonics, influence_map
-from swgsim.motion import Motion, advance, run, steady_state
+from swgsim.motion import Motion, advance, revolve, run, steady_state
+from swgsim.recording import Recording
+from swgsim.recordings import SENSORS
+from swgsim.silk_hat import SilkHat
 
 SECTORS = 100
 
@@ -33,17 +38,24 @@ class Run:
     effects : tuple of Effect
     start_angle : float
         Wave-generator angle at which the window opens [rad].
+    conditions : Conditions
     """
 
     gear: Gear
     point: OperatingPoint
     effects: tuple[Effect, ...] = ()
     start_angle: float = 0.0
+    conditions: Conditions = field(default_factory=Conditions)
+
+    @property
+    def acting(self) -> tuple[Effect, ...]:
+        """The effects as they are at the operating point and under the conditions of the run."""
+        return tuple(effect.at(self.point, self.conditions) for effect in self.effects)
 
     @property
     def affected_gear(self) -> Gear:
         """The gear with the parameters that the effects change."""
-        return reduce(lambda gear, effect: effect.gear(gear), self.effects, self.gear)
+        return reduce(lambda gear, effect: effect.gear(gear), self.acting, self.gear)
 
 
 @dataclass(frozen=True)
@@ -88,24 +100,100 @@ def simulate(runs: Sequence[Run], window: Window, sectors: int = SECTORS) -> Sim
     Simulation
         Ideal signals: noise, quantisation and disturbance are for the acquisition.
     """
+    motion, of_run = _motions(runs, lambda drive, state: run(drive, state, 1 / window.rate, window.samples))
+    signals = _gauge_signals(runs, motion, of_run, window.samples, sectors)
+    simulation = Simulation(signals, motion, of_run)
+    for i, each in enumerate(runs):
+        if any(overrides(effect, "gauge", "acquisition") for effect in each.acting):
+            seen = _as_seen(each, window.time, _channels(simulation, i, window.samples))
+            signals[i] = [seen[sensor] for sensor in SENSORS]
+    return simulation
+
+
+@threadpool_limits.wrap(limits=1)
+def simulate_turns(runs: Sequence[Run], revolutions: int, points: int, sectors: int = SECTORS) -> list[Recording]:
+    """Recordings of whole revolutions of the wave generator in the steady state.
+
+    One revolution is integrated and repeated; effects on gauges and acquisition then act on all of them in time.
+
+    Parameters
+    ----------
+    runs : sequence of Run
+    revolutions : int
+    points : int
+        Samples per revolution.
+    sectors : int
+        Sectors of the flex spline's truss, even.
+    """
+    motion, of_run = _motions(runs, lambda drive, state: revolve(drive, state, points))
+    simulation = Simulation(_gauge_signals(runs, motion, of_run, points, sectors), motion, of_run)
+    recordings = []
+    for i, each in enumerate(runs):
+        one = _channels(simulation, i, points)
+        channels = {name: np.tile(values, revolutions) for name, values in one.items()}
+        channels["phi_in"] += np.repeat(2 * np.pi * np.arange(revolutions), points)
+        time = np.arange(revolutions * points) * 2 * np.pi / each.point.omega_in / points
+        seen = _as_seen(each, time, channels)
+        recordings.append(Recording(f"{i + 1}", f"{each.gear.number}", "1", each.point, 1, time, seen, each.conditions))
+    return recordings
+
+
+def _motions(runs: Sequence[Run], integrate: Callable[[Drive, State], Motion]) -> tuple[Motion, np.ndarray]:
+    """The distinct motions from their steady state on, and which of them belongs to each run."""
     if not runs:
         raise ValueError(
             "no runs to simulate: the grid is empty; give it gears, classes, variants and operating points"
         )
-    gears = [r.affected_gear for r in runs]
-    motions, of_run = _distinct([(g.transmission, r.point, r.start_angle) for g, r in zip(gears, runs, strict=True)])
-    structures, structure_of_run = _distinct([_structure(g, r.effects) for g, r in zip(gears, runs, strict=True)])
-    motion = _motion(motions, window)
-    maps = [
-        influence_map(solve_flex_spline(hat, alpha_tooth, sectors), wave_generator, gauges, effects)
-        for hat, alpha_tooth, wave_generator, gauges, effects in structures
-    ]
-    signals = np.empty((len(runs), 5, window.samples))
-    for m in range(len(motions)):
+    motions, of_run = _distinct([
+        (r.affected_gear.transmission, r.point, tuple(e for e in r.acting if overrides(e, "drive")), r.start_angle)
+        for r in runs
+    ])  # fmt: skip
+    transmissions, points, effects, start = zip(*motions, strict=True)
+    drive = Drive(transmissions, points, effects)
+    state = steady_state(drive)
+    if any(start):
+        state = advance(drive, state, np.array(start))
+    return integrate(drive, state), of_run
+
+
+def _gauge_signals(
+    runs: Sequence[Run], motion: Motion, of_run: np.ndarray, samples: int, sectors: int
+) -> Float[np.ndarray, "run 5 time"]:
+    """The bridge signals of every run along its motion."""
+    structures, structure_of_run = _distinct([_structure(r.affected_gear, r.acting) for r in runs])
+    maps = [_map(*structure, sectors) for structure in structures]
+    signals = np.empty((len(runs), 5, samples))
+    for m in range(len(motion.phi_in)):
         rows = np.flatnonzero(of_run == m)
-        angle, torque = motion.phi_in[m, : window.samples], motion.T_out[m, : window.samples]
+        angle, torque = motion.phi_in[m, :samples], motion.T_out[m, :samples]
         signals[rows] = evaluate([maps[s] for s in structure_of_run[rows]], angle, torque)
-    return Simulation(signals, motion, of_run)
+    return signals
+
+
+def _channels(simulation: Simulation, i: int, samples: int) -> dict[str, np.ndarray]:
+    """All channels of a run."""
+    motion, m = simulation.motion, simulation.of_run[i]
+    return {
+        "phi_in": motion.phi_in[m, :samples].copy(),
+        "n_in": motion.omega_in[m, :samples] * 60 / (2 * np.pi),
+        "T_in": motion.T_in[m, :samples].copy(),
+        "T_out": motion.T_out[m, :samples].copy(),
+        **dict(zip(SENSORS, simulation.signals[i], strict=True)),
+    }
+
+
+def _as_seen(
+    each: Run, time: Float[np.ndarray, " time"], channels: Mapping[str, np.ndarray]
+) -> Mapping[str, np.ndarray]:
+    """The channels with what the effects make of gauges and acquisition."""
+    scene = Scene(time, channels["phi_in"], channels["T_out"], each.point, each.conditions)
+    signals = np.array([channels[sensor] for sensor in SENSORS])
+    for effect in each.acting:
+        signals = effect.gauge(signals, scene)
+    channels = {**channels, **dict(zip(SENSORS, signals, strict=True))}
+    for effect in each.acting:
+        channels = effect.acquisition(channels, scene)
+    return channels
 
 
 def evaluate(
@@ -130,14 +218,21 @@ def _significant(coefficients: np.ndarray, T_out: float) -> np.ndarray:
 
 def _structure(gear: Gear, effects: Sequence[Effect]) -> tuple:
     """All that an influence map depends on, but for the mesh."""
-    touching = tuple(filter(_touches_structure, effects))
+    touching = tuple(effect for effect in effects if overrides(effect, "wave_generator", "mesh", "cracks"))
     return gear.flex_spline, gear.transmission.alpha_tooth, gear.wave_generator, gear.gauges, touching
 
 
-def _touches_structure(effect: Effect) -> bool:
-    """Whether an effect overrides a place of the flex spline rather than of the drive alone."""
-    places = ("wave_generator", "mesh", "cracks")
-    return any(getattr(type(effect), place) is not getattr(Effect, place) for place in places)
+@lru_cache(maxsize=512)
+def _map(
+    hat: SilkHat,
+    alpha_tooth: float,
+    wave_generator: WaveGenerator,
+    gauges: GaugeSet,
+    effects: tuple[Effect, ...],
+    sectors: int,
+) -> InfluenceMap:
+    """The influence map of a structure; a second question to the same gear finds it made."""
+    return influence_map(solve_flex_spline(hat, alpha_tooth, sectors), wave_generator, gauges, effects)
 
 
 def _distinct(keys: list) -> tuple[list, np.ndarray]:
@@ -145,13 +240,3 @@ def _distinct(keys: list) -> tuple[list, np.ndarray]:
     index: dict = {}
     where = np.array([index.setdefault(key, len(index)) for key in keys])
     return list(index), where
-
-
-def _motion(motions: list, window: Window) -> Motion:
-    """Steady motion of each distinct (transmission, operating point, start angle) over the window."""
-    drive = Drive([m[0] for m in motions], [m[1] for m in motions])
-    start = np.array([m[2] for m in motions])
-    state = steady_state(drive)
-    if np.any(start):
-        state = advance(drive, state, start)
-    return run(drive, state, 1 / window.rate, window.samples)

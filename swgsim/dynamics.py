@@ -7,6 +7,8 @@ Delta phi_k and of T_fric on phi_b; as phi_err is a function of phi_in, its slop
 
     J_in  phi_in''  = T_in - (tan(alpha_in) + dphi_err/dphi_in) T_stiff
     J_out phi_out'' = T_out - T_load,   T_out = T_stiff / tan(alpha_tooth) - T_fric / sin(alpha_tooth)
+
+Effects may add to T_stiff, T_fric and T_load, brake the input, or drive it beside the speed control.
 """
 
 from collections.abc import Sequence
@@ -15,6 +17,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from jaxtyping import Complex, Float
 
+from swgsim.effects.base import Effect, Extra, Instant, overrides
 from swgsim.gear import OperatingPoint, Transmission
 
 # Friction changes its sign smoothly below this sliding speed [rad/s], far under that of any operating point.
@@ -26,13 +29,18 @@ State = Float[np.ndarray, "5 run"]
 
 @dataclass(frozen=True)
 class Torques:
-    """Torques [N m] and sliding speed [rad/s] at one instant, each an array (run,); T_wedge is the wave generator's."""
+    """Torques [N m] and sliding speed [rad/s] at one instant, each an array (run,).
+
+    ``T_in`` is what a torque flange at the input feels, ``T_wedge`` what brakes the input: the wave generator and
+    losses beside it.
+    """
 
     T_in: Float[np.ndarray, " run"]
     T_wedge: Float[np.ndarray, " run"]
     T_stiff: Float[np.ndarray, " run"]
     T_fric: Float[np.ndarray, " run"]
     T_out: Float[np.ndarray, " run"]
+    T_load: Float[np.ndarray, " run"]
     sliding: Float[np.ndarray, " run"]
 
 
@@ -46,9 +54,16 @@ class Drive:
     ----------
     transmissions, points : sequences of equal length
         One gear and one operating point per run.
+    effects : sequence of tuples of Effect, optional
+        What acts on the drive of each run.
     """
 
-    def __init__(self, transmissions: Sequence[Transmission], points: Sequence[OperatingPoint]) -> None:
+    def __init__(
+        self,
+        transmissions: Sequence[Transmission],
+        points: Sequence[OperatingPoint],
+        effects: Sequence[tuple[Effect, ...]] = (),
+    ) -> None:
         if not transmissions or len(transmissions) != len(points):
             raise ValueError(
                 f"{len(transmissions)} gears and {len(points)} operating points: expected one each per run"
@@ -63,6 +78,10 @@ class Drive:
         rate = 2 * np.pi * p["control_frequency"]
         self.gain_p, self.gain_i = 2 * p["control_damping"] * rate * p["J_in"], rate**2 * p["J_in"]
         self.error = self._error_amplitudes()
+        self.effects = tuple(effects) or ((),) * len(self)
+        acting = [(i, effect) for i, own in enumerate(self.effects) for effect in own if overrides(effect, "drive")]
+        distinct = dict.fromkeys(effect for _, effect in acting)
+        self.acting = [(effect, np.array([i for i, each in acting if each == effect])) for effect in distinct]
 
     def _error_amplitudes(self) -> dict[int, Complex[np.ndarray, " run"]]:
         """Amplitude and phase of the kinematic error per order, in the unit of the twist."""
@@ -83,7 +102,7 @@ class Drive:
 
     def repeated(self, times: int) -> "Drive":
         """The same runs several times over."""
-        return Drive(self.transmissions * times, self.points * times)
+        return Drive(self.transmissions * times, self.points * times, self.effects * times)
 
     def phi_err(self, phi_in: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Kinematic error [rad] in the unit of the twist, where e at the output is e / tan(alpha), and its slope."""
@@ -104,15 +123,30 @@ class Drive:
         twist = self.tan_in * phi_in - phi_out / self.tan_t + phi_err
         T_stiff = (p["k1"] + p["k2"] * twist * twist) * twist
         sliding = omega_out / self.sin_t
+        twist_rate = (self.tan_in + slope) * omega_in - omega_out / self.tan_t
+        extra = self.extra(Instant(phi_in, omega_in, phi_out, omega_out, twist, twist_rate, T_stiff, sliding))
+        T_stiff = T_stiff + extra.T_stiff
         sense = np.tanh(sliding / SLIDING_SPEED)
         friction = (p["b1"] + p["b2"] * sliding * sliding) * sliding
-        friction += sense * (p["b0"] + p["b3"] * np.sin(p["theta_b"] - phi_out))
+        friction += sense * (p["b0"] + p["b3"] * np.sin(p["theta_b"] - phi_out)) + extra.T_fric
         # The massless tooth is in equilibrium, T_stiff = F_n sin(alpha) + T_fric cos(alpha), on the driving flank.
         F_n = np.abs(T_stiff - friction * self.cos_t) / (self.sin_t + p["mu"] * sense * self.cos_t)
         T_fric = friction + p["mu"] * sense * F_n
         T_out = T_stiff / self.tan_t - T_fric / self.sin_t
-        T_in = self.gain_p * (self.omega - omega_in) + self.gain_i * speed_error
-        return Torques(T_in, (self.tan_in + slope) * T_stiff, T_stiff, T_fric, T_out, sliding)
+        T_in = self.gain_p * (self.omega - omega_in) + self.gain_i * speed_error + extra.T_motor
+        T_wedge = (self.tan_in + slope) * T_stiff + extra.T_loss
+        return Torques(T_in, T_wedge, T_stiff, T_fric, T_out, self.T_load + extra.T_load, sliding)
+
+    def extra(self, now: Instant) -> Extra:
+        """What all effects together add."""
+        if not self.acting:
+            return Extra()
+        total = np.zeros((len(Extra._fields), len(self)))
+        for effect, runs in self.acting:
+            added = effect.drive(Instant(*(row[runs] for row in now)))
+            for row, torque in zip(total, added, strict=True):
+                row[runs] += torque
+        return Extra(*total)
 
     def derivative(self, state: State, torques: Torques) -> State:
         """Eq. (1)."""
@@ -120,7 +154,7 @@ class Drive:
         rate[PHI_IN] = state[OMEGA_IN]
         rate[OMEGA_IN] = (torques.T_in - torques.T_wedge) / self.p["J_in"]
         rate[PHI_OUT] = state[OMEGA_OUT]
-        rate[OMEGA_OUT] = (torques.T_out - self.T_load) / self.p["J_out"]
+        rate[OMEGA_OUT] = (torques.T_out - torques.T_load) / self.p["J_out"]
         rate[SPEED_ERROR] = self.omega - state[OMEGA_IN]
         return rate
 

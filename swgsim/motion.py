@@ -1,6 +1,7 @@
 """Motion of many runs: the periodic steady state and the window that is integrated from it."""
 
 from dataclasses import dataclass
+from math import ceil
 
 import numpy as np
 from jaxtyping import Float
@@ -25,7 +26,7 @@ class Motion:
         Angular speeds [rad/s].
     T_in, T_out : arrays
         Torque at the input and transmitted to the output [N m].
-    dt : float
+    dt : float or array (run,)
         Time between points [s].
     """
 
@@ -34,7 +35,7 @@ class Motion:
     omega_out: Float[np.ndarray, "run time"]
     T_in: Float[np.ndarray, "run time"]
     T_out: Float[np.ndarray, "run time"]
-    dt: float
+    dt: float | Float[np.ndarray, " run"]
 
     @property
     def efficiency(self) -> Float[np.ndarray, " run"]:
@@ -84,6 +85,19 @@ def advance(drive: Drive, state: State, angle: Float[np.ndarray, " run"]) -> Sta
 def run(drive: Drive, state: State, dt: float, count: int) -> Motion:
     """Integrate ``count`` steps of ``dt`` seconds from a state and keep every step."""
     substeps = int(np.ceil(dt / (drive.period / steps_per_revolution(drive)).min() - 1e-9))
+    return _integrate(drive, state, dt, substeps, count)
+
+
+def revolve(drive: Drive, state: State, points: int) -> Motion:
+    """Integrate one revolution of the wave generator in ``points`` even steps of time, and keep every step."""
+    substeps = ceil(steps_per_revolution(drive) / points)
+    return Motion(
+        *_integrate(drive, state, drive.period / points / substeps, substeps, points), dt=drive.period / points
+    )
+
+
+def _integrate(drive: Drive, state: State, dt: float | Float[np.ndarray, " run"], substeps: int, count: int) -> Motion:
+    """``count`` points ``dt`` apart, with ``substeps`` steps of the integrator between them."""
     step = np.full(len(drive), dt / substeps)
     kept = np.empty((5, count + 1, len(drive)))
     for i in range(count + 1):

@@ -53,11 +53,11 @@ def test_an_effect_changes_its_place_and_nothing_else(effect: Effect) -> None:
     [
         (lambda: ReducedDamping(0.1), "b1_ratio of reduced damping is 0.1, must be a finite number from 0.3 to 1"),
         (lambda: ReducedStiffness(1.2), "k1_ratio of reduced stiffness is 1.2, must be .* from 0.5 to 1"),
-        (lambda: EccentricWaveGenerator(2e-4, 0.0), "r of the eccentric wave generator is 0.0002, .* to 0.00015"),
-        (lambda: RootToothCrack(0.0, 0.0), "stiffness_ratio of the root tooth crack is 0.0, .* from 0.001 to 1"),
-        (lambda: TipToothCrack(1.5, 0.0), "force_loss of the tip tooth crack is 1.5, .* from 0 to 1"),
-        (lambda: TipToothCrack(0.5, float("nan")), "theta of the tip tooth crack is nan"),
-        (lambda: CamForm(3, 1e-3), "amplitude of the cam form is 0.001"),
+        (lambda: EccentricWaveGenerator(2e-4, 0.0), "r of eccentric wave generator is 0.0002, .* to 0.00015"),
+        (lambda: RootToothCrack(0.0, 0.0), "stiffness_ratio of root tooth crack is 0.0, .* from 0.001 to 1"),
+        (lambda: TipToothCrack(1.5, 0.0), "force_loss of tip tooth crack is 1.5, .* from 0 to 1"),
+        (lambda: TipToothCrack(0.5, float("nan")), "theta of tip tooth crack is nan"),
+        (lambda: CamForm(3, 1e-3), "amplitude of cam form is 0.001"),
         (lambda: WarmGrease(200.0), "dT of warm grease is 200.0"),
     ],
 )

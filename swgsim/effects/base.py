@@ -1,11 +1,18 @@
 """The idea of an effect: what it may change, and that it changes nothing else."""
 
-from dataclasses import dataclass
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.gear import Gear
+from swgsim.conditions import Conditions
+from swgsim.effects.quantity import Role, quantities
+from swgsim.gear import Gear, OperatingPoint
+
+PLACES = ("gear", "drive", "wave generator", "mesh", "structure", "gauge", "acquisition")
 
 
 @dataclass(frozen=True)
@@ -24,17 +31,97 @@ class Crack:
     stiffness_ratio: float
 
 
+class Instant(NamedTuple):
+    """The drive of some runs at one instant, arrays (run,): angles [rad], speeds [rad/s], torque [N m]."""
+
+    phi_in: np.ndarray
+    omega_in: np.ndarray
+    phi_out: np.ndarray
+    omega_out: np.ndarray
+    twist: np.ndarray  # Delta phi_k, eq. (3)
+    twist_rate: np.ndarray
+    T_stiff: np.ndarray  # eq. (2)
+    sliding: np.ndarray  # speed along the flank, eq. (6)
+
+
+class Extra(NamedTuple):
+    """Torques [N m] that an effect adds to the equations of motion, each an array (run,) or a number.
+
+    ``T_motor`` drives the input and is felt by its torque flange, ``T_loss`` brakes the input behind the flange,
+    ``T_stiff`` and ``T_fric`` add to eqs. (2) and (5), ``T_load`` to the load.
+    """
+
+    T_motor: np.ndarray | float = 0.0
+    T_loss: np.ndarray | float = 0.0
+    T_stiff: np.ndarray | float = 0.0
+    T_fric: np.ndarray | float = 0.0
+    T_load: np.ndarray | float = 0.0
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What goes on while signals are recorded.
+
+    Attributes
+    ----------
+    time : array (time,)
+        Since the trigger, evenly spaced [s].
+    phi_in : array (time,)
+        Angle of the wave generator relative to the flex spline, unwrapped [rad].
+    T_out : array (time,)
+        Torque transmitted to the output [N m].
+    point : OperatingPoint
+    conditions : Conditions
+    """
+
+    time: Float[np.ndarray, " time"]
+    phi_in: Float[np.ndarray, " time"]
+    T_out: Float[np.ndarray, " time"]
+    point: OperatingPoint
+    conditions: Conditions
+
+
 @dataclass(frozen=True)
 class Effect:
     """A physical effect; a subclass overrides only the places of the chain that it touches.
 
     The methods of this base class change nothing. Fields over the circumference are sampled at the wave-generator
-    angles ``psi`` (relative to the flex spline) and at equally spaced angles ``theta`` around it.
+    angles ``psi`` (relative to the flex spline) and at equally spaced angles ``theta`` around it. The parameters of a
+    subclass are declared by the functions of :mod:`swgsim.effects.quantity` and are checked against their bounds.
     """
+
+    place: ClassVar[str] = ""
+
+    def __post_init__(self) -> None:
+        for name, quantity in quantities(type(self)).items():
+            quantity.check(self.title(), name, getattr(self, name))
+
+    @classmethod
+    def name(cls) -> str:
+        """The registered name, such as ``cam_form`` of the class CamForm."""
+        return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", cls.__name__).lower()
+
+    @classmethod
+    def title(cls) -> str:
+        """The name in words."""
+        return cls.name().replace("_", " ")
+
+    def at(self, point: OperatingPoint, conditions: Conditions) -> "Effect":
+        """The effect as it is at an operating point and under the conditions of a recording."""
+        return self
+
+    def drawn(self, rng: np.random.Generator) -> "Effect":
+        """The effect as it is in one recording, where something of it is another one every time."""
+        random = [name for name, quantity in quantities(type(self)).items() if quantity.role is Role.RANDOM]
+        return replace(self, **{name: float(rng.uniform(0, 2 * np.pi)) for name in random})
 
     def gear(self, gear: Gear) -> Gear:
         """A gear with changed parameters."""
         return gear
+
+    def drive(self, now: Instant) -> Extra:
+        """Torques to add to the equations of motion; they repeat with each revolution of the wave generator."""
+        return Extra()
 
     def wave_generator(
         self,
@@ -57,3 +144,18 @@ class Effect:
     def cracks(self) -> tuple[Crack, ...]:
         """Places where the rim lost stiffness."""
         return ()
+
+    def gauge(self, signals: Float[np.ndarray, "5 time"], scene: Scene) -> Float[np.ndarray, "5 time"]:
+        """The bridge signals [mV/V]."""
+        return signals
+
+    def acquisition(
+        self, channels: Mapping[str, Float[np.ndarray, " time"]], scene: Scene
+    ) -> Mapping[str, Float[np.ndarray, " time"]]:
+        """Every recorded channel by its name (:data:`swgsim.recording.CHANNELS`), in its unit."""
+        return channels
+
+
+def overrides(effect: Effect, *methods: str) -> bool:
+    """Whether an effect has its own version of one of these methods."""
+    return any(getattr(type(effect), method) is not getattr(Effect, method) for method in methods)

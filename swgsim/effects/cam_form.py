@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.checks import require, require_integer
 from swgsim.effects.base import Effect
+from swgsim.effects.quantity import choice, phase, size
 
 
 @dataclass(frozen=True)
@@ -18,21 +18,17 @@ class CamForm(Effect):
     Attributes
     ----------
     n : int
-        Number of lobes, from 1 to 12.
+        Number of lobes, from 3 to 8; one lobe is an eccentricity, two are the ellipse.
     amplitude : float
         w_n [m], from 0 to 20 um.
     phase : float
         [rad].
     """
 
-    n: int
-    amplitude: float
-    phase: float = 0.0
-
-    def __post_init__(self) -> None:
-        require_integer("the cam form", "n", self.n, low=1, high=12)
-        require("the cam form", "amplitude", self.amplitude, low=0, high=20e-6)
-        require("the cam form", "phase", self.phase)
+    place = "wave generator"
+    n: int = choice(low=3, high=8)
+    amplitude: float = size(unit="m", low=0, high=20e-6, typical=2e-6)
+    phase: float = phase()
 
     def wave_generator(
         self,

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.checks import require
 from swgsim.effects.base import Effect
+from swgsim.effects.quantity import phase, size
 
 
 @dataclass(frozen=True)
@@ -25,12 +25,9 @@ class EccentricWaveGenerator(Effect):
         Its direction [rad].
     """
 
-    r: float
-    theta: float
-
-    def __post_init__(self) -> None:
-        require("the eccentric wave generator", "r", self.r, low=0, high=0.15e-3)
-        require("the eccentric wave generator", "theta", self.theta)
+    place = "wave generator"
+    r: float = size(unit="m", low=0, high=0.15e-3, typical=0.05e-3)
+    theta: float = phase()
 
     def wave_generator(
         self,

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass, replace
 
-from swgsim.checks import require
 from swgsim.effects.base import Effect
+from swgsim.effects.quantity import angle
 from swgsim.gear import Gear
 
 
@@ -20,10 +20,8 @@ class OutputPosition(Effect):
         Of the output, in the sense of eq. (5) [rad].
     """
 
-    angle: float
-
-    def __post_init__(self) -> None:
-        require("the output position", "angle", self.angle)
+    place = "gear"
+    angle: float = angle()
 
     def gear(self, gear: Gear) -> Gear:
         """The gear with its output turned on."""

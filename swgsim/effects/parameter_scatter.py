@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass, replace
 
-from swgsim.checks import require
 from swgsim.effects.base import Effect
+from swgsim.effects.quantity import size
 from swgsim.gear import Gear
 
 
@@ -17,12 +17,9 @@ class ParameterScatter(Effect):
         Factors on b1 and k1, from 0.8 to 1.2.
     """
 
-    b1_ratio: float
-    k1_ratio: float
-
-    def __post_init__(self) -> None:
-        require("the parameter scatter", "b1_ratio", self.b1_ratio, low=0.8, high=1.2)
-        require("the parameter scatter", "k1_ratio", self.k1_ratio, low=0.8, high=1.2)
+    place = "gear"
+    b1_ratio: float = size(unit="-", low=0.8, high=1.2, typical=1.02, nothing=1)
+    k1_ratio: float = size(unit="-", low=0.8, high=1.2, typical=1.02, nothing=1)
 
     def gear(self, gear: Gear) -> Gear:
         """The gear with both parameters scaled."""

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass, replace
 
-from swgsim.checks import require
 from swgsim.effects.base import Effect
+from swgsim.effects.quantity import size
 from swgsim.gear import Gear
 
 
@@ -19,10 +19,8 @@ class ReducedDamping(Effect):
         Remaining share of the healthy b1, from 0.3 (below, no grease film is left) to 1.
     """
 
-    b1_ratio: float
-
-    def __post_init__(self) -> None:
-        require("reduced damping", "b1_ratio", self.b1_ratio, low=0.3, high=1)
+    place = "gear"
+    b1_ratio: float = size(unit="-", low=0.3, high=1, typical=2 / 3, nothing=1)
 
     def gear(self, gear: Gear) -> Gear:
         """The gear with less linear damping."""

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass, replace
 
-from swgsim.checks import require
 from swgsim.effects.base import Effect
+from swgsim.effects.quantity import size
 from swgsim.gear import Gear
 
 
@@ -19,10 +19,8 @@ class ReducedStiffness(Effect):
         Remaining share of the healthy k1, from 0.5 (below, the gear is broken rather than worn) to 1.
     """
 
-    k1_ratio: float
-
-    def __post_init__(self) -> None:
-        require("reduced stiffness", "k1_ratio", self.k1_ratio, low=0.5, high=1)
+    place = "gear"
+    k1_ratio: float = size(unit="-", low=0.5, high=1, typical=0.8, nothing=1)
 
     def gear(self, gear: Gear) -> Gear:
         """The gear with less linear stiffness."""

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from swgsim.checks import require
 from swgsim.effects.base import Crack, Effect
+from swgsim.effects.quantity import angle, size
 
 
 @dataclass(frozen=True)
@@ -22,12 +22,9 @@ class RootToothCrack(Effect):
         Position of the crack [rad]; the crack is in the gap of the mesh that begins at or holds this angle.
     """
 
-    stiffness_ratio: float
-    theta: float
-
-    def __post_init__(self) -> None:
-        require("the root tooth crack", "stiffness_ratio", self.stiffness_ratio, low=1e-3, high=1)
-        require("the root tooth crack", "theta", self.theta)
+    place = "structure"
+    stiffness_ratio: float = size(unit="-", low=1e-3, high=1, typical=0.1, nothing=1)
+    theta: float = angle()
 
     def cracks(self) -> tuple[Crack, ...]:
         """The one crack."""

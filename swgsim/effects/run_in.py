@@ -3,8 +3,8 @@
 from dataclasses import dataclass, replace
 from math import exp
 
-from swgsim.checks import require
 from swgsim.effects.base import Effect
+from swgsim.effects.quantity import size
 from swgsim.gear import Gear
 
 # Time constants [h] (physics.md AG1, AG2) and the share of k1 and b1 that is lost in the end. The losses follow from
@@ -27,10 +27,8 @@ class RunIn(Effect):
         Operating time [h], from 0 to 10 000.
     """
 
-    hours: float
-
-    def __post_init__(self) -> None:
-        require("the run-in", "hours", self.hours, low=0, high=10_000)
+    place = "gear"
+    hours: float = size(unit="h", low=0, high=10_000, typical=100)
 
     def gear(self, gear: Gear) -> Gear:
         """The gear with less stiffness k1 and less linear damping b1."""

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.checks import require
 from swgsim.effects.base import Effect
+from swgsim.effects.quantity import angle, shape, size
 
 # Pitch of one tooth of 200 [rad].
 TOOTH = 2 * np.pi / 200
@@ -29,14 +29,10 @@ class TipToothCrack(Effect):
         truss, which stands for several teeth; the default is four of 200.
     """
 
-    force_loss: float
-    theta: float
-    width: float = 4 * TOOTH
-
-    def __post_init__(self) -> None:
-        require("the tip tooth crack", "force_loss", self.force_loss, low=0, high=1)
-        require("the tip tooth crack", "theta", self.theta)
-        require("the tip tooth crack", "width", self.width, low=TOOTH, high=10 * TOOTH)
+    place = "mesh"
+    force_loss: float = size(unit="-", low=0, high=1, typical=0.5)
+    theta: float = angle(points=40)
+    width: float = shape(4 * TOOTH, unit="rad", low=TOOTH, high=10 * TOOTH)
 
     def mesh(
         self,

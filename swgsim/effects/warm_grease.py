@@ -3,8 +3,8 @@
 from dataclasses import dataclass, replace
 from math import exp
 
-from swgsim.checks import require
 from swgsim.effects.base import Effect
+from swgsim.effects.quantity import shape, size
 from swgsim.gear import Gear
 
 
@@ -23,12 +23,9 @@ class WarmGrease(Effect):
         [1/K], from 0 to 0.1.
     """
 
-    dT: float
-    beta: float = 0.025
-
-    def __post_init__(self) -> None:
-        require("warm grease", "dT", self.dT, low=-60, high=80)
-        require("warm grease", "beta", self.beta, low=0, high=0.1)
+    place = "gear"
+    dT: float = size(unit="K", low=-60, high=80, typical=15)
+    beta: float = shape(0.025, unit="1/K", low=0, high=0.1)
 
     def gear(self, gear: Gear) -> Gear:
         """The gear with its viscous friction at the temperature."""

@@ -1,0 +1,107 @@
+"""Parameters of effects: unit, physical bounds, typical value, and what a search for the effect may do with them."""
+
+from dataclasses import MISSING, Field, dataclass, field, fields
+from enum import Enum
+from typing import Any
+
+import numpy as np
+
+from swgsim.checks import require, require_integer
+
+
+class Role(Enum):
+    """What a parameter is to a search for the effect."""
+
+    SIZE = "size"  # how much of the effect there is; at one value it changes nothing
+    PHASE = "phase"  # of a wave: sizes along cosine and sine span every phase
+    ANGLE = "angle"  # a position around the circumference, to be searched
+    RANDOM = "random"  # a phase that is another one in every recording
+    SHAPE = "shape"  # a number that shapes the effect, to be searched
+    CHOICE = "choice"  # an integer, such as an order or a gauge
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One parameter of an effect.
+
+    Attributes
+    ----------
+    role : Role
+    unit : str
+        SI, "-" for a share.
+    low, high : float
+        Beyond, the model does not hold or the gear would be broken otherwise.
+    typical : float
+        The size that the literature names, or the middle of what is plausible.
+    nothing : float
+        Of a size: the value at which the effect changes nothing.
+    points : int
+        Values that a search tries, evenly from low to high; a choice tries all.
+    """
+
+    role: Role
+    unit: str
+    low: float
+    high: float
+    typical: float
+    nothing: float = 0.0
+    points: int = 1
+
+    def check(self, owner: str, name: str, value: Any) -> None:
+        """Raise a ValueError unless the value is a number within the bounds."""
+        if self.role is Role.CHOICE:
+            require_integer(owner, name, value, int(self.low), int(self.high))
+        elif self.role in (Role.PHASE, Role.ANGLE, Role.RANDOM):
+            require(owner, name, value)
+        else:
+            require(owner, name, value, self.low, self.high)
+
+    @property
+    def tried(self) -> tuple[float, ...]:
+        """The values that a search tries."""
+        if self.role is Role.CHOICE:
+            return tuple(range(int(self.low), int(self.high) + 1))
+        if self.role is Role.ANGLE:
+            return tuple((2 * np.pi * np.arange(self.points) / self.points).tolist())
+        if self.role is Role.SHAPE and self.points > 1:
+            return tuple(np.linspace(self.low, self.high, self.points).tolist())
+        return (self.typical,)
+
+
+def size(*, unit: str, low: float, high: float, typical: float, nothing: float = 0.0) -> Any:
+    """How much of the effect there is; every effect has one."""
+    return _parameter(Quantity(Role.SIZE, unit, low, high, typical, nothing))
+
+
+def phase(default: float = 0.0) -> Any:
+    """Phase of a wave whose amplitude is the size [rad]."""
+    return _parameter(Quantity(Role.PHASE, "rad", 0, 2 * np.pi, default), default)
+
+
+def random_phase(default: float = 0.0) -> Any:
+    """Phase that differs from recording to recording [rad]."""
+    return _parameter(Quantity(Role.RANDOM, "rad", 0, 2 * np.pi, default), default)
+
+
+def angle(default: Any = MISSING, *, points: int = 24) -> Any:
+    """Position around the circumference [rad]."""
+    return _parameter(Quantity(Role.ANGLE, "rad", 0, 2 * np.pi, 0.0, points=points), default)
+
+
+def shape(default: float, *, unit: str, low: float, high: float, points: int = 1) -> Any:
+    """A number that shapes the effect; its default is the typical value."""
+    return _parameter(Quantity(Role.SHAPE, unit, low, high, default, points=points), default)
+
+
+def choice(default: Any = MISSING, *, low: int, high: int) -> Any:
+    """An integer such as an order, or the number of a gauge."""
+    return _parameter(Quantity(Role.CHOICE, "-", low, high, low), default)
+
+
+def quantities(kind: type) -> dict[str, Quantity]:
+    """The parameters of a class of effects, in order."""
+    return {f.name: f.metadata["quantity"] for f in fields(kind) if "quantity" in f.metadata}
+
+
+def _parameter(quantity: Quantity, default: Any = MISSING) -> Field:
+    return field(default=default, metadata={"quantity": quantity})
