@@ -91,9 +91,7 @@ def run(drive: Drive, state: State, dt: float, count: int) -> Motion:
 def revolve(drive: Drive, state: State, points: int) -> Motion:
     """Integrate one revolution of the wave generator in ``points`` even steps of time, and keep every step."""
     substeps = ceil(steps_per_revolution(drive) / points)
-    return Motion(
-        *_integrate(drive, state, drive.period / points / substeps, substeps, points), dt=drive.period / points
-    )
+    return _integrate(drive, state, drive.period / points, substeps, points)
 
 
 def _integrate(drive: Drive, state: State, dt: float | Float[np.ndarray, " run"], substeps: int, count: int) -> Motion:
