@@ -105,7 +105,7 @@ def simulate(runs: Sequence[Run], window: Window, sectors: int = SECTORS) -> Sim
     simulation = Simulation(signals, motion, of_run)
     for i, each in enumerate(runs):
         if any(overrides(effect, "gauge", "acquisition") for effect in each.acting):
-            seen = _as_seen(each, window.time, _channels(simulation, i, window.samples))
+            seen = _as_seen(each, window.time, channels_of(simulation, i, window.samples))
             signals[i] = [seen[sensor] for sensor in SENSORS]
     return simulation
 
@@ -129,7 +129,7 @@ def simulate_turns(runs: Sequence[Run], revolutions: int, points: int, sectors: 
     simulation = Simulation(_gauge_signals(runs, motion, of_run, points, sectors), motion, of_run)
     recordings = []
     for i, each in enumerate(runs):
-        one = _channels(simulation, i, points)
+        one = channels_of(simulation, i, points)
         channels = {name: np.tile(values, revolutions) for name, values in one.items()}
         channels["phi_in"] += np.repeat(2 * np.pi * np.arange(revolutions), points)
         time = np.arange(revolutions * points) * 2 * np.pi / each.point.omega_in / points
@@ -170,7 +170,7 @@ def _gauge_signals(
     return signals
 
 
-def _channels(simulation: Simulation, i: int, samples: int) -> dict[str, np.ndarray]:
+def channels_of(simulation: Simulation, i: int, samples: int) -> dict[str, np.ndarray]:
     """All channels of a run."""
     motion, m = simulation.motion, simulation.of_run[i]
     return {
@@ -178,7 +178,7 @@ def _channels(simulation: Simulation, i: int, samples: int) -> dict[str, np.ndar
         "n_in": motion.omega_in[m, :samples] * 60 / (2 * np.pi),
         "T_in": motion.T_in[m, :samples].copy(),
         "T_out": motion.T_out[m, :samples].copy(),
-        **dict(zip(SENSORS, simulation.signals[i], strict=True)),
+        **dict(zip(SENSORS, simulation.signals[i, :, :samples], strict=True)),
     }
 
 

@@ -1,0 +1,96 @@
+"""From facts and columns to a recording: the checks that every form on disk shares."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.conditions import Conditions
+from swgsim.file_defect import FIRST_ROW, FileDefect, shown
+from swgsim.gear import OperatingPoint
+from swgsim.reading_limits import require_rows
+from swgsim.recording import CHANNELS, Recording
+
+# What a wrapped angle may span beyond one revolution, as the jitter of an encoder at its index does.
+WRAPPED = 2 * np.pi * 1.001
+
+
+def assemble(file: str, facts: Mapping, columns: Mapping[str, Float[np.ndarray, " time"]]) -> Recording:
+    """A recording of one file, with an angle that does not wrap.
+
+    Parameters
+    ----------
+    file : str
+        For messages.
+    facts : mapping
+        As :func:`swgsim.facts.parse` returns them.
+    columns : mapping
+        ``t`` [s] and names of :data:`swgsim.recording.CHANNELS` to their values.
+
+    Raises
+    ------
+    FileDefect
+        If a number is not finite or the time does not increase; it names row and column.
+    """
+    require_sound(file, columns)
+    channels = {name: columns[name] for name in CHANNELS if name in columns}
+    if "phi_in" in channels:
+        channels["phi_in"] = unwrapped(channels["phi_in"])
+    return Recording(
+        name=facts["recording"],
+        gear=facts["gear"],
+        session=facts["session"],
+        point=OperatingPoint(facts["n_in_rpm"], facts["T_out_nm"]),
+        repeat=facts["repeat"],
+        time=columns["t"],
+        channels=channels,
+        conditions=Conditions(facts["temperature_c"], facts["elapsed_s"]),
+        label=facts["label"],
+    )
+
+
+def require_sound(file: str, columns: Mapping[str, Float[np.ndarray, " time"]]) -> None:
+    """Raise a FileDefect unless there are channels, rows enough, finite numbers and an increasing time."""
+    if set(columns) <= {"t"}:
+        raise FileDefect(file, "no channel", f"at least one of {', '.join(each.column for each in CHANNELS.values())}")
+    require_rows(file, len(columns["t"]))
+    for name, values in columns.items():
+        bad = np.flatnonzero(~np.isfinite(values))
+        if len(bad):
+            row = int(bad[0]) + FIRST_ROW
+            raise FileDefect(file, str(values[bad[0]]), "a finite number", row, column_of(name))
+    back = np.flatnonzero(np.diff(columns["t"]) <= 0)
+    if len(back):
+        before, after = columns["t"][back[0]], columns["t"][back[0] + 1]
+        raise FileDefect(file, f"{after} after {before}", "a time that increases", int(back[0]) + 1 + FIRST_ROW, "t_s")
+
+
+def require_alike(recordings: Sequence[Recording]) -> None:
+    """Raise a FileDefect unless all recordings have names of their own and the same channels."""
+    first, names = recordings[0], set()
+    for each in recordings:
+        if each.name in names:
+            raise FileDefect(f"recording {each.name}", f"the name {shown(each.name)} twice", "a name of its own")
+        names.add(each.name)
+        if set(each.channels) != set(first.channels):
+            found = ", ".join(map(column_of, each.channels))
+            expected = ", ".join(map(column_of, first.channels))
+            raise FileDefect(f"recording {each.name}", f"the channels {found}", f"those of {first.name}: {expected}")
+
+
+def column_of(name: str) -> str:
+    """The column of a channel, or of the time, in a file."""
+    return "t_s" if name == "t" else CHANNELS[name].column
+
+
+def unwrapped(angle: Float[np.ndarray, " time"]) -> Float[np.ndarray, " time"]:
+    """The angle without the jumps by one revolution of an angle that is kept within one [rad]; else as it is.
+
+    >>> unwrapped(np.array([6.0, 6.2, 0.1])).round(3)
+    array([6.   , 6.2  , 6.383])
+    """
+    steps = np.diff(angle)
+    if np.ptp(angle) > WRAPPED or not (np.abs(steps) > np.pi).any():
+        return angle
+    turns = np.where(np.abs(steps) > np.pi, -np.sign(steps), 0)
+    return angle + 2 * np.pi * np.concatenate([[0], np.cumsum(turns)])

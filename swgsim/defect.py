@@ -1,0 +1,54 @@
+"""A defect of recordings that only their numbers show: it is reported, never silently mended."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+# Whether a defect forbids the use of the recordings.
+Severity = Literal["refuse", "warn"]
+
+
+@dataclass(frozen=True)
+class Defect:
+    """What was detected in one recording.
+
+    Attributes
+    ----------
+    kind : str
+        In one word, such as ``angle_in_degrees``.
+    severity : "refuse" or "warn"
+    recording : str
+        Its name.
+    channel : str
+        Name of the channel, or ``t`` for the time; empty where it is of none.
+    found, expected, remedy : str
+    row : int, optional
+        First row that shows it, as in the CSV form: the header is row 1, the first sample row 2.
+    """
+
+    kind: str
+    severity: Severity
+    recording: str
+    channel: str
+    found: str
+    expected: str
+    remedy: str
+    row: int | None = None
+
+    def __str__(self) -> str:
+        place = [f"recording {self.recording}", *([self.channel] if self.channel else [])]
+        place += [f"row {self.row}"] if self.row else []
+        return f"{', '.join(place)}: found {self.found}, expected {self.expected}: {self.remedy} [{self.kind}]"
+
+
+def summary(defects: Sequence[Defect]) -> str:
+    """One line for each kind and channel, with the first recording that shows it and the names of the others."""
+    alike: dict[tuple[str, str], list[Defect]] = {}
+    for defect in defects:
+        alike.setdefault((defect.kind, defect.channel), []).append(defect)
+    lines = []
+    for first, *others in alike.values():
+        names = list(dict.fromkeys(defect.recording for defect in others if defect.recording != first.recording))
+        also = f"; also in {len(names)} others: {', '.join(names)}" if names else ""
+        lines.append(f"- {first.severity}: {first}{also}")
+    return "\n".join(lines)

@@ -1,0 +1,56 @@
+"""All defects that the numbers of recordings show."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from swgsim.angle_defects import angle_defects
+from swgsim.channel_defects import channel_defects
+from swgsim.clock_defects import clock_defects
+from swgsim.defect import Defect
+from swgsim.file_defect import FIRST_ROW
+from swgsim.gauge_defects import gauge_defects
+from swgsim.reading_limits import FEWEST_ROWS
+from swgsim.recording import Recording
+from swgsim.set_defects import set_defects
+from swgsim.speed_defects import speed_defects
+from swgsim.torque_defects import torque_defects
+from swgsim.wiring_defects import wiring_defects
+
+OF_ONE = (clock_defects, angle_defects, speed_defects, torque_defects, channel_defects, gauge_defects)
+
+
+def inspect(recordings: Sequence[Recording]) -> tuple[Defect, ...]:
+    """Everything that is wrong with recordings as far as their numbers show it; empty if nothing is.
+
+    A recording whose numbers cannot be computed with is named and left out of all further checks.
+    """
+    unusable = {recording.name: found for recording in recordings if (found := list(_unusable(recording)))}
+    sound = [recording for recording in recordings if recording.name not in unusable]
+    defects = [defect for found in unusable.values() for defect in found]
+    for recording in sound:
+        for detect in OF_ONE:
+            defects.extend(detect(recording))
+    defects.extend(wiring_defects(sound))
+    defects.extend(set_defects(sound))
+    return tuple(defects)
+
+
+def _unusable(recording: Recording) -> Iterator[Defect]:
+    """Numbers that are not finite, a time that does not increase, too few samples."""
+    name = recording.name
+    if len(recording.time) < FEWEST_ROWS:
+        found, expected = f"{len(recording.time)} samples", f"at least {FEWEST_ROWS}"
+        yield Defect("too_few_samples", "refuse", name, "t", found, expected, "record longer")
+    for channel, values in {"t": recording.time, **recording.channels}.items():
+        bad = np.flatnonzero(~np.isfinite(values))
+        if len(bad):
+            row = int(bad[0]) + FIRST_ROW
+            remedy = "record again, or leave the channel out"
+            yield Defect("not_finite", "refuse", name, channel, str(values[bad[0]]), "a finite number", remedy, row)
+    back = np.flatnonzero(np.diff(recording.time) <= 0)
+    if len(back):
+        before, after = recording.time[back[0]], recording.time[back[0] + 1]
+        row = int(back[0]) + 1 + FIRST_ROW
+        remedy = "sample by a clock that only goes on"
+        yield Defect("clock_backwards", "refuse", name, "t", f"{after} after {before}", "later times", remedy, row)

@@ -1,0 +1,31 @@
+"""Effect: aged grease."""
+
+from dataclasses import dataclass, replace
+
+from swgsim.effects.base import Effect
+from swgsim.effects.quantity import size
+from swgsim.gear import Gear
+
+
+@dataclass(frozen=True)
+class AgedGrease(Effect):
+    """Old or scarce grease rubs more at the flanks and drags less: mu rises by a share, b1 falls by half of it
+    (physics.md AG6; that the two go together, and by half, is an estimate).
+
+    Signature: more input torque at high load and low speed, less at low load and high speed; the torque ripple
+    falls by some per cent, as with flank friction. Typical: mu up by 20 to 100 %.
+
+    Attributes
+    ----------
+    share : float
+        By which mu rises, from 0 to 1; beyond, no grease film is left.
+    """
+
+    place = "gear"
+    share: float = size(unit="-", low=0, high=1, typical=0.3)
+
+    def gear(self, gear: Gear) -> Gear:
+        """The gear with aged grease."""
+        t = gear.transmission
+        aged = replace(t, mu=t.mu * (1 + self.share), b1=t.b1 * (1 - self.share / 2))
+        return replace(gear, transmission=aged)

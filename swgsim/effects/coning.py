@@ -1,0 +1,31 @@
+"""Effect: coning of the sleeve under load."""
+
+from dataclasses import dataclass
+
+from swgsim.conditions import Conditions
+from swgsim.effects.base import Effect
+from swgsim.effects.frozen import FULL_LOAD, ScaledDisplacement
+from swgsim.effects.quantity import size
+from swgsim.gear import OperatingPoint
+
+
+@dataclass(frozen=True)
+class Coning(Effect):
+    """The contact moves along the coned sleeve with load, so that the collar feels a changed deflection.
+
+    The sleeve deflects in proportion to the distance from the collar (physics.md FS6): displacement (1 + share T / 70 N
+    m). Signature: orders 2 and 4 of the deflection, alike in opposite gauges, change in proportion to load; the force
+    of the teeth keeps its pattern. Typical: 5 to 20 % of order 2 from 7 to 70 N m (estimate).
+
+    Attributes
+    ----------
+    share : float
+        Change of the deflection at 70 N m, up to 0.3 either way.
+    """
+
+    place = "wave generator"
+    share: float = size(unit="-", low=-0.3, high=0.3, typical=0.1)
+
+    def at(self, point: OperatingPoint, conditions: Conditions) -> Effect:
+        """The deflection at the load."""
+        return ScaledDisplacement(1 + self.share * point.T_out / FULL_LOAD)

@@ -1,0 +1,88 @@
+"""What effects that follow load, speed or temperature are at one operating point; their bounds hold any of them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.effects.base import Effect
+from swgsim.effects.quantity import size
+
+# Load to which laws in the load refer [N m]: the limit for repeated peaks of a size 17, ratio 100 gear.
+FULL_LOAD = 70.0
+
+
+def turned(field: Float[np.ndarray, "psi theta"], angle: float) -> Float[np.ndarray, "psi theta"]:
+    """A field turned ahead around the circumference by an angle [rad], through its Fourier series."""
+    points = field.shape[1]
+    turn = np.exp(-1j * angle * np.arange(points // 2 + 1))
+    return np.fft.irfft(np.fft.rfft(field, axis=1) * turn, points, axis=1)
+
+
+@dataclass(frozen=True)
+class ScaledDisplacement(Effect):
+    """The imposed displacement times a factor.
+
+    Attributes
+    ----------
+    factor : float
+        From 0.3 to 2.
+    """
+
+    place = "wave generator"
+    factor: float = size(unit="-", low=0.3, high=2, typical=1.05, nothing=1)
+
+    def wave_generator(
+        self,
+        displacement: Float[np.ndarray, "psi theta"],
+        psi: Float[np.ndarray, " psi"],
+        theta: Float[np.ndarray, " theta"],
+    ) -> Float[np.ndarray, "psi theta"]:
+        """The displacement times the factor."""
+        return displacement * self.factor
+
+
+@dataclass(frozen=True)
+class TurnedDisplacement(Effect):
+    """The imposed displacement turned ahead.
+
+    Attributes
+    ----------
+    angle : float
+        [rad], up to 0.5 either way.
+    """
+
+    place = "wave generator"
+    angle: float = size(unit="rad", low=-0.5, high=0.5, typical=0.05)
+
+    def wave_generator(
+        self,
+        displacement: Float[np.ndarray, "psi theta"],
+        psi: Float[np.ndarray, " psi"],
+        theta: Float[np.ndarray, " theta"],
+    ) -> Float[np.ndarray, "psi theta"]:
+        """The displacement at angles further back."""
+        return turned(displacement, self.angle)
+
+
+@dataclass(frozen=True)
+class PoweredShare(Effect):
+    """The shares of the tooth force raised to a power; below one, they spread more evenly over the engaged arc.
+
+    Attributes
+    ----------
+    exponent : float
+        From 0.1 to 10.
+    """
+
+    place = "mesh"
+    exponent: float = size(unit="-", low=0.1, high=10, typical=0.7, nothing=1)
+
+    def mesh(
+        self,
+        share: Float[np.ndarray, "psi theta"],
+        psi: Float[np.ndarray, " psi"],
+        theta: Float[np.ndarray, " theta"],
+    ) -> Float[np.ndarray, "psi theta"]:
+        """The shares to the power of the exponent."""
+        return share**self.exponent

@@ -1,0 +1,177 @@
+"""The library of effects by their registered names."""
+
+import importlib
+from collections.abc import Mapping
+
+from swgsim.effects.aged_grease import AgedGrease
+from swgsim.effects.amplifier_drift import AmplifierDrift
+from swgsim.effects.axial_thrust import AxialThrust
+from swgsim.effects.ball_pass import BallPass
+from swgsim.effects.base import Effect
+from swgsim.effects.bearing_cage import BearingCage
+from swgsim.effects.bearing_friction import BearingFriction
+from swgsim.effects.bolt_preload import BoltPreload
+from swgsim.effects.bond_creep import BondCreep
+from swgsim.effects.bridge_nonlinearity import BridgeNonlinearity
+from swgsim.effects.cam_form import CamForm
+from swgsim.effects.channel_crosstalk import ChannelCrosstalk
+from swgsim.effects.channel_skew import ChannelSkew
+from swgsim.effects.churning_loss import ChurningLoss
+from swgsim.effects.circular_spline_runout import CircularSplineRunout
+from swgsim.effects.clipping import Clipping
+from swgsim.effects.coning import Coning
+from swgsim.effects.cubic_friction import CubicFriction
+from swgsim.effects.eccentric_wave_generator import EccentricWaveGenerator
+from swgsim.effects.elastic_hysteresis import ElasticHysteresis
+from swgsim.effects.encoder_eccentricity import EncoderEccentricity
+from swgsim.effects.filter_mismatch import FilterMismatch
+from swgsim.effects.flange_gain import FlangeGain
+from swgsim.effects.flange_zero import FlangeZero
+from swgsim.effects.flank_friction import FlankFriction
+from swgsim.effects.gauge_direction import GaugeDirection
+from swgsim.effects.gauge_factor_temperature import GaugeFactorTemperature
+from swgsim.effects.gauge_gain import GaugeGain
+from swgsim.effects.gauge_position import GaugePosition
+from swgsim.effects.grease_temperature import GreaseTemperature
+from swgsim.effects.input_unbalance import InputUnbalance
+from swgsim.effects.kinematic_error_order import KinematicErrorOrder
+from swgsim.effects.load_dependent_friction import LoadDependentFriction
+from swgsim.effects.load_sharing import LoadSharing
+from swgsim.effects.load_torque_ripple import LoadTorqueRipple
+from swgsim.effects.lobe_shift import LobeShift
+from swgsim.effects.lost_motion import LostMotion
+from swgsim.effects.mains_hum import MainsHum
+from swgsim.effects.mesh_shift import MeshShift
+from swgsim.effects.motor_pickup import MotorPickup
+from swgsim.effects.motor_torque_ripple import MotorTorqueRipple
+from swgsim.effects.out_of_round import OutOfRound
+from swgsim.effects.output_position import OutputPosition
+from swgsim.effects.parameter_scatter import ParameterScatter
+from swgsim.effects.position_friction import PositionFriction
+from swgsim.effects.reduced_damping import ReducedDamping
+from swgsim.effects.reduced_stiffness import ReducedStiffness
+from swgsim.effects.root_tooth_crack import RootToothCrack
+from swgsim.effects.rotating_eccentricity import RotatingEccentricity
+from swgsim.effects.run_in import RunIn
+from swgsim.effects.seal_friction import SealFriction
+from swgsim.effects.self_heating import SelfHeating
+from swgsim.effects.signal_hysteresis import SignalHysteresis
+from swgsim.effects.speed_deformation import SpeedDeformation
+from swgsim.effects.stiffening_spring import StiffeningSpring
+from swgsim.effects.stiffness_ripple import StiffnessRipple
+from swgsim.effects.stribeck_friction import StribeckFriction
+from swgsim.effects.sub_orders import SubOrders
+from swgsim.effects.thermal_growth import ThermalGrowth
+from swgsim.effects.thermal_output import ThermalOutput
+from swgsim.effects.tilted_wave_generator import TiltedWaveGenerator
+from swgsim.effects.tilting_moment import TiltingMoment
+from swgsim.effects.tip_tooth_crack import TipToothCrack
+from swgsim.effects.torque_nonlinearity import TorqueNonlinearity
+from swgsim.effects.uneven_sleeve import UnevenSleeve
+from swgsim.effects.uneven_teeth import UnevenTeeth
+from swgsim.effects.warm_grease import WarmGrease
+from swgsim.effects.worn_wave_generator import WornWaveGenerator
+from swgsim.effects.zero_offset import ZeroOffset
+
+# By the place of the chain at which they act; all of them are searched when a loop is closed.
+SEARCHED: tuple[type[Effect], ...] = (
+    # gear
+    AgedGrease,
+    CubicFriction,
+    FlankFriction,
+    GaugeDirection,
+    GaugeGain,
+    GaugePosition,
+    GreaseTemperature,
+    KinematicErrorOrder,
+    LoadDependentFriction,
+    ReducedDamping,
+    ReducedStiffness,
+    StiffeningSpring,
+    WarmGrease,
+    ZeroOffset,
+    # drive
+    BearingFriction,
+    ChurningLoss,
+    ElasticHysteresis,
+    InputUnbalance,
+    LoadTorqueRipple,
+    LostMotion,
+    MotorTorqueRipple,
+    PositionFriction,
+    SealFriction,
+    StiffnessRipple,
+    StribeckFriction,
+    # wave generator
+    BallPass,
+    BearingCage,
+    CamForm,
+    Coning,
+    EccentricWaveGenerator,
+    LobeShift,
+    OutOfRound,
+    RotatingEccentricity,
+    SpeedDeformation,
+    ThermalGrowth,
+    TiltedWaveGenerator,
+    UnevenSleeve,
+    WornWaveGenerator,
+    # mesh
+    CircularSplineRunout,
+    LoadSharing,
+    MeshShift,
+    TipToothCrack,
+    UnevenTeeth,
+    # structure
+    RootToothCrack,
+    # gauge
+    AxialThrust,
+    BoltPreload,
+    BondCreep,
+    BridgeNonlinearity,
+    GaugeFactorTemperature,
+    SelfHeating,
+    SignalHysteresis,
+    ThermalOutput,
+    TiltingMoment,
+    TorqueNonlinearity,
+    # acquisition
+    AmplifierDrift,
+    ChannelCrosstalk,
+    ChannelSkew,
+    Clipping,
+    EncoderEccentricity,
+    FilterMismatch,
+    FlangeGain,
+    FlangeZero,
+    MainsHum,
+    MotorPickup,
+    SubOrders,
+)
+# Effects that vary from one recording to the next, or stand for several others.
+OTHERS: tuple[type[Effect], ...] = (OutputPosition, ParameterScatter, RunIn)
+LIBRARY: Mapping[str, type[Effect]] = {kind.name(): kind for kind in (*SEARCHED, *OTHERS)}
+
+
+def named(name: str) -> type[Effect]:
+    """An effect of the library by its name, or any other one by its import path ``module:Class``.
+
+    Raises
+    ------
+    ValueError
+        If there is none; it lists the library.
+    """
+    if name in LIBRARY:
+        return LIBRARY[name]
+    module, colon, kind = name.partition(":")
+    if not colon:
+        raise ValueError(
+            f"unknown effect {name!r}; choose from {', '.join(sorted(LIBRARY))}, or give the import path module:Class"
+        )
+    try:
+        found = getattr(importlib.import_module(module), kind)
+    except (ImportError, AttributeError) as error:
+        raise ValueError(f"effect {name!r} cannot be imported: {error}") from error
+    if not (isinstance(found, type) and issubclass(found, Effect)):
+        raise ValueError(f"{name!r} is no effect: it must be a class derived from swgsim.effects.base.Effect")
+    return found

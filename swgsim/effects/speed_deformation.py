@@ -1,0 +1,34 @@
+"""Effect: deformation by speed."""
+
+from dataclasses import dataclass
+
+from swgsim.conditions import Conditions
+from swgsim.effects.base import Effect
+from swgsim.effects.frozen import ScaledDisplacement
+from swgsim.effects.quantity import size
+from swgsim.gear import OperatingPoint
+
+# Speed to which the share refers [rpm].
+FULL_SPEED = 4000.0
+
+
+@dataclass(frozen=True)
+class SpeedDeformation(Effect):
+    """Inertia of the rim under the travelling wave: displacement (1 + share (n / 4000 rpm)^2) (physics.md FS16).
+
+    Shell modes far above the orders of the deflection act by the same law (FS15). Signature: orders 2 and 4 of the
+    deflection, alike in opposite gauges, change with the square of speed, without regard to load. Typical: below 1e-3
+    at 4000 rpm (estimate).
+
+    Attributes
+    ----------
+    share : float
+        Of the deflection at 4000 rpm, up to 0.02 either way.
+    """
+
+    place = "wave generator"
+    share: float = size(unit="-", low=-0.02, high=0.02, typical=1e-3)
+
+    def at(self, point: OperatingPoint, conditions: Conditions) -> Effect:
+        """The deflection at the speed."""
+        return ScaledDisplacement(1 + self.share * (point.n_in_rpm / FULL_SPEED) ** 2)

@@ -1,0 +1,36 @@
+"""Disturbance: a moment from outside tilts the gear."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.effects.base import Effect, Scene
+from swgsim.effects.quantity import phase, size
+from swgsim.gauges import LAYOUT
+
+
+@dataclass(frozen=True)
+class TiltingMoment(Effect):
+    """A tilting moment or radial load on the housing bends the collar, o_i + strain cos(beta_i - theta) (physics.md
+    SE16). A static field of three waves, as of three bolts, is the same at gauges 90 degrees apart (SE18).
+
+    Signature: opposite means of opposite gauges, at all loads and speeds; s0 and the orders stay. It mimics an
+    eccentric wave generator, which also changes even orders under load. Typical: 0.5 to 1 % of full scale, 0.001 mV/V,
+    per rated moment, up to 5 % on a thin collar.
+
+    Attributes
+    ----------
+    strain : float
+        [mV/V], from 0 to 0.1 (nearly all of the signal by 70 N m; beyond, the output bearing is overloaded).
+    theta : float
+        Direction of the moment [rad].
+    """
+
+    place = "gauge"
+    strain: float = size(unit="mV/V", low=0, high=0.1, typical=0.002)
+    theta: float = phase()
+
+    def gauge(self, signals: Float[np.ndarray, "5 time"], scene: Scene) -> Float[np.ndarray, "5 time"]:
+        """The signals with the offsets of one wave around the collar."""
+        return signals + self.strain * np.array([[np.cos(angles - self.theta).mean()] for angles in LAYOUT])

@@ -1,0 +1,34 @@
+"""Revolutions of the wave generator and time within a recording, for effects that act while signals are recorded."""
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.effects.base import Scene
+from swgsim.recordings import SENSORS
+
+
+def samples_per_turn(scene: Scene) -> float:
+    """Samples in one revolution at the speed of the operating point."""
+    return float(2 * np.pi / (scene.point.omega_in * (scene.time[1] - scene.time[0])))
+
+
+def mean_over_turns(signals: Float[np.ndarray, "sensor time"], scene: Scene) -> Float[np.ndarray, "sensor 1"]:
+    """Mean of each signal over the largest whole number of revolutions."""
+    turn = samples_per_turn(scene)
+    turns = max(1, int(len(scene.time) / turn + 1e-6))
+    return signals[:, : round(turns * turn)].mean(axis=1, keepdims=True)
+
+
+def since_session(scene: Scene) -> Float[np.ndarray, " time"]:
+    """Time since the session began [s]."""
+    return scene.conditions.elapsed + scene.time
+
+
+def on_gauges(
+    channels: Mapping[str, Float[np.ndarray, " time"]],
+    change: Callable[[int, Float[np.ndarray, " time"]], Float[np.ndarray, " time"]],
+) -> Mapping[str, Float[np.ndarray, " time"]]:
+    """The channels with each gauge signal as ``change(sensor, signal)`` makes it."""
+    return {**channels, **{name: change(s, channels[name]) for s, name in enumerate(SENSORS)}}

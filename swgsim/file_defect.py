@@ -1,0 +1,35 @@
+"""What is wrong with a file: always named by file, row, column, what was found and what was expected."""
+
+# Rows are counted as an editor counts the lines of a CSV file: the header is row 1, the first sample row 2.
+FIRST_ROW = 2
+
+# A found value is shown up to this many characters.
+SHOWN = 60
+
+
+class FileDefect(ValueError):
+    """A file that cannot be read as recordings.
+
+    Parameters
+    ----------
+    file : str
+    found, expected : str
+    row : int, optional
+        Counted from :data:`FIRST_ROW`.
+    column : str, optional
+    """
+
+    def __init__(self, file: str, found: str, expected: str, row: int | None = None, column: str | None = None) -> None:
+        self.file, self.row, self.column, self.found, self.expected = file, row, column, found, expected
+        place = [file, *([f"row {row}"] if row else []), *([f"column {column}"] if column else [])]
+        super().__init__(f"{', '.join(place)}: found {found}, expected {expected}")
+
+
+def shown(value: object) -> str:
+    """A found value in quotes, cut where it is long.
+
+    >>> shown("3,14")
+    "'3,14'"
+    """
+    text = str(value)
+    return repr(text if len(text) <= SHOWN else text[:SHOWN] + "…")

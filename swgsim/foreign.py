@@ -1,0 +1,100 @@
+"""The named columns of files from elsewhere: MATLAB, Parquet and CSV. Only numbers are read, never objects."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import h5py
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.csv_table import read_table
+from swgsim.file_defect import FileDefect, shown
+from swgsim.reading_limits import require_readable, require_rows
+from swgsim.recording_file import numbers
+
+Columns = dict[str, Float[np.ndarray, " time"]]
+
+
+def read_columns(path: Path, name: str, wanted: Sequence[str]) -> Columns:
+    """Some columns of a file, each as long as it is in the file.
+
+    Parameters
+    ----------
+    path : Path
+        Its ending says what it is.
+    name : str
+        What messages call the file.
+    wanted : sequence of str
+
+    Raises
+    ------
+    FileDefect
+        If the file is damaged or of an unknown kind, or a column is not there or holds no real numbers.
+    """
+    require_readable(path)
+    reader = READERS.get(path.suffix.lower())
+    if reader is None:
+        raise FileDefect(name, shown(path.suffix), f"a file that ends in {', '.join(READERS)}")
+    try:
+        return reader(path, name, wanted)
+    except (FileDefect, KeyboardInterrupt):
+        raise
+    except Exception as error:  # The libraries answer damaged bytes with errors of many kinds, also of their own.
+        raise FileDefect(name, f"a damaged file ({type(error).__name__}: {error})", f"a sound {path.suffix}") from error
+
+
+def _read_csv(path: Path, name: str, wanted: Sequence[str]) -> Columns:
+    table = read_table(path, name)
+    _require_present(name, wanted, table)
+    return {column: table[column] for column in wanted}
+
+
+def _read_matlab(path: Path, name: str, wanted: Sequence[str]) -> Columns:
+    """A .mat file; version 7.3 is HDF5 behind a text of 512 bytes."""
+    if h5py.is_hdf5(path):
+        with h5py.File(path, "r") as file:
+            _require_present(name, wanted, file)
+            for column in wanted:
+                link = file.get(column, getlink=True)
+                if not isinstance(link, h5py.HardLink) or not isinstance(file[column], h5py.Dataset):
+                    raise FileDefect(name, "a link or a struct", "a variable with numbers", column=column)
+            return {column: numbers(file[column], name, column) for column in wanted}
+    from scipy.io import loadmat, whosmat
+
+    # Shapes first: what is compressed may be far larger than the file.
+    shapes = {variable: shape for variable, shape, _ in whosmat(path)}
+    _require_present(name, wanted, shapes)
+    for column in wanted:
+        require_rows(name, int(np.prod([float(length) for length in shapes[column]])))
+    content = loadmat(path, variable_names=list(wanted))
+    return {column: _real(content[column], name, column) for column in wanted}
+
+
+def _read_parquet(path: Path, name: str, wanted: Sequence[str]) -> Columns:
+    from pyarrow import parquet  # type: ignore[import-untyped]
+
+    with parquet.ParquetFile(path) as file:
+        _require_present(name, wanted, file.schema_arrow.names)
+        require_rows(name, file.metadata.num_rows)
+        table = file.read(columns=list(wanted))
+    return {column: _real(table[column].to_numpy(), name, column) for column in wanted}
+
+
+def _require_present(name: str, wanted: Sequence[str], there: object) -> None:
+    """Raise unless all that the map names is there."""
+    names = list(there)  # type: ignore[call-overload]
+    for column in wanted:
+        if column not in names:
+            raise FileDefect(name, f"columns {', '.join(map(str, names[:20]))}", f"{shown(column)}, as the map says")
+
+
+def _real(values: object, name: str, column: str) -> Float[np.ndarray, " time"]:
+    """One row or column of real numbers."""
+    sound = isinstance(values, np.ndarray) and values.dtype.kind in "fiu"
+    if not isinstance(values, np.ndarray) or not sound or sum(length != 1 for length in values.shape) != 1:
+        found = f"{getattr(values, 'dtype', type(values))} of shape {getattr(values, 'shape', ())}"
+        raise FileDefect(name, found, "real numbers in one row or column", column=column)
+    return values.astype("f8").ravel()
+
+
+READERS = {".mat": _read_matlab, ".parquet": _read_parquet, ".csv": _read_csv}

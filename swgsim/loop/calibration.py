@@ -1,0 +1,112 @@
+"""Fit of the parameters that a model declares, as likely as their spread allows."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.loop.declared import Declared, at
+from swgsim.loop.features import Layout
+from swgsim.loop.gaussian import Covariance
+from swgsim.loop.model import Model, Situation, predict
+
+# Gauss-Newton: fall of the cost below which it rests, and at most so many steps, each of at most so many spreads.
+SETTLED, STEPS, LONGEST = 0.05, 12, 5.0
+# Difference for the derivatives, in spreads; small against a nonlinearity, large against rounding.
+DIFFERENCE = 0.01
+
+
+@dataclass(frozen=True)
+class Calibrated:
+    """A model at its likeliest parameters.
+
+    Attributes
+    ----------
+    model : Model
+    position : mapping
+        Parameter to its deviation from where the fit began, in units of its spread.
+    predicted : array (situation, feature)
+    J : array (situation, feature, parameter)
+        Change by one spread of each parameter.
+    settled : bool
+        Whether the fit came to rest.
+    """
+
+    model: Model
+    position: dict[str, float]
+    predicted: Float[np.ndarray, "situation feature"]
+    J: Float[np.ndarray, "situation feature parameter"]
+    settled: bool
+
+
+def linearised(
+    model: Model, parameters: Mapping[str, Declared], situations: Sequence[Situation], layout: Layout
+) -> tuple[Float[np.ndarray, "situation feature"], Float[np.ndarray, "situation feature parameter"]]:
+    """Prediction of a model, and its change by one spread of each parameter."""
+    models, signs = [model], []
+    for parameter in parameters.values():
+        value = parameter.value(model)
+        sign = 1 if value + DIFFERENCE * parameter.sd <= parameter.high else -1
+        signs.append(sign)
+        models.append(parameter.at(model, value + sign * DIFFERENCE * parameter.sd))
+    found = predict(models, situations, layout)
+    changes = (found[1:] - found[0]) / (DIFFERENCE * np.array(signs)[:, None, None])
+    return found[0], np.moveaxis(changes, 0, -1)
+
+
+def calibrate(
+    start: Model,
+    parameters: Mapping[str, Declared],
+    measured: Float[np.ndarray, "recording feature"],
+    errors: Covariance,
+    situations: Sequence[Situation],
+    of_recording: np.ndarray,
+    layout: Layout,
+    position: Mapping[str, float] | None = None,
+) -> Calibrated:
+    """The likeliest parameters of a model.
+
+    Parameters
+    ----------
+    start : Model
+        Where the spreads are counted from.
+    parameters : mapping
+        What is fitted, with its spread.
+    measured : array (recording, feature)
+    errors : Covariance
+        Noise and errors of single recordings, rows (recording, feature).
+    situations : sequence of Situation
+    of_recording : array (recording,)
+        Which situation belongs to each recording.
+    layout : Layout
+    position : mapping, optional
+        Where to begin, in spreads.
+    """
+    names = list(parameters)
+    here = np.array([(position or {}).get(name, 0.0) for name in names])
+    step, lowest, settled = np.zeros(len(here)), np.inf, False
+    best = (start, here, np.empty((0, 0)), np.empty((0, 0, 0)))
+    for _ in range(STEPS):
+        model = at(start, parameters, dict(zip(names, here.tolist(), strict=True)))
+        predicted, J = linearised(model, parameters, situations, layout)
+        r = errors.whiten((measured - predicted[of_recording]).ravel())
+        cost = float(r @ r + here @ here)
+        if cost > lowest:
+            # The step led uphill, as the model is not linear: half of it from where it began.
+            step = step / 2
+            here = best[1] + step
+            settled = bool(np.abs(step).max() < DIFFERENCE)
+            if settled:
+                break
+            continue
+        settled = lowest - cost < SETTLED
+        lowest, best = cost, (model, here, predicted, J)
+        if settled:
+            break
+        columns = errors.whiten(J[of_recording].reshape(-1, len(here)))
+        step = np.linalg.solve(columns.T @ columns + np.eye(len(here)), columns.T @ r - here)
+        step *= min(1.0, LONGEST / max(float(np.abs(step).max()), 1e-12))
+        here = here + step
+    model, here, predicted, J = best
+    return Calibrated(model, dict(zip(names, here.tolist(), strict=True)), predicted, J, settled)

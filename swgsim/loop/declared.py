@@ -1,0 +1,142 @@
+"""What a model declares that it does not know exactly: parameters of the unit, and those of the effects it has."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from swgsim.effects.quantity import Role, quantities
+from swgsim.gear import Gear, KinematicError
+from swgsim.loop.model import Model
+
+
+@dataclass(frozen=True)
+class Declared:
+    """One parameter of a model that a fit may move.
+
+    Attributes
+    ----------
+    unit : str
+    sd : float
+        How far it may lie from where the model has it, as a standard deviation: over units of a series, an estimate.
+    value : callable
+        The parameter of a model.
+    moved : callable
+        The model with the parameter set to a value.
+    low, high : float
+        Its bounds.
+    """
+
+    unit: str
+    sd: float
+    value: Callable[[Model], float]
+    moved: Callable[[Model, float], Model]
+    low: float = -np.inf
+    high: float = np.inf
+
+    def at(self, model: Model, value: float) -> Model:
+        """The model with the parameter at a value, or at the bound that is nearest."""
+        return self.moved(model, float(np.clip(value, self.low, self.high)))
+
+
+def _of_gear(unit: str, sd: float, value: Callable[[Gear], float], moved: Callable[[Gear, float], Gear]) -> Declared:
+    return Declared(unit, sd, lambda m: value(m.gear), lambda m, to: replace(m, gear=moved(m.gear, to)))
+
+
+def _of_transmission(name: str, unit: str, sd: float) -> Declared:
+    return _of_gear(
+        unit,
+        sd,
+        lambda gear: float(getattr(gear.transmission, name)),
+        lambda gear, to: replace(gear, transmission=replace(gear.transmission, **{name: to})),
+    )
+
+
+def _of_gauge(name: str, sensor: int, unit: str, sd: float) -> Declared:
+    def moved(gear: Gear, to: float) -> Gear:
+        values = list(getattr(gear.gauges, name))
+        values[sensor] = to
+        return replace(gear, gauges=replace(gear.gauges, **{name: tuple(values)}))
+
+    return _of_gear(unit, sd, lambda gear: float(getattr(gear.gauges, name)[sensor]), moved)
+
+
+def _of_kinematic_error(order: int, part: str, sd: float) -> Declared:
+    """Cosine or sine part of one order: amplitude and phase, but linear."""
+
+    def phasor(gear: Gear) -> complex:
+        terms = [term for term in gear.transmission.kinematic_error if term.order == order]
+        return complex(sum(term.amplitude * np.exp(1j * term.phase) for term in terms))
+
+    def moved(gear: Gear, to: float) -> Gear:
+        now = phasor(gear)
+        sought = complex(to, now.imag) if part == "cosine" else complex(now.real, to)
+        term = KinematicError(order, float(abs(sought)), float(np.angle(sought)))
+        others = tuple(each for each in gear.transmission.kinematic_error if each.order != order)
+        return replace(gear, transmission=replace(gear.transmission, kinematic_error=(*others, term)))
+
+    return _of_gear("rad", sd, lambda gear: phasor(gear).real if part == "cosine" else phasor(gear).imag, moved)
+
+
+def of_unit(gear: Gear) -> dict[str, Declared]:
+    """The parameters that differ from unit to unit, with their spread in a series."""
+    t = gear.transmission
+    found = {
+        "k1": _of_transmission("k1", "N m/rad", 0.1 * t.k1),
+        "b0": _of_transmission("b0", "N m", 0.1 * t.b0),
+        "b1": _of_transmission("b1", "N m s/rad", 0.1 * t.b1),
+        "mu": _of_transmission("mu", "-", 0.1 * t.mu),
+        "w0": _of_gear(
+            "m",
+            0.01 * gear.wave_generator.w0,
+            lambda each: each.wave_generator.w0,
+            lambda each, to: replace(each, wave_generator=replace(each.wave_generator, w0=to)),
+        ),
+    }
+    for term in t.kinematic_error:
+        for part in ("cosine", "sine"):
+            found[f"kinematic error {term.order} {part}"] = _of_kinematic_error(term.order, part, 0.3e-4)
+    for sensor in range(5):
+        found[f"gain of s{sensor}"] = _of_gauge("gain", sensor, "-", 0.01)
+        found[f"zero of s{sensor}"] = _of_gauge("offset", sensor, "mV/V", 0.02)
+        found[f"position of s{sensor}"] = _of_gauge("position", sensor, "rad", 0.01)
+        found[f"grid angle of s{sensor}"] = _of_gauge("grid_angle", sensor, "rad", 0.01)
+    return found
+
+
+def of_effects(model: Model) -> dict[str, Declared]:
+    """The parameters of the effects that a model has, free within their bounds; choices are not among them."""
+    found = {}
+    for number, effect in enumerate(model.effects):
+        for name, quantity in quantities(type(effect)).items():
+            if quantity.role in (Role.CHOICE, Role.RANDOM):
+                continue
+            angular = quantity.role in (Role.PHASE, Role.ANGLE)
+            span = 2 * np.pi if angular else quantity.high - quantity.low
+            bounds = {} if angular else {"low": quantity.low, "high": quantity.high}
+            # A size is free; where a position or a shape is not seen at all it stays near where the search left it.
+            sd = span if quantity.role in (Role.SIZE, Role.PHASE) else span / 20
+            found[f"{type(effect).title()} {number + 1}: {name}"] = Declared(
+                quantity.unit, sd, _reader(number, name), _mover(number, name), **bounds
+            )
+    return found
+
+
+def _reader(number: int, name: str) -> Callable[[Model], float]:
+    return lambda model: float(getattr(model.effects[number], name))
+
+
+def _mover(number: int, name: str) -> Callable[[Model, float], Model]:
+    def moved(model: Model, to: float) -> Model:
+        effect = replace(model.effects[number], **{name: to})
+        return replace(model, effects=(*model.effects[:number], effect, *model.effects[number + 1 :]))
+
+    return moved
+
+
+def at(model: Model, parameters: Mapping[str, Declared], position: Mapping[str, float]) -> Model:
+    """A model with its parameters away from where it has them by so many spreads."""
+    for name, by in position.items():
+        parameter = parameters[name]
+        model = parameter.at(model, parameter.value(model) + by * parameter.sd)
+    return model

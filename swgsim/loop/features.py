@@ -1,0 +1,87 @@
+"""What the loop looks at: order lines of every channel over the angle of the wave generator.
+
+A recording becomes one vector: channel by channel the mean, the cosine parts and the sine parts of the orders 1 to
+ORDERS, fitted by least squares over all its samples. So neither the speed ripple nor a window that ends within a
+revolution matters, and a phase belongs to the angle, not to the time.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Complex, Float
+
+from swgsim.recording import Recording
+
+# Highest order that is compared, and highest that is fitted beside it so that it does not leak.
+ORDERS = 12
+FITTED = 16
+# The angle itself is what all other channels are plotted against.
+COMPARED = ("n_in", "T_in", "T_out", "s0", "s1", "s2", "s3", "s4")
+
+
+@dataclass(frozen=True)
+class Layout:
+    """What each number of a feature vector is.
+
+    Attributes
+    ----------
+    channels : tuple of str
+    """
+
+    channels: tuple[str, ...]
+
+    def __len__(self) -> int:
+        return len(self.channels) * (2 * ORDERS + 1)
+
+    @property
+    def channel(self) -> np.ndarray:
+        """Channel of each feature."""
+        return np.repeat(np.array(self.channels), 2 * ORDERS + 1)
+
+    @property
+    def order(self) -> np.ndarray:
+        """Order of each feature."""
+        one = np.concatenate([[0], np.arange(1, ORDERS + 1), np.arange(1, ORDERS + 1)])
+        return np.tile(one, len(self.channels))
+
+    def lines(self, features: Float[np.ndarray, "*batch feature"]) -> Complex[np.ndarray, "*batch channel order"]:
+        """Complex order lines of feature vectors; signal = Re(sum of lines[k] exp(i k phi))."""
+        parts = features.reshape(*features.shape[:-1], len(self.channels), 2 * ORDERS + 1)
+        lines = parts[..., : ORDERS + 1].astype(complex)
+        lines[..., 1:] -= 1j * parts[..., ORDERS + 1 :]
+        return lines
+
+    def vector(self, lines: Complex[np.ndarray, "*batch channel order"]) -> Float[np.ndarray, "*batch feature"]:
+        """Feature vectors of complex order lines."""
+        parts = np.concatenate([lines.real, -lines.imag[..., 1:]], axis=-1)
+        return parts.reshape(*parts.shape[:-2], -1)
+
+
+def layout_of(recordings: Sequence[Recording]) -> Layout:
+    """The channels that all recordings have."""
+    return Layout(tuple(name for name in COMPARED if all(name in r.channels for r in recordings)))
+
+
+def basis(phi: Float[np.ndarray, " time"], orders: int) -> Float[np.ndarray, "time column"]:
+    """One, then cosines, then sines of the orders 1 to `orders`."""
+    turns = np.exp(1j * np.outer(phi, np.arange(1, orders + 1)))
+    return np.column_stack([np.ones(len(phi)), turns.real, turns.imag])
+
+
+def features(recording: Recording, layout: Layout) -> Float[np.ndarray, " feature"]:
+    """The feature vector of a recording."""
+    return _fitted(recording, layout)[0]
+
+
+def remainder(recording: Recording, layout: Layout) -> Float[np.ndarray, "channel time"]:
+    """What the integer orders up to FITTED leave of every channel."""
+    return _fitted(recording, layout)[1]
+
+
+def _fitted(recording: Recording, layout: Layout) -> tuple[np.ndarray, np.ndarray]:
+    columns = basis(recording.channels["phi_in"], FITTED)
+    values = np.stack([recording.channels[name] for name in layout.channels], axis=1)
+    coefficients = np.linalg.solve(columns.T @ columns, columns.T @ values)
+    kept = np.concatenate([np.arange(ORDERS + 1), FITTED + 1 + np.arange(ORDERS)])
+    return coefficients[kept].T.ravel(), (values - columns @ coefficients).T

@@ -1,0 +1,89 @@
+"""What the library offers as explanations: every effect at typical size with its inner parameters tried out."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.effects.base import Effect
+from swgsim.effects.quantity import Role, quantities
+from swgsim.loop.features import Layout
+from swgsim.loop.model import Model, Situation, predict
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """One effect with its inner parameters fixed; only its size, and the phase of a wave, are open.
+
+    Attributes
+    ----------
+    kind : type of Effect
+    inner : tuple of (name, value)
+        What was fixed.
+    tried : int
+        Hypotheses of the same kind: so many chances to fit by luck.
+    """
+
+    kind: type[Effect]
+    inner: tuple[tuple[str, float], ...]
+    tried: int
+
+    @property
+    def size(self) -> str:
+        """Name of the size."""
+        return next(name for name, q in quantities(self.kind).items() if q.role is Role.SIZE)
+
+    @property
+    def phase(self) -> str | None:
+        """Name of the phase, if the effect is a wave."""
+        return next((name for name, q in quantities(self.kind).items() if q.role is Role.PHASE), None)
+
+    @property
+    def typical(self) -> float:
+        """Typical size."""
+        return quantities(self.kind)[self.size].typical
+
+    def effect(self, size: float | None = None, phase: float = 0.0) -> Effect:
+        """The effect of a size, typical if none is given."""
+        values = dict(self.inner) | {self.size: self.typical if size is None else size}
+        if self.phase:
+            values[self.phase] = phase
+        return self.kind(**values)
+
+    @property
+    def columns(self) -> tuple[Effect, ...]:
+        """Effects whose signatures span those of any phase."""
+        return (self.effect(), self.effect(phase=np.pi / 2)) if self.phase else (self.effect(),)
+
+    def __str__(self) -> str:
+        inner = ", ".join(f"{name} {value:.3g}" for name, value in self.inner)
+        return self.kind.title() + (f" ({inner})" if inner else "")
+
+
+def hypotheses(kinds: Iterable[type[Effect]]) -> Iterator[Hypothesis]:
+    """All combinations of inner parameters that are tried, effect by effect; those with random phases are left out."""
+    for kind in kinds:
+        declared = quantities(kind)
+        if any(q.role is Role.RANDOM for q in declared.values()):
+            continue
+        inner = {n: q.tried for n, q in declared.items() if q.role in (Role.ANGLE, Role.SHAPE, Role.CHOICE)}
+        combinations = list(product(*inner.values()))
+        for values in combinations:
+            yield Hypothesis(kind, tuple(zip(inner, values, strict=True)), len(combinations))
+
+
+def signatures(
+    found: Sequence[Hypothesis], model: Model, base: Float[np.ndarray, "situation feature"],
+    situations: Sequence[Situation], layout: Layout,
+) -> list[Float[np.ndarray, "situation feature column"]]:  # fmt: skip
+    """How typical sizes of all hypotheses change the features, by the chain itself."""
+    models = [model.plus(effect) for hypothesis in found for effect in hypothesis.columns]
+    changes = predict(models, situations, layout) - base
+    result, at = [], 0
+    for hypothesis in found:
+        columns = len(hypothesis.columns)
+        result.append(np.moveaxis(changes[at : at + columns], 0, -1))
+        at += columns
+    return result

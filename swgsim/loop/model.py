@@ -1,0 +1,64 @@
+"""The gauge chain as a forward model: features of recordings from a gear, effects and the conditions of each one."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.chain import SECTORS, Run, simulate_turns
+from swgsim.conditions import Conditions
+from swgsim.effects.base import Effect, overrides
+from swgsim.gear import Gear, OperatingPoint
+from swgsim.loop.features import Layout, features
+
+# Samples per revolution; the highest order that is fitted needs more than twice its number.
+POINTS = 64
+
+
+@dataclass(frozen=True)
+class Situation:
+    """An operating point and the conditions under which something was recorded there."""
+
+    point: OperatingPoint
+    conditions: Conditions
+
+
+@dataclass(frozen=True)
+class Model:
+    """A gear with the effects that are known of it.
+
+    Attributes
+    ----------
+    gear : Gear
+    effects : tuple of Effect
+    """
+
+    gear: Gear
+    effects: tuple[Effect, ...] = ()
+
+    def plus(self, *effects: Effect) -> "Model":
+        """The model with more effects."""
+        return replace(self, effects=(*self.effects, *effects))
+
+    def without(self, number: int) -> "Model":
+        """The model without one of its effects."""
+        return replace(self, effects=self.effects[:number] + self.effects[number + 1 :])
+
+
+def predict(
+    models: Sequence[Model], situations: Sequence[Situation], layout: Layout, sectors: int = SECTORS
+) -> Float[np.ndarray, "model situation feature"]:
+    """Features of every situation by every model, all in one go: what runs have in common is computed once."""
+    runs = [Run(m.gear, s.point, m.effects, conditions=s.conditions) for m in models for s in situations]
+    keys = [_key(run) for run in runs]
+    distinct = dict(zip(reversed(keys), reversed(runs), strict=True))
+    recordings = simulate_turns(list(distinct.values()), revolutions=1, points=POINTS, sectors=sectors)
+    found = {key: features(recording, layout) for key, recording in zip(distinct, recordings, strict=True)}
+    return np.array([found[key] for key in keys]).reshape(len(models), len(situations), len(layout))
+
+
+def _key(run: Run) -> tuple:
+    """All that a run of the chain depends on; the conditions only where an effect looks at them while recording."""
+    seeing = any(overrides(effect, "gauge", "acquisition") for effect in run.acting)
+    return run.gear, run.acting, run.point, run.conditions if seeing else None

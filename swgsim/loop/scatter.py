@@ -1,0 +1,153 @@
+"""Errors of single recordings: what differs from one repeat to the next although nothing about the gear has changed."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+from scipy.optimize import minimize
+
+from swgsim.effects import ParameterScatter
+from swgsim.loop.features import ORDERS, Layout
+from swgsim.loop.gaussian import Covariance
+from swgsim.loop.model import Model, Situation, predict
+
+# Standard deviations that a test bench would state (conf/condition/bench.yaml); repeats correct them.
+STATED = {
+    "load": 0.005,
+    "speed": 0.001,
+    "trigger": 0.0035,
+    "viscous friction": 0.05,
+    "dry friction": 0.02,
+    "zero of n_in": 0.1,
+    "zero of T_in": 0.001,
+    "zero of T_out": 0.05,
+    **{f"zero of s{sensor}": 0.001 for sensor in range(5)},
+}
+# The stated values are good to this factor (standard deviation of the logarithm).
+DOUBT = np.log(3.0)
+# Step of the differences: small against any nonlinearity, large against rounding.
+STEP = 1e-3
+
+
+@dataclass(frozen=True)
+class Scatter:
+    """Standard deviations of the errors of single recordings.
+
+    Attributes
+    ----------
+    sd : mapping
+        Name as in :data:`STATED` to standard deviation, relative for load, speed and friction, else in the unit.
+    repeats : int
+        Contrasts between repeats that the estimate rests on; 0 if it is only what was stated.
+    """
+
+    sd: dict[str, float]
+    repeats: int
+
+    def columns(self, directions: Float[np.ndarray, "situation feature kind"]) -> np.ndarray:
+        """Directions scaled to one standard deviation."""
+        return directions * np.array(list(self.sd.values()))
+
+
+def kinds(layout: Layout) -> list[str]:
+    """The errors that the channels can show."""
+    return [
+        kind for kind in STATED if not kind.startswith("zero of ") or kind.removeprefix("zero of ") in layout.channels
+    ]
+
+
+def directions(
+    model: Model, situations: Sequence[Situation], layout: Layout
+) -> Float[np.ndarray, "situation feature kind"]:
+    """How the features of each situation move with a unit of every error."""
+
+    def at(situation: Situation, **changes: float) -> Situation:
+        return replace(situation, point=replace(situation.point, **changes))
+
+    def shifted(name: str) -> list[Situation]:
+        return [at(s, **{name: getattr(s.point, name) * (1 + STEP)}) for s in situations]
+
+    base = predict([model], situations, layout)[0]
+    t = model.gear.transmission
+    dry = replace(model, gear=replace(model.gear, transmission=replace(t, b0=t.b0 * (1 + STEP))))
+    moved = {
+        "load": predict([model], shifted("T_out"), layout)[0],
+        "speed": predict([model], shifted("n_in_rpm"), layout)[0],
+        "viscous friction": predict([model.plus(ParameterScatter(1 + STEP, 1.0))], situations, layout)[0],
+        "dry friction": predict([dry], situations, layout)[0],
+    }
+    found = []
+    for kind in kinds(layout):
+        if kind in moved:
+            found.append((moved[kind] - base) / STEP)
+        elif kind == "trigger":
+            found.append(layout.vector(1j * np.arange(ORDERS + 1) * layout.lines(base)))
+        else:
+            channel = kind.removeprefix("zero of ")
+            found.append(np.broadcast_to((layout.channel == channel) & (layout.order == 0), base.shape).astype(float))
+    return np.stack(found, axis=-1)
+
+
+def estimate(
+    residual: Float[np.ndarray, "recording feature"],
+    variance: Float[np.ndarray, "recording feature"],
+    directions: Float[np.ndarray, "recording feature kind"],
+    groups: Sequence[object],
+    layout: Layout,
+) -> Scatter:
+    """The standard deviations that the repeats within each group are likeliest with, given what was stated.
+
+    Parameters
+    ----------
+    residual : array (recording, feature)
+        Measured less predicted.
+    variance : array (recording, feature)
+        Of the white noise.
+    directions : array (recording, feature, kind)
+    groups : sequence
+        Recordings of the same value are repeats of each other.
+    """
+    names = kinds(layout)
+    stated = np.array([STATED[name] for name in names])
+    contrasts = []
+    for group in dict.fromkeys(groups):
+        rows = [i for i, each in enumerate(groups) if each == group]
+        for number in range(1, len(rows)):
+            # Helmert contrasts: independent of each other and of the mean.
+            weights = np.zeros(len(residual))
+            weights[rows[:number]] = -1 / np.sqrt(number * (number + 1))
+            weights[rows[number]] = np.sqrt(number / (number + 1))
+            contrasts.append((weights @ residual, weights**2 @ variance, directions[rows[number]]))
+    if not contrasts:
+        return Scatter(dict(zip(names, stated.tolist(), strict=True)), 0)
+    # What a contrast says of the errors is said by as many numbers as there are errors.
+    small = []
+    for r, v, B in contrasts:
+        weighted = B / v[:, None]
+        small.append((weighted.T @ B, weighted.T @ r))
+
+    def cost(log_ratio: np.ndarray) -> tuple[float, np.ndarray]:
+        s = stated * np.exp(log_ratio)
+        total, slope = 0.5 * float(log_ratio @ log_ratio) / DOUBT**2, log_ratio / DOUBT**2
+        for K, b in small:
+            # log det(I + S K S) - b' S (I + S K S)^-1 S b, and its slope over log s.
+            inner = np.linalg.inv(np.eye(len(s)) + s[:, None] * K * s)
+            half = inner @ (s * b)
+            total += -0.5 * np.linalg.slogdet(inner)[1] - 0.5 * float((s * b) @ half)
+            slope = slope + (1 - np.diag(inner)) - half * (s * b) + half * ((s[:, None] * K * s) @ half)
+        return total, slope
+
+    fitted = minimize(cost, np.zeros(len(stated)), jac=True, method="L-BFGS-B", bounds=[(-8, 6)] * len(stated))
+    return Scatter(dict(zip(names, (stated * np.exp(fitted.x)).tolist(), strict=True)), len(contrasts))
+
+
+def covariance(
+    variance: Float[np.ndarray, "recording feature"], columns: Float[np.ndarray, "recording feature kind"]
+) -> Covariance:
+    """White noise and the errors of every single recording."""
+    recordings, features, kinds = columns.shape
+    G = np.zeros((recordings, features, recordings, kinds))
+    for i in range(recordings):
+        G[i, :, i] = columns[i]
+    return Covariance(variance.ravel(), G.reshape(recordings * features, recordings * kinds))
