@@ -10,13 +10,27 @@ from swgsim.defect import Defect, Severity
 from swgsim.file_defect import FIRST_ROW
 from swgsim.recording import Recording
 from swgsim.speed_units import ANGLE_MISTAKES, mistake
-from swgsim.thresholds import ANGLE_JUMP, JUMP_MEDIAN, JUMP_SCATTER, SPEED_REFUSES, SPEED_WARNS, TURNED_BACK
+from swgsim.thresholds import (
+    ANGLE_JUMP,
+    JUMP_MEDIAN,
+    JUMP_QUANTILE,
+    JUMP_SCATTER,
+    SPEED_REFUSES,
+    SPEED_WARNS,
+    TURNED_BACK,
+)
 
 
 def speed_of_angle(recording: Recording) -> float:
-    """Median speed that the angle says, over the one that was set; wraps do not matter, in whatever unit."""
-    rates = np.diff(recording.channels["phi_in"]) / np.diff(recording.time)
-    return float(np.median(rates)) / recording.point.omega_in
+    """Mean speed that the angle says, over the one that was set.
+
+    Over sixteenths of a revolution, and without the quarter that is fastest and slowest: so neither the steps of an
+    encoder matter nor wraps, in whatever unit.
+    """
+    phi, time = unwrapped(recording.channels["phi_in"]), recording.time
+    lag = min(max(1, round(60 / recording.point.n_in_rpm * recording.rate / 16)), len(time) // 2)
+    rates = np.sort((phi[lag:] - phi[:-lag]) / (time[lag:] - time[:-lag]))
+    return float(np.mean(rates[len(rates) // 4 : -(len(rates) // 4)])) / recording.point.omega_in
 
 
 def angle_is_sound(recording: Recording) -> bool:
@@ -68,8 +82,8 @@ def _jumps(recording: Recording) -> Iterator[Defect]:
     """Steps of the angle that miss a sample or more, which the steps before and after do not make up for."""
     steps = np.diff(unwrapped(recording.channels["phi_in"])) / np.diff(recording.time)
     excess = steps - median_filter(steps, JUMP_MEDIAN, mode="nearest")
-    scatter = 1.48 * float(np.median(np.abs(excess)))
-    limit = max(ANGLE_JUMP * float(np.median(steps)), JUMP_SCATTER * scatter)
+    scatter = float(np.quantile(np.abs(excess), JUMP_QUANTILE))
+    limit = max(ANGLE_JUMP * speed_of_angle(recording) * recording.point.omega_in, JUMP_SCATTER * scatter)
     kept = np.minimum(np.abs(excess[1:] + excess[:-1])[1:], np.abs(excess[1:] + excess[:-1])[:-1])
     jumps = np.flatnonzero((np.abs(excess[1:-1]) > limit) & (kept > limit)) + 1
     if len(jumps):

@@ -3,12 +3,12 @@
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from swgsim.conditions import Conditions
 from swgsim.file_defect import FIRST_ROW, FileDefect, shown
 from swgsim.gear import OperatingPoint
-from swgsim.reading_limits import require_rows
+from swgsim.reading_limits import LARGEST_NUMBER, SMALLEST_STEP, require_rows
 from swgsim.recording import CHANNELS, Recording
 
 # What a wrapped angle may span beyond one revolution, as the jitter of an encoder at its index does.
@@ -55,14 +55,24 @@ def require_sound(file: str, columns: Mapping[str, Float[np.ndarray, " time"]]) 
         raise FileDefect(file, "no channel", f"at least one of {', '.join(each.column for each in CHANNELS.values())}")
     require_rows(file, len(columns["t"]))
     for name, values in columns.items():
-        bad = np.flatnonzero(~np.isfinite(values))
+        bad = no_numbers(values)
         if len(bad):
-            row = int(bad[0]) + FIRST_ROW
-            raise FileDefect(file, str(values[bad[0]]), "a finite number", row, column_of(name))
-    back = np.flatnonzero(np.diff(columns["t"]) <= 0)
+            expected = f"a finite number within {LARGEST_NUMBER:g}"
+            raise FileDefect(file, str(values[bad[0]]), expected, int(bad[0]) + FIRST_ROW, column_of(name))
+    back = standing(columns["t"])
     if len(back):
-        before, after = columns["t"][back[0]], columns["t"][back[0] + 1]
-        raise FileDefect(file, f"{after} after {before}", "a time that increases", int(back[0]) + 1 + FIRST_ROW, "t_s")
+        found = f"{columns['t'][back[0]]} after {columns['t'][back[0] - 1]}"
+        raise FileDefect(file, found, "a time that increases", int(back[0]) + FIRST_ROW, "t_s")
+
+
+def no_numbers(values: Float[np.ndarray, " time"]) -> Int[np.ndarray, " bad"]:
+    """Samples that cannot be computed with."""
+    return np.flatnonzero(~(np.abs(values) <= LARGEST_NUMBER))
+
+
+def standing(time: Float[np.ndarray, " time"]) -> Int[np.ndarray, " bad"]:
+    """Samples that are not later than the one before."""
+    return np.flatnonzero(~(np.diff(time) >= SMALLEST_STEP)) + 1
 
 
 def require_alike(recordings: Sequence[Recording]) -> None:

@@ -9,7 +9,7 @@ from swgsim.defect import Defect
 from swgsim.file_defect import FIRST_ROW
 from swgsim.recording import Recording
 from swgsim.recordings import SENSORS
-from swgsim.thresholds import CLIPPED_EDGE, CLIPPED_RUN, STUCK_RUN, STUCK_TURN
+from swgsim.thresholds import CLIPPED_EDGE, CLIPPED_REFUSES, CLIPPED_RUN, STUCK_RUN, STUCK_TURN
 
 
 def channel_defects(recording: Recording) -> Iterator[Defect]:
@@ -24,9 +24,11 @@ def channel_defects(recording: Recording) -> Iterator[Defect]:
         starts, lengths = runs(values)
         plateau = [row for sign in (1, -1) if (row := _plateau(sign * values, starts, lengths)) is not None]
         if plateau:
+            share = float(np.isin(values, values[plateau]).mean())
+            mild = name in SENSORS and share < CLIPPED_REFUSES  # The library has an effect for it, which can be found.
             yield Defect(
-                "clipped", "refuse", recording.name, name,
-                f"{values[plateau[0]]:.5g} in a row at the edge of the range, between steep flanks",
+                "clipped", "warn" if mild else "refuse", recording.name, name,
+                f"{values[plateau[0]]:.5g} in a row between steep flanks, {100 * share:.2g} % of the samples cut",
                 "a signal within the range of the amplifier", "lower the gain or widen the range, and record again",
                 plateau[0] + FIRST_ROW,
             )  # fmt: skip

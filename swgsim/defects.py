@@ -2,15 +2,14 @@
 
 from collections.abc import Iterator, Sequence
 
-import numpy as np
-
 from swgsim.angle_defects import angle_defects
+from swgsim.assembly import no_numbers, standing
 from swgsim.channel_defects import channel_defects
 from swgsim.clock_defects import clock_defects
 from swgsim.defect import Defect
 from swgsim.file_defect import FIRST_ROW
 from swgsim.gauge_defects import gauge_defects
-from swgsim.reading_limits import FEWEST_ROWS
+from swgsim.reading_limits import FEWEST_ROWS, LARGEST_NUMBER
 from swgsim.recording import Recording
 from swgsim.set_defects import set_defects
 from swgsim.speed_defects import speed_defects
@@ -43,14 +42,15 @@ def _unusable(recording: Recording) -> Iterator[Defect]:
         found, expected = f"{len(recording.time)} samples", f"at least {FEWEST_ROWS}"
         yield Defect("too_few_samples", "refuse", name, "t", found, expected, "record longer")
     for channel, values in {"t": recording.time, **recording.channels}.items():
-        bad = np.flatnonzero(~np.isfinite(values))
+        bad = no_numbers(values)
         if len(bad):
             row = int(bad[0]) + FIRST_ROW
             remedy = "record again, or leave the channel out"
-            yield Defect("not_finite", "refuse", name, channel, str(values[bad[0]]), "a finite number", remedy, row)
-    back = np.flatnonzero(np.diff(recording.time) <= 0)
+            expected = f"a finite number within {LARGEST_NUMBER:g}"
+            yield Defect("not_finite", "refuse", name, channel, str(values[bad[0]]), expected, remedy, row)
+    back = standing(recording.time)
     if len(back):
-        before, after = recording.time[back[0]], recording.time[back[0] + 1]
-        row = int(back[0]) + 1 + FIRST_ROW
+        before, after = recording.time[back[0] - 1], recording.time[back[0]]
+        row = int(back[0]) + FIRST_ROW
         remedy = "sample by a clock that only goes on"
         yield Defect("clock_backwards", "refuse", name, "t", f"{after} after {before}", "later times", remedy, row)

@@ -9,6 +9,12 @@ LARGEST_FILE = 2 * 2**30
 MOST_ROWS = 50_000_000
 MOST_FILES = 10_000
 
+# No channel in its unit comes near it, and squares of it can still be computed with.
+LARGEST_NUMBER = 1e15
+
+# No clock resolves less [s].
+SMALLEST_STEP = 1e-12
+
 # Medians and order lines of fewer samples say nothing.
 FEWEST_ROWS = 16
 

@@ -58,7 +58,8 @@ def _read_one(folder: Path, name: str, mapping: SourceMap) -> Recording:
     lengths = {column: len(values) for column, values in columns.items()}
     if len(set(lengths.values())) > 1:
         raise FileDefect(name, f"columns of different lengths {lengths}", "as many values of every channel")
-    channels = {source.channel: columns[source.column] * source.factor for source in mapping.channels}
+    with np.errstate(over="ignore"):  # A number beyond all limits is named below, as one that is not finite.
+        channels = {source.channel: columns[source.column] * source.factor for source in mapping.channels}
     if mapping.sampling_rate_hz:
         length = next(iter(lengths.values()), 0)
         require_rows(name, length)

@@ -4,8 +4,8 @@ the limits lie far from what a sick gear or a poor test bench does, so that no e
 # Clock. A lost sample doubles a step; a sound clock's steps differ by far less, also where they are written rounded.
 GAP = 1.5
 SHORT_STEP = 0.5
-# Share of a step, root mean square: a time written with 6 decimals at 10 kHz jitters by 0.3 %; order lines suffer from a
-# few per cent.
+# Share of a step, root mean square: a time written with 6 decimals at 10 kHz jitters by 0.3 %; order lines suffer from
+# a few per cent.
 JITTER_WARNS = 0.02
 JITTER_REFUSES = 0.1
 
@@ -20,8 +20,9 @@ RATIOS = (30, 321)
 TURNED_BACK = 0.05
 # Share of the usual angle step that is missing or too much where samples are lost: one sample is a whole step.
 ANGLE_JUMP = 0.7
-# ... and in units of the scatter of the steps, below which a jump cannot be told from encoder jitter.
-JUMP_SCATTER = 8.0
+# ... and in units of the scatter of the steps, below which a jump cannot be told from jitter and steps of the encoder.
+JUMP_SCATTER = 4.0
+JUMP_QUANTILE = 0.95
 # Steps of the running median that the jumps are seen against.
 JUMP_MEDIAN = 15
 
@@ -57,6 +58,8 @@ S0_SCALE = 30.0
 
 # Equal values in a row at the largest or smallest value of a channel.
 CLIPPED_RUN = 4
+# Share of a gauge's samples that are cut: below, the rest still shows what it was, and a search for effects can name it.
+CLIPPED_REFUSES = 1 / 3
 # How sharp the edge of such a plateau is against the peak of a coarsely digitised signal (see channel_defects.py).
 CLIPPED_EDGE = 2.0
 # Equal values in a row of a gauge in whose signal a whole order-2 period is half a revolution [revolutions, samples].

@@ -39,9 +39,9 @@ def wiring_defects(recordings: Sequence[Recording]) -> Iterator[Defect]:
     for _, group in groupby(sorted(recordings, key=wired), wired):
         members = list(group)
         rises = rise_with_load(members)
-        usual = float(np.median(list(rises.values()))) if rises else 0.0
-        inverted = {sensor for sensor, rise in rises.items() if rise < -LOAD_SHARE * abs(usual)}
-        yield from _against_load(members, rises, usual, inverted)
+        usual = float(np.median(np.abs(list(rises.values())))) if rises else 0.0
+        inverted = {sensor for sensor, rise in rises.items() if rise < -LOAD_SHARE * usual}
+        yield from _against_load(members[0].name, rises, inverted)
         for member in members:
             yield from _phases(member, inverted, bool(rises))
 
@@ -59,15 +59,13 @@ def rise_with_load(recordings: Sequence[Recording]) -> dict[str, float]:
     return dict(zip(sensors, rises.tolist(), strict=True))
 
 
-def _against_load(
-    members: Sequence[Recording], rises: dict[str, float], usual: float, inverted: set[str]
-) -> Iterator[Defect]:
+def _against_load(name: str, rises: dict[str, float], inverted: set[str]) -> Iterator[Defect]:
     """Gauges that fall with load, and a torque bridge in another unit than the rest."""
-    name, expected = members[0].name, "signals that rise with load"
-    if rises and usual < 0:
+    expected = "signals that rise with load"
+    if rises and len(inverted) == len(rises):
         yield Defect(
-            "gauges_against_load", "refuse", name, "", f"gauges that fall, by {-usual:.3g} mV/V per N m", expected,
-            "all gauges are inverted or the load has the other sign",
+            "gauges_against_load", "refuse", name, "", "gauges that all fall with load", expected,
+            "all gauges are inverted, or the load has the other sign",
         )  # fmt: skip
         return
     for sensor in sorted(inverted):
@@ -75,8 +73,8 @@ def _against_load(
             "gauge_inverted", "refuse", name, sensor, f"{rises[sensor]:.3g} mV/V per N m", expected,
             "turn its sign, in the file or by 'inverted: true' in a column map",
         )  # fmt: skip
-    others = [rise for sensor, rise in rises.items() if sensor != "s0"]
-    if "s0" in rises and others and not 1 / S0_SCALE < abs(rises["s0"] / np.median(others)) < S0_SCALE:
+    others = [abs(rise) for sensor, rise in rises.items() if sensor != "s0"]
+    if "s0" in rises and others and not 1 / S0_SCALE < abs(rises["s0"]) / np.median(others) < S0_SCALE:
         yield Defect(
             "gauge_scale", "refuse", name, "s0", f"{rises['s0']:.3g} mV/V per N m",
             f"about twice the {np.median(others):.3g} of the other gauges", "it is in another unit: convert it",

@@ -9,8 +9,8 @@ from jaxtyping import Float
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities
-from swgsim.loop.features import Layout
-from swgsim.loop.model import Model, Situation, predict
+from swgsim.loop.model import Model, predict
+from swgsim.loop.session import Measured
 
 
 @dataclass(frozen=True)
@@ -24,11 +24,14 @@ class Hypothesis:
         What was fixed.
     tried : int
         Hypotheses of the same kind: so many chances to fit by luck.
+    reference : float, optional
+        Size at which its signature is taken, the typical one if not given.
     """
 
     kind: type[Effect]
     inner: tuple[tuple[str, float], ...]
     tried: int
+    reference: float | None = None
 
     @property
     def size(self) -> str:
@@ -42,8 +45,8 @@ class Hypothesis:
 
     @property
     def typical(self) -> float:
-        """Typical size."""
-        return quantities(self.kind)[self.size].typical
+        """Size at which the signature is taken."""
+        return quantities(self.kind)[self.size].typical if self.reference is None else self.reference
 
     def effect(self, size: float | None = None, phase: float = 0.0) -> Effect:
         """The effect of a size, typical if none is given."""
@@ -74,16 +77,11 @@ def hypotheses(kinds: Iterable[type[Effect]]) -> Iterator[Hypothesis]:
             yield Hypothesis(kind, tuple(zip(inner, values, strict=True)), len(combinations))
 
 
-def signatures(
-    found: Sequence[Hypothesis], model: Model, base: Float[np.ndarray, "situation feature"],
-    situations: Sequence[Situation], layout: Layout,
-) -> list[Float[np.ndarray, "situation feature column"]]:  # fmt: skip
-    """How typical sizes of all hypotheses change the features, by the chain itself."""
-    models = [model.plus(effect) for hypothesis in found for effect in hypothesis.columns]
-    changes = predict(models, situations, layout) - base
-    result, at = [], 0
-    for hypothesis in found:
-        columns = len(hypothesis.columns)
-        result.append(np.moveaxis(changes[at : at + columns], 0, -1))
-        at += columns
-    return result
+def signatures(found: Sequence[Hypothesis], model: Model, measured: Measured) -> list[Float[np.ndarray, "row column"]]:
+    """How typical sizes of all hypotheses change the features of all recordings, by the chain itself."""
+    effects = [effect for hypothesis in found for effect in hypothesis.columns]
+    models = [model, *(model.plus(effect) for effect in effects)]
+    predicted = predict(models, measured.situations, measured.layout)
+    changes = predicted[1:] - predicted[0]
+    ends = np.cumsum([len(hypothesis.columns) for hypothesis in found])[:-1]
+    return [measured.rows(np.moveaxis(part, 0, -1)) for part in np.split(changes, ends)]

@@ -5,21 +5,23 @@ both weighed by the covariance of noise, single recordings and declared paramete
 absorb of a signature is gone by then, and only the rest counts.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
 from scipy.stats import chi2
 
-from swgsim.loop.gaussian import Covariance
+from swgsim.effects.quantity import quantities
+from swgsim.loop.fitting import Fitted
 from swgsim.loop.hypotheses import Hypothesis
 
 # Part of a signature that must remain visible beside the declared parameters; below, it cannot be told from them.
 VISIBLE = 1e-4
 # Directions of a signature below this part of its largest one are rounding.
 NEGLIGIBLE = 1e-6
-DRAWS = 2000
+DRAWS = 1000
 
 
 @dataclass(frozen=True)
@@ -56,8 +58,9 @@ class Score:
 
     @property
     def rank(self) -> float:
-        """What hypotheses are ordered by: the gain, less what a search of this extent gains by luck."""
-        return self.gain - self.freedom * np.log(1000) - 2 * np.log(self.hypothesis.tried)
+        """What hypotheses are ordered by: how unlikely the gain is by luck, in a search of this extent."""
+        unlikely = -2 * float(chi2.logsf(self.gain, self.freedom)) if self.freedom else 0.0
+        return unlikely - 2 * float(np.log(self.hypothesis.tried))
 
     @property
     def detectable(self) -> float:
@@ -68,9 +71,7 @@ class Score:
 def screen(
     found: Sequence[Hypothesis],
     signatures: Sequence[Float[np.ndarray, "row column"]],
-    residual: Float[np.ndarray, " row"],
-    errors: Covariance,
-    parameters: Float[np.ndarray, "row parameter"],
+    fitted: Fitted,
     rng: np.random.Generator,
 ) -> list[Score]:
     """Scores of all hypotheses, the best rank first.
@@ -80,85 +81,83 @@ def screen(
     found : sequence of Hypothesis
     signatures : sequence of array (row, column)
         Change by the typical size.
-    residual : array (row,)
-        Measured less predicted, at the calibrated parameters.
-    errors : Covariance
-        Noise and errors of single recordings.
-    parameters : array (row, parameter)
-        Change by one spread of each declared parameter.
+    fitted : Fitted
+        The model that is asked what it lacks.
     rng : Generator
     """
-    whole = errors.with_columns(parameters)
-    r = whole.whiten(residual)
-    ends = np.cumsum([s.shape[1] for s in signatures])[:-1]
     stacked = np.hstack(list(signatures))
-    weighed = np.split(whole.whiten(stacked), ends, axis=1)
-    alone = np.split(errors.whiten(stacked), ends, axis=1)
-    raw, bases = [], []
-    for hypothesis, C, free in zip(found, weighed, alone, strict=True):
-        U, s, Vt = np.linalg.svd(C, full_matrices=False)
-        kept = s > NEGLIGIBLE * max(float(np.linalg.norm(free)), 1e-300)
-        U, s, Vt = U[:, kept], s[kept], Vt[kept]
-        visible = float((s**2).sum() / max(float((free**2).sum()), 1e-300))
-        if visible < VISIBLE:
-            U, s, Vt = U[:, :0], s[:0], Vt[:0]
-        raw.append((hypothesis, U.T @ r, s, Vt, visible))
-        bases.append(U)
-    chances = _family_wise([u for _, u, *_ in raw], bases, rng)
-    scores = [_score(*each, chance) for each, chance in zip(raw, chances, strict=True)]
+    ends = np.cumsum([s.shape[1] for s in signatures])[:-1]
+    free = np.split(fitted.errors.whiten(stacked), ends, axis=1)
+    projected = [
+        _projected(C, alone)
+        for C, alone in zip(np.split(fitted.whole.whiten(stacked), ends, axis=1), free, strict=True)
+    ]
+    r = fitted.whole.whiten(fitted.from_start)
+    chances = family_wise([p.U for p in projected], r, rng)
+    scores = [_score(h, p, p.U.T @ r, chance) for h, p, chance in zip(found, projected, chances, strict=True)]
     return sorted(scores, key=lambda score: -score.rank)
 
 
 def best_of_kind(scores: Sequence[Score]) -> list[Score]:
     """The best hypothesis of every effect, in the order of the scores."""
-    best: Mapping[type, Score] = {}
+    best: dict[type, Score] = {}
     for score in scores:
-        best.setdefault(score.hypothesis.kind, score)  # type: ignore[attr-defined]
+        best.setdefault(score.hypothesis.kind, score)
     return list(best.values())
 
 
-def _score(
-    hypothesis: Hypothesis, u: np.ndarray, s: np.ndarray, Vt: np.ndarray, visible: float, chance: float
-) -> Score:
-    """Figures of one hypothesis from its projections."""
-    if not len(s):
-        return Score(hypothesis, 0.0, 0, np.nan, np.nan, np.inf, visible, 1.0)
-    from swgsim.effects.quantity import quantities
+class Projected(NamedTuple):
+    """What is left of a signature: orthonormal directions, their sizes, how columns make them, visible share."""
 
+    U: Float[np.ndarray, "row rank"]
+    s: Float[np.ndarray, " rank"]
+    Vt: Float[np.ndarray, "rank column"]
+    visible: float
+
+
+def _projected(C: Float[np.ndarray, "row column"], alone: Float[np.ndarray, "row column"]) -> Projected:
+    """Directions of a weighed signature; none if the declared parameters absorb it."""
+    U, s, Vt = np.linalg.svd(C, full_matrices=False)
+    size = float((alone**2).sum())
+    visible = float((s**2).sum()) / size if size > 0 else 0.0
+    kept = s > NEGLIGIBLE * np.sqrt(size) if visible > VISIBLE else np.zeros(len(s), bool)
+    return Projected(U[:, kept], s[kept], Vt[kept], visible)
+
+
+def _score(hypothesis: Hypothesis, projected: Projected, u: Float[np.ndarray, " rank"], chance: float) -> Score:
+    """Figures of one hypothesis from its projections."""
+    if not len(u):
+        return Score(hypothesis, 0.0, 0, np.nan, np.nan, np.inf, projected.visible, 1.0)
     quantity = quantities(hypothesis.kind)[hypothesis.size]
     span = hypothesis.typical - quantity.nothing
-    weights = Vt.T @ (u / s)
-    deviation = abs(span) / float(np.sqrt((s**2).mean()))
+    weights = projected.Vt.T @ (u / projected.s)
+    deviation = abs(span) / float(np.sqrt((projected.s**2).mean()))
+    size, phase = span * float(weights[0]), 0.0
     if hypothesis.phase:
-        cosine, sine = (*weights, 0.0)[:2]
-        size, phase = span * float(np.hypot(cosine, sine)), float(np.arctan2(sine, cosine) % (2 * np.pi))
-    else:
-        size, phase = span * float(weights[0]), 0.0
+        size, phase = span * float(np.hypot(*weights)), float(np.arctan2(weights[1], weights[0]) % (2 * np.pi))
     size = float(np.clip(quantity.nothing + size, quantity.low, quantity.high))
-    return Score(hypothesis, float(u @ u), len(s), size, phase, deviation, visible, chance)
+    return Score(hypothesis, float(u @ u), len(u), size, phase, deviation, projected.visible, chance)
 
 
-def _family_wise(
-    projections: Sequence[np.ndarray], bases: Sequence[np.ndarray], rng: np.random.Generator
-) -> np.ndarray:
-    """Of every hypothesis, how often pure noise gives the whole library a score as high.
+def family_wise(
+    bases: Sequence[Float[np.ndarray, "row _"]], r: Float[np.ndarray, " row"], rng: np.random.Generator
+) -> Float[np.ndarray, " hypothesis"]:
+    """Of every hypothesis, how often pure noise gives any of them a score as unlikely.
 
-    Hypotheses overlap, so the scores of noise are drawn together, from the inner products of their directions.
+    Hypotheses overlap, so their scores are taken of the same draws of noise.
     """
-    stacked = np.hstack(bases)
     freedom = np.array([basis.shape[1] for basis in bases])
-    if not stacked.shape[1]:
-        return np.ones(len(bases))
-    values, vectors = np.linalg.eigh(stacked.T @ stacked)
-    root = vectors * np.sqrt(np.maximum(values, 0))
-    drawn = (root @ rng.standard_normal((len(values), DRAWS))) ** 2
     used = np.flatnonzero(freedom)
+    chances = np.ones(len(bases))
+    if not len(used):
+        return chances
+    stacked = np.hstack([bases[i] for i in used])
     starts = np.concatenate([[0], np.cumsum(freedom[used])[:-1]])
-    sums = np.add.reduceat(drawn, starts, axis=0)
-    lowest = chi2.logsf(sums, freedom[used, None]).min(axis=0)
-    own = np.zeros(len(bases))
-    own[used] = [chi2.logsf(projections[i] @ projections[i], freedom[i]) for i in used]
-    beaten = (lowest[:, None] <= own[None, :]).sum(axis=0)
-    # Far beyond what draws can show, Bonferroni's bound is the better answer.
-    bound = np.minimum(1.0, np.exp(np.minimum(own, 0)) * len(used))
-    return np.where(beaten > 0, (beaten + 1) / (DRAWS + 1), np.minimum(bound, 1 / (DRAWS + 1)))
+    drawn = np.add.reduceat((stacked.T @ rng.standard_normal((len(r), DRAWS))) ** 2, starts, axis=0)
+    lowest = chi2.logsf(drawn, freedom[used, None]).min(axis=0)
+    own = chi2.logsf(np.add.reduceat((stacked.T @ r) ** 2, starts), freedom[used])
+    beaten = (lowest[:, None] <= own).sum(axis=0)
+    # Where no draw comes near, Bonferroni's bound is the better answer.
+    bound = np.minimum(np.exp(own) * len(used), 1 / (DRAWS + 1))
+    chances[used] = np.where(beaten > 0, (beaten + 1) / (DRAWS + 1), bound)
+    return chances

@@ -1,0 +1,169 @@
+"""Closing the loop: screen, refine, fit, judge, add, and ask again."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from swgsim.effects.base import Effect
+from swgsim.loop.evidence import Coherence, coherence
+from swgsim.loop.fitting import Fitted, Unit, fit
+from swgsim.loop.hypotheses import hypotheses, signatures
+from swgsim.loop.refining import zoom
+from swgsim.loop.screening import Score, best_of_kind, screen
+from swgsim.loop.session import Measured
+from swgsim.seeds import generator
+
+# Probability of a false effect on recordings in which nothing is missing.
+ALPHA = 0.005
+# Leaders that are fitted, and effects that are added at most.
+LEADERS, MOST = 4, 3
+# Log-likelihood of left-out operating points that an effect must gain, and a pair over its better half.
+LEAST_GAIN, PAIR_GAIN = 3.0, 15.0
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A hypothesis fitted with everything else.
+
+    Attributes
+    ----------
+    score : Score
+    effects : tuple of Effect
+        As fitted.
+    fitted : Fitted
+        The model with it.
+    gain : float
+        Of the log-likelihood of left-out operating points.
+    coherence : tuple of Coherence
+        Of each effect of the trial.
+    """
+
+    score: Score
+    effects: tuple[Effect, ...]
+    fitted: Fitted
+    gain: float
+    coherence: tuple[Coherence, ...]
+
+    @property
+    def sound(self) -> bool:
+        """Whether it pays on operating points it was not fitted on, and does not contradict itself."""
+        return self.gain > LEAST_GAIN and all(each.holds for each in self.coherence) and self.fitted.calibrated.settled
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """One effect, or a pair, that was added.
+
+    Attributes
+    ----------
+    accepted : Trial
+    rivals : tuple of Trial
+        Trials that the recordings cannot tell from it.
+    others : tuple of Trial
+        Trials that were worse.
+    """
+
+    accepted: Trial
+    rivals: tuple[Trial, ...]
+    others: tuple[Trial, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Closed:
+    """What closing the loop found.
+
+    Attributes
+    ----------
+    before, after : Fitted
+        The model without and with what was found.
+    steps : tuple of Step
+    scores : tuple of Score
+        Of the first screening, best hypothesis of each effect.
+    left : tuple of Score
+        Of the last screening.
+    rejected : tuple of Trial
+        Significant, but of the wrong form.
+    """
+
+    before: Fitted
+    after: Fitted
+    steps: tuple[Step, ...]
+    scores: tuple[Score, ...]
+    left: tuple[Score, ...]
+    rejected: tuple[Trial, ...]
+
+
+def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed: int = 0) -> Closed:
+    """Find what the model of a unit lacks.
+
+    Parameters
+    ----------
+    measured : Measured
+    unit : Unit
+    kinds : sequence of effect classes
+        The library.
+    seed : int
+    """
+    before = now = fit(measured, unit)
+    steps: list[Step] = []
+    rejected: tuple[Trial, ...] = ()
+    first: tuple[Score, ...] | None = None
+    while True:
+        scores = _screened(now, kinds, generator("screen", seed, len(steps)))
+        first = scores if first is None else first
+        leaders = [score for score in scores if score.chance <= ALPHA][:LEADERS]
+        if steps and leaders:
+            steps[-1] = _with_rivals(steps[-1], scores)
+        if not leaders or len(steps) == MOST:
+            break
+        trials = sorted((_trial(now, (score,), seed) for score in leaders), key=lambda trial: -trial.gain)
+        accepted = trials[0] if trials[0].sound else _pair(now, trials, seed)
+        if accepted is None:
+            rejected = tuple(trials)
+            break
+        others = tuple(trial for trial in trials if trial is not accepted)
+        steps.append(Step(accepted, (), others))
+        now = accepted.fitted
+    if steps:
+        steps[-1] = _with_rivals(steps[-1], scores)
+    return Closed(before, now, tuple(steps), first, scores, rejected)
+
+
+def _screened(fitted: Fitted, kinds: Sequence[type[Effect]], rng: np.random.Generator) -> tuple[Score, ...]:
+    """The best hypothesis of every effect."""
+    found = list(hypotheses(kinds))
+    return tuple(best_of_kind(screen(found, signatures(found, fitted.model, fitted.measured), fitted, rng)))
+
+
+def _trial(now: Fitted, scores: tuple[Score, ...], seed: int) -> Trial:
+    """Hypotheses added to the model and fitted with it."""
+    rng = generator("zoom", seed, *(str(score.hypothesis) for score in scores))
+    added = tuple(zoom(score, now, rng) for score in scores)
+    known = len(now.model.effects)
+    start = now.unit.model.plus(*now.model.effects, *added)
+    fitted = fit(now.measured, now.unit, start, position=_declared_only(now))
+    effects = fitted.model.effects[known:]
+    found = tuple(coherence(fitted, known + number) for number in range(len(added)))
+    return Trial(scores[0], effects, fitted, fitted.predictive - now.predictive, found)
+
+
+def _declared_only(fitted: Fitted) -> dict[str, float]:
+    """Position of the unit's parameters; those of effects begin anew, where the last fit has the effects."""
+    return {name: by for name, by in fitted.calibrated.position.items() if ": " not in name}
+
+
+def _pair(now: Fitted, trials: Sequence[Trial], seed: int) -> Trial | None:
+    """Two effects that hide one another: the best pair with the best trial, if both members are sound together."""
+    pairs = [_trial(now, (trials[0].score, other.score), seed) for other in trials[1:]]
+    best = max(pairs, key=lambda pair: pair.gain, default=None)
+    return best if best and best.sound and best.gain > trials[0].gain + PAIR_GAIN else None
+
+
+def _with_rivals(step: Step, after: Sequence[Score]) -> Step:
+    """Of the other trials, those as good as the accepted one that say nothing more once it is in the model."""
+    silent = {score.hypothesis.kind for score in after if score.chance > ALPHA}
+    near = step.accepted.gain - max(LEAST_GAIN, 0.02 * abs(step.accepted.gain))
+    others = (*step.rivals, *step.others)
+    rivals = tuple(t for t in others if t.sound and t.gain > near and t.score.hypothesis.kind in silent)
+    return Step(step.accepted, rivals, tuple(t for t in others if t not in rivals))

@@ -1,0 +1,190 @@
+"""A model fitted to recordings: its parameters, the errors of single recordings, and what stays unexplained."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.loop import scatter
+from swgsim.loop.calibration import Calibrated, calibrate, linearised
+from swgsim.loop.declared import Declared, at, of_effects, of_unit
+from swgsim.loop.form import form_columns
+from swgsim.loop.gaussian import Covariance
+from swgsim.loop.model import Model, Situation
+from swgsim.loop.scatter import Scatter
+from swgsim.loop.session import Measured
+
+# Declared accuracy of the structural model before the gear itself has been recorded: the mesh alone makes up to 2 %.
+STRUCTURE = 0.01
+
+
+@dataclass(frozen=True, eq=False)
+class Unit:
+    """What is known of a unit before the recordings in question.
+
+    Attributes
+    ----------
+    model : Model
+        At its nominal or commissioned parameters.
+    reach : array (direction, direction) or None
+        After commissioning, how far the directions (declared parameters, then deviations of the maps) may still lie
+        from where they were found, as columns of one standard deviation; None for a unit never seen.
+    shift : array (direction,) or None
+        Where commissioning found them, in spreads.
+    structure : float
+        Declared accuracy of the maps, as a share of a gauge's largest line.
+    """
+
+    model: Model
+    reach: Float[np.ndarray, "direction direction"] | None = None
+    shift: Float[np.ndarray, " direction"] | None = None
+    structure: float = STRUCTURE
+    scatter: Scatter | None = field(default=None)
+
+    @property
+    def commissioned(self) -> bool:
+        """Whether the unit was recorded in its healthy state before."""
+        return self.reach is not None
+
+
+@dataclass(frozen=True, eq=False)
+class Fitted:
+    """A model calibrated to what was measured.
+
+    Attributes
+    ----------
+    measured : Measured
+    unit : Unit
+    parameters : mapping
+        What was fitted, with its spread.
+    calibrated : Calibrated
+    scatter : Scatter
+    errors : Covariance
+        Noise, errors of single recordings and of sessions; rows (recording, feature).
+    open : array (row, direction)
+        What the unit leaves open beside the fitted parameters: deviations of the maps, and after commissioning also
+        the declared parameters; one standard deviation each.
+    offset : array (row,)
+        Deviation of the maps found by commissioning.
+    """
+
+    measured: Measured
+    unit: Unit
+    parameters: dict[str, Declared]
+    calibrated: Calibrated
+    scatter: Scatter
+    errors: Covariance
+    open: Float[np.ndarray, "row direction"]
+    offset: Float[np.ndarray, " row"]
+
+    @property
+    def model(self) -> Model:
+        """The model at its likeliest parameters."""
+        return self.calibrated.model
+
+    @cached_property
+    def residual(self) -> Float[np.ndarray, " row"]:
+        """Measured less predicted."""
+        return self.measured.values.ravel() - self.offset - self.measured.rows(self.calibrated.predicted)
+
+    @cached_property
+    def J(self) -> Float[np.ndarray, "row parameter"]:
+        """Change by one spread of each fitted parameter."""
+        return self.measured.rows(self.calibrated.J)
+
+    @cached_property
+    def whole(self) -> Covariance:
+        """All errors, with everything open that the model does not know exactly."""
+        return self.errors.with_columns(np.hstack([self.open, self.J]))
+
+    @property
+    def from_start(self) -> Float[np.ndarray, " row"]:
+        """Residual of the linearised model at the values where the spreads begin: what :attr:`whole` describes."""
+        return self.residual + self.J @ np.array(list(self.calibrated.position.values()))
+
+    @cached_property
+    def deviation(self) -> dict[str, float]:
+        """Standard deviation of each fitted parameter, in its unit."""
+        columns = self.errors.with_columns(self.open).whiten(self.J)
+        covariance = np.linalg.inv(columns.T @ columns + np.eye(columns.shape[1]))
+        spread = np.sqrt(np.diag(covariance)).tolist()
+        return {name: s * p.sd for (name, p), s in zip(self.parameters.items(), spread, strict=True)}
+
+    @cached_property
+    def predictive(self) -> float:
+        """Log-likelihood of every operating point as predicted from all the others."""
+        blocks = self.measured.point_rows()
+        if len(blocks) < 2:
+            return self.whole.log_likelihood(self.from_start)
+        return sum(self.whole.left_out(self.from_start, block) for block in blocks)
+
+
+def fit(
+    measured: Measured, unit: Unit, model: Model | None = None, *, position: Mapping[str, float] | None = None
+) -> Fitted:
+    """Fit what is not known, and estimate the errors of single recordings, in turns.
+
+    Parameters
+    ----------
+    measured : Measured
+    unit : Unit
+    model : Model, optional
+        The unit's with further effects, which are fitted along.
+    position : mapping, optional
+        Where parameters begin, in spreads.
+    """
+    start = model or unit.model
+    parameters = of_effects(start) if unit.commissioned else of_unit(unit.model.gear) | of_effects(start)
+    guess = unit.scatter or Scatter({kind: scatter.STATED[kind] for kind in scatter.kinds(measured.layout)}, 0)
+    here, begin = at(start, parameters, position or {}), position
+    for _ in range(1 if unit.scatter and model else 2):
+        moves = scatter.directions(here, measured.situations, measured.layout)[measured.of_recording]
+        predicted, directions = _directions(unit, here, measured)
+        errors = scatter.covariance(measured.variance, guess.columns(moves))
+        errors = errors.with_columns(measured.session_columns(predicted))
+        reach = np.diag(_spreads(unit, directions.shape[-1])) if unit.reach is None else unit.reach
+        open_ = measured.rows(directions) @ reach
+        offset = np.zeros(len(open_)) if unit.shift is None else measured.rows(directions) @ unit.shift
+        calibrated = calibrate(
+            start, parameters, measured.values - offset.reshape(measured.values.shape), errors.with_columns(open_),
+            measured.situations, measured.of_recording, measured.layout, begin,
+        )  # fmt: skip
+        residual = measured.values - offset.reshape(measured.values.shape) - calibrated.predicted[measured.of_recording]
+        guess = scatter.estimate(residual, measured.variance, moves, measured.repeats, measured.layout)
+        here, begin = calibrated.model, calibrated.position
+    errors = scatter.covariance(measured.variance, guess.columns(moves)).with_columns(
+        measured.session_columns(predicted)
+    )
+    return Fitted(measured, unit, parameters, calibrated, guess, errors, open_, offset)
+
+
+def commission(measured: Measured, unit: Unit) -> Unit:
+    """The unit with what recordings of its healthy state say about it."""
+    fitted = fit(measured, unit)
+    directions = measured.rows(form_columns(fitted.calibrated.predicted, measured.situations, measured.layout))
+    columns = np.hstack([fitted.J, directions * unit.structure])
+    white = fitted.errors.whiten(columns)
+    covariance = np.linalg.inv(white.T @ white + np.eye(columns.shape[1]))
+    mean = covariance @ (white.T @ fitted.errors.whiten(fitted.from_start[:, None])[:, 0])
+    # The parameters themselves stay where the fit has them; the deviations of the maps take up the rest.
+    mean[: fitted.J.shape[1]] -= np.array(list(fitted.calibrated.position.values()))
+    scale = np.concatenate([np.ones(fitted.J.shape[1]), np.full(directions.shape[1], unit.structure)])
+    reach = scale[:, None] * np.linalg.cholesky(covariance)
+    return Unit(fitted.model, reach, scale * mean, unit.structure, fitted.scatter)
+
+
+def _spreads(unit: Unit, count: int) -> np.ndarray:
+    """One standard deviation of each deviation of the maps, for a unit never seen."""
+    return np.full(count, unit.structure)
+
+
+def _directions(
+    unit: Unit, model: Model, measured: Measured
+) -> tuple[Float[np.ndarray, "situation feature"], Float[np.ndarray, "situation feature direction"]]:
+    """Prediction, and the directions that a unit leaves open: of the maps, and once commissioned of the parameters."""
+    situations: tuple[Situation, ...] = measured.situations
+    known = of_unit(unit.model.gear) if unit.commissioned else {}
+    predicted, J = linearised(model, known, situations, measured.layout)
+    return predicted, np.concatenate([J, form_columns(predicted, situations, measured.layout)], axis=-1)

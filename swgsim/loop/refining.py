@@ -1,0 +1,59 @@
+"""The inner parameters of a hypothesis, no longer on a grid: zoomed in on by the score, with the real chain."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+
+from swgsim.effects.base import Effect
+from swgsim.effects.quantity import Quantity, Role, quantities
+from swgsim.loop.fitting import Fitted
+from swgsim.loop.hypotheses import Hypothesis, signatures
+from swgsim.loop.screening import Score, screen
+
+# Values that are tried beside the best one, and rounds; every round looks at a third of the last one's reach.
+TRIED, ROUNDS = 2, 4
+# A size at least this share of its range from nothing; a smaller one has no signature above rounding.
+LEAST = 1e-3
+
+
+def zoom(score: Score, fitted: Fitted, rng: np.random.Generator) -> Effect:
+    """The effect of a score at its likeliest inner parameters and size, for a fit to begin with.
+
+    The signature is taken at the size that was found last, as that of a crack is far from proportional to its size.
+    """
+    declared = quantities(score.hypothesis.kind)
+    searched = [name for name, q in declared.items() if q.role in (Role.ANGLE, Role.SHAPE)]
+    best = score
+    reach = {name: _spacing(declared[name]) for name in searched}
+    for _ in range(ROUNDS if searched else 1):
+        offsets = product(*[np.linspace(-1, 1, 2 * TRIED + 1) * reach[name] for name in searched])
+        around = [_moved(best, dict(zip(searched, offset, strict=True)), declared) for offset in offsets]
+        best = screen(around, signatures(around, fitted.model, fitted.measured), fitted, rng)[0]
+        reach = {name: by / 3 for name, by in reach.items()}
+    return best.hypothesis.effect(best.estimate, best.phase if np.isfinite(best.phase) else 0.0)
+
+
+def _spacing(quantity: Quantity) -> float:
+    """Distance of the values that the screening tried."""
+    return (quantity.high - quantity.low) / max(quantity.points, 2)
+
+
+def _moved(score: Score, by: dict[str, float], declared: dict[str, Quantity]) -> Hypothesis:
+    """A hypothesis with inner parameters moved, linearised about the size that was found."""
+    hypothesis, inner = score.hypothesis, dict(score.hypothesis.inner)
+    for name, step in by.items():
+        q = declared[name]
+        value = inner[name] + step
+        inner[name] = float(value % (2 * np.pi) if q.role is Role.ANGLE else np.clip(value, q.low, q.high))
+    q = declared[hypothesis.size]
+    found = score.estimate if np.isfinite(score.estimate) else q.typical
+    if abs(found - q.nothing) < LEAST * (q.high - q.low):
+        found = q.nothing + np.copysign(LEAST * (q.high - q.low), found - q.nothing or q.typical - q.nothing)
+    return replace(hypothesis, inner=tuple(inner.items()), reference=float(found))
+
+
+def zoomed(scores: Sequence[Score], fitted: Fitted, rng: np.random.Generator) -> list[Effect]:
+    """The effects of several scores, each at its best."""
+    return [zoom(score, fitted, rng) for score in scores]
