@@ -58,7 +58,7 @@ S0_SCALE = 30.0
 
 # Equal values in a row at the largest or smallest value of a channel.
 CLIPPED_RUN = 4
-# Share of a gauge's samples that are cut: below, the rest still shows what it was, and a search for effects can name it.
+# Share of a gauge's samples that are cut: below, the rest still shows what it was, and a search for effects names it.
 CLIPPED_REFUSES = 1 / 3
 # How sharp the edge of such a plateau is against the peak of a coarsely digitised signal (see channel_defects.py).
 CLIPPED_EDGE = 2.0

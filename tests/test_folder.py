@@ -264,7 +264,7 @@ BAD_FILES: dict[str, tuple[Callable[[Path], object], str]] = {
     "comment": (edited(FIRST, lambda x: x.insert(4, "# a comment")), "row 5: found 1 cells, expected 10"),
     "not a number": (cell(FIRST, 9, 6, "nan"), "row 9, column s1_mv_v: found nan, expected a finite number"),
     "infinite": (cell(FIRST, 9, 6, "-inf"), "row 9, column s1_mv_v: found -inf"),
-    "beyond all limits": (cell(FIRST, 9, 6, "-2e15"), "row 9, column s1_mv_v: found -2000000000000000.0, expected a finite number"),
+    "beyond all limits": (cell(FIRST, 9, 6, "-2e15"), "row 9, column s1_mv_v: found -2000000000000000.0"),
     "beyond floating point": (cell(FIRST, 9, 6, "1e999"), "row 9, column s1_mv_v: found inf"),
     "a cell too few": (edited(FIRST, lambda x: x.__setitem__(10, "1,2")), "row 11: found 2 cells, expected 10"),
     "a cell too many": (edited(FIRST, lambda x: x.__setitem__(10, x[10] + ",1")), "row 11: found 11 cells"),

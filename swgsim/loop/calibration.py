@@ -84,6 +84,8 @@ def calibrate(
         Where to begin, in spreads.
     """
     names = list(parameters)
+    if not names:
+        return Calibrated(start, {}, *linearised(start, parameters, situations, layout), True)
     here = np.array([(position or {}).get(name, 0.0) for name in names])
     step, lowest, settled = np.zeros(len(here)), np.inf, False
     best = (start, here, np.empty((0, 0)), np.empty((0, 0, 0)))

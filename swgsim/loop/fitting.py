@@ -92,7 +92,7 @@ class Fitted:
     @cached_property
     def J(self) -> Float[np.ndarray, "row parameter"]:
         """Change by one spread of each fitted parameter."""
-        return self.measured.rows(self.calibrated.J)
+        return self.measured.rows(self.calibrated.J).reshape(len(self.errors.variance), len(self.parameters))
 
     @cached_property
     def whole(self) -> Covariance:

@@ -67,7 +67,7 @@ class Measured:
     def rows(self, of_situation: Float[np.ndarray, "situation feature *column"]) -> np.ndarray:
         """What belongs to situations, as rows (recording, feature), one below the other."""
         whole = of_situation[self.of_recording]
-        return whole.reshape(-1, *whole.shape[2:])
+        return whole.reshape(whole.shape[0] * whole.shape[1], *whole.shape[2:])
 
     def point_rows(self) -> list[np.ndarray]:
         """The rows of every operating point, as masks."""
