@@ -48,7 +48,7 @@ def _of_transmission(name: str, unit: str, sd: float) -> Declared:
         unit,
         sd,
         lambda gear: float(getattr(gear.transmission, name)),
-        lambda gear, to: replace(gear, transmission=replace(gear.transmission, **{name: to})),
+        lambda gear, to: replace(gear, transmission=replace(gear.transmission, **{name: to})),  # type: ignore[arg-type]
     )
 
 
@@ -56,7 +56,7 @@ def _of_gauge(name: str, sensor: int, unit: str, sd: float) -> Declared:
     def moved(gear: Gear, to: float) -> Gear:
         values = list(getattr(gear.gauges, name))
         values[sensor] = to
-        return replace(gear, gauges=replace(gear.gauges, **{name: tuple(values)}))
+        return replace(gear, gauges=replace(gear.gauges, **{name: tuple(values)}))  # type: ignore[arg-type]
 
     return _of_gear(unit, sd, lambda gear: float(getattr(gear.gauges, name)[sensor]), moved)
 
@@ -105,11 +105,15 @@ def of_unit(gear: Gear) -> dict[str, Declared]:
 
 
 def of_effects(model: Model) -> dict[str, Declared]:
-    """The parameters of the effects that a model has, free within their bounds; choices are not among them."""
+    """The parameters of the effects that a model has, free within their bounds.
+
+    Choices are not among them, nor shapes of which a search tries the typical value only.
+    """
     found = {}
     for number, effect in enumerate(model.effects):
         for name, quantity in quantities(type(effect)).items():
-            if quantity.role in (Role.CHOICE, Role.RANDOM):
+            fixed = quantity.role is Role.SHAPE and quantity.points == 1
+            if quantity.role in (Role.CHOICE, Role.RANDOM) or fixed:
                 continue
             angular = quantity.role in (Role.PHASE, Role.ANGLE)
             span = 2 * np.pi if angular else quantity.high - quantity.low

@@ -118,7 +118,7 @@ class Fitted:
         blocks = self.measured.point_rows()
         if len(blocks) < 2:
             return self.whole.log_likelihood(self.from_start)
-        return sum(self.whole.left_out(self.from_start, block) for block in blocks)
+        return sum(self.whole.left_out(self.from_start, block).log_likelihood for block in blocks)
 
 
 def fit(
@@ -144,7 +144,7 @@ def fit(
         predicted, directions = _directions(unit, here, measured)
         errors = scatter.covariance(measured.variance, guess.columns(moves))
         errors = errors.with_columns(measured.session_columns(predicted))
-        reach = np.diag(_spreads(unit, directions.shape[-1])) if unit.reach is None else unit.reach
+        reach = unit.structure * np.eye(directions.shape[-1]) if unit.reach is None else unit.reach
         open_ = measured.rows(directions) @ reach
         offset = np.zeros(len(open_)) if unit.shift is None else measured.rows(directions) @ unit.shift
         calibrated = calibrate(
@@ -173,11 +173,6 @@ def commission(measured: Measured, unit: Unit) -> Unit:
     scale = np.concatenate([np.ones(fitted.J.shape[1]), np.full(directions.shape[1], unit.structure)])
     reach = scale[:, None] * np.linalg.cholesky(covariance)
     return Unit(fitted.model, reach, scale * mean, unit.structure, fitted.scatter)
-
-
-def _spreads(unit: Unit, count: int) -> np.ndarray:
-    """One standard deviation of each deviation of the maps, for a unit never seen."""
-    return np.full(count, unit.structure)
 
 
 def _directions(

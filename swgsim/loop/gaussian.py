@@ -8,6 +8,7 @@ a declared parameter can absorb costs nothing and counts for nothing.
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
@@ -55,13 +56,21 @@ class Covariance:
         """The covariance of some of the rows."""
         return Covariance(self.variance[chosen], self.G[chosen])
 
-    def left_out(self, r: Float[np.ndarray, " row"], block: np.ndarray) -> float:
-        """Log-likelihood of the rows of a block (a mask), as predicted from all the other rows."""
+    def left_out(self, r: Float[np.ndarray, " row"], block: np.ndarray) -> "Expected":
+        """The rows of a block (a mask) as all the other rows predict them."""
         others = self.rows(~block)
         weighted = others.G / others.variance[:, None]
         precision = np.eye(self.G.shape[1]) + weighted.T @ others.G
-        expected = np.linalg.solve(precision, weighted.T @ r[~block])
+        mean = np.linalg.solve(precision, weighted.T @ r[~block])
         # Columns that the other rows leave open, one standard deviation each.
         root = np.linalg.inv(np.linalg.cholesky(precision)).T
         here = Covariance(self.variance[block], self.G[block] @ root)
-        return here.log_likelihood(r[block] - self.G[block] @ expected)
+        missed = r[block] - self.G[block] @ mean
+        return Expected(missed, here.log_likelihood(missed))
+
+
+class Expected(NamedTuple):
+    """How rows were missed by what the others expected of them, and the log-likelihood of that."""
+
+    missed: Float[np.ndarray, " block"]
+    log_likelihood: float

@@ -11,11 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
-from scipy.stats import chi2
 
 from swgsim.effects.quantity import quantities
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.hypotheses import Hypothesis
+from swgsim.loop.tail import log_tail
 
 # Part of a signature that must remain visible beside the declared parameters; below, it cannot be told from them.
 VISIBLE = 1e-4
@@ -59,7 +59,7 @@ class Score:
     @property
     def rank(self) -> float:
         """What hypotheses are ordered by: how unlikely the gain is by luck, in a search of this extent."""
-        unlikely = -2 * float(chi2.logsf(self.gain, self.freedom)) if self.freedom else 0.0
+        unlikely = -2 * float(log_tail(self.gain, self.freedom)) if self.freedom else 0.0
         return unlikely - 2 * float(np.log(self.hypothesis.tried))
 
     @property
@@ -154,8 +154,8 @@ def family_wise(
     stacked = np.hstack([bases[i] for i in used])
     starts = np.concatenate([[0], np.cumsum(freedom[used])[:-1]])
     drawn = np.add.reduceat((stacked.T @ rng.standard_normal((len(r), DRAWS))) ** 2, starts, axis=0)
-    lowest = chi2.logsf(drawn, freedom[used, None]).min(axis=0)
-    own = chi2.logsf(np.add.reduceat((stacked.T @ r) ** 2, starts), freedom[used])
+    lowest = log_tail(drawn, freedom[used, None]).min(axis=0)
+    own = log_tail(np.add.reduceat((stacked.T @ r) ** 2, starts), freedom[used])
     beaten = (lowest[:, None] <= own).sum(axis=0)
     # Where no draw comes near, Bonferroni's bound is the better answer.
     bound = np.minimum(np.exp(own) * len(used), 1 / (DRAWS + 1))

@@ -14,6 +14,7 @@ from swgsim.effects.base import Effect, Scene
 from swgsim.effects.quantity import Role, quantities
 from swgsim.loop.features import FITTED, Layout, basis, remainder
 from swgsim.loop.noise import density
+from swgsim.loop.tail import log_tail
 from swgsim.recording import Recording
 from swgsim.recordings import SENSORS
 
@@ -53,7 +54,7 @@ class Sideline:
     @property
     def rank(self) -> float:
         """How unlikely the gain is by luck."""
-        return -2 * float(chi2.logsf(self.gain, self.freedom))
+        return -2 * float(log_tail(self.gain, self.freedom))
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,13 +10,13 @@ from itertools import product
 
 import numpy as np
 from jaxtyping import Complex, Float
-from scipy.stats import chi2
 
 from swgsim.effects.frozen import FULL_LOAD
 from swgsim.loop.features import ORDERS, Layout
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.model import Situation
 from swgsim.loop.screening import VISIBLE, family_wise
+from swgsim.loop.tail import log_tail
 
 # Gauges s1 to s4 sit a quarter turn apart; a pattern of m waves travels around them.
 PATTERNS: Mapping[str, dict[str, complex]] = {
@@ -92,7 +92,7 @@ class Described:
     @property
     def rank(self) -> float:
         """How unlikely the gain is by luck."""
-        return -2 * float(chi2.logsf(self.gain, self.freedom)) if self.freedom else 0.0
+        return -2 * float(log_tail(self.gain, self.freedom)) if self.freedom else 0.0
 
     def __str__(self) -> str:
         what = "the mean" if self.atom.order == 0 else f"order {self.atom.order}"

@@ -1,0 +1,123 @@
+"""The answer of the loop: what is missing in the model, in one sentence and in numbers."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from swgsim.effects.base import Effect
+from swgsim.effects.quantity import Role, quantities
+from swgsim.loop.closing import ALPHA, Closed, Trial, close
+from swgsim.loop.fitting import Fitted, Unit
+from swgsim.loop.screening import VISIBLE, Score
+from swgsim.loop.session import Measured
+from swgsim.loop.sidelines import CONTRADICTION, Sideline, sidelines
+from swgsim.loop.vocabulary import Described, columns, describe
+from swgsim.recording import Recording
+from swgsim.seeds import generator
+
+NOTHING, FOUND, UNKNOWN = "nothing_missing", "effect_found", "unknown_effect"
+# Regularities that are described at most.
+MOST_ATOMS = 3
+# Prior standard deviation of a regularity that was described, in amplitudes found: as good as free.
+WIDE = 100.0
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What closing the loop says.
+
+    Attributes
+    ----------
+    verdict : str
+        NOTHING, FOUND or UNKNOWN.
+    closed : Closed
+    lines : tuple of Sideline
+        Effects between the orders.
+    unknown : tuple of Described
+        Regularities that no effect of the library explains.
+    absorbed : tuple of Score
+        Effects that these recordings cannot tell from what the model declares not to know.
+    """
+
+    verdict: str
+    closed: Closed
+    lines: tuple[Sideline, ...]
+    unknown: tuple[Described, ...]
+    absorbed: tuple[Score, ...]
+
+    @property
+    def effects(self) -> tuple[Effect, ...]:
+        """All effects that were found."""
+        return (
+            *self.closed.after.model.effects[len(self.closed.before.model.effects) :],
+            *(line.effect for line in self.lines),
+        )
+
+    @property
+    def nearest(self) -> Trial | None:
+        """Where nothing was accepted: the known effect that comes nearest, of the wrong form."""
+        return self.closed.rejected[0] if self.closed.rejected else None
+
+    @property
+    def sentence(self) -> str:
+        """The verdict in one sentence."""
+        if self.verdict == NOTHING:
+            return (
+                "Nothing is missing: the model explains the recordings down to their noise, and no effect of the "
+                f"library stands out of it ({len(self.absorbed)} of {len(self.closed.scores)} cannot be tested with "
+                "these recordings)."
+            )
+        found = " and ".join(_named(effect) for effect in self.effects)
+        rivals = " or ".join(_named(e) for step in self.closed.steps for trial in step.rivals for e in trial.effects)
+        either = f", or {rivals}, which these recordings cannot tell from it" if rivals else ""
+        rest = f"; something else is left: {self.unknown[0]}" if self.unknown else ""
+        if self.verdict == FOUND:
+            return f"The model lacks {found}{either}{rest}."
+        near = (
+            f"; the nearest known effect, {_named(self.nearest.effects[0])}, has another form" if self.nearest else ""
+        )
+        what = str(self.unknown[0]) if self.unknown else "a regularity without a simple description"
+        beside = f"Beside {found}, the" if found else "The"
+        return f"{beside} model lacks something that is not in the library: {what}{near}."
+
+
+def answer(recordings: Sequence[Recording], unit: Unit, kinds: Sequence[type[Effect]], *, seed: int = 0) -> Answer:
+    """Close the loop on recordings.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+    unit : Unit
+        What is known of the gear before.
+    kinds : sequence of effect classes
+        The library.
+    seed : int
+    """
+    closed = close(Measured.of(recordings), unit, kinds, seed=seed)
+    lines = tuple(line for line in sidelines(recordings, kinds) if line.chance <= ALPHA)[:1]
+    lines = tuple(line for line in lines if line.agrees > CONTRADICTION)
+    unknown = _unknown(closed.after, seed)
+    absorbed = tuple(score for score in closed.scores if score.visible < VISIBLE)
+    verdict = UNKNOWN if closed.rejected else FOUND if closed.steps or lines else UNKNOWN if unknown else NOTHING
+    return Answer(verdict, closed, lines, unknown, absorbed)
+
+
+def _unknown(fitted: Fitted, seed: int) -> tuple[Described, ...]:
+    """Regularities that are left, the likeliest first; each is taken out before the next is sought."""
+    found: list[Described] = []
+    while len(found) < MOST_ATOMS:
+        best = describe(fitted, generator("vocabulary", seed, len(found)))[0]
+        if best.chance > ALPHA:
+            break
+        found.append(best)
+        taken = columns(best.atom, fitted) * max(best.amplitude, 1e-12) * WIDE
+        fitted = replace(fitted, open=np.hstack([fitted.open, taken]))
+    return tuple(found)
+
+
+def _named(effect: Effect) -> str:
+    """An effect in words with its size."""
+    declared = quantities(type(effect))
+    size = next(name for name, q in declared.items() if q.role is Role.SIZE)
+    return f"{effect.title()} ({size} {getattr(effect, size):.3g} {declared[size].unit})"

@@ -1,0 +1,63 @@
+"""Error of a model per channel: on what it was fitted to, on operating points left out, and the floor of repeats."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.loop.fitting import Fitted
+from swgsim.loop.session import Measured
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Root mean square over all order lines and recordings, one figure per channel, in its unit.
+
+    Attributes
+    ----------
+    fit : array (channel,)
+    heldout : array (channel,)
+        Of every operating point, with all that is not known found from the other points.
+    """
+
+    fit: Float[np.ndarray, " channel"]
+    heldout: Float[np.ndarray, " channel"]
+
+
+def errors(fitted: Fitted) -> Errors:
+    """Errors of a model on the recordings it was fitted to."""
+    missed = np.zeros(len(fitted.residual))
+    blocks = fitted.measured.point_rows()
+    for block in blocks if len(blocks) > 1 else []:
+        missed[block] = fitted.whole.left_out(fitted.from_start, block).missed
+    heldout = (
+        per_channel(fitted.measured, missed)
+        if len(blocks) > 1
+        else np.full(len(fitted.measured.layout.channels), np.nan)
+    )
+    return Errors(per_channel(fitted.measured, fitted.residual), heldout)
+
+
+def noise_floor(measured: Measured) -> Float[np.ndarray, " channel"]:
+    """What repeats of the same operating point differ by; NaN where nothing was repeated."""
+    deviations, freedom = np.zeros(measured.values.shape), 0
+    for group in dict.fromkeys(measured.repeats):
+        rows = [i for i, each in enumerate(measured.repeats) if each == group]
+        deviations[rows] = measured.values[rows] - measured.values[rows].mean(axis=0)
+        freedom += len(rows) - 1
+    if not freedom:
+        return np.full(len(measured.layout.channels), np.nan)
+    return per_channel(measured, deviations.ravel()) * np.sqrt(len(measured) / freedom)
+
+
+def size(measured: Measured) -> Float[np.ndarray, " channel"]:
+    """How much there is to explain: the ripple of every channel, without its mean."""
+    ripple = measured.values * (measured.layout.order > 0)
+    return per_channel(measured, ripple.ravel())
+
+
+def per_channel(measured: Measured, rows: Float[np.ndarray, " row"]) -> Float[np.ndarray, " channel"]:
+    """Root mean square over recordings of the signal that feature rows stand for."""
+    squares = (rows.reshape(measured.values.shape) ** 2) * np.where(measured.layout.order == 0, 1.0, 0.5)
+    channels = squares.reshape(len(measured), len(measured.layout.channels), -1)
+    return np.sqrt(channels.sum(axis=2).mean(axis=0))

@@ -1,0 +1,19 @@
+"""Probabilities far out in the tail of a chi-squared distribution, where SciPy's logarithm has run out of numbers."""
+
+import numpy as np
+from scipy.special import gammaln
+from scipy.stats import chi2
+
+
+def log_tail(value: np.ndarray | float, freedom: np.ndarray | int) -> np.ndarray:
+    """Logarithm of the probability that noise gives a sum of squares of at least this value.
+
+    >>> float(log_tail(2000.0, 2))
+    -1000.0
+    """
+    value, freedom = np.broadcast_arrays(np.asarray(value, float), np.asarray(freedom, float))
+    near = chi2.logsf(value, freedom)
+    half = np.maximum(value, 1e-300) / 2
+    # Leading terms of the incomplete gamma function; exact for two degrees of freedom.
+    far = -half + (freedom / 2 - 1) * np.log(half) - gammaln(freedom / 2)
+    return np.where(np.isfinite(near) & (near > -300), near, np.minimum(far, 0.0))
