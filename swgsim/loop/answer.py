@@ -71,15 +71,14 @@ class Answer:
         found = " and ".join(_named(effect) for effect in self.effects)
         rivals = " or ".join(_named(e) for step in self.closed.steps for trial in step.rivals for e in trial.effects)
         either = f", or {rivals}, which these recordings cannot tell from it" if rivals else ""
-        rest = f"; something else is left: {self.unknown[0]}" if self.unknown else ""
+        rest = f"; something unknown is left: {self.unknown[0]}" if self.unknown else ""
         if self.verdict == FOUND:
             return f"The model lacks {found}{either}{rest}."
         near = (
             f"; the nearest known effect, {_named(self.nearest.effects[0])}, has another form" if self.nearest else ""
         )
         what = str(self.unknown[0]) if self.unknown else "a regularity without a simple description"
-        beside = f"Beside {found}, the" if found else "The"
-        return f"{beside} model lacks something that is not in the library: {what}{near}."
+        return f"The model lacks something that is not in the library: {what}{near}."
 
 
 def answer(recordings: Sequence[Recording], unit: Unit, kinds: Sequence[type[Effect]], *, seed: int = 0) -> Answer:
@@ -99,7 +98,7 @@ def answer(recordings: Sequence[Recording], unit: Unit, kinds: Sequence[type[Eff
     lines = tuple(line for line in lines if line.agrees > CONTRADICTION)
     unknown = _unknown(closed.after, seed)
     absorbed = tuple(score for score in closed.scores if score.visible < VISIBLE)
-    verdict = UNKNOWN if closed.rejected else FOUND if closed.steps or lines else UNKNOWN if unknown else NOTHING
+    verdict = FOUND if closed.steps or lines else UNKNOWN if closed.rejected or unknown else NOTHING
     return Answer(verdict, closed, lines, unknown, absorbed)
 
 

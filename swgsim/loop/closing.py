@@ -1,12 +1,13 @@
 """Closing the loop: screen, refine, fit, judge, add, and ask again."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from jaxtyping import Float
 
 from swgsim.effects.base import Effect
-from swgsim.loop.evidence import Coherence, coherence
+from swgsim.loop.evidence import Coherence, allowance, coherence
 from swgsim.loop.fitting import Fitted, Unit, fit
 from swgsim.loop.hypotheses import hypotheses, signatures
 from swgsim.loop.refining import zoom
@@ -33,8 +34,8 @@ class Trial:
         As fitted.
     fitted : Fitted
         The model with it.
-    gain : float
-        Of the log-likelihood of left-out operating points.
+    gains : array (point,)
+        Of the log-likelihood of each operating point left out.
     coherence : tuple of Coherence
         Of each effect of the trial.
     """
@@ -42,8 +43,13 @@ class Trial:
     score: Score
     effects: tuple[Effect, ...]
     fitted: Fitted
-    gain: float
+    gains: Float[np.ndarray, " point"]
     coherence: tuple[Coherence, ...]
+
+    @property
+    def gain(self) -> float:
+        """Of all operating points."""
+        return float(self.gains.sum())
 
     @property
     def sound(self) -> bool:
@@ -124,7 +130,7 @@ def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed
             break
         others = tuple(trial for trial in trials if trial is not accepted)
         steps.append(Step(accepted, (), others))
-        now = accepted.fitted
+        now = _with_allowance(accepted)
     if steps:
         steps[-1] = _with_rivals(steps[-1], scores)
     return Closed(before, now, tuple(steps), first, scores, rejected)
@@ -141,8 +147,8 @@ def _trial(now: Fitted, scores: tuple[Score, ...], seed: int) -> Trial:
     rng = generator("zoom", seed, *(str(score.hypothesis) for score in scores))
     added = tuple(zoom(score, now, rng) for score in scores)
     known = len(now.model.effects)
-    start = now.unit.model.plus(*now.model.effects, *added)
-    fitted = fit(now.measured, now.unit, start, position=_declared_only(now))
+    start = now.unit.model.plus(*now.model.effects[len(now.unit.model.effects) :], *added)
+    fitted = fit(now.measured, now.unit, start, position=_declared_only(now), allowed=now.allowed)
     effects = fitted.model.effects[known:]
     found = tuple(coherence(fitted, known + number) for number in range(len(added)))
     return Trial(scores[0], effects, fitted, fitted.predictive - now.predictive, found)
@@ -160,10 +166,26 @@ def _pair(now: Fitted, trials: Sequence[Trial], seed: int) -> Trial | None:
     return best if best and best.sound and best.gain > trials[0].gain + PAIR_GAIN else None
 
 
+def _with_allowance(accepted: Trial) -> Fitted:
+    """The fit of a trial, with its effects' form open within the tolerance."""
+    fitted = accepted.fitted
+    count = len(fitted.model.effects)
+    open_ = [allowance(fitted, number) for number in range(count - len(accepted.effects), count)]
+    kept = [] if fitted.allowed is None else [fitted.allowed]
+    allowed = np.hstack([*kept, *open_])
+    return replace(fitted, open=np.hstack([fitted.open, *open_]), allowed=allowed)
+
+
 def _with_rivals(step: Step, after: Sequence[Score]) -> Step:
     """Of the other trials, those as good as the accepted one that say nothing more once it is in the model."""
     silent = {score.hypothesis.kind for score in after if score.chance > ALPHA}
-    near = step.accepted.gain - max(LEAST_GAIN, 0.02 * abs(step.accepted.gain))
     others = (*step.rivals, *step.others)
-    rivals = tuple(t for t in others if t.sound and t.gain > near and t.score.hypothesis.kind in silent)
+    rivals = tuple(t for t in others if t.sound and _as_good(t, step.accepted) and t.score.hypothesis.kind in silent)
     return Step(step.accepted, rivals, tuple(t for t in others if t not in rivals))
+
+
+def _as_good(trial: Trial, best: Trial) -> bool:
+    """Whether left-out operating points do not tell a trial from the best one."""
+    difference = best.gains - trial.gains
+    doubt = 2 * float(difference.std(ddof=1)) * np.sqrt(len(difference)) if len(difference) > 1 else 0.0
+    return bool(difference.sum() < max(LEAST_GAIN, doubt))

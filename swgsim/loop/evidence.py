@@ -44,17 +44,40 @@ def signature(fitted: Fitted, number: int) -> Float[np.ndarray, " row"]:
     return measured.rows(found[0] - found[1])
 
 
-def coherence(fitted: Fitted, number: int) -> Coherence:
-    """Split the signature of an effect by operating point, channel and order, and see whether the parts agree."""
-    whole = signature(fitted, number)
-    layout = fitted.measured.layout
+def parts(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
+    """The signature of an effect split by operating point, channel and order."""
+    whole, layout = signature(fitted, number), fitted.measured.layout
     channels, orders = (np.tile(what, len(fitted.measured)) for what in (layout.channel, layout.order))
-    parts = [
+    masks = [
         *fitted.measured.point_rows(),
-        *(channels == c for c in layout.channels),
-        *(orders == k for k in np.unique(orders)),
+        *(channels == channel for channel in layout.channels),
+        *(orders == order for order in np.unique(orders)),
     ]
-    split = fitted.whole.whiten(np.stack([whole * part for part in parts], axis=1))
+    return np.stack([whole * mask for mask in masks], axis=1)
+
+
+def allowance(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
+    """What an imperfect form of an effect leaves open; without it the form error would pass for another effect.
+
+    Every line of every channel of its signature may be larger or smaller, and turned, by the form tolerance.
+    """
+    measured, layout = fitted.measured, fitted.measured.layout
+    lines = layout.lines(signature(fitted, number).reshape(measured.values.shape))
+    columns = [parts(fitted, number)]
+    for turn in (1, 1j):
+        for channel in range(lines.shape[1]):
+            for order in np.flatnonzero(np.abs(lines[:, channel]).max(axis=0) > 0):
+                one = np.zeros_like(lines)
+                one[:, channel, order] = turn * lines[:, channel, order]
+                columns.append(layout.vector(one).reshape(-1, 1))
+    return FORM_TOLERANCE * np.hstack(columns)
+
+
+def coherence(fitted: Fitted, number: int) -> Coherence:
+    """Whether the parts of an effect's signature agree on its size."""
+    split = fitted.whole.whiten(parts(fitted, number))
+    if not np.any(split):
+        return Coherence(0.0, 0.0)
     U, s, _ = np.linalg.svd(split, full_matrices=False)
     seen = s > 1e-3 * max(float(s.max()), 1e-12)
     u, s = (U.T @ fitted.whole.whiten(fitted.from_start))[seen], s[seen]

@@ -68,6 +68,8 @@ class Fitted:
         the declared parameters; one standard deviation each.
     offset : array (row,)
         Deviation of the maps found by commissioning.
+    allowed : array (row, column) or None
+        The part of ``open`` that the form of effects found earlier leaves open.
     """
 
     measured: Measured
@@ -78,6 +80,7 @@ class Fitted:
     errors: Covariance
     open: Float[np.ndarray, "row direction"]
     offset: Float[np.ndarray, " row"]
+    allowed: Float[np.ndarray, "row column"] | None = None
 
     @property
     def model(self) -> Model:
@@ -113,16 +116,21 @@ class Fitted:
         return {name: s * p.sd for (name, p), s in zip(self.parameters.items(), spread, strict=True)}
 
     @cached_property
-    def predictive(self) -> float:
-        """Log-likelihood of every operating point as predicted from all the others."""
+    def predictive(self) -> Float[np.ndarray, " point"]:
+        """Log-likelihood of every operating point as predicted from all the others; of all if there is one only."""
         blocks = self.measured.point_rows()
         if len(blocks) < 2:
-            return self.whole.log_likelihood(self.from_start)
-        return sum(self.whole.left_out(self.from_start, block).log_likelihood for block in blocks)
+            return np.array([self.whole.log_likelihood(self.from_start)])
+        return np.array([self.whole.left_out(self.from_start, block).log_likelihood for block in blocks])
 
 
 def fit(
-    measured: Measured, unit: Unit, model: Model | None = None, *, position: Mapping[str, float] | None = None
+    measured: Measured,
+    unit: Unit,
+    model: Model | None = None,
+    *,
+    position: Mapping[str, float] | None = None,
+    allowed: Float[np.ndarray, "row column"] | None = None,
 ) -> Fitted:
     """Fit what is not known, and estimate the errors of single recordings, in turns.
 
@@ -134,6 +142,8 @@ def fit(
         The unit's with further effects, which are fitted along.
     position : mapping, optional
         Where parameters begin, in spreads.
+    allowed : array (row, column), optional
+        What the form of effects found earlier leaves open, one standard deviation each.
     """
     start = model or unit.model
     parameters = of_effects(start) if unit.commissioned else of_unit(unit.model.gear) | of_effects(start)
@@ -145,8 +155,9 @@ def fit(
         errors = scatter.covariance(measured.variance, guess.columns(moves))
         errors = errors.with_columns(measured.session_columns(predicted))
         reach = unit.structure * np.eye(directions.shape[-1]) if unit.reach is None else unit.reach
-        open_ = measured.rows(directions) @ reach
-        offset = np.zeros(len(open_)) if unit.shift is None else measured.rows(directions) @ unit.shift
+        left = measured.rows(directions) @ reach
+        open_ = left if allowed is None else np.hstack([left, allowed])
+        offset = np.zeros(len(left)) if unit.shift is None else measured.rows(directions) @ unit.shift
         calibrated = calibrate(
             start, parameters, measured.values - offset.reshape(measured.values.shape), errors.with_columns(open_),
             measured.situations, measured.of_recording, measured.layout, begin,
@@ -157,7 +168,7 @@ def fit(
     errors = scatter.covariance(measured.variance, guess.columns(moves)).with_columns(
         measured.session_columns(predicted)
     )
-    return Fitted(measured, unit, parameters, calibrated, guess, errors, open_, offset)
+    return Fitted(measured, unit, parameters, calibrated, guess, errors, open_, offset, allowed)
 
 
 def commission(measured: Measured, unit: Unit) -> Unit:

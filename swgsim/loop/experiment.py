@@ -1,0 +1,211 @@
+"""The next experiment: the operating point at which two explanations that look alike so far come apart.
+
+Two models are compared as a referee would: the one is the truth, the other adjusts everything that it does not know
+exactly to the recordings there are and to those that would be made. What is left of their difference, in units of the
+noise, is the separation (T-optimality).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.conditions import Conditions
+from swgsim.gear import OperatingPoint
+from swgsim.loop import scatter
+from swgsim.loop.answer import Answer
+from swgsim.loop.calibration import linearised
+from swgsim.loop.declared import of_unit
+from swgsim.loop.evidence import FORM_TOLERANCE
+from swgsim.loop.fitting import Fitted
+from swgsim.loop.form import form_columns
+from swgsim.loop.gaussian import Covariance
+from swgsim.loop.model import Model, Situation, predict
+from swgsim.loop.session import Measured
+from swgsim.recording import Recording
+
+# What a test bench can run.
+FEASIBLE = tuple(OperatingPoint(n, T) for n in (300.0, 1000.0, 2000.0, 3000.0, 4000.0) for T in (3.0, 20.0, 45.0, 70.0))
+# Numbers of further recordings at one operating point, in one session.
+RECORDINGS = (1, 2, 3, 6, 12)
+# Separation at which two explanations are told apart: five standard deviations.
+SEPARATED = 25.0
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """Further recordings, and what they would tell apart.
+
+    Attributes
+    ----------
+    between : (str, str)
+        The two explanations.
+    point : OperatingPoint
+        Where they differ most.
+    recordings : int or None
+        That bring the separation to SEPARATED; None if as many as can be asked for do not.
+    separation : float
+        Of so many recordings, or of the largest number asked for.
+    """
+
+    between: tuple[str, str]
+    point: OperatingPoint
+    recordings: int | None
+    separation: float
+
+    def __str__(self) -> str:
+        one, other = self.between
+        where = f"at {self.point.n_in_rpm:g} rpm and {self.point.T_out:g} N m"
+        if self.recordings is None:
+            return (
+                f"no operating point of the bench tells {one} from {other}: {RECORDINGS[-1]} recordings {where} would "
+                f"separate them by {self.separation:.2g}, {SEPARATED:g} are needed"
+            )
+        count = f"{self.recordings} recording{'s' if self.recordings > 1 else ''}"
+        return f"to tell {one} from {other}, make {count} {where}: separation {self.separation:.3g}"
+
+
+def next_experiments(answer: Answer) -> tuple[Experiment, ...]:
+    """What would separate every accepted effect from its rivals, and show every effect that is absorbed so far."""
+    found = []
+    for step in answer.closed.steps:
+        for rival in step.rivals:
+            between = (_names(step.accepted.effects), _names(rival.effects))
+            found += _best(rival.fitted, [step.accepted.fitted.model], [between])
+    after = answer.closed.after
+    effects = [score.hypothesis.effect() for score in answer.absorbed]
+    if effects:
+        between = [(_names((effect,)) + " of typical size", "its absence") for effect in effects]
+        found += _best(after, [after.model.plus(effect) for effect in effects], between)
+    return tuple(found)
+
+
+def _names(effects: Sequence) -> str:
+    return " and ".join(effect.title() for effect in effects)
+
+
+def _best(adjusting: Fitted, truths: Sequence[Model], between: Sequence[tuple[str, str]]) -> list[Experiment]:
+    """For every truth the least number of recordings that shows a fitted model to be wrong, and where."""
+    further = _Further.of(adjusting, truths)
+    found: dict[int, Experiment] = {}
+    for recordings in RECORDINGS:
+        separations = further.separations(recordings)
+        for number in range(len(truths)):
+            if number in found and found[number].recordings:
+                continue
+            best = int(separations[:, number].argmax())
+            most = float(separations[best, number])
+            enough = recordings if most >= SEPARATED else None
+            found[number] = Experiment(between[number], further.candidates[best].point, enough, most)
+    return list(found.values())
+
+
+@dataclass(frozen=True, eq=False)
+class _Further:
+    """A fitted model before recordings that have not been made yet.
+
+    Attributes
+    ----------
+    candidates : tuple of Situation
+    precision : array (direction, direction)
+        Of all that the model may adjust, after the recordings there are.
+    pull : array (direction, truth)
+        By which these recordings pull at it.
+    missed : array (truth,)
+        Sum of squares of the difference at them.
+    directions : array (candidate, feature, direction)
+    differences : array (candidate, feature, truth)
+    variance : array (feature,)
+        White noise of one recording.
+    single, shared : array (candidate, feature, column)
+        Errors of single recordings, and those that all of them share.
+    """
+
+    candidates: tuple[Situation, ...]
+    precision: Float[np.ndarray, "direction direction"]
+    pull: Float[np.ndarray, "direction truth"]
+    missed: Float[np.ndarray, " truth"]
+    directions: Float[np.ndarray, "candidate feature direction"]
+    differences: Float[np.ndarray, "candidate feature truth"]
+    variance: Float[np.ndarray, " feature"]
+    single: Float[np.ndarray, "candidate feature kind"]
+    shared: Float[np.ndarray, "candidate feature column"]
+
+    @classmethod
+    def of(cls, fitted: Fitted, truths: Sequence[Model]) -> "_Further":
+        """All that does not depend on the number of recordings."""
+        measured = fitted.measured
+        count = len(measured.situations)
+        candidates = tuple(Situation(point, Conditions()) for point in FEASIBLE)
+        situations = (*measured.situations, *candidates)
+        predicted, directions = _directions(fitted, situations)
+        seen = predict(truths, situations, measured.layout) - predicted
+        differences = np.moveaxis(seen, 0, -1)
+        C = fitted.errors.whiten(measured.rows(directions[:count]))
+        d = fitted.errors.whiten(measured.rows(differences[:count]))
+        shared = [
+            np.hstack([_session(measured, situation, line), form])
+            for situation, line, form in zip(
+                candidates, predicted[count:], _tolerance(fitted, candidates, predicted[count:]), strict=True
+            )
+        ]
+        moves = scatter.directions(fitted.model, candidates, measured.layout)
+        return cls(
+            candidates, np.eye(C.shape[1]) + C.T @ C, C.T @ d, (d**2).sum(axis=0), directions[count:],
+            differences[count:], np.median(measured.variance, axis=0), fitted.scatter.columns(moves),
+            np.array(shared),
+        )  # fmt: skip
+
+    def separations(self, recordings: int) -> Float[np.ndarray, "candidate truth"]:
+        """Separation of all truths by so many recordings at each candidate."""
+        return np.array([self._separation(i, recordings) for i in range(len(self.candidates))])
+
+    def _separation(self, i: int, recordings: int) -> Float[np.ndarray, " truth"]:
+        # The mean of the recordings says all; what is theirs alone averages out, what they share does not.
+        columns = np.hstack([self.single[i] / np.sqrt(recordings), self.shared[i]])
+        errors = Covariance(self.variance / recordings, columns)
+        C, d = errors.whiten(self.directions[i]), errors.whiten(self.differences[i])
+        pull = self.pull + C.T @ d
+        adjusted = (pull * np.linalg.solve(self.precision + C.T @ C, pull)).sum(axis=0)
+        return self.missed + (d**2).sum(axis=0) - adjusted
+
+
+def _directions(
+    fitted: Fitted, situations: Sequence[Situation]
+) -> tuple[Float[np.ndarray, "situation feature"], Float[np.ndarray, "situation feature direction"]]:
+    """Prediction of a model anywhere, and all directions in which it may still adjust, one standard deviation each."""
+    unit, layout = fitted.unit, fitted.measured.layout
+    known = of_unit(unit.model.gear) if unit.commissioned else {}
+    moved = linearised(fitted.model, known | fitted.parameters, situations, layout)
+    predicted, J = moved
+    maps = form_columns(predicted, situations, layout)
+    left_open = np.concatenate([J[..., : len(known)], maps], axis=-1)
+    reach = unit.structure * np.eye(left_open.shape[-1]) if unit.reach is None else unit.reach
+    return predicted, np.concatenate([left_open @ reach, J[..., len(known) :]], axis=-1)
+
+
+def _tolerance(
+    fitted: Fitted, candidates: Sequence[Situation], predicted: Float[np.ndarray, "candidate feature"]
+) -> Float[np.ndarray, "candidate feature column"]:
+    """What an imperfect form of the fitted effects leaves open at a new operating point, channel and order by each."""
+    layout = fitted.measured.layout
+    count = len(fitted.unit.model.effects)
+    effects = range(count, len(fitted.model.effects))
+    if not effects:
+        return np.zeros((*predicted.shape, 0))
+    without = predict([fitted.model.without(number) for number in effects], candidates, layout)
+    masks = [np.ones(len(layout), bool)]
+    masks += [layout.channel == channel for channel in layout.channels]
+    masks += [layout.order == order for order in np.unique(layout.order)]
+    columns = [(predicted - each) * mask for each in without for mask in masks]
+    return FORM_TOLERANCE * np.stack(columns, axis=-1)
+
+
+def _session(
+    measured: Measured, situation: Situation, predicted: Float[np.ndarray, " feature"]
+) -> Float[np.ndarray, "feature column"]:
+    """Errors of the session in which the new recordings would be made."""
+    planned = Recording("planned", "", "planned", situation.point, 1, np.empty(0), {}, situation.conditions)
+    nothing = np.zeros((1, len(measured.layout)))
+    return replace(measured, recordings=(planned,), values=nothing, variance=nothing).session_columns(predicted[None])
