@@ -1,6 +1,5 @@
 """The report: the paper's tables, claims and figures beside ours, as one HTML page and as JSON."""
 
-import base64
 import json
 import os
 import platform
@@ -13,11 +12,11 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from learn.paper import PROTOCOLS, Comparison, row_label
 from learn.tracking import Store, finished_runs
 from swgsim.finding import Finding
+from swgsim.page import environment
 from swgsim.recordings import Recordings
 from swgsim.style import Picture, words
 
@@ -94,22 +93,18 @@ class Report:
 
     def html(self) -> str:
         """``index.html``: one file, pictures inside."""
-        environment = Environment(
-            loader=PackageLoader("learn", ""),
-            autoescape=True,
-            undefined=StrictUndefined,
-            trim_blocks=True,
-            lstrip_blocks=True,
-        )
-        environment.filters["data_uri"] = lambda raw: "data:image/png;base64," + base64.b64encode(raw).decode()
-        return environment.get_template("report.html.jinja").render(
-            report=self,
-            held=[f for f in self.findings if f.holds],
-            failed=[f for f in self.findings if not f.holds],
-            tables=[_table(name, comparison) for name, comparison in self.tables.items()],
-            folds=[{"title": ROMAN[name], "rows": _folds(frame)} for name, frame in self.folds.items()],
-            roman=ROMAN,
-            classifiers=[name.upper() for name in CLASSIFIERS],
+        return (
+            environment("learn")
+            .get_template("report.html.jinja")
+            .render(
+                report=self,
+                held=[f for f in self.findings if f.holds],
+                failed=[f for f in self.findings if not f.holds],
+                tables=[_table(name, comparison) for name, comparison in self.tables.items()],
+                folds=[{"title": ROMAN[name], "rows": _folds(frame)} for name, frame in self.folds.items()],
+                roman=ROMAN,
+                classifiers=[name.upper() for name in CLASSIFIERS],
+            )
         )
 
 

@@ -139,9 +139,10 @@ class Bench:
         warmer = self.temperature * rng.standard_normal()
         whereabouts = OutputPosition(rng.uniform(0, self.output_angle))
         effects = (*planned.effects, WarmGrease(warmer, self.grease_exponent), whereabouts)
+        conditions = replace(planned.conditions, temperature=self.reference_temperature + warmer)
         start = self.index_angle * rng.standard_normal()
         shown = self.reference_temperature + warmer + self.temperature_error * rng.standard_normal()
-        return replace(planned, point=point, effects=effects, start_angle=start), shown
+        return replace(planned, point=point, effects=effects, start_angle=start, conditions=conditions), shown
 
     def signals(
         self, ideal: Float[np.ndarray, "sensor time"], rng: np.random.Generator

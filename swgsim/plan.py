@@ -8,6 +8,7 @@ from math import ceil
 from swgsim.acquisition import Window
 from swgsim.bench import Bench
 from swgsim.chain import SECTORS
+from swgsim.effects.base import Effect
 from swgsim.gear import Gear
 from swgsim.grid import Case, Grid
 from swgsim.version import code_version
@@ -31,6 +32,8 @@ class Plan:
         The imperfections of a real test bench, if any.
     sectors : int
         Sectors of the flex spline's truss.
+    effects : tuple of Effect
+        What every run of every gear is under, beside its fault; part of what the gears are declared to be.
     configuration : str
         The choices as text; kept in the file.
     """
@@ -40,6 +43,7 @@ class Plan:
     window: Window
     bench: Bench | None = None
     sectors: int = SECTORS
+    effects: tuple[Effect, ...] = ()
     configuration: str = ""
 
     def __post_init__(self) -> None:

@@ -1,9 +1,12 @@
 """From planned cases to recordings: bench, chain, acquisition and facts."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from swgsim.bench import Shaft
 from swgsim.chain import Run, Simulation, simulate
+from swgsim.effects.base import Effect
 from swgsim.grid import Case
 from swgsim.plan import Plan
 from swgsim.recordings import Recordings, facts
@@ -12,14 +15,14 @@ from swgsim.seeds import generator
 
 def record(plan: Plan, cases: list[Case]) -> Recordings:
     """The recordings of some cases of a plan."""
-    runs = [case.run for case in cases]
+    runs = [replace(case.run, effects=(*_declared(plan, case), *case.run.effects)) for case in cases]
     temperature = np.full(len(cases), np.nan)
     if plan.bench:
         gears = list(dict.fromkeys(run.gear for run in runs))
         units = {gear: plan.bench.unit(gear, generator("unit", plan.grid.seed, gear.number)) for gear in gears}
-        for i, case in enumerate(cases):
-            gear, imperfections = units[case.run.gear]
-            planned = Run(gear, case.run.point, (*imperfections, *case.run.effects))
+        for i, (case, run) in enumerate(zip(cases, runs, strict=True)):
+            gear, imperfections = units[run.gear]
+            planned = Run(gear, run.point, (*imperfections, *run.effects))
             runs[i], temperature[i] = plan.bench.run(planned, generator("bench run", case.seed))
     simulation = simulate(runs, plan.window, plan.sectors)
     signals, efficiency = _acquire(plan, cases, simulation)
@@ -38,6 +41,13 @@ def record(plan: Plan, cases: list[Case]) -> Recordings:
         "seed": np.array([case.seed for case in cases], dtype="u8"),
     })  # fmt: skip
     return Recordings(signals, table, plan.window.rate, plan.attributes)
+
+
+def _declared(plan: Plan, case: Case) -> tuple[Effect, ...]:
+    """The effects of the plan as they are in one recording."""
+    return tuple(
+        effect.drawn(generator("declared effect", case.seed, number)) for number, effect in enumerate(plan.effects)
+    )
 
 
 def _acquire(plan: Plan, cases: list[Case], simulation: Simulation) -> tuple[np.ndarray, np.ndarray]:

@@ -1,7 +1,10 @@
 """Where configuration meets code: mappings (conf/*.yaml) to the objects of this package."""
 
-from collections.abc import Mapping
+import hashlib
+import inspect
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
+from pathlib import Path
 from typing import Any, TypeVar
 
 import yaml
@@ -10,6 +13,8 @@ from swgsim.acquisition import Window
 from swgsim.bench import Bench
 from swgsim.checks import require_known
 from swgsim.disturbance import Disturbance
+from swgsim.effects import text
+from swgsim.effects.base import Effect
 from swgsim.faults import Variants
 from swgsim.gauges import GaugeSet
 from swgsim.gear import Gear, KinematicError, OperatingPoint, Transmission, WaveGenerator
@@ -87,6 +92,25 @@ def gears(config: Config) -> tuple[Gear, ...]:
     return build(Population, config["grid"]["population"]).draw(listed[0], config["grid"]["seed"])
 
 
+def effects(config: Sequence[Any] | str) -> tuple[Effect, ...]:
+    """Effects: a list of them, or the path of a file that holds one (conf/effect).
+
+    Raises
+    ------
+    ValueError
+        If the file is missing, or an effect or a parameter is unknown, missing or beyond its bounds.
+    """
+    if not isinstance(config, str):
+        return text.from_entries(config)
+    path = Path(config)
+    if not path.is_file():
+        raise ValueError(
+            f"no file of effects {config!r}; give a list such as '[{text.EXAMPLE}]', or a file that holds one "
+            "(conf/effect/example.yaml)"
+        )
+    return text.from_text(path.read_text(encoding="utf-8"), config)
+
+
 def plan(config: Config) -> Plan:
     """The plan of a data set (conf/generate.yaml), without its disturbance."""
     bench = config["condition"]["bench"]
@@ -96,6 +120,7 @@ def plan(config: Config) -> Plan:
         window=build(Window, config["window"]),
         bench=build(Bench, bench) if bench else None,
         sectors=config["mesh"]["sectors"],
+        effects=effects(config.get("effects", ())),
         configuration=as_text(config),
     )
 
@@ -107,5 +132,23 @@ def disturbance(config: Config) -> Disturbance | None:
 
 
 def as_text(config: Config) -> str:
-    """The choices that recordings depend on, as YAML: all but where files lie and how many processes work."""
-    return yaml.safe_dump({key: value for key, value in config.items() if key not in ("data", "workers")})
+    """The choices that recordings depend on, as YAML: all but where files lie and how many processes work.
+
+    Effects stand there in full, wherever they were read from, with a digest of code from outside this package; if there
+    are none, there is no word of them.
+    """
+    choices = {key: value for key, value in config.items() if key not in ("data", "workers", "effects")}
+    declared = effects(config.get("effects", ()))
+    if declared:
+        choices |= {"effects": text.entries(declared), "code_of_effects": _foreign_code(declared)}
+    return yaml.safe_dump(choices)
+
+
+def _foreign_code(declared: Sequence[Effect]) -> dict[str, str]:
+    """A digest for every module with an effect from outside this package, whose version says nothing of it."""
+    modules = {module for effect in declared if (module := inspect.getmodule(type(effect))) is not None}
+    return {
+        module.__name__: hashlib.sha256(inspect.getsource(module).encode()).hexdigest()[:12]
+        for module in modules
+        if not module.__name__.startswith("swgsim.")
+    }

@@ -163,15 +163,17 @@ def named(name: str) -> type[Effect]:
     """
     if name in LIBRARY:
         return LIBRARY[name]
-    module, colon, kind = name.partition(":")
-    if not colon:
+    module, _, kind = name.partition(":")
+    if not all(part.isidentifier() for part in (*module.split("."), kind)):
         raise ValueError(
             f"unknown effect {name!r}; choose from {', '.join(sorted(LIBRARY))}, or give the import path module:Class"
         )
     try:
         found = getattr(importlib.import_module(module), kind)
     except (ImportError, AttributeError) as error:
-        raise ValueError(f"effect {name!r} cannot be imported: {error}") from error
+        raise ValueError(
+            f"effect {name!r} cannot be imported: {error}; is the folder of {module} on PYTHONPATH?"
+        ) from error
     if not (isinstance(found, type) and issubclass(found, Effect)):
         raise ValueError(f"{name!r} is no effect: it must be a class derived from swgsim.effects.base.Effect")
     return found

@@ -13,10 +13,14 @@ from swgsim.loop.hypotheses import hypotheses, signatures
 from swgsim.loop.refining import zoom
 from swgsim.loop.screening import Score, best_of_kind, screen
 from swgsim.loop.session import Measured
+from swgsim.loop.vocabulary import describe
 from swgsim.seeds import generator
 
 # Probability of a false effect on recordings in which nothing is missing.
 ALPHA = 0.005
+# A bare regularity of the open vocabulary explains more than an effect only if it does so by this much (twice a
+# log-likelihood, and a share): there are thirty times as many regularities as effects.
+OUTDONE, OUTDONE_SHARE = 17.0, 0.02
 # Leaders that are fitted, and effects that are added at most.
 LEADERS, MOST = 4, 3
 # Log-likelihood of left-out operating points that an effect must gain, and a pair over its better half.
@@ -50,6 +54,12 @@ class Trial:
     def gain(self) -> float:
         """Of all operating points."""
         return float(self.gains.sum())
+
+    def explained(self, before: Fitted) -> float:
+        """Fall of the residual's sum of squares, in units of all errors."""
+        with_it = self.fitted.whole.whiten(self.fitted.from_start)
+        without = before.whole.whiten(before.from_start)
+        return float(without @ without - with_it @ with_it)
 
     @property
     def sound(self) -> bool:
@@ -89,7 +99,7 @@ class Closed:
     left : tuple of Score
         Of the last screening.
     rejected : tuple of Trial
-        Significant, but of the wrong form.
+        Significant, but of the wrong form: they contradict themselves, or a bare regularity explains more.
     """
 
     before: Fitted
@@ -125,7 +135,8 @@ def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed
             break
         trials = sorted((_trial(now, (score,), seed) for score in leaders), key=lambda trial: -trial.gain)
         accepted = trials[0] if trials[0].sound else _pair(now, trials, seed)
-        if accepted is None:
+        plain = describe(now, generator("vocabulary of a step", seed, len(steps)))[0]
+        if accepted is None or plain.gain > accepted.explained(now) * (1 + OUTDONE_SHARE) + OUTDONE:
             rejected = tuple(trials)
             break
         others = tuple(trial for trial in trials if trial is not accepted)

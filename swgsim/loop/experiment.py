@@ -71,8 +71,8 @@ def next_experiments(answer: Answer) -> tuple[Experiment, ...]:
     found = []
     for step in answer.closed.steps:
         for rival in step.rivals:
-            between = (_names(step.accepted.effects), _names(rival.effects))
-            found += _best(rival.fitted, [step.accepted.fitted.model], [between])
+            names = (_names(step.accepted.effects), _names(rival.effects))
+            found += _best(rival.fitted, [step.accepted.fitted.model], [names])
     after = answer.closed.after
     effects = [score.hypothesis.effect() for score in answer.absorbed]
     if effects:
@@ -177,8 +177,7 @@ def _directions(
     """Prediction of a model anywhere, and all directions in which it may still adjust, one standard deviation each."""
     unit, layout = fitted.unit, fitted.measured.layout
     known = of_unit(unit.model.gear) if unit.commissioned else {}
-    moved = linearised(fitted.model, known | fitted.parameters, situations, layout)
-    predicted, J = moved
+    predicted, J = linearised(fitted.model, known | fitted.parameters, situations, layout)
     maps = form_columns(predicted, situations, layout)
     left_open = np.concatenate([J[..., : len(known)], maps], axis=-1)
     reach = unit.structure * np.eye(left_open.shape[-1]) if unit.reach is None else unit.reach

@@ -109,6 +109,20 @@ def number(value: float) -> float | None:
     return float(value) if isfinite(value) else None
 
 
+def names(trial: Trial) -> str:
+    """The effects of a trial by their registered names."""
+    return " and ".join(path_of(type(effect)) for effect in trial.effects)
+
+
+def probability(value: float) -> str:
+    """A small probability in words.
+
+    >>> probability(0.012), probability(0.0)
+    ('0.01', 'below 1e-300')
+    """
+    return f"{value:.1g}" if value > 1e-300 else "below 1e-300"
+
+
 def calibrated(fitted: Fitted) -> dict[str, dict[str, Any]]:
     """The declared parameters at which the chain ran, with what is left open of them."""
     unit = fitted.unit
@@ -156,9 +170,7 @@ def _accepted(answer: Answer) -> list[dict[str, Any]]:
                 "place": effect.place,
                 "parameters": _parameters(effect, after.deviation, at),
                 "evidence": _evidence(step, which),
-                "indistinguishable_from": [
-                    " and ".join(path_of(type(each)) for each in rival.effects) for rival in step.rivals
-                ],
+                "indistinguishable_from": [names(rival) for rival in step.rivals],
                 "rivals": [_rival(rival) for rival in step.rivals],
             })  # fmt: skip
             at += 1
@@ -201,8 +213,8 @@ def _evidence(step: Step, which: int) -> dict[str, Any]:
         "words": (
             f"adding it{together} raises the log-likelihood of operating points left out by {trial.gain:.0f} "
             f"(at least {LEAST_GAIN:g} are asked for); so high a score comes by luck with probability "
-            f"{score.chance:.1g} in the whole library; one size serves all operating points, channels and orders, "
-            f"with parts that differ by {100 * agreement.form_error:.0f} %"
+            f"{probability(score.chance)} in the whole library; one size serves all operating points, "
+            f"channels and orders, with parts that differ by {100 * agreement.form_error:.0f} %"
         ),
         "heldout_gain": number(trial.gain),
         "score": number(score.gain),
@@ -228,8 +240,8 @@ def _of_line(line: Sideline) -> dict[str, Any]:
         "parameters": parameters,
         "evidence": {
             "words": (
-                f"lines between the integer orders that come by luck with probability {line.chance:.1g}; its law over "
-                f"load and speed agrees with all recordings (probability {line.agrees:.2g})"
+                f"lines between the integer orders that come by luck with probability {probability(line.chance)}; "
+                f"its law over load and speed agrees with all recordings (probability {line.agrees:.2g})"
             ),
             "score": number(line.gain),
             "chance": number(line.chance),
@@ -242,15 +254,20 @@ def _of_line(line: Sideline) -> dict[str, Any]:
 
 def _rejected(answer: Answer, sizes: Sizes) -> list[dict[str, Any]]:
     """Effects that were fitted but not added."""
-    tried = [(trial, step.accepted) for step in answer.closed.steps for trial in step.others]
-    tried += [(trial, None) for trial in answer.closed.rejected]
+    steps = answer.closed.steps
+    # What was put off in one step may be found, or be a rival, in a later one.
+    held = {names(trial) for step in steps for trial in (step.accepted, *step.rivals)}
+    tried: dict[str, tuple[Trial, Trial | None]] = {
+        names(trial): (trial, step.accepted) for step in steps for trial in step.others if names(trial) not in held
+    }
+    tried |= {names(trial): (trial, None) for trial in answer.closed.rejected}
     return [
         {
-            "name": " and ".join(path_of(type(effect)) for effect in trial.effects),
+            "name": name,
             "heldout_error": sizes.overall(errors(trial.fitted).heldout),
             "why": _why(trial, accepted),
         }
-        for trial, accepted in tried
+        for name, (trial, accepted) in tried.items()
     ]
 
 
@@ -262,7 +279,7 @@ def _why(trial: Trial, accepted: Trial | None) -> str:
     if not poorest.holds:
         return (
             "one size does not serve all operating points, channels and orders "
-            f"(probability {poorest.chance:.1g}; its parts differ from the library's form by "
+            f"(probability {probability(poorest.chance)}; its parts differ from the library's form by "
             f"{100 * poorest.form_error:.0f} % or more)"
         )
     if trial.gain <= LEAST_GAIN:
@@ -315,10 +332,8 @@ def _unknown(answer: Answer) -> dict[str, Any] | None:
         "pattern": atoms[0]["pattern"] if atoms else None,
         "law": atoms[0]["law"] if atoms else None,
         "regularities": atoms,
-        "nearest": {
-            "name": " and ".join(path_of(type(e)) for e in nearest.effects), "why": _why(nearest, None)
-        } if nearest else None,
-    }  # fmt: skip
+        "nearest": {"name": names(nearest), "why": _why(nearest, None)} if nearest else None,
+    }
 
 
 def _described(each: Described) -> dict[str, Any]:

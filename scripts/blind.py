@@ -1,0 +1,17 @@
+"""The blind test of the loop: python scripts/blind.py [cases=20] [seed=1]"""
+
+import hydra
+from misspelt import answered
+from omegaconf import DictConfig, OmegaConf
+
+from swgsim.blind.job import run
+
+
+@hydra.main(version_base="1.3", config_path="../conf", config_name="blind")
+def main(config: DictConfig) -> None:
+    """Resolve the configuration and run the job."""
+    run(OmegaConf.to_container(config, resolve=True))  # type: ignore[arg-type]
+
+
+if __name__ == "__main__":
+    answered(main, "blind")

@@ -1,0 +1,52 @@
+"""Find what a model lacks: python scripts/close_loop.py recordings=FOLDER [commissioning=FOLDER] [gear=gear1]"""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from typing import Any
+
+import hydra
+from misspelt import answered
+from omegaconf import DictConfig, OmegaConf
+
+from swgsim.loop.job import Outcome, run
+
+EXPERIMENT = "loop"
+
+
+def record(config: Mapping[str, Any], outcome: Outcome) -> None:
+    """Keep the answer as an MLflow run."""
+    import pandas as pd
+
+    from learn import settings, tracking
+
+    said = outcome.report
+    store = settings.store({**config["tracking"], "experiment": EXPERIMENT})
+    chosen = {name: config[name] for name in ("recordings", "commissioning", "seed")}
+    key = hashlib.sha256(json.dumps([config, outcome.digest], sort_keys=True).encode()).hexdigest()[:16]
+    tags = {"data_digest": outcome.digest, "verdict": said["verdict"], "sentence": said["sentence"][:5000]}
+    with tracking.job_run(store, said["verdict"], key, chosen, config, tags) as job:
+        job.record(metrics(said), {f"figures/{n}.png": f for n, f in outcome.figures.items()},
+                   {"tables/scores.parquet": pd.DataFrame(said["scores"])})  # fmt: skip
+
+
+def metrics(said: Mapping[str, Any]) -> dict[str, float]:
+    """The figures of a report that are known: errors [%], sizes of the effects, seconds."""
+    error = said["error"]
+    found = {f"error_{when}_{what}": error[when][what] for when in ("before", "after") for what in ("fit", "heldout")}
+    found |= {"noise_floor": error["noise_floor"], "effects": len(said["effects"]), "seconds": said["seconds"]}
+    for effect in said["effects"]:
+        name = effect["name"].replace(":", ".")
+        found |= {f"{name}/{key}": each["value"] for key, each in effect["parameters"].items()}
+    return {name: float(value) for name, value in found.items() if value is not None}
+
+
+@hydra.main(version_base="1.3", config_path="../conf", config_name="close_loop")
+def main(config: DictConfig) -> None:
+    """Resolve the configuration, run the job and keep its run."""
+    resolved: dict[str, Any] = OmegaConf.to_container(config, resolve=True)  # type: ignore[assignment]
+    record(resolved, run(resolved))
+
+
+if __name__ == "__main__":
+    answered(main, "close_loop")

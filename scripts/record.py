@@ -1,0 +1,17 @@
+"""Recordings from a virtual test bench: python scripts/record.py out=recordings/a hidden=my_effects.yaml"""
+
+import hydra
+from misspelt import answered
+from omegaconf import DictConfig, OmegaConf
+
+from swgsim.record_job import run
+
+
+@hydra.main(version_base="1.3", config_path="../conf", config_name="record")
+def main(config: DictConfig) -> None:
+    """Resolve the configuration and run the job."""
+    run(OmegaConf.to_container(config, resolve=True))  # type: ignore[arg-type]
+
+
+if __name__ == "__main__":
+    answered(main, "record")

@@ -1,0 +1,108 @@
+"""Library effects as nature has them: never quite of the library's form."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.conditions import Conditions
+from swgsim.effects.base import Effect, Scene
+from swgsim.effects.quantity import Role, choice, phase, quantities, size
+from swgsim.gear import OperatingPoint
+
+# Load at which another law in the load changes nothing [N m].
+MIDDLE_LOAD = 39.0
+
+
+@dataclass(frozen=True)
+class Alteration:
+    """How the size of an effect varies over operating points, where the library has one size for all.
+
+    Attributes
+    ----------
+    exponent : float
+        The size goes with (T_out / 39 N m) to this power, beside the effect's own law.
+    spread : float
+        Standard deviation of a relative change from one operating point to the next.
+    speed, load, phase : float
+        The wave that this change follows over speed [1/rpm] and load [1/(N m)], and its phase [rad].
+    """
+
+    exponent: float = 0.0
+    spread: float = 0.0
+    speed: float = 0.0
+    load: float = 0.0
+    phase: float = 0.0
+
+    @classmethod
+    def scattered(cls, spread: float, rng: np.random.Generator) -> "Alteration":
+        """Another size at every operating point."""
+        return cls(0.0, spread, rng.uniform(5e-4, 5e-3), rng.uniform(0.02, 0.2), rng.uniform(0, 2 * np.pi))
+
+    def factor(self, point: OperatingPoint) -> float:
+        """By which the size differs at an operating point."""
+        wave = np.cos(self.speed * point.n_in_rpm + self.load * point.T_out + self.phase)
+        law = (max(abs(point.T_out), 1e-3) / MIDDLE_LOAD) ** self.exponent
+        return float(law * (1 + np.sqrt(2) * self.spread * wave))
+
+
+@dataclass(frozen=True)
+class Altered(Effect):
+    """An effect whose size is another one at every operating point."""
+
+    effect: Effect
+    alteration: Alteration
+
+    def at(self, point: OperatingPoint, conditions: Conditions) -> Effect:
+        """The effect itself, of the size that it has there."""
+        return resized(self.effect, self.alteration.factor(point)).at(point, conditions)
+
+    def drawn(self, rng: np.random.Generator) -> Effect:
+        """With the random phases of one recording."""
+        return replace(self, effect=self.effect.drawn(rng))
+
+
+def size_of(kind: type[Effect]) -> str:
+    """Name of the size of an effect."""
+    return next(name for name, q in quantities(kind).items() if q.role is Role.SIZE)
+
+
+def resized(effect: Effect, factor: float) -> Effect:
+    """An effect of so many times its size, as far as its bounds go."""
+    name = size_of(type(effect))
+    q = quantities(type(effect))[name]
+    value = q.nothing + factor * (getattr(effect, name) - q.nothing)
+    return replace(effect, **{name: float(np.clip(value, q.low, q.high))})
+
+
+STRAY_CHANNELS = ("T_in", "s0", "s1", "s2", "s3", "s4")
+
+
+@dataclass(frozen=True)
+class StrayOrder(Effect):
+    """An order in one channel that has nothing to do with anything else.
+
+    Attributes
+    ----------
+    channel : int
+        Of :data:`STRAY_CHANNELS`.
+    order : int
+    amplitude : float
+        In the channel's unit.
+    phase : float
+        [rad].
+    """
+
+    place = "acquisition"
+    channel: int = choice(low=0, high=len(STRAY_CHANNELS) - 1)
+    order: int = choice(low=1, high=12)
+    amplitude: float = size(unit="-", low=0, high=1, typical=1e-3)
+    phase: float = phase()
+
+    def acquisition(
+        self, channels: Mapping[str, Float[np.ndarray, " time"]], scene: Scene
+    ) -> Mapping[str, Float[np.ndarray, " time"]]:
+        """The channels with the wave on one of them."""
+        name = STRAY_CHANNELS[self.channel]
+        return {**channels, name: channels[name] + self.amplitude * np.cos(self.order * scene.phi_in + self.phase)}

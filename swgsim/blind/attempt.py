@@ -1,0 +1,105 @@
+"""One case from the recordings to what is to be scored."""
+
+import resource
+import time
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from swgsim.blind.altered import size_of
+from swgsim.blind.baselines import named_by_baselines
+from swgsim.blind.bench import Setting, in_question, unseen
+from swgsim.blind.drawing import unit_known
+from swgsim.blind.prediction import unseen_error
+from swgsim.blind.sealed import Sealed
+from swgsim.blind.strength import is_random
+from swgsim.effects import text
+from swgsim.effects.base import Effect
+from swgsim.loop.answer import Answer, answer
+from swgsim.loop.closing import Trial
+from swgsim.loop.fitting import Fitted, Unit, fit
+from swgsim.recording import Recording
+
+
+def attempt(case: Sealed, setting: Setting) -> dict[str, Any]:
+    """What the loop says of a case, and how far it is from the truth where nothing was recorded."""
+    began = time.perf_counter(), time.process_time()
+    unit = unit_known(case, setting)
+    ready = time.perf_counter()
+    recordings, library = in_question(case, setting, case.acting), setting.given(case)
+    asked = time.perf_counter(), time.process_time()
+    found = answer(recordings, unit, library, seed=case.number)
+    seconds = {
+        "preparing": ready - began[0],
+        "loop": time.perf_counter() - asked[0],
+        "loop_of_one_core": time.process_time() - asked[1],
+    }
+    said = what_was_said(found, recordings, library)
+    return {**said, **_against_truth(found, unit, case, setting), "seconds": seconds, "peak_memory_mib": _peak()}
+
+
+def what_was_said(found: Answer, recordings: Sequence[Recording], library: Sequence[type[Effect]]) -> dict[str, Any]:
+    """The answer as plain values; no truth goes into it."""
+    closed = found.closed
+    return {
+        "recordings": len(recordings),
+        "verdict": found.verdict,
+        "sentence": found.sentence,
+        "accepted": [_names(step.accepted) for step in closed.steps],
+        "rivals": [[_names(trial) for trial in step.rivals] for step in closed.steps],
+        "lines": [line.effect.name() for line in found.lines],
+        "found": text.entries(found.effects),
+        "rejected": [
+            {"names": _names(t), "gain": t.gain, "chances": [c.chance for c in t.coherence], "settled": _settled(t)}
+            for t in closed.rejected
+        ],
+        "unknown": [[each.atom.order, each.atom.pattern, each.atom.law] for each in found.unknown],
+        "absorbed": [score.hypothesis.kind.name() for score in found.absorbed],
+        "scores": [[s.hypothesis.kind.name(), s.gain, s.chance] for s in closed.scores[:6]],
+        "smallest_chance": min((s.chance for s in closed.scores), default=1.0),
+        "baselines": named_by_baselines(closed.before, library),
+    }
+
+
+def _against_truth(found: Answer, unit: Unit, case: Sealed, setting: Setting) -> dict[str, Any]:
+    """Errors at unseen points, and whether the truth lies inside the intervals that were given."""
+    before, after = found.closed.before, found.closed.after
+    truth = unseen(case, setting, before.measured.layout)
+    errors = {"before": unseen_error(before, truth), "after": unseen_error(after, truth)}
+    errors["oracle"] = unseen_error(_oracle(before, unit, case), truth)
+    return {"error": errors, "intervals": _intervals(after, case)}
+
+
+def _oracle(before: Fitted, unit: Unit, case: Sealed) -> Fitted:
+    """The fit of one who knows what is hidden, though not how much of it."""
+    known = [effect for effect in case.effects if not is_random(type(effect))]
+    if not known:
+        return before
+    return fit(before.measured, unit, unit.model.plus(*known))
+
+
+def _intervals(after: Fitted, case: Sealed) -> list[dict[str, Any]]:
+    """Sizes of the effects that were rightly found: true, found, and the standard deviation that was given."""
+    found = []
+    for number, effect in enumerate(after.model.effects):
+        for true in case.effects:
+            if type(true) is type(effect):
+                name = size_of(type(true))
+                deviation = after.deviation.get(f"{type(effect).title()} {number + 1}: {name}", np.nan)
+                values = {"true": getattr(true, name), "found": getattr(effect, name), "deviation": deviation}
+                found.append({"name": true.name(), **{key: float(value) for key, value in values.items()}})
+    return found
+
+
+def _names(trial: Trial) -> list[str]:
+    return [effect.name() for effect in trial.effects]
+
+
+def _settled(trial: Trial) -> bool:
+    return trial.fitted.calibrated.settled
+
+
+def _peak() -> float:
+    """Largest memory of this process so far [MiB]."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024

@@ -1,0 +1,124 @@
+"""What the bench does with a case: the unit, its commissioning, the recordings in question, and the unseen truth."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.acquisition import Window
+from swgsim.bench import Bench
+from swgsim.blind.sealed import Sealed
+from swgsim.blind.strata import FULL
+from swgsim.chain import Run, simulate_turns
+from swgsim.conditions import Conditions
+from swgsim.effects import OutputPosition
+from swgsim.effects.base import Effect
+from swgsim.gear import Gear, OperatingPoint
+from swgsim.loop.declared import of_unit
+from swgsim.loop.features import Layout, features
+from swgsim.loop.model import POINTS, Model, Situation
+from swgsim.population import Population
+from swgsim.recording import Recording
+from swgsim.seeds import generator
+from swgsim.virtual_bench import Instruments, Sessions, record_sessions
+
+# Spread of the units: somewhat inside of what the loop declares for a series (swgsim.loop.declared).
+SERIES = Population(
+    1, b1_ratio=(0.9, 1.1), k1_ratio=(0.9, 1.1), b0_ratio=(0.92, 1.08), mu_ratio=(0.92, 1.08), w0_ratio=(0.99, 1.01),
+    gain=0.01, offset=0.01, position=0.005, grid_angle=0.005, kinematic_error=(1.0, 1.0),
+)  # fmt: skip
+# Kinematic error of a unit about the nominal one, in spreads that the loop declares.
+KINEMATIC = 0.7
+# Where nothing was recorded: speed and load between those that were, warm and late in the session.
+UNSEEN = tuple(Situation(OperatingPoint(3000.0, T), Conditions(28.0, 1800.0)) for T in (20.0, 55.0))
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What all cases of a set have in common.
+
+    Attributes
+    ----------
+    gear : Gear
+        The nominal one.
+    bench : Bench
+    window : Window
+        Sampling rate.
+    library : tuple of effect classes
+    revolutions : int
+        Of every recording.
+    sectors : tuple of int
+        Meshes of the bench, none of which is the model's.
+    seed : int
+    """
+
+    gear: Gear
+    bench: Bench
+    window: Window
+    library: tuple[type[Effect], ...]
+    revolutions: int
+    sectors: tuple[int, ...]
+    seed: int
+
+    def given(self, case: Sealed) -> tuple[type[Effect], ...]:
+        """The library that the loop is given for a case."""
+        return tuple(kind for kind in self.library if kind.name() not in case.taken_out)
+
+
+def unit_of(case: Sealed, setting: Setting) -> Gear:
+    """The unit of a case before it ran in."""
+    gear = SERIES.draw(setting.gear, case.seed)[0]
+    nominal = setting.gear.transmission.kinematic_error
+    gear = replace(gear, transmission=replace(gear.transmission, kinematic_error=nominal))
+    model, rng = Model(gear), generator("kinematic error of a unit", case.seed)
+    for name, declared in of_unit(setting.gear).items():
+        if name.startswith("kinematic error"):
+            model = declared.at(model, declared.value(model) + KINEMATIC * declared.sd * rng.standard_normal())
+    return model.gear
+
+
+def commissioning(case: Sealed, setting: Setting) -> tuple[Recording, ...]:
+    """Recordings of the unit in its healthy state."""
+    plan = Sessions(FULL.points, FULL.repeats, revolutions=setting.revolutions, name="commissioning")
+    return record_sessions(
+        unit_of(case, setting), (), plan, setting.bench, seed=case.seed, window=setting.window, sectors=case.sectors
+    )
+
+
+def in_question(case: Sealed, setting: Setting, effects: Sequence[Effect]) -> tuple[Recording, ...]:
+    """Recordings of the unit with some effects."""
+    rng = generator("conditions of a case", case.seed)
+    plan = Sessions(
+        case.points, case.repeats, revolutions=setting.revolutions, name="question", warming=rng.uniform(3, 9)
+    )
+    bench, instruments = setting.bench, Instruments()
+    if case.hard:
+        bench = replace(
+            bench,
+            load=bench.load * rng.uniform(1.5, 2.5),
+            index_angle=bench.index_angle * rng.uniform(1, 2),
+            noise=bench.noise * rng.uniform(1, 2.5),
+            zero_drift=bench.zero_drift * rng.uniform(1, 2),
+        )
+        instruments = replace(instruments, wander=2 * instruments.wander)
+        plan = replace(plan, warming=rng.uniform(8, 15), pause=120.0)
+    return record_sessions(
+        _run_in(unit_of(case, setting), case), effects, plan, bench, seed=case.seed + 1, window=setting.window,
+        sectors=case.sectors, instruments=instruments,
+    )  # fmt: skip
+
+
+def unseen(case: Sealed, setting: Setting, layout: Layout) -> Float[np.ndarray, "situation feature"]:
+    """What a bench without any noise would record where nothing was recorded, over all positions of the output."""
+    gear = _run_in(unit_of(case, setting), case)
+    positions = (OutputPosition(0.0), OutputPosition(np.pi))
+    runs = [Run(gear, s.point, (*case.acting, p), conditions=s.conditions) for s in UNSEEN for p in positions]
+    recordings = simulate_turns(runs, 1, POINTS, case.sectors)
+    found = np.array([features(recording, layout) for recording in recordings])
+    return found.reshape(len(UNSEEN), len(positions), -1).mean(axis=1)
+
+
+def _run_in(gear: Gear, case: Sealed) -> Gear:
+    t = gear.transmission
+    return replace(gear, transmission=replace(t, b1=t.b1 * case.run_in[0], k1=t.k1 * case.run_in[1]))

@@ -1,0 +1,173 @@
+"""The job of scripts/blind.py: seal a set, let the loop answer, open the truth, score."""
+
+import hashlib
+import json
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import joblib
+import numpy as np
+from threadpoolctl import threadpool_limits
+from tqdm import tqdm
+
+from swgsim import settings
+from swgsim.acquisition import Window
+from swgsim.bench import Bench
+from swgsim.blind import judged
+from swgsim.blind.attempt import attempt
+from swgsim.blind.bench import Setting
+from swgsim.blind.drawing import draw
+from swgsim.blind.judged import Judged
+from swgsim.blind.score import score
+from swgsim.blind.sealed import as_json, from_json
+from swgsim.blind.strata import DETECTABLE, plans
+from swgsim.blind.table import table
+from swgsim.effects.library import SEARCHED, named
+from swgsim.files import sole_maker, write_json, write_text
+from swgsim.loop import closing, evidence, fitting, screening, sidelines, vocabulary
+from swgsim.version import code_version
+
+THRESHOLDS = {
+    "alpha": closing.ALPHA,
+    "least_gain": closing.LEAST_GAIN,
+    "pair_gain": closing.PAIR_GAIN,
+    "form_tolerance": evidence.FORM_TOLERANCE,
+    "contradiction": evidence.CONTRADICTION,
+    "visible": screening.VISIBLE,
+    "structure": fitting.STRUCTURE,
+    "tolerance_of_lines": sidelines.TOLERANCE,
+    "plainer": vocabulary.PLAINER,
+    "detectable": DETECTABLE,
+    "look_alike": judged.LOOK_ALIKE,
+    "worse": judged.WORSE,
+}
+
+
+def run(config: Mapping[str, Any]) -> dict[str, Any]:
+    """Write ``<report>/blind.json`` and ``blind.png``; the set and the answers stay in ``<blind>``.
+
+    Returns
+    -------
+    dict
+        What blind.json holds.
+
+    Raises
+    ------
+    ValueError
+        If the folder holds a set of other settings, or one that was changed after it was sealed.
+    """
+    folder, report = Path(config["blind"]), Path(config["report"])
+    with sole_maker(folder / "truth.json"):
+        setting = setting_of(config)
+        digest = _seal(folder, setting, config)
+        key = {"truth": digest, "code": code_version()}
+        answers = _answer(folder, setting, key, config["workers"])
+        cases = [Judged(from_json(plain), said) for plain, said in zip(_opened(folder), answers, strict=True)]
+    found = {
+        "truth_sha256": digest,
+        "code": key["code"],
+        "thresholds": THRESHOLDS,
+        **score(cases),
+        "all": [{"number": c.case.number, "cause": c.cause, "why": c.why} for c in cases],
+    }
+    write_json(report / "blind.json", found)
+    _draw_figure(report, cases, found)
+    print(table(found))
+    return found
+
+
+def setting_of(config: Mapping[str, Any]) -> Setting:
+    """What all cases have in common."""
+    chosen = config["library"]
+    return Setting(
+        settings.gear(config["gear"]),
+        settings.build(Bench, config["condition"]["bench"]),
+        settings.build(Window, config["window"]),
+        tuple(named(name) for name in chosen) if chosen else SEARCHED,
+        config["revolutions"],
+        tuple(config["sectors"]),
+        config["seed"],
+    )
+
+
+def _seal(folder: Path, setting: Setting, config: Mapping[str, Any]) -> str:
+    """Draw the set, unless it is there, and return the digest that it was sealed with."""
+    truth, seal = folder / "truth.json", folder / "truth.sha256"
+    library = [kind.name() for kind in setting.library]
+    chosen = {name: config[name] for name in ("cases", "seed", "sectors", "revolutions", "gear", "condition", "window")}
+    made_from = json.loads(json.dumps({**chosen, "library": library}))
+    if not seal.exists():
+        planned = plans(config["cases"], setting.seed, setting.library)
+        jobs = {folder / "drawn" / f"{plan.number:04d}.json": (plan, setting) for plan in planned}
+        drawn = _all(jobs, _draw, made_from, config["workers"], "sealed set")
+        write_json(truth, {"made_from": made_from, "drawn_by": code_version(), "cases": drawn})
+        write_text(seal, _digest(truth) + "\n")
+    if _digest(truth) != seal.read_text().strip():
+        raise ValueError(f"{truth} is not what {seal} was written for: the truth was changed after it was sealed")
+    if json.loads(truth.read_text())["made_from"] != made_from:
+        raise ValueError(f"{truth} is a set of other settings: choose another folder with blind=...")
+    return _digest(truth)
+
+
+def _answer(folder: Path, setting: Setting, key: Mapping[str, str], workers: int | None) -> list[dict[str, Any]]:
+    """What the loop says of every case; cases that it answered before, by the same code, are not asked again."""
+    jobs = {folder / "answers" / f"{plain['number']:04d}.json": (plain, setting) for plain in _opened(folder)}
+    return _all(jobs, _attempted, key, workers, "answers")
+
+
+def _opened(folder: Path) -> list[dict[str, Any]]:
+    """The truth of all cases: for the bench that records them, and for the scorer."""
+    return json.loads((folder / "truth.json").read_text())["cases"]
+
+
+def _draw(plan: Any, setting: Setting) -> dict[str, Any]:
+    return as_json(draw(plan, setting))
+
+
+def _attempted(plain: Mapping[str, Any], setting: Setting) -> dict[str, Any]:
+    """One case; a loop that breaks down is a failure that is counted."""
+    try:
+        return attempt(from_json(plain), setting)
+    except (ValueError, np.linalg.LinAlgError, ArithmeticError, RuntimeError) as failure:
+        return {"failure": f"{type(failure).__name__}: {failure}"}
+
+
+def _all(
+    jobs: Mapping[Path, tuple], work: Callable[..., dict], key: Mapping[str, Any], workers: int | None, what: str
+) -> list[dict[str, Any]]:
+    """Results of all jobs; each is a file as soon as it is there, so that a killed run goes on."""
+    left = [path for path in jobs if _kept(path, key) is None]
+    tasks = (joblib.delayed(_one)(path, work, jobs[path], key) for path in left)
+    pool = joblib.Parallel(
+        n_jobs=min(workers or joblib.cpu_count(), max(len(left), 1)), return_as="generator_unordered"
+    )
+    with tqdm(total=len(jobs), initial=len(jobs) - len(left), desc=what, unit=" cases") as bar:
+        for _ in pool(tasks):
+            bar.update()
+    return [found for path in jobs if (found := _kept(path, key)) is not None]
+
+
+def _one(path: Path, work: Callable[..., dict], job: Sequence[Any], key: Mapping[str, Any]) -> None:
+    with threadpool_limits(1):
+        write_json(path, {"key": dict(key), "found": work(*job)})
+
+
+def _kept(path: Path, key: Mapping[str, Any]) -> dict[str, Any] | None:
+    """The result of a file, if it is there and made from the same."""
+    if not path.exists():
+        return None
+    held = json.loads(path.read_text())
+    return held["found"] if held["key"] == key else None
+
+
+def _digest(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def _draw_figure(report: Path, cases: Sequence[Judged], found: Mapping[str, Any]) -> None:
+    from swgsim.blind.figure import picture
+    from swgsim.files import replacing
+
+    with replacing(report / "blind.png") as aside:
+        aside.write_bytes(picture(cases, found))

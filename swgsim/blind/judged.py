@@ -1,0 +1,179 @@
+"""A case beside its truth: what was named, what should have been, and what went wrong."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from swgsim.blind.families import family
+from swgsim.blind.sealed import Sealed
+from swgsim.blind.strata import NULLS, OUTSIDE_STRATA, PAIR, SINGLE, UNTESTABLE
+from swgsim.loop.answer import NOTHING, UNKNOWN
+
+# An effect outside the library looks like one inside if that reproduces this share of its projected signature.
+LOOK_ALIKE = 0.9
+WORSE = 1.05
+RIGHT = "right"
+
+
+@dataclass(frozen=True)
+class Judged:
+    """One case.
+
+    Attributes
+    ----------
+    case : Sealed
+    said : mapping
+        What :func:`swgsim.blind.attempt.attempt` found.
+    """
+
+    case: Sealed
+    said: Mapping[str, Any]
+
+    @property
+    def failed(self) -> bool:
+        """Whether there is no answer."""
+        return "failure" in self.said
+
+    @property
+    def null(self) -> bool:
+        """Whether nothing is hidden."""
+        return self.case.stratum in NULLS
+
+    @property
+    def known(self) -> bool:
+        """Whether effects of the library are hidden that can be found."""
+        return self.case.stratum in (SINGLE, PAIR) and self.case.detectable
+
+    @property
+    def outside(self) -> bool:
+        """Whether something is hidden that the library lacks and that can be found."""
+        return self.case.stratum in OUTSIDE_STRATA and self.case.detectable
+
+    @property
+    def look_alike(self) -> bool:
+        """Whether a known effect reproduces nearly all that can be seen of the hidden one."""
+        return self.case.likeness >= LOOK_ALIKE
+
+    @cached_property
+    def named(self) -> list[str]:
+        """Effects that were accepted, in order."""
+        if self.failed:
+            return []
+        return [*(name for step in self.said["accepted"] for name in step), *self.said["lines"]]
+
+    @cached_property
+    def in_set(self) -> set[str]:
+        """Effects that were accepted or called rivals."""
+        rivals = [] if self.failed else self.said["rivals"]
+        return {*self.named, *(name for step in rivals for trial in step for name in trial)}
+
+    @property
+    def set_size(self) -> float:
+        """Explanations per accepted step."""
+        steps = len(self.said["accepted"]) + len(self.said["lines"])
+        return (steps + sum(len(step) for step in self.said["rivals"])) / steps
+
+    @property
+    def first(self) -> str:
+        """What was named first."""
+        if self.failed:
+            return "failure"
+        return self.named[0] if self.named else "unknown" if self.said["verdict"] == UNKNOWN else "nothing"
+
+    @property
+    def right_first(self) -> bool:
+        """Whether the effect named first is hidden."""
+        return self.first in self.case.names
+
+    @property
+    def right_family_first(self) -> bool:
+        """Whether the effect named first is of the family of a hidden one."""
+        return family(self.first) in {family(name) for name in self.case.names}
+
+    @property
+    def right_in_set(self) -> bool:
+        """Whether all that is hidden is in the set."""
+        return set(self.case.names) <= self.in_set
+
+    @property
+    def none_of_the_above(self) -> bool:
+        """Whether the answer is that something is missing that is in no library."""
+        return self.first == "unknown"
+
+    @property
+    def nearest(self) -> str:
+        """Where nothing was accepted: the effect that came nearest."""
+        rejected = [] if self.failed else self.said["rejected"]
+        return rejected[0]["names"][0] if rejected else ""
+
+    @property
+    def described(self) -> tuple[bool, bool, bool]:
+        """Whether order, pattern and law of what is unknown are right."""
+        truth = self.case.described
+        given = self.said["unknown"][0] if not self.failed and self.said["unknown"] else [None] * 3
+        return tuple(a == b for a, b in zip(truth or (), given, strict=True))
+
+    def over(self, first: str, second: str) -> float:
+        """Ratio of two errors at unseen points."""
+        return float(self.said["error"][first] / self.said["error"][second])
+
+    @property
+    def worse(self) -> bool:
+        """Whether the loop made the prediction worse."""
+        return self.over("after", "before") > WORSE
+
+    @property
+    def cause(self) -> str:
+        """What went wrong, if anything."""
+        if self.failed:
+            return "no answer"
+        if self.null or self.case.stratum == UNTESTABLE:
+            return self._where_nothing_can_be_said()
+        if self.case.stratum in OUTSIDE_STRATA:
+            return self._outside()
+        return self._inside()
+
+    def _where_nothing_can_be_said(self) -> str:
+        if self.said["lines"] and not self.said["accepted"]:
+            return "false line between the orders"
+        if self.named:
+            return RIGHT if self.right_in_set and not self.null else "false effect"
+        return RIGHT if self.said["verdict"] == NOTHING else "false alarm: something unknown"
+
+    def _outside(self) -> str:
+        if self.none_of_the_above:
+            return RIGHT
+        if not self.named:
+            return "unknown effect missed" if self.case.detectable else "unknown effect too weak"
+        return "look-alike named for an unknown effect" if self.look_alike else "known effect named for an unknown one"
+
+    def _inside(self) -> str:
+        if self.right_first:
+            if not self.right_in_set:
+                return "second effect missed"
+            return RIGHT if set(self.named) <= set(self.case.names) else "right, with a false extra effect"
+        if self.first == "nothing":
+            return "missed" if self.case.detectable else "too weak"
+        if self.first == "unknown":
+            near = "the right one nearest" if self.nearest in self.case.names else f"{self.nearest or 'none'} nearest"
+            return f"form rejected, {near}" if self.said["rejected"] else "called unknown, no effect significant"
+        return "right one is a rival" if self.right_in_set else "wrong effect named"
+
+    @property
+    def why(self) -> str:
+        """The cause with what there is to see of it."""
+        hidden = " and ".join(
+            f"{n} (strength {s:.3g})" for n, s in zip(self.case.names, self.case.strengths, strict=True)
+        )
+        about = f"{self.case.stratum}, {self.case.design}, {'' if self.case.commissioned else 'not '}commissioned"
+        if self.failed:
+            return f"{about}: {hidden or 'nothing'} hidden; no answer: {self.said['failure']}"
+        scores = ", ".join(f"{name} {gain:.3g}" for name, gain, _ in self.said["scores"][:3])
+        rejected = "; ".join(
+            f"{' + '.join(r['names'])} rejected (gain {r['gain']:.3g}, coherence "
+            f"{min(r['chances'], default=1.0):.1g}{'' if r['settled'] else ', unsettled'})"
+            for r in self.said["rejected"][:2]
+        )
+        parts = [f"named {', '.join(self.named) or self.first}", f"scores {scores}", rejected]
+        return f"{about}, {self.case.form}: {hidden or 'nothing'} hidden; {'; '.join(part for part in parts if part)}"

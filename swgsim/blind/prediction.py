@@ -1,0 +1,48 @@
+"""Error of a fitted model where nothing was recorded."""
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.blind.bench import UNSEEN
+from swgsim.loop.calibration import linearised
+from swgsim.loop.declared import of_unit
+from swgsim.loop.errors import size
+from swgsim.loop.fitting import Fitted
+from swgsim.loop.form import form_columns
+
+# Speed is what the motor's control makes of it; its ripple is nobody's aim.
+JUDGED = ("T_in", "T_out", "s0", "s1", "s2", "s3", "s4")
+
+
+def unseen_error(fitted: Fitted, truth: Float[np.ndarray, "situation feature"]) -> float:
+    """Root mean square over channels of the error at the unseen points, each in shares of its channel's ripple."""
+    layout = fitted.measured.layout
+    squares = (expected(fitted) - truth) ** 2 * np.where(layout.order == 0, 1.0, 0.5)
+    ripple = size(fitted.measured)
+    shares = [
+        squares[:, layout.channel == channel].sum(axis=1).mean() / ripple[number] ** 2
+        for number, channel in enumerate(layout.channels)
+        if channel in JUDGED
+    ]
+    return float(np.sqrt(np.mean(shares)))
+
+
+def expected(fitted: Fitted) -> Float[np.ndarray, "situation feature"]:
+    """What a fitted model expects at the unseen points, with all that the recordings say about what it left open."""
+    unit, measured = fitted.unit, fitted.measured
+    known = of_unit(unit.model.gear) if unit.commissioned else {}
+    situations = (*measured.situations, *UNSEEN)
+    predicted, J = linearised(fitted.model, known | fitted.parameters, situations, measured.layout)
+    maps = form_columns(predicted, situations, measured.layout)
+    left_open = np.concatenate([J[..., : len(known)], maps], axis=-1)[-len(UNSEEN) :]
+    predicted, J = predicted[-len(UNSEEN) :], J[-len(UNSEEN) :, :, len(known) :]
+    reach = unit.structure * np.eye(left_open.shape[-1]) if unit.reach is None else unit.reach
+    shift = np.zeros(left_open.shape[-1]) if unit.shift is None else unit.shift
+    G = fitted.whole.G
+    weighted = G / fitted.whole.variance[:, None]
+    mean = np.linalg.solve(np.eye(G.shape[1]) + weighted.T @ G, weighted.T @ fitted.from_start)
+    first = fitted.errors.G.shape[1]
+    found = mean[first : first + reach.shape[1]]
+    # The model stands where its parameters were found to be; what they are counted from lies further back.
+    beyond = mean[G.shape[1] - J.shape[-1] :] - np.array(list(fitted.calibrated.position.values()))
+    return predicted + left_open @ (shift + reach @ found) + J @ beyond

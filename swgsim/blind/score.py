@@ -1,0 +1,130 @@
+"""The score of a blind set: rates with Wilson's interval, medians with a bootstrap's."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from swgsim.blind.baselines import BASELINES
+from swgsim.blind.intervals import median, rate
+from swgsim.blind.judged import RIGHT, Judged
+from swgsim.blind.strata import PAIR, UNTESTABLE
+
+# Two standard deviations, so to speak.
+NORMAL_95 = 1.96
+WORST = 5
+
+
+def score(cases: Sequence[Judged]) -> dict[str, Any]:
+    """All figures of a set."""
+    answered = [case for case in cases if not case.failed]
+    nulls = [case for case in cases if case.null]
+    known = [case for case in cases if case.known]
+    outside = [case for case in cases if case.outside]
+    told_apart = [case for case in outside if not case.look_alike]
+    untestable = [case for case in cases if case.case.stratum == UNTESTABLE]
+    hidden = [case for case in cases if not case.null]
+    return {
+        "cases": len(cases),
+        "failures": len(cases) - len(answered),
+        "nulls": len(nulls),
+        "detectable": len(known),
+        "outside": len(outside),
+        "false_effect_rate": rate([bool(case.named) for case in nulls]),
+        "false_alarm_rate": rate([case.first != "nothing" for case in nulls]),
+        "chances_of_nulls": sorted(case.said["smallest_chance"] for case in nulls if not case.failed),
+        "right_first": rate([case.right_first for case in known]),
+        "right_family_first": rate([case.right_family_first for case in known]),
+        "right_in_set": rate([case.right_in_set for case in known]),
+        "right_or_nearest": rate([case.right_first or case.nearest in case.case.names for case in known]),
+        "both_of_a_pair": rate([case.right_in_set for case in known if case.case.stratum == PAIR]),
+        "mean_set_size": float(np.mean([case.set_size for case in known if case.named] or [0.0])),
+        "false_extra_effect": rate([bool(set(case.named) - set(case.case.names)) for case in hidden]),
+        "none_of_the_above_recall": rate([case.none_of_the_above for case in told_apart]),
+        "look_alikes_named": rate([bool(case.named) for case in outside if case.look_alike]),
+        "unknown_described": _described(told_apart),
+        "absorbed_named_as_such": rate(
+            [set(case.case.names) <= set(case.said["absorbed"]) for case in untestable if not case.failed]
+        ),
+        "false_effect_on_untestable": rate([bool(set(case.named) - set(case.case.names)) for case in untestable]),
+        "after_over_oracle_median": median([case.over("after", "oracle") for case in known if not case.failed]),
+        "after_over_before_median": median([case.over("after", "before") for case in known if not case.failed]),
+        "worse_than_before": rate([case.worse for case in answered]),
+        "coverage95": rate(_covered(answered)),
+        "coverage95_of_library_form": rate(_covered([c for c in answered if c.case.form in ("mesh", "stray order")])),
+        "seconds_median": median([case.said["seconds"]["loop"] for case in answered])["value"],
+        "seconds_of_one_core_median": median([case.said["seconds"]["loop_of_one_core"] for case in answered])["value"],
+        "peak_memory_mib": max((case.said["peak_memory_mib"] for case in answered), default=None),
+        "baselines": {name: _baseline(name, answered) for name in BASELINES},
+        "by_strength": _by_strength(cases),
+        "confusion": _confusion(cases),
+        "causes": dict(Counter(case.cause for case in cases).most_common()),
+        "worst": [_account(case) for case in worst(cases)],
+    }
+
+
+def worst(cases: Sequence[Judged]) -> list[Judged]:
+    """The cases that went most wrong: where nothing was to be found first, then the strongest effects."""
+
+    def shame(case: Judged) -> tuple[bool, bool, float]:
+        return case.failed, case.null, max(case.case.strengths, default=0.0)
+
+    wrong = [case for case in cases if case.cause not in (RIGHT, "too weak", "unknown effect too weak")]
+    return sorted(wrong, key=shame, reverse=True)[:WORST]
+
+
+def _account(case: Judged) -> dict[str, Any]:
+    return {"number": case.case.number, "cause": case.cause, "why": case.why}
+
+
+def _described(cases: Sequence[Judged]) -> dict[str, Any]:
+    """Of effects that were written to be described: their order, pattern and law, and all three."""
+    found = [case.described for case in cases if case.case.described]
+    parts = {name: rate([each[i] for each in found]) for i, name in enumerate(("order", "pattern", "law"))}
+    return {**parts, "all": rate([all(each) for each in found])}
+
+
+def _covered(cases: Sequence[Judged]) -> list[bool]:
+    """Whether true sizes lie within the intervals of sizes that were rightly found."""
+    found = [each for case in cases for each in case.said["intervals"]]
+    return [abs(each["found"] - each["true"]) <= NORMAL_95 * each["deviation"] for each in found]
+
+
+def _baseline(name: str, cases: Sequence[Judged]) -> dict[str, Any]:
+    """The same figures for a simpler method."""
+    known = [(case, case.said["baselines"][name]) for case in cases if case.known]
+    apart = [case for case in cases if case.outside and not case.look_alike]
+    return {
+        "false_effect_rate": rate([bool(case.said["baselines"][name]) for case in cases if case.null]),
+        "right_first": rate([bool(named) and named[0] in case.case.names for case, named in known]),
+        "right_in_set": rate([set(case.case.names) <= set(named) for case, named in known]),
+        "mean_set_size": float(np.mean([len(named) for _, named in known if named] or [0])),
+        "none_of_the_above_recall": rate([not case.said["baselines"][name] for case in apart]),
+    } | (
+        {"after_over_oracle_median": median([c.over("before", "oracle") for c, _ in known])} if not _names(name) else {}
+    )
+
+
+def _names(name: str) -> bool:
+    return name != "calibration_only"
+
+
+def _by_strength(cases: Sequence[Judged]) -> Mapping[str, Any]:
+    """Right first, by the weaker strength of what is hidden of the library."""
+    found = {}
+    for low, high in ((30, 200), (200, 1200), (1200, 10000), (10000, np.inf)):
+        here = [
+            case for case in cases if case.case.stratum in ("single", "pair") and low <= min(case.case.strengths) < high
+        ]
+        found[f"{low:g} to {high:g}"] = rate([case.right_first for case in here])
+    return found
+
+
+def _confusion(cases: Sequence[Judged]) -> dict[str, dict[str, int]]:
+    """What was named first, by what is hidden."""
+    table: dict[str, Counter] = {}
+    for case in cases:
+        hidden = " + ".join(case.case.names) or "nothing"
+        table.setdefault(hidden, Counter())[case.first] += 1
+    return {hidden: dict(named) for hidden, named in sorted(table.items())}

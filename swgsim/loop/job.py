@@ -1,0 +1,210 @@
+"""The job of scripts/close_loop.py: recordings in, the answer out as a folder."""
+
+import hashlib
+import json
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from swgsim import settings, truth
+from swgsim.defect import Defect
+from swgsim.effects.base import Effect
+from swgsim.effects.library import SEARCHED, named
+from swgsim.effects.text import as_text
+from swgsim.files import write_json, write_text
+from swgsim.loop.answer import Answer, answer
+from swgsim.loop.experiment import next_experiments
+from swgsim.loop.features import COMPARED
+from swgsim.loop.fitting import Unit, commission
+from swgsim.loop.model import Model
+from swgsim.loop.page import figure, page
+from swgsim.loop.report import report
+from swgsim.loop.session import Measured
+from swgsim.reading import read_recordings
+from swgsim.recording import Recording
+from swgsim.style import words
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What closing the loop on a folder gave.
+
+    Attributes
+    ----------
+    report : mapping
+        ``report.json``.
+    figures : mapping
+        The pictures of the page by name.
+    digest : str
+        Of the recordings.
+    """
+
+    report: Mapping[str, Any]
+    figures: Mapping[str, "Figure"]
+    digest: str
+
+
+def run(config: Mapping[str, Any]) -> Outcome:
+    """Write ``report.json``, ``effects.yaml`` and ``page.html`` into the folder ``out``, and print the answer.
+
+    Raises
+    ------
+    ValueError
+        If recordings cannot be used, do not belong together, or a choice is unknown; it says what to do.
+    """
+    start = time.perf_counter()
+    if config["recordings"] is None:
+        raise ValueError("no recordings: give recordings=FOLDER, a folder with manifest.csv or a file of recordings")
+    kinds = library(config)
+    hidden = None if config["truth"] is None else _hidden(Path(config["truth"]), config["recordings"])
+    mapping = None if config["mapping"] is None else Path(config["mapping"])
+    recordings, defects = _read(config["recordings"], "recordings", mapping)
+    unit = Unit(Model(settings.gear(config["gear"]), settings.effects(config["effects"])))
+    if config["commissioning"] is not None:
+        healthy, more = _read(config["commissioning"], "commissioning", mapping)
+        recordings, healthy = _alike(recordings, healthy)
+        defects = (*defects, *more)
+        unit = commission(Measured.of(healthy), unit)
+    found = answer(recordings, unit, kinds, seed=config["seed"])
+    said = report(found, kinds, next_experiments(found), defects, time.perf_counter() - start)
+    if hidden is not None:
+        said = {**said, "hidden": hidden}
+    figures = write(Path(config["out"]), found, said)
+    print("\n".join(lines(said)))
+    return Outcome(said, figures, digest(recordings))
+
+
+def library(config: Mapping[str, Any]) -> tuple[type[Effect], ...]:
+    """The effects that are searched for: those named, or all of the library, and further ones from outside."""
+    searched = SEARCHED if config["searched"] is None else tuple(map(named, config["searched"]))
+    return tuple(dict.fromkeys((*searched, *map(named, config["library"]))))
+
+
+def write(folder: Path, found: Answer, said: Mapping[str, Any]) -> dict[str, "Figure"]:
+    """Write the answer; every file is complete or absent. Returns the pictures."""
+    from swgsim.loop.figures import pictures  # with matplotlib, which takes a second
+
+    drawn = pictures(found, said)
+    html = page(said, [picture for picture, _ in drawn.values()])
+    effects = (*found.closed.after.model.effects, *(line.effect for line in found.lines))
+    write_json(folder / "report.json", said)
+    write_text(folder / "effects.yaml", as_text(effects))
+    write_text(folder / "page.html", html)
+    return {name: each for name, (_, each) in drawn.items()}
+
+
+def lines(said: Mapping[str, Any]) -> list[str]:
+    """What the command prints: the sentence, then the figures."""
+    error = said["error"]
+    found = [
+        f"{words(effect['name'])} ({', '.join(_parameter(*each) for each in effect['parameters'].items())})"
+        for effect in said["effects"]
+    ]
+    shown = [
+        said["sentence"],
+        f"error before   {_both(error['before'])}",
+        f"error after    {_both(error['after'])}",
+        f"noise floor    {_percent(error['noise_floor'])}",
+        f"effect found   {' and '.join(found) or 'none'}",
+    ]
+    if "hidden" in said:
+        shown.append(f"effect hidden  {said['hidden']}")
+    return shown
+
+
+def _both(error: Mapping[str, float | None]) -> str:
+    return f"{_percent(error['fit'])}, at operating points left out {_percent(error['heldout'])}"
+
+
+def _percent(value: float | None) -> str:
+    return figure(value) + ("" if value is None else " %")
+
+
+def _parameter(name: str, estimate: Mapping[str, Any]) -> str:
+    unit = "" if estimate["unit"] == "-" else f" {estimate['unit']}"
+    return f"{words(name)} {figure(estimate['value'])}{unit}"
+
+
+def digest(recordings: Sequence[Recording]) -> str:
+    """Sixteen hexadecimal digits that change when a recording does."""
+    made = hashlib.sha256()
+    for each in recordings:
+        made.update(f"{each.name} {each.session} {each.point} {each.conditions}".encode())
+        for name in sorted(each.channels):
+            made.update(name.encode() + each.channels[name].tobytes())
+    return made.hexdigest()[:16]
+
+
+def _read(path: str, what: str, mapping: Path | None) -> tuple[tuple[Recording, ...], tuple[Defect, ...]]:
+    """Recordings of one gear with what the loop needs."""
+    recordings, defects = read_recordings(Path(path), mapping)
+    gears = list(dict.fromkeys(recording.gear for recording in recordings))
+    if len(gears) > 1:
+        raise ValueError(
+            f"{what}={path} holds recordings of the gears {', '.join(gears)}: a loop is closed for one gear, put each "
+            "into a folder of its own"
+        )
+    channels = recordings[0].channels
+    if "phi_in" not in channels:
+        raise ValueError(
+            f"{what}={path} has no phi_in_rad, the angle of the wave generator, against which everything is compared: "
+            "record it, or integrate the speed from an index pulse"
+        )
+    if not set(channels) & set(COMPARED):
+        raise ValueError(f"{what}={path} has nothing beside the angle: record at least one of {', '.join(COMPARED)}")
+    return recordings, defects
+
+
+def _alike(
+    recordings: Sequence[Recording], healthy: Sequence[Recording]
+) -> tuple[tuple[Recording, ...], tuple[Recording, ...]]:
+    """Recordings and those of the commissioning with the channels that both have.
+
+    Raises
+    ------
+    ValueError
+        If they are of different gears, or share no channel.
+    """
+    one, other = recordings[0], healthy[0]
+    if one.gear != other.gear:
+        raise ValueError(
+            f"the recordings are of gear {one.gear!r}, those of the commissioning of {other.gear!r}: commission the "
+            "same gear, or correct the name in the manifest"
+        )
+    common = [name for name in one.channels if name in other.channels]
+    if not set(common) & set(COMPARED):
+        raise ValueError(
+            f"recordings ({', '.join(one.channels)}) and commissioning ({', '.join(other.channels)}) share no channel "
+            "beside the angle: record the same ones"
+        )
+    return _only(recordings, common), _only(healthy, common)
+
+
+def _only(recordings: Sequence[Recording], names: Sequence[str]) -> tuple[Recording, ...]:
+    return tuple(replace(each, channels={name: each.channels[name] for name in names}) for each in recordings)
+
+
+def _hidden(path: Path, recordings: str) -> str:
+    """What was hidden, in words, from the truth of a virtual test bench; a seal that is there is checked.
+
+    Raises
+    ------
+    ValueError
+        If the file is no truth, or not the one that was sealed.
+    """
+    if not path.is_file():
+        raise ValueError(f"truth={path} does not exist; scripts/record.py writes it beside the folder of recordings")
+    folder = Path(recordings)
+    try:
+        sealed = truth.truth_of(folder).resolve() == path.resolve()
+        told = truth.open_truth(folder) if sealed else json.loads(path.read_text(encoding="utf-8"))
+        effects = [(name, values) for entry in told["hidden"] for name, values in entry.items()]
+    except (json.JSONDecodeError, UnicodeDecodeError, KeyError, TypeError, AttributeError) as error:
+        raise ValueError(f"truth={path} is no truth of scripts/record.py: it has no list 'hidden' ({error})") from error
+    named_ = [f"{words(name)} ({', '.join(f'{k} {v}' for k, v in values.items())})" for name, values in effects]
+    return " and ".join(named_) or "none"

@@ -1,0 +1,107 @@
+"""Recordings by formula and fitted models with fabricated Gaussian numbers, for tests of the loop without the chain."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+from chain_fixtures import GEAR
+
+from swgsim.conditions import Conditions
+from swgsim.effects import Effect
+from swgsim.effects.quantity import phase, size
+from swgsim.gear import OperatingPoint
+from swgsim.loop.calibration import Calibrated
+from swgsim.loop.features import Layout
+from swgsim.loop.fitting import Fitted, Unit
+from swgsim.loop.gaussian import Covariance
+from swgsim.loop.hypotheses import Hypothesis
+from swgsim.loop.model import Model
+from swgsim.loop.scatter import Scatter
+from swgsim.loop.session import Measured
+from swgsim.recording import Recording
+
+POINTS = tuple(OperatingPoint(n, T) for n in (2000.0, 4000.0) for T in (7.0, 39.0, 70.0))
+
+
+@dataclass(frozen=True)
+class Bump(Effect):
+    """An effect with a size and nothing else."""
+
+    height: float = size(unit="-", low=-100, high=100, typical=2)
+
+
+@dataclass(frozen=True)
+class Wave(Effect):
+    """An effect with a size and a phase."""
+
+    height: float = size(unit="-", low=0, high=100, typical=2)
+    theta: float = phase()
+
+
+BUMP, WAVE = Hypothesis(Bump, (), 1), Hypothesis(Wave, (), 1)
+
+
+def recorded(
+    channels: Mapping[str, np.ndarray],
+    point: OperatingPoint = POINTS[0],
+    rate: float = 10_000.0,
+    conditions: Conditions | None = None,
+) -> Recording:
+    """A recording of given channels."""
+    samples = len(next(iter(channels.values())))
+    return Recording("a", "1", "1", point, 1, np.arange(samples) / rate, channels, conditions or Conditions())
+
+
+def turning(point: OperatingPoint, revolutions: float, rate: float) -> np.ndarray:
+    """Angle of a wave generator whose speed ripples by 2 % [rad]."""
+    time = np.arange(int(revolutions * 60 / point.n_in_rpm * rate)) / rate
+    speed = 2 * np.pi * point.n_in_rpm / 60
+    return 0.3 + speed * time + 0.02 * np.sin(speed * time)
+
+
+def silent(points: Sequence[OperatingPoint], repeats: int) -> tuple[Recording, ...]:
+    """Recordings of which only the operating point and the number matter."""
+    empty = np.zeros(2)
+    return tuple(
+        replace(recorded({"phi_in": empty}, point), repeat=repeat)
+        for point, repeat in product(points, range(1, repeats + 1))
+    )
+
+
+def fitted_to(
+    layout: Layout,
+    rng: np.random.Generator,
+    *,
+    points: Sequence[OperatingPoint] = POINTS,
+    repeats: int = 1,
+    open_: int = 4,
+    reach: float = 3.0,
+) -> Fitted:
+    """A fitted model of silent recordings with random errors of single recordings and random open directions.
+
+    ``reach`` is the size of an open direction in units of the noise, row by row.
+    """
+    recordings = silent(points, repeats)
+    rows = len(recordings) * len(layout)
+    variance = rng.uniform(0.5, 2.0, (len(recordings), len(layout)))
+    measured = Measured(recordings, layout, np.zeros(variance.shape), variance)
+    errors = Covariance(variance.ravel(), rng.normal(0, 0.5, (rows, 3)))
+    situations = len(measured.situations)
+    calibrated = Calibrated(
+        Model(GEAR), {}, np.zeros((situations, len(layout))), np.zeros((situations, len(layout), 0)), True
+    )
+    directions = reach * rng.standard_normal((rows, open_))
+    return Fitted(measured, Unit(Model(GEAR)), {}, calibrated, Scatter({}, 0), errors, directions, np.zeros(rows))
+
+
+def holding(fitted: Fitted, residual: np.ndarray) -> Fitted:
+    """The same with another residual."""
+    values = residual.reshape(fitted.measured.values.shape)
+    return replace(fitted, measured=replace(fitted.measured, values=values))
+
+
+def drawn(covariance: Covariance, rng: np.random.Generator) -> np.ndarray:
+    """A residual with this covariance."""
+    common = covariance.G @ rng.standard_normal(covariance.G.shape[1])
+    return common + np.sqrt(covariance.variance) * rng.standard_normal(len(covariance.variance))

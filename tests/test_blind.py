@@ -1,0 +1,383 @@
+"""The blind test: its strata, what it hides, its baselines, its score, and the whole of it on a few small cases."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from chain_fixtures import GEAR
+from hydra import compose, initialize_config_dir
+from loop_fixtures import POINTS, drawn, fitted_to, holding
+from omegaconf import OmegaConf
+
+from swgsim.acquisition import Window
+from swgsim.bench import Bench
+from swgsim.blind import baselines, job
+from swgsim.blind.altered import STRAY_CHANNELS, Alteration, Altered, StrayOrder, resized
+from swgsim.blind.baselines import Task
+from swgsim.blind.bench import Setting, in_question, unit_of
+from swgsim.blind.drawing import drawn_inner
+from swgsim.blind.families import FAMILIES
+from swgsim.blind.intervals import median, rate
+from swgsim.blind.judged import RIGHT, Judged
+from swgsim.blind.outside import OUTSIDE
+from swgsim.blind.prediction import expected, unseen_error
+from swgsim.blind.score import score, worst
+from swgsim.blind.sealed import Sealed, as_json, from_json
+from swgsim.blind.strata import CYCLE, FULL, NULLS, SINGLE, plans, searched
+from swgsim.blind.strength import sized, strengths
+from swgsim.chain import Run, simulate_turns
+from swgsim.conditions import Conditions
+from swgsim.effects.library import LIBRARY, SEARCHED
+from swgsim.effects.quantity import quantities
+from swgsim.gear import OperatingPoint
+from swgsim.loop.features import ORDERS, Layout, features
+from swgsim.loop.hypotheses import Hypothesis
+from swgsim.loop.session import Measured
+from swgsim.loop.vocabulary import LAWS, PATTERNS
+from swgsim.recording import Recording
+from swgsim.seeds import generator
+
+CONF = Path(__file__).parent.parent / "conf"
+FEW = (
+    "eccentric_wave_generator", "cam_form", "tilting_moment", "gauge_gain", "channel_skew", "reduced_damping",
+    "thermal_growth", "mains_hum",
+)  # fmt: skip
+SETTING = Setting(GEAR, Bench(), Window(), tuple(LIBRARY[name] for name in FEW), 4, (60,), 3)
+CASE = Sealed(0, SINGLE, FULL.name, FULL.points, 3, 17, 60, True, False, (1.0, 1.0), "mesh")
+SAID = {
+    "verdict": "effect_found",
+    "accepted": [["cam_form"]],
+    "rivals": [[["out_of_round"]]],
+    "lines": [],
+    "rejected": [],
+    "unknown": [],
+    "absorbed": [],
+    "scores": [["cam_form", 100.0, 1e-3]],
+    "smallest_chance": 1e-3,
+    "baselines": {name: ["cam_form"] for name in baselines.BASELINES},
+    "error": {"before": 2.0, "after": 1.0, "oracle": 1.0},
+    "intervals": [{"name": "cam_form", "true": 1.0, "found": 1.1, "deviation": 0.1}],
+    "seconds": {"loop": 5.0, "loop_of_one_core": 4.0},
+    "peak_memory_mib": 100.0,
+}
+HIDDEN = replace(CASE, effects=(LIBRARY["cam_form"](3, 2e-6, 1.0),), strengths=(3000.0,))
+
+
+@pytest.fixture(scope="module")
+def recordings() -> tuple[Recording, ...]:
+    """A healthy unit at two points."""
+    return in_question(replace(CASE, points=FULL.points[:2], repeats=1), SETTING, ())
+
+
+def test_a_set_has_the_shares_that_were_declared() -> None:
+    planned = plans(200, 5, SEARCHED)
+    strata = [plan.stratum for plan in planned]
+    shares = {name: strata.count(name) / 200 for name in dict.fromkeys(strata)}
+    assert sum(shares[name] for name in NULLS) == 0.25
+    assert shares["single"] == 0.3
+    assert shares["pair"] == 0.15
+    assert shares["taken out"] == shares["written"] == shares["untestable"] == 0.1
+    assert 0.7 < np.mean([plan.commissioned for plan in planned if plan.stratum != "untestable"]) < 0.9
+    assert {plan.design.name for plan in planned} == {"6 points", "4 points", "2 speeds", "1 repeat"}
+
+
+def test_more_cases_do_not_change_the_first_ones() -> None:
+    assert plans(40, 5, SEARCHED)[:23] == plans(23, 5, SEARCHED)
+    assert plans(23, 6, SEARCHED) != plans(23, 5, SEARCHED)
+
+
+def test_no_effect_is_dealt_twice_before_all_others_were() -> None:
+    sought = [kind for kind in SEARCHED if searched(kind)]
+    single = [plan.kinds[0] for plan in plans(20 * len(CYCLE), 5, SEARCHED) if plan.stratum == SINGLE]
+    assert len(set(single[: len(sought)])) == len(sought)
+
+
+def test_every_stratum_sees_every_strength() -> None:
+    planned = plans(200, 5, SEARCHED)
+    for stratum in ("single", "pair", "taken out", "written"):
+        strengths = [plan.strength for plan in planned if plan.stratum == stratum]
+        assert min(strengths.count(s) for s in set(strengths)) >= len(strengths) // 4 - 1
+        assert len(set(strengths)) == 4
+
+
+def test_the_law_of_the_load_scales_the_size() -> None:
+    effect = LIBRARY["cam_form"](3, 2e-6, 1.0)
+    altered = Altered(effect, Alteration(exponent=0.2))
+    sizes = [altered.at(OperatingPoint(2000, T), Conditions()).amplitude for T in (7.0, 39.0, 70.0)]
+    np.testing.assert_allclose(sizes, 2e-6 * (np.array([7.0, 39.0, 70.0]) / 39) ** 0.2)
+
+
+def test_scattered_sizes_have_the_spread_that_was_asked_for() -> None:
+    factors = [Alteration.scattered(0.1, generator("test", i)).factor(p) for i in range(400) for p in POINTS]
+    assert np.mean(factors) == pytest.approx(1, abs=0.01)
+    assert np.std(factors) == pytest.approx(0.1, rel=0.1)
+
+
+def test_a_size_stays_within_its_bounds() -> None:
+    assert resized(LIBRARY["reduced_damping"](0.4), 3.0).b1_ratio == 0.3
+    assert resized(LIBRARY["reduced_damping"](0.8), 0.5).b1_ratio == pytest.approx(0.9)
+
+
+@pytest.mark.parametrize("kind", SEARCHED, ids=lambda kind: kind.name())
+def test_inner_parameters_are_drawn_within_their_bounds(kind: type) -> None:
+    effects = [drawn_inner(kind, generator("inner", i)) for i in range(20)]
+    nothing = {name: q.nothing for name, q in quantities(kind).items() if q.role.value == "size"}
+    assert all(getattr(effect, name) != value for effect in effects for name, value in nothing.items())
+
+
+@pytest.mark.parametrize("kind", OUTSIDE, ids=lambda kind: kind.name())
+def test_effects_from_outside_are_what_they_say_of_themselves(kind: type) -> None:
+    """Their only order has the pattern over the channels and the law that are declared, in the loop's own words."""
+    atom = kind.described
+    runs = [
+        Run(GEAR, OperatingPoint(n, T), effects, conditions=Conditions(25 + warmer, elapsed))
+        for effects in ((), (kind(0.01, 0.8),))
+        for n, T, warmer, elapsed in ((2000, 20, 2.0, 600.0), (4000, 70, 10.0, 3600.0), (3000, 70, 4.0, 1200.0))
+    ]
+    layout = Layout(("T_in", "s0", "s1", "s2", "s3", "s4"))
+    seen = np.array([features(r, layout) for r in simulate_turns(runs, 1, 64, 60)]).reshape(2, 3, -1)
+    lines = layout.lines(seen[1] - seen[0])
+    others = np.delete(lines, atom.order, axis=2)
+    assert np.abs(others).max() < 1e-9
+    assert kind.name() not in LIBRARY
+    channel = "s1" if "s1" in PATTERNS[atom.pattern] else next(iter(PATTERNS[atom.pattern]))
+    sizes = lines[:, layout.channels.index(channel), atom.order]
+    laws = [LAWS[atom.law](_situation(run)) for run in runs[3:]]
+    np.testing.assert_allclose(sizes / sizes[1], np.array(laws) / laws[1], atol=1e-9)
+    weights = lines[1, :, atom.order] / sizes[1] * PATTERNS[atom.pattern][channel]
+    np.testing.assert_allclose(weights, [PATTERNS[atom.pattern].get(c, 0) for c in layout.channels], atol=1e-9)
+
+
+def _situation(run: Run) -> object:
+    from swgsim.loop.model import Situation
+
+    return Situation(run.point, run.conditions)
+
+
+def test_a_stray_order_is_in_one_channel() -> None:
+    runs = [Run(GEAR, POINTS[0], effects) for effects in ((), (StrayOrder(3, 5, 1e-3, 0.4),))]
+    layout = Layout(STRAY_CHANNELS)
+    seen = np.array([features(r, layout) for r in simulate_turns(runs, 1, 64, 60)])
+    lines = layout.lines(seen[1] - seen[0])
+    assert abs(lines[3, 5]) == pytest.approx(1e-3)
+    assert np.abs(lines).sum() == pytest.approx(1e-3, rel=1e-6)
+
+
+def test_the_truth_comes_back_from_json() -> None:
+    case = replace(
+        HIDDEN,
+        effects=(*HIDDEN.effects, OUTSIDE[1](0.01, 1.0)),
+        alteration=Alteration(exponent=0.2),
+        stray=StrayOrder(2, 5, 1e-3, 0.1),
+        strengths=(400.0, 3000.0),
+        taken_out=("cam_form",),
+    )
+    assert from_json(json.loads(json.dumps(as_json(case)))) == case
+
+
+def test_units_lie_within_what_the_loop_declares() -> None:
+    from swgsim.loop.declared import of_unit
+    from swgsim.loop.model import Model
+
+    declared = of_unit(GEAR)
+    deviations = np.array([
+        [(p.value(Model(unit_of(replace(CASE, seed=seed), SETTING))) - p.value(Model(GEAR))) / p.sd for p in declared.values()]
+        for seed in range(60)
+    ])  # fmt: skip
+    assert 0.3 < deviations.std() < 1.0
+    assert (deviations.std(axis=0) < 1.2).all()
+
+
+def test_strength_is_what_the_score_test_gains_on_average() -> None:
+    """Of a signature added to noise of the declared kind, the projected sum of squares grows by the strength."""
+    rng = generator("strength")
+    fitted = fitted_to(Layout(("s1", "s2")), rng, reach=1.0)
+    signature = rng.standard_normal(len(fitted.from_start))
+    white = fitted.whole.whiten(signature)
+    gains = [
+        (white @ fitted.whole.whiten(drawn(fitted.whole, rng) + signature)) ** 2 / (white @ white) for _ in range(400)
+    ]
+    assert np.mean(gains) - 1 == pytest.approx(white @ white, rel=0.05)
+
+
+def test_a_size_is_found_that_has_the_strength(recordings: tuple[Recording, ...]) -> None:
+    from swgsim.loop.fitting import Unit, fit
+    from swgsim.loop.model import Model
+
+    fitted = fit(Measured.of(recordings), Unit(Model(GEAR)))
+    for kind in (LIBRARY["eccentric_wave_generator"], LIBRARY["mains_hum"]):
+        effect, strength = sized(drawn_inner(kind, generator("sized")), 3000.0, fitted)
+        assert strength == pytest.approx(3000, rel=0.2)
+        assert strengths([effect], [kind], fitted)[0] == pytest.approx(strength, rel=1e-6)
+
+
+def test_the_prediction_where_nothing_was_recorded(recordings: tuple[Recording, ...]) -> None:
+    from swgsim.blind.bench import unseen
+    from swgsim.loop.fitting import Unit, fit
+    from swgsim.loop.model import Model
+
+    case = replace(CASE, points=FULL.points[:2], repeats=1)
+    fitted = fit(Measured.of(recordings), Unit(Model(GEAR)))
+    truth = unseen(case, SETTING, fitted.measured.layout)
+    assert unseen_error(fitted, expected(fitted)) == pytest.approx(0, abs=1e-9)
+    wrong = truth + 0.05 * np.abs(truth)
+    assert unseen_error(fitted, truth) < 0.5 * unseen_error(fitted, wrong)
+
+
+def _task(residual_of: int | None, projected_away: bool = False) -> Task:
+    """Twelve signatures, of which one is in the residual, or none."""
+    rng = generator("baselines")
+    fitted = fitted_to(Layout(("s1", "s2")), rng, open_=2)
+    kinds = [kind for kind in SEARCHED if searched(kind)][:12]
+    signatures = [10 * rng.standard_normal((len(fitted.from_start), 1)) for _ in kinds]
+    residual = drawn(fitted.errors, rng)
+    if residual_of is not None:
+        residual = residual + signatures[residual_of][:, 0]
+    found = [Hypothesis(kind, (), 1) for kind in kinds]
+    return Task(found, signatures, holding(fitted, residual))
+
+
+@pytest.mark.parametrize("name", ["correlation", "bic_forward", "sparse_regression"])
+def test_baselines_name_what_stands_out(name: str) -> None:
+    task = _task(7)
+    assert baselines.BASELINES[name](task)[0] == task.found[7].kind.name()
+
+
+@pytest.mark.parametrize("name", ["calibration_only", "correlation", "bic_forward"])
+def test_baselines_name_nothing_in_noise(name: str) -> None:
+    assert baselines.BASELINES[name](_task(None)) == []
+
+
+def test_rates_have_the_interval_of_wilson() -> None:
+    found = rate([True] * 9 + [False])
+    assert (found["value"], found["count"]) == (0.9, 10)
+    assert (found["low"], found["high"]) == pytest.approx((0.5958, 0.9821), abs=1e-4)
+    assert rate([])["value"] is None
+
+
+def test_medians_have_the_interval_of_a_bootstrap() -> None:
+    values = generator("median").normal(1, 0.1, 200).tolist()
+    found = median(values)
+    assert found["low"] < found["value"] < found["high"]
+    assert found["high"] - found["low"] == pytest.approx(2 * 1.96 * 1.25 * 0.1 / np.sqrt(200), rel=0.5)
+
+
+def test_a_family_holds_effects_of_the_library_and_no_effect_twice() -> None:
+    members = [name for family in FAMILIES.values() for name in family]
+    assert len(set(members)) == len(members)
+    assert set(members) <= set(LIBRARY)
+
+
+@pytest.mark.parametrize(
+    ("case", "changes", "cause"),
+    [
+        (HIDDEN, {}, RIGHT),
+        (HIDDEN, {"accepted": [["out_of_round"]], "rivals": [[["cam_form"]]]}, "right one is a rival"),
+        (HIDDEN, {"accepted": [["out_of_round"]], "rivals": [[]]}, "wrong effect named"),
+        (HIDDEN, {"accepted": [["cam_form"], ["coning"]], "rivals": [[], []]}, "right, with a false extra effect"),
+        (HIDDEN, {"accepted": [], "rivals": [], "verdict": "nothing_missing"}, "missed"),
+        (HIDDEN, {"failure": "it broke"}, "no answer"),
+        (
+            HIDDEN,
+            {
+                "accepted": [], "rivals": [], "verdict": "unknown_effect",
+                "rejected": [{"names": ["cam_form"], "gain": 9.0, "chances": [1e-9], "settled": True}],
+            },
+            "form rejected, the right one nearest",
+        ),
+        (replace(CASE, stratum="easy null"), {}, "false effect"),
+        (replace(CASE, stratum="hard null"), {"accepted": [], "rivals": [], "verdict": "nothing_missing"}, RIGHT),
+        (replace(HIDDEN, stratum="taken out"), {}, "known effect named for an unknown one"),
+        (replace(HIDDEN, stratum="taken out", likeness=0.95), {}, "look-alike named for an unknown effect"),
+        (
+            replace(HIDDEN, stratum="written"),
+            {"accepted": [], "rivals": [], "verdict": "unknown_effect"},
+            RIGHT,
+        ),
+    ],
+)  # fmt: skip
+def test_what_went_wrong_is_said(case: Sealed, changes: dict, cause: str) -> None:
+    judged = Judged(case, {**SAID, **changes})
+    assert judged.cause == cause
+    assert judged.why.startswith(case.stratum)
+
+
+def test_the_score_counts_what_it_says() -> None:
+    null = replace(CASE, stratum="easy null")
+    quiet = {"accepted": [], "rivals": [], "intervals": [], "verdict": "nothing_missing"}
+    written = replace(HIDDEN, stratum="written", effects=(OUTSIDE[0](0.01, 1.0),))
+    unknown = {**quiet, "verdict": "unknown_effect"}
+    cases = [
+        Judged(HIDDEN, SAID),
+        Judged(HIDDEN, {**SAID, "accepted": [["coning"]], "rivals": [[]], "intervals": []}),
+        Judged(replace(HIDDEN, strengths=(60.0,)), {**SAID, **quiet}),
+        Judged(null, {**SAID, **quiet}),
+        Judged(null, SAID),
+        Judged(written, {**SAID, **unknown, "unknown": [[1, "in s4 alone", "constant"]]}),
+        Judged(written, {**SAID, "intervals": [{"true": 1.0, "found": 2.0, "deviation": 0.1}]}),
+        Judged(HIDDEN, {"failure": "it broke"}),
+    ]
+    found = score(cases)
+    assert found["cases"] == 8
+    assert found["failures"] == 1
+    assert (found["false_effect_rate"]["value"], found["nulls"]) == (0.5, 2)
+    # The weak one is none that has to be found; a failure is.
+    assert (found["right_first"]["value"], found["right_first"]["count"]) == (pytest.approx(1 / 3), 3)
+    assert found["mean_set_size"] == 1.5
+    assert found["none_of_the_above_recall"]["value"] == 0.5
+    assert [found["unknown_described"][part]["value"] for part in ("order", "pattern", "law", "all")] == [
+        0.5,
+        0.5,
+        0,
+        0,
+    ]
+    assert found["coverage95"]["value"] == 2 / 3
+    assert found["baselines"]["correlation"]["false_effect_rate"]["value"] == 1
+    assert found["confusion"]["cam_form"] == {"cam_form": 1, "coning": 1, "nothing": 1, "failure": 1}
+    assert [case.failed for case in worst(cases)] == [True, False, False, False]
+    json.dumps(found, allow_nan=False)
+
+
+def _config(folder: Path, **changes: object) -> dict:
+    with initialize_config_dir(str(CONF.resolve()), version_base="1.3"):
+        words = [f"blind={folder}/set", f"report={folder}/report", "workers=1", "seed=3", "cases=3", "revolutions=4"]
+        words += ["sectors=[60]", f"library=[{','.join(FEW)}]"]
+        config = OmegaConf.to_container(compose("blind", words), resolve=True)
+    return {**config, **changes}
+
+
+def test_a_small_set_from_sealing_to_score(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    found = job.run(_config(tmp_path))
+    report = json.loads((tmp_path / "report" / "blind.json").read_text())
+    assert report == json.loads(json.dumps(found))
+    asked = {
+        "cases", "nulls", "false_effect_rate", "right_first", "right_in_set", "mean_set_size",
+        "none_of_the_above_recall", "unknown_described", "after_over_oracle_median", "worse_than_before", "coverage95",
+        "seconds_median", "peak_memory_mib", "baselines",
+    }  # fmt: skip
+    assert asked <= set(report)
+    assert report["failures"] == 0
+    assert (tmp_path / "report" / "blind.png").read_bytes().startswith(b"\x89PNG")
+    assert "right effect first" in capsys.readouterr().out
+    answers = {path.name: path.stat().st_mtime_ns for path in (tmp_path / "set" / "answers").iterdir()}
+    # A run that was killed goes on: only what is missing is asked again.
+    (tmp_path / "set" / "answers" / "0001.json").unlink()
+    again = job.run(_config(tmp_path))
+    assert again["truth_sha256"] == found["truth_sha256"]
+    kept = {
+        path.name for path in (tmp_path / "set" / "answers").iterdir() if path.stat().st_mtime_ns == answers[path.name]
+    }
+    assert kept == {"0000.json", "0002.json"}
+    with pytest.raises(ValueError, match="other settings"):
+        job.run(_config(tmp_path, cases=4))
+    truth = tmp_path / "set" / "truth.json"
+    truth.write_text(yaml.safe_load(truth.read_text())["drawn_by"])
+    with pytest.raises(ValueError, match="changed after it was sealed"):
+        job.run(_config(tmp_path))
+
+
+def test_orders_of_outside_effects_are_compared_at_all() -> None:
+    assert all(0 <= kind.described.order <= ORDERS for kind in OUTSIDE)

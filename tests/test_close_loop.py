@@ -1,0 +1,182 @@
+"""The command from end to end on a small bench: recordings in, the answer out."""
+
+import json
+import re
+from dataclasses import replace
+from functools import partial
+from html import unescape
+from pathlib import Path
+
+import pytest
+import yaml
+
+from swgsim.acquisition import Window
+from swgsim.bench import Bench
+from swgsim.chain import simulate_turns
+from swgsim.effects.base import Effect
+from swgsim.effects.eccentric_wave_generator import EccentricWaveGenerator
+from swgsim.effects.load_sharing import LoadSharing
+from swgsim.effects.reduced_damping import ReducedDamping
+from swgsim.effects.text import from_text
+from swgsim.folder import write_folder
+from swgsim.gear import OperatingPoint
+from swgsim.loop import job, model
+from swgsim.loop.answer import NOTHING, answer
+from swgsim.loop.experiment import RECORDINGS, SEPARATED, next_experiments
+from swgsim.loop.fitting import Unit
+from swgsim.loop.session import Measured
+from swgsim.recording import Recording
+from swgsim.settings import gear
+from swgsim.virtual_bench import Instruments, Sessions, record_sessions
+
+CONF = Path(__file__).parent.parent / "conf"
+GEAR = yaml.safe_load((CONF / "gear" / "gear1.yaml").read_text())
+SECTORS = 40
+POINTS = tuple(OperatingPoint(n, T) for n in (2000.0, 4000.0) for T in (10.0, 70.0))
+SEARCHED = ["eccentric_wave_generator", "cam_form", "reduced_damping", "gauge_gain", "channel_skew", "sub_orders"]
+HIDDEN = EccentricWaveGenerator(3e-5, 1.0)
+KEYS = {
+    "verdict", "sentence", "noise_floor", "calibrated", "effects", "rejected", "error", "unknown", "next_experiment",
+    "moved", "absorbed", "detectable", "scores", "commissioned", "channels", "recordings", "defects", "seconds",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _small_mesh():
+    """The model on the mesh of the bench, which is a small one here."""
+    with pytest.MonkeyPatch.context() as patch:
+        coarse = partial(simulate_turns, sectors=SECTORS)
+        patch.setattr(
+            model, "simulate_turns", lambda runs, revolutions, points, sectors: coarse(runs, revolutions, points)
+        )
+        yield
+
+
+def recorded(*effects: Effect, seed: int, points: tuple[OperatingPoint, ...] = POINTS) -> tuple[Recording, ...]:
+    plan = Sessions(points, repeats=2, revolutions=5)
+    # Five revolutions are too few to tell slow noise of an amplifier from lines between the orders.
+    still = Instruments(wander=0.0)
+    return record_sessions(
+        gear(GEAR), effects, plan, Bench(), seed=seed, window=Window(), sectors=SECTORS, name="A", instruments=still
+    )
+
+
+@pytest.fixture(scope="module")
+def folders(tmp_path_factory):
+    """Recordings with and without a hidden effect, and of the healthy gear before."""
+    place = tmp_path_factory.mktemp("bench")
+    for name, effects, seed in (("sick", (HIDDEN,), 2), ("sound", (), 3), ("healthy", (), 1)):
+        write_folder(place / name, recorded(*effects, seed=seed))
+    (place / "sick.json").write_text(json.dumps({"hidden": [{"eccentric_wave_generator": {"r": 3e-5, "theta": 1.0}}]}))
+    return place
+
+
+def choices(folders: Path, recordings: str, **changes: object) -> dict:
+    plain = {
+        "recordings": str(folders / recordings), "commissioning": str(folders / "healthy"), "mapping": None,
+        "gear": GEAR, "effects": [], "out": str(folders / f"{recordings}-answer"), "searched": SEARCHED, "library": [],
+        "truth": None, "seed": 0,
+    }  # fmt: skip
+    return plain | changes
+
+
+@pytest.fixture(scope="module")
+def sick(folders):
+    """The answer to recordings of the sick gear."""
+    return job.run(choices(folders, "sick", truth=str(folders / "sick.json")))
+
+
+def read(folders: Path, name: str) -> dict:
+    def refuse(word: str) -> None:
+        raise ValueError(f"{word} is no JSON")
+
+    return json.loads((folders / name / "report.json").read_text(), parse_constant=refuse)
+
+
+def test_report_names_the_hidden_effect_with_its_size_and_evidence(folders, sick):
+    said = read(folders, "sick-answer")
+    assert set(said) == KEYS | {"hidden"}
+    (effect,) = said["effects"]
+    r = effect["parameters"]["r"]
+    assert said["verdict"] == "effect_found"
+    assert (effect["name"], effect["place"], r["unit"]) == ("eccentric_wave_generator", "wave generator", "m")
+    assert r["ci95"][0] < HIDDEN.r < r["ci95"][1]
+    assert effect["evidence"]["heldout_gain"] > 3
+    assert said["commissioned"]
+    assert set(said["calibrated"]) >= {"k1", "b1", "gain of s0"}
+    assert said["recordings"]["repeats"] == {"fewest": 2, "most": 2}
+
+
+def test_error_falls_to_the_noise_floor(sick):
+    error = sick.report["error"]
+    assert error["after"]["fit"] < 0.5 * error["before"]["fit"]
+    assert error["after"]["fit"] < 3 * error["noise_floor"]
+    assert set(error["per_channel"]) == {"n_in", "T_in", "T_out", "s0", "s1", "s2", "s3", "s4"}
+
+
+def test_page_opens_with_the_sentence_and_holds_all_it_needs(folders, sick):
+    page = (folders / "sick-answer" / "page.html").read_text()
+    first = re.search(r"<body>\s*<h1>(.*?)</h1>", page, re.DOTALL)
+    assert first is not None
+    assert unescape(first[1]) == sick.report["sentence"]
+    assert page.count("data:image/png;base64,") == len(sick.figures) >= 4
+    assert not re.search(r'(src|href)="(?!data:|#)', page)
+    assert "Effect that was hidden" in page
+
+
+def test_effects_are_given_back_as_they_were_found(folders, sick):
+    (found,) = from_text((folders / "sick-answer" / "effects.yaml").read_text(), "effects.yaml")
+    (effect,) = sick.report["effects"]
+    assert isinstance(found, EccentricWaveGenerator)
+    assert {name: p["value"] for name, p in effect["parameters"].items()} == {"r": found.r, "theta": found.theta}
+
+
+def test_nothing_is_missing_in_a_sound_gear(folders, capsys):
+    said = job.run(choices(folders, "sound")).report
+    printed = capsys.readouterr().out.splitlines()
+    assert (said["verdict"], said["effects"], said["unknown"]) == (NOTHING, [], None)
+    assert printed[0].startswith("Nothing is missing")
+    assert [line.split("  ")[0] for line in printed[1:]] == [
+        "error before",
+        "error after",
+        "noise floor",
+        "effect found",
+    ]
+    assert said["detectable"]["eccentric_wave_generator"]["value"] < HIDDEN.r
+    assert said["error"]["before"] == said["error"]["after"]
+
+
+def test_next_experiment_is_named_where_one_helps():
+    """Load sharing shows at another speed; less damping is what b1 of the series may be as well, at any point."""
+    recordings = recorded(seed=4, points=POINTS[2:3])
+    found = answer(recordings, Unit(model.Model(gear(GEAR))), [LoadSharing, ReducedDamping])
+    asked = replace(found, absorbed=found.closed.scores)
+    experiments = {each.between[0].split(" of ")[0]: each for each in next_experiments(asked)}
+    helpful, helpless = experiments["load sharing"], experiments["reduced damping"]
+    assert helpful.recordings in RECORDINGS
+    assert helpful.separation >= SEPARATED
+    assert helpful.point != POINTS[2]
+    assert helpless.recordings is None
+    assert "no operating point of the bench tells reduced damping" in str(helpless)
+    assert next_experiments(replace(found, absorbed=())) == ()
+
+
+def test_recordings_that_do_not_belong_together_are_refused(folders, tmp_path):
+    other = tuple(replace(each, gear="B") for each in recorded(seed=1, points=POINTS[:1]))
+    write_folder(tmp_path / "other", other)
+    with pytest.raises(ValueError, match="gear 'A', those of the commissioning of 'B': commission the same gear"):
+        job.run(choices(folders, "sound", commissioning=str(tmp_path / "other")))
+    bare = tuple(replace(each, channels={"s1": each.channels["s1"]}) for each in other)
+    write_folder(tmp_path / "bare", bare)
+    with pytest.raises(ValueError, match="has no phi_in_rad"):
+        job.run(choices(tmp_path, "sound") | {"recordings": str(tmp_path / "bare")})
+    with pytest.raises(ValueError, match=r"no truth of scripts/record\.py"):
+        job.run(choices(folders, "sound", truth=str(CONF / "gear" / "gear1.yaml")))
+
+
+def test_channels_that_only_one_side_has_are_left_out(folders):
+    recordings = recorded(seed=1, points=POINTS[:1])
+    fewer = tuple(replace(r, channels={n: v for n, v in r.channels.items() if n != "s0"}) for r in recordings)
+    one, other = job._alike(recordings, fewer)
+    assert Measured.of(one).layout == Measured.of(other).layout
+    assert "s0" not in one[0].channels

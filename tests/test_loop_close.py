@@ -1,0 +1,100 @@
+"""The loop from recordings of the virtual bench to what the model lacks, on a coarse mesh."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import jaxtyping
+import pytest
+from chain_fixtures import GEAR
+
+from swgsim.acquisition import Window
+from swgsim.bench import Bench
+from swgsim.chain import simulate_turns
+from swgsim.conditions import Conditions
+from swgsim.effects import Effect
+from swgsim.effects.library import LIBRARY
+from swgsim.gear import OperatingPoint
+from swgsim.loop.closing import ALPHA, Closed, close
+from swgsim.loop.fitting import Unit, commission
+from swgsim.loop.model import Model
+from swgsim.loop.session import Measured
+from swgsim.virtual_bench import Sessions, record_sessions
+
+SECTORS = 40
+POINTS = tuple(OperatingPoint(n, T) for n in (2000.0, 4000.0) for T in (7.0, 70.0))
+PLAN = Sessions(POINTS, repeats=2, revolutions=6, warming=0.0, unsteady=0.0, thermometer=0.0)
+ECCENTRIC = LIBRARY["eccentric_wave_generator"](10e-6, 1.0)
+WARM = LIBRARY["warm_grease"](8.0)
+NAMES = ("eccentric_wave_generator", "warm_grease", "reduced_damping", "zero_offset")
+SEARCHED = [LIBRARY[name] for name in NAMES]
+
+
+def recorded(effects: tuple[Effect, ...], seed: int) -> Measured:
+    """Two recordings of each operating point, all at the reference temperature."""
+    recordings = record_sessions(GEAR, effects, PLAN, Bench(), seed=seed, window=Window(), sectors=SECTORS)
+    return Measured.of([replace(each, conditions=Conditions()) for each in recordings])
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _coarse_mesh() -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:
+        # The integrator calls small functions a million times; their types are checked in the tests of the chain.
+        patch.setattr(jaxtyping.config, "jaxtyping_disable", True)
+        patch.setattr(
+            "swgsim.loop.model.simulate_turns",
+            lambda runs, revolutions, points, sectors: simulate_turns(runs, revolutions, points, SECTORS),
+        )
+        yield
+
+
+@pytest.fixture(scope="module")
+def unit(_coarse_mesh) -> Unit:
+    """The gear as commissioned."""
+    return commission(recorded((), seed=1), Unit(Model(GEAR)))
+
+
+def accepted(closed: Closed) -> list[Effect]:
+    """All effects that were added."""
+    return [effect for step in closed.steps for effect in step.accepted.effects]
+
+
+def test_commissioning_finds_the_gear_and_narrows_what_is_open(unit):
+    assert unit.commissioned
+    assert unit.model.gear.transmission.k1 == pytest.approx(GEAR.transmission.k1, rel=0.05)
+    assert unit.reach.shape == (len(unit.shift), len(unit.shift))
+
+
+def test_nothing_is_found_where_nothing_is_missing(unit):
+    closed = close(recorded((), seed=2), unit, SEARCHED)
+    assert closed.steps == closed.rejected == ()
+    assert closed.after is closed.before
+    assert min(score.chance for score in closed.scores) > ALPHA
+
+
+def test_an_eccentric_wave_generator_is_found_with_its_size(unit):
+    closed = close(recorded((ECCENTRIC,), seed=2), unit, SEARCHED)
+    (found,) = accepted(closed)
+    assert type(found) is type(ECCENTRIC)
+    name = next(name for name in closed.after.deviation if name.endswith(": r"))
+    assert abs(found.r - 10e-6) < 3 * closed.after.deviation[name]
+    assert closed.after.deviation[name] < 4e-6
+    assert found.theta == pytest.approx(1.0, abs=0.1)
+    assert closed.rejected == ()
+    assert min(score.chance for score in closed.left) > ALPHA
+
+
+def test_warm_grease_and_reduced_damping_are_rivals(unit):
+    closed = close(recorded((WARM,), seed=2), unit, SEARCHED)
+    (step,) = closed.steps
+    named = {type(effect).name() for trial in (step.accepted, *step.rivals) for effect in trial.effects}
+    assert named == {"warm_grease", "reduced_damping"}
+
+
+def test_two_effects_at_once_are_both_found(unit):
+    closed = close(recorded((ECCENTRIC, WARM), seed=2), unit, SEARCHED)
+    named = {type(effect).name() for effect in accepted(closed)}
+    assert len(accepted(closed)) == 2
+    assert "eccentric_wave_generator" in named
+    assert named & {"warm_grease", "reduced_damping"}
+    gain = closed.after.predictive - closed.before.predictive
+    assert gain > 6

@@ -1,0 +1,95 @@
+"""A cause serves all operating points, channels and orders with one size; a mimic does not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from loop_fixtures import drawn, fitted_to, holding
+
+from swgsim.loop import evidence
+from swgsim.loop.features import Layout
+
+LAYOUT = Layout(("T_in", "s0", "s1"))
+STRONG = 10.0  # in units of the noise, feature by feature
+
+
+@pytest.fixture
+def planted():
+    """A model that has an effect fitted, whose size is a parameter as good as free, and the effect's signature."""
+    rng = np.random.default_rng(1)
+    fitted = fitted_to(LAYOUT, rng, repeats=2)
+    whole = fitted.measured.rows(STRONG * rng.standard_normal((len(fitted.measured.situations), len(LAYOUT))))
+    return fitted, whole
+
+
+def split_by_form(fitted, whole, error, rng) -> np.ndarray:
+    """A signature whose channels, orders and operating points are each off by a share of their own."""
+    measured = fitted.measured
+    channels = 1 + error * rng.standard_normal(len(LAYOUT.channels))
+    orders = 1 + error * rng.standard_normal(LAYOUT.order.max() + 1)
+    points = 1 + error * rng.standard_normal(len(measured.situations))
+    of_feature = np.repeat(channels, len(LAYOUT) // len(LAYOUT.channels)) * orders[LAYOUT.order]
+    return whole * np.outer(points[measured.of_recording], of_feature).ravel()
+
+
+@pytest.fixture
+def judged(planted, monkeypatch):
+    """Coherence of the effect, fitted in size, with a signal on noise."""
+    fitted, whole = planted
+
+    def found(signal: np.ndarray, rng: np.random.Generator) -> evidence.Coherence:
+        r = signal + drawn(fitted.whole, rng)
+        weighed, unit = fitted.whole.whiten(r), fitted.whole.whiten(whole)
+        size = float(unit @ weighed / (unit @ unit))
+        monkeypatch.setattr(evidence, "signature", lambda fitted, number: size * whole)
+        free = replace(fitted, open=np.hstack([fitted.open, 10 * whole[:, None]]))
+        return evidence.coherence(holding(free, r), 0)
+
+    return found
+
+
+def test_an_effect_of_exact_form_is_coherent(planted, judged):
+    rng = np.random.default_rng(2)
+    found = [judged(size * planted[1], rng) for size in (0.5, 1.0, -2.0) * 7]
+    assert all(each.holds for each in found)
+    assert np.median([each.form_error for each in found]) < 0.03
+
+
+def test_an_effect_whose_parts_are_off_by_a_fifth_is_coherent(planted, judged):
+    rng = np.random.default_rng(3)
+    found = [judged(split_by_form(*planted, 0.2, rng), rng) for _ in range(40)]
+    assert np.mean([each.holds for each in found]) >= 0.9
+
+
+@pytest.mark.parametrize("error", [0.1, 0.2, 0.4])
+def test_form_error_is_the_one_that_is_there(planted, judged, error):
+    rng = np.random.default_rng(4)
+    found = np.median([judged(split_by_form(*planted, error, rng), rng).form_error for _ in range(30)])
+    assert 0.6 * error < found < 2 * error
+
+
+@pytest.mark.parametrize("part", ["point", "channel", "order"])
+def test_an_effect_in_one_part_only_is_a_mimic(planted, judged, part):
+    fitted, whole = planted
+    masks = {
+        "point": fitted.measured.point_rows()[2],
+        "channel": np.tile(LAYOUT.channel == "s0", len(fitted.measured)),
+        "order": np.tile(LAYOUT.order == 2, len(fitted.measured)),
+    }
+    rng = np.random.default_rng(5)
+    found = [judged(whole * masks[part], rng) for _ in range(5)]
+    assert not any(each.holds for each in found)
+    assert all(each.form_error > 0.4 for each in found)
+
+
+def test_an_effect_of_the_wrong_sign_at_one_point_is_a_mimic(planted, judged):
+    fitted, whole = planted
+    found = judged(whole * np.where(fitted.measured.point_rows()[0], -1, 1), np.random.default_rng(6))
+    assert not found.holds
+
+
+def test_a_weak_effect_is_not_contradicted_by_noise(planted, judged):
+    rng = np.random.default_rng(7)
+    found = [judged(0.01 * planted[1], rng) for _ in range(150)]
+    assert all(each.holds for each in found)
+    assert 0.03 <= np.mean(np.array([each.chance for each in found]) < 0.1) <= 0.2

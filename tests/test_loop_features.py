@@ -1,0 +1,82 @@
+"""Order lines are those of the signal, whatever the speed ripple and wherever the window ends."""
+
+import numpy as np
+import pytest
+from loop_fixtures import POINTS, recorded, turning
+
+from swgsim.loop.features import FITTED, ORDERS, Layout, features, layout_of, remainder
+
+LAYOUT = Layout(("T_in", "s1"))
+
+
+def lines_of(seed: int, orders: int = FITTED) -> np.ndarray:
+    """Random lines of two channels; the mean is real."""
+    rng = np.random.default_rng(seed)
+    lines = rng.normal(size=(2, orders + 1)) + 1j * rng.normal(size=(2, orders + 1))
+    lines[:, 0] = lines[:, 0].real
+    return lines
+
+
+def signals(lines: np.ndarray, phi: np.ndarray) -> dict[str, np.ndarray]:
+    """The two channels."""
+    values = np.real(lines @ np.exp(1j * np.outer(np.arange(lines.shape[1]), phi)))
+    return {"phi_in": phi, "T_in": values[0], "s1": values[1]}
+
+
+@pytest.mark.parametrize("revolutions", [12.0, 5.37, 1.4])
+def test_lines_of_a_known_signal_are_found(revolutions):
+    lines, phi = lines_of(1), turning(POINTS[0], revolutions, 10_000.0)
+    found = LAYOUT.lines(features(recorded(signals(lines, phi)), LAYOUT))
+    np.testing.assert_allclose(found, lines[:, : ORDERS + 1], atol=1e-9)
+
+
+def test_amplitude_and_phase_of_one_line():
+    phi = turning(POINTS[3], 7.3, 10_000.0)
+    values = 0.17 * np.cos(2 * phi + 0.4)
+    found = LAYOUT.lines(features(recorded({"phi_in": phi, "T_in": values, "s1": 1 + 0 * values}), LAYOUT))
+    assert np.abs(found[0, 2]) == pytest.approx(0.17, abs=1e-10)
+    assert np.angle(found[0, 2]) == pytest.approx(0.4, abs=1e-9)
+    assert found[1, 0] == pytest.approx(1, abs=1e-10)
+    found[0, 2] = found[1, 0] = 0
+    assert np.abs(found).max() < 1e-10
+
+
+def test_lines_and_vectors_are_each_others_inverse():
+    lines = np.stack([lines_of(seed, ORDERS) for seed in range(3)])
+    vectors = LAYOUT.vector(lines)
+    assert vectors.shape == (3, len(LAYOUT))
+    np.testing.assert_allclose(LAYOUT.lines(vectors), lines, atol=1e-15)
+    np.testing.assert_array_equal(LAYOUT.vector(LAYOUT.lines(vectors)), vectors)
+
+
+def test_channel_and_order_name_each_feature():
+    lines = np.zeros((2, ORDERS + 1), complex)
+    lines[1, 5] = 2 - 3j
+    touched = np.flatnonzero(LAYOUT.vector(lines))
+    assert sorted(LAYOUT.vector(lines)[touched]) == [2, 3]
+    assert set(LAYOUT.channel[touched]) == {"s1"}
+    assert set(LAYOUT.order[touched]) == {5}
+
+
+def test_a_shifted_trigger_turns_the_lines():
+    lines, phi, shift = lines_of(2), turning(POINTS[0], 6.2, 10_000.0), 0.21
+    channels = signals(lines, phi)
+    late = LAYOUT.lines(features(recorded(channels | {"phi_in": phi - shift}), LAYOUT))
+    expected = lines[:, : ORDERS + 1] * np.exp(1j * shift * np.arange(ORDERS + 1))
+    np.testing.assert_allclose(late, expected, atol=1e-9)
+
+
+def test_what_lies_between_the_orders_remains():
+    phi = turning(POINTS[0], 12.0, 10_000.0)
+    channels = signals(lines_of(3), phi)
+    assert np.abs(remainder(recorded(channels), LAYOUT)).max() < 1e-10
+    between = remainder(recorded(channels | {"s1": channels["s1"] + np.cos(0.455 * phi)}), LAYOUT)
+    assert np.abs(between[0]).max() < 1e-10
+    assert np.sqrt(2) * between[1].std() == pytest.approx(1, abs=0.05)
+
+
+def test_a_channel_that_one_recording_lacks_is_not_compared():
+    phi = turning(POINTS[0], 3.0, 10_000.0)
+    full = recorded(signals(lines_of(4), phi))
+    short = recorded({"phi_in": phi, "s1": full.channels["s1"]})
+    assert layout_of([full, short]).channels == ("s1",)

@@ -1,0 +1,89 @@
+"""The low-rank algebra agrees with dense matrices."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.special import log_ndtr
+from scipy.stats import multivariate_normal
+
+from swgsim.loop.gaussian import Covariance
+from swgsim.loop.tail import log_tail
+
+SHAPES = {"rows": st.integers(2, 12), "columns": st.integers(0, 15), "seed": st.integers(0, 10_000)}
+
+
+def random_covariance(rows: int, columns: int, seed: int) -> tuple[Covariance, np.ndarray, np.random.Generator]:
+    """One with common errors from a hundredth to a hundred times the noise, and its dense form."""
+    rng = np.random.default_rng(seed)
+    found = Covariance(rng.uniform(0.1, 10, rows), rng.normal(size=(rows, columns)) * 10 ** rng.uniform(-2, 2, columns))
+    return found, np.diag(found.variance) + found.G @ found.G.T, rng
+
+
+@settings(deadline=None, max_examples=60)
+@given(**SHAPES)
+def test_whitening_makes_the_covariance_the_identity(rows, columns, seed):
+    covariance, dense, rng = random_covariance(rows, columns, seed)
+    W = covariance.whiten(np.eye(rows))
+    np.testing.assert_allclose(W @ dense @ W.T, np.eye(rows), atol=1e-7)
+    x = rng.normal(size=(rows, 3))
+    np.testing.assert_allclose(covariance.whiten(x), W @ x, atol=1e-8)
+    np.testing.assert_allclose(covariance.whiten(x[:, 0]), W @ x[:, 0], atol=1e-8)
+
+
+@settings(deadline=None, max_examples=60)
+@given(**SHAPES)
+def test_whitening_is_symmetric_in_units_of_the_noise(rows, columns, seed):
+    covariance, _, _ = random_covariance(rows, columns, seed)
+    scaled = covariance.whiten(np.diag(np.sqrt(covariance.variance)))
+    np.testing.assert_allclose(scaled, scaled.T, atol=1e-9)
+
+
+@settings(deadline=None, max_examples=60)
+@given(**SHAPES)
+def test_log_likelihood_is_the_normal_one_without_its_constant(rows, columns, seed):
+    covariance, dense, rng = random_covariance(rows, columns, seed)
+    r = rng.normal(size=rows)
+    expected = multivariate_normal(np.zeros(rows), dense).logpdf(r) + 0.5 * rows * np.log(2 * np.pi)
+    assert covariance.log_likelihood(r) == pytest.approx(expected, rel=1e-6, abs=1e-6)
+
+
+@settings(deadline=None, max_examples=60)
+@given(**SHAPES)
+def test_rows_left_out_have_the_conditional_distribution(rows, columns, seed):
+    covariance, dense, rng = random_covariance(rows, columns, seed)
+    r = rng.normal(size=rows)
+    block = rng.permutation(np.arange(rows) < max(1, rows // 3))
+    gain = dense[np.ix_(block, ~block)] @ np.linalg.inv(dense[np.ix_(~block, ~block)])
+    mean, spread = gain @ r[~block], dense[np.ix_(block, block)] - gain @ dense[np.ix_(~block, block)]
+    found = covariance.left_out(r, block)
+    np.testing.assert_allclose(found.missed, r[block] - mean, rtol=1e-5, atol=1e-5)
+    expected = multivariate_normal(mean, spread).logpdf(r[block]) + 0.5 * block.sum() * np.log(2 * np.pi)
+    assert found.log_likelihood == pytest.approx(expected, rel=1e-5, abs=1e-4)
+
+
+def test_further_columns_add_their_covariance():
+    covariance, dense, rng = random_covariance(6, 2, 1)
+    more = rng.normal(size=(6, 3))
+    W = covariance.with_columns(more).whiten(np.eye(6))
+    np.testing.assert_allclose(W @ (dense + more @ more.T) @ W.T, np.eye(6), atol=1e-9)
+
+
+@pytest.mark.parametrize("value", [0.1, 3.0, 100.0, 599.0, 601.0, 2000.0, 1e6])
+def test_tail_of_one_and_two_degrees_of_freedom_is_exact(value):
+    assert float(log_tail(value, 2)) == pytest.approx(-value / 2, rel=1e-12)
+    assert float(log_tail(value, 1)) == pytest.approx(np.log(2) + log_ndtr(-np.sqrt(value)), rel=1e-5)
+
+
+@pytest.mark.parametrize("freedom", [4, 18, 72])
+@pytest.mark.parametrize("value", [10.0, 700.0, 1100.0, 5000.0])
+def test_tail_of_even_degrees_of_freedom_is_the_sum_of_poisson(freedom, value):
+    terms = np.cumsum(np.log(np.concatenate([[1.0], value / 2 / np.arange(1, freedom // 2)])))
+    expected = -value / 2 + np.logaddexp.reduce(terms)
+    assert float(log_tail(value, freedom)) == pytest.approx(expected, abs=0.1)
+
+
+def test_tail_falls_as_the_value_grows():
+    values = np.linspace(1, 4000, 4000)
+    for freedom in (1, 2, 8, 36, 90):
+        assert np.all(np.diff(log_tail(values, freedom)) <= 1e-12)

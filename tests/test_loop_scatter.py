@@ -1,0 +1,97 @@
+"""Errors of single recordings are found from repeats."""
+
+import numpy as np
+import pytest
+
+from swgsim.loop.features import ORDERS, Layout
+from swgsim.loop.scatter import DOUBT, STATED, covariance, estimate, kinds
+
+LAYOUT = Layout(("T_in", "T_out", "s0", "s1"))
+KINDS = kinds(LAYOUT)
+
+
+def fabricated(
+    seed: int, repeats: list[int], factor: dict[str, float], *, noise: float = 0.3
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[object]]:
+    """Residuals whose errors of single recordings are `factor` times those stated, on an offset of each group."""
+    rng = np.random.default_rng(seed)
+    groups = [group for group, number in enumerate(repeats) for _ in range(number)]
+    offset = rng.normal(size=(len(repeats), len(LAYOUT)))
+    B = rng.normal(size=(len(repeats), len(LAYOUT), len(KINDS)))[groups] / np.array([STATED[kind] for kind in KINDS])
+    s = np.array([STATED[kind] * factor.get(kind, 1.0) for kind in KINDS])
+    errors = np.einsum("rfk,rk->rf", B, s * rng.normal(size=(len(groups), len(KINDS))))
+    variance = np.full((len(groups), len(LAYOUT)), noise**2)
+    return offset[groups] + errors + noise * rng.standard_normal(errors.shape), variance, B, groups
+
+
+def ratios(seed: int, repeats: list[int], factor: dict[str, float], noise: float = 0.3) -> np.ndarray:
+    """Estimated over stated standard deviations."""
+    found = estimate(*fabricated(seed, repeats, factor, noise=noise), LAYOUT)
+    return np.array([found.sd[kind] / STATED[kind] for kind in KINDS])
+
+
+@pytest.mark.parametrize("repeats", [[3] * 6, [2, 5, 1, 4, 7, 5]])
+def test_known_standard_deviations_are_recovered(repeats):
+    factor = {"load": 3.0, "trigger": 0.3, "zero of s0": 0.5}
+    true = np.array([factor.get(kind, 1.0) for kind in KINDS])
+    found = np.log([ratios(seed, repeats, factor) / true for seed in range(30)])
+    freedom = sum(repeats) - len(repeats)
+    expected = 1 / np.sqrt(2 * freedom)
+    np.testing.assert_allclose(found.std(axis=0), expected, rtol=0.45)
+    # A logarithm of a root of chi-squared lies 1 / (2 freedom) below zero in the mean.
+    np.testing.assert_allclose(found.mean(axis=0), 0, atol=4 * expected / np.sqrt(30) + 1 / freedom)
+
+
+def test_many_repeats_leave_little_doubt():
+    found = ratios(1, [100] * 3, {"load": 10.0, "speed": 0.1})
+    assert found[KINDS.index("load")] == pytest.approx(10, rel=0.15)
+    assert found[KINDS.index("speed")] == pytest.approx(0.1, rel=0.15)
+
+
+@pytest.mark.xfail(strict=True, reason="L-BFGS-B rests where the cost falls by less than 2e-9 of itself")
+def test_noise_of_no_account_does_not_stop_the_search():
+    found = ratios(1, [100] * 3, {"load": 10.0, "speed": 0.1}, noise=1e-3)
+    assert found[KINDS.index("load")] == pytest.approx(10, rel=0.15)
+    assert found[KINDS.index("speed")] == pytest.approx(0.1, rel=0.15)
+
+
+def test_without_repeats_it_is_what_was_stated():
+    found = estimate(*fabricated(1, [1] * 6, {"load": 10.0}), LAYOUT)
+    assert found.repeats == 0
+    assert found.sd == {kind: STATED[kind] for kind in KINDS}
+
+
+def test_an_error_that_cannot_be_seen_stays_as_stated():
+    residual, variance, B, groups = fabricated(1, [3] * 6, {})
+    unseen = KINDS.index("dry friction")
+    B = B.copy()
+    B[:, :, unseen] = 0
+    assert estimate(residual, variance, B, groups, LAYOUT).sd["dry friction"] == pytest.approx(STATED["dry friction"])
+
+
+def test_two_repeats_weigh_the_statement_with_what_they_show():
+    """The likeliest logarithm for one contrast that shows an error of 30 standard deviations in little noise."""
+    size, rows = 30.0, 40
+    B = np.zeros((2, len(LAYOUT), len(KINDS)))
+    B[:, :rows, KINDS.index("load")] = 1 / STATED["load"]
+    residual = np.zeros((2, len(LAYOUT)))
+    residual[1, :rows] = size * np.sqrt(2)
+    found = np.log(estimate(residual, np.full(residual.shape, 1.0), B, [0, 0], LAYOUT).sd["load"] / STATED["load"])
+    # Derivative of the logarithm of the posterior: size^2 / s^2 - 1 - log(s) / DOUBT^2 = 0.
+    assert size**2 * np.exp(-2 * found) - 1 - found / DOUBT**2 == pytest.approx(0, abs=0.03)
+
+
+def test_covariance_holds_every_recording_by_itself():
+    rng = np.random.default_rng(1)
+    columns = rng.normal(size=(3, len(LAYOUT), 2))
+    found = covariance(np.ones((3, len(LAYOUT))), columns)
+    dense = (found.G @ found.G.T).reshape(3, len(LAYOUT), 3, len(LAYOUT))
+    for i in range(3):
+        np.testing.assert_allclose(dense[i, :, i], columns[i] @ columns[i].T, atol=1e-12)
+        assert not dense[i][:, np.arange(3) != i].any()
+
+
+def test_kinds_follow_the_channels():
+    assert "zero of T_in" in kinds(LAYOUT)
+    assert "zero of s4" not in kinds(LAYOUT)
+    assert len(LAYOUT) == 4 * (2 * ORDERS + 1)

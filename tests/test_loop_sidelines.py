@@ -1,0 +1,79 @@
+"""Lines between the orders are found and named; noise is not."""
+
+import numpy as np
+import pytest
+from loop_fixtures import POINTS, recorded, turning
+
+from swgsim.effects.base import Effect, Scene
+from swgsim.effects.library import LIBRARY
+from swgsim.loop.sidelines import sidelines
+from swgsim.recording import Recording
+from swgsim.recordings import SENSORS
+from swgsim.seeds import generator
+
+KINDS = [LIBRARY["bearing_cage"], LIBRARY["mains_hum"]]
+NOISE = 1e-3
+
+
+def measured(effects: tuple[Effect, ...], seed: int, points=POINTS) -> list[Recording]:
+    """Gauges with order 2, white noise, and effects with another phase in every recording."""
+    found = []
+    for point in points:
+        rng = generator("sidelines", seed, point.n_in_rpm, point.T_out)
+        rate = 50 * point.n_in_rpm / 60
+        phi = turning(point, 12, rate)
+        load = np.full(len(phi), point.T_out)
+        ideal = recorded({"phi_in": phi, "T_out": load}, point, rate)
+        scene = Scene(ideal.time, phi, load, point, ideal.conditions)
+        signals = 0.17 * np.cos(2 * phi + np.pi / 2 * np.arange(5)[:, None])
+        for effect in (each.drawn(rng) for each in effects):
+            signals = effect.gauge(signals, scene)
+            signals = np.array(
+                [effect.acquisition(dict(zip(SENSORS, signals, strict=True)), scene)[s] for s in SENSORS]
+            )
+        signals = signals + NOISE * rng.standard_normal(signals.shape)
+        channels = {"phi_in": phi, "T_out": load, **dict(zip(SENSORS, signals, strict=True))}
+        found.append(recorded(channels, point, rate))
+    return found
+
+
+def test_the_line_of_a_bearing_cage_is_found():
+    best = sidelines(measured((LIBRARY["bearing_cage"](amplitude=1e-3, order=0.451),), 1), KINDS)[0]
+    assert best.effect.name() == "bearing_cage"
+    assert best.chance < 1e-6
+    assert best.effect.order == pytest.approx(0.451, abs=0.01)
+    assert best.effect.amplitude == pytest.approx(1e-3, abs=4 * best.deviation)
+    assert best.agrees > 0.001
+
+
+def test_the_hum_of_the_mains_is_found():
+    best = sidelines(measured((LIBRARY["mains_hum"](amplitude=5e-4, frequency=60.0),), 2), KINDS)[0]
+    assert best.effect.name() == "mains_hum"
+    assert best.chance < 1e-6
+    assert best.effect.frequency == pytest.approx(60, abs=1)
+    assert best.effect.amplitude == pytest.approx(5e-4, abs=4 * best.deviation)
+
+
+def test_a_line_of_the_wrong_law_does_not_agree():
+    """Hum at full load only is no hum."""
+    calm, humming = (measured(e, 3) for e in ((), (LIBRARY["mains_hum"](amplitude=2e-3, frequency=50.0),)))
+    mixed = [humming[i] if POINTS[i].T_out == 70 else calm[i] for i in range(len(POINTS))]
+    best = next(line for line in sidelines(mixed, KINDS) if line.effect.name() == "mains_hum")
+    assert best.chance < 1e-6
+    assert best.agrees < 1e-4
+
+
+def test_size_is_covered_by_its_deviation():
+    missed = []
+    for seed in range(20):
+        recordings = measured((LIBRARY["mains_hum"](amplitude=3e-4, frequency=50.0),), 100 + seed, POINTS[:2])
+        best = sidelines(recordings, KINDS[1:])[0]
+        missed.append((best.effect.amplitude - 3e-4) / best.deviation)
+    assert 0.8 <= np.mean(np.abs(missed) < 1.96) <= 1.0
+
+
+def test_noise_has_no_lines():
+    chance = np.array([min(s.chance for s in sidelines(measured((), 200 + i, POINTS[:2]), KINDS)) for i in range(20)])
+    # Under a uniform chance 0.4 and 2 of them.
+    assert (chance <= 0.02).sum() <= 3
+    assert (chance <= 0.1).sum() <= 7
