@@ -23,7 +23,7 @@ JOBS := $(shell echo $$(( ($(CORES) + 3) / 4 )))
 export MLFLOW_DISABLE_TELEMETRY := true
 
 .DEFAULT_GOAL := help
-.PHONY: help install data experiments report paper transfer test lint benchmark convergence docs ui clean $(TABLES)
+.PHONY: help install data experiments report paper transfer loop blind test lint benchmark convergence docs ui clean $(TABLES)
 
 help:  ## this list
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-12s %s\n", $$1, $$2}'
@@ -63,6 +63,14 @@ transfer: data  ## beyond the paper: networks, transfer to gears never seen, rep
 	$(BIN)/python scripts/transfer_report.py grid=$(GEARS) paper_grid=$(GRID) started=$(STARTED)
 	@echo "open report/transfer.html; 'make ui' shows the runs"
 
+loop: $(READY)  ## closing the loop once, from nothing: record, hide an effect, find it; loop/page.html (under two minutes)
+	@set -e; rm -rf loop; \
+	$(BIN)/python scripts/record.py out=loop/commissioning seed=1 sessions.name=commissioning; \
+	$(BIN)/python scripts/record.py out=loop/recordings seed=2 'hidden=[{eccentric_wave_generator: {r: 1.0e-5, theta: 1.0}}]'; \
+	$(BIN)/python scripts/close_loop.py recordings=loop/recordings commissioning=loop/commissioning \
+	    truth=loop/recordings.truth.json out=loop/answer
+	@echo "open loop/answer/page.html; 'make ui' shows the run"
+
 test: $(READY)  ## all tests
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile -q
 
@@ -77,8 +85,9 @@ benchmark: $(READY)  ## the chain against the obvious ways of doing the same
 convergence: $(READY)  ## gauge signals against the mesh of the flex spline
 	$(BIN)/python -m swgsim.convergence
 
-docs: $(READY)  ## the picture of the README
+docs: $(READY)  ## the picture of the README and the page of the effects
 	$(BIN)/python -m swgsim.flexspline_figures docs/flexspline.png
+	$(BIN)/python -m swgsim.effect_gallery docs
 
 ui: $(READY)  ## the runs in the MLflow page, on this machine only
 	$(BIN)/python scripts/ui.py

@@ -170,7 +170,7 @@ def test_a_lock_that_its_owner_removes_meanwhile_keeps_others_out(
 @pytest.mark.parametrize(
     ("script", "word", "choices"),
     [
-        ("generate", "conditon=bench", "condition, data, gears, grid"),
+        ("generate", "conditon=bench", "condition, data, effects, gears, grid"),
         ("generate", "grid.varients=3", "speeds_rpm, variants"),
         ("train", "clasifier=rf", "classifier, condition, data"),
     ],

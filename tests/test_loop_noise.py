@@ -44,12 +44,12 @@ def test_lines_of_the_cage_and_the_mains_do_not_move_it(line):
 
 
 def test_features_scatter_as_their_variance_says():
-    recordings = noisy(12, 3, repeats=300)
+    recordings = noisy(12, 3, repeats=150)
     values = np.array([features(each, LAYOUT) for each in recordings])
     said = white_variance(recordings, LAYOUT).mean(axis=0)
-    # A variance from 300 values is good to 8 %.
-    np.testing.assert_allclose(values.var(axis=0, ddof=1) / said, 1, atol=0.35)
-    assert np.mean(values.var(axis=0, ddof=1) / said) == pytest.approx(1, abs=0.06)
+    # A variance from 150 values is good to 12 %.
+    np.testing.assert_allclose(values.var(axis=0, ddof=1) / said, 1, atol=0.5)
+    assert np.mean(values.var(axis=0, ddof=1) / said) == pytest.approx(1, abs=0.1)
 
 
 def test_a_channel_without_noise_still_has_a_floor():

@@ -39,7 +39,7 @@ def library(fitted, columns=1, seed=2) -> list[np.ndarray]:
 
 @pytest.mark.parametrize("columns", [1, 2])
 def test_chance_of_the_whole_library_is_uniform_if_nothing_is_missing(fitted, columns):
-    rng, draws = np.random.default_rng(3), 200
+    rng, draws = np.random.default_rng(3), 120
     signatures = library(fitted, columns)
     found = [
         min(s.chance for s in found_for(fitted, drawn(fitted.whole, rng), signatures, seed=i)) for i in range(draws)
