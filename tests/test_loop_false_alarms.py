@@ -13,7 +13,7 @@ from swgsim.loop.screening import screen
 
 LAYOUT = Layout(("T_in", "s0"))
 KINDS = kinds(LAYOUT)
-REPEATS, TRIALS = 3, 80
+REPEATS, TRIALS = 3, 60
 GROUPS = [point for point in range(len(POINTS)) for _ in range(REPEATS)]
 
 

@@ -1,0 +1,238 @@
+"""From a hidden effect to scores: record the gear, close the loop, make the data sets, train and test.
+
+The one place that knows both the chain, which makes recordings, and learning, which reads them.
+"""
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import joblib
+import pandas as pd
+from threadpoolctl import threadpool_limits
+
+import learn.sim_to_real
+from learn import identity, tracking
+from learn.sim_to_real.judging import Pair, judged
+from learn.sim_to_real.scores import scores
+from swgsim import generation, settings, storage
+from swgsim.acquisition import Window
+from swgsim.bench import Bench
+from swgsim.effects import text
+from swgsim.effects.base import Effect
+from swgsim.effects.library import SEARCHED, named
+from swgsim.gear import Gear, OperatingPoint
+from swgsim.loop import job as loop_job
+from swgsim.loop.answer import answer
+from swgsim.loop.fitting import Unit, commission
+from swgsim.loop.model import Model
+from swgsim.loop.report import report
+from swgsim.loop.session import Measured
+from swgsim.population import Population
+from swgsim.recording import Recording
+from swgsim.version import code_version
+from swgsim.virtual_bench import Sessions, record_sessions
+
+STUDY = "sim_to_real"
+
+
+@dataclass(frozen=True, eq=False)
+class Finished:
+    """What is kept of one undeclared effect.
+
+    Attributes
+    ----------
+    name : str
+    hidden : list
+        The effect as text.
+    loop : mapping
+        What the loop said: ``verdict``, ``sentence``, ``found``, ``rivals``, ``error``, ``noise_floor``, ``seconds``.
+    scores : DataFrame
+        Of :func:`learn.sim_to_real.scores.scores`.
+    """
+
+    name: str
+    hidden: list[dict[str, Any]]
+    loop: Mapping[str, Any]
+    scores: pd.DataFrame
+
+
+def run(config: Mapping[str, Any], store: tracking.Store) -> list[Finished]:
+    """Study every undeclared effect of a resolved configuration of ``conf/sim_to_real.yaml``, unless that is done.
+
+    Raises
+    ------
+    ValueError
+        If a choice is unknown or beyond its limits; it says which.
+    """
+    hidden = {name: settings.effects(entries) for name, entries in config["undeclared"].items()}
+    keys = {name: key(config, name) for name in hidden}
+    missing = [name for name in hidden if _finished(store, keys[name]).empty]
+    if missing:
+        with threadpool_limits(1):
+            bench = TestBench.of(config)
+            unit = commission(Measured.of(bench.recorded((), "commissioning")), Unit(Model(bench.nominal)))
+        for whose, gear, mesh in _sides(config, bench, unit):
+            data_set(config, f"{whose}-none", gear, (), mesh, number=whose == "bench")
+        workers = min(config["workers"] or joblib.cpu_count(), len(missing))
+        jobs = (joblib.delayed(study)(config, store, name, keys[name], bench, unit) for name in missing)
+        joblib.Parallel(n_jobs=workers)(jobs)
+    return [_read(store, name, _finished(store, keys[name])) for name in hidden]
+
+
+def key(config: Mapping[str, Any], name: str) -> str:
+    """Sixteen hexadecimal digits that change when the result for an undeclared effect may change."""
+    without = ("undeclared", "data", "out", "workers", "tracking")
+    decisive = {each: value for each, value in config.items() if each not in without}
+    digest = hashlib.sha256(json.dumps([name, config["undeclared"][name], decisive], sort_keys=True).encode())
+    digest.update(f"{code_version()} {identity.code_version()}".encode())
+    package = Path(learn.sim_to_real.__file__).parent
+    for source in (Path(__file__), package / "judging.py", package / "scores.py"):
+        digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+@dataclass(frozen=True)
+class TestBench:
+    """A unit of the series on the virtual bench.
+
+    Attributes
+    ----------
+    nominal, unit : Gear
+        What the model declares of the series, and the unit as it is.
+    sessions : Sessions
+    bench : Bench
+    window : Window
+    sectors : int
+    seed : int
+    """
+
+    nominal: Gear
+    unit: Gear
+    sessions: Sessions
+    bench: Bench
+    window: Window
+    sectors: int
+    seed: int
+
+    @classmethod
+    def of(cls, config: Mapping[str, Any]) -> "TestBench":
+        """The bench of a configuration."""
+        nominal = settings.gear(config["gear"])
+        series = settings.build(Population, config["spread"], count=1)
+        unit = replace(series.draw(nominal, config["unit"])[0], number=nominal.number)
+        grid = config["grid"]
+        points = tuple(OperatingPoint(float(n), float(T)) for n in grid["speeds_rpm"] for T in grid["loads_nm"])
+        return cls(
+            nominal, unit,
+            settings.build(Sessions, config["sessions"], points=points),
+            settings.build(Bench, config["condition"]["bench"]),
+            Window(rate=config["window"]["rate"], quantum=config["quantum"]),
+            config["bench_mesh"]["sectors"], config["seed"],
+        )  # fmt: skip
+
+    def recorded(self, effects: Sequence[Effect], session: str) -> tuple[Recording, ...]:
+        """Recordings of the healthy unit."""
+        return record_sessions(
+            self.unit, effects, replace(self.sessions, name=session), self.bench,
+            seed=self.seed, window=self.window, sectors=self.sectors,
+        )  # fmt: skip
+
+
+def study(
+    config: Mapping[str, Any], store: tracking.Store, name: str, key: str, bench: TestBench, unit: Unit
+) -> None:
+    """Close the loop on healthy recordings under one undeclared effect, train, test, and keep it as an MLflow run."""
+    entries = config["undeclared"][name]
+    hidden = settings.effects(entries)
+    parameters = {"study": STUDY, "undeclared": name, "key": key}
+    with threadpool_limits(1):
+        found, said = closed(config, name, bench.recorded(hidden, f"with {name}"), unit)
+        (_, twin, mesh), (_, real, fine) = _sides(config, bench, unit)
+        plain = data_set(config, "model-none", twin, (), mesh)
+        bench_plain = data_set(config, "bench-none", real, (), fine, number=1)
+        models = {
+            "before": Pair(plain, plain),
+            "after": Pair(plain, data_set(config, f"model-{name}-found", twin, found, mesh) if found else plain),
+            "oracle": Pair(plain, data_set(config, f"model-{name}", twin, hidden, mesh) if hidden else plain),
+        }
+        acting = data_set(config, f"bench-{name}", real, hidden, fine, number=1) if hidden else bench_plain
+        tags = {"data_digest": storage.digest(acting), "verdict": said["verdict"], "sentence": said["sentence"][:5000]}
+        with tracking.job_run(store, f"{STUDY} {name}", key, parameters, config, tags) as job:
+            predictions = judged(models, Pair(bench_plain, acting), config["methods"])
+            result = scores(predictions)
+            kept = pd.DataFrame({"said": [json.dumps({"hidden": text.entries(hidden), "loop": said})]})
+            tables = {"scores": result, "predictions": predictions, "loop": kept}
+            job.record(metrics(result), {}, {f"tables/{each}.parquet": table for each, table in tables.items()})
+
+
+def closed(
+    config: Mapping[str, Any], name: str, recordings: Sequence[Recording], unit: Unit
+) -> tuple[tuple[Effect, ...], dict[str, Any]]:
+    """What the loop finds in recordings of a commissioned unit, and what it says; its page goes to a folder."""
+    kinds = SEARCHED if config["searched"] is None else tuple(map(named, config["searched"]))
+    found = answer(recordings, unit, kinds, seed=config["seed"])
+    said = report(found, kinds)
+    loop_job.write(Path(config["out"]) / STUDY / name, found, said)
+    rivals = [each.name() for step in found.closed.steps for trial in step.rivals for each in trial.effects]
+    shown = {each: said[each] for each in ("verdict", "sentence", "error")}
+    return found.effects, {**shown, "found": text.entries(found.effects), "rivals": rivals}
+
+
+def data_set(
+    config: Mapping[str, Any], name: str, gear: Gear, effects: Sequence[Effect], mesh: Mapping[str, Any],
+    *, number: int = 0,
+) -> Path:  # fmt: skip
+    """A data set of one gear, every run of which is under some effects; made unless it is there.
+
+    Parameters
+    ----------
+    config : mapping
+    name : str
+    gear : Gear
+    effects : sequence of Effect
+    mesh : mapping
+        Of conf/mesh.
+    number : int
+        Data sets of different numbers have other draws of severities, positions and errors.
+    """
+    chosen = {
+        "grid": {**config["grid"], "name": f"{STUDY}-{name}", "seed": config["grid"]["seed"] + number},
+        "condition": config["condition"],
+        "window": config["window"],
+        "mesh": mesh,
+        "gears": {"unit": json.loads(json.dumps(asdict(gear)))},
+        "effects": text.entries(effects),
+        "data": config["data"],
+        "workers": 1,
+    }
+    return Path(generation.run(chosen)["path"])
+
+
+def metrics(result: pd.DataFrame) -> dict[str, float]:
+    """Accuracy and false alarms under names that MLflow accepts."""
+    return {
+        f"{row['method']}/{row['day'].replace(' ', '_')}/{row['model']}/{what}": float(row[what])
+        for _, row in result.iterrows()
+        for what in ("accuracy", "false_alarms")
+    }
+
+
+def _sides(
+    config: Mapping[str, Any], bench: TestBench, unit: Unit
+) -> tuple[tuple[str, Gear, Mapping[str, Any]], tuple[str, Gear, Mapping[str, Any]]]:
+    """The gear as the commissioned model has it, and as it is, each with its mesh."""
+    return ("model", unit.model.gear, config["mesh"]), ("bench", bench.unit, config["bench_mesh"])
+
+
+def _finished(store: tracking.Store, key: str) -> pd.DataFrame:
+    return tracking.finished_runs(store, study=STUDY, key=key)
+
+
+def _read(store: tracking.Store, name: str, runs: pd.DataFrame) -> Finished:
+    run_id = str(runs.iloc[0]["run_id"])
+    kept = json.loads(tracking.table_of(store, run_id, "tables/loop.parquet")["said"].iloc[0])
+    return Finished(name, kept["hidden"], kept["loop"], tracking.table_of(store, run_id, "tables/scores.parquet"))
