@@ -16,6 +16,7 @@ from threadpoolctl import threadpool_limits
 
 import learn.sim_to_real
 from learn import identity, tracking
+from learn.sim_to_real.finished import Finished
 from learn.sim_to_real.judging import Pair, judged
 from learn.sim_to_real.scores import scores
 from swgsim import generation, settings, storage
@@ -39,28 +40,7 @@ from swgsim.virtual_bench import Sessions, record_sessions
 STUDY = "sim_to_real"
 
 
-@dataclass(frozen=True, eq=False)
-class Finished:
-    """What is kept of one undeclared effect.
-
-    Attributes
-    ----------
-    name : str
-    hidden : list
-        The effect as text.
-    loop : mapping
-        What the loop said: ``verdict``, ``sentence``, ``found``, ``rivals``, ``error``, ``noise_floor``, ``seconds``.
-    scores : DataFrame
-        Of :func:`learn.sim_to_real.scores.scores`.
-    """
-
-    name: str
-    hidden: list[dict[str, Any]]
-    loop: Mapping[str, Any]
-    scores: pd.DataFrame
-
-
-def run(config: Mapping[str, Any], store: tracking.Store) -> list[Finished]:
+def study_all(config: Mapping[str, Any], store: tracking.Store) -> list[Finished]:
     """Study every undeclared effect of a resolved configuration of ``conf/sim_to_real.yaml``, unless that is done.
 
     Raises
@@ -142,9 +122,7 @@ class TestBench:
         )  # fmt: skip
 
 
-def study(
-    config: Mapping[str, Any], store: tracking.Store, name: str, key: str, bench: TestBench, unit: Unit
-) -> None:
+def study(config: Mapping[str, Any], store: tracking.Store, name: str, key: str, bench: TestBench, unit: Unit) -> None:
     """Close the loop on healthy recordings under one undeclared effect, train, test, and keep it as an MLflow run."""
     entries = config["undeclared"][name]
     hidden = settings.effects(entries)

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -71,14 +70,13 @@ def judged(models: Mapping[str, Pair], bench: Pair, methods: Mapping[str, Mappin
     """
     tables = []
     for name, method in methods.items():
-        inputs = cache(lambda pair, day, of=settings.representation(method["features"]): of.learning_set(pair.blocks(day)))
+        representation = settings.representation(method["features"])
         for day in DAYS:
-            test = inputs(bench, day)
+            test = representation.learning_set(bench.blocks(day))
             for model in MODELS:
-                train = inputs(models[model], day)
+                train = representation.learning_set(models[model].blocks(day))
                 make = settings.classifier(method["classifier"], train.layout)
-                said = predictions(train, test, make)
-                tables.append(said.assign(method=name, day=day, model=model))
+                tables.append(predictions(train, test, make).assign(method=name, day=day, model=model))
     return pd.concat(tables, ignore_index=True)
 
 

@@ -1,5 +1,7 @@
 """Accuracy and false alarms of every model of a gear, with intervals over fault variants."""
 
+from typing import cast
+
 import numpy as np
 import pandas as pd
 
@@ -30,7 +32,8 @@ def scores(predictions: pd.DataFrame) -> pd.DataFrame:
         ``specimens``, the healthy ones. Each figure has its ``_low`` and ``_high``.
     """
     found = []
-    for (method, day), part in predictions.groupby(["method", "day"], sort=False):
+    for key, part in predictions.groupby(["method", "day"], sort=False):
+        method, day = cast(tuple[str, str], key)
         errors = pd.concat(
             [specimens(of).set_index(list(SPECIMEN))["error"].rename(model) for model, of in part.groupby("model")],
             axis=1,
@@ -60,7 +63,7 @@ def _with_interval(name: str, value: float, draws: pd.Series) -> dict[str, float
 
 
 def _false_alarms(errors: pd.Series) -> dict[str, float]:
-    """Mean with Wilson's interval, specimens taken as alarming or not: wide rather than narrow, also where none does."""
+    """Mean with Wilson's interval for as many independent answers as specimens: rather wide, also where none alarms."""
     from statsmodels.stats.proportion import proportion_confint
 
     count, rate = len(errors), float(errors.mean())

@@ -11,6 +11,7 @@ from jaxtyping import Float
 from matplotlib.figure import Figure
 
 from swgsim import style
+from swgsim.loop import scatter
 from swgsim.loop.answer import Answer
 from swgsim.loop.closing import ALPHA
 from swgsim.loop.features import ORDERS, basis
@@ -36,7 +37,7 @@ def pictures(answer: Answer, report: Mapping[str, Any]) -> dict[str, tuple[style
             "Residual over one revolution of the wave generator",
             "Measured less predicted, the mean of the repeats at the operating point where the model without the found "
             "effects is wrong most. Look at orange turning into blue: what is left should lie within the grey band, "
-            "two standard deviations of what noise, errors of single recordings and zeros of the session do to it.",
+            "two standard deviations of what noise and the errors of single recordings do to it.",
             over_angle(answer),
         ),
         "residual_spectrum": (
@@ -112,10 +113,11 @@ def worst(fitted: Fitted) -> list[int]:
 
 
 def _of_mean(fitted: Fitted, rows: Sequence[int]) -> Float[np.ndarray, "feature column"]:
-    """All errors of the mean of some recordings, one standard deviation each."""
+    """Errors of the mean of some recordings that are theirs alone, one standard deviation each."""
     measured = fitted.measured
+    own = len(measured) * len(scatter.kinds(measured.layout))
     white = np.diag(np.sqrt(measured.variance[rows].mean(axis=0) / len(rows)))
-    common = fitted.errors.G.reshape(*measured.values.shape, -1)[rows].mean(axis=0)
+    common = fitted.errors.G[:, :own].reshape(*measured.values.shape, own)[rows].mean(axis=0)
     return np.hstack([white, common])
 
 

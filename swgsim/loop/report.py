@@ -277,10 +277,10 @@ def _why(trial: Trial, accepted: Trial | None) -> str:
         return "its fit did not come to rest"
     poorest = min(trial.coherence, key=lambda each: each.chance)
     if not poorest.holds:
+        form = f"; its form differs by {100 * poorest.form_error:.0f} %" if poorest.form_error else ""
         return (
             "one size does not serve all operating points, channels and orders "
-            f"(probability {probability(poorest.chance)}; its parts differ from the library's form by "
-            f"{100 * poorest.form_error:.0f} % or more)"
+            f"(probability {probability(poorest.chance)}{form})"
         )
     if trial.gain <= LEAST_GAIN:
         return (

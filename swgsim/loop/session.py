@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from swgsim.loop.features import ORDERS, Layout, features, layout_of
 from swgsim.loop.model import Situation
-from swgsim.loop.noise import white_variance
+from swgsim.loop.noise import floors, variance
 from swgsim.recording import Recording
 
 # Errors of a whole session, as standard deviations: zeros [N m, mV/V], the index of the angle [rad].
@@ -31,7 +31,7 @@ class Measured:
     layout : Layout
     values : array (recording, feature)
     variance : array (recording, feature)
-        Of the white noise.
+        Of the noise.
     """
 
     recordings: tuple[Recording, ...]
@@ -44,7 +44,8 @@ class Measured:
         """From recordings, with the channels that all of them have."""
         layout = layout_of(recordings)
         values = np.array([features(recording, layout) for recording in recordings])
-        return cls(tuple(recordings), layout, values, white_variance(recordings, layout))
+        noise = variance(recordings, layout, floors(recordings, layout))
+        return cls(tuple(recordings), layout, values, noise)
 
     def __len__(self) -> int:
         return len(self.recordings)

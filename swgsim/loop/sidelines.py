@@ -13,7 +13,7 @@ from scipy.stats import chi2
 from swgsim.effects.base import Effect, Scene
 from swgsim.effects.quantity import Role, quantities
 from swgsim.loop.features import FITTED, Layout, basis, remainder
-from swgsim.loop.noise import density
+from swgsim.loop.noise import Floor, floors
 from swgsim.loop.tail import log_tail
 from swgsim.recording import Recording
 from swgsim.recordings import SENSORS
@@ -21,6 +21,8 @@ from swgsim.recordings import SENSORS
 # A line's size may differ from its law over load and speed by this share.
 TOLERANCE = 0.3
 CONTRADICTION = 1e-4
+# Share of a pattern that must lie between the orders, and of its largest direction; less is rounding.
+SEEN = 1e-3
 ZOOMS = 3
 
 
@@ -59,34 +61,56 @@ class Sideline:
 
 @dataclass(frozen=True, eq=False)
 class Between:
-    """What lies between the orders of one recording, every gauge in units of its noise."""
+    """The spectrum between the orders of one recording, every gauge in units of its noise.
+
+    Attributes
+    ----------
+    scene : Scene
+    gauges : tuple of str
+    scale : array (gauge, line)
+        What turns a line of the spectrum into units of the noise.
+    orders : array (time, column)
+        Orthonormal basis of the orders that were fitted.
+    left : array (number,)
+        Real and imaginary parts of all lines of what the orders leave.
+    """
 
     scene: Scene
     gauges: tuple[str, ...]
-    noise: Float[np.ndarray, " gauge"]
-    left: Float[np.ndarray, "gauge time"]
+    scale: Float[np.ndarray, "gauge line"]
     orders: Float[np.ndarray, "time column"]
+    left: Float[np.ndarray, " number"]
 
     @classmethod
-    def of(cls, recording: Recording) -> "Between":
-        """Of a recording."""
-        gauges = tuple(sensor for sensor in SENSORS if sensor in recording.channels)
-        layout = Layout(gauges)
-        noise = np.sqrt(density(recording, layout))
+    def of(cls, recording: Recording, gauges: tuple[str, ...], noise: Sequence[Floor]) -> "Between":
+        """Of a recording whose gauges have these floors."""
         angle = recording.channels["phi_in"]
         load = recording.channels.get("T_out", np.full(len(angle), recording.point.T_out))
         scene = Scene(recording.time - recording.time[0], angle, load, recording.point, recording.conditions)
+        frequency = np.fft.rfftfreq(len(angle), 1 / recording.rate)
+        # The mean, and lines beyond the orders that were fitted, say nothing.
+        frequency = frequency[1 : np.searchsorted(frequency, FITTED * recording.point.n_in_rpm / 60)]
+        scale = np.array([np.sqrt(2 / len(angle) / np.maximum(floor.at(frequency), 1e-300)) for floor in noise])
         columns = np.linalg.qr(basis(angle, FITTED))[0]
-        return cls(scene, gauges, noise, remainder(recording, layout) / noise[:, None], columns)
+        bare = cls(scene, gauges, scale, columns, np.empty(0))
+        return replace(bare, left=bare._numbers(remainder(recording, Layout(gauges))))
 
-    def pattern(self, effect: Effect) -> Float[np.ndarray, "column gauge time"]:
-        """What an effect can look like, whatever its random phases, between the orders and in units of the noise."""
+    def pattern(self, effect: Effect) -> Float[np.ndarray, "column number"]:
+        """What an effect can look like, whatever its random phases; a direction that the orders took is left out."""
         random = [name for name, q in quantities(type(effect)).items() if q.role is Role.RANDOM]
         phases = [dict.fromkeys(random, 0.0)]
         phases += [{n: np.pi if n == name else 0.0 for n in random} for name in random[1:]]
         phases += [{n: np.pi / 2 if n == name else 0.0 for n in random} for name in random]
         seen = np.array([self._alone(replace(effect, **each)) for each in phases])
-        return (seen - (seen @ self.orders) @ self.orders.T) / self.noise[:, None]
+        between = self._numbers(seen - (seen @ self.orders) @ self.orders.T)
+        whole = np.linalg.norm(self._numbers(seen), axis=-1).max()
+        return between if np.linalg.norm(between, axis=-1).max() > SEEN * whole else np.zeros_like(between)
+
+    def _numbers(self, signals: np.ndarray) -> np.ndarray:
+        """Lines of the spectrum in units of the noise, real parts before imaginary ones."""
+        lines = np.fft.rfft(signals, axis=-1)[..., 1 : self.scale.shape[1] + 1] * self.scale
+        flat = lines.reshape(*lines.shape[:-2], -1)
+        return np.concatenate([flat.real, flat.imag], axis=-1)
 
     def _alone(self, effect: Effect) -> Float[np.ndarray, "gauge time"]:
         """What an effect puts on silent gauges."""
@@ -97,26 +121,29 @@ class Between:
 
 def sidelines(recordings: Sequence[Recording], kinds: Iterable[type[Effect]]) -> list[Sideline]:
     """The best hypothesis of every effect that has a random phase and acts on the signals, the likeliest first."""
-    between = [Between.of(recording) for recording in recordings]
+    gauges = tuple(sensor for sensor in SENSORS if all(sensor in r.channels for r in recordings))
+    noise = floors(recordings, Layout(gauges))
+    between = [Between.of(recording, gauges, noise) for recording in recordings]
+    kinds = [kind for kind in kinds if has_sidelines(kind)]
     found = []
     for kind in kinds:
         declared = quantities(kind)
-        if not any(q.role is Role.RANDOM for q in declared.values()) or not overrides_signals(kind):
-            continue
         size = next(name for name, q in declared.items() if q.role is Role.SIZE)
         inner = {name: q.tried for name, q in declared.items() if q.role in (Role.SHAPE, Role.CHOICE)}
         tries = [
             kind(**dict(zip(inner, values, strict=True)), **{size: declared[size].typical})
             for values in product(*inner.values())
         ]
-        best = max((_judged(effect, between, len(tries)) for effect in tries), key=lambda line: line.rank)
-        found.append(_zoomed(best, between, len(tries)))
+        chances = len(tries) * len(kinds)
+        best = max((_judged(effect, between, chances) for effect in tries), key=lambda line: line.rank)
+        found.append(_zoomed(best, between, chances))
     return sorted(found, key=lambda line: -line.rank)
 
 
-def overrides_signals(kind: type[Effect]) -> bool:
-    """Whether an effect acts on the recorded signals rather than within the chain."""
-    return any(getattr(kind, place) is not getattr(Effect, place) for place in ("gauge", "acquisition"))
+def has_sidelines(kind: type[Effect]) -> bool:
+    """Whether an effect has a random phase, and acts on the recorded signals rather than within the chain."""
+    random = any(q.role is Role.RANDOM for q in quantities(kind).values())
+    return random and any(getattr(kind, place) is not getattr(Effect, place) for place in ("gauge", "acquisition"))
 
 
 def _judged(effect: Effect, between: Sequence[Between], tried: int) -> Sideline:
@@ -125,10 +152,10 @@ def _judged(effect: Effect, between: Sequence[Between], tried: int) -> Sideline:
     name = next(n for n, q in declared.items() if q.role is Role.SIZE)
     gains, freedoms, sizes = [], [], []
     for each in between:
-        pattern = each.pattern(effect).reshape(-1, each.left.size)
+        pattern = each.pattern(effect)
         U, s, _ = np.linalg.svd(pattern.T, full_matrices=False)
-        U = U[:, s > 1e-6 * s[0]] if s[0] > 0 else U[:, :0]
-        gains.append(float(((U.T @ each.left.ravel()) ** 2).sum()))
+        U = U[:, s > SEEN * s[0]] if s[0] > 0 else U[:, :0]
+        gains.append(float(((U.T @ each.left) ** 2).sum()))
         freedoms.append(U.shape[1])
         sizes.append(float((pattern[0] ** 2).sum()))
     gain, freedom, size = np.array(gains), np.array(freedoms), np.array(sizes)

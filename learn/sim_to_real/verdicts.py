@@ -1,0 +1,81 @@
+"""Whether closing the loop helped a classifier, and if not, why."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import pandas as pd
+
+from learn.sim_to_real.finished import Finished
+from swgsim.style import words
+
+# Share of the oracle's gain that counts as all of it.
+RECOVERED = 0.8
+
+
+def row_of(scores: pd.DataFrame, method: str, day: str, model: str) -> pd.Series:
+    """The scores of a method with references of a day, trained on a model."""
+    chosen = (scores["method"] == method) & (scores["day"] == day) & (scores["model"] == model)
+    return scores[chosen].iloc[0]
+
+
+def named(finished: Finished) -> str:
+    """How the loop's answer stands to the truth: in four words at most."""
+    true, found = _names(finished.hidden), _names(finished.loop["found"])
+    rest = [name for name in found if name not in true]
+    if not true:
+        return "false effect" if found else "nothing, rightly"
+    if not found:
+        return "missed" if finished.loop["verdict"] == "nothing_missing" else "unknown effect"
+    if all(name in found for name in true):
+        return "right, and one more" if rest else "right"
+    return "right among its rivals" if set(true) & set(finished.loop["rivals"]) else "another effect"
+
+
+def why(finished: Finished, method: str, day: str) -> tuple[str, str]:
+    """A verdict on one method with references of one day, and its reason in a sentence."""
+    before, after, oracle = (row_of(finished.scores, method, day, model) for model in ("before", "after", "oracle"))
+    if not finished.hidden:
+        if not finished.loop["found"]:
+            return "nothing to do", "Nothing acts, and nothing was found: the model stays as it is."
+        return _safe(after)
+    if oracle["gain_low"] <= 0:
+        return _unneeded(before, after)
+    share = after["gain"] / oracle["gain"]
+    if share >= RECOVERED:
+        return "helps", (
+            f"Regenerating with {_listed(finished.loop['found'])} brings {share:.0%} of what knowing the effect brings."
+        )
+    if not finished.loop["found"]:
+        return "does not help", f"The loop found no effect to add: {finished.loop['sentence']}"
+    if after["gain_low"] > 0:
+        return "helps in part", (
+            f"What was found, {_listed(finished.loop['found'])}, brings {share:.0%} of what knowing the effect brings."
+        )
+    return "does not help", (
+        f"What was found, {_listed(finished.loop['found'])}, does not act on this method's features as the truth does."
+    )
+
+
+def _safe(after: pd.Series) -> tuple[str, str]:
+    """Of an effect that was found where none acts."""
+    if after["gain_high"] < 0:
+        return "harms", f"A false effect costs {-after['gain']:.1f} points."
+    return "does no harm", f"A false effect was found; it changes the accuracy by {after['gain']:+.1f} points."
+
+
+def _unneeded(before: pd.Series, after: pd.Series) -> tuple[str, str]:
+    """Where even the true effect brings nothing."""
+    if after["gain_high"] < 0:
+        return "harms", f"Knowing the effect brings nothing here, and what was found costs {-after['gain']:.1f} points."
+    return "not needed", (
+        f"Knowing the effect brings nothing here either: with {before['accuracy']:.1f} % the method has not suffered "
+        "from what can be simulated."
+    )
+
+
+def _names(entries: Sequence[dict[str, Any]]) -> list[str]:
+    return [name for entry in entries for name in entry]
+
+
+def _listed(entries: Sequence[dict[str, Any]]) -> str:
+    return " and ".join(words(name) for name in _names(entries)) or "nothing"
