@@ -21,5 +21,5 @@ class BallPass(BearingOrder):
         Balls modulo 4, such as 2 for 22 balls.
     """
 
-    order: float = shape(10.0, unit="-", low=9, high=13, points=97)
+    order: float = shape(10.0, unit="-", low=9, high=13, points=49)
     waves: int = choice(2, low=1, high=3)

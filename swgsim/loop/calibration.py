@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
+from scipy.optimize import lsq_linear
 
 from swgsim.loop.declared import Declared, at
 from swgsim.loop.features import Layout
@@ -87,6 +88,8 @@ def calibrate(
     if not names:
         return Calibrated(start, {}, *linearised(start, parameters, situations, layout), True)
     here = np.array([(position or {}).get(name, 0.0) for name in names])
+    low, high = _bounds(start, parameters)
+    here = np.clip(here, low, high)
     step, lowest, settled = np.zeros(len(here)), np.inf, False
     best = (start, here, np.empty((0, 0)), np.empty((0, 0, 0)))
     for _ in range(STEPS):
@@ -107,8 +110,30 @@ def calibrate(
         if settled:
             break
         columns = errors.whiten(J[of_recording].reshape(-1, len(here)))
-        step = np.linalg.solve(columns.T @ columns + np.eye(len(here)), columns.T @ r - here)
+        step = _step(columns, r, here, low, high)
         step *= min(1.0, LONGEST / max(float(np.abs(step).max()), 1e-12))
         here = here + step
     model, here, predicted, J = best
     return Calibrated(model, dict(zip(names, here.tolist(), strict=True)), predicted, J, settled)
+
+
+def _bounds(start: Model, parameters: Mapping[str, Declared]) -> tuple[np.ndarray, np.ndarray]:
+    """Bounds of the parameters, in spreads about where the fit began."""
+    low = [(p.low - p.value(start)) / p.sd for p in parameters.values()]
+    high = [(p.high - p.value(start)) / p.sd for p in parameters.values()]
+    return np.array(low), np.array(high)
+
+
+def _step(
+    columns: Float[np.ndarray, "row parameter"], r: Float[np.ndarray, " row"], here: Float[np.ndarray, " parameter"],
+    low: Float[np.ndarray, " parameter"], high: Float[np.ndarray, " parameter"],
+) -> Float[np.ndarray, " parameter"]:  # fmt: skip
+    """The Gauss-Newton step within the bounds; a parameter at its bound leaves the others free to follow."""
+    curvature = columns.T @ columns + np.eye(len(here))
+    target = columns.T @ r - here
+    free = np.linalg.solve(curvature, target)
+    if np.all((here + free >= low) & (here + free <= high)):
+        return free
+    root = np.linalg.cholesky(curvature).T
+    room = (low - here - 1e-12, high - here + 1e-12)
+    return lsq_linear(root, np.linalg.solve(root.T, target), bounds=room).x

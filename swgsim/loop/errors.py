@@ -17,7 +17,7 @@ class Errors:
     ----------
     fit : array (channel,)
     heldout : array (channel,)
-        Of every operating point, with all that is not known found from the other points.
+        Of every operating point, by the model fitted to the other points.
     """
 
     fit: Float[np.ndarray, " channel"]
@@ -26,16 +26,13 @@ class Errors:
 
 def errors(fitted: Fitted) -> Errors:
     """Errors of a model on the recordings it was fitted to."""
-    missed = np.zeros(len(fitted.residual))
     blocks = fitted.measured.point_rows()
+    missed = np.full(len(fitted.residual), np.nan)
+    parameters = fitted.J.shape[1]
     for block in blocks if len(blocks) > 1 else []:
-        missed[block] = fitted.whole.left_out(fitted.from_start, block).missed
-    heldout = (
-        per_channel(fitted.measured, missed)
-        if len(blocks) > 1
-        else np.full(len(fitted.measured.layout.channels), np.nan)
-    )
-    return Errors(per_channel(fitted.measured, fitted.residual), heldout)
+        told = fitted.whole.left_out(fitted.from_start, block).common[-parameters:] if parameters else np.zeros(0)
+        missed[block] = fitted.from_start[block] - fitted.J[block] @ told
+    return Errors(per_channel(fitted.measured, fitted.residual), per_channel(fitted.measured, missed))
 
 
 def noise_floor(measured: Measured) -> Float[np.ndarray, " channel"]:

@@ -15,11 +15,8 @@ from swgsim.conditions import Conditions
 from swgsim.gear import OperatingPoint
 from swgsim.loop import scatter
 from swgsim.loop.answer import Answer
-from swgsim.loop.calibration import linearised
-from swgsim.loop.declared import of_unit
 from swgsim.loop.evidence import FORM_TOLERANCE
 from swgsim.loop.fitting import Fitted
-from swgsim.loop.form import form_columns
 from swgsim.loop.gaussian import Covariance
 from swgsim.loop.model import Model, Situation, predict
 from swgsim.loop.session import Measured
@@ -175,13 +172,8 @@ def _directions(
     fitted: Fitted, situations: Sequence[Situation]
 ) -> tuple[Float[np.ndarray, "situation feature"], Float[np.ndarray, "situation feature direction"]]:
     """Prediction of a model anywhere, and all directions in which it may still adjust, one standard deviation each."""
-    unit, layout = fitted.unit, fitted.measured.layout
-    known = of_unit(unit.model.gear) if unit.commissioned else {}
-    predicted, J = linearised(fitted.model, known | fitted.parameters, situations, layout)
-    maps = form_columns(predicted, situations, layout)
-    left_open = np.concatenate([J[..., : len(known)], maps], axis=-1)
-    reach = unit.structure * np.eye(left_open.shape[-1]) if unit.reach is None else unit.reach
-    return predicted, np.concatenate([left_open @ reach, J[..., len(known) :]], axis=-1)
+    unsure = fitted.unit.left_open(fitted.model, situations, fitted.measured.layout, fitted.parameters)
+    return unsure.predicted, np.concatenate([unsure.columns, unsure.J], axis=-1)
 
 
 def _tolerance(

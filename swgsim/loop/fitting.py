@@ -1,16 +1,19 @@
 """A model fitted to recordings: its parameters, the errors of single recordings, and what stays unexplained."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
 
+from swgsim.gear import Gear
 from swgsim.loop import scatter
 from swgsim.loop.calibration import Calibrated, calibrate, linearised
 from swgsim.loop.declared import Declared, at, of_effects, of_unit
-from swgsim.loop.form import form_columns
+from swgsim.loop.features import Layout
+from swgsim.loop.form import form_columns, largest_lines
 from swgsim.loop.gaussian import Covariance
 from swgsim.loop.model import Model, Situation
 from swgsim.loop.scatter import Scatter
@@ -35,18 +38,62 @@ class Unit:
         Where commissioning found them, in spreads.
     structure : float
         Declared accuracy of the maps, as a share of a gauge's largest line.
+    scatter : Scatter or None
+        Errors of single recordings found by commissioning.
+    nominal : Gear or None
+        After commissioning, the gear by whose spread the declared parameters are counted.
+    largest : mapping or None
+        After commissioning, the largest line of each gauge, by which deviations of the maps are counted.
     """
 
     model: Model
     reach: Float[np.ndarray, "direction direction"] | None = None
     shift: Float[np.ndarray, " direction"] | None = None
     structure: float = STRUCTURE
-    scatter: Scatter | None = field(default=None)
+    scatter: Scatter | None = None
+    nominal: Gear | None = None
+    largest: Mapping[str, float] | None = None
 
     @property
     def commissioned(self) -> bool:
         """Whether the unit was recorded in its healthy state before."""
         return self.reach is not None
+
+    def left_open(
+        self,
+        model: Model,
+        situations: Sequence[Situation],
+        layout: Layout,
+        parameters: Mapping[str, Declared] | None = None,
+    ) -> "LeftOpen":
+        """Prediction of a model of this unit, and all directions in which it may still lie elsewhere.
+
+        Parameters
+        ----------
+        model : Model
+        situations : sequence of Situation
+        layout : Layout
+        parameters : mapping, optional
+            Those that are fitted.
+        """
+        known = of_unit(self.nominal) if self.nominal else {}
+        predicted, J = linearised(model, known | dict(parameters or {}), situations, layout)
+        maps = form_columns(self.largest or largest_lines(predicted, layout), situations, layout)
+        directions = np.concatenate([J[..., : len(known)], maps], axis=-1)
+        reach = self.structure * np.eye(directions.shape[-1]) if self.reach is None else self.reach
+        shift = np.zeros(predicted.shape) if self.shift is None else directions @ self.shift
+        return LeftOpen(predicted, shift, directions @ reach, J[..., len(known) :])
+
+
+class LeftOpen(NamedTuple):
+    """Prediction of a model, the shift of its maps that commissioning found, what the unit leaves open (one standard
+    deviation each), and the change by one spread of each fitted parameter.
+    """
+
+    predicted: Float[np.ndarray, "situation feature"]
+    shift: Float[np.ndarray, "situation feature"]
+    columns: Float[np.ndarray, "situation feature direction"]
+    J: Float[np.ndarray, "situation feature parameter"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,10 +157,29 @@ class Fitted:
     @cached_property
     def deviation(self) -> dict[str, float]:
         """Standard deviation of each fitted parameter, in its unit."""
-        columns = self.errors.with_columns(self.open).whiten(self.J)
+        # The form tolerance of an effect is no doubt about its own size.
+        allowed = 0 if self.allowed is None else self.allowed.shape[1]
+        columns = self.errors.with_columns(self.open[:, : self.open.shape[1] - allowed]).whiten(self.J)
         covariance = np.linalg.inv(columns.T @ columns + np.eye(columns.shape[1]))
         spread = np.sqrt(np.diag(covariance)).tolist()
         return {name: s * p.sd for (name, p), s in zip(self.parameters.items(), spread, strict=True)}
+
+    def null(
+        self, bases: Float[np.ndarray, "row direction"], draws: int, rng: np.random.Generator
+    ) -> Float[np.ndarray, "direction draw"]:
+        """What pure noise puts along directions of the weighed residual.
+
+        The errors of single recordings are in each draw as large as their estimate leaves them; all others are as
+        declared.
+        """
+        weighed = self.whole.transposed(bases)
+        white = np.sqrt(self.whole.variance)[:, None] * weighed
+        common = self.whole.G.T @ weighed
+        factors = np.ones((len(common), draws))
+        recordings = len(self.measured)
+        factors[: recordings * len(self.scatter.sd)] = np.tile(self.scatter.drawn(rng, draws), (recordings, 1))
+        noise = white.T @ rng.standard_normal((len(white), draws))
+        return noise + common.T @ (factors * rng.standard_normal((len(common), draws)))
 
     @cached_property
     def predictive(self) -> Float[np.ndarray, " point"]:
@@ -147,17 +213,16 @@ def fit(
     """
     start = model or unit.model
     parameters = of_effects(start) if unit.commissioned else of_unit(unit.model.gear) | of_effects(start)
-    guess = unit.scatter or Scatter({kind: scatter.STATED[kind] for kind in scatter.kinds(measured.layout)}, 0)
+    guess = unit.scatter or Scatter.stated(measured.layout)
     here, begin = at(start, parameters, position or {}), position
     for _ in range(1 if unit.scatter and model else 2):
         moves = scatter.directions(here, measured.situations, measured.layout)[measured.of_recording]
-        predicted, directions = _directions(unit, here, measured)
+        unsure = unit.left_open(here, measured.situations, measured.layout)
+        predicted, offset = unsure.predicted, measured.rows(unsure.shift)
         errors = scatter.covariance(measured.variance, guess.columns(moves))
         errors = errors.with_columns(measured.session_columns(predicted))
-        reach = unit.structure * np.eye(directions.shape[-1]) if unit.reach is None else unit.reach
-        left = measured.rows(directions) @ reach
+        left = measured.rows(unsure.columns)
         open_ = left if allowed is None else np.hstack([left, allowed])
-        offset = np.zeros(len(left)) if unit.shift is None else measured.rows(directions) @ unit.shift
         calibrated = calibrate(
             start, parameters, measured.values - offset.reshape(measured.values.shape), errors.with_columns(open_),
             measured.situations, measured.of_recording, measured.layout, begin,
@@ -174,7 +239,8 @@ def fit(
 def commission(measured: Measured, unit: Unit) -> Unit:
     """The unit with what recordings of its healthy state say about it."""
     fitted = fit(measured, unit)
-    directions = measured.rows(form_columns(fitted.calibrated.predicted, measured.situations, measured.layout))
+    largest = largest_lines(fitted.calibrated.predicted, measured.layout)
+    directions = measured.rows(form_columns(largest, measured.situations, measured.layout))
     columns = np.hstack([fitted.J, directions * unit.structure])
     white = fitted.errors.whiten(columns)
     covariance = np.linalg.inv(white.T @ white + np.eye(columns.shape[1]))
@@ -183,14 +249,5 @@ def commission(measured: Measured, unit: Unit) -> Unit:
     mean[: fitted.J.shape[1]] -= np.array(list(fitted.calibrated.position.values()))
     scale = np.concatenate([np.ones(fitted.J.shape[1]), np.full(directions.shape[1], unit.structure)])
     reach = scale[:, None] * np.linalg.cholesky(covariance)
-    return Unit(fitted.model, reach, scale * mean, unit.structure, fitted.scatter)
-
-
-def _directions(
-    unit: Unit, model: Model, measured: Measured
-) -> tuple[Float[np.ndarray, "situation feature"], Float[np.ndarray, "situation feature direction"]]:
-    """Prediction, and the directions that a unit leaves open: of the maps, and once commissioned of the parameters."""
-    situations: tuple[Situation, ...] = measured.situations
-    known = of_unit(unit.model.gear) if unit.commissioned else {}
-    predicted, J = linearised(model, known, situations, measured.layout)
-    return predicted, np.concatenate([J, form_columns(predicted, situations, measured.layout)], axis=-1)
+    nominal = unit.model.gear
+    return Unit(fitted.model, reach, scale * mean, unit.structure, fitted.scatter, nominal, largest)

@@ -36,11 +36,22 @@ class Covariance:
         return U, s
 
     def whiten(self, X: np.ndarray) -> np.ndarray:
-        """The inverse square root of the covariance times X, an array (row,) or (row, column)."""
+        """W X with W covariance W' = 1, for an array (row,) or (row, column)."""
+        return self._shrunken(X / self._deviation(X))
+
+    def transposed(self, X: np.ndarray) -> np.ndarray:
+        """W' X, where W is what :meth:`whiten` multiplies by; it is not symmetric."""
+        return self._shrunken(X) / self._deviation(X)
+
+    def _deviation(self, X: np.ndarray) -> np.ndarray:
+        """Standard deviation of the independent errors, to be combined with X."""
+        return np.sqrt(self.variance).reshape(-1, *[1] * (X.ndim - 1))
+
+    def _shrunken(self, X: np.ndarray) -> np.ndarray:
+        """X with the directions of the common errors made as small as their variance is large."""
         U, s = self._scaled
-        scaled = X / np.sqrt(self.variance).reshape(-1, *[1] * (X.ndim - 1))
         shrink = (1 / np.sqrt(1 + s**2) - 1).reshape(-1, *[1] * (X.ndim - 1))
-        return scaled + U @ (shrink * (U.T @ scaled))
+        return X + U @ (shrink * (U.T @ X))
 
     def with_columns(self, G: Float[np.ndarray, "row more"]) -> "Covariance":
         """The covariance with further common errors."""
@@ -66,11 +77,14 @@ class Covariance:
         root = np.linalg.inv(np.linalg.cholesky(precision)).T
         here = Covariance(self.variance[block], self.G[block] @ root)
         missed = r[block] - self.G[block] @ mean
-        return Expected(missed, here.log_likelihood(missed))
+        return Expected(missed, here.log_likelihood(missed), mean)
 
 
 class Expected(NamedTuple):
-    """How rows were missed by what the others expected of them, and the log-likelihood of that."""
+    """How rows were missed by what the others expected of them, the log-likelihood of that, and the common errors that
+    the others tell, in standard deviations.
+    """
 
     missed: Float[np.ndarray, " block"]
     log_likelihood: float
+    common: Float[np.ndarray, " column"]

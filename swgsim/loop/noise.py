@@ -1,6 +1,9 @@
 """Noise of every channel over frequency, from what lies between the integer orders of the recordings.
 
-White noise and, below some corner, slow noise as of an amplifier or a drifting zero: S(f) = white + slow / (1 + (f / corner)^2).
+White noise and, below some corner, slow noise as of an amplifier or a drifting zero,
+
+    S(f) = white + slow / (1 + (f / corner)^2).
+
 The fit is robust, so that a few lines, such as those of a bearing cage or of the mains, do not count as noise.
 """
 
@@ -85,7 +88,9 @@ def _between(
     left = remainder(recording, layout)
     angle = recording.channels["phi_in"]
     revolutions = abs(float(angle[-1] - angle[0])) / (2 * np.pi)
-    power = np.abs(np.fft.rfft(left, axis=1)) ** 2 / left.shape[1]
+    # A window, so that a strong line stays where it is.
+    window = np.hanning(left.shape[1])
+    power = np.abs(np.fft.rfft(left * window, axis=1)) ** 2 / (window @ window)
     frequency = np.fft.rfftfreq(left.shape[1], 1 / recording.rate)
     order = np.arange(len(frequency)) / revolutions
     between = (np.abs(order - np.round(order)) * revolutions > GUARD) & (order < FITTED)

@@ -1,6 +1,6 @@
 """Errors of single recordings: what differs from one repeat to the next although nothing about the gear has changed."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -40,10 +40,24 @@ class Scatter:
         Name as in :data:`STATED` to standard deviation, relative for load, speed and friction, else in the unit.
     repeats : int
         Contrasts between repeats that the estimate rests on; 0 if it is only what was stated.
+    doubt : array (kind, kind)
+        Covariance of the logarithms of the standard deviations.
     """
 
     sd: dict[str, float]
     repeats: int
+    doubt: Float[np.ndarray, "kind kind"]
+
+    @classmethod
+    def stated(cls, layout: Layout) -> "Scatter":
+        """What a test bench states, without any repeats."""
+        names = kinds(layout)
+        return cls({name: STATED[name] for name in names}, 0, DOUBT**2 * np.eye(len(names)))
+
+    def drawn(self, rng: np.random.Generator, draws: int) -> Float[np.ndarray, "kind draw"]:
+        """Factors on the standard deviations, as large as the repeats leave them."""
+        root = np.linalg.cholesky(self.doubt + 1e-12 * np.eye(len(self.doubt)))
+        return np.exp(root @ rng.standard_normal((len(root), draws)))
 
     def columns(self, directions: Float[np.ndarray, "situation feature kind"]) -> np.ndarray:
         """Directions scaled to one standard deviation."""
@@ -120,7 +134,7 @@ def estimate(
             weights[rows[number]] = np.sqrt(number / (number + 1))
             contrasts.append((weights @ residual, weights**2 @ variance, directions[rows[number]]))
     if not contrasts:
-        return Scatter(dict(zip(names, stated.tolist(), strict=True)), 0)
+        return Scatter.stated(layout)
     # What a contrast says of the errors is said by as many numbers as there are errors.
     small = []
     for r, v, B in contrasts:
@@ -138,8 +152,21 @@ def estimate(
             slope = slope + (1 - np.diag(inner)) - half * (s * b) + half * ((s[:, None] * K * s) @ half)
         return total, slope
 
-    fitted = minimize(cost, np.zeros(len(stated)), jac=True, method="L-BFGS-B", bounds=[(-8, 6)] * len(stated))
-    return Scatter(dict(zip(names, (stated * np.exp(fitted.x)).tolist(), strict=True)), len(contrasts))
+    fitted = minimize(
+        cost, np.zeros(len(stated)), jac=True, method="L-BFGS-B", bounds=[(-8, 6)] * len(stated),
+        options={"ftol": 1e-14, "gtol": 1e-6, "maxiter": 500},
+    )  # fmt: skip
+    sd = dict(zip(names, (stated * np.exp(fitted.x)).tolist(), strict=True))
+    return Scatter(sd, len(contrasts), _doubt(lambda x: cost(x)[1], fitted.x))
+
+
+def _doubt(slope: Callable[[np.ndarray], np.ndarray], x: Float[np.ndarray, " kind"]) -> Float[np.ndarray, "kind kind"]:
+    """Inverse of the curvature (Laplace), which is at least that of what was stated."""
+    step = 1e-3
+    moved = step * np.eye(len(x))
+    curvature = np.array([(slope(x + by) - slope(x - by)) / (2 * step) for by in moved])
+    values, vectors = np.linalg.eigh((curvature + curvature.T) / 2)
+    return (vectors / np.maximum(values, 1 / DOUBT**2)) @ vectors.T
 
 
 def covariance(

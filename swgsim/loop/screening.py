@@ -22,6 +22,8 @@ VISIBLE = 1e-4
 # Directions of a signature below this part of its largest one are rounding.
 NEGLIGIBLE = 1e-6
 DRAWS = 1000
+# A logarithm of a probability this many times that of the most unlikely draw is far beyond them.
+FAR = 2.0
 
 
 @dataclass(frozen=True)
@@ -70,7 +72,7 @@ class Score:
 
 def screen(
     found: Sequence[Hypothesis],
-    signatures: Sequence[Float[np.ndarray, "row column"]],
+    signatures: Sequence[Float[np.ndarray, "row _"]],
     fitted: Fitted,
     rng: np.random.Generator,
 ) -> list[Score]:
@@ -93,7 +95,7 @@ def screen(
         for C, alone in zip(np.split(fitted.whole.whiten(stacked), ends, axis=1), free, strict=True)
     ]
     r = fitted.whole.whiten(fitted.from_start)
-    chances = family_wise([p.U for p in projected], r, rng)
+    chances = family_wise([p.U for p in projected], r, fitted, rng)
     scores = [_score(h, p, p.U.T @ r, chance) for h, p, chance in zip(found, projected, chances, strict=True)]
     return sorted(scores, key=lambda score: -score.rank)
 
@@ -131,7 +133,8 @@ def _score(hypothesis: Hypothesis, projected: Projected, u: Float[np.ndarray, " 
     quantity = quantities(hypothesis.kind)[hypothesis.size]
     span = hypothesis.typical - quantity.nothing
     weights = projected.Vt.T @ (u / projected.s)
-    deviation = abs(span) / float(np.sqrt((projected.s**2).mean()))
+    along = weights / max(float(np.linalg.norm(weights)), 1e-300)
+    deviation = abs(span) * float(np.linalg.norm((projected.Vt @ along) / projected.s))
     size, phase = span * float(weights[0]), 0.0
     if hypothesis.phase:
         size, phase = span * float(np.hypot(*weights)), float(np.arctan2(weights[1], weights[0]) % (2 * np.pi))
@@ -140,11 +143,15 @@ def _score(hypothesis: Hypothesis, projected: Projected, u: Float[np.ndarray, " 
 
 
 def family_wise(
-    bases: Sequence[Float[np.ndarray, "row _"]], r: Float[np.ndarray, " row"], rng: np.random.Generator
+    bases: Sequence[Float[np.ndarray, "row _"]],
+    r: Float[np.ndarray, " row"],
+    fitted: Fitted,
+    rng: np.random.Generator,
 ) -> Float[np.ndarray, " hypothesis"]:
     """Of every hypothesis, how often pure noise gives any of them a score as unlikely.
 
-    Hypotheses overlap, so their scores are taken of the same draws of noise.
+    Hypotheses overlap, so their scores are taken of the same draws of noise. The errors of single recordings are known
+    from a few repeats only: each draw has them as large as these may be.
     """
     freedom = np.array([basis.shape[1] for basis in bases])
     used = np.flatnonzero(freedom)
@@ -153,11 +160,12 @@ def family_wise(
         return chances
     stacked = np.hstack([bases[i] for i in used])
     starts = np.concatenate([[0], np.cumsum(freedom[used])[:-1]])
-    drawn = np.add.reduceat((stacked.T @ rng.standard_normal((len(r), DRAWS))) ** 2, starts, axis=0)
+    noise = fitted.null(stacked, DRAWS, rng)
+    drawn = np.add.reduceat(noise**2, starts, axis=0)
     lowest = log_tail(drawn, freedom[used, None]).min(axis=0)
     own = log_tail(np.add.reduceat((stacked.T @ r) ** 2, starts), freedom[used])
     beaten = (lowest[:, None] <= own).sum(axis=0)
-    # Where no draw comes near, Bonferroni's bound is the better answer.
-    bound = np.minimum(np.exp(own) * len(used), 1 / (DRAWS + 1))
+    # Far beyond the draws, Bonferroni's bound says more than that no draw came near.
+    bound = np.where(own < FAR * lowest.min(), np.minimum(np.exp(own) * len(used), 1 / (DRAWS + 1)), 1 / (DRAWS + 1))
     chances[used] = np.where(beaten > 0, (beaten + 1) / (DRAWS + 1), bound)
     return chances

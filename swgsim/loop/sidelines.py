@@ -23,6 +23,8 @@ TOLERANCE = 0.3
 CONTRADICTION = 1e-4
 # Share of a pattern that must lie between the orders, and of its largest direction; less is rounding.
 SEEN = 1e-3
+# Samples per revolution at which patterns are computed; more than twice the orders that are fitted.
+SAMPLES = 48
 ZOOMS = 3
 
 
@@ -84,16 +86,28 @@ class Between:
     @classmethod
     def of(cls, recording: Recording, gauges: tuple[str, ...], noise: Sequence[Floor]) -> "Between":
         """Of a recording whose gauges have these floors."""
-        angle = recording.channels["phi_in"]
-        load = recording.channels.get("T_out", np.full(len(angle), recording.point.T_out))
-        scene = Scene(recording.time - recording.time[0], angle, load, recording.point, recording.conditions)
-        frequency = np.fft.rfftfreq(len(angle), 1 / recording.rate)
+        step = max(1, int(recording.rate * 60 / recording.point.n_in_rpm / SAMPLES))
+        length = len(recording.time) // step * step
+        # Patterns are narrow-band: fewer samples hold them as well.
+        angle = recording.channels["phi_in"][:length:step]
+        load = (
+            recording.channels["T_out"][:length:step]
+            if "T_out" in recording.channels
+            else np.full(len(angle), float(recording.point.T_out))
+        )
+        time = recording.time[:length:step] - recording.time[0]
+        frequency = np.fft.rfftfreq(length, 1 / recording.rate)
         # The mean, and lines beyond the orders that were fitted, say nothing.
         frequency = frequency[1 : np.searchsorted(frequency, FITTED * recording.point.n_in_rpm / 60)]
-        scale = np.array([np.sqrt(2 / len(angle) / np.maximum(floor.at(frequency), 1e-300)) for floor in noise])
-        columns = np.linalg.qr(basis(angle, FITTED))[0]
-        bare = cls(scene, gauges, scale, columns, np.empty(0))
-        return replace(bare, left=bare._numbers(remainder(recording, Layout(gauges))))
+        scale = np.array([np.sqrt(2 * length / np.maximum(floor.at(frequency), 1e-300)) for floor in noise])
+        bare = cls(
+            Scene(time, angle, load, recording.point, recording.conditions),
+            gauges,
+            scale,
+            np.linalg.qr(basis(angle, FITTED))[0],
+            np.empty(0),
+        )
+        return replace(bare, left=bare._numbers(remainder(recording, Layout(gauges))[:, :length]))
 
     def pattern(self, effect: Effect) -> Float[np.ndarray, "column number"]:
         """What an effect can look like, whatever its random phases; a direction that the orders took is left out."""
@@ -108,7 +122,7 @@ class Between:
 
     def _numbers(self, signals: np.ndarray) -> np.ndarray:
         """Lines of the spectrum in units of the noise, real parts before imaginary ones."""
-        lines = np.fft.rfft(signals, axis=-1)[..., 1 : self.scale.shape[1] + 1] * self.scale
+        lines = np.fft.rfft(signals, axis=-1)[..., 1 : self.scale.shape[1] + 1] / signals.shape[-1] * self.scale
         flat = lines.reshape(*lines.shape[:-2], -1)
         return np.concatenate([flat.real, flat.imag], axis=-1)
 
@@ -119,12 +133,17 @@ class Between:
         return np.array([channels[gauge] for gauge in self.gauges])
 
 
+def between(recordings: Sequence[Recording]) -> list[Between]:
+    """What lies between the orders of every recording; nothing if they have no gauge in common."""
+    gauges = tuple(sensor for sensor in SENSORS if all(sensor in r.channels for r in recordings))
+    noise = floors(recordings, Layout(gauges)) if gauges else []
+    return [Between.of(recording, gauges, noise) for recording in recordings] if gauges else []
+
+
 def sidelines(recordings: Sequence[Recording], kinds: Iterable[type[Effect]]) -> list[Sideline]:
     """The best hypothesis of every effect that has a random phase and acts on the signals, the likeliest first."""
-    gauges = tuple(sensor for sensor in SENSORS if all(sensor in r.channels for r in recordings))
-    noise = floors(recordings, Layout(gauges))
-    between = [Between.of(recording, gauges, noise) for recording in recordings]
-    kinds = [kind for kind in kinds if has_sidelines(kind)]
+    spectra = between(recordings)
+    kinds = [kind for kind in kinds if has_sidelines(kind)] if spectra else []
     found = []
     for kind in kinds:
         declared = quantities(kind)
@@ -134,9 +153,10 @@ def sidelines(recordings: Sequence[Recording], kinds: Iterable[type[Effect]]) ->
             kind(**dict(zip(inner, values, strict=True)), **{size: declared[size].typical})
             for values in product(*inner.values())
         ]
-        chances = len(tries) * len(kinds)
-        best = max((_judged(effect, between, chances) for effect in tries), key=lambda line: line.rank)
-        found.append(_zoomed(best, between, chances))
+        # The zoom tries some more.
+        chances = 2 * len(tries) * len(kinds)
+        best = max((_judged(effect, spectra, chances) for effect in tries), key=lambda line: line.rank)
+        found.append(_zoomed(best, spectra, chances))
     return sorted(found, key=lambda line: -line.rank)
 
 

@@ -23,8 +23,8 @@ PATTERNS: Mapping[str, dict[str, complex]] = {
     "the same in s1 to s4": dict.fromkeys(("s1", "s2", "s3", "s4"), 1),
     "the same in all gauges": dict.fromkeys(("s0", "s1", "s2", "s3", "s4"), 1),
     "opposite in neighbours (two waves)": {"s1": 1, "s2": -1, "s3": 1, "s4": -1},
-    "one wave that turns with the wave generator": {"s1": 1, "s2": -1j, "s3": -1, "s4": 1j},
-    "one wave that turns against the wave generator": {"s1": 1, "s2": 1j, "s3": -1, "s4": -1j},
+    "one wave that turns with the wave generator (or three against it)": {"s1": 1, "s2": -1j, "s3": -1, "s4": 1j},
+    "one wave that turns against the wave generator (or three with it)": {"s1": 1, "s2": 1j, "s3": -1, "s4": -1j},
     "opposite in s1 and s3": {"s1": 1, "s3": -1},
     "opposite in s2 and s4": {"s2": 1, "s4": -1},
     **{f"in {name} alone": {name: 1} for name in ("s0", "s1", "s2", "s3", "s4", "T_in", "T_out", "n_in")},
@@ -41,8 +41,6 @@ LAWS: Mapping[str, Callable[[Situation], float]] = {
     "proportional to the temperature above 25 degC": lambda s: s.conditions.warmer / KELVIN,
     "proportional to the time since the session began": lambda s: s.conditions.elapsed / HOUR,
 }
-# Score by which a wider pattern or a steeper law must beat a simpler one (twice a log-likelihood).
-PLAINER = 6.0
 
 
 @dataclass(frozen=True)
@@ -135,7 +133,7 @@ def describe(fitted: Fitted, rng: np.random.Generator) -> list[Described]:
         U, s, Vt = U[:, kept], s[kept], Vt[kept]
         bases.append(U)
         fits.append(Vt.T @ ((U.T @ r) / s))
-    chances = family_wise(bases, r, rng)
+    chances = family_wise(bases, r, fitted, rng)
     found = [
         Described(
             atom, float(((U.T @ r) ** 2).sum()), U.shape[1], float(chance),
