@@ -155,9 +155,13 @@ def closed(
     found = answer(recordings, unit, kinds, seed=config["seed"])
     said = report(found, kinds)
     loop_job.write(Path(config["out"]) / STUDY / name, found, said)
-    rivals = [each.name() for step in found.closed.steps for trial in step.rivals for each in trial.effects]
-    shown = {each: said[each] for each in ("verdict", "sentence", "error")}
-    return found.effects, {**shown, "found": text.entries(found.effects), "rivals": rivals}
+    shown = {
+        **{each: said[each] for each in ("verdict", "sentence", "error")},
+        "found": text.entries(found.effects),
+        "rivals": [type(e).name() for step in found.closed.steps for trial in step.rivals for e in trial.effects],
+        "absorbed": [each["name"] for each in said["absorbed"]],
+    }
+    return found.effects, shown
 
 
 def data_set(

@@ -19,7 +19,7 @@ from learn.sim_to_real.judging import COMMISSIONING, DAYS, MODELS, SAME_DAY, Pai
 from learn.sim_to_real.scores import scores
 from swgsim import storage
 from swgsim.chain import simulate_turns
-from swgsim.loop import model
+from swgsim.loop import figures, model
 from swgsim.recordings import CLASSES
 
 CONF = Path(__file__).parent.parent / "conf"
@@ -33,28 +33,29 @@ def config(tmp_path_factory):
     place = tmp_path_factory.mktemp("study")
     small = [
         f"data={place / 'data'}", f"out={place / 'report'}", f"tracking.folder={place / 'runs'}", "workers=1",
-        f"mesh.sectors={SECTORS}", f"bench_mesh.sectors={SECTORS}", "grid.variants=3", "grid.references=2",
-        "grid.loads_nm=[10,70]",
+        f"mesh.sectors={SECTORS}", f"bench_mesh.sectors={SECTORS}", "grid.variants=6", "grid.references=4",
+        "grid.loads_nm=[40]",
         "sessions.repeats=2", "sessions.revolutions=4",
-        "searched=[warm_grease,channel_skew,reduced_damping,gauge_gain]",
+        "searched=[warm_grease,channel_skew,gauge_gain]",
         "methods.extra_trees_on_harmonics.classifier.trees=20",
         "methods.random_forest_on_selection_1.classifier.trees=20",
     ]  # fmt: skip
     with initialize_config_dir(str(CONF), version_base="1.3"):
         made = OmegaConf.to_container(compose("sim_to_real", small), resolve=True)
-    kept = ("none", "warm_grease", "channel_skew")
+    kept = ("warm_grease", "channel_skew")
     return {**made, "undeclared": {name: made["undeclared"][name] for name in kept}}
 
 
 @pytest.fixture(scope="module")
 def finished(config):
-    """The study of two effects and of none."""
+    """The study of two effects."""
     store = settings.store({**config["tracking"], "experiment": study.STUDY})
     with pytest.MonkeyPatch.context() as patch:
         coarse = partial(simulate_turns, sectors=SECTORS)
         patch.setattr(
             model, "simulate_turns", lambda runs, revolutions, points, sectors: coarse(runs, revolutions, points)
         )
+        patch.setattr(figures, "pictures", lambda found, said: {})  # which take longer than the answers
         return study.study_all(config, store)
 
 
@@ -63,10 +64,9 @@ def row(finished: Finished, method: str, day: str, model: str) -> pd.Series:
 
 
 def test_loop_names_the_effect_and_training_again_stops_the_false_alarms(finished):
-    nothing, grease, skew = finished
-    assert [each.name for each in finished] == ["none", "warm_grease", "channel_skew"]
-    assert verdicts.named(nothing) == "nothing, rightly"
-    assert verdicts.named(grease) in ("right", "right among its rivals")
+    grease, skew = finished
+    assert [each.name for each in finished] == ["warm_grease", "channel_skew"]
+    assert verdicts.named(grease) == "right"
     assert verdicts.named(skew) == "right"
     for each, method in ((grease, "random_forest_on_selection_1"), (skew, "extra_trees_on_harmonics")):
         before, after, oracle = (row(each, method, COMMISSIONING, model) for model in MODELS)
@@ -76,14 +76,9 @@ def test_loop_names_the_effect_and_training_again_stops_the_false_alarms(finishe
 
 
 def test_references_with_the_effect_take_it_out(finished):
-    skew = finished[2]
+    skew = finished[1]
     cold, warm = (row(skew, "extra_trees_on_harmonics", day, "before") for day in (COMMISSIONING, SAME_DAY))
     assert warm["accuracy"] > cold["accuracy"] + 10
-
-
-def test_without_an_effect_all_models_are_the_same(finished):
-    for method in ("extra_trees_on_harmonics", "random_forest_on_selection_1"):
-        assert len({row(finished[0], method, day, model)["accuracy"] for day in DAYS for model in MODELS}) == 1
 
 
 def test_a_second_run_computes_nothing_and_says_the_same(config, finished, monkeypatch):
@@ -96,10 +91,9 @@ def test_a_second_run_computes_nothing_and_says_the_same(config, finished, monke
     for one, other in zip(finished, again, strict=True):
         assert (one.hidden, one.loop) == (other.hidden, other.loop)
         pd.testing.assert_frame_equal(one.scores, other.scores)
+    key = study.key(config, "warm_grease")
     assert (
-        study.key({**config, "seed": 2}, "none")
-        != study.key(config, "none")
-        == study.key(config | {"out": "a"}, "none")
+        study.key(config | {"out": "elsewhere"}, "warm_grease") == key != study.key(config | {"seed": 2}, "warm_grease")
     )
 
 
@@ -108,7 +102,7 @@ def test_page_and_json_hold_every_effect_and_method(config, finished):
     report.write(finished, folder)
     said = json.loads((folder / "sim_to_real.json").read_text())
     page = (folder / "sim_to_real.html").read_text()
-    assert [each["undeclared"] for each in said["effects"]] == ["none", "warm_grease", "channel_skew"]
+    assert [each["undeclared"] for each in said["effects"]] == ["warm_grease", "channel_skew"]
     assert all(len(each["results"]) == len(said["methods"]) * len(DAYS) for each in said["effects"])
     assert page.count("data:image/png;base64,") == len(said["methods"]) == 2
     for each in said["effects"]:
@@ -143,7 +137,8 @@ def test_a_steady_effect_hurts_only_with_references_from_before(made_up):
     plain, moved = made_up
     found = scores(judged({"before": plain, "after": plain, "oracle": moved}, moved, {"forest": FOREST}))
     accuracy = found.set_index(["day", "model"])["accuracy"]
-    assert accuracy[COMMISSIONING, "before"] < accuracy[COMMISSIONING, "oracle"] - 20
+    assert accuracy[COMMISSIONING, "before"] < accuracy[COMMISSIONING, "oracle"] - 10
+    assert accuracy[COMMISSIONING, "after"] == accuracy[COMMISSIONING, "before"]
     assert accuracy[SAME_DAY, "before"] == pytest.approx(accuracy[SAME_DAY, "oracle"], abs=10)
 
 
@@ -185,6 +180,7 @@ COMING = {"before": 0.5, "after": 0.1, "oracle": 0.0}
         (COMING, ["coning"], ["gauge_gain"], "helps", "right among its rivals"),
         ({**COMING, "after": 0.3}, ["axial_thrust"], ["gauge_gain"], "helps in part", "another effect"),
         ({**COMING, "after": 0.5}, ["axial_thrust"], [], "does not help", "missed"),
+        ({**COMING, "after": 0.5}, ["bond_creep"], [], "does not help", "cannot be tested"),
         ({**COMING, "oracle": 0.5}, ["coning"], ["coning"], "not needed", "right"),
         ({**COMING, "before": 0.0, "after": 0.5}, ["coning"], ["coning"], "harms", "right"),
         ({**COMING, "after": 0.8}, [], ["coning"], "harms", "false effect"),
@@ -194,7 +190,7 @@ COMING = {"before": 0.5, "after": 0.1, "oracle": 0.0}
 def test_verdict_says_whether_it_helped(wrong, hidden, found, verdict, name):
     loop = {
         "verdict": "effect_found" if found else "nothing_missing", "sentence": "Nothing is missing.",
-        "found": [{each: {}} for each in found], "rivals": ["coning"],
+        "found": [{each: {}} for each in found], "rivals": ["coning"], "absorbed": ["bond_creep"],
     }  # fmt: skip
     each = Finished("a", [{each: {}} for each in hidden], loop, scores(fabricated_predictions(wrong)))
     said, reason = verdicts.why(each, "m", COMMISSIONING)

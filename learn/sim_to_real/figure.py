@@ -7,6 +7,7 @@ import numpy as np
 
 from learn.sim_to_real.finished import Finished
 from learn.sim_to_real.judging import DAYS, MODELS
+from learn.sim_to_real.verdicts import row_of
 from swgsim.style import Picture, figure, label, png, words
 
 COLOURS = {"before": "#D55E00", "after": "#0072B2", "oracle": "#000000"}
@@ -35,9 +36,9 @@ def drawn(finished: Sequence[Finished], method: str) -> matplotlib.figure.Figure
     panels = [(score, day) for day in DAYS for score in SCORES]
     for here, (score, day) in zip(axes, panels, strict=True):
         for number, model in enumerate(MODELS):
-            parts = [each.scores.query("method == @method and day == @day and model == @model") for each in finished]
+            parts = [row_of(each.scores, method, day, model) for each in finished]
             values, low, high = (
-                np.array([float(part[f"{score}{end}"].iloc[0]) for part in parts]) for end in ("", "_low", "_high")
+                np.array([part[f"{score}{end}"] for part in parts], dtype=float) for end in ("", "_low", "_high")
             )
             at = rows + 0.22 * (number - 1)
             here.hlines(at, low, high, color=COLOURS[model], linewidth=1.4)

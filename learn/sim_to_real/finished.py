@@ -17,7 +17,8 @@ class Finished:
     hidden : list
         The effect as text.
     loop : mapping
-        What the loop said: ``verdict``, ``sentence``, ``found`` (effects as text), ``rivals`` (names), ``error``.
+        What the loop said: ``verdict``, ``sentence``, ``found`` (effects as text), ``rivals`` and ``absorbed``
+        (names), ``error``.
     scores : DataFrame
         Of :func:`learn.sim_to_real.scores.scores`.
     """

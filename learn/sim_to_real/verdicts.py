@@ -24,6 +24,8 @@ def named(finished: Finished) -> str:
     rest = [name for name in found if name not in true]
     if not true:
         return "false effect" if found else "nothing, rightly"
+    if not found and set(true) <= set(finished.loop["absorbed"]):
+        return "cannot be tested"
     if not found:
         return "missed" if finished.loop["verdict"] == "nothing_missing" else "unknown effect"
     if all(name in found for name in true):
@@ -46,7 +48,7 @@ def why(finished: Finished, method: str, day: str) -> tuple[str, str]:
             f"Regenerating with {_listed(finished.loop['found'])} brings {share:.0%} of what knowing the effect brings."
         )
     if not finished.loop["found"]:
-        return "does not help", f"The loop found no effect to add: {finished.loop['sentence']}"
+        return "does not help", f"The loop found no effect to add. {_unfound(finished)}"
     if after["gain_low"] > 0:
         return "helps in part", (
             f"What was found, {_listed(finished.loop['found'])}, brings {share:.0%} of what knowing the effect brings."
@@ -54,6 +56,16 @@ def why(finished: Finished, method: str, day: str) -> tuple[str, str]:
     return "does not help", (
         f"What was found, {_listed(finished.loop['found'])}, does not act on this method's features as the truth does."
     )
+
+
+def _unfound(finished: Finished) -> str:
+    """What the loop said where it did not name an effect."""
+    if named(finished) == "cannot be tested":
+        return (
+            f"It says that these recordings cannot test {_listed(finished.hidden)}: what the model declares not to "
+            "know, such as the zeros of a session, looks the same."
+        )
+    return str(finished.loop["sentence"])
 
 
 def _safe(after: pd.Series) -> tuple[str, str]:

@@ -4,11 +4,8 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.blind.bench import UNSEEN
-from swgsim.loop.calibration import linearised
-from swgsim.loop.declared import of_unit
 from swgsim.loop.errors import size
 from swgsim.loop.fitting import Fitted
-from swgsim.loop.form import form_columns
 
 # Speed is what the motor's control makes of it; its ripple is nobody's aim.
 JUDGED = ("T_in", "T_out", "s0", "s1", "s2", "s3", "s4")
@@ -29,20 +26,15 @@ def unseen_error(fitted: Fitted, truth: Float[np.ndarray, "situation feature"]) 
 
 def expected(fitted: Fitted) -> Float[np.ndarray, "situation feature"]:
     """What a fitted model expects at the unseen points, with all that the recordings say about what it left open."""
-    unit, measured = fitted.unit, fitted.measured
-    known = of_unit(unit.model.gear) if unit.commissioned else {}
+    measured = fitted.measured
     situations = (*measured.situations, *UNSEEN)
-    predicted, J = linearised(fitted.model, known | fitted.parameters, situations, measured.layout)
-    maps = form_columns(predicted, situations, measured.layout)
-    left_open = np.concatenate([J[..., : len(known)], maps], axis=-1)[-len(UNSEEN) :]
-    predicted, J = predicted[-len(UNSEEN) :], J[-len(UNSEEN) :, :, len(known) :]
-    reach = unit.structure * np.eye(left_open.shape[-1]) if unit.reach is None else unit.reach
-    shift = np.zeros(left_open.shape[-1]) if unit.shift is None else unit.shift
+    unsure = fitted.unit.left_open(fitted.model, situations, measured.layout, fitted.parameters)
+    predicted, shift, left_open, J = (part[-len(UNSEEN) :] for part in unsure)
     G = fitted.whole.G
     weighted = G / fitted.whole.variance[:, None]
     mean = np.linalg.solve(np.eye(G.shape[1]) + weighted.T @ G, weighted.T @ fitted.from_start)
     first = fitted.errors.G.shape[1]
-    found = mean[first : first + reach.shape[1]]
+    found = mean[first : first + left_open.shape[-1]]
     # The model stands where its parameters were found to be; what they are counted from lies further back.
     beyond = mean[G.shape[1] - J.shape[-1] :] - np.array(list(fitted.calibrated.position.values()))
-    return predicted + left_open @ (shift + reach @ found) + J @ beyond
+    return predicted + shift + left_open @ found + J @ beyond

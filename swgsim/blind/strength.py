@@ -11,7 +11,7 @@ from swgsim.effects.quantity import Quantity, Role, quantities
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.hypotheses import hypotheses, signatures
 from swgsim.loop.model import predict
-from swgsim.loop.sidelines import Between
+from swgsim.loop.sidelines import between
 
 # Shares of the way from nothing to the bound at which the strength is tried, and how far at most.
 FARTHEST, COARSE, FINE = 0.9, 13, 5
@@ -42,7 +42,7 @@ def strengths(effects: Sequence[Effect], of: Sequence[type[Effect]], fitted: Fit
         for i, changed in zip(chain, seen[1:], strict=True):
             found[i] = (fitted.whole.whiten(fitted.measured.rows(changed - seen[0])) ** 2).sum()
     for i in set(range(len(effects))) - set(chain):
-        found[i] = sum((Between.of(r).pattern(effects[i])[0] ** 2).sum() for r in fitted.measured.recordings)
+        found[i] = sum((each.pattern(effects[i])[0] ** 2).sum() for each in between(fitted.measured.recordings))
     return found
 
 
