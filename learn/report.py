@@ -94,23 +94,32 @@ class Report:
 
     def html(self) -> str:
         """``index.html``: one file, pictures inside."""
-        environment = Environment(
-            loader=PackageLoader("learn", ""),
-            autoescape=True,
-            undefined=StrictUndefined,
-            trim_blocks=True,
-            lstrip_blocks=True,
+        return (
+            templates()
+            .get_template("report.html.jinja")
+            .render(
+                report=self,
+                held=[f for f in self.findings if f.holds],
+                failed=[f for f in self.findings if not f.holds],
+                tables=[_table(name, comparison) for name, comparison in self.tables.items()],
+                folds=[{"title": ROMAN[name], "rows": _folds(frame)} for name, frame in self.folds.items()],
+                roman=ROMAN,
+                classifiers=[name.upper() for name in CLASSIFIERS],
+            )
         )
-        environment.filters["data_uri"] = lambda raw: "data:image/png;base64," + base64.b64encode(raw).decode()
-        return environment.get_template("report.html.jinja").render(
-            report=self,
-            held=[f for f in self.findings if f.holds],
-            failed=[f for f in self.findings if not f.holds],
-            tables=[_table(name, comparison) for name, comparison in self.tables.items()],
-            folds=[{"title": ROMAN[name], "rows": _folds(frame)} for name, frame in self.folds.items()],
-            roman=ROMAN,
-            classifiers=[name.upper() for name in CLASSIFIERS],
-        )
+
+
+def templates() -> Environment:
+    """The page templates of this package, with the filter ``data_uri`` for pictures inside the page."""
+    environment = Environment(
+        loader=PackageLoader("learn", ""),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["data_uri"] = lambda raw: "data:image/png;base64," + base64.b64encode(raw).decode()
+    return environment
 
 
 def require_same_code(codes: Mapping[str, str], grid: str) -> None:

@@ -1,13 +1,11 @@
 """The report of the transfer study as one HTML page and as JSON."""
 
-import base64
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
-
+from learn.report import templates
 from learn.transfer_report.sentences import Goal
 from swgsim.style import Picture
 
@@ -70,13 +68,6 @@ class TransferReport:
 
     def html(self) -> str:
         """``transfer.html``: one file, pictures inside."""
-        environment = Environment(
-            loader=PackageLoader("learn", ""),
-            autoescape=True,
-            undefined=StrictUndefined,
-            trim_blocks=True,
-            lstrip_blocks=True,
-        )
-        environment.filters["data_uri"] = lambda raw: "data:image/png;base64," + base64.b64encode(raw).decode()
+        environment = templates()
         environment.filters["kind"] = lambda part: type(part).__name__
         return environment.get_template("transfer_report/page.html.jinja").render(report=self)
