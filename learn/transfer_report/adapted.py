@@ -74,8 +74,8 @@ def where_it_pays(table: pd.DataFrame) -> Section:
     parts: list = [
         f"Adapting pays in {int(pays.sum())} of {len(transferred)} cases (a scenario and a number of shots): there the "
         "whole 95 % interval of the change that adapting makes to its source model lies below 0. Each interval stands "
-        "alone: of cases without any effect, one in forty would lie below 0 by chance. From scratch is what the shots "
-        "give without any source gear.",
+        "alone: of cases without any effect, one in forty would lie below 0 by chance. One draw of the shots for each "
+        "gear. From scratch is what the shots give without any source gear.",
         _beside_the_best(transferred),
         figures.where_transfer_pays(table),
         Table(["scenario", "method", "K", "source model [%]", "adapted [%]", "change [points]", "pays",
