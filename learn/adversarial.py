@@ -10,9 +10,9 @@ from jaxtyping import Float
 from torch import Tensor, nn
 
 from learn.networks import Network, seeded
-from learn.neural import NeuralClassifier
+from learn.neural import NeuralClassifier, as_tensor
 from learn.training import Recipe, train
-from learn.transfer import Labelled, class_numbers, copied_network, require_rows
+from learn.transfer import Labelled, copied_network, positions_in, require_rows
 from swgsim.checks import require, require_integer, require_positive
 from swgsim.seeds import generator, seed_hash
 
@@ -35,7 +35,7 @@ class DomainAdversarial:
         Of the reversed gradient at the end; it rises from 0 as in the paper.
     """
 
-    epochs: int = 5
+    epochs: int = 1
     batch: int = 256
     rate: float = 1e-3
     weight: float = 0.3
@@ -58,7 +58,7 @@ class DomainAdversarial:
         with seeded(seed_hash("discriminator", seed)):
             width = network.head.in_features
             discriminator = nn.Sequential(nn.Linear(width, 64), nn.ReLU(), nn.Linear(64, 1)).to(device)
-        rows = [torch.as_tensor(side, dtype=torch.float32).to(device) for side in (kept.X, unlabelled)]
+        rows = [as_tensor(side).to(device) for side in (kept.X, unlabelled)]
         rng = generator("rows of both domains", seed)
         domain = torch.arange(2.0, device=device).repeat_interleave(self.batch)
         steps = self.epochs * ceil(len(kept.X) / self.batch)
@@ -71,7 +71,7 @@ class DomainAdversarial:
             return nn.functional.binary_cross_entropy_with_logits(logits, domain)
 
         train(
-            network, rows[0], torch.as_tensor(class_numbers(source.classes_, kept.y)),
+            network, rows[0], torch.from_numpy(positions_in(source.classes_, kept.y)),
             Recipe(self.epochs, self.batch, self.rate, source.recipe.decay), seed,
             parameters=[*network.parameters(), *discriminator.parameters()], penalty=penalty, frozen_statistics=True,
         )  # fmt: skip

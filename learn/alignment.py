@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Float
 
 from learn.feature_space import Space, feature_space
-from learn.neural import NeuralClassifier
+from learn.neural import NeuralClassifier, as_tensor
 from learn.transfer import FittedClassifier, Labelled, copied_network, require_rows, untrained
 from swgsim.checks import require
 
@@ -133,7 +133,7 @@ class BatchNormAdaptation:
             layer.train()
             layer.momentum = self.mixing  # all rows pass once, so this is the weight of their statistics
         with torch.no_grad(), one_thread():
-            network.embed(torch.as_tensor(unlabelled, dtype=torch.float32).to(network.centre.device))
+            network.embed(as_tensor(unlabelled).to(network.centre.device))
         for layer, momentum in zip(layers, momenta, strict=True):
             layer.momentum = momentum
         network.eval()

@@ -84,3 +84,38 @@ def fit_temperature(probabilities: Float[np.ndarray, "row class"], y: Int[np.nda
         method="bounded",
     )
     return float(np.exp(fitted.x))
+
+
+def tempered_by_others(
+    probabilities: Float[np.ndarray, "row class"], y: Int[np.ndarray, " row"], gears: np.ndarray
+) -> tuple[Float[np.ndarray, "row class"], Float[np.ndarray, " gear"]]:
+    """Probabilities of every gear with the temperature that all the other gears give, so none of its own labels.
+
+    Parameters
+    ----------
+    probabilities : array (row, class)
+    y : array (row,)
+        Column of the true class.
+    gears : array (row,)
+        Gear of each row.
+
+    Returns
+    -------
+    array (row, class)
+    array (gear,)
+        The temperatures, by the number of the gear.
+
+    Raises
+    ------
+    ValueError
+        If there is one gear only.
+    """
+    names = np.unique(gears)
+    if len(names) < 2:
+        raise ValueError(f"{len(names)} gear, at least 2 are needed to fit the temperature of one on the others")
+    result, temperatures = np.empty_like(probabilities), np.empty(len(names))
+    for number, gear in enumerate(names):
+        here = gears == gear
+        temperatures[number] = fit_temperature(probabilities[~here], y[~here])
+        result[here] = apply_temperature(probabilities[here], temperatures[number])
+    return result, temperatures

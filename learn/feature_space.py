@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from learn.neural import NeuralClassifier
+from learn.neural import NeuralClassifier, as_tensor
 
 Space = Callable[[np.ndarray], np.ndarray]  # (row, column) to (row, feature)
 
@@ -33,6 +33,6 @@ def _embedded(source: NeuralClassifier, X: np.ndarray) -> np.ndarray:
     from learn.training import one_thread
 
     network = source.network_.eval()
-    rows = torch.as_tensor(X, dtype=torch.float32).to(network.centre.device)
+    rows = as_tensor(X).to(network.centre.device)
     with torch.inference_mode(), one_thread():
         return np.asarray(network.embed(rows).cpu().double().numpy())

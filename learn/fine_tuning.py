@@ -14,9 +14,9 @@ from jaxtyping import Float
 from torch import Tensor, nn
 
 from learn.networks import Network
-from learn.neural import NeuralClassifier
+from learn.neural import NeuralClassifier, as_tensor
 from learn.training import Recipe, train
-from learn.transfer import Labelled, class_numbers, copied_network, require_rows
+from learn.transfer import Labelled, copied_network, positions_in, require_rows
 from swgsim.checks import require, require_integer, require_positive
 from swgsim.seeds import generator
 
@@ -30,7 +30,7 @@ class LinearProbe:
     Attributes
     ----------
     steps, batch : int
-        Number of steps, and shots in each, at most.
+        Number of steps, and rows of the shots in each, at most.
     rate : float
         Highest learning rate.
     strength : float
@@ -55,7 +55,7 @@ class LinearProbe:
         require_rows(self, "shots", len(shots.X))
         network = copied_network(source)
         pull = distance(self.strength, network.head.parameters(), lambda changed: changed.head.parameters())
-        numbers = class_numbers(source.classes_, shots.y)
+        numbers = positions_in(source.classes_, shots.y)
         _train(network, shots.X, numbers, self, seed, pull, network.head.parameters())
         return source.with_network(network)
 
@@ -67,17 +67,14 @@ class FineTuning:
     Attributes
     ----------
     steps, batch : int
-        Number of steps, and shots in each, at most.
+        Number of steps, and rows of the shots in each, at most.
     rate : float
         Highest learning rate.
-    replay : bool
-        Whether each step also takes ``batch`` random rows of the source gears.
     """
 
     steps: int = 100
     batch: int = 64
     rate: float = 1e-3
-    replay: bool = False
 
     def __post_init__(self) -> None:
         require_integer("fine-tuning", "steps", self.steps, 0, 1_000_000)
@@ -90,17 +87,13 @@ class FineTuning:
         """The source model with other parameters."""
         require_rows(self, "shots", len(shots.X))
         network = copied_network(source)
-        penalties = self._penalties(network)
-        if self.replay:
-            require_rows(self, "kept, which replay needs,", len(kept.X))
-            penalties.append(_replay(kept.X, class_numbers(source.classes_, kept.y), self.batch, network, seed))
-        numbers = class_numbers(source.classes_, shots.y)
-        together = (lambda changed: torch.stack([each(changed) for each in penalties]).sum()) if penalties else None
-        _train(network, shots.X, numbers, self, seed, together)
+        penalty = self._penalty(source, kept, seed)
+        _train(network, shots.X, positions_in(source.classes_, shots.y), self, seed, penalty)
         return source.with_network(network)
 
-    def _penalties(self, network: Network) -> list[Penalty]:
-        return []
+    def _penalty(self, source: NeuralClassifier, kept: Labelled, seed: int) -> Penalty | None:
+        """What each step adds to the loss."""
+        return None
 
 
 @dataclass(frozen=True)
@@ -121,8 +114,26 @@ class L2SP(FineTuning):
         super().__post_init__()
         require("L2-SP", "strength", self.strength, low=0)
 
-    def _penalties(self, network: Network) -> list[Penalty]:
-        return [distance(self.strength, network.parameters(), lambda changed: changed.parameters())]
+    def _penalty(self, source: NeuralClassifier, kept: Labelled, seed: int) -> Penalty:
+        return distance(self.strength, source.network_.parameters(), lambda changed: changed.parameters())
+
+
+@dataclass(frozen=True)
+class Replay(FineTuning):
+    """Fine-tuning in which each step also takes ``batch`` random rows of the source gears."""
+
+    def _penalty(self, source: NeuralClassifier, kept: Labelled, seed: int) -> Penalty:
+        require_rows(self, "kept", len(kept.X))
+        device = source.network_.centre.device
+        rows = as_tensor(kept.X).to(device)
+        truth = torch.from_numpy(positions_in(source.classes_, kept.y)).to(device)
+        rng = generator("replay", seed)
+
+        def penalty(network: Network) -> Tensor:
+            drawn = torch.from_numpy(rng.integers(len(rows), size=self.batch)).to(device)
+            return nn.functional.cross_entropy(network(rows[drawn]), truth[drawn])
+
+        return penalty
 
 
 @dataclass(frozen=True)
@@ -153,18 +164,6 @@ def distance(
     return penalty
 
 
-def _replay(X: np.ndarray, numbers: np.ndarray, batch: int, network: Network, seed: int) -> Penalty:
-    device = network.centre.device
-    rows, truth = torch.as_tensor(X, dtype=torch.float32).to(device), torch.as_tensor(numbers).to(device)
-    rng = generator("replay", seed)
-
-    def penalty(network: Network) -> Tensor:
-        drawn = torch.from_numpy(rng.integers(len(rows), size=batch)).to(device)
-        return nn.functional.cross_entropy(network(rows[drawn]), truth[drawn])
-
-    return penalty
-
-
 def _train(
     network: Network, X: np.ndarray, numbers: np.ndarray, method: LinearProbe | FineTuning, seed: int,
     penalty: Penalty | None, parameters: Iterable[nn.Parameter] | None = None,
@@ -177,6 +176,6 @@ def _train(
     # Weights are held by a pull towards the source, if by anything, and not by decay towards zero.
     recipe = Recipe(epochs=1, batch=batch, rate=method.rate, decay=0.0)
     train(
-        network, torch.as_tensor(X[rows], dtype=torch.float32), torch.as_tensor(numbers[rows]), recipe, seed,
+        network, as_tensor(X[rows]), torch.from_numpy(numbers[rows]), recipe, seed,
         parameters=parameters, penalty=penalty, frozen_statistics=True,
     )  # fmt: skip

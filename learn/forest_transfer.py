@@ -8,18 +8,19 @@ from jaxtyping import Float
 from scipy.special import entr
 
 from learn.flat_forest import FlatForest, as_trees_see, flatten
-from learn.transfer import Labelled, class_numbers, require_rows, untrained
+from learn.transfer import Labelled, positions_in, require_rows, untrained
 from swgsim.checks import require, require_integer, require_positive
 
 
 @dataclass(frozen=True)
 class LeafRelabelling:
-    """Splits stay as they are; the class frequencies in the leaves are updated by the shots that fall into them.
+    """Splits stay as they are; the class frequencies in the leaves are updated by the rows of the shots there.
 
     Attributes
     ----------
     strength : float
-        Number of shots that the source's frequencies in a leaf are worth.
+        Number of rows of the target gear that the source's frequencies in a leaf are worth. A shot gives one row at
+        each operating point, so the shots weigh more against the source the more points there are.
     """
 
     strength: float = 3.0
@@ -34,7 +35,7 @@ class LeafRelabelling:
         require_rows(self, "shots", len(shots.X))
         forest = flatten(source)
         counts = np.zeros_like(forest.probabilities)
-        np.add.at(counts, (forest.leaves(shots.X), class_numbers(forest.classes_, shots.y)[:, None]), 1)
+        np.add.at(counts, (forest.leaves(shots.X), positions_in(forest.classes_, shots.y)[:, None]), 1)
         total = counts.sum(axis=1, keepdims=True)
         return replace(forest, probabilities=(self.strength * forest.probabilities + counts) / (self.strength + total))
 
@@ -67,7 +68,7 @@ class AddedTrees:
         fresh = untrained(source, seed).set_params(n_estimators=self.count)
         new = flatten(fresh.fit(shots.X, shots.y))
         probabilities = np.zeros((len(new.left), len(old.classes_)))
-        probabilities[:, class_numbers(old.classes_, new.classes_)] = new.probabilities  # shots may lack classes
+        probabilities[:, positions_in(old.classes_, new.classes_)] = new.probabilities  # shots may lack classes
         nodes = len(old.left)
         return FlatForest(
             old.classes_,
@@ -99,7 +100,7 @@ class StructureTransfer:
         require_rows(self, "shots", len(shots.X))
         forest = flatten(source)
         X = as_trees_see(shots.X)
-        one_hot = np.eye(len(forest.classes_))[class_numbers(forest.classes_, shots.y)]
+        one_hot = np.eye(len(forest.classes_))[positions_in(forest.classes_, shots.y)]
         left, right, threshold = forest.left.copy(), forest.right.copy(), forest.threshold.copy()
         probabilities = forest.probabilities.copy()
         open_nodes = [(root, np.arange(len(X))) for root in forest.roots]

@@ -14,7 +14,7 @@ from jaxtyping import Complex
 
 from learn.inputs import LearningSet
 from learn.lines import parts
-from learn.residuals import ERRORS, healthy_lines, residual
+from learn.residuals import ERRORS, healthy_lines, require_acquisitions, residual
 from learn.side import Side
 from swgsim.checks import require_integer
 from swgsim.recordings import SENSORS, Recordings
@@ -51,8 +51,7 @@ class Harmonics:
 
     def __post_init__(self) -> None:
         require_integer(self.name, "orders", self.orders, low=max(RIPPLE_ORDERS), high=1000)
-        if self.acquisitions is not None:
-            require_integer(self.name, "acquisitions", self.acquisitions, low=1, high=10_000)
+        require_acquisitions(self.name, self.acquisitions)
 
     def learning_set(self, blocks: Iterable[Recordings]) -> LearningSet:
         """The features of all samples."""

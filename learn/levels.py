@@ -115,10 +115,10 @@ class NewGears:
     """
 
     folds: int = 5
-    development: int = 0
+    development: int = 6
     judged: int | None = None
-    labelled: int = 10
-    unlabelled: int = 8
+    labelled: int = 14
+    unlabelled: int = 6
     kept_out: int = 2
     variants: int | None = None
     sources: int | None = None

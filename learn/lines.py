@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Complex, Float
 
 from learn.inputs import LearningSet
-from learn.residuals import ERRORS, healthy_lines, residual
+from learn.residuals import ERRORS, healthy_lines, require_acquisitions, residual
 from learn.side import Side
 from swgsim.checks import require_integer
 from swgsim.recordings import SENSORS, Recordings
@@ -15,15 +15,13 @@ from swgsim.recordings import SENSORS, Recordings
 
 @dataclass(frozen=True)
 class ResidualLines:
-    """Real and imaginary part of every gauge's residual at the orders 0 to `orders`, with the side inputs.
+    """Real and imaginary part of every gauge's residual (:func:`learn.residuals.residual`), with the side inputs.
 
     Attributes
     ----------
     name : str
     orders : int
         Highest order of the wave generator's speed.
-    aligned : bool
-        Take out errors of load and trigger (:func:`learn.residuals.residual`); else the plain difference.
     efficiency, operating_point : bool
         As in :class:`learn.side.Side`.
     acquisitions : int or None
@@ -32,28 +30,25 @@ class ResidualLines:
 
     name: str
     orders: int = 12
-    aligned: bool = True
     efficiency: bool = True
     operating_point: bool = True
     acquisitions: int | None = None
 
     def __post_init__(self) -> None:
         require_integer(self.name, "orders", self.orders, low=1, high=1000)
-        if self.acquisitions is not None:
-            require_integer(self.name, "acquisitions", self.acquisitions, low=1, high=10_000)
+        require_acquisitions(self.name, self.acquisitions)
 
     def learning_set(self, blocks: Iterable[Recordings]) -> LearningSet:
         """The features of all samples."""
         healthy = healthy_lines(blocks, self.orders, self.acquisitions)
-        lines, errors = residual(healthy) if self.aligned else (healthy.lines - healthy.reference, None)
+        lines, errors = residual(healthy)
         columns: dict[str, np.ndarray] = {}
         for sensor, name in enumerate(SENSORS):
             columns[f"{name}[0]"] = lines[:, sensor, 0].real
             for order in range(1, self.orders + 1):
                 columns |= parts(f"{name}[{order}]", lines[:, sensor, order])
         columns |= Side(self.efficiency, self.operating_point).columns(healthy)
-        if errors is not None:
-            columns |= dict(zip(ERRORS, errors.T, strict=True))
+        columns |= dict(zip(ERRORS, errors.T, strict=True))
         return LearningSet(np.column_stack(list(columns.values())), healthy.table, tuple(columns))
 
 

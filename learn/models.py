@@ -11,7 +11,7 @@ import numpy as np
 
 from learn import neural
 from learn.evaluation import fit
-from swgsim.files import replacing
+from swgsim.files import replacing, sole_maker
 
 # Types beyond skops' own list that may be in a file: parts of estimators that hold arrays and numbers.
 TRUSTED = [
@@ -71,7 +71,9 @@ def trained(folder: Path, identity: str, model: Any, X: np.ndarray, y: np.ndarra
     digest.update("\x1f".join(map(str, y)).encode())
     is_network = isinstance(model, neural.NeuralClassifier)
     path = folder / f"{digest.hexdigest()[:24]}{neural.SUFFIX if is_network else '.skops'}"
-    if not path.exists():
-        fit(model, X, y)
-        save(model, path)
+    # Jobs of a sweep that adapt the same source model start at the same time; the first one trains it.
+    with sole_maker(path, wait=True):
+        if not path.exists():
+            fit(model, X, y)
+            save(model, path)
     return load(path, model.device if is_network else "auto")

@@ -16,6 +16,8 @@ from jaxtyping import Float
 from swgsim.files import replacing
 
 if TYPE_CHECKING:
+    from torch import Tensor
+
     from learn.networks import Architecture, Network
     from learn.training import Recipe
 
@@ -69,7 +71,7 @@ class NeuralClassifier:
         network = self.architecture.network(X.shape[1], len(classes), self.seed)
         network.set_scaling(X)
         network.to(choose_device(self.device))
-        train(network, _tensor(X), torch.from_numpy(numbers), self.recipe, self.seed)
+        train(network, as_tensor(X), torch.from_numpy(numbers), self.recipe, self.seed)
         self.classes_, self.network_ = classes, network
         return self
 
@@ -93,7 +95,7 @@ class NeuralClassifier:
             raise ValueError(f"rows have {X.shape[1]} columns, the network was trained with {len(centre)}")
         self.network_.eval()
         with torch.inference_mode(), one_thread():
-            logits = [self.network_(rows.to(centre.device)) for rows in _tensor(X).split(CHUNK)]
+            logits = [self.network_(rows.to(centre.device)) for rows in as_tensor(X).split(CHUNK)]
             return np.asarray(torch.cat(logits).cpu().double().softmax(dim=1).numpy())
 
     def predict(self, X: Float[np.ndarray, "row column"]) -> np.ndarray:
@@ -108,9 +110,16 @@ class NeuralClassifier:
         return other
 
 
+def as_tensor(X: Float[np.ndarray, "row column"]) -> "Tensor":
+    """A copy of the rows as networks take them, in single precision, on the processor."""
+    import torch
+
+    return torch.from_numpy(np.array(X, dtype=np.float32, order="C"))
+
+
 def neural_perceptron(
     channels: int = 0, points: int = 0, periodic: bool = True, layers: int = 2, neurons: int = 256,
-    dropout: float = 0.3, epochs: int = 15, batch: int = 256, rate: float = 3e-3, decay: float = 1e-2, seed: int = 0,
+    dropout: float = 0.4, epochs: int = 20, batch: int = 256, rate: float = 2e-3, decay: float = 0.1, seed: int = 0,
     device: str = "auto",
 ) -> NeuralClassifier:  # fmt: skip
     """A perceptron; see :func:`learn.networks.perceptron` and :class:`learn.training.Recipe`."""
@@ -123,7 +132,7 @@ def neural_perceptron(
 
 
 def convolutional_network(
-    channels: int, points: int, periodic: bool = True, width: int = 32, dropout: float = 0.2,
+    channels: int, points: int, periodic: bool = True, width: int = 32, dropout: float = 0.3,
     epochs: int = 15, batch: int = 256, rate: float = 3e-3, decay: float = 1e-2, seed: int = 0, device: str = "auto",
 ) -> NeuralClassifier:  # fmt: skip
     """Convolutions over the angle; see :func:`learn.networks.convolutional` and :class:`learn.training.Recipe`."""
@@ -187,12 +196,6 @@ def _content(path: Path) -> Mapping[str, Any]:
         raw.seek(0)
         content: Mapping[str, Any] = torch.load(raw, map_location="cpu", weights_only=True)
     return content
-
-
-def _tensor(X: np.ndarray) -> Any:
-    import torch
-
-    return torch.from_numpy(np.array(X, dtype=np.float32, order="C"))
 
 
 def _require_finite(X: np.ndarray) -> None:

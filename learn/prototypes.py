@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from learn.feature_space import Space, feature_space
-from learn.transfer import Labelled, class_numbers, require_rows
+from learn.transfer import Labelled, positions_in, require_rows
 from swgsim.checks import require_positive
 
 
@@ -53,7 +53,8 @@ class Prototypes:
     Attributes
     ----------
     strength : float
-        Number of shots that the mean of the source gears is worth.
+        Number of rows of the target gear that the mean of the source gears is worth. A shot gives one row at each
+        operating point, so the shots weigh more against the source the more points there are.
     temperature : float
         Of :class:`NearestPrototype`.
     """
@@ -76,7 +77,7 @@ class Prototypes:
         """
         require_rows(self, "shots", len(shots.X))
         space = feature_space(source, kept.X)
-        numbers = class_numbers(source.classes_, kept.y)
+        numbers = positions_in(source.classes_, kept.y)
         features = space(kept.X)
         total, count = _sums(features, numbers, len(source.classes_))
         if not count.all():
@@ -84,7 +85,7 @@ class Prototypes:
             raise ValueError(f"class {str(missing)!r} has 0 kept rows, its prototype needs at least 1: keep some")
         means = total / count
         within = np.sqrt(np.square(features - means[numbers]).mean(axis=0))
-        total, count = _sums(space(shots.X), class_numbers(source.classes_, shots.y), len(means))
+        total, count = _sums(space(shots.X), positions_in(source.classes_, shots.y), len(means))
         prototypes = (self.strength * means + total) / (self.strength + count)
         scale = np.where(within > 0, within, 1.0)  # a unit of the network that never answers
         return NearestPrototype(source.classes_, space, prototypes, scale, self.temperature)

@@ -14,6 +14,7 @@ import pandas as pd
 from jaxtyping import Complex, Float, Int
 
 from learn.references import HEALTHY, healthy_reference
+from swgsim.checks import require_integer
 from swgsim.orders import lines_of, whole_revolutions
 from swgsim.recordings import Recordings
 
@@ -42,6 +43,12 @@ class HealthyLines:
     revolutions: Int[np.ndarray, " sample"]
     eta_healthy: Float[np.ndarray, " sample"]
     temperature_healthy: Float[np.ndarray, " sample"]
+
+
+def require_acquisitions(owner: str, acquisitions: int | None) -> None:
+    """Raise a ValueError unless :func:`healthy_lines` can use so many reference acquisitions."""
+    if acquisitions is not None:
+        require_integer(owner, "acquisitions", acquisitions, low=1, high=10_000)
 
 
 def healthy_lines(blocks: Iterable[Recordings], orders: int, acquisitions: int | None = None) -> HealthyLines:

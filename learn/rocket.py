@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
+from learn.strong import compression
 from swgsim.checks import require_integer
 
 SHORTEST = 9  # points: the length of MiniRocket's kernels
@@ -51,8 +52,7 @@ class MiniRocket:
     def fit(self, X: Float[np.ndarray, "row column"], y: np.ndarray) -> "MiniRocket":
         """Learn from rows and class names."""
         from sklearn.linear_model import LogisticRegression, RidgeClassifierCV
-        from sklearn.pipeline import make_pipeline
-        from sklearn.preprocessing import FunctionTransformer, RobustScaler, StandardScaler
+        from sklearn.preprocessing import StandardScaler
 
         signal, side = self._split(X)
         # One scale for all rows: what differs between windows stays in them.
@@ -62,7 +62,7 @@ class MiniRocket:
         self._rocket = _transformer(self.kernels, self.seed)
         convolved = self._convolved(signal, fit=True)
         self._of_rocket = StandardScaler().fit(convolved)
-        self._of_side = make_pipeline(RobustScaler(), FunctionTransformer(np.arcsinh)).fit(side) if side.size else None
+        self._of_side = compression().fit(side) if side.size else None
         features = self._joined(convolved, side)
         self._ridge = RidgeClassifierCV(STRENGTHS).fit(features, y)
         self._probability = LogisticRegression().fit(self._ridge.decision_function(features), y)

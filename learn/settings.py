@@ -71,11 +71,8 @@ def classifier(config: Config, layout: Layout = NO_SIGNAL) -> Callable[..., clas
 
     Methods that know signals are told where in a row the signal is.
     """
-    name = str(config.get("name"))
-    kind = _known("classifier", CLASSIFIERS, name)
-    options = {key: value for key, value in config.items() if key not in NO_OPTIONS}
-    make = _configured(f"classifier {name}", kind, options)
-    knows_signals = "channels" in inspect.signature(kind).parameters
+    make = _chosen("classifier", CLASSIFIERS, config)
+    knows_signals = "channels" in inspect.signature(make).parameters
     return partial(make, **layout._asdict()) if knows_signals else make
 
 
@@ -117,16 +114,10 @@ def data_set(config: Config) -> Path:
 
 def _chosen(kind: str, choices: Mapping[str, Callable[..., T]], config: Config) -> Callable[..., T]:
     name = str(config.get("name"))
-    factory = _known(kind, choices, name)
-    return _configured(
-        f"{kind} {name}", factory, {k: v for k, v in config.items() if k not in ("name", "trials", "shots")}
-    )
-
-
-def _known(kind: str, choices: Mapping[str, T], name: str) -> T:
     if name not in choices:
         raise ValueError(f"unknown {kind} {name!r}; choose from {', '.join(choices)}")
-    return choices[name]
+    options = {key: value for key, value in config.items() if key not in NO_OPTIONS}
+    return _configured(f"{kind} {name}", choices[name], options)
 
 
 def _configured(kind: str, factory: Callable[..., T], options: Config) -> Callable[..., T]:

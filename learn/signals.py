@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from learn.inputs import Layout, LearningSet
-from learn.residuals import ERRORS, healthy_lines, residual
+from learn.residuals import ERRORS, healthy_lines, require_acquisitions, residual
 from learn.side import Side
 from swgsim.checks import require_integer
 from swgsim.orders import revolution
@@ -54,8 +54,7 @@ class Signals:
             raise ValueError("features=residual is relative to a healthy reference: reference=true, or features=raw")
         require_integer(self.name, "points", self.points, low=8, high=4096)
         require_integer(self.name, "orders", self.orders, low=1, high=self.points // 2 - 1)
-        if self.acquisitions is not None:
-            require_integer(self.name, "acquisitions", self.acquisitions, low=1, high=10_000)
+        require_acquisitions(self.name, self.acquisitions)
 
     def learning_set(self, blocks: Iterable[Recordings]) -> LearningSet:
         """The signals of all samples, with the side inputs behind."""

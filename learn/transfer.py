@@ -76,7 +76,7 @@ class Adaptation(Protocol):
         ...
 
 
-def class_numbers(classes: Sequence[str] | np.ndarray, y: np.ndarray) -> Int[np.ndarray, " row"]:
+def positions_in(classes: Sequence[str] | np.ndarray, y: np.ndarray) -> Int[np.ndarray, " row"]:
     """Position of each class name in the sorted `classes` of the source model.
 
     Raises

@@ -27,29 +27,35 @@ def replacing(path: Path) -> Iterator[Path]:
 
 
 @contextmanager
-def sole_maker(path: Path) -> Iterator[None]:
+def sole_maker(path: Path, *, wait: bool = False) -> Iterator[None]:
     """Be the only process that makes ``path``; a process that is killed gives this up by itself.
+
+    Parameters
+    ----------
+    path : Path
+    wait : bool
+        Wait for another process that is making it, which may leave nothing to do.
 
     Raises
     ------
     RuntimeError
-        If another process is making it.
+        If another process is making it, and this one does not wait.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     lock = path.with_name(f".{path.name}.lock")
-    with _locked(lock, path):
+    with _locked(lock, path, wait):
         try:
             yield
         finally:
             lock.unlink(missing_ok=True)
 
 
-def _locked(lock: Path, path: Path) -> IO[bytes]:
+def _locked(lock: Path, path: Path, wait: bool) -> IO[bytes]:
     """The lock file, open and locked until it is closed."""
     while True:
         raw = lock.open("wb")
         try:
-            fcntl.flock(raw, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            fcntl.flock(raw, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             raw.close()
             raise RuntimeError(

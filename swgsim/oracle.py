@@ -6,13 +6,11 @@ On average no classifier errs less; the oracle's errors tell how much of a class
 from collections.abc import Sequence
 
 import numpy as np
-import pandas as pd
 from jaxtyping import Float
 
 from swgsim.bench import Session
 from swgsim.gear import Gear
-from swgsim.oracle_cells import Resolution
-from swgsim.oracle_model import ORDERS, Expectation, bench_of, expectations, observations
+from swgsim.oracle_model import ORDERS, Expectation, bench_of, observations
 from swgsim.oracle_point import PointModel
 from swgsim.orders import whole_revolutions
 from swgsim.plan import Plan
@@ -85,35 +83,11 @@ def judge(
         here = (table["n_in_rpm"] == point.n_in_rpm) & (table["T_out_nm"] == point.T_out)
         rows = np.flatnonzero(here & (table["gear"] == gear.number))
         found[rows] = np.exp(point_model(plan, gear, at_point, session_known).log_posterior(x[rows]))
-    _require_all_judged(found, table)
-    return found
-
-
-def posteriors(
-    plan: Plan, samples: Recordings, session_known: bool, resolution: Resolution | None = None
-) -> Float[np.ndarray, "sample class"]:
-    """Posterior probability of each of CLASSES for samples of a data set that was made by this plan.
-
-    Raises
-    ------
-    ValueError
-        If the plan has no bench, a grid that is not drawn, or not the gear or the operating point of a recording.
-    """
-    found = np.full((len(samples), len(CLASSES)), np.nan)
-    for gear in plan.gears:
-        rows = np.flatnonzero(samples.table["gear"] == gear.number)
-        if len(rows):
-            expected = expectations(plan, gear, resolution or Resolution())
-            found[rows] = judge(plan, gear, expected, samples.where(rows), session_known)
-    _require_all_judged(found, samples.table)
-    return found
-
-
-def _require_all_judged(found: Float[np.ndarray, "sample class"], table: pd.DataFrame) -> None:
     left = np.flatnonzero(np.isnan(found).any(axis=1))
     if len(left):
-        gear, speed, load = table[["gear", "n_in_rpm", "T_out_nm"]].iloc[left[0]]
+        number, speed, load = table[["gear", "n_in_rpm", "T_out_nm"]].iloc[left[0]]
         raise ValueError(
-            f"recording {left[0]} is of gear {gear:g} at {speed:g} rpm and {load:g} N m, which the plan does not have: "
-            "judge the recordings of a data set by its own plan"
+            f"recording {left[0]} is of gear {number:g} at {speed:g} rpm and {load:g} N m, of which nothing is "
+            "expected: judge the recordings of a data set gear by gear, by its own plan"
         )
+    return found

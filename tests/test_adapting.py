@@ -1,5 +1,6 @@
 """Every method is given the same of a gear never seen, and nothing of what it is judged on."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -27,7 +28,7 @@ from swgsim.seeds import seed_hash
 
 CONF = Path(__file__).parents[1] / "conf"
 FILES = sorted(path for path in (CONF / "adaptation").glob("*.yaml") if path.stem != "none")
-PROTOCOL = NewGears(folds=2, labelled=2, unlabelled=1, kept_out=1)
+PROTOCOL = NewGears(folds=2, development=0, labelled=2, unlabelled=1, kept_out=1)
 FOREST = RandomForestClassifier(10, random_state=0)
 
 
@@ -183,7 +184,7 @@ def test_the_source_model_itself_forgets_nothing_and_one_that_is_tuned_does(data
 
 
 def test_without_rows_kept_out_nothing_is_said_of_forgetting(data):
-    episodes = list(NewGears(folds=2, labelled=2, unlabelled=1, kept_out=0).episodes(data.table))
+    episodes = list(replace(PROTOCOL, kept_out=0).episodes(data.table))
     adapted = adapt_and_judge(data, episodes[:1], clone(FOREST).fit, FromScratch(), [1], draws=1)
     assert adapted.gears["forgotten"].isna().all()
     assert adapted.gears["error"].notna().all()

@@ -9,6 +9,7 @@ from learn.calibration import (
     fit_temperature,
     negative_log_likelihood,
     reliability,
+    tempered_by_others,
 )
 from swgsim.seeds import generator
 
@@ -66,3 +67,18 @@ def test_temperature_keeps_decisions_and_sums():
         np.testing.assert_array_equal(scaled.argmax(axis=1), probabilities.argmax(axis=1))
     with pytest.raises(ValueError, match="temperature 0 must be above 0"):
         apply_temperature(probabilities, 0)
+
+
+def test_temperature_of_a_gear_knows_none_of_its_own_labels():
+    probabilities, y = calibrated(3000)
+    gears = np.repeat([5, 7, 9], 1000)
+    sharp = apply_temperature(probabilities, 1 / 3)
+    cured, temperatures = tempered_by_others(sharp, y, gears)
+    assert temperatures == pytest.approx([3, 3, 3], rel=0.15)
+    assert negative_log_likelihood(cured, y) < negative_log_likelihood(sharp, y)
+    other = np.where(gears == 5, 0, y)
+    again, changed = tempered_by_others(sharp, other, gears)
+    np.testing.assert_array_equal(again[:1000], cured[:1000])
+    assert (changed[1:] != temperatures[1:]).all()
+    with pytest.raises(ValueError, match="1 gear, at least 2"):
+        tempered_by_others(probabilities[:5], y[:5], np.ones(5))

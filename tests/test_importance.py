@@ -60,7 +60,7 @@ def test_columns_of_a_group_move_together():
 
     X, y, block = rows()
     grouped_permutation(Watch(), X, y, pair, block, generator("permute"), repeats=3)
-    assert len(seen) == 4
+    assert len(seen) == 2  # as they are, and all three copies at once
     assert all(seen)
 
 

@@ -9,7 +9,10 @@ from learn.calibration import reliability
 from learn.detection import recall_by_cell
 from learn.fault_size import SIZES
 from learn.selective import risk_coverage
+from learn.transfer_report import heat_figures
 from learn.transfer_report import judging_figures as figures
+from learn.transfer_report.novelty import Novelty
+from learn.transfer_report.novelty_figure import novelty_beside_error
 from swgsim.recordings import CLASSES
 from swgsim.seeds import generator
 
@@ -53,11 +56,19 @@ def test_calibration_and_selection_are_drawn():
 
 def test_importance_is_drawn_even_where_nothing_matters():
     rows = [(group, label, 0.0, 0.0) for group in ("s0", "s1") for label in CLASSES]
-    assert drawn(figures.importance_map(pd.DataFrame(rows, columns=["group", "label", "drop", "spread"])))
+    nothing = pd.DataFrame(rows, columns=["group", "label", "drop", "spread"])
+    assert drawn(heat_figures.importance_map(nothing))
+    assert drawn(heat_figures.line_map(nothing))
+
+
+@pytest.mark.parametrize("foreign", [None, pd.Series([9.0, 12.0])])
+def test_novelty_is_drawn_with_and_without_foreign_gears(foreign):
+    usual = pd.DataFrame({"novelty": [1.0, 1.2, 0.9], "error": [10.0, 20.0, 0.0]})
+    assert drawn(novelty_beside_error(Novelty(usual, foreign), "any method"))
 
 
 def test_caption_names_the_worst_cell():
-    picture = figures.cell_recall(recall_by_cell(predictions()))
+    picture = heat_figures.cell_recall(recall_by_cell(predictions()))
     assert drawn(picture)
     assert "tip tooth crack at 4000 rpm, 7 N m with 0.0 %" in picture.caption
 

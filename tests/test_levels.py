@@ -158,7 +158,7 @@ def test_the_order_of_rows_changes_neither_pools_nor_shots(grid, random):
 
 
 def first_target(table, gear=1, **options):
-    protocol = NewGears(**{"folds": 2, "labelled": 3, "unlabelled": 1, "kept_out": 1, **options})
+    protocol = NewGears(**{"folds": 2, "development": 0, "labelled": 3, "unlabelled": 1, "kept_out": 1, **options})
     return next(t for e in protocol.episodes(table) for t in e.targets if t.gear == gear)
 
 
@@ -191,7 +191,7 @@ def test_source_gears_and_their_variants_can_be_limited():
     assert set(table["gear"].iloc[first.source]) == {6, 5, 4}
     assert set(table["variant"].iloc[first.source]) == {0, 1, 2, 3}
     assert set(table["variant"].iloc[first.kept_out]) == {4, 5}
-    (limited, *_) = NewGears(folds=4, labelled=2, unlabelled=1, variants=2).episodes(table)
+    (limited, *_) = NewGears(folds=4, development=0, labelled=2, unlabelled=1, variants=2).episodes(table)
     assert set(table["variant"].iloc[limited.source]) == {0, 1}
     assert set(table["variant"].iloc[limited.kept_out]) == {4, 5}
     assert not any(pool.size == 0 for target in limited.targets for pool in pools(target))
@@ -229,7 +229,7 @@ def test_more_shots_than_labelled_variants_are_refused():
     ],
 )
 def test_a_grid_that_is_too_small_is_refused(change, message):
-    protocol = replace(NewGears(folds=2, labelled=2, unlabelled=1), **change)
+    protocol = replace(NewGears(folds=2, development=0, labelled=2, unlabelled=1), **change)
     with pytest.raises(ValueError, match=message):
         list(protocol.episodes(table_of()))
 

@@ -1,6 +1,8 @@
 """Trained models come back from disk as they were, and what is no model is refused before anything in it runs."""
 
 import pickle
+import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -130,6 +132,25 @@ def test_a_model_is_trained_once_for_the_same_rows_and_identity(tmp_path):
         with pytest.raises(AssertionError, match="trained again"):
             models.trained(tmp_path / "new", identity, Unfit(), rows, names)
     assert len(list((tmp_path / "new").iterdir())) == 1
+
+
+class Slow(RandomForestClassifier):
+    """Takes its time, so that another job comes along meanwhile."""
+
+    fits = 0
+
+    def fit(self, *rows):
+        type(self).fits += 1
+        time.sleep(0.3)
+        return super().fit(*rows)
+
+
+def test_jobs_that_need_the_same_model_at_once_train_it_once(tmp_path, monkeypatch):
+    monkeypatch.setattr(models, "TRUSTED", [*models.TRUSTED, f"{Slow.__module__}.Slow"])
+    with ThreadPoolExecutor(4) as jobs:
+        made = list(jobs.map(lambda _: models.trained(tmp_path, "identity", Slow(3, random_state=0), X, Y), range(4)))
+    assert Slow.fits == 1
+    assert all(np.array_equal(made[0].predict_proba(X), each.predict_proba(X)) for each in made)
 
 
 def test_a_fit_that_fails_leaves_no_file(tmp_path):

@@ -15,13 +15,13 @@ from omegaconf import OmegaConf
 from scipy.special import logsumexp
 from scipy.stats import chi2, multivariate_normal
 
-from swgsim import generation, oracle, oracle_job, storage
+from swgsim import generation, oracle_job, storage
 from swgsim.acquisition import Window
 from swgsim.bench import Bench
 from swgsim.faults import Variants
 from swgsim.gear import Gear, OperatingPoint
 from swgsim.grid import Grid
-from swgsim.oracle import judge, point_model, posteriors
+from swgsim.oracle import judge, point_model
 from swgsim.oracle_cells import Cells, Partition, Resolution
 from swgsim.oracle_model import Expectation, expectations, observations
 from swgsim.oracle_point import PointModel
@@ -157,7 +157,7 @@ def test_a_large_eccentricity_is_certain() -> None:
     assert p[large, CLASSES.index("eccentric_wave_generator")].min() > 0.999
 
 
-def test_a_known_session_explains_the_efficiency(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_known_session_explains_the_efficiency() -> None:
     plan = plan_of(20, ("healthy", "reduced_damping"), Bench(flange_out_bias=1.0, flange_in_bias=0.0))
     made = samples_of(plan)
     at_point = expectations(plan, GEAR, RESOLUTION)[0]
@@ -166,8 +166,7 @@ def test_a_known_session_explains_the_efficiency(monkeypatch: pytest.MonkeyPatch
     seen = observations(healthy)[:, -2].mean()
     assert abs(seen - known.mean[-2]) < 0.25 * abs(seen - unknown.mean[-2])
     assert known.covariance[-2, -2] < unknown.covariance[-2, -2]
-    monkeypatch.setattr(oracle, "expectations", lambda *_: [at_point])  # which are simulated already
-    knowing, guessing = (posteriors(plan, made, session_known) for session_known in (True, False))
+    knowing, guessing = (judge(plan, GEAR, [at_point], made, session_known) for session_known in (True, False))
     rows = np.arange(len(made)), made.table["label"].cat.codes.to_numpy()
     assert np.log(knowing[rows]).mean() > np.log(guessing[rows]).mean() + 0.05
     assert (knowing[:, 2:] == 0).all()
@@ -186,8 +185,9 @@ def refused_plans() -> list[tuple[Plan, str]]:
 
 @pytest.mark.parametrize(("plan", "message"), refused_plans())
 def test_plans_that_cannot_be_judged_are_refused(plan: Plan, message: str) -> None:
+    (gear,), sample = plan.gears, samples().where(np.array([0]))
     with pytest.raises(ValueError, match=message):
-        posteriors(plan, samples().where(np.array([0])), session_known=False, resolution=Resolution(draws=20))
+        judge(plan, gear, expectations(plan, gear, Resolution(draws=20)), sample, session_known=False)
 
 
 def test_references_are_refused() -> None:

@@ -1,11 +1,13 @@
 """Every choice in conf/ makes an object, and a wrong one is answered with the choices there are."""
 
+import inspect
 from pathlib import Path
 
 import pytest
 import yaml
 
 from learn import settings
+from learn.adaptations import ADAPTATIONS
 
 CONF = Path(__file__).parents[1] / "conf"
 MAKERS = {
@@ -24,6 +26,18 @@ def test_every_choice_of_the_configuration_makes_an_object(path):
     config = yaml.safe_load(path.read_text().replace("${seed}", "0"))
     assert config["name"] == path.stem
     assert MAKERS[path.parent.name](config) is not None
+
+
+@pytest.mark.parametrize("group", ["classifier", "adaptation", "protocol"])
+def test_defaults_are_what_the_configuration_says(group):
+    makers = {"classifier": settings.CLASSIFIERS, "adaptation": ADAPTATIONS, "protocol": settings.PROTOCOLS}[group]
+    for name, maker in makers.items():
+        config = yaml.safe_load((CONF / group / f"{name}.yaml").read_text().replace("${seed}", "0"))
+        options = inspect.signature(maker).parameters.items()
+        defaults = {key: option.default for key, option in options if option.default is not option.empty}
+        assert {key: config[key] for key in defaults if key in config} == {
+            key: value for key, value in defaults.items() if key in config
+        }, name
 
 
 @pytest.mark.parametrize(

@@ -68,12 +68,12 @@ def names(axes):
 
 def test_all_pictures_are_drawn():
     pictures = [
-        transfer_figures.error_against_shots(curves(), LEVELS),
+        transfer_figures.picture(transfer_figures.SHOTS, curve_figures.error(curves(), LEVELS)),
         transfer_figures.forgotten_against_shots(curves().rename(columns={"error": "forgotten"})),
         transfer_figures.inputs_map(inputs()),
         transfer_figures.where_transfer_pays(scenarios()),
-        transfer_figures.robustness_against_size(sizes()),
-        transfer_figures.order_spectrum(residuals()),
+        transfer_figures.picture(transfer_figures.SIZE, size_figures.against_size(sizes())),
+        transfer_figures.picture(transfer_figures.SPECTRUM, map_figures.spectrum(residuals())),
     ]
     assert all(p.png[:8] == b"\x89PNG\r\n\x1a\n" and len(p.png) > 10_000 for p in pictures)
     assert all(p.title and "ook" in p.caption for p in pictures)

@@ -1,6 +1,5 @@
 """The report of the transfer study from end to end on fabricated runs, and what its sentences follow from."""
 
-import importlib.util
 import json
 import re
 from dataclasses import replace
@@ -20,11 +19,11 @@ from learn.identity import flat
 from learn.levels import NewGears
 from learn.residuals import ERRORS
 from learn.transfer_report import adapted as transfer_adapted
+from learn.transfer_report import carried, job, map_study, results, sentences
 from learn.transfer_report import judging as transfer_judging
-from learn.transfer_report import results, sentences
 from learn.transfer_report import runs as transfer_runs
 from learn.transfer_report import studies as transfer_studies
-from learn.transfer_report.content import content
+from learn.transfer_report.content import cnn_fit, content
 from swgsim import storage
 from swgsim.oracle_job import KNOWN
 from swgsim.recordings import CLASSES
@@ -106,6 +105,9 @@ def keep_all(keep, data):
                 table = predictions(0.2 + 0.05 * i + 0.1 * j, (classifier, features, efficiency))
                 keep("inputs", tables={"predictions": table}, classifier=classifier, features=features,
                      **{"features.efficiency": efficiency})  # fmt: skip
+    for given, wrong in (("True", 0.2), ("False", 0.6)):
+        keep("inputs_operating_point", tables={"predictions": predictions(wrong, given)}, classifier="extra_trees",
+             features="harmonics", **{"features.operating_point": given})  # fmt: skip
     keep("no_reference", tables={"predictions": predictions(0.5, "Z0")}, classifier="cnn", features="raw")
     for adaptation, after, shots in (
         ("replay", 0.1, (1, 2, 5)),
@@ -123,24 +125,18 @@ def write_data(folder):
     grid = {"variants": 6, "speeds_rpm": [2000, 4000], "loads_nm": [7, 39], "population": {"count": 8}}
     said = {"configuration": yaml.safe_dump({"grid": grid, "gears": {}}), "swgsim": "0.1.0"}
     for condition, name, gears, noise in (
-        ("bench", "gears-bench", 8, 1e-3), ("disturbed", "paper-disturbed", 3, 1e-3), ("clean", "paper-clean", 3, 0.0)
+        ("bench", "gears-bench", 8, 1e-3), ("far", "far-bench", 3, 1e-3),
+        ("disturbed", "paper-disturbed", 3, 1e-3), ("clean", "paper-clean", 3, 0.0),
     ):  # fmt: skip
         made = replace(recordings(gears=gears, variants=6, disturbance=noise), attributes=said)
         storage.write(folder / f"{name}.h5", [made], len(made))
-        (folder / f"{name}.json").write_text(json.dumps({"seconds": 1.0, "cores": 2}))
+        (folder / f"{name}.json").write_text(json.dumps({"seconds": 1.0, "cores": 2, "recordings": len(made)}))
         digests[condition] = storage.digest(folder / f"{name}.h5")
     p = predictions(0.05, "oracle")
     oracle = p[["row", *CLASSES]].join(p[list(CLASSES)].add_prefix(KNOWN))
     oracle.attrs = {"data": digests["bench"]}
     oracle.to_parquet(folder / "gears-bench-oracle.parquet")
     return digests
-
-
-def script():
-    specification = importlib.util.spec_from_file_location("transfer_script", ROOT / "scripts" / "transfer_report.py")
-    module = importlib.util.module_from_spec(specification)
-    specification.loader.exec_module(module)
-    return module
 
 
 def test_whole_report_from_fabricated_runs(tmp_path):
@@ -153,10 +149,10 @@ def test_whole_report_from_fabricated_runs(tmp_path):
     config = configured("transfer_report", f"data={tmp_path}", f"tracking.folder={tmp_path / 'runs'}", f"out={out}")
     Keeper(tmp_path / "runs", {"bench": "old"})("zero_shot", classifier="rf", features="selection_1")
     with pytest.raises(ValueError, match=r"study zero_shot on the present .* experiment=zero_shot grid=gears"):
-        script().run(config)
+        job.run(config)
     keep_all(Keeper(tmp_path / "runs", digests), tmp_path)
 
-    script().run(config)
+    job.run(config)
 
     said = json.loads((out / "transfer.json").read_text())
     assert said["z1"]["best_method"] == "logistic regression on harmonics"
@@ -173,8 +169,17 @@ def test_whole_report_from_fabricated_runs(tmp_path):
     assert 0 < said["oracle_error"] < said["z1"]["best_error"]
     page = (out / "transfer.html").read_text()
     assert re.findall(r'(?:src|href)="(?!data:image/png;base64,|#|index\.html")', page) == []
+    assert re.search(r"error is clearly higher [^:]*?with extra trees on harmonics, clearly lower with none", page)
+    assert "gears of grid=far have" in page
     assert "experiment=transfer_map grid=gears" in page  # what is left out names its command
     assert page.count("✓ reached") + page.count("✗ missed") == 5
+
+
+def test_cnn_is_timed_on_no_more_recordings_than_the_data_set_has(monkeypatch, tmp_path):
+    monkeypatch.setattr("learn.training_benchmark.measure", lambda recordings: {"recordings": recordings})
+    assert [cnn_fit(tmp_path / "none.json", count)["recordings"] for count in (320, 33_000)] == [320, 4320]
+    (tmp_path / "kept.json").write_text(json.dumps({"training": {"recordings": 7}}))
+    assert cnn_fit(tmp_path / "kept.json", 320) == {"recordings": 7}
 
 
 def test_oracle_of_another_data_set_is_refused(tmp_path):
@@ -279,7 +284,7 @@ def test_physics_is_checked_by_the_largest_drop():
     rows = [("efficiency", "reduced_damping", 30.0), ("torque ripple", "reduced_damping", 1.0),
             ("efficiency", "reduced_stiffness", 9.0), ("torque ripple", "reduced_stiffness", 4.0),
             ("efficiency", "tip_tooth_crack", 0.2), ("torque ripple", "tip_tooth_crack", 0.1)]  # fmt: skip
-    damping, stiffness, tip = transfer_judging.physics_checked(pd.DataFrame(rows, columns=["group", "label", "drop"]))
+    damping, stiffness, tip = carried.physics_checked(pd.DataFrame(rows, columns=["group", "label", "drop"]))
     assert "most recall is lost with efficiency (30.0 points), as its physics says" in damping
     assert "its physics names torque ripple (torque ripple 4.0)" in stiffness
     assert "no single group costs more than 0.2 points" in tip
@@ -287,7 +292,7 @@ def test_physics_is_checked_by_the_largest_drop():
 
 def test_every_feature_of_the_harmonics_has_its_group():
     names = settings.representation({"name": "harmonics"}).learning_set([recordings(gears=2, variants=1)]).names
-    groups = {group: [names[i] for i in columns] for group, columns in transfer_judging.groups_of(names).items()}
+    groups = {group: [names[i] for i in columns] for group, columns in carried.groups_of(names).items()}
     assert sum(map(len, groups.values())) == len(names)
     assert set(groups["operating point"]) == {"speed", "load", "temperature", *ERRORS}
     assert {"s0[0]", "|s1..s4[0]| wave 2"} <= set(groups["gauge offsets"])
@@ -300,16 +305,47 @@ def test_sets_of_new_gears_keep_their_promise():
     assert sets["mean_size"].max() < len(CLASSES)
 
 
+def test_parts_of_a_line_are_one_group():
+    names = ("Re s0[2]", "Im s0[2]", "Re mean[2] / healthy", "|s1..s4[2]| wave 1", "log eta_rel", "s1[0]", "speed")
+    assert carried.lines_of(names) == {
+        "efficiency": [4], "s1[0]": [5], "|s1..s4[2]| wave 1": [3], "s0[2]": [0, 1], "mean[2]": [2],
+        "operating point": [6],
+    }  # fmt: skip
+
+
+def test_costliest_lines_come_first():
+    rows = [("a", "healthy", 1.0), ("a", "x", 2.0), ("b", "x", 9.0), ("c", "x", 0.5)]
+    drops = pd.DataFrame(rows, columns=["group", "label", "drop"])
+    assert list(carried.costliest(drops, 2)["group"]) == ["b", "a", "a"]
+
+
+def test_map_names_the_best_method_without_adaptation():
+    specimens, _ = adapted(0.05, 0.2, (5,))
+    place = {"features": "harmonics", "target": "few-bench", "protocol.sources": "2", "features.acquisitions": "1"}
+    plain = pd.DataFrame([{**place, "classifier": name, "adaptation": "none"} for name in ("rf", "extra_trees")])
+    tables = {"0": predictions(0.5, "worse"), "1": predictions(0.0, "better")}
+    best = map_study.best_unadapted(plain, tables)
+    adapts = pd.DataFrame([{**place, "classifier": "perceptron", "adaptation": "replay"}])
+    table = map_study.transfer_map(adapts, {"0": specimens}, best)
+    assert list(table["best"]) == ["extra trees on harmonics"]
+    assert table["best_low"].item() > 0 > table["high"].item()
+    parts = transfer_adapted.where_it_pays(table).parts
+    assert "clearly better in 0 of 1 cases and clearly worse in 1." in parts[1]
+    assert parts[-1].rows[0][6] == "yes"
+    alone = map_study.transfer_map(adapts, {"0": specimens}, {})
+    assert "is not compared here" in transfer_adapted.where_it_pays(alone).parts[1]
+
+
 def test_map_tells_gain_from_harm():
     specimens, _ = adapted(0.05, 0.2, (5,))
     harmed, _ = adapted(1.5, 0.2, (5,))
     rows = [{"classifier": "perceptron", "features": "harmonics", "adaptation": "replay", "target": target,
              "protocol.sources": "2", "features.acquisitions": "1"}
             for target in ("far-bench", "few-bench")]  # fmt: skip
-    table = transfer_studies.transfer_map(pd.DataFrame(rows), {"0": specimens, "1": harmed})
+    table = map_study.transfer_map(pd.DataFrame(rows), {"0": specimens, "1": harmed}, {})
     where = ("gears far outside the sources", "other gears of the sources' population")
     assert list(table["scenario"]) == [f"{target}: 2 source gears, 1 reference acquisition" for target in where]
-    verdicts = [row[-1] for row in transfer_adapted.where_it_pays(table).parts[-1].rows]
+    verdicts = [row[6] for row in transfer_adapted.where_it_pays(table).parts[-1].rows]
     assert verdicts == ["yes", "harms"]
 
 

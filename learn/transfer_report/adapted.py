@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from learn.transfer_report import figures
+from learn.transfer_report import curve_figures, figures
 from learn.transfer_report.page import Section, Table
 from learn.transfer_report.results import FOREST, FROM_SCRATCH, ORACLE_OF_SESSION, ZeroShot, best_adapted, figure
 from learn.transfer_report.sentences import FORGETTING_GOAL, number, of_row
@@ -31,7 +31,7 @@ def transfer(zero: ZeroShot, few: pd.DataFrame, forgotten: pd.DataFrame, draws: 
         "per fold.",
     ]
     if len(curves):
-        parts.append(figures.error_against_shots(curves, level))
+        parts.append(figures.picture(figures.SHOTS, curve_figures.error(curves, level)))
     names = {k: "Z2, no label" if k == 0 else f"K = {k}{' (Z4)' if k == labelled else ''}" for k in shots}
     parts.append(Table(["method", "source model", *names.values()], rows, "Error [%] with its 95 % interval."))
     ratio = [[names[k], str(b["method"]), of_row(b), of_row(b, "ratio_", 2), of_row(b, "gain_")]
@@ -65,20 +65,41 @@ def where_it_pays(table: pd.DataFrame) -> Section:
     """The map of scenarios."""
     rows = [
         [r["scenario"], r["method"], f"{r['shots']}", f"{r['unadapted']:.1f}", f"{r['error']:.1f}",
-         number(r["gain"], r["low"], r["high"]), _verdict(r["method"], r["low"], r["high"])]
+         number(r["gain"], r["low"], r["high"]), _verdict(r["method"], r["low"], r["high"]),
+         f"{r['best']}: {number(r['best_gain'], r['best_low'], r['best_high'])}" if r["best"] else "-"]
         for r in table.to_dict("records")
     ]  # fmt: skip
     transferred = table[~table["method"].str.endswith(FROM_SCRATCH)]
     pays = transferred["high"] < 0
     parts: list = [
-        f"Transfer pays in {int(pays.sum())} of {len(transferred)} cases (a scenario and a number of shots): there the "
+        f"Adapting pays in {int(pays.sum())} of {len(transferred)} cases (a scenario and a number of shots): there the "
         "whole 95 % interval of the change that adapting makes to its source model lies below 0. Each interval stands "
-        "alone: of cases without any effect, one in forty would lie below 0 by chance. From scratch is what the shots "
-        "give without any source gear.",
+        "alone: of cases without any effect, one in forty would lie below 0 by chance. One draw of the shots for each "
+        "gear. From scratch is what the shots give without any source gear.",
+        _beside_the_best(transferred),
         figures.where_transfer_pays(table),
-        Table(["scenario", "method", "K", "source model [%]", "adapted [%]", "change [points]", "pays"], rows, left=2),
-    ]
+        Table(["scenario", "method", "K", "source model [%]", "adapted [%]", "change [points]", "pays",
+               "beside the best without adaptation [points]"], rows, left=2),
+    ]  # fmt: skip
     return Section("map", "Where transfer pays", parts)
+
+
+def _beside_the_best(table: pd.DataFrame) -> str:
+    """Whether adapting also beats the best method without it, at the same place."""
+    compared = table[table["best"] != ""]
+    if compared.empty:
+        return (
+            "Another method may need no label to be as good: the best method without adaptation was not run with the "
+            "same source gears, references and targets, and is not compared here. Add methods with 'python "
+            "scripts/train.py experiment=transfer_map adaptation=none classifier=extra_trees' and so on."
+        )
+    better, worse = int((compared["best_high"] < 0).sum()), int((compared["best_low"] > 0).sum())
+    rest = len(table) - len(compared)
+    return (
+        f"Beside the best method without adaptation at the same place, adapting is clearly better in {better} of "
+        f"{len(compared)} cases and clearly worse in {worse}"
+        + (f"; {rest} cases have no such method and are not compared." if rest else ".")
+    )
 
 
 def _verdict(method: str, low: float, high: float) -> str:

@@ -7,6 +7,7 @@ from typing import Any
 
 import pandas as pd
 
+from learn.transfer_report.input_studies import nested_inputs
 from learn.transfer_report.results import (
     FOREST,
     ORACLE,
@@ -19,10 +20,10 @@ from learn.transfer_report.results import (
     interval,
     row_of,
 )
-from learn.transfer_report.studies import PAPER_FOREST, best_disturbed, nested_inputs
+from learn.transfer_report.studies import PAPER_FOREST, best_disturbed
 
 CNN_FIT = ("seconds", "recordings", "samples_per_second", "over_bare_step", "dataloader_loop_over_ours")
-RECORDINGS = 4320  # of the timed fit: two of the paper's gears
+RECORDINGS = 4320  # of the timed fit, at most: two of the paper's gears
 
 
 def content(
@@ -73,15 +74,22 @@ def content(
     }
 
 
-def cnn_fit(benchmark: Path) -> dict[str, Any]:
-    """The timed training of the CNN, from the file of the benchmark, or measured now if it is not there."""
+def cnn_fit(benchmark: Path, recordings: int) -> dict[str, Any]:
+    """The timed training of the CNN, from the file of the benchmark, or measured now if it is not there.
+
+    Parameters
+    ----------
+    benchmark : Path
+    recordings : int
+        Of the data set: a small one is not kept waiting for a fit larger than any of its own.
+    """
     kept = json.loads(benchmark.read_text()) if benchmark.is_file() else {}
     if "training" in kept:
         found: dict[str, Any] = kept["training"]
     else:
         from learn.training_benchmark import measure
 
-        found = measure(recordings=RECORDINGS)
+        found = measure(recordings=min(recordings, RECORDINGS))
     return found
 
 

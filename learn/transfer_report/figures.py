@@ -1,27 +1,48 @@
 """Pictures of transfer to new gears, with the captions that say where to look."""
 
-from collections.abc import Mapping
+from typing import NamedTuple
 
 import pandas as pd
+from matplotlib.figure import Figure
 
-from learn.transfer_report import curve_figures, map_figures, size_figures
+from learn.transfer_report import curve_figures, map_figures
 from swgsim import style
 
 
-def error_against_shots(curves: pd.DataFrame, levels: Mapping[str, float]) -> style.Picture:
-    """Error against labelled variants; parameters as of :func:`learn.transfer_report.curve_figures.error`."""
-    drawn = curve_figures.error(curves, levels)
-    return style.Picture(
-        "What labelled variants of a new gear are worth",
-        "Error on new gears with its 95 % interval against the labelled variants given of each class. Look where a "
-        "curve falls below the dashed lines (known without any label) and how many labels the grey curve, trained on "
-        "the new gear alone, needs to get as low: that many are saved by transfer.",
-        style.png(drawn),
-    )
+class Words(NamedTuple):
+    """Title and caption of a picture, whatever its numbers."""
+
+    title: str
+    caption: str
+
+
+SHOTS = Words(
+    "What labelled variants of a new gear are worth",
+    "Error on new gears with its 95 % interval against the labelled variants given of each class. Look where a "
+    "curve falls below the dashed lines (known without any label) and how many labels the grey curve, trained on "
+    "the new gear alone, needs to get as low: that many are saved by transfer.",
+)
+SIZE = Words(
+    "Does a smaller model carry over better?",
+    "Accuracy on the gears of the training (dashed) and on a gear never seen (solid) against the model's size, one "
+    "colour per setting. Look at the gap below: if it grows to the right while the solid lines fall, large models "
+    "learn the gear instead of the fault.",
+)
+SPECTRUM = Words(
+    "On which orders the disturbance and the faults lie",
+    "Mean amplitude at the multiples of the wave generator's speed, on a logarithmic scale. Look where the grey "
+    "bars are high and where faults rise above healthy (even orders are shaded): where only the faults do, a "
+    "feature sees the fault and not the disturbance.",
+)
+
+
+def picture(words: Words, drawn: Figure) -> style.Picture:
+    """A figure below its title and above its caption."""
+    return style.Picture(*words, style.png(drawn))
 
 
 def forgotten_against_shots(curves: pd.DataFrame) -> style.Picture:
-    """Forgetting against labelled variants; the parameter is that of :func:`.transfer_curve_figures.forgotten`."""
+    """Forgetting against labelled variants; the parameter is that of :func:`.curve_figures.forgotten`."""
     drawn = curve_figures.forgotten(curves)
     limit = curve_figures.FORGOTTEN_LIMIT
     most = curves.groupby("method")["forgotten"].max().dropna()
@@ -58,29 +79,5 @@ def where_transfer_pays(scenarios: pd.DataFrame) -> style.Picture:
         f"Every bar leads from the error without adaptation to that with it; differences are in points. Look for "
         f"orange, pointing right ({worse} of {len(rows)} rows): adapting does harm there; and for crosses left of the "
         f"triangle ({behind}): training on the new gear alone is better than any help of other gears.",
-        style.png(drawn),
-    )
-
-
-def robustness_against_size(sizes: pd.DataFrame) -> style.Picture:
-    """Accuracy against size; the parameter is that of :func:`learn.transfer_report.size_figures.against_size`."""
-    drawn = size_figures.against_size(sizes)
-    return style.Picture(
-        "Does a smaller model carry over better?",
-        "Accuracy on the gears of the training (dashed) and on a gear never seen (solid) against the model's size, one "
-        "colour per setting. Look at the gap below: if it grows to the right while the solid lines fall, large models "
-        "learn the gear instead of the fault.",
-        style.png(drawn),
-    )
-
-
-def order_spectrum(residuals: pd.DataFrame) -> style.Picture:
-    """Amplitude by order; the parameter is that of :func:`learn.transfer_report.map_figures.spectrum`."""
-    drawn = map_figures.spectrum(residuals)
-    return style.Picture(
-        "On which orders the disturbance and the faults lie",
-        "Mean amplitude at the multiples of the wave generator's speed, on a logarithmic scale. Look where the grey "
-        "bars are high and where faults rise above healthy (even orders are shaded): where only the faults do, a "
-        "feature sees the fault and not the disturbance.",
         style.png(drawn),
     )

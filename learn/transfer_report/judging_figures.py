@@ -1,4 +1,4 @@
-"""Pictures that judge methods: detection, calibration, selective decisions, importance, weak cells, comparisons."""
+"""Pictures that judge methods: detection, calibration, selective decisions, and comparisons."""
 
 from collections.abc import Mapping
 from textwrap import fill
@@ -7,7 +7,6 @@ import numpy as np
 import pandas as pd
 from jaxtyping import Bool
 from matplotlib.axes import Axes
-from matplotlib.patches import Rectangle
 
 from learn.decisions import truth
 from learn.detection_curve import FOUND, detection
@@ -136,50 +135,6 @@ def risk_coverage_curves(curves: Mapping[str, pd.DataFrame]) -> style.Picture:
         "confidence that is worth nothing.",
         style.png(picture),
     )
-
-
-def importance_map(importance: pd.DataFrame) -> style.Picture:
-    """Drop of recall per group and class, from :func:`learn.importance.grouped_permutation`."""
-    drops = importance.pivot(index="group", columns="label", values="drop")
-    drops = drops.loc[importance["group"].unique(), [label for label in style.CLASS_COLOURS if label in drops]]
-    picture = style.figure(8.4, 0.42 * len(drops) + 1.6)
-    axes = picture.add_subplot()
-    _heat(axes, drops, "drop of recall [points]", 0, max(float(drops.max().max()), 1.0))
-    return style.Picture(
-        "Which features carry which class",
-        "Points of recall that a class loses when the features of one row are exchanged between recordings of the same "
-        "operating point. Look along a column for what a fault is recognised by; an empty column means that several "
-        "groups know the same or that none is used.",
-        style.png(picture),
-    )
-
-
-def cell_recall(recall: pd.DataFrame) -> style.Picture:
-    """Share recognised per operating point and class, from :func:`learn.detection.recall_by_cell`."""
-    rows = [f"{speed:g} rpm, {load:g} N m" for speed, load in recall.index]
-    picture = style.figure(8.4, 0.42 * len(recall) + 1.6)
-    axes = picture.add_subplot()
-    _heat(axes, recall.set_axis(rows, axis=0), "recognised [%]", min(50.0, float(recall.min().min())), 100.0)
-    row, column = divmod(int(np.nanargmin(recall.to_numpy())), recall.shape[1])
-    axes.add_patch(Rectangle((column - 0.48, row - 0.46), 0.96, 0.92, fill=False, edgecolor="#D55E00", linewidth=2.5))
-    return style.Picture(
-        "Where recognition is weak",
-        f"Share of recordings recognised at every operating point. Look at the framed cell, the worst: "
-        f"{style.words(str(recall.columns[column]))} at {rows[row]} with "
-        f"{float(recall.to_numpy()[row, column]):.1f} %; averages hide it.",
-        style.png(picture),
-    )
-
-
-def _heat(axes: Axes, values: pd.DataFrame, name: str, low: float, high: float) -> None:
-    """A table as colours with its numbers in the cells."""
-    drawn = axes.imshow(values.to_numpy(), cmap="cividis", vmin=low, vmax=high, aspect="auto")
-    for (row, column), value in np.ndenumerate(values.to_numpy()):
-        colour = "black" if value > low + 0.6 * (high - low) else "white"
-        axes.text(column, row, f"{value:.1f}", ha="center", va="center", color=colour)
-    axes.set_yticks(range(len(values)), list(values.index))
-    axes.set_xticks(range(values.shape[1]), [style.words(str(label)).replace(" ", "\n") for label in values])
-    axes.figure.colorbar(drawn, ax=axes, label=name)
 
 
 def difference_forest(comparison: pd.DataFrame, by_gear: pd.DataFrame, reference: str) -> style.Picture:

@@ -5,12 +5,21 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from learn.calibration import expected_calibration_error, negative_log_likelihood, reliability
+from learn.calibration import (
+    expected_calibration_error,
+    negative_log_likelihood,
+    reliability,
+    tempered_by_others,
+)
 from learn.decisions import class_numbers, probabilities
 from learn.detection import detected, false_alarm_rate, recall_by_cell, worst_cell
 from learn.selective import area_under_risk, coverage_at, risk_coverage
+from learn.transfer_report import heat_figures
 from learn.transfer_report import judging_figures as figures
-from learn.transfer_report.judging import conformal, found_sizes, physics_checked
+from learn.transfer_report.carried import Carried, costliest, lines_said, physics_checked
+from learn.transfer_report.judging import conformal, found_sizes
+from learn.transfer_report.novelty import FEWEST_GEARS, Novelty
+from learn.transfer_report.novelty_figure import novelty_beside_error
 from learn.transfer_report.page import Listed, Section, Table
 from learn.transfer_report.sentences import number
 from swgsim.style import words
@@ -18,7 +27,9 @@ from swgsim.style import words
 NOMINAL = 0.9
 
 
-def section(best: str, predictions: Mapping[str, pd.DataFrame], refitted: str, drops: pd.DataFrame) -> Section:
+def section(
+    best: str, predictions: Mapping[str, pd.DataFrame], novelty: Novelty | None, refitted: str, carried: Carried
+) -> Section:
     """What a practitioner reads.
 
     Parameters
@@ -27,10 +38,11 @@ def section(best: str, predictions: Mapping[str, pd.DataFrame], refitted: str, d
         The method to look at.
     predictions : mapping
         Method or oracle to its table of predictions; all are judged for calibration and selective decisions.
+    novelty : Novelty or None
+        Of the judged gears, with the errors of `best`; None with too few gears.
     refitted : str
         Method whose features were permuted.
-    drops : DataFrame
-        Of :func:`learn.transfer_report.judging.importance`.
+    carried : Carried
     """
     chosen = predictions[best]
     alarms = false_alarm_rate(chosen)
@@ -54,15 +66,18 @@ def section(best: str, predictions: Mapping[str, pd.DataFrame], refitted: str, d
             f"recordings, in {alarms['alarming_gears']:.0f} of {alarms['gears']:.0f} gears. Worst cell: "
             f"{words(str(worst['label']))} at {worst['n_in_rpm']:g} rpm and {worst['T_out_nm']:g} N m, "
             f"{worst['recall']:.1f} % of {worst['recordings']} recordings recognised.",
-            figures.cell_recall(recall_by_cell(chosen)),
+            heat_figures.cell_recall(recall_by_cell(chosen)),
             _calibration(predictions, bins, curves),
             figures.reliability_diagram(bins),
             figures.risk_coverage_curves(curves),
             _sets(chosen),
+            *_novelty(novelty, best),
             f"Which features carry which fault: {refitted}, trained anew on the first fold. One group of features at "
             "a time is exchanged between recordings of a fault and healthy ones at the same operating point.",
-            figures.importance_map(drops),
-            Listed(physics_checked(drops)),
+            heat_figures.importance_map(carried.groups),
+            Listed(physics_checked(carried.groups)),
+            heat_figures.line_map(costliest(carried.lines)),
+            Listed(lines_said(carried.lines)),
         ],
     )
 
@@ -75,23 +90,37 @@ def _risk(predictions: pd.DataFrame) -> pd.DataFrame:
 def _calibration(
     predictions: Mapping[str, pd.DataFrame], bins: Mapping[str, pd.DataFrame], curves: Mapping[str, pd.DataFrame]
 ) -> Table:
-    """Calibration error, likelihood, and what can be decided, per method."""
-    rows = [
-        [
+    """Calibration error and likelihood without and with a temperature, and what can be decided, per method."""
+    rows = []
+    for name, table in predictions.items():
+        said, y = probabilities(table), class_numbers(table)
+        tempered, temperatures = tempered_by_others(said, y, table["gear"].to_numpy())
+        rows.append([
             name,
             f"{expected_calibration_error(bins[name]):.1f}",
-            f"{negative_log_likelihood(probabilities(table), class_numbers(table)):.2f}",
+            f"{negative_log_likelihood(said, y):.2f}",
+            f"{temperatures.min():.2f} to {temperatures.max():.2f}",
+            f"{expected_calibration_error(reliability(tempered, y)):.1f}",
+            f"{negative_log_likelihood(tempered, y):.2f}",
             f"{100 * area_under_risk(curves[name]):.1f}",
             f"{100 * coverage_at(curves[name], 0.05):.0f}",
             f"{100 * coverage_at(curves[name], 0.01):.0f}",
-        ]
-        for name, table in predictions.items()
-    ]
+        ])  # fmt: skip
     return Table(
-        ["method", "calibration error [points]", "negative log-likelihood [nat]", "area under risk and coverage [%]",
-         "decided at 5 % error [%]", "decided at 1 % error [%]"], rows,
-        "Probabilities as each method gives them, without a temperature.",
+        ["method", "calibration error [points]", "negative log-likelihood [nat]", "temperatures",
+         "calibration error with temperature", "negative log-likelihood with temperature",
+         "area under risk and coverage [%]", "decided at 5 % error [%]", "decided at 1 % error [%]"], rows,
+        "Probabilities as each method gives them, and with one temperature per gear that was fitted (highest "
+        "likelihood) to the predictions on all the other judged gears: none of the gear's own labels. A temperature "
+        "above 1 makes probabilities more even, decisions stay. The last three columns are without a temperature.",
     )  # fmt: skip
+
+
+def _novelty(novelty: Novelty | None, best: str) -> list:
+    """Whether a gear shows that it is not known."""
+    if novelty is None:
+        return [f'Saying "I do not know this gear" takes {FEWEST_GEARS} gears at least, and there are fewer.']
+    return [novelty.sentences(best), novelty_beside_error(novelty, best)]
 
 
 def _sets(predictions: pd.DataFrame) -> str:

@@ -20,6 +20,7 @@ EXPERIMENTS: Mapping[str, tuple[str, ...]] = {
     "zero_shot": ("zero_shot",),
     "zero_shot_disturbed": ("zero_shot_disturbed",),
     "inputs": ("inputs", "inputs_features"),
+    "inputs_operating_point": ("inputs_operating_point",),
     "no_reference": ("no_reference",),
     "transfer": ("transfer_network", "transfer_forest", "transfer_cnn"),
     "transfer_map": ("transfer_map", "transfer_map_foreign"),

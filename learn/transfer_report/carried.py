@@ -1,0 +1,222 @@
+"""What the decisions of a method rest on: groups of features and single lines, beside each fault's physics."""
+
+import re
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import yaml
+from jaxtyping import Float, Int
+from threadpoolctl import threadpool_limits
+
+from learn import settings
+from learn.importance import Predictor, grouped_permutation
+from learn.inputs import OPERATING_POINT
+from learn.job import learning_set_of
+from learn.levels import NewGears
+from learn.tracking import Store
+from learn.transfer_report.results import row_of
+from learn.transfer_report.sentences import listed
+from swgsim import storage
+from swgsim.seeds import generator
+from swgsim.style import words
+
+EFFICIENCY, RIPPLE, OFFSETS, SHAPE, POINT = (
+    "efficiency",
+    "torque ripple",
+    "gauge offsets",
+    "even orders around the circumference",
+    "operating point",
+)
+REPEATS, LINE_REPEATS = 5, 3  # permutations of each group, and of each of the many lines
+SHOWN, NAMED = 12, 3  # lines of the finer map, and those named for each fault
+# Names of features to their group, the first that fits.
+GROUPS: Mapping[str, str] = {
+    EFFICIENCY: r"eta|viscous",
+    OFFSETS: r"^s\d\[0\]$|^\|s1\.\.s4\[0\]",
+    SHAPE: r"^\|s1\.\.s4\[",
+    RIPPLE: r"\b(s0|mean)\[",
+    POINT: r".*",
+}
+# A fault to the groups of features in which its physics (docs/chain.md) lets it show, and why.
+PHYSICS: Mapping[str, tuple[tuple[str, ...], str]] = {
+    "reduced_damping": ((EFFICIENCY,), "b1 is viscous loss and leaves the gauges almost alone"),
+    "reduced_stiffness": ((RIPPLE,), "k1 scales the torque ripple that the kinematic error makes"),
+    "eccentric_wave_generator": ((OFFSETS, SHAPE), "an imposed displacement shows in offsets and even orders"),
+    "root_tooth_crack": ((OFFSETS, SHAPE), "a softer rim shows in offsets and even orders"),
+    "tip_tooth_crack": ((OFFSETS, SHAPE), "lost tooth force shows in offsets and even orders"),
+}
+
+
+def groups_of(names: tuple[str, ...]) -> dict[str, list[int]]:
+    """Columns of every group of features that there is.
+
+    >>> groups_of(("s0[0]", "|s1..s4[2]| wave 1", "Re s0[2]", "log eta_rel", "speed"))["torque ripple"]
+    [2]
+    """
+    found: dict[str, list[int]] = {}
+    for column, name in enumerate(names):
+        group = next(group for group, pattern in GROUPS.items() if re.search(pattern, name))
+        found.setdefault(group, []).append(column)
+    return {group: found[group] for group in GROUPS if group in found}
+
+
+def lines_of(names: tuple[str, ...]) -> dict[str, list[int]]:
+    """Columns of every pattern of gauges and order: parts of a line, also relative to the healthy one, are one group.
+
+    >>> lines_of(("Re s0[2]", "Im s0[2]", "Re s0[2] / healthy", "|s1..s4[2]| wave 1", "log eta_rel"))
+    {'s0[2]': [0, 1, 2], '|s1..s4[2]| wave 1': [3], 'efficiency': [4]}
+    """
+    found: dict[str, list[int]] = {}
+    for whole, columns in groups_of(names).items():
+        for column in columns:
+            line = re.sub(r"^(Re|Im) | / healthy$", "", names[column])
+            found.setdefault(whole if whole in (EFFICIENCY, POINT) else line, []).append(column)
+    return found
+
+
+@dataclass(frozen=True)
+class Refitted:
+    """A method fitted anew, and the judged recordings of the first fold.
+
+    Attributes
+    ----------
+    model : Predictor
+    features : array (row, feature)
+    truth : array (row,)
+        Class names.
+    points : array (row,)
+        Number of the operating point.
+    names : tuple of str
+        One per feature.
+    """
+
+    model: Predictor
+    features: Float[np.ndarray, "row feature"]
+    truth: np.ndarray
+    points: Int[np.ndarray, " row"]
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Carried:
+    """Drop of every fault's recall by groups of features and by single lines, as of :func:`importance`."""
+
+    groups: pd.DataFrame
+    lines: pd.DataFrame
+
+
+def carried(refitted: Refitted) -> Carried:
+    """Both maps of one fitted method."""
+    with threadpool_limits(1):  # many small predictions, for which threads would only wait
+        return Carried(
+            importance(refitted, groups_of(refitted.names), REPEATS),
+            importance(refitted, lines_of(refitted.names), LINE_REPEATS),
+        )
+
+
+def refit(store: Store, run: pd.Series, data: Path) -> Refitted:
+    """A method of the main comparison, fitted on the source gears of the first fold with the options it chose.
+
+    Parameters
+    ----------
+    store : Store
+    run : Series
+        Of the method, with ``run_id`` and ``trial/...``.
+    data : Path
+        The data set.
+    """
+    config = configuration(store, str(run["run_id"]))
+    chosen = learning_set_of(data, storage.digest(data), settings.representation(config["features"]))
+    protocol = settings.protocol(config["protocol"])
+    split = next(iter(protocol.split(chosen.features, chosen.table)))
+    y = chosen.table["label"].astype(str).to_numpy()
+    model = settings.classifier(config["classifier"], chosen.layout)(**options_of(config, run, protocol))
+    with threadpool_limits(1):  # only now, as it limits no library that is loaded later
+        model.fit(chosen.features[split.train], y[split.train])
+    points = chosen.table.iloc[split.test].groupby(list(OPERATING_POINT)).ngroup().to_numpy()
+    return Refitted(model, chosen.features[split.test], y[split.test], points, chosen.names)
+
+
+def importance(refitted: Refitted, groups: Mapping[str, Sequence[int]], repeats: int) -> pd.DataFrame:
+    """Drop of every fault's recall when a group of features says nothing.
+
+    Features are exchanged between a fault's recordings and healthy ones only: those of other faults would make it look
+    like another fault, and every group would seem to matter.
+
+    Returns
+    -------
+    DataFrame
+        Of :func:`learn.importance.grouped_permutation`.
+    """
+    parts = []
+    for label in PHYSICS:
+        pair = np.isin(refitted.truth, [label, "healthy"])
+        rng = generator("report", "importance", label)
+        drops = grouped_permutation(
+            refitted.model, refitted.features[pair], refitted.truth[pair], groups, refitted.points[pair], rng,
+            repeats=repeats,
+        )  # fmt: skip
+        parts.append(drops[drops["label"] == label])
+    return pd.concat(parts, ignore_index=True)
+
+
+def costliest(drops: pd.DataFrame, count: int = SHOWN) -> pd.DataFrame:
+    """The groups that cost some fault most, the costliest first."""
+    largest = drops.groupby("group")["drop"].max().nlargest(count)
+    return drops.set_index("group").loc[largest.index].rename_axis("group").reset_index()
+
+
+def configuration(store: Store, run_id: str) -> dict[str, Any]:
+    """The resolved configuration that a run keeps."""
+    with tempfile.TemporaryDirectory() as folder:
+        text = Path(store.client.download_artifacts(run_id, "config.yaml", folder)).read_text()
+    result: dict[str, Any] = yaml.safe_load(text)
+    return result
+
+
+def options_of(config: Mapping[str, Any], run: pd.Series, protocol: object) -> Mapping[str, Any]:
+    """The options that the job chose: those of the trial with the highest score."""
+    trials = settings.trials(config["classifier"])
+    scores = [run.get(f"trial/{number}", np.nan) for number in range(1, len(trials) + 1)]
+    if np.isfinite(scores).any():
+        return trials[int(np.nanargmax(scores))]
+    return trials[0] if isinstance(protocol, NewGears) and protocol.development else {}
+
+
+def physics_checked(drops: pd.DataFrame) -> list[str]:
+    """One sentence per fault: which group of features carries it, and whether its physics says so."""
+    table = drops.pivot(index="label", columns="group", values="drop")
+    sentences = []
+    for label, (expected, why) in PHYSICS.items():
+        if label not in table.index:
+            continue
+        largest = row_of(table, label).astype(float)
+        group, drop = str(largest.idxmax()), float(largest.max())
+        if drop < 1:
+            found = f"no single group costs more than {max(drop, 0):.1f} points, several know the same"
+        elif group in expected:
+            found = f"most recall is lost with {group} ({drop:.1f} points), as its physics says: {why}"
+        else:
+            there = {name: f"{largest[name]:.1f}" for name in expected if name in largest.index}
+            beside = ", ".join(f"{name} {value}" for name, value in there.items()) or "not among the features"
+            named = " or ".join(expected)
+            found = (
+                f"most recall is lost with {group} ({drop:.1f} points); its physics names {named} ({beside}), as {why}"
+            )
+        sentences.append(f"{words(label)}: {found}.")
+    return sentences
+
+
+def lines_said(drops: pd.DataFrame) -> list[str]:
+    """One sentence per fault: the lines that cost most recall."""
+    sentences = []
+    for label in PHYSICS:
+        most = drops[drops["label"] == label].nlargest(NAMED, "drop")
+        named = listed(f"{row['group']} ({row['drop']:.1f})" for row in most.to_dict("records") if row["drop"] >= 0.1)
+        sentences.append(f"{words(label)}, lines that cost most [points of recall]: {named}.")
+    return sentences
