@@ -1,4 +1,4 @@
-"""Does closing the loop help a classifier? python scripts/sim_to_real.py [grid.variants=24] [~undeclared.coning] ..."""
+"""Does closing the loop help a classifier? python scripts/sim_to_real.py [grid.variants=32] [~undeclared.coning] ..."""
 
 from collections.abc import Mapping
 from pathlib import Path

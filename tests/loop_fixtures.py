@@ -92,7 +92,16 @@ def fitted_to(
         Model(GEAR), {}, np.zeros((situations, len(layout))), np.zeros((situations, len(layout), 0)), True
     )
     directions = reach * rng.standard_normal((rows, open_))
-    return Fitted(measured, Unit(Model(GEAR)), {}, calibrated, Scatter({}, 0), errors, directions, np.zeros(rows))
+    return Fitted(
+        measured,
+        Unit(Model(GEAR)),
+        {},
+        calibrated,
+        Scatter({}, 0, np.zeros((0, 0))),
+        errors,
+        directions,
+        np.zeros(rows),
+    )
 
 
 def holding(fitted: Fitted, residual: np.ndarray) -> Fitted:

@@ -14,7 +14,7 @@ from omegaconf import OmegaConf
 
 from swgsim.acquisition import Window
 from swgsim.bench import Bench
-from swgsim.blind import baselines, job
+from swgsim.blind import baselines, bench, job, strata
 from swgsim.blind.altered import STRAY_CHANNELS, Alteration, Altered, StrayOrder, resized
 from swgsim.blind.baselines import Task
 from swgsim.blind.bench import Setting, in_question, unit_of, unseen
@@ -26,7 +26,7 @@ from swgsim.blind.outside import OUTSIDE
 from swgsim.blind.prediction import expected, unseen_error
 from swgsim.blind.score import score, worst
 from swgsim.blind.sealed import Sealed, as_json, from_json
-from swgsim.blind.strata import CYCLE, FULL, NULLS, SINGLE, plans, searched
+from swgsim.blind.strata import CYCLE, FULL, NULLS, SINGLE, Design, plans, searched
 from swgsim.blind.strength import sized, strengths
 from swgsim.chain import Run, simulate_turns
 from swgsim.conditions import Conditions
@@ -65,6 +65,7 @@ SAID = {
     "seconds": {"loop": 5.0, "loop_of_one_core": 4.0},
     "peak_memory_mib": 100.0,
 }
+FEW_RECORDINGS = Design("few", (OperatingPoint(2000.0, 7.0), OperatingPoint(4000.0, 70.0)), 2)
 SHORT = replace(CASE, points=FULL.points[:2], repeats=1)
 HIDDEN = replace(CASE, effects=(LIBRARY["cam_form"](3, 2e-6, 1.0),), strengths=(3000.0,))
 
@@ -332,7 +333,12 @@ def _config(folder: Path, **changes: object) -> dict:
     return {**config, **changes}
 
 
-def test_a_small_set_from_sealing_to_score(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+def test_a_small_set_from_sealing_to_score(
+    tmp_path: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(strata, "FULL", FEW_RECORDINGS)
+    monkeypatch.setattr(strata, "SHARE_OF_FULL", 10)
+    monkeypatch.setattr(bench, "FULL", FEW_RECORDINGS)
     found = job.run(_config(tmp_path))
     report = json.loads((tmp_path / "report" / "blind.json").read_text())
     assert report == json.loads(json.dumps(found))

@@ -65,7 +65,7 @@ def test_misspelt_parameters_are_answered_with_the_choices() -> None:
         ("mesh.sectors=33", "must be even"),
         ("grid.classes=[healthy,rusty]", "unknown choice 'rusty' of the classes; choose from healthy"),
         ("grid.classes=[]", "the grid is empty"),
-        ("grid.severities.root_tooth_crack=[0.1,0.03,0]", "stiffness_ratio of the root tooth crack is 0"),
+        ("grid.severities.root_tooth_crack=[0.1,0.03,0]", "stiffness_ratio of root tooth crack is 0"),
         ("gears.gear1.gauges.gain=[1,1,1]", "gain has 3 values, expected one for each"),
         ("grid.name=../paper", r"name of the grid is '../paper', must be of letters, digits"),
         ("condition.name=''", "name of the condition is '', must be of letters, digits"),

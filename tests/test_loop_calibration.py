@@ -97,14 +97,12 @@ def test_bounds_are_respected(monkeypatch, A):
     np.testing.assert_allclose(found.J, A, rtol=1e-6)
 
 
-@pytest.mark.xfail(strict=True, reason="the step runs beyond the bound while the model stays there")
 def test_position_at_a_bound_is_that_of_the_model(monkeypatch, A):
     predicting(monkeypatch, lambda x, y: A @ [x, y])
     found = fitted({"x": height(0, sd=2.0, high=1.0)}, A @ [3.0, 0.0])
     assert found.position["x"] == pytest.approx(found.model.effects[0].height / 2)
 
 
-@pytest.mark.xfail(strict=True, reason="the step is shared out as if the bound were not there")
 def test_beside_a_bound_the_others_are_at_their_best(monkeypatch, A):
     """What is left at the bound is taken up by the other parameter as far as it can."""
     A = A + 2 * A[..., :1]

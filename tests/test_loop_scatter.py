@@ -48,7 +48,6 @@ def test_many_repeats_leave_little_doubt():
     assert found[KINDS.index("speed")] == pytest.approx(0.1, rel=0.15)
 
 
-@pytest.mark.xfail(strict=True, reason="L-BFGS-B rests where the cost falls by less than 2e-9 of itself")
 def test_noise_of_no_account_does_not_stop_the_search():
     found = ratios(1, [100] * 3, {"load": 10.0, "speed": 0.1}, noise=1e-3)
     assert found[KINDS.index("load")] == pytest.approx(10, rel=0.15)

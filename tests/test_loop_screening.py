@@ -95,10 +95,7 @@ def test_size_is_right_within_its_stated_deviation(fitted, true):
     assert np.mean(missed) == pytest.approx(0, abs=4 / np.sqrt(150))
 
 
-MEAN = pytest.mark.xfail(strict=True, reason="the deviation is that of the mean direction, not of the one found")
-
-
-@pytest.mark.parametrize("second", [1.0, pytest.param(0.2, marks=MEAN)])
+@pytest.mark.parametrize("second", [1.0, 0.2])
 def test_size_and_phase_of_a_wave(fitted, second):
     """Also when the cosine part is seen much better than the sine part."""
     rng = np.random.default_rng(7)

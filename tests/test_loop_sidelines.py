@@ -72,7 +72,6 @@ def test_size_is_covered_by_its_deviation():
     assert 0.8 <= np.mean(np.abs(missed) < 1.96) <= 1.0
 
 
-@pytest.mark.xfail(strict=True, reason="neither the kinds nor the frequencies that the zoom tries are counted")
 def test_noise_has_no_lines():
     chance = np.array([min(s.chance for s in sidelines(measured((), 200 + i, POINTS[:2]), KINDS)) for i in range(20)])
     # Under a uniform chance 0.4 and 2 of them.

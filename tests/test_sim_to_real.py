@@ -33,10 +33,10 @@ def config(tmp_path_factory):
     place = tmp_path_factory.mktemp("study")
     small = [
         f"data={place / 'data'}", f"out={place / 'report'}", f"tracking.folder={place / 'runs'}", "workers=1",
-        f"mesh.sectors={SECTORS}", f"bench_mesh.sectors={SECTORS}", "grid.variants=6", "grid.references=4",
-        "grid.loads_nm=[40]",
+        f"mesh.sectors={SECTORS}", f"bench_mesh.sectors={SECTORS}", "grid.variants=6", "grid.references=3",
+        "grid.loads_nm=[10,70]",
         "sessions.repeats=2", "sessions.revolutions=4",
-        "searched=[warm_grease,channel_skew,gauge_gain]",
+        "searched=[warm_grease,channel_skew]",
         "methods.extra_trees_on_harmonics.classifier.trees=20",
         "methods.random_forest_on_selection_1.classifier.trees=20",
     ]  # fmt: skip
@@ -92,9 +92,8 @@ def test_a_second_run_computes_nothing_and_says_the_same(config, finished, monke
         assert (one.hidden, one.loop) == (other.hidden, other.loop)
         pd.testing.assert_frame_equal(one.scores, other.scores)
     key = study.key(config, "warm_grease")
-    assert (
-        study.key(config | {"out": "elsewhere"}, "warm_grease") == key != study.key(config | {"seed": 2}, "warm_grease")
-    )
+    assert study.key(config | {"out": "elsewhere"}, "warm_grease") == key
+    assert study.key(config | {"seed": 2}, "warm_grease") != key
 
 
 def test_page_and_json_hold_every_effect_and_method(config, finished):
@@ -181,7 +180,7 @@ COMING = {"before": 0.5, "after": 0.1, "oracle": 0.0}
         ({**COMING, "after": 0.3}, ["axial_thrust"], ["gauge_gain"], "helps in part", "another effect"),
         ({**COMING, "after": 0.5}, ["axial_thrust"], [], "does not help", "missed"),
         ({**COMING, "after": 0.5}, ["bond_creep"], [], "does not help", "cannot be tested"),
-        ({**COMING, "oracle": 0.5}, ["coning"], ["coning"], "not needed", "right"),
+        ({**COMING, "oracle": 0.5}, ["coning"], ["coning"], "nothing to gain", "right"),
         ({**COMING, "before": 0.0, "after": 0.5}, ["coning"], ["coning"], "harms", "right"),
         ({**COMING, "after": 0.8}, [], ["coning"], "harms", "false effect"),
         ({**COMING, "after": 0.5}, [], [], "nothing to do", "nothing, rightly"),

@@ -9,7 +9,7 @@ import pandas as pd
 from learn.sim_to_real.figure import picture
 from learn.sim_to_real.finished import Finished
 from learn.sim_to_real.judging import COMMISSIONING, DAYS, MODELS
-from learn.sim_to_real.verdicts import named, row_of, why
+from learn.sim_to_real.verdicts import named, row_of, why, worth
 from swgsim.files import write_json, write_text
 from swgsim.page import environment
 from swgsim.style import words
@@ -47,7 +47,8 @@ def _effect(finished: Finished, methods: Sequence[str]) -> dict[str, Any]:
             rows = {model: row_of(finished.scores, method, day, model) for model in MODELS}
             numbers = {model: {what: _score(row, what) for what in SCORES} for model, row in rows.items()}
             verdict, reason = why(finished, method, day)
-            results.append({"method": method, "references": day, "verdict": verdict, "why": reason, **numbers})
+            said = {"verdict": verdict, "why": reason, "gainful": worth(rows["oracle"])}
+            results.append({"method": method, "references": day, **said, **numbers})
     return {
         "undeclared": finished.name, "hidden": finished.hidden, "loop": {**finished.loop, "named": named(finished)},
         "healthy_specimens": int(finished.scores["specimens"].iloc[0]), "results": results,
@@ -69,7 +70,7 @@ def _sentence(effects: Sequence[Mapping[str, Any]], method: str) -> str:
         for result in effect["results"]
         if result["method"] == method and result["references"] == COMMISSIONING
     ]
-    hurt = [result for result in acting if result["oracle"]["gain"]["ci95"][0] > 0]
+    hurt = [result for result in acting if result["gainful"]]
     helped = [result for result in hurt if result["verdict"] == "helps"]
 
     def mean(model: str, what: str) -> str:

@@ -10,6 +10,8 @@ from swgsim.style import words
 
 # Share of the oracle's gain that counts as all of it.
 RECOVERED = 0.8
+# Gain of the oracle from which an effect counts as one that costs accuracy [points].
+WORTH = 1.0
 
 
 def row_of(scores: pd.DataFrame, method: str, day: str, model: str) -> pd.Series:
@@ -40,8 +42,8 @@ def why(finished: Finished, method: str, day: str) -> tuple[str, str]:
         if not finished.loop["found"]:
             return "nothing to do", "Nothing acts, and nothing was found: the model stays as it is."
         return _safe(after)
-    if oracle["gain_low"] <= 0:
-        return _unneeded(before, after)
+    if not worth(oracle):
+        return _unneeded(before, after, oracle)
     share = after["gain"] / oracle["gain"]
     if share >= RECOVERED:
         return "helps", (
@@ -75,13 +77,18 @@ def _safe(after: pd.Series) -> tuple[str, str]:
     return "does no harm", f"A false effect was found; it changes the accuracy by {after['gain']:+.1f} points."
 
 
-def _unneeded(before: pd.Series, after: pd.Series) -> tuple[str, str]:
+def worth(oracle: pd.Series) -> bool:
+    """Whether knowing the true effect brings accuracy back, beyond doubt and by more than a trifle."""
+    return bool(oracle["gain_low"] > 0 and oracle["gain"] >= WORTH)
+
+
+def _unneeded(before: pd.Series, after: pd.Series, oracle: pd.Series) -> tuple[str, str]:
     """Where even the true effect brings nothing."""
     if after["gain_high"] < 0:
         return "harms", f"Knowing the effect brings nothing here, and what was found costs {-after['gain']:.1f} points."
-    return "not needed", (
-        f"Knowing the effect brings nothing here either: with {before['accuracy']:.1f} % the method has not suffered "
-        "from what can be simulated."
+    return "nothing to gain", (
+        "Even a model that knows the effect does no better by a point beyond doubt "
+        f"({before['accuracy']:.1f} % without it, {oracle['accuracy']:.1f} % with it)."
     )
 
 

@@ -25,6 +25,8 @@ OUTDONE, OUTDONE_SHARE = 17.0, 0.02
 LEADERS, MOST = 4, 3
 # Log-likelihood of left-out operating points that an effect must gain, and a pair over its better half.
 LEAST_GAIN, PAIR_GAIN = 3.0, 15.0
+# Log-likelihood of all recordings that it must gain if left-out points do not tell.
+LEAST_EVIDENCE = 10.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +42,9 @@ class Trial:
         The model with it.
     gains : array (point,)
         Of the log-likelihood of each operating point left out.
+    evidence : float
+        Of the log-likelihood of all recordings together, their parameters being open within their spreads. It also
+        counts what every operating point shows alike, such as a zero beyond its spread, which the others tell already.
     coherence : tuple of Coherence
         Of each effect of the trial.
     """
@@ -48,6 +53,7 @@ class Trial:
     effects: tuple[Effect, ...]
     fitted: Fitted
     gains: Float[np.ndarray, " point"]
+    evidence: float
     coherence: tuple[Coherence, ...]
 
     @property
@@ -64,7 +70,13 @@ class Trial:
     @property
     def sound(self) -> bool:
         """Whether it pays on operating points it was not fitted on, and does not contradict itself."""
-        return self.gain > LEAST_GAIN and all(each.holds for each in self.coherence) and self.fitted.calibrated.settled
+        pays = self.gain > LEAST_GAIN or (self.evidence > LEAST_EVIDENCE and self.gain > -LEAST_GAIN)
+        return pays and all(each.holds for each in self.coherence) and self.fitted.calibrated.settled
+
+    @property
+    def merit(self) -> float:
+        """What trials are ordered by."""
+        return self.gain + self.evidence
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +145,7 @@ def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed
             steps[-1] = _with_rivals(steps[-1], scores)
         if not leaders or len(steps) == MOST:
             break
-        trials = sorted((_trial(now, (score,), seed) for score in leaders), key=lambda trial: -trial.gain)
+        trials = sorted((_trial(now, (score,), seed) for score in leaders), key=lambda trial: -trial.merit)
         accepted = trials[0] if trials[0].sound else _pair(now, trials, seed)
         plain = describe(now, generator("vocabulary of a step", seed, len(steps)))[0]
         if accepted is None or plain.gain > accepted.explained(now) * (1 + OUTDONE_SHARE) + OUTDONE:
@@ -162,7 +174,8 @@ def _trial(now: Fitted, scores: tuple[Score, ...], seed: int) -> Trial:
     fitted = fit(now.measured, now.unit, start, position=_declared_only(now), allowed=now.allowed)
     effects = fitted.model.effects[known:]
     found = tuple(coherence(fitted, known + number) for number in range(len(added)))
-    return Trial(scores[0], effects, fitted, fitted.predictive - now.predictive, found)
+    evidence = fitted.log_likelihood - now.log_likelihood
+    return Trial(scores[0], effects, fitted, fitted.predictive - now.predictive, evidence, found)
 
 
 def _declared_only(fitted: Fitted) -> dict[str, float]:
@@ -173,8 +186,8 @@ def _declared_only(fitted: Fitted) -> dict[str, float]:
 def _pair(now: Fitted, trials: Sequence[Trial], seed: int) -> Trial | None:
     """Two effects that hide one another: the best pair with the best trial, if both members are sound together."""
     pairs = [_trial(now, (trials[0].score, other.score), seed) for other in trials[1:]]
-    best = max(pairs, key=lambda pair: pair.gain, default=None)
-    return best if best and best.sound and best.gain > trials[0].gain + PAIR_GAIN else None
+    best = max(pairs, key=lambda pair: pair.merit, default=None)
+    return best if best and best.sound and best.merit > trials[0].merit + 2 * PAIR_GAIN else None
 
 
 def _with_allowance(accepted: Trial) -> Fitted:
@@ -199,4 +212,4 @@ def _as_good(trial: Trial, best: Trial) -> bool:
     """Whether left-out operating points do not tell a trial from the best one."""
     difference = best.gains - trial.gains
     doubt = 2 * float(difference.std(ddof=1)) * np.sqrt(len(difference)) if len(difference) > 1 else 0.0
-    return bool(difference.sum() < max(LEAST_GAIN, doubt))
+    return bool(max(difference.sum(), best.evidence - trial.evidence) < max(LEAST_GAIN, doubt))

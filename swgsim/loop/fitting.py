@@ -182,6 +182,11 @@ class Fitted:
         return noise + common.T @ (factors * rng.standard_normal((len(common), draws)))
 
     @cached_property
+    def log_likelihood(self) -> float:
+        """Of all recordings together, everything that is not known exactly being open within its spread."""
+        return self.whole.log_likelihood(self.from_start)
+
+    @cached_property
     def predictive(self) -> Float[np.ndarray, " point"]:
         """Log-likelihood of every operating point as predicted from all the others; of all if there is one only."""
         blocks = self.measured.point_rows()
