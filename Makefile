@@ -23,10 +23,10 @@ JOBS := $(shell echo $$(( ($(CORES) + 3) / 4 )))
 export MLFLOW_DISABLE_TELEMETRY := true
 
 .DEFAULT_GOAL := help
-.PHONY: help install data experiments report paper transfer loop blind test lint benchmark convergence docs ui clean $(TABLES)
+.PHONY: help install data experiments report paper transfer loop blind sim-to-real test lint benchmark convergence docs ui clean $(TABLES)
 
 help:  ## this list
-	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-12s %s\n", $$1, $$2}'
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-12s %s\n", $$1, $$2}'
 
 $(READY): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
@@ -70,6 +70,12 @@ loop: $(READY)  ## closing the loop once, from nothing: record, hide an effect, 
 	$(BIN)/python scripts/close_loop.py recordings=loop/recordings commissioning=loop/commissioning \
 	    truth=loop/recordings.truth.json out=loop/answer
 	@echo "open loop/answer/page.html; 'make ui' shows the run"
+
+blind: $(READY)  ## the loop judged on sealed cases, report/blind.json (SMALL=1: 20 cases)
+	$(BIN)/python scripts/blind.py $(if $(SMALL),cases=20)
+
+sim-to-real: $(READY)  ## classifiers before and after the loop has found an undeclared effect, report/sim_to_real.html
+	$(BIN)/python scripts/sim_to_real.py
 
 test: $(READY)  ## all tests
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile -q

@@ -35,7 +35,7 @@ def test_the_level_of_white_noise_is_found(revolutions):
     assert level(noisy(revolutions, 1, repeats=20)) == pytest.approx(LEVEL**2, rel=0.15)
 
 
-@pytest.mark.parametrize("line", [0.3, 1.0, 50.0])
+@pytest.mark.parametrize("line", [0.3, 1.0, 3.0])
 def test_lines_of_the_cage_and_the_mains_do_not_move_it(line):
     assert level(noisy(12, 2, lines=line * LEVEL, repeats=20)) == pytest.approx(LEVEL**2, rel=0.3)
 

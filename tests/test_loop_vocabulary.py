@@ -31,10 +31,10 @@ def travelling(fitted, order: int, waves: int, amplitude: float, theta: float) -
     ("waves", "pattern"),
     [
         (0, "the same in s1 to s4"),
-        (1, "one wave that turns with the wave generator"),
+        (1, "one wave that turns with the wave generator (or three against it)"),
         (2, "opposite in neighbours (two waves)"),
         # Four gauges a quarter turn apart cannot tell three waves from one that turns the other way.
-        (3, "one wave that turns against the wave generator"),
+        (3, "one wave that turns against the wave generator (or three with it)"),
     ],
 )
 def test_a_travelling_pattern_of_order_3_in_proportion_to_the_load(fitted, waves, pattern):
@@ -65,7 +65,9 @@ def test_phase_is_that_of_the_cosine(fitted):
 
 
 def test_columns_of_an_atom_span_its_phases(fitted):
-    span = columns(Atom(5, "one wave that turns with the wave generator", "proportional to the load"), fitted)
+    span = columns(
+        Atom(5, "one wave that turns with the wave generator (or three against it)", "proportional to the load"), fitted
+    )
     one = travelling(fitted, 5, 1, 1.0, 1.1)
     left = one - span @ np.linalg.lstsq(span, one, rcond=None)[0]
     assert np.abs(left).max() < 1e-12

@@ -9,7 +9,10 @@ from swgsim.blind.families import family
 from swgsim.blind.sealed import Sealed
 from swgsim.blind.strata import NULLS, OUTSIDE_STRATA, PAIR, SINGLE, UNTESTABLE
 from swgsim.loop.answer import NOTHING, UNKNOWN
+from swgsim.loop.vocabulary import PATTERNS
 
+# Weights of patterns whose direction is the same differ by less than this.
+ROUNDING = 1e-9
 # An effect outside the library looks like one inside if that reproduces this share of its projected signature.
 LOOK_ALIKE = 0.9
 WORSE = 1.05
@@ -111,8 +114,10 @@ class Judged:
     def described(self) -> tuple[bool, bool, bool]:
         """Whether order, pattern and law of what is unknown are right."""
         truth = self.case.described
-        given = self.said["unknown"][0] if not self.failed and self.said["unknown"] else [None] * 3
-        return tuple(a == b for a, b in zip(truth or (), given, strict=True))
+        if truth is None or self.failed or not self.said["unknown"]:
+            return False, False, False
+        order, pattern, law = self.said["unknown"][0]
+        return order == truth[0], _same(pattern, truth[1], truth[0]), law == truth[2]
 
     def over(self, first: str, second: str) -> float:
         """Ratio of two errors at unseen points."""
@@ -177,3 +182,15 @@ class Judged:
         )
         parts = [f"named {', '.join(self.named) or self.first}", f"scores {scores}", rejected]
         return f"{about}, {self.case.form}: {hidden or 'nothing'} hidden; {'; '.join(part for part in parts if part)}"
+
+
+def _same(one: str, other: str, order: int) -> bool:
+    """Whether two patterns have the same weights; a mean has their real parts only, so that some have two names.
+
+    >>> _same("opposite in s1 and s3", "opposite in s1 and s3", 0), _same("in s1 alone", "in s2 alone", 0)
+    (True, False)
+    """
+    if not {one, other} <= set(PATTERNS):
+        return one == other
+    a, b = ({name: complex(w) if order else complex(w).real for name, w in PATTERNS[p].items()} for p in (one, other))
+    return all(abs(a.get(name, 0) - b.get(name, 0)) < ROUNDING for name in {*a, *b})

@@ -96,7 +96,9 @@ class HummingClamp(Outside):
 class WobblingSeal(Outside):
     """A seal drives a wave around the collar with the wave generator, three to a revolution, by inertia."""
 
-    described = Atom(3, "one wave that turns with the wave generator", "with the square of the speed")
+    described = Atom(
+        3, "one wave that turns with the wave generator (or three against it)", "with the square of the speed"
+    )
 
     def law(self, scene: Scene) -> float:
         """As inertia goes."""
