@@ -70,11 +70,14 @@ class Simulation:
         Of the distinct motions.
     of_run : array (run,)
         Which motion belongs to each run.
+    seen : mapping
+        Of the runs whose effects act on gauges or acquisition: number of the run to all its channels.
     """
 
     signals: Float[np.ndarray, "run 5 time"]
     motion: Motion
     of_run: np.ndarray
+    seen: Mapping[int, Mapping[str, np.ndarray]] = field(default_factory=dict)
 
     @property
     def efficiency(self) -> Float[np.ndarray, " run"]:
@@ -102,12 +105,15 @@ def simulate(runs: Sequence[Run], window: Window, sectors: int = SECTORS) -> Sim
     """
     motion, of_run = _motions(runs, lambda drive, state: run(drive, state, 1 / window.rate, window.samples))
     signals = _gauge_signals(runs, motion, of_run, window.samples, sectors)
-    simulation = Simulation(signals, motion, of_run)
-    for i, each in enumerate(runs):
-        if any(overrides(effect, "gauge", "acquisition") for effect in each.acting):
-            seen = _as_seen(each, window.time, channels_of(simulation, i, window.samples))
-            signals[i] = [seen[sensor] for sensor in SENSORS]
-    return simulation
+    ideal = Simulation(signals, motion, of_run)
+    seen = {
+        i: _as_seen(each, window.time, channels_of(ideal, i, window.samples))
+        for i, each in enumerate(runs)
+        if any(overrides(effect, "gauge", "acquisition") for effect in each.acting)
+    }
+    for i, channels in seen.items():
+        signals[i] = [channels[sensor] for sensor in SENSORS]
+    return Simulation(signals, motion, of_run, seen)
 
 
 @threadpool_limits.wrap(limits=1)
@@ -172,6 +178,8 @@ def _gauge_signals(
 
 def channels_of(simulation: Simulation, i: int, samples: int) -> dict[str, np.ndarray]:
     """All channels of a run."""
+    if i in simulation.seen:
+        return {name: values[:samples].copy() for name, values in simulation.seen[i].items()}
     motion, m = simulation.motion, simulation.of_run[i]
     return {
         "phi_in": motion.phi_in[m, :samples].copy(),

@@ -1,12 +1,13 @@
 """The blind test: its strata, what it hides, its baselines, its score, and the whole of it on a few small cases."""
 
 import json
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-import yaml
 from chain_fixtures import GEAR
 from hydra import compose, initialize_config_dir
 from loop_fixtures import POINTS, drawn, fitted_to, holding
@@ -14,7 +15,7 @@ from omegaconf import OmegaConf
 
 from swgsim.acquisition import Window
 from swgsim.bench import Bench
-from swgsim.blind import baselines, bench, job, strata
+from swgsim.blind import baselines, job
 from swgsim.blind.altered import STRAY_CHANNELS, Alteration, Altered, StrayOrder, resized
 from swgsim.blind.baselines import Task
 from swgsim.blind.bench import Setting, in_question, unit_of, unseen
@@ -26,7 +27,7 @@ from swgsim.blind.outside import OUTSIDE
 from swgsim.blind.prediction import expected, unseen_error
 from swgsim.blind.score import score, worst
 from swgsim.blind.sealed import Sealed, as_json, from_json
-from swgsim.blind.strata import CYCLE, FULL, NULLS, SINGLE, Design, plans, searched
+from swgsim.blind.strata import CYCLE, FULL, NULLS, SINGLE, plans, searched
 from swgsim.blind.strength import sized, strengths
 from swgsim.chain import Run, simulate_turns
 from swgsim.conditions import Conditions
@@ -66,7 +67,6 @@ SAID = {
     "seconds": {"loop": 5.0, "loop_of_one_core": 4.0},
     "peak_memory_mib": 100.0,
 }
-FEW_RECORDINGS = Design("few", (OperatingPoint(2000.0, 7.0), OperatingPoint(4000.0, 70.0)), 2)
 SHORT = replace(CASE, points=FULL.points[:2], repeats=1)
 HIDDEN = replace(CASE, effects=(LIBRARY["cam_form"](3, 2e-6, 1.0),), strengths=(3000.0,))
 
@@ -340,23 +340,52 @@ def test_the_score_counts_what_it_says() -> None:
     json.dumps(found, allow_nan=False)
 
 
+def _words(folder: Path) -> list[str]:
+    """Choices of a small set."""
+    words = [f"blind={folder}/set", f"report={folder}/report", "workers=1", "seed=3", "cases=3", "revolutions=4"]
+    return [*words, "sectors=[60]", f"library=[{','.join(FEW)}]"]
+
+
 def _config(folder: Path, **changes: object) -> dict:
     with initialize_config_dir(str(CONF.resolve()), version_base="1.3"):
-        words = [f"blind={folder}/set", f"report={folder}/report", "workers=1", "seed=3", "cases=1", "revolutions=4"]
-        words += ["sectors=[60]", f"library=[{','.join(FEW)}]"]
-        config = OmegaConf.to_container(compose("blind", words), resolve=True)
+        config = OmegaConf.to_container(compose("blind", _words(folder)), resolve=True)
     return {**config, **changes}
 
 
-def test_a_small_set_from_sealing_to_score(
-    tmp_path: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(strata, "FULL", FEW_RECORDINGS)
-    monkeypatch.setattr(strata, "SHARE_OF_FULL", 10)
-    monkeypatch.setattr(bench, "FULL", FEW_RECORDINGS)
+def test_a_set_is_sealed_once_and_a_killed_run_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[int] = []
+    monkeypatch.setattr(job, "draw", lambda plan, setting: replace(HIDDEN, number=plan.number))
+    monkeypatch.setattr(job, "attempt", lambda case, setting: asked.append(case.number) or SAID)
     found = job.run(_config(tmp_path))
+    assert asked == [0, 1, 2]
+    assert json.loads((tmp_path / "report" / "blind.json").read_text()) == json.loads(json.dumps(found))
+    (tmp_path / "set" / "answers" / "0001.json").unlink()
+    assert job.run(_config(tmp_path)) == found
+    assert asked == [0, 1, 2, 1]
+    with pytest.raises(ValueError, match="other settings"):
+        job.run(_config(tmp_path, cases=4))
+    truth = tmp_path / "set" / "truth.json"
+    truth.write_text(truth.read_text().replace("cam_form", "coning"))
+    with pytest.raises(ValueError, match="changed after it was sealed"):
+        job.run(_config(tmp_path))
+
+
+def test_a_loop_that_breaks_down_is_counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(case: Sealed, setting: Setting) -> dict:
+        raise ValueError("it broke")
+
+    monkeypatch.setattr(job, "draw", lambda plan, setting: replace(HIDDEN, number=plan.number))
+    monkeypatch.setattr(job, "attempt", broken)
+    assert job.run(_config(tmp_path))["failures"] == 3
+
+
+def test_one_case_from_sealing_to_score(tmp_path: Path) -> None:
+    """As a user starts it, and so without the type checks, which are slow in an integrator."""
+    words = [word for word in _words(tmp_path) if word != "cases=3"] + ["cases=1"]
+    run = subprocess.run([sys.executable, "scripts/blind.py", *words], cwd=CONF.parent, capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+    assert "right effect first" in run.stdout
     report = json.loads((tmp_path / "report" / "blind.json").read_text())
-    assert report == json.loads(json.dumps(found))
     asked = {
         "cases", "nulls", "false_effect_rate", "right_first", "right_in_set", "mean_set_size",
         "none_of_the_above_recall", "unknown_described", "after_over_oracle_median", "worse_than_before", "coverage95",
@@ -365,22 +394,6 @@ def test_a_small_set_from_sealing_to_score(
     assert asked <= set(report)
     assert report["failures"] == 0
     assert (tmp_path / "report" / "blind.png").read_bytes().startswith(b"\x89PNG")
-    assert "right effect first" in capsys.readouterr().out
-    # A run that was killed goes on: only what is missing is asked again.
-    missing = tmp_path / "set" / "answers" / "0000.json"
-    said = json.loads(missing.read_text())["found"]
-    missing.unlink()
-    asked_again = []
-    monkeypatch.setattr(job, "attempt", lambda case, setting: asked_again.append(case.number) or said)
-    again = job.run(_config(tmp_path))
-    assert asked_again == [0]
-    assert again == found
-    with pytest.raises(ValueError, match="other settings"):
-        job.run(_config(tmp_path, cases=2))
-    truth = tmp_path / "set" / "truth.json"
-    truth.write_text(yaml.safe_load(truth.read_text())["drawn_by"])
-    with pytest.raises(ValueError, match="changed after it was sealed"):
-        job.run(_config(tmp_path))
 
 
 def test_orders_of_outside_effects_are_compared_at_all() -> None:

@@ -8,7 +8,7 @@ import pytest
 from chain_fixtures import GEAR, SECTORS
 
 from swgsim.acquisition import Window
-from swgsim.chain import Run, simulate, simulate_turns
+from swgsim.chain import Run, channels_of, simulate, simulate_turns
 from swgsim.conditions import Conditions
 from swgsim.effects.amplifier_drift import AmplifierDrift
 from swgsim.effects.axial_thrust import AxialThrust
@@ -399,3 +399,16 @@ def test_flanges_change_their_own_channel(recordings: Recordings, name: str, cha
             assert share == pytest.approx(0.01)
         else:
             assert share * true[channel].mean() == pytest.approx(0.005)
+
+
+def test_a_window_of_a_data_set_shows_acquisition_in_every_channel():
+    """Also in those that are no gauges."""
+    window = Window(samples=600)
+    run = Run(GEAR, OperatingPoint(2000.0, 39.0))
+    plain, acting = (
+        channels_of(simulate([replace(run, effects=effects)], window, SECTORS), 0, 600)
+        for effects in ((), (FlangeGain(0.01), FlangeZero(0.02)))
+    )
+    np.testing.assert_allclose(acting["T_out"], 1.01 * plain["T_out"])
+    np.testing.assert_allclose(acting["T_in"], plain["T_in"] + 0.02)
+    np.testing.assert_array_equal(acting["s1"], plain["s1"])

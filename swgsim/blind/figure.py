@@ -24,6 +24,7 @@ def picture(cases: Sequence[Judged], found: Mapping[str, Any]) -> bytes:
 def _rates(axes: Any, found: Mapping[str, Any]) -> None:
     methods = {"loop": found, **found["baselines"]}
     rows = [key for key in ROWS if key != "after_over_oracle_median"]
+    named: set[str] = set()
     for number, (name, method) in enumerate(methods.items()):
         for row, key in enumerate(rows):
             value = method[key]
@@ -32,12 +33,14 @@ def _rates(axes: Any, found: Mapping[str, Any]) -> None:
             below, above = value["value"] - value["low"], value["high"] - value["value"]
             axes.errorbar(
                 value["value"], row + 0.15 * (number - 2), xerr=[[max(below, 0)], [max(above, 0)]], fmt="o",
-                color=COLOURS[number], label=name.replace("_", " ") if row == 0 else None,
+                color=COLOURS[number], label=None if name in named else name.replace("_", " "),
             )  # fmt: skip
+            named.add(name)
     axes.set_yticks(range(len(rows)), [ROWS[key] for key in rows])
     axes.set_ylim(len(rows) - 0.5, -0.5)
     axes.set_xlim(-0.03, 1.03)
-    axes.legend(fontsize=8)
+    if named:
+        axes.legend(fontsize=8)
     label(axes, "share of cases, with 95 % interval", "", "The loop and simpler methods")
 
 

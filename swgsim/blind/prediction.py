@@ -12,12 +12,14 @@ JUDGED = ("T_in", "T_out", "s0", "s1", "s2", "s3", "s4")
 
 
 def unseen_error(fitted: Fitted, truth: Float[np.ndarray, "situation feature"]) -> float:
-    """Root mean square over channels of the error at the unseen points, each in shares of its channel's ripple."""
+    """Root mean square over channels of the error at the unseen points, each in shares of all that its channel did."""
     layout = fitted.measured.layout
     squares = (expected(fitted) - truth) ** 2 * np.where(layout.order == 0, 1.0, 0.5)
-    ripple = size(fitted.measured)
+    means = fitted.measured.values[:, layout.order == 0]
+    # A torque hardly ripples; what there is to predict is also how its mean differs between operating points.
+    variance = size(fitted.measured) ** 2 + means.var(axis=0)
     shares = [
-        squares[:, layout.channel == channel].sum(axis=1).mean() / ripple[number] ** 2
+        squares[:, layout.channel == channel].sum(axis=1).mean() / variance[number]
         for number, channel in enumerate(layout.channels)
         if channel in JUDGED
     ]

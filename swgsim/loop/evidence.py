@@ -59,7 +59,8 @@ def parts(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
 def allowance(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
     """What an imperfect form of an effect leaves open; without it the form error would pass for another effect.
 
-    Every line of every channel of its signature may be larger or smaller, and turned, by the form tolerance.
+    Every line of every channel of its signature may be larger or smaller, and turned, by the form tolerance, but the
+    whole of it may not: that is its size.
     """
     measured, layout = fitted.measured, fitted.measured.layout
     lines = layout.lines(signature(fitted, number).reshape(measured.values.shape))
@@ -70,7 +71,9 @@ def allowance(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
                 one = np.zeros_like(lines)
                 one[:, channel, order] = turn * lines[:, channel, order]
                 columns.append(layout.vector(one).reshape(-1, 1))
-    return FORM_TOLERANCE * np.hstack(columns)
+    whole, open_ = signature(fitted, number)[:, None], np.hstack(columns)
+    weighed = whole / fitted.errors.variance[:, None]
+    return FORM_TOLERANCE * (open_ - whole @ (weighed.T @ open_) / float((weighed * whole).sum()))
 
 
 def coherence(fitted: Fitted, number: int) -> Coherence:

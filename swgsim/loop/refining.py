@@ -32,6 +32,8 @@ def zoom(score: Score, fitted: Fitted, rng: np.random.Generator) -> Effect:
         around = [_moved(best, dict(zip(searched, offset, strict=True)), declared) for offset in offsets]
         best = screen(around, signatures(around, fitted.model, fitted.measured), fitted, rng)[0]
         reach = {name: by / 3 for name, by in reach.items()}
+    if not np.isfinite(best.estimate):
+        best = score
     return best.hypothesis.effect(best.estimate, best.phase if np.isfinite(best.phase) else 0.0)
 
 

@@ -101,7 +101,8 @@ class Described:
 def atoms(layout: Layout) -> list[Atom]:
     """All atoms that the channels can show."""
     shown = [name for name, pattern in PATTERNS.items() if set(pattern) <= set(layout.channels)]
-    return [Atom(*each) for each in product(range(ORDERS + 1), shown, LAWS)]
+    # A mean does not turn.
+    return [Atom(*each) for each in product(range(ORDERS + 1), shown, LAWS) if each[0] or "turns" not in each[1]]
 
 
 def columns(atom: Atom, fitted: Fitted) -> Float[np.ndarray, "row column"]:
