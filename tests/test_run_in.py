@@ -61,7 +61,7 @@ def test_twist_at_the_torque_is_the_inverse_of_the_curve():
 
 @pytest.mark.parametrize("hours", [-1.0, 1e5, float("nan")])
 def test_operating_time_outside_its_limits_is_an_error(hours):
-    with pytest.raises(ValueError, match=r"hours of the run-in is .* must be a finite number from 0 to 10000"):
+    with pytest.raises(ValueError, match=r"hours of run in is .* must be a finite number from 0 to 10000"):
         RunIn(hours)
 
 
