@@ -1,6 +1,5 @@
 """The inner parameters of a hypothesis, no longer on a grid: zoomed in on by the score, with the real chain."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 from itertools import product
 
@@ -54,8 +53,3 @@ def _moved(score: Score, by: dict[str, float], declared: dict[str, Quantity]) ->
     if abs(found - q.nothing) < LEAST * (q.high - q.low):
         found = q.nothing + np.copysign(LEAST * (q.high - q.low), found - q.nothing or q.typical - q.nothing)
     return replace(hypothesis, inner=tuple(inner.items()), reference=float(found))
-
-
-def zoomed(scores: Sequence[Score], fitted: Fitted, rng: np.random.Generator) -> list[Effect]:
-    """The effects of several scores, each at its best."""
-    return [zoom(score, fitted, rng) for score in scores]
