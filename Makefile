@@ -9,7 +9,7 @@ TABLES := table7 table8 table9 table10
 STARTED := $(shell date +%s)
 GEARS := $(if $(SMALL),gears_small,gears)
 FOREIGN := $(if $(SMALL),,far-bench few-bench few-noisy few-other_day)
-ON_GEARS := zero_shot inputs inputs_features transfer_network transfer_forest \
+ON_GEARS := zero_shot $(if $(SMALL),inputs_small,inputs inputs_features) transfer_network transfer_forest \
             $(if $(SMALL),,zero_shot_lines zero_shot_signals inputs_operating_point no_reference) \
             $(if $(SMALL),,transfer_extra_trees transfer_cnn transfer_map transfer_map_foreign)
 ON_PAPER := zero_shot_disturbed $(if $(SMALL),,forest_robustness network_robustness)
@@ -53,7 +53,7 @@ paper: $(READY)  ## from nothing to the paper's tables beside ours (SMALL=1: a s
 	    $(BIN)/python scripts/report.py grid=$(GRID) started=$$started
 	@echo "open report/index.html; 'make ui' shows the runs"
 
-transfer: data  ## beyond the paper: networks, transfer to gears never seen, report/transfer.html (SMALL=1: 2 to 3 minutes)
+transfer: data  ## beyond the paper: networks, transfer to gears never seen, report/transfer.html (SMALL=1: under two minutes)
 	@set -e; \
 	for set in $(GEARS)-bench $(FOREIGN); do $(BIN)/python scripts/generate.py grid=$${set%-*} condition=$${set##*-}; done; \
 	$(BIN)/python scripts/oracle.py grid=$(GEARS); \

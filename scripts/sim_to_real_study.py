@@ -30,7 +30,7 @@ from swgsim.loop import job as loop_job
 from swgsim.loop.answer import answer
 from swgsim.loop.fitting import Unit, commission
 from swgsim.loop.model import Model
-from swgsim.loop.report import report
+from swgsim.loop.reporting.report import report
 from swgsim.loop.session import Measured
 from swgsim.population import Population
 from swgsim.recording import Recording

@@ -14,7 +14,7 @@ from swgsim.chain import Run, simulate_turns
 from swgsim.conditions import Conditions
 from swgsim.effects.base import PLACES, Effect
 from swgsim.effects.library import SEARCHED
-from swgsim.effects.quantity import Role, quantities
+from swgsim.effects.quantity import Role, quantities, size_of
 from swgsim.files import write_text
 from swgsim.gear import Gear, OperatingPoint
 from swgsim.recording import Recording
@@ -91,7 +91,8 @@ def rows(kinds: Sequence[type[Effect]], shares: Float[np.ndarray, "effect point 
     found = []
     for kind, share in zip(kinds, shares, strict=True):
         declared = quantities(kind)
-        name, size = next((name, q) for name, q in declared.items() if q.role is Role.SIZE)
+        name = size_of(kind)
+        size = declared[name]
         inner = ", ".join(other for other in declared if other != name) or "-"
         largest = np.unravel_index(share[0].argmax(), share[0].shape)
         top, light, fast = (float(each[largest]) for each in share)

@@ -33,15 +33,15 @@ from swgsim.chain import Run, simulate_turns
 from swgsim.conditions import Conditions
 from swgsim.effects.library import LIBRARY, SEARCHED
 from swgsim.effects.quantity import quantities
+from swgsim.effects.regularity import LAWS, PATTERNS
 from swgsim.gear import OperatingPoint
 from swgsim.loop import calibration
 from swgsim.loop.declared import of_unit
 from swgsim.loop.features import ORDERS, Layout, features
 from swgsim.loop.fitting import Fitted, Unit, fit
 from swgsim.loop.hypotheses import Hypothesis
-from swgsim.loop.model import Model, Situation
+from swgsim.loop.model import Model
 from swgsim.loop.session import Measured
-from swgsim.loop.vocabulary import LAWS, PATTERNS
 from swgsim.seeds import generator
 
 CONF = Path(__file__).parent.parent / "conf"
@@ -152,7 +152,7 @@ def test_effects_from_outside_are_what_they_say_of_themselves(kind: type) -> Non
     assert kind.name() not in LIBRARY
     channel = "s1" if "s1" in PATTERNS[atom.pattern] else next(iter(PATTERNS[atom.pattern]))
     sizes = lines[:, layout.channels.index(channel), atom.order]
-    laws = [LAWS[atom.law](Situation(run.point, run.conditions)) for run in runs[3:]]
+    laws = [LAWS[atom.law](run.point, run.conditions) for run in runs[3:]]
     np.testing.assert_allclose(sizes / sizes[1], np.array(laws) / laws[1], atol=1e-9)
     weights = lines[1, :, atom.order] / sizes[1] * PATTERNS[atom.pattern][channel]
     np.testing.assert_allclose(weights, [PATTERNS[atom.pattern].get(c, 0) for c in layout.channels], atol=1e-9)

@@ -1,12 +1,18 @@
 """Lines between the orders are found and named; noise is not."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 from loop_fixtures import POINTS, recorded, turning
+from scipy.signal import lfilter
 
 from swgsim.effects.base import Effect, Scene
 from swgsim.effects.library import LIBRARY
-from swgsim.loop.sidelines import sidelines
+from swgsim.effects.quantity import random_phase, shape, size
+from swgsim.loop.between import between
+from swgsim.loop.sidelines import search, sidelines
+from swgsim.loop.unnamed import unnamed
 from swgsim.recording import Recording
 from swgsim.recordings import SENSORS
 from swgsim.seeds import generator
@@ -15,8 +21,20 @@ KINDS = [LIBRARY["bearing_cage"], LIBRARY["mains_hum"]]
 NOISE = 1e-3
 
 
-def measured(effects: tuple[Effect, ...], seed: int, points=POINTS) -> list[Recording]:
-    """Gauges with order 2, white noise, and effects with another phase in every recording."""
+@dataclass(frozen=True)
+class Whistle(Effect):
+    """A line at an order that no effect of the library has."""
+
+    amplitude: float = size(unit="mV/V", low=0, high=1, typical=1e-3)
+    order: float = shape(5.37, unit="-", low=0, high=12)
+    phase: float = random_phase()
+
+    def gauge(self, signals, scene: Scene):
+        return signals + self.amplitude * np.cos(self.order * scene.phi_in + self.phase)
+
+
+def measured(effects: tuple[Effect, ...], seed: int, points=POINTS, slow: float = 0.0) -> list[Recording]:
+    """Gauges with order 2, white and slow noise, and effects with another phase in every recording."""
     found = []
     for point in points:
         rng = generator("sidelines", seed, point.n_in_rpm, point.T_out)
@@ -32,6 +50,10 @@ def measured(effects: tuple[Effect, ...], seed: int, points=POINTS) -> list[Reco
                 [effect.acquisition(dict(zip(SENSORS, signals, strict=True)), scene)[s] for s in SENSORS]
             )
         signals = signals + NOISE * rng.standard_normal(signals.shape)
+        # A first-order wander that falls off above 1 Hz.
+        decay = np.exp(-2 * np.pi / rate)
+        steps = slow * np.sqrt(1 - decay**2) * rng.standard_normal((5, len(phi) + 20_000))
+        signals = signals + lfilter([1], [1, -decay], steps, axis=1)[:, -len(phi) :]
         channels = {"phi_in": phi, "T_out": load, **dict(zip(SENSORS, signals, strict=True))}
         found.append(recorded(channels, point, rate))
     return found
@@ -77,3 +99,42 @@ def test_noise_has_no_lines():
     # Under a uniform chance 0.4 and 2 of them.
     assert (chance <= 0.02).sum() <= 3
     assert (chance <= 0.1).sum() <= 7
+
+
+def test_slow_noise_has_no_lines():
+    """It rises just where the sub-harmonics lie."""
+    kinds = [*KINDS, LIBRARY["sub_orders"]]
+    recordings = [measured((), 400 + i, slow=2e-3) for i in range(12)]
+    chance = np.array([min(line.chance for line in sidelines(each, kinds)) for each in recordings])
+    assert (chance <= 0.01).sum() <= 1
+    assert not any(unnamed(between(each), 0.001) for each in recordings)
+
+
+def test_two_lines_are_found_one_after_the_other():
+    cage, hum = LIBRARY["bearing_cage"](amplitude=1e-3, order=0.451), LIBRARY["mains_hum"](5e-4, 60.0)
+    recordings = measured((cage, hum), 5)
+    found, spectra = search(recordings, KINDS, 0.005)
+    assert sorted(line.effect.name() for line in found) == ["bearing_cage", "mains_hum"]
+    assert unnamed(spectra, 0.005) is None
+
+
+def test_what_was_found_is_gone_from_the_spectra():
+    recordings = measured((LIBRARY["mains_hum"](5e-3, 57.3),), 6)
+    found, spectra = search(recordings, KINDS, 0.005)
+    assert [line.effect.name() for line in found] == ["mains_hum"]
+    noise = sum(float(each.left @ each.left) for each in between(measured((), 6)))
+    assert found[0].gain > 1000
+    assert sum(float(each.left @ each.left) for each in spectra) == pytest.approx(noise, rel=0.1)
+
+
+def test_a_line_without_a_name_is_described():
+    recordings = measured((Whistle(1e-3),), 7)
+    found, spectra = search(recordings, KINDS, 0.005)
+    line = unnamed(spectra, 0.005)
+    assert found == []
+    assert line.kind == "order"
+    assert line.at == pytest.approx(5.37, abs=0.06)
+    # Between two lines of the spectrum some of it is lost.
+    assert 0.6e-3 < line.amplitude < 1.2e-3
+    assert line.chance < 1e-6
+    assert "order 5.3" in str(line) or "order 5.4" in str(line)

@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from swgsim.conditions import Conditions
 from swgsim.effects.base import Effect, Scene
-from swgsim.effects.quantity import Role, choice, phase, quantities, size
+from swgsim.effects.quantity import choice, phase, quantities, size, size_of
 from swgsim.gear import OperatingPoint
 
 # Load at which another law in the load changes nothing [N m].
@@ -61,11 +61,6 @@ class Altered(Effect):
     def drawn(self, rng: np.random.Generator) -> Effect:
         """With the random phases of one recording."""
         return replace(self, effect=self.effect.drawn(rng))
-
-
-def size_of(kind: type[Effect]) -> str:
-    """Name of the size of an effect."""
-    return next(name for name, q in quantities(kind).items() if q.role is Role.SIZE)
 
 
 def resized(effect: Effect, factor: float) -> Effect:

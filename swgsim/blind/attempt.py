@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from swgsim.blind.altered import size_of
 from swgsim.blind.baselines import named_by_baselines
 from swgsim.blind.bench import Setting, in_question, unseen
 from swgsim.blind.drawing import unit_known
@@ -16,6 +15,7 @@ from swgsim.blind.sealed import Sealed
 from swgsim.blind.strength import is_random
 from swgsim.effects import text
 from swgsim.effects.base import Effect
+from swgsim.effects.quantity import size_of
 from swgsim.loop.answer import Answer, answer
 from swgsim.loop.closing import Trial
 from swgsim.loop.fitting import Fitted, Unit, fit

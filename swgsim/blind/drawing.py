@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from swgsim.blind.altered import STRAY_CHANNELS, Alteration, Altered, StrayOrder, size_of
+from swgsim.blind.altered import STRAY_CHANNELS, Alteration, Altered, StrayOrder
 from swgsim.blind.bench import Setting, commissioning, in_question
 from swgsim.blind.sealed import Sealed
 from swgsim.blind.strata import HARD_NULL, OUTSIDE_STRATA, TAKEN_OUT, UNTESTABLE, Plan, searched
 from swgsim.blind.strength import likeness, sized
 from swgsim.effects.base import Effect
-from swgsim.effects.quantity import Role, quantities
+from swgsim.effects.quantity import Role, quantities, size_of
 from swgsim.loop.errors import per_channel
 from swgsim.loop.fitting import Fitted, Unit, commission, fit
 from swgsim.loop.model import Model, predict

@@ -8,8 +8,8 @@ from typing import Any
 from swgsim.blind.families import family
 from swgsim.blind.sealed import Sealed
 from swgsim.blind.strata import NULLS, OUTSIDE_STRATA, PAIR, SINGLE, UNTESTABLE
+from swgsim.effects.regularity import PATTERNS
 from swgsim.loop.answer import NOTHING, UNKNOWN
-from swgsim.loop.vocabulary import PATTERNS
 
 # Weights of patterns whose direction is the same differ by less than this.
 ROUNDING = 1e-9

@@ -5,9 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from swgsim.blind.altered import size_of
 from swgsim.effects.base import Effect
-from swgsim.effects.quantity import Quantity, Role, quantities
+from swgsim.effects.quantity import Quantity, Role, quantities, size_of
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.hypotheses import hypotheses, signatures
 from swgsim.loop.model import predict

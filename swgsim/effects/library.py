@@ -50,6 +50,7 @@ from swgsim.effects.parameter_scatter import ParameterScatter
 from swgsim.effects.position_friction import PositionFriction
 from swgsim.effects.reduced_damping import ReducedDamping
 from swgsim.effects.reduced_stiffness import ReducedStiffness
+from swgsim.effects.regularity import Regularity
 from swgsim.effects.root_tooth_crack import RootToothCrack
 from swgsim.effects.rotating_eccentricity import RotatingEccentricity
 from swgsim.effects.run_in import RunIn
@@ -148,8 +149,8 @@ SEARCHED: tuple[type[Effect], ...] = (
     MotorPickup,
     SubOrders,
 )
-# Effects that vary from one recording to the next, or stand for several others.
-OTHERS: tuple[type[Effect], ...] = (OutputPosition, ParameterScatter, RunIn)
+# Effects that vary from one recording to the next, stand for several others, or have no cause.
+OTHERS: tuple[type[Effect], ...] = (OutputPosition, ParameterScatter, Regularity, RunIn)
 LIBRARY: Mapping[str, type[Effect]] = {kind.name(): kind for kind in (*SEARCHED, *OTHERS)}
 
 

@@ -103,5 +103,10 @@ def quantities(kind: type) -> dict[str, Quantity]:
     return {f.name: f.metadata["quantity"] for f in fields(kind) if "quantity" in f.metadata}
 
 
+def size_of(kind: type) -> str:
+    """Name of the parameter that says how much of an effect there is."""
+    return next(name for name, quantity in quantities(kind).items() if quantity.role is Role.SIZE)
+
+
 def _parameter(quantity: Quantity, default: Any = MISSING) -> Field:
     return field(default=default, metadata={"quantity": quantity})

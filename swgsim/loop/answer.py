@@ -6,12 +6,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from swgsim.effects.base import Effect
-from swgsim.effects.quantity import Role, quantities
-from swgsim.loop.closing import ALPHA, Closed, Trial, close
-from swgsim.loop.fitting import Fitted, Unit
+from swgsim.effects.quantity import quantities, size_of
+from swgsim.effects.regularity import Regularity
+from swgsim.loop.closing import ALPHA, LEAST_GAIN, Closed, Trial, close
+from swgsim.loop.fitting import Fitted, Unit, extended
 from swgsim.loop.screening import VISIBLE, Score
 from swgsim.loop.session import Measured
-from swgsim.loop.sidelines import CONTRADICTION, Sideline, sidelines
+from swgsim.loop.sidelines import Sideline, search
+from swgsim.loop.unnamed import Unnamed, unnamed
 from swgsim.loop.vocabulary import Described, columns, describe
 from swgsim.recording import Recording
 from swgsim.seeds import generator
@@ -36,6 +38,8 @@ class Answer:
         Effects between the orders.
     unknown : tuple of Described
         Regularities that no effect of the library explains.
+    unnamed : Unnamed or None
+        A line between the orders that none explains.
     absorbed : tuple of Score
         Effects that these recordings cannot tell from what the model declares not to know.
     """
@@ -44,15 +48,19 @@ class Answer:
     closed: Closed
     lines: tuple[Sideline, ...]
     unknown: tuple[Described, ...]
+    unnamed: Unnamed | None
     absorbed: tuple[Score, ...]
 
     @property
     def effects(self) -> tuple[Effect, ...]:
-        """All effects that were found."""
-        return (
-            *self.closed.after.model.effects[len(self.closed.before.model.effects) :],
-            *(line.effect for line in self.lines),
-        )
+        """The physical effects that were found; regularities without a cause are none."""
+        chain = self.closed.after.model.effects[len(self.closed.before.model.effects) :]
+        return tuple(e for e in (*chain, *(line.effect for line in self.lines)) if not isinstance(e, Regularity))
+
+    @property
+    def left(self) -> str:
+        """What no known effect explains, in words; empty if there is nothing."""
+        return "; ".join(map(str, (*self.unknown, *([self.unnamed] if self.unnamed else []))))
 
     @property
     def nearest(self) -> Trial | None:
@@ -71,13 +79,13 @@ class Answer:
         found = " and ".join(_named(effect) for effect in self.effects)
         rivals = " or ".join(_named(e) for step in self.closed.steps for trial in step.rivals for e in trial.effects)
         either = f", or {rivals}, which these recordings cannot tell from it" if rivals else ""
-        rest = f"; something unknown is left: {self.unknown[0]}" if self.unknown else ""
+        rest = f"; something unknown is left: {self.left}" if self.left else ""
         if self.verdict == FOUND:
             return f"The model lacks {found}{either}{rest}."
         near = (
             f"; the nearest known effect, {_named(self.nearest.effects[0])}, has another form" if self.nearest else ""
         )
-        what = str(self.unknown[0]) if self.unknown else "a regularity without a simple description"
+        what = self.left or "a regularity without a simple description"
         return f"The model lacks something that is not in the library: {what}{near}."
 
 
@@ -94,12 +102,13 @@ def answer(recordings: Sequence[Recording], unit: Unit, kinds: Sequence[type[Eff
     seed : int
     """
     closed = close(Measured.of(recordings), unit, kinds, seed=seed)
-    lines = tuple(line for line in sidelines(recordings, kinds) if line.chance <= ALPHA)[:1]
-    lines = tuple(line for line in lines if line.agrees > CONTRADICTION)
+    lines, spectra = search(recordings, kinds, ALPHA)
+    nameless = unnamed(spectra, ALPHA)
     unknown = _unknown(closed.after, seed)
     absorbed = tuple(score for score in closed.scores if score.visible < VISIBLE)
-    verdict = FOUND if closed.steps or lines else UNKNOWN if closed.rejected or unknown else NOTHING
-    return Answer(verdict, closed, lines, unknown, absorbed)
+    found = closed.steps or lines
+    verdict = FOUND if found else UNKNOWN if closed.rejected or unknown or nameless else NOTHING
+    return Answer(verdict, _patched(closed, unknown), tuple(lines), unknown, nameless, absorbed)
 
 
 def _unknown(fitted: Fitted, seed: int) -> tuple[Described, ...]:
@@ -115,8 +124,16 @@ def _unknown(fitted: Fitted, seed: int) -> tuple[Described, ...]:
     return tuple(found)
 
 
+def _patched(closed: Closed, unknown: Sequence[Described]) -> Closed:
+    """With the regularities in the model too, if they pay on operating points that they were not fitted to."""
+    if not unknown:
+        return closed
+    fitted = extended(closed.after, [each.effect for each in unknown])
+    pays = fitted.calibrated.settled and (fitted.predictive - closed.after.predictive).sum() > LEAST_GAIN
+    return replace(closed, after=fitted) if pays else closed
+
+
 def _named(effect: Effect) -> str:
     """An effect in words with its size."""
-    declared = quantities(type(effect))
-    size = next(name for name, q in declared.items() if q.role is Role.SIZE)
-    return f"{effect.title()} ({size} {getattr(effect, size):.3g} {declared[size].unit})"
+    size = size_of(type(effect))
+    return f"{effect.title()} ({size} {getattr(effect, size):.3g} {quantities(type(effect))[size].unit})"

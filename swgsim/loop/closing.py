@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from swgsim.effects.base import Effect
 from swgsim.loop.evidence import Coherence, allowance, coherence
-from swgsim.loop.fitting import Fitted, Unit, fit
+from swgsim.loop.fitting import Fitted, Unit, extended, fit
 from swgsim.loop.hypotheses import hypotheses, signatures
 from swgsim.loop.refining import zoom
 from swgsim.loop.screening import Score, best_of_kind, screen
@@ -21,8 +21,9 @@ ALPHA = 0.005
 # A bare regularity of the open vocabulary explains more than an effect only if it does so by this much (twice a
 # log-likelihood, and a share): there are thirty times as many regularities as effects.
 OUTDONE, OUTDONE_SHARE = 17.0, 0.02
-# Leaders that are fitted, and effects that are added at most.
-LEADERS, MOST = 4, 3
+# Leaders that are fitted, those that are as good but for this share of the gain and may be rivals, and effects that are
+# added at most.
+LEADERS, NEARLY, NEARLY_LEADERS, MOST = 4, 0.05, 8, 3
 # Log-likelihood of left-out operating points that an effect must gain, and a pair over its better half.
 LEAST_GAIN, PAIR_GAIN = 3.0, 15.0
 # Log-likelihood of all recordings that it must gain if left-out points do not tell.
@@ -140,7 +141,7 @@ def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed
     while True:
         scores = _screened(now, kinds, generator("screen", seed, len(steps)))
         first = scores if first is None else first
-        leaders = [score for score in scores if score.chance <= ALPHA][:LEADERS]
+        leaders = _leaders(scores)
         if steps and leaders:
             steps[-1] = _with_rivals(steps[-1], scores)
         if not leaders or len(steps) == MOST:
@@ -165,22 +166,23 @@ def _screened(fitted: Fitted, kinds: Sequence[type[Effect]], rng: np.random.Gene
     return tuple(best_of_kind(screen(found, signatures(found, fitted.model, fitted.measured), fitted, rng)))
 
 
+def _leaders(scores: Sequence[Score]) -> list[Score]:
+    """What is fitted: the best scores that are no luck, and those hardly worse than the very best."""
+    real = [score for score in scores if score.chance <= ALPHA]
+    nearly = [s for s in real[LEADERS:NEARLY_LEADERS] if s.gain > (1 - NEARLY) * real[0].gain]
+    return [*real[:LEADERS], *nearly]
+
+
 def _trial(now: Fitted, scores: tuple[Score, ...], seed: int) -> Trial:
     """Hypotheses added to the model and fitted with it."""
     rng = generator("zoom", seed, *(str(score.hypothesis) for score in scores))
     added = tuple(zoom(score, now, rng) for score in scores)
     known = len(now.model.effects)
-    start = now.unit.model.plus(*now.model.effects[len(now.unit.model.effects) :], *added)
-    fitted = fit(now.measured, now.unit, start, position=_declared_only(now), allowed=now.allowed)
+    fitted = extended(now, added)
     effects = fitted.model.effects[known:]
     found = tuple(coherence(fitted, known + number) for number in range(len(added)))
     evidence = fitted.log_likelihood - now.log_likelihood
     return Trial(scores[0], effects, fitted, fitted.predictive - now.predictive, evidence, found)
-
-
-def _declared_only(fitted: Fitted) -> dict[str, float]:
-    """Position of the unit's parameters; those of effects begin anew, where the last fit has the effects."""
-    return {name: by for name, by in fitted.calibrated.position.items() if ": " not in name}
 
 
 def _pair(now: Fitted, trials: Sequence[Trial], seed: int) -> Trial | None:

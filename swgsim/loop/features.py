@@ -71,17 +71,26 @@ def basis(phi: Float[np.ndarray, " time"], orders: int) -> Float[np.ndarray, "ti
 
 def features(recording: Recording, layout: Layout) -> Float[np.ndarray, " feature"]:
     """The feature vector of a recording."""
-    return _fitted(recording, layout)[0]
-
-
-def remainder(recording: Recording, layout: Layout) -> Float[np.ndarray, "channel time"]:
-    """What the integer orders up to FITTED leave of every channel."""
-    return _fitted(recording, layout)[1]
-
-
-def _fitted(recording: Recording, layout: Layout) -> tuple[np.ndarray, np.ndarray]:
-    columns = basis(recording.channels["phi_in"], FITTED)
-    values = np.stack([recording.channels[name] for name in layout.channels], axis=1)
-    coefficients = np.linalg.solve(columns.T @ columns, columns.T @ values)
+    columns, values = basis(recording.channels["phi_in"], FITTED), _values(recording, layout)
     kept = np.concatenate([np.arange(ORDERS + 1), FITTED + 1 + np.arange(ORDERS)])
-    return coefficients[kept].T.ravel(), (values - columns @ coefficients).T
+    return _coefficients(columns, values)[kept].T.ravel()
+
+
+def remainder(
+    recording: Recording, layout: Layout, columns: Float[np.ndarray, "time column"] | None = None
+) -> Float[np.ndarray, "channel time"]:
+    """What the integer orders up to FITTED, or other columns, leave of every channel."""
+    columns = basis(recording.channels["phi_in"], FITTED) if columns is None else columns
+    values = _values(recording, layout)
+    return (values - columns @ _coefficients(columns, values)).T
+
+
+def _values(recording: Recording, layout: Layout) -> Float[np.ndarray, "time channel"]:
+    return np.stack([recording.channels[name] for name in layout.channels], axis=1)
+
+
+def _coefficients(
+    columns: Float[np.ndarray, "time column"], values: Float[np.ndarray, "time channel"]
+) -> Float[np.ndarray, "column channel"]:
+    """Least squares."""
+    return np.linalg.solve(columns.T @ columns, columns.T @ values)

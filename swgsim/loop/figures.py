@@ -30,7 +30,7 @@ def pictures(answer: Answer, report: Mapping[str, Any]) -> dict[str, tuple[style
     ----------
     answer : Answer
     report : mapping
-        As :func:`swgsim.loop.report.report` makes it.
+        As :func:`swgsim.loop.reporting.report.report` makes it.
     """
     drawn = {
         "residual_over_angle": (

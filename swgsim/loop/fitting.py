@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
+from swgsim.effects.base import Effect
 from swgsim.gear import Gear
 from swgsim.loop import scatter
 from swgsim.loop.calibration import Calibrated, calibrate, linearised
@@ -239,6 +240,14 @@ def fit(
         measured.session_columns(predicted)
     )
     return Fitted(measured, unit, parameters, calibrated, guess, errors, open_, offset, allowed)
+
+
+def extended(now: Fitted, added: Sequence[Effect]) -> Fitted:
+    """A fit with further effects, which are fitted along; those it has begin where they were found."""
+    own = now.model.effects[len(now.unit.model.effects) :]
+    # Parameters of effects are counted from where the effects are, so only the unit's keep their position.
+    position = {name: by for name, by in now.calibrated.position.items() if ": " not in name}
+    return fit(now.measured, now.unit, now.unit.model.plus(*own, *added), position=position, allowed=now.allowed)
 
 
 def commission(measured: Measured, unit: Unit) -> Unit:

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.effects.base import Effect
-from swgsim.effects.quantity import Role, quantities
+from swgsim.effects.quantity import Role, quantities, size_of
 from swgsim.loop.model import Model, predict
 from swgsim.loop.session import Measured
 
@@ -36,7 +36,7 @@ class Hypothesis:
     @property
     def size(self) -> str:
         """Name of the size."""
-        return next(name for name, q in quantities(self.kind).items() if q.role is Role.SIZE)
+        return size_of(self.kind)
 
     @property
     def phase(self) -> str | None:

@@ -20,7 +20,7 @@ from swgsim.loop.features import COMPARED
 from swgsim.loop.fitting import Unit, commission
 from swgsim.loop.model import Model
 from swgsim.loop.page import figure, page
-from swgsim.loop.report import report
+from swgsim.loop.reporting.report import report
 from swgsim.loop.session import Measured
 from swgsim.reading import read_recordings
 from swgsim.recording import Recording

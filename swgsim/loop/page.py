@@ -13,7 +13,7 @@ def page(report: Mapping[str, Any], pictures: Sequence[style.Picture]) -> str:
     Parameters
     ----------
     report : mapping
-        As :func:`swgsim.loop.report.report` makes it.
+        As :func:`swgsim.loop.reporting.report.report` makes it.
     pictures : sequence of Picture
     """
     templates = environment("swgsim")

@@ -4,43 +4,18 @@ Atoms are tested as the effects of the library are, after projecting out what th
 they are also the widest question that can be asked of a residual: whether anything regular is left in it at all.
 """
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
 from jaxtyping import Complex, Float
 
-from swgsim.effects.frozen import FULL_LOAD
+from swgsim.effects.quantity import quantities
+from swgsim.effects.regularity import LAWS, PATTERNS, Regularity
 from swgsim.loop.features import ORDERS, Layout
 from swgsim.loop.fitting import Fitted
-from swgsim.loop.model import Situation
 from swgsim.loop.screening import VISIBLE, family_wise
 from swgsim.loop.tail import log_tail
-
-# Gauges s1 to s4 sit a quarter turn apart; a pattern of m waves travels around them.
-PATTERNS: Mapping[str, dict[str, complex]] = {
-    "the same in s1 to s4": dict.fromkeys(("s1", "s2", "s3", "s4"), 1),
-    "the same in all gauges": dict.fromkeys(("s0", "s1", "s2", "s3", "s4"), 1),
-    "opposite in neighbours (two waves)": {"s1": 1, "s2": -1, "s3": 1, "s4": -1},
-    "one wave that turns with the wave generator (or three against it)": {"s1": 1, "s2": -1j, "s3": -1, "s4": 1j},
-    "one wave that turns against the wave generator (or three with it)": {"s1": 1, "s2": 1j, "s3": -1, "s4": -1j},
-    "opposite in s1 and s3": {"s1": 1, "s3": -1},
-    "opposite in s2 and s4": {"s2": 1, "s4": -1},
-    **{f"in {name} alone": {name: 1} for name in ("s0", "s1", "s2", "s3", "s4", "T_in", "T_out", "n_in")},
-}
-SPEED, KELVIN, HOUR = 4000.0, 10.0, 3600.0
-LAWS: Mapping[str, Callable[[Situation], float]] = {
-    "constant": lambda s: 1.0,
-    "proportional to the load": lambda s: s.point.T_out / FULL_LOAD,
-    "with the square of the load": lambda s: (s.point.T_out / FULL_LOAD) ** 2,
-    "with the root of the load": lambda s: (s.point.T_out / FULL_LOAD) ** 0.5,
-    "proportional to the speed": lambda s: s.point.n_in_rpm / SPEED,
-    "with the square of the speed": lambda s: (s.point.n_in_rpm / SPEED) ** 2,
-    "proportional to load and speed": lambda s: s.point.T_out / FULL_LOAD * s.point.n_in_rpm / SPEED,
-    "proportional to the temperature above 25 degC": lambda s: s.conditions.warmer / KELVIN,
-    "proportional to the time since the session began": lambda s: s.conditions.elapsed / HOUR,
-}
 
 
 @dataclass(frozen=True)
@@ -52,9 +27,9 @@ class Atom:
     order : int
         Of the wave generator's revolution; 0 is the mean.
     pattern : str
-        Of :data:`PATTERNS`.
+        Of :data:`swgsim.effects.regularity.PATTERNS`.
     law : str
-        Of :data:`LAWS`.
+        Of :data:`swgsim.effects.regularity.LAWS`.
     """
 
     order: int
@@ -92,6 +67,15 @@ class Described:
         """How unlikely the gain is by luck."""
         return -2 * float(log_tail(self.gain, self.freedom)) if self.freedom else 0.0
 
+    @property
+    def effect(self) -> Regularity:
+        """The atom as an effect that a model can be given."""
+        # A mean has no phase but a sign.
+        sign, phase = (1.0, self.phase) if self.atom.order else (float(np.cos(self.phase)), 0.0)
+        bound = quantities(Regularity)["amplitude"].high
+        amplitude = sign * min(self.amplitude, bound)
+        return Regularity(int(self.atom.order), amplitude, phase, self.atom.pattern, self.atom.law)
+
     def __str__(self) -> str:
         what = "the mean" if self.atom.order == 0 else f"order {self.atom.order}"
         unit = {"T": "N m", "n": "rpm"}.get(self.atom.pattern.removeprefix("in ")[:1], "mV/V")
@@ -108,7 +92,7 @@ def atoms(layout: Layout) -> list[Atom]:
 def columns(atom: Atom, fitted: Fitted) -> Float[np.ndarray, "row column"]:
     """Cosine and sine of an atom; the mean has its real patterns only."""
     measured = fitted.measured
-    law = np.array([LAWS[atom.law](situation) for situation in measured.situations])
+    law = np.array([LAWS[atom.law](s.point, s.conditions) for s in measured.situations])
     found = []
     for turn in (1, 1j) if atom.order else (1,):
         lines: Complex[np.ndarray, "channel order"] = np.zeros((len(measured.layout.channels), ORDERS + 1), complex)

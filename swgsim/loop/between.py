@@ -1,0 +1,169 @@
+"""The spectrum of recordings between the integer orders, in units of the noise."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from swgsim.effects.base import Effect, Scene
+from swgsim.effects.quantity import Role, quantities
+from swgsim.loop.features import FITTED, Layout, basis, remainder
+from swgsim.loop.noise import GUARD, Floor, floors
+from swgsim.recording import Recording
+from swgsim.recordings import SENSORS
+
+# Share of a pattern that must lie between the orders, and of its largest direction; less is rounding.
+SEEN = 1e-3
+# Samples per revolution at which patterns are computed; more than twice the orders that are fitted.
+SAMPLES = 48
+# The noise beside a line is that of so many lines of the spectrum to either side.
+BESIDE = 6
+# Part of a direction that a line must hold to be one of its lines.
+HELD = 0.05
+
+
+class Explained(NamedTuple):
+    """What an effect explains of one recording.
+
+    ``gain``, a sum of squares in units of the noise, by so many numbers of ``freedom``; at its own size it would bring
+    ``size``. ``rest`` is the sum of squares of what is left beside its lines, in ``beside`` numbers.
+    """
+
+    gain: float
+    freedom: int
+    size: float
+    rest: float
+    beside: float
+
+
+@dataclass(frozen=True, eq=False)
+class Between:
+    """The spectrum between the orders of one recording, every gauge in units of its noise.
+
+    Attributes
+    ----------
+    scene : Scene
+    gauges : tuple of str
+    scale : array (gauge, line)
+        What turns a line of the spectrum into units of the noise.
+    orders : array (time, column)
+        Orthonormal basis of the orders that were fitted, with a drift.
+    clear : array (line,)
+        Lines that no integer order leaks into.
+    left : array (number,)
+        Real and imaginary parts of all lines of what the orders leave.
+    taken : array (number, direction)
+        Orthonormal directions of what was found already and taken out.
+    """
+
+    scene: Scene
+    gauges: tuple[str, ...]
+    scale: Float[np.ndarray, "gauge line"]
+    orders: Float[np.ndarray, "time column"]
+    clear: Bool[np.ndarray, " line"]
+    left: Float[np.ndarray, " number"]
+    taken: Float[np.ndarray, "number direction"]
+
+    @classmethod
+    def of(cls, recording: Recording, gauges: tuple[str, ...], noise: Sequence[Floor]) -> "Between":
+        """Of a recording whose gauges have these floors."""
+        step = max(1, int(recording.rate * 60 / recording.point.n_in_rpm / SAMPLES))
+        length = len(recording.time) // step * step
+        # Patterns are narrow-band: fewer samples hold them as well.
+        angle = recording.channels["phi_in"][:length:step]
+        load = (
+            recording.channels["T_out"][:length:step]
+            if "T_out" in recording.channels
+            else np.full(len(angle), float(recording.point.T_out))
+        )
+        time = recording.time[:length:step] - recording.time[0]
+        frequency = np.fft.rfftfreq(length, 1 / recording.rate)
+        # The mean, and lines beyond the orders that were fitted, say nothing.
+        frequency = frequency[1 : np.searchsorted(frequency, FITTED * recording.point.n_in_rpm / 60)]
+        scale = np.array([np.sqrt(2 * length / np.maximum(floor.at(frequency), 1e-300)) for floor in noise])
+        order = frequency * 60 / recording.point.n_in_rpm
+        revolutions = abs(float(angle[-1] - angle[0])) / (2 * np.pi)
+        bare = cls(
+            Scene(time, angle, load, recording.point, recording.conditions),
+            gauges,
+            scale,
+            np.linalg.qr(_columns(angle, time))[0],
+            np.abs(order - np.round(order)) * revolutions > GUARD,
+            np.zeros(2 * scale.size),
+            np.empty((2 * scale.size, 0)),
+        )
+        columns = _columns(recording.channels["phi_in"], recording.time)
+        return replace(bare, left=bare._numbers(remainder(recording, Layout(gauges), columns)[:, :length]))
+
+    @property
+    def step(self) -> float:
+        """Distance of two lines of the spectrum [Hz]."""
+        time = self.scene.time
+        return 1 / (len(time) * (time[1] - time[0]))
+
+    @property
+    def power(self) -> Float[np.ndarray, "gauge line"]:
+        """Sum of squares of every line; of noise, 2 on average."""
+        return (self.left**2).reshape(2, *self.scale.shape).sum(axis=0)
+
+    def pattern(self, effect: Effect) -> Float[np.ndarray, "column number"]:
+        """What an effect can look like, whatever its random phases; a direction that the orders took is left out."""
+        random = [name for name, q in quantities(type(effect)).items() if q.role is Role.RANDOM]
+        phases = [dict.fromkeys(random, 0.0)]
+        phases += [{n: np.pi if n == name else 0.0 for n in random} for name in random[1:]]
+        phases += [{n: np.pi / 2 if n == name else 0.0 for n in random} for name in random]
+        seen = np.array([self._alone(replace(effect, **each)) for each in phases])
+        between = self._numbers(seen - (seen @ self.orders) @ self.orders.T)
+        between = between - (between @ self.taken) @ self.taken.T
+        whole = np.linalg.norm(self._numbers(seen), axis=-1).max()
+        return between if np.linalg.norm(between, axis=-1).max() > SEEN * whole else np.zeros_like(between)
+
+    def explained(self, effect: Effect) -> Explained:
+        """What an effect explains of this recording."""
+        pattern = self.pattern(effect)
+        U = _directions(pattern)
+        along = U.T @ self.left
+        holds = (U**2).sum(axis=1).reshape(-1, self.scale.shape[1]).sum(axis=0) > HELD
+        near = np.convolve(holds, np.ones(2 * BESIDE + 1), "same") > 0
+        beside = np.tile(near & self.clear, 2 * len(self.gauges))
+        rest = (self.left - U @ along)[beside]
+        count = beside.sum() - (U[beside] ** 2).sum() - (self.taken[beside] ** 2).sum()
+        size = float((pattern[0] ** 2).sum())
+        return Explained(float(along @ along), U.shape[1], size, float(rest @ rest), float(count))
+
+    def without(self, effects: Sequence[Effect]) -> "Between":
+        """The spectrum without anything that these effects may have put there."""
+        U = _directions(np.concatenate([self.pattern(effect) for effect in effects]))
+        return replace(self, left=self.left - U @ (U.T @ self.left), taken=np.hstack([self.taken, U]))
+
+    def _numbers(self, signals: np.ndarray) -> np.ndarray:
+        """Lines of the spectrum in units of the noise, real parts before imaginary ones."""
+        lines = np.fft.rfft(signals, axis=-1)[..., 1 : self.scale.shape[1] + 1] / signals.shape[-1] * self.scale
+        flat = lines.reshape(*lines.shape[:-2], -1)
+        return np.concatenate([flat.real, flat.imag], axis=-1)
+
+    def _alone(self, effect: Effect) -> Float[np.ndarray, "gauge time"]:
+        """What an effect puts on silent gauges."""
+        silent = effect.gauge(np.zeros((len(SENSORS), len(self.scene.time))), self.scene)
+        channels = effect.acquisition(dict(zip(SENSORS, silent, strict=True)), self.scene)
+        return np.array([channels[gauge] for gauge in self.gauges])
+
+
+def between(recordings: Sequence[Recording]) -> list[Between]:
+    """What lies between the orders of every recording; nothing if they have no gauge in common."""
+    gauges = tuple(sensor for sensor in SENSORS if all(sensor in r.channels for r in recordings))
+    noise = floors(recordings, Layout(gauges)) if gauges else []
+    return [Between.of(recording, gauges, noise) for recording in recordings] if gauges else []
+
+
+def _columns(phi: Float[np.ndarray, " time"], time: Float[np.ndarray, " time"]) -> Float[np.ndarray, "time column"]:
+    """The orders that are fitted, and a straight line over time, whose ends would leak into the whole spectrum."""
+    return np.column_stack([basis(phi, FITTED), (time - time.mean()) / float(np.ptp(time))])
+
+
+def _directions(pattern: Float[np.ndarray, "column number"]) -> Float[np.ndarray, "number rank"]:
+    """Orthonormal directions of a pattern."""
+    U, s, _ = np.linalg.svd(pattern.T, full_matrices=False)
+    return U[:, s > SEEN * s[0]] if s[0] > 0 else U[:, :0]

@@ -1,0 +1,156 @@
+"""The effects that were found, with their evidence and rivals, and those that were fitted and not accepted."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from swgsim.effects.base import Effect
+from swgsim.effects.quantity import Role, quantities
+from swgsim.effects.text import path_of
+from swgsim.loop.answer import Answer
+from swgsim.loop.closing import LEAST_GAIN, Step, Trial
+from swgsim.loop.errors import errors
+from swgsim.loop.reporting.numbers import estimate, number, probability
+from swgsim.loop.reporting.sizes import Sizes
+from swgsim.loop.sidelines import Sideline
+
+
+def names(trial: Trial) -> str:
+    """The effects of a trial by their registered names."""
+    return " and ".join(path_of(type(effect)) for effect in trial.effects)
+
+
+def accepted(answer: Answer) -> list[dict[str, Any]]:
+    """The effects that were added, with their evidence and their rivals."""
+    after, found = answer.closed.after, []
+    at = len(answer.closed.before.model.effects)
+    for step in answer.closed.steps:
+        for which in range(len(step.accepted.effects)):
+            effect = after.model.effects[at]
+            found.append({
+                "name": path_of(type(effect)),
+                "place": effect.place,
+                "parameters": _parameters(effect, after.deviation, at),
+                "evidence": _evidence(step, which),
+                "indistinguishable_from": [names(rival) for rival in step.rivals],
+                "rivals": [_rival(rival) for rival in step.rivals],
+            })  # fmt: skip
+            at += 1
+    return found
+
+
+def of_line(line: Sideline) -> dict[str, Any]:
+    """An effect between the orders; its phase is another one in every recording."""
+    effect = line.effect
+    parameters = {}
+    for name, q in quantities(type(effect)).items():
+        value = getattr(effect, name)
+        if q.role is Role.SIZE:
+            parameters[name] = estimate(value, line.deviation, q.unit, q.low, q.high)
+        elif q.role is not Role.RANDOM:
+            parameters[name] = {"value": number(value), "ci95": None, "unit": q.unit}
+    return {
+        "name": path_of(type(effect)),
+        "place": effect.place,
+        "parameters": parameters,
+        "evidence": {
+            "words": (
+                f"lines between the integer orders that come by luck with probability {probability(line.chance)}; "
+                f"its law over load and speed agrees with all recordings (probability {line.agrees:.2g})"
+            ),
+            "score": number(line.gain),
+            "chance": number(line.chance),
+            "coherence": {"chance": number(line.agrees), "form_error": None},
+        },
+        "indistinguishable_from": [],
+        "rivals": [],
+    }
+
+
+def rejected(answer: Answer, sizes: Sizes) -> list[dict[str, Any]]:
+    """Effects that were fitted but not added."""
+    steps = answer.closed.steps
+    # What was put off in one step may be found, or be a rival, in a later one.
+    held = {names(trial) for step in steps for trial in (step.accepted, *step.rivals)}
+    tried: dict[str, tuple[Trial, Trial | None]] = {
+        names(trial): (trial, step.accepted) for step in steps for trial in step.others if names(trial) not in held
+    }
+    tried |= {names(trial): (trial, None) for trial in answer.closed.rejected}
+    return [
+        {
+            "name": name,
+            "heldout_error": sizes.overall(errors(trial.fitted).heldout),
+            "why": why(trial, accepted),
+        }
+        for name, (trial, accepted) in tried.items()
+    ]
+
+
+def why(trial: Trial, accepted: Trial | None) -> str:
+    """Why a trial was not accepted, in words."""
+    if not trial.fitted.calibrated.settled:
+        return "its fit did not come to rest"
+    poorest = min(trial.coherence, key=lambda each: each.chance)
+    if not poorest.holds:
+        form = f"; its form differs by {100 * poorest.form_error:.0f} %" if poorest.form_error else ""
+        return (
+            "one size does not serve all operating points, channels and orders "
+            f"(probability {probability(poorest.chance)}{form})"
+        )
+    if trial.gain <= LEAST_GAIN:
+        return (
+            f"it does not help to predict operating points left out: log-likelihood {trial.gain:+.1f}, "
+            f"at least {LEAST_GAIN:g} are asked for"
+        )
+    if accepted is None:
+        return "it was sound only beside an effect that was not"
+    return (
+        f"it predicts operating points left out worse than {' and '.join(e.title() for e in accepted.effects)}: "
+        f"log-likelihood {trial.gain:+.0f} against {accepted.gain:+.0f}"
+    )
+
+
+def _parameters(effect: Effect, deviation: Mapping[str, float], number_: int) -> dict[str, dict[str, Any]]:
+    """Parameters of the effect with that number in its model; those that were chosen or fixed have no interval."""
+    found = {}
+    for name, q in quantities(type(effect)).items():
+        value = getattr(effect, name)
+        spread = deviation.get(f"{effect.title()} {number_ + 1}: {name}")
+        if spread is None:
+            found[name] = {"value": number(value), "ci95": None, "unit": q.unit}
+        elif q.role in (Role.PHASE, Role.ANGLE):
+            found[name] = estimate(value, spread, q.unit)
+        else:
+            found[name] = estimate(value, spread, q.unit, q.low, q.high)
+    return found
+
+
+def _rival(trial: Trial) -> dict[str, Any]:
+    """Another explanation that these recordings cannot rule out, at its likeliest parameters."""
+    first = len(trial.fitted.model.effects) - len(trial.effects)
+    return {
+        "effects": [
+            {"name": path_of(type(e)), "parameters": _parameters(e, trial.fitted.deviation, first + i)}
+            for i, e in enumerate(trial.effects)
+        ],
+        "heldout_gain": number(trial.gain),
+    }  # fmt: skip
+
+
+def _evidence(step: Step, which: int) -> dict[str, Any]:
+    """Why an effect is believed."""
+    trial, score = step.accepted, step.accepted.score
+    agreement = trial.coherence[which]
+    together = " (together with the other effect of the pair)" if len(trial.effects) > 1 else ""
+    return {
+        "words": (
+            f"adding it{together} raises the log-likelihood of operating points left out by {trial.gain:.0f} "
+            f"(at least {LEAST_GAIN:g} are asked for); so high a score comes by luck with probability "
+            f"{probability(score.chance)} in the whole library; one size serves all operating points, "
+            f"channels and orders, with parts that differ by {100 * agreement.form_error:.0f} %"
+        ),
+        "heldout_gain": number(trial.gain),
+        "score": number(score.gain),
+        "chance": number(score.chance),
+        "visible": number(score.visible),
+        "coherence": {"chance": number(agreement.chance), "form_error": number(agreement.form_error)},
+    }

@@ -1,0 +1,132 @@
+"""What remains open: the unknown, what cannot be tested, what would have been seen, and what to record next."""
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from swgsim.effects.base import Effect
+from swgsim.effects.quantity import quantities
+from swgsim.effects.regularity import Regularity
+from swgsim.effects.text import entries, path_of
+from swgsim.loop.answer import UNKNOWN, Answer
+from swgsim.loop.experiment import Experiment
+from swgsim.loop.reporting.effects import names, why
+from swgsim.loop.reporting.numbers import number
+from swgsim.loop.screening import Score
+from swgsim.loop.vocabulary import Described
+
+
+def unknown(answer: Answer) -> dict[str, Any] | None:
+    """What no effect of the library explains, in words and numbers, and as effects that can be added."""
+    if not answer.left and answer.verdict != UNKNOWN:
+        return None
+    atoms = [_described(each) for each in answer.unknown]
+    nearest, line = answer.nearest, answer.unnamed
+    added = [effect for effect in answer.closed.after.model.effects if isinstance(effect, Regularity)]
+    return {
+        "words": answer.left or "a regularity without a simple description",
+        "orders": sorted({each["order"] for each in atoms}),
+        "pattern": atoms[0]["pattern"] if atoms else None,
+        "law": atoms[0]["law"] if atoms else None,
+        "regularities": atoms,
+        "line": asdict(line) | {"words": str(line)} if line else None,
+        "effects": entries([each.effect for each in answer.unknown]),
+        "added": entries(added),
+        "nearest": {"name": names(nearest), "why": why(nearest, None)} if nearest else None,
+    }
+
+
+def _described(each: Described) -> dict[str, Any]:
+    return {
+        "words": str(each),
+        "order": int(each.atom.order),
+        "pattern": each.atom.pattern,
+        "law": each.atom.law,
+        "amplitude": number(each.amplitude),
+        "phase": number(each.phase),
+        "chance": number(each.chance),
+    }
+
+
+def next_experiment(experiments: Sequence[Experiment], commissioned: bool) -> dict[str, Any] | None:
+    """What to record next, the question that needs the fewest recordings first; None if nothing is open."""
+    if not experiments:
+        return None
+    helpful = sorted((e for e in experiments if e.recordings), key=lambda e: (e.recordings or 0, -e.separation))
+    helpless = [e for e in experiments if not e.recordings]
+    words = [str(e) for e in (*helpful, *helpless)]
+    if helpless and not commissioned:
+        words.append("commissioning=FOLDER with recordings of the healthy gear would take such doubt away")
+    return {
+        "words": "; ".join(words),
+        "questions": [
+            {
+                "between": list(e.between),
+                "n_in_rpm": float(e.point.n_in_rpm),
+                "T_out_nm": float(e.point.T_out),
+                "recordings": e.recordings,
+                "separation": number(e.separation),
+            }
+            for e in (*helpful, *helpless)
+        ],
+    }
+
+
+def absorbed(score: Score) -> dict[str, Any]:
+    """An effect that these recordings cannot show."""
+    return {
+        "name": path_of(score.hypothesis.kind),
+        "visible": number(score.visible),
+        "why": (
+            "these recordings do not show it: the channels do not see it at the recorded operating points"
+            if score.visible <= 0
+            else "declared parameters can imitate it at the recorded operating points: only "
+            f"{100 * score.visible:.2g} % of its signature is left beside them"
+        ),
+    }
+
+
+def untried(answer: Answer, kinds: Sequence[type[Effect]]) -> list[dict[str, Any]]:
+    """Effects that no test looks at."""
+    screened = {score.hypothesis.kind for score in answer.closed.scores}
+    between = {type(line.effect) for line in answer.lines}
+    return [
+        {
+            "name": path_of(kind),
+            "visible": None,
+            "why": "its phase is another one in every recording and it acts inside the chain: there is no test for it",
+        }
+        for kind in kinds
+        if kind not in screened | between and not _on_signals(kind)
+    ]
+
+
+def _on_signals(kind: type[Effect]) -> bool:
+    return any(getattr(kind, place) is not getattr(Effect, place) for place in ("gauge", "acquisition"))
+
+
+def detectable(score: Score) -> dict[str, Any]:
+    """The smallest size that would have been seen, counted from the one that changes nothing."""
+    q = quantities(score.hypothesis.kind)[score.hypothesis.size]
+    smallest = q.nothing + float(np.copysign(score.detectable, q.typical - q.nothing))
+    return {
+        "parameter": score.hypothesis.size,
+        "value": number(smallest),
+        "typical": float(q.typical),
+        "unit": q.unit,
+        "typical_would_be_seen": bool(score.detectable <= abs(q.typical - q.nothing)),
+    }
+
+
+def score(score: Score) -> dict[str, Any]:
+    """Score of one effect in the first search."""
+    return {
+        "name": path_of(score.hypothesis.kind),
+        "place": score.hypothesis.kind.place,
+        "score": number(score.gain),
+        "freedom": int(score.freedom),
+        "chance": number(score.chance),
+        "visible": number(score.visible),
+    }

@@ -1,0 +1,109 @@
+"""The answer as ``report.json``: what was found, how well it is known, what it changes, and what remains open."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from swgsim.defect import Defect
+from swgsim.effects.base import Effect
+from swgsim.loop.answer import Answer
+from swgsim.loop.declared import of_unit
+from swgsim.loop.errors import noise_floor
+from swgsim.loop.experiment import Experiment
+from swgsim.loop.fitting import Fitted
+from swgsim.loop.reporting.effects import accepted, of_line, rejected
+from swgsim.loop.reporting.numbers import estimate
+from swgsim.loop.reporting.open import absorbed, detectable, next_experiment, score, unknown, untried
+from swgsim.loop.reporting.sizes import Sizes, error
+from swgsim.loop.session import Measured
+from swgsim.recording import CHANNELS
+
+
+def report(
+    answer: Answer,
+    kinds: Sequence[type[Effect]],
+    experiments: Sequence[Experiment] = (),
+    defects: Sequence[Defect] = (),
+    seconds: float = 0.0,
+) -> dict[str, Any]:
+    """All that closing the loop says, as plain numbers and text; what is not known is None.
+
+    Parameters
+    ----------
+    answer : Answer
+    kinds : sequence of effect classes
+        The library that was searched.
+    experiments : sequence of Experiment
+        What would separate what these recordings cannot.
+    defects : sequence of Defect
+        What was detected in the recordings.
+    seconds : float
+        That the answer took.
+    """
+    before, after = answer.closed.before, answer.closed.after
+    measured = before.measured
+    sizes = Sizes.of(measured)
+    floor = noise_floor(measured)
+    return {
+        "verdict": answer.verdict,
+        "sentence": answer.sentence,
+        "noise_floor": sizes.named(floor),
+        "calibrated": calibrated(after),
+        "effects": [*accepted(answer), *(of_line(line) for line in answer.lines)],
+        "rejected": rejected(answer, sizes),
+        "error": error(before, after, floor, sizes),
+        "unknown": unknown(answer),
+        "next_experiment": next_experiment(experiments, before.unit.commissioned),
+        "moved": moved(before, after),
+        "absorbed": [absorbed(each) for each in answer.absorbed] + untried(answer, kinds),
+        "detectable": {each.hypothesis.kind.name(): detectable(each) for each in answer.closed.scores},
+        "scores": [score(each) for each in answer.closed.scores],
+        "commissioned": before.unit.commissioned,
+        "channels": {name: CHANNELS[name].unit for name in measured.layout.channels},
+        "recordings": _recordings(measured),
+        "defects": [str(defect) for defect in defects],
+        "seconds": round(seconds, 1),
+    }
+
+
+def calibrated(fitted: Fitted) -> dict[str, dict[str, Any]]:
+    """The declared parameters at which the chain ran, with what is left open of them."""
+    unit = fitted.unit
+    if unit.reach is None:
+        declared = {name: p for name, p in fitted.parameters.items() if ": " not in name}
+        deviations = [fitted.deviation[name] for name in declared]
+    else:
+        declared = of_unit(unit.model.gear)
+        spread = np.sqrt((unit.reach**2).sum(axis=1))[: len(declared)].tolist()
+        deviations = [s * p.sd for s, p in zip(spread, declared.values(), strict=True)]
+    return {
+        name: estimate(p.value(fitted.model), deviation, p.unit)
+        for (name, p), deviation in zip(declared.items(), deviations, strict=True)
+    }
+
+
+def moved(before: Fitted, after: Fitted) -> dict[str, dict[str, Any]]:
+    """Declared parameters that adding the effects has moved by more than two standard deviations.
+
+    Calibration had bent them to hide what was missing.
+    """
+    found = {}
+    for name, parameter in before.parameters.items():
+        was, now = parameter.value(before.model), parameter.value(after.model)
+        if ": " not in name and abs(now - was) > 2 * after.deviation[name]:
+            found[name] = {"before": was, "after": now, "unit": parameter.unit}
+    return found
+
+
+def _recordings(measured: Measured) -> dict[str, Any]:
+    """What was recorded."""
+    groups = [measured.repeats.count(group) for group in dict.fromkeys(measured.repeats)]
+    points = dict.fromkeys(recording.point for recording in measured.recordings)
+    return {
+        "count": len(measured),
+        "gear": measured.recordings[0].gear,
+        "sessions": len(dict.fromkeys(recording.session for recording in measured.recordings)),
+        "operating_points": [{"n_in_rpm": float(p.n_in_rpm), "T_out_nm": float(p.T_out)} for p in points],
+        "repeats": {"fewest": min(groups), "most": max(groups)},
+    }
