@@ -4,7 +4,7 @@ import hydra
 from misspelt import answered
 from omegaconf import DictConfig, OmegaConf
 
-from swgsim.oracle_job import run
+from swgsim.oracle.job import run
 
 
 @hydra.main(version_base="1.3", config_path="../conf", config_name="oracle")

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from swgsim.files import write_text
-from swgsim.folder import write_folder
+from swgsim.intake.folder import write_folder
 from swgsim.recording import Recording
 
 SEAL = "seal.txt"

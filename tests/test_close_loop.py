@@ -18,8 +18,8 @@ from swgsim.effects.eccentric_wave_generator import EccentricWaveGenerator
 from swgsim.effects.load_sharing import LoadSharing
 from swgsim.effects.reduced_damping import ReducedDamping
 from swgsim.effects.text import from_text
-from swgsim.folder import write_folder
 from swgsim.gear import OperatingPoint
+from swgsim.intake.folder import write_folder
 from swgsim.loop import job, model
 from swgsim.loop.answer import NOTHING, answer
 from swgsim.loop.experiment import RECORDINGS, SEPARATED, next_experiments

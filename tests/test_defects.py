@@ -12,12 +12,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from swgsim.conditions import Conditions
-from swgsim.defect import summary
-from swgsim.defects import inspect
+from swgsim.defects.defect import summary
+from swgsim.defects.inspection import inspect
 from swgsim.examples import EXAMPLES
 from swgsim.faults import FAULTS
-from swgsim.file_defect import FIRST_ROW
 from swgsim.gear import Gear, OperatingPoint
+from swgsim.intake.file_defect import FIRST_ROW
 from swgsim.population import Population
 from swgsim.recording import Recording
 

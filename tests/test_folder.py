@@ -15,17 +15,17 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from scipy.io import savemat
 
-from swgsim import reading_limits
 from swgsim.conditions import Conditions
-from swgsim.defects import inspect
-from swgsim.file_defect import FileDefect
-from swgsim.folder import read_folder, write_folder
+from swgsim.defects.inspection import inspect
 from swgsim.gear import OperatingPoint
-from swgsim.reading import inspect_recordings, read_recordings
+from swgsim.intake import limits as reading_limits
+from swgsim.intake.file_defect import FileDefect
+from swgsim.intake.folder import read_folder, write_folder
+from swgsim.intake.read import inspect_recordings, read_recordings
+from swgsim.intake.recording_file import TITLE, read_file, write_file
+from swgsim.intake.source_map import read_map
+from swgsim.intake.sources import read_mapped
 from swgsim.recording import Recording
-from swgsim.recording_file import TITLE, read_file, write_file
-from swgsim.source_map import read_map
-from swgsim.sources import read_mapped
 
 EXAMPLE_MAP = Path(__file__).parents[1] / "conf" / "source" / "example.yaml"
 ROWS = 600
@@ -306,7 +306,7 @@ def test_sizes_are_bounded(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     with pytest.raises(FileDefect, match="found 3 recordings, expected from 1 to 2"):
         read_folder(folder)
     monkeypatch.setattr(reading_limits, "MOST_FILES", 3)
-    monkeypatch.setattr("swgsim.csv_table.MOST_ROWS", 100)
+    monkeypatch.setattr("swgsim.intake.csv_table.MOST_ROWS", 100)
     with pytest.raises(FileDefect, match="row 102: found more rows, expected at most 100"):
         read_folder(folder)
     monkeypatch.setattr(reading_limits, "LARGEST_FILE", 1000)
@@ -357,7 +357,7 @@ def test_a_sealed_file_with_other_contents_is_named(tmp_path: Path, name: str, m
     with h5py.File(path, "r+") as file:
         assert file.attrs["title"] == TITLE
         change(file)
-    monkeypatch.setattr("swgsim.recording_file.verify", lambda path: None)
+    monkeypatch.setattr("swgsim.intake.recording_file.verify", lambda path: None)
     with pytest.raises(FileDefect, match=message):
         read_file(path)
 

@@ -15,16 +15,17 @@ from omegaconf import OmegaConf
 from scipy.special import logsumexp
 from scipy.stats import chi2, multivariate_normal
 
-from swgsim import generation, oracle_job, storage
+from swgsim import generation, storage
 from swgsim.acquisition import Window
 from swgsim.bench import Bench
 from swgsim.faults import Variants
 from swgsim.gear import Gear, OperatingPoint
 from swgsim.grid import Grid
-from swgsim.oracle import judge, point_model
-from swgsim.oracle_cells import Cells, Partition, Resolution
-from swgsim.oracle_model import Expectation, expectations, observations
-from swgsim.oracle_point import PointModel
+from swgsim.oracle.cells import Cells, Partition, Resolution
+from swgsim.oracle.model import Expectation, expectations, observations
+from swgsim.oracle import job as oracle_job
+from swgsim.oracle.oracle import judge, point_model
+from swgsim.oracle.point import PointModel
 from swgsim.plan import Plan
 from swgsim.record import record
 from swgsim.recordings import CLASSES, Recordings

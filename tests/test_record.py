@@ -15,7 +15,7 @@ from omegaconf import OmegaConf
 
 from swgsim import settings
 from swgsim.effects import EccentricWaveGenerator
-from swgsim.reading import inspect_recordings, read_recordings
+from swgsim.intake.read import inspect_recordings, read_recordings
 from swgsim.record_job import run
 from swgsim.recording import Recording
 from swgsim.recordings import SENSORS

@@ -25,7 +25,7 @@ from learn.transfer_report import runs as transfer_runs
 from learn.transfer_report import studies as transfer_studies
 from learn.transfer_report.content import cnn_fit, content
 from swgsim import storage
-from swgsim.oracle_job import KNOWN
+from swgsim.oracle.job import KNOWN
 from swgsim.recordings import CLASSES
 from swgsim.seeds import generator
 

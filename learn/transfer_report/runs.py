@@ -9,7 +9,7 @@ import pandas as pd
 
 from learn.inputs import OPERATING_POINT, SPECIMEN
 from learn.tracking import Store, finished_runs, table_of
-from swgsim.oracle_job import KNOWN
+from swgsim.oracle.job import KNOWN
 from swgsim.recordings import CLASSES
 from swgsim.style import words
 

@@ -9,11 +9,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from swgsim import settings, truth
-from swgsim.defect import Defect
+from swgsim.defects.defect import Defect
 from swgsim.effects.base import Effect
 from swgsim.effects.library import SEARCHED, named
 from swgsim.effects.text import as_text
 from swgsim.files import write_json, write_text
+from swgsim.intake.read import read_recordings
 from swgsim.loop.answer import Answer, answer
 from swgsim.loop.experiment import next_experiments
 from swgsim.loop.features import COMPARED
@@ -22,7 +23,6 @@ from swgsim.loop.model import Model
 from swgsim.loop.page import figure, page
 from swgsim.loop.reporting.report import report
 from swgsim.loop.session import Measured
-from swgsim.reading import read_recordings
 from swgsim.recording import Recording
 from swgsim.style import words
 

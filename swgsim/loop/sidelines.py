@@ -75,7 +75,8 @@ def search(
     level : float
         Probability of a false one.
     """
-    spectra, found = between(recordings), []
+    spectra = between(recordings)
+    found: list[Sideline] = []
     sought = list(kinds)
     while len(found) < MOST:
         best = next(iter(ranked(spectra, sought)), None)

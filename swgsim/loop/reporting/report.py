@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from swgsim.defect import Defect
+from swgsim.defects.defect import Defect
 from swgsim.effects.base import Effect
 from swgsim.loop.answer import Answer
 from swgsim.loop.declared import of_unit

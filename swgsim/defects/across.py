@@ -5,9 +5,9 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 
 from swgsim.conditions import REFERENCE_TEMPERATURE
-from swgsim.defect import Defect
+from swgsim.defects.defect import Defect
+from swgsim.defects.thresholds import WHOLE_TURNS
 from swgsim.recording import Recording
-from swgsim.thresholds import WHOLE_TURNS
 
 
 def set_defects(recordings: Sequence[Recording]) -> Iterator[Defect]:

@@ -3,15 +3,15 @@
 from pathlib import Path
 from typing import NamedTuple
 
-from swgsim.defect import Defect, summary
-from swgsim.defects import inspect
-from swgsim.file_defect import FileDefect
-from swgsim.folder import read_folder
-from swgsim.manifest import NAME
+from swgsim.defects.defect import Defect, summary
+from swgsim.defects.inspection import inspect
+from swgsim.intake.file_defect import FileDefect
+from swgsim.intake.folder import read_folder
+from swgsim.intake.manifest import NAME
+from swgsim.intake.recording_file import read_file
+from swgsim.intake.source_map import read_map
+from swgsim.intake.sources import read_mapped
 from swgsim.recording import Recording
-from swgsim.recording_file import read_file
-from swgsim.source_map import read_map
-from swgsim.sources import read_mapped
 
 
 class Intake(NamedTuple):
@@ -27,7 +27,8 @@ def read_recordings(path: Path, mapping: Path | None = None) -> Intake:
     Parameters
     ----------
     path : Path
-        A folder with a manifest, a file of :func:`swgsim.recording_file.write_file`, or with a map files of others.
+        A folder with a manifest, a file of :func:`swgsim.intake.recording_file.write_file`, or, with a map, files of
+        others.
     mapping : Path, optional
         A column map (conf/source/example.yaml).
 

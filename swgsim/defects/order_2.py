@@ -3,8 +3,8 @@
 import numpy as np
 from jaxtyping import Complex, Float
 
-from swgsim.angle_defects import angle_is_sound
-from swgsim.assembly import unwrapped
+from swgsim.defects.angle import angle_is_sound
+from swgsim.intake.assembly import unwrapped
 from swgsim.recording import Recording
 from swgsim.recordings import SENSORS
 

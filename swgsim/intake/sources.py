@@ -4,13 +4,13 @@ from pathlib import Path
 
 import numpy as np
 
-from swgsim import facts
-from swgsim.assembly import assemble, require_alike
-from swgsim.file_defect import FileDefect
-from swgsim.foreign import READERS, read_columns
-from swgsim.reading_limits import inside, require_file_count, require_rows
+from swgsim.intake import facts
+from swgsim.intake.assembly import assemble, require_alike
+from swgsim.intake.file_defect import FileDefect
+from swgsim.intake.foreign import READERS, read_columns
+from swgsim.intake.limits import inside, require_file_count, require_rows
+from swgsim.intake.source_map import SourceMap
 from swgsim.recording import Recording
-from swgsim.source_map import SourceMap
 
 
 def read_mapped(path: Path, mapping: SourceMap) -> tuple[Recording, ...]:
@@ -20,7 +20,7 @@ def read_mapped(path: Path, mapping: SourceMap) -> tuple[Recording, ...]:
     ----------
     path : Path
     mapping : SourceMap
-        As :func:`swgsim.source_map.read_map` reads it.
+        As :func:`swgsim.intake.source_map.read_map` reads it.
 
     Raises
     ------

@@ -7,10 +7,10 @@ import h5py
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.csv_table import read_table
-from swgsim.file_defect import FileDefect, shown
-from swgsim.reading_limits import require_readable, require_rows
-from swgsim.recording_file import numbers
+from swgsim.intake.csv_table import read_table
+from swgsim.intake.file_defect import FileDefect, shown
+from swgsim.intake.limits import require_readable, require_rows
+from swgsim.intake.recording_file import numbers
 
 Columns = dict[str, Float[np.ndarray, " time"]]
 

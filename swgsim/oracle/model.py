@@ -17,7 +17,7 @@ from swgsim.effects import Effect, ParameterScatter
 from swgsim.faults import FAULTS, Variant
 from swgsim.gear import Gear, OperatingPoint
 from swgsim.grid import Case
-from swgsim.oracle_cells import Cells, Partition, Resolution
+from swgsim.oracle.cells import Cells, Partition, Resolution
 from swgsim.orders import lines_of
 from swgsim.plan import Plan
 from swgsim.record import record

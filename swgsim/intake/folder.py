@@ -5,11 +5,11 @@ import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
-from swgsim import facts, manifest
-from swgsim.assembly import assemble, column_of, require_alike, require_sound
-from swgsim.csv_table import read_table
-from swgsim.file_defect import FileDefect, shown
-from swgsim.reading_limits import require_file_count
+from swgsim.intake import facts, manifest
+from swgsim.intake.assembly import assemble, column_of, require_alike, require_sound
+from swgsim.intake.csv_table import read_table
+from swgsim.intake.file_defect import FileDefect, shown
+from swgsim.intake.limits import require_file_count
 from swgsim.recording import CHANNELS, Recording
 
 CHANNEL_OF = {"t_s": "t", **{channel.column: name for name, channel in CHANNELS.items()}}
@@ -19,7 +19,7 @@ def read_folder(folder: Path) -> tuple[Recording, ...]:
     """The recordings of a folder, in the order of its manifest.
 
     An angle that is kept within one revolution comes back without its jumps; every other number as it is in the file.
-    What the numbers say of the bench is for :func:`swgsim.defects.inspect`.
+    What the numbers say of the bench is for :func:`swgsim.defects.inspection.inspect`.
 
     Raises
     ------

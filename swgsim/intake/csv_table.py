@@ -7,9 +7,9 @@ from typing import TextIO
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.facts import NUMBER
-from swgsim.file_defect import FIRST_ROW, FileDefect, shown
-from swgsim.reading_limits import MOST_ROWS, require_readable
+from swgsim.intake.facts import NUMBER
+from swgsim.intake.file_defect import FIRST_ROW, FileDefect, shown
+from swgsim.intake.limits import MOST_ROWS, require_readable
 
 LONGEST_HEADER = 10_000
 

@@ -4,11 +4,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from swgsim.angle_defects import angle_is_sound, speed_of_angle
-from swgsim.defect import Defect, Severity
+from swgsim.defects.angle import angle_is_sound, speed_of_angle
+from swgsim.defects.defect import Defect, Severity
+from swgsim.defects.speed_units import SPEED_MISTAKES, mistake
+from swgsim.defects.thresholds import SPEED_REFUSES, SPEED_WARNS
 from swgsim.recording import Recording
-from swgsim.speed_units import SPEED_MISTAKES, mistake
-from swgsim.thresholds import SPEED_REFUSES, SPEED_WARNS
 
 
 def speed_defects(recording: Recording) -> Iterator[Defect]:

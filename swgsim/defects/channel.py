@@ -5,11 +5,11 @@ from collections.abc import Iterator
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.defect import Defect
-from swgsim.file_defect import FIRST_ROW
+from swgsim.defects.defect import Defect
+from swgsim.defects.thresholds import CLIPPED_EDGE, CLIPPED_REFUSES, CLIPPED_RUN, STUCK_RUN, STUCK_TURN
+from swgsim.intake.file_defect import FIRST_ROW
 from swgsim.recording import Recording
 from swgsim.recordings import SENSORS
-from swgsim.thresholds import CLIPPED_EDGE, CLIPPED_REFUSES, CLIPPED_RUN, STUCK_RUN, STUCK_TURN
 
 
 def channel_defects(recording: Recording) -> Iterator[Defect]:

@@ -2,7 +2,7 @@
 
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
-from swgsim.file_defect import FileDefect, shown
+from swgsim.intake.file_defect import FileDefect, shown
 
 # Of one file. A CSV of 5e7 rows would be larger, so that this limit is the one for text and the next for binary files.
 LARGEST_FILE = 2 * 2**30

@@ -2,7 +2,7 @@
 
 from math import pi
 
-from swgsim.thresholds import NAMED, RATIOS
+from swgsim.defects.thresholds import NAMED, RATIOS
 
 # Found speed / set speed, for an angle over time and for a recorded speed.
 ANGLE_MISTAKES = (

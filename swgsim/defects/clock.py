@@ -4,10 +4,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from swgsim.defect import Defect, Severity
-from swgsim.file_defect import FIRST_ROW
+from swgsim.defects.defect import Defect, Severity
+from swgsim.defects.thresholds import GAP, JITTER_REFUSES, JITTER_WARNS, SHORT_STEP
+from swgsim.intake.file_defect import FIRST_ROW
 from swgsim.recording import Recording
-from swgsim.thresholds import GAP, JITTER_REFUSES, JITTER_WARNS, SHORT_STEP
 
 
 def clock_defects(recording: Recording) -> Iterator[Defect]:

@@ -5,9 +5,9 @@ import io
 from collections.abc import Iterable
 from pathlib import Path
 
-from swgsim import facts
-from swgsim.file_defect import FIRST_ROW, FileDefect, shown
-from swgsim.reading_limits import inside, require_file_count, require_readable
+from swgsim.intake import facts
+from swgsim.intake.file_defect import FIRST_ROW, FileDefect, shown
+from swgsim.intake.limits import inside, require_file_count, require_readable
 
 NAME = "manifest.csv"
 

@@ -4,12 +4,18 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from swgsim.angle_defects import angle_is_sound
-from swgsim.defect import Defect
-from swgsim.order_2 import order_2
+from swgsim.defects.angle import angle_is_sound
+from swgsim.defects.defect import Defect
+from swgsim.defects.order_2 import order_2
+from swgsim.defects.thresholds import (
+    GAUGE_GAIN,
+    GAUGE_LARGEST,
+    GAUGE_QUANTILES,
+    GAUGE_SMALLEST,
+    ORDER_2_SHARE,
+)
 from swgsim.recording import Recording
 from swgsim.recordings import SENSORS
-from swgsim.thresholds import GAUGE_GAIN, GAUGE_LARGEST, GAUGE_QUANTILES, GAUGE_SMALLEST, ORDER_2_SHARE
 
 
 def gauge_defects(recording: Recording) -> Iterator[Defect]:

@@ -2,19 +2,19 @@
 
 from collections.abc import Iterator, Sequence
 
-from swgsim.angle_defects import angle_defects
-from swgsim.assembly import no_numbers, standing
-from swgsim.channel_defects import channel_defects
-from swgsim.clock_defects import clock_defects
-from swgsim.defect import Defect
-from swgsim.file_defect import FIRST_ROW
-from swgsim.gauge_defects import gauge_defects
-from swgsim.reading_limits import FEWEST_ROWS, LARGEST_NUMBER
+from swgsim.defects.across import set_defects
+from swgsim.defects.angle import angle_defects
+from swgsim.defects.channel import channel_defects
+from swgsim.defects.clock import clock_defects
+from swgsim.defects.defect import Defect
+from swgsim.defects.gauge import gauge_defects
+from swgsim.defects.speed import speed_defects
+from swgsim.defects.torque import torque_defects
+from swgsim.defects.wiring import wiring_defects
+from swgsim.intake.assembly import no_numbers, standing
+from swgsim.intake.file_defect import FIRST_ROW
+from swgsim.intake.limits import FEWEST_ROWS, LARGEST_NUMBER
 from swgsim.recording import Recording
-from swgsim.set_defects import set_defects
-from swgsim.speed_defects import speed_defects
-from swgsim.torque_defects import torque_defects
-from swgsim.wiring_defects import wiring_defects
 
 OF_ONE = (clock_defects, angle_defects, speed_defects, torque_defects, channel_defects, gauge_defects)
 

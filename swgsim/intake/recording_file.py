@@ -7,11 +7,11 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from swgsim import facts
-from swgsim.assembly import assemble, require_alike, require_sound
-from swgsim.file_defect import FileDefect, shown
 from swgsim.files import replacing
-from swgsim.reading_limits import require_file_count, require_readable, require_rows
+from swgsim.intake import facts
+from swgsim.intake.assembly import assemble, require_alike, require_sound
+from swgsim.intake.file_defect import FileDefect, shown
+from swgsim.intake.limits import require_file_count, require_readable, require_rows
 from swgsim.recording import CHANNELS, Recording
 from swgsim.storage import SEAL_SIZE, SEAL_START, verify
 

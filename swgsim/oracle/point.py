@@ -10,7 +10,7 @@ from jaxtyping import Float
 from scipy.linalg import cholesky, solve_triangular
 from scipy.special import logsumexp
 
-from swgsim.oracle_cells import Cells
+from swgsim.oracle.cells import Cells
 from swgsim.recordings import CLASSES
 
 

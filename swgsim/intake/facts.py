@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from math import isfinite
 
 from swgsim.conditions import REFERENCE_TEMPERATURE, Conditions
-from swgsim.file_defect import FileDefect, shown
 from swgsim.gear import OperatingPoint
+from swgsim.intake.file_defect import FileDefect, shown
 from swgsim.recording import Recording
 
 TEXTS = ("recording", "gear", "session")

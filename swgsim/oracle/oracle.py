@@ -10,8 +10,8 @@ from jaxtyping import Float
 
 from swgsim.bench import Session
 from swgsim.gear import Gear
-from swgsim.oracle_model import ORDERS, Expectation, bench_of, observations
-from swgsim.oracle_point import PointModel
+from swgsim.oracle.model import ORDERS, Expectation, bench_of, observations
+from swgsim.oracle.point import PointModel
 from swgsim.orders import whole_revolutions
 from swgsim.plan import Plan
 from swgsim.recordings import CLASSES, SENSORS, Recordings

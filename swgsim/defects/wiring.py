@@ -12,11 +12,9 @@ from itertools import groupby
 
 import numpy as np
 
-from swgsim.defect import Defect
-from swgsim.order_2 import order_2
-from swgsim.recording import Recording
-from swgsim.recordings import SENSORS
-from swgsim.thresholds import (
+from swgsim.defects.defect import Defect
+from swgsim.defects.order_2 import order_2
+from swgsim.defects.thresholds import (
     GAUGE_SMALLEST,
     LOAD_RISE,
     LOAD_SHARE,
@@ -25,6 +23,8 @@ from swgsim.thresholds import (
     PHASE_WARNS,
     S0_SCALE,
 )
+from swgsim.recording import Recording
+from swgsim.recordings import SENSORS
 
 # Phase of order 2 against s1, in half turns.
 OPPOSITE = {"s1": 0, "s2": 1, "s3": 0, "s4": 1}

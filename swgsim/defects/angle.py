@@ -5,12 +5,9 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.ndimage import median_filter
 
-from swgsim.assembly import unwrapped
-from swgsim.defect import Defect, Severity
-from swgsim.file_defect import FIRST_ROW
-from swgsim.recording import Recording
-from swgsim.speed_units import ANGLE_MISTAKES, mistake
-from swgsim.thresholds import (
+from swgsim.defects.defect import Defect, Severity
+from swgsim.defects.speed_units import ANGLE_MISTAKES, mistake
+from swgsim.defects.thresholds import (
     ANGLE_JUMP,
     JUMP_MEDIAN,
     JUMP_QUANTILE,
@@ -19,6 +16,9 @@ from swgsim.thresholds import (
     SPEED_WARNS,
     TURNED_BACK,
 )
+from swgsim.intake.assembly import unwrapped
+from swgsim.intake.file_defect import FIRST_ROW
+from swgsim.recording import Recording
 
 
 def speed_of_angle(recording: Recording) -> float:

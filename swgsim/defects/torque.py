@@ -4,9 +4,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from swgsim.defect import Defect, Severity
+from swgsim.defects.defect import Defect, Severity
+from swgsim.defects.thresholds import (
+    NAMED,
+    POOREST_EFFICIENCY,
+    RATIOS,
+    RUNNING_TORQUE,
+    TORQUE_REFUSES,
+    TORQUE_WARNS,
+)
 from swgsim.recording import Recording
-from swgsim.thresholds import NAMED, POOREST_EFFICIENCY, RATIOS, RUNNING_TORQUE, TORQUE_REFUSES, TORQUE_WARNS
 
 # Found torque / torque in N m, and which unit that is. Tried within the limits of a torque that is far off only.
 UNITS = ((1e3, "mN m"), (1e-3, "kN m"), (100.0, "N cm"), (8.8507, "pound-inches"), (0.73756, "pound-feet"))

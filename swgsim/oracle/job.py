@@ -17,9 +17,9 @@ from tqdm import tqdm
 from swgsim import orders, settings, storage
 from swgsim.files import replacing, sole_maker
 from swgsim.gear import Gear
-from swgsim.oracle import judge
-from swgsim.oracle_cells import Resolution
-from swgsim.oracle_model import expectations
+from swgsim.oracle.cells import Resolution
+from swgsim.oracle.model import expectations
+from swgsim.oracle.oracle import judge
 from swgsim.plan import Plan
 from swgsim.recordings import CLASSES, Recordings
 from swgsim.version import code_version

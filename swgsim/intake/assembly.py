@@ -6,9 +6,9 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from swgsim.conditions import Conditions
-from swgsim.file_defect import FIRST_ROW, FileDefect, shown
 from swgsim.gear import OperatingPoint
-from swgsim.reading_limits import LARGEST_NUMBER, SMALLEST_STEP, require_rows
+from swgsim.intake.file_defect import FIRST_ROW, FileDefect, shown
+from swgsim.intake.limits import LARGEST_NUMBER, SMALLEST_STEP, require_rows
 from swgsim.recording import CHANNELS, Recording
 
 # What a wrapped angle may span beyond one revolution, as the jitter of an encoder at its index does.
@@ -23,7 +23,7 @@ def assemble(file: str, facts: Mapping, columns: Mapping[str, Float[np.ndarray, 
     file : str
         For messages.
     facts : mapping
-        As :func:`swgsim.facts.parse` returns them.
+        As :func:`swgsim.intake.facts.parse` returns them.
     columns : mapping
         ``t`` [s] and names of :data:`swgsim.recording.CHANNELS` to their values.
 

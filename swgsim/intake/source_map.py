@@ -8,11 +8,11 @@ from typing import Any
 import yaml
 
 from swgsim.checks import require, require_known
-from swgsim.file_defect import FileDefect, shown
-from swgsim.reading_limits import require_readable
+from swgsim.intake.file_defect import FileDefect, shown
+from swgsim.intake.limits import require_readable
+from swgsim.intake.units import FACTORS, STRAIN, bridge_factor
 from swgsim.recording import CHANNELS
 from swgsim.recordings import SENSORS
-from swgsim.units import FACTORS, STRAIN, bridge_factor
 
 
 @dataclass(frozen=True)
