@@ -21,9 +21,9 @@ from swgsim.bench import Bench
 from swgsim.faults import Variants
 from swgsim.gear import Gear, OperatingPoint
 from swgsim.grid import Grid
+from swgsim.oracle import job as oracle_job
 from swgsim.oracle.cells import Cells, Partition, Resolution
 from swgsim.oracle.model import Expectation, expectations, observations
-from swgsim.oracle import job as oracle_job
 from swgsim.oracle.oracle import judge, point_model
 from swgsim.oracle.point import PointModel
 from swgsim.plan import Plan
