@@ -13,11 +13,13 @@ import yaml
 from swgsim.acquisition import Window
 from swgsim.bench import Bench
 from swgsim.chain import simulate_turns
+from swgsim.conditions import Conditions
 from swgsim.effects.base import Effect
 from swgsim.effects.eccentric_wave_generator import EccentricWaveGenerator
 from swgsim.effects.load_sharing import LoadSharing
 from swgsim.effects.reduced_damping import ReducedDamping
 from swgsim.effects.text import from_text
+from swgsim.effects.thermal_growth import ThermalGrowth
 from swgsim.gear import OperatingPoint
 from swgsim.intake.folder import write_folder
 from swgsim.loop import job, model
@@ -147,17 +149,22 @@ def test_nothing_is_missing_in_a_sound_gear(folders, capsys):
 
 
 def test_next_experiment_is_named_where_one_helps():
-    """Load sharing shows at another speed; less damping is what b1 of the series may be as well, at any point."""
+    """Load sharing shows at another speed, growth with heat on a warm gear; less damping is what b1 of the series may
+    be as well, at any point.
+    """
     recordings = recorded(seed=4, points=POINTS[2:3])
-    found = answer(recordings, Unit(model.Model(gear(GEAR))), [LoadSharing, ReducedDamping])
+    found = answer(recordings, Unit(model.Model(gear(GEAR))), [LoadSharing, ReducedDamping, ThermalGrowth])
     asked = replace(found, absorbed=found.closed.scores)
     experiments = {each.between[0].split(" of ")[0]: each for each in next_experiments(asked)}
     helpful, helpless = experiments["load sharing"], experiments["reduced damping"]
     assert helpful.recordings in RECORDINGS
     assert helpful.separation >= SEPARATED
-    assert helpful.point != POINTS[2]
+    assert helpful.situation.point != POINTS[2]
+    assert helpful.situation.conditions == Conditions()
+    assert experiments["thermal growth"].situation.conditions.temperature == 45
+    assert "with the gear at 45 degC" in str(experiments["thermal growth"])
     assert helpless.recordings is None
-    assert "no operating point of the bench tells reduced damping" in str(helpless)
+    assert "no recording on the bench tells reduced damping" in str(helpless)
     assert next_experiments(replace(found, absorbed=())) == ()
 
 

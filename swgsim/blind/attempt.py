@@ -68,7 +68,7 @@ def _against_truth(found: Answer, unit: Unit, case: Sealed, setting: Setting) ->
     truth = unseen(case, setting, before.measured.layout)
     errors = {"before": unseen_error(before, truth), "after": unseen_error(after, truth)}
     errors["oracle"] = unseen_error(_oracle(before, unit, case), truth)
-    return {"error": errors, "intervals": _intervals(after, case)}
+    return {"error": errors, "intervals": _intervals(found, case)}
 
 
 def _oracle(before: Fitted, unit: Unit, case: Sealed) -> Fitted:
@@ -79,14 +79,15 @@ def _oracle(before: Fitted, unit: Unit, case: Sealed) -> Fitted:
     return fit(before.measured, unit, unit.model.plus(*known))
 
 
-def _intervals(after: Fitted, case: Sealed) -> list[dict[str, Any]]:
+def _intervals(said: Answer, case: Sealed) -> list[dict[str, Any]]:
     """Sizes of the effects that were rightly found: true, found, and the standard deviation that was given."""
     found = []
-    for number, effect in enumerate(after.model.effects):
+    deviations = said.closed.deviation
+    for number, effect in enumerate(said.closed.after.model.effects):
         for true in case.effects:
             if type(true) is type(effect):
                 name = size_of(type(true))
-                deviation = after.deviation.get(f"{type(effect).title()} {number + 1}: {name}", np.nan)
+                deviation = deviations.get(f"{type(effect).title()} {number + 1}: {name}", np.nan)
                 values = {"true": getattr(true, name), "found": getattr(effect, name), "deviation": deviation}
                 found.append({"name": true.name(), **{key: float(value) for key, value in values.items()}})
     return found

@@ -165,7 +165,7 @@ def _kept(path: Path, key: Mapping[str, Any]) -> dict[str, Any] | None:
 def _code() -> str:
     """Version of the chain, with the loop, this test and its bench, which that leaves out."""
     digest, package = hashlib.sha256(), Path(swgsim.__file__).parent
-    for file in sorted([*package.glob("loop/*.py"), *package.glob("blind/*.py"), package / "virtual_bench.py"]):
+    for file in sorted([*package.glob("loop/**/*.py"), *package.glob("blind/*.py"), package / "virtual_bench.py"]):
         digest.update(file.read_bytes())
     return f"{code_version()}+{digest.hexdigest()[:12]}"
 

@@ -3,8 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities, size_of
 from swgsim.effects.regularity import Regularity
@@ -14,15 +12,13 @@ from swgsim.loop.screening import VISIBLE, Score
 from swgsim.loop.session import Measured
 from swgsim.loop.sidelines import Sideline, search
 from swgsim.loop.unnamed import Unnamed, unnamed
-from swgsim.loop.vocabulary import Described, columns, describe
+from swgsim.loop.vocabulary import Described, describe, set_free
 from swgsim.recording import Recording
 from swgsim.seeds import generator
 
 NOTHING, FOUND, UNKNOWN = "nothing_missing", "effect_found", "unknown_effect"
 # Regularities that are described at most.
 MOST_ATOMS = 3
-# Prior standard deviation of a regularity that was described, in amplitudes found: as good as free.
-WIDE = 100.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +100,7 @@ def answer(recordings: Sequence[Recording], unit: Unit, kinds: Sequence[type[Eff
     closed = close(Measured.of(recordings), unit, kinds, seed=seed)
     lines, spectra = search(recordings, kinds, ALPHA)
     nameless = unnamed(spectra, ALPHA)
-    unknown = _unknown(closed.after, seed)
+    unknown = _unknown(closed.asked, seed)
     absorbed = tuple(score for score in closed.scores if score.visible < VISIBLE)
     found = closed.steps or lines
     verdict = FOUND if found else UNKNOWN if closed.rejected or unknown or nameless else NOTHING
@@ -119,8 +115,7 @@ def _unknown(fitted: Fitted, seed: int) -> tuple[Described, ...]:
         if best.chance > ALPHA:
             break
         found.append(best)
-        taken = columns(best.atom, fitted) * max(best.amplitude, 1e-12) * WIDE
-        fitted = replace(fitted, open=np.hstack([fitted.open, taken]))
+        fitted = set_free(fitted, best)
     return tuple(found)
 
 

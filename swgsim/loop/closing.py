@@ -2,25 +2,33 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Float
 
 from swgsim.effects.base import Effect
-from swgsim.loop.evidence import Coherence, allowance, coherence
+from swgsim.effects.quantity import quantities, size_of
+from swgsim.loop.evidence import Coherence, allowance, coherence, signature
 from swgsim.loop.fitting import Fitted, Unit, extended, fit
 from swgsim.loop.hypotheses import hypotheses, signatures
 from swgsim.loop.refining import zoom
 from swgsim.loop.screening import Score, best_of_kind, screen
 from swgsim.loop.session import Measured
-from swgsim.loop.vocabulary import describe
+from swgsim.loop.vocabulary import Described, columns, describe, set_free
 from swgsim.seeds import generator
 
 # Probability of a false effect on recordings in which nothing is missing.
 ALPHA = 0.005
-# A bare regularity of the open vocabulary explains more than an effect only if it does so by this much (twice a
-# log-likelihood, and a share): there are thirty times as many regularities as effects.
-OUTDONE, OUTDONE_SHARE = 17.0, 0.02
+# A bare regularity of the open vocabulary explains the same thing better than an effect only if it does so by this much
+# (twice a log-likelihood, and a share), and leaves the effect less than half of its gain. What explains so many times
+# more makes any effect beside it doubtful, even if it is another thing.
+OUTDONE, OUTDONE_SHARE, SAME_THING, DWARFED = 17.0, 0.05, 0.5, 4.0
+# Regularities beside an effect that may spoil the agreement of its parts, at most; it keeps so much of its gain if they
+# are another thing.
+COMPANY, ANOTHER_THING = 2, 0.8
+# Share to which the chain has the size of an effect right at all: an estimate, of what its mesh makes.
+EXACT = 0.03
 # Leaders that are fitted, those that are as good but for this share of the gain and may be rivals, and effects that are
 # added at most.
 LEADERS, NEARLY, NEARLY_LEADERS, MOST = 4, 0.05, 8, 3
@@ -62,11 +70,15 @@ class Trial:
         """Of all operating points."""
         return float(self.gains.sum())
 
+    @cached_property
+    def signature(self) -> Float[np.ndarray, "row effect"]:
+        """What each of its effects does to the features."""
+        first = len(self.fitted.model.effects) - len(self.effects)
+        return np.stack([signature(self.fitted, first + i) for i in range(len(self.effects))], axis=1)
+
     def explained(self, before: Fitted) -> float:
-        """Fall of the residual's sum of squares, in units of all errors."""
-        with_it = self.fitted.whole.whiten(self.fitted.from_start)
-        without = before.whole.whiten(before.from_start)
-        return float(without @ without - with_it @ with_it)
+        """Fall of the residual's sum of squares that it brings to the model before, as a score counts it."""
+        return _gain(before, self.signature)
 
     @property
     def sound(self) -> bool:
@@ -106,6 +118,9 @@ class Closed:
     ----------
     before, after : Fitted
         The model without and with what was found.
+    asked : Fitted
+        The latter with the form of what was found open within the tolerance: of what this leaves it is asked what more
+        is missing.
     steps : tuple of Step
     scores : tuple of Score
         Of the first screening, best hypothesis of each effect.
@@ -117,10 +132,24 @@ class Closed:
 
     before: Fitted
     after: Fitted
+    asked: Fitted
     steps: tuple[Step, ...]
     scores: tuple[Score, ...]
     left: tuple[Score, ...]
     rejected: tuple[Trial, ...]
+
+    @property
+    def deviation(self) -> dict[str, float]:
+        """Standard deviation of each fitted parameter; of a size also by what an imperfect form leaves in doubt."""
+        found = dict(self.after.deviation)
+        number = len(self.before.model.effects)
+        for agreement in (each for step in self.steps for each in step.accepted.coherence):
+            effect, number = self.after.model.effects[number], number + 1
+            size = size_of(type(effect))
+            by = getattr(effect, size) - quantities(type(effect))[size].nothing
+            name = f"{effect.title()} {number}: {size}"
+            found[name] = float(np.linalg.norm([found[name], agreement.doubt * by, EXACT * by]))
+        return found
 
 
 def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed: int = 0) -> Closed:
@@ -147,9 +176,9 @@ def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed
         if not leaders or len(steps) == MOST:
             break
         trials = sorted((_trial(now, (score,), seed) for score in leaders), key=lambda trial: -trial.merit)
-        accepted = trials[0] if trials[0].sound else _pair(now, trials, seed)
+        accepted = trials[0] if trials[0].sound else _pair(now, trials, seed) or _in_company(now, trials[0], seed)
         plain = describe(now, generator("vocabulary of a step", seed, len(steps)))[0]
-        if accepted is None or plain.gain > accepted.explained(now) * (1 + OUTDONE_SHARE) + OUTDONE:
+        if accepted is None or _outdone(accepted, plain, now):
             rejected = tuple(trials)
             break
         others = tuple(trial for trial in trials if trial is not accepted)
@@ -157,7 +186,7 @@ def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed
         now = _with_allowance(accepted)
     if steps:
         steps[-1] = _with_rivals(steps[-1], scores)
-    return Closed(before, now, tuple(steps), first, scores, rejected)
+    return Closed(before, now.strict, now, tuple(steps), first, scores, rejected)
 
 
 def _screened(fitted: Fitted, kinds: Sequence[type[Effect]], rng: np.random.Generator) -> tuple[Score, ...]:
@@ -190,6 +219,36 @@ def _pair(now: Fitted, trials: Sequence[Trial], seed: int) -> Trial | None:
     pairs = [_trial(now, (trials[0].score, other.score), seed) for other in trials[1:]]
     best = max(pairs, key=lambda pair: pair.merit, default=None)
     return best if best and best.sound and best.merit > trials[0].merit + 2 * PAIR_GAIN else None
+
+
+def _in_company(now: Fitted, trial: Trial, seed: int) -> Trial | None:
+    """The best trial, if its parts agree once a regularity that has nothing to do with it is taken out."""
+    known = len(trial.fitted.model.effects) - len(trial.effects)
+    before, after, explained = now, trial.fitted, trial.explained(now)
+    for number in range(COMPANY):
+        beside = describe(after, generator("company", seed, number))[0]
+        before, after = set_free(before, beside), set_free(after, beside)
+        if beside.chance > ALPHA or trial.explained(before) < max(ANOTHER_THING * explained, beside.gain):
+            return None
+        agreeing = replace(trial, coherence=tuple(coherence(after, known + i) for i in range(len(trial.effects))))
+        if agreeing.sound:
+            return agreeing
+    return None
+
+
+def _outdone(trial: Trial, plain: Described, now: Fitted) -> bool:
+    """Whether a bare regularity explains what a trial explains, and more; or by far more of something else."""
+    explained = trial.explained(now)
+    if plain.gain <= explained * (1 + OUTDONE_SHARE) + OUTDONE:
+        return False
+    together = _gain(now, np.hstack([trial.signature, columns(plain.atom, now)]))
+    return plain.gain > DWARFED * explained or together - plain.gain < SAME_THING * explained
+
+
+def _gain(fitted: Fitted, columns: Float[np.ndarray, "row column"]) -> float:
+    """Fall of a residual's sum of squares by columns of any size."""
+    basis = np.linalg.qr(fitted.whole.whiten(columns))[0]
+    return float(((basis.T @ fitted.whole.whiten(fitted.from_start)) ** 2).sum())
 
 
 def _with_allowance(accepted: Trial) -> Fitted:

@@ -26,10 +26,13 @@ class Coherence:
         Probability of such a disagreement between the parts, if their form is right to FORM_TOLERANCE.
     form_error : float
         Share by which the parts differ from the library's shape, as far as it can be seen.
+    doubt : float
+        Share by which such parts make the size uncertain, which is a mean over them (standard deviation).
     """
 
     chance: float
     form_error: float
+    doubt: float
 
     @property
     def holds(self) -> bool:
@@ -80,17 +83,21 @@ def coherence(fitted: Fitted, number: int) -> Coherence:
     """Whether the parts of an effect's signature agree on its size."""
     split = fitted.whole.whiten(parts(fitted, number))
     if not np.any(split):
-        return Coherence(0.0, 0.0)
+        return Coherence(0.0, 0.0, 0.0)
     U, s, _ = np.linalg.svd(split, full_matrices=False)
     seen = s > 1e-3 * max(float(s.max()), 1e-12)
     u, s = (U.T @ fitted.whole.whiten(fitted.from_start))[seen], s[seen]
+    # The more parts tell the size alike, the more their errors average out.
+    alike = float((s**2).sum() ** 2 / (s**4).sum())
 
     def disagreement(tolerance: float) -> float:
         return float((u**2 / (1 + (tolerance * s) ** 2)).sum())
 
     chance = float(chi2.sf(disagreement(FORM_TOLERANCE), len(s)))
     if disagreement(0) <= len(s):
-        return Coherence(chance, 0.0)
-    if disagreement(10) > len(s):
-        return Coherence(chance, 10.0)
-    return Coherence(chance, float(brentq(lambda x: disagreement(x) - len(s), 0, 10)))
+        error = 0.0
+    elif disagreement(10) > len(s):
+        error = 10.0
+    else:
+        error = float(brentq(lambda x: disagreement(x) - len(s), 0, 10))
+    return Coherence(chance, error, error / np.sqrt(alike))

@@ -1,4 +1,4 @@
-"""The next experiment: the operating point at which two explanations that look alike so far come apart.
+"""The next experiment: operating point and conditions at which two explanations that look alike so far come apart.
 
 Two models are compared as a referee would: the one is the truth, the other adjusts everything that it does not know
 exactly to the recordings there are and to those that would be made. What is left of their difference, in units of the
@@ -22,8 +22,11 @@ from swgsim.loop.model import Model, Situation, predict
 from swgsim.loop.session import Measured
 from swgsim.recording import Recording
 
-# What a test bench can run.
+# What a test bench can run, and that it can do as it stands, with a warm gear, or after an hour.
 FEASIBLE = tuple(OperatingPoint(n, T) for n in (300.0, 1000.0, 2000.0, 3000.0, 4000.0) for T in (3.0, 20.0, 45.0, 70.0))
+CONDITIONS = (Conditions(), Conditions(temperature=45.0), Conditions(elapsed=3600.0))
+# To heat a gear or to wait is worth it only if it separates clearly better than another operating point.
+EASIER = 0.8
 # Numbers of further recordings at one operating point, in one session.
 RECORDINGS = (1, 2, 3, 6, 12)
 # Separation at which two explanations are told apart: five standard deviations.
@@ -38,7 +41,7 @@ class Experiment:
     ----------
     between : (str, str)
         The two explanations.
-    point : OperatingPoint
+    situation : Situation
         Where they differ most.
     recordings : int or None
         That bring the separation to SEPARATED; None if as many as can be asked for do not.
@@ -47,16 +50,19 @@ class Experiment:
     """
 
     between: tuple[str, str]
-    point: OperatingPoint
+    situation: Situation
     recordings: int | None
     separation: float
 
     def __str__(self) -> str:
         one, other = self.between
-        where = f"at {self.point.n_in_rpm:g} rpm and {self.point.T_out:g} N m"
+        point, conditions = self.situation.point, self.situation.conditions
+        where = f"at {point.n_in_rpm:g} rpm and {point.T_out:g} N m"
+        where += f" with the gear at {conditions.temperature:g} degC" if conditions.warmer else ""
+        where += f" {conditions.elapsed / 3600:g} h after the session began" if conditions.elapsed else ""
         if self.recordings is None:
             return (
-                f"no operating point of the bench tells {one} from {other}: {RECORDINGS[-1]} recordings {where} would "
+                f"no recording on the bench tells {one} from {other}: {RECORDINGS[-1]} recordings {where} would "
                 f"separate them by {self.separation:.2g}, {SEPARATED:g} are needed"
             )
         count = f"{self.recordings} recording{'s' if self.recordings > 1 else ''}"
@@ -91,11 +97,18 @@ def _best(adjusting: Fitted, truths: Sequence[Model], between: Sequence[tuple[st
         for number in range(len(truths)):
             if number in found and found[number].recordings:
                 continue
-            best = int(separations[:, number].argmax())
+            best = _easiest(separations[:, number])
             most = float(separations[best, number])
             enough = recordings if most >= SEPARATED else None
-            found[number] = Experiment(between[number], further.candidates[best].point, enough, most)
+            found[number] = Experiment(between[number], further.candidates[best], enough, most)
     return list(found.values())
+
+
+def _easiest(separations: Float[np.ndarray, " candidate"]) -> int:
+    """The candidate that separates best, an operating point as the bench stands if it does nearly as well."""
+    plain = int(separations[: len(FEASIBLE)].argmax())
+    best = int(separations.argmax())
+    return plain if separations[plain] >= EASIER * separations[best] else best
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,7 +147,7 @@ class _Further:
         """All that does not depend on the number of recordings."""
         measured = fitted.measured
         count = len(measured.situations)
-        candidates = tuple(Situation(point, Conditions()) for point in FEASIBLE)
+        candidates = tuple(Situation(point, conditions) for conditions in CONDITIONS for point in FEASIBLE)
         situations = (*measured.situations, *candidates)
         predicted, directions = _directions(fitted, situations)
         seen = predict(truths, situations, measured.layout) - predicted

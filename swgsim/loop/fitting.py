@@ -1,7 +1,7 @@
 """A model fitted to recordings: its parameters, the errors of single recordings, and what stays unexplained."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -135,6 +135,13 @@ class Fitted:
         """The model at its likeliest parameters."""
         return self.calibrated.model
 
+    @property
+    def strict(self) -> "Fitted":
+        """The same without what the form of effects leaves open, for predictions."""
+        if self.allowed is None:
+            return self
+        return replace(self, open=self.open[:, : -self.allowed.shape[1]], allowed=None)
+
     @cached_property
     def residual(self) -> Float[np.ndarray, " row"]:
         """Measured less predicted."""
@@ -159,8 +166,7 @@ class Fitted:
     def deviation(self) -> dict[str, float]:
         """Standard deviation of each fitted parameter, in its unit."""
         # The form tolerance of an effect is no doubt about its own size.
-        allowed = 0 if self.allowed is None else self.allowed.shape[1]
-        columns = self.errors.with_columns(self.open[:, : self.open.shape[1] - allowed]).whiten(self.J)
+        columns = self.errors.with_columns(self.strict.open).whiten(self.J)
         covariance = np.linalg.inv(columns.T @ columns + np.eye(columns.shape[1]))
         spread = np.sqrt(np.diag(covariance)).tolist()
         return {name: s * p.sd for (name, p), s in zip(self.parameters.items(), spread, strict=True)}

@@ -4,7 +4,7 @@ Atoms are tested as the effects of the library are, after projecting out what th
 they are also the widest question that can be asked of a residual: whether anything regular is left in it at all.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -16,6 +16,9 @@ from swgsim.loop.features import ORDERS, Layout
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.screening import VISIBLE, family_wise
 from swgsim.loop.tail import log_tail
+
+# Prior standard deviation of an atom that is set free, in amplitudes found.
+WIDE = 100.0
 
 
 @dataclass(frozen=True)
@@ -128,3 +131,9 @@ def describe(fitted: Fitted, rng: np.random.Generator) -> list[Described]:
         for atom, U, fit, chance in zip(tried, bases, fits, chances, strict=True)
     ]  # fmt: skip
     return sorted(found, key=lambda each: -each.rank)
+
+
+def set_free(fitted: Fitted, described: Described) -> Fitted:
+    """A fit in which an atom may be as large as it likes."""
+    taken = columns(described.atom, fitted) * max(described.amplitude, 1e-12) * WIDE
+    return replace(fitted, open=np.hstack([fitted.open, taken]))

@@ -29,7 +29,7 @@ def accepted(answer: Answer) -> list[dict[str, Any]]:
             found.append({
                 "name": path_of(type(effect)),
                 "place": effect.place,
-                "parameters": _parameters(effect, after.deviation, at),
+                "parameters": _parameters(effect, answer.closed.deviation, at),
                 "evidence": _evidence(step, which),
                 "indistinguishable_from": [names(rival) for rival in step.rivals],
                 "rivals": [_rival(rival) for rival in step.rivals],

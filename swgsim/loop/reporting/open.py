@@ -64,8 +64,10 @@ def next_experiment(experiments: Sequence[Experiment], commissioned: bool) -> di
         "questions": [
             {
                 "between": list(e.between),
-                "n_in_rpm": float(e.point.n_in_rpm),
-                "T_out_nm": float(e.point.T_out),
+                "n_in_rpm": float(e.situation.point.n_in_rpm),
+                "T_out_nm": float(e.situation.point.T_out),
+                "temperature_c": float(e.situation.conditions.temperature),
+                "elapsed_s": float(e.situation.conditions.elapsed),
                 "recordings": e.recordings,
                 "separation": number(e.separation),
             }
