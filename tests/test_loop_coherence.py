@@ -93,3 +93,16 @@ def test_a_weak_effect_is_not_contradicted_by_noise(planted, judged):
     found = [judged(0.01 * planted[1], rng) for _ in range(150)]
     assert all(each.holds for each in found)
     assert 0.03 <= np.mean(np.array([each.chance for each in found]) < 0.1) <= 0.2
+
+
+def test_doubt_is_how_far_parts_that_differ_lead_a_size_astray(planted, judged):
+    """A size is a mean over the parts; the doubt says how uncertain their differences leave it."""
+    rng = np.random.default_rng(8)
+    fitted, whole = planted
+    unit = fitted.whole.whiten(whole)
+    sizes, doubts = [], []
+    for _ in range(60):
+        signal = split_by_form(fitted, whole, 0.2, rng)
+        sizes.append(float(unit @ fitted.whole.whiten(signal) / (unit @ unit)))
+        doubts.append(judged(signal, rng).doubt)
+    assert 0.5 < np.median(doubts) / np.std(sizes) < 2

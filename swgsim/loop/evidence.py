@@ -87,8 +87,9 @@ def coherence(fitted: Fitted, number: int) -> Coherence:
     U, s, _ = np.linalg.svd(split, full_matrices=False)
     seen = s > 1e-3 * max(float(s.max()), 1e-12)
     u, s = (U.T @ fitted.whole.whiten(fitted.from_start))[seen], s[seen]
-    # The more parts tell the size alike, the more their errors average out.
-    alike = float((s**2).sum() ** 2 / (s**4).sum())
+    # What each part adds to the size: the parts of all operating points together are the whole.
+    whole = split[:, : len(fitted.measured.point_rows())].sum(axis=1)
+    share = float(np.linalg.norm(split.T @ whole) / max(float(whole @ whole), 1e-300))
 
     def disagreement(tolerance: float) -> float:
         return float((u**2 / (1 + (tolerance * s) ** 2)).sum())
@@ -100,4 +101,4 @@ def coherence(fitted: Fitted, number: int) -> Coherence:
         error = 10.0
     else:
         error = float(brentq(lambda x: disagreement(x) - len(s), 0, 10))
-    return Coherence(chance, error, error / np.sqrt(alike))
+    return Coherence(chance, error, error * share)

@@ -1,0 +1,97 @@
+"""An effect beside a bare regularity: the same thing told better, another thing, or one that dwarfs it."""
+
+import numpy as np
+import pytest
+from loop_fixtures import BUMP, Bump, drawn, fitted_to, holding
+
+from swgsim.loop import evidence
+from swgsim.loop.closing import Trial, _in_company, _outdone
+from swgsim.loop.features import Layout
+from swgsim.loop.screening import Score
+from swgsim.loop.vocabulary import Atom, columns, describe, set_free
+
+LAYOUT = Layout(("T_in", "s1", "s2", "s3", "s4"))
+STRAY = Atom(5, "in s2 alone", "constant")
+
+
+@pytest.fixture
+def fitted():
+    return fitted_to(LAYOUT, np.random.default_rng(1), repeats=2)
+
+
+@pytest.fixture
+def stray(fitted):
+    """A regularity of a gain of about 400."""
+    column = columns(STRAY, fitted)[:, 0]
+    return 20 * column / np.linalg.norm(fitted.whole.whiten(column))
+
+
+@pytest.fixture
+def signature(fitted, stray):
+    """An effect of a gain of about 900 on order 2, with hardly a trace of where that regularity is."""
+    rng = np.random.default_rng(2)
+    form = rng.standard_normal((len(fitted.measured.situations), len(LAYOUT))) * (LAYOUT.order == 2)
+    whole = fitted.measured.rows(form)
+    return 30 * whole / np.linalg.norm(fitted.whole.whiten(whole)) + 0.1 * stray
+
+
+def trial(fitted, signature) -> Trial:
+    """An effect with this signature, fitted; what is left of the residual is that of the fit."""
+    score = Score(BUMP, 100.0, 1, 1.0, 0.0, 0.1, 1.0, 1e-6)
+    found = Trial(score, (Bump(1.0),), fitted, np.full(6, 50.0), 100.0, (evidence.coherence(fitted, -1),))
+    found.__dict__["signature"] = signature[:, None]
+    return found
+
+
+@pytest.fixture(autouse=True)
+def _signature_of_the_effect(signature, monkeypatch):
+    monkeypatch.setattr(evidence, "signature", lambda fitted, number: signature)
+
+
+def named(fitted, atom: Atom):
+    return next(each for each in describe(fitted, np.random.default_rng(0)) if each.atom == atom)
+
+
+def test_a_regularity_that_tells_the_same_better_outdoes_an_effect(fitted, stray, signature):
+    rng = np.random.default_rng(3)
+    mimic = stray + 0.5 * np.linalg.norm(stray) / np.linalg.norm(signature) * signature
+    now = holding(fitted, 2 * stray + drawn(fitted.whole, rng))
+    assert _outdone(trial(now, mimic), named(now, STRAY), now)
+
+
+def test_another_thing_of_like_size_does_not_outdo_an_effect(fitted, stray, signature):
+    now = holding(fitted, signature + 2 * stray + drawn(fitted.whole, np.random.default_rng(4)))
+    plain = named(now, STRAY)
+    assert plain.gain > 1.2 * trial(now, signature).explained(now)
+    assert not _outdone(trial(now, signature), plain, now)
+
+
+def test_what_dwarfs_an_effect_makes_it_doubtful(fitted, stray, signature):
+    now = holding(fitted, signature + 6 * stray + drawn(fitted.whole, np.random.default_rng(5)))
+    assert _outdone(trial(now, signature), named(now, STRAY), now)
+
+
+def test_a_regularity_that_is_set_free_is_gone(fitted, stray):
+    now = holding(fitted, stray + drawn(fitted.whole, np.random.default_rng(6)))
+    found = named(now, STRAY)
+    assert found.chance < 0.01
+    assert named(set_free(now, found), STRAY).gain < 20
+
+
+def test_an_effect_is_accepted_in_the_company_of_a_regularity(fitted, stray, signature):
+    noise = drawn(fitted.whole, np.random.default_rng(7))
+    now, after = holding(fitted, signature + stray + noise), holding(fitted, stray + noise)
+    alone = trial(after, signature)
+    assert not alone.sound
+    found = _in_company(now, alone, 0)
+    assert found.sound
+    assert found.effects == alone.effects
+
+
+def test_an_effect_that_lives_off_a_regularity_is_not(fitted, stray, signature):
+    """Once the regularity is out nothing of the effect is left."""
+    noise = drawn(fitted.whole, np.random.default_rng(8))
+    now = holding(fitted, 2 * stray + noise)
+    mimic = stray + 0.1 * np.linalg.norm(stray) / np.linalg.norm(signature) * signature
+    after = holding(fitted, 2 * stray - mimic + noise)
+    assert _in_company(now, trial(after, mimic), 0) is None
