@@ -16,6 +16,7 @@ ON_PAPER := zero_shot_disturbed $(if $(SMALL),,forest_robustness network_robustn
 comma := ,
 QUICK := $(if $(SMALL),shots=[1$(comma)2] draws=1 protocol.folds=2 protocol.development=0 \
          protocol.labelled=2 protocol.unlabelled=1 protocol.kept_out=1)
+LEFT_OUT := tilting_moment channel_skew coning load_sharing stiffening_spring axial_thrust bridge_nonlinearity
 CORES := $(shell nproc)
 # The four tables run side by side and share the cores; with two of them every table has one process.
 JOBS := $(shell echo $$(( ($(CORES) + 3) / 4 )))
@@ -63,7 +64,7 @@ transfer: data  ## beyond the paper: networks, transfer to gears never seen, rep
 	$(BIN)/python scripts/transfer_report.py grid=$(GEARS) paper_grid=$(GRID) started=$(STARTED)
 	@echo "open report/transfer.html; 'make ui' shows the runs"
 
-loop: $(READY)  ## closing the loop once, from nothing: record, hide an effect, find it; loop/page.html (under two minutes)
+loop: $(READY)  ## closing the loop once, from nothing: record, hide an effect, find it; loop/answer/page.html (under two minutes)
 	@set -e; rm -rf loop; \
 	$(BIN)/python scripts/record.py out=loop/commissioning seed=1 sessions.name=commissioning; \
 	$(BIN)/python scripts/record.py out=loop/recordings seed=2 'hidden=[{eccentric_wave_generator: {r: 1.0e-5, theta: 1.0}}]'; \
@@ -74,8 +75,8 @@ loop: $(READY)  ## closing the loop once, from nothing: record, hide an effect, 
 blind: $(READY)  ## the loop judged on sealed cases, report/blind.json (SMALL=1: 20 cases)
 	$(BIN)/python scripts/blind.py $(if $(SMALL),cases=20)
 
-sim-to-real: $(READY)  ## classifiers before and after the loop has found an undeclared effect, report/sim_to_real.html
-	$(BIN)/python scripts/sim_to_real.py
+sim-to-real: $(READY)  ## classifiers before and after the loop found an undeclared effect, report/sim_to_real.html (SMALL=1: one effect)
+	$(BIN)/python scripts/sim_to_real.py $(if $(SMALL),grid.variants=4 $(addprefix ~undeclared.,$(LEFT_OUT)))
 
 test: $(READY)  ## all tests
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile -q
@@ -99,4 +100,4 @@ ui: $(READY)  ## the runs in the MLflow page, on this machine only
 	$(BIN)/python scripts/ui.py
 
 clean:  ## remove data sets, runs and reports
-	rm -rf data mlruns models report outputs
+	rm -rf data mlruns models report outputs loop blind

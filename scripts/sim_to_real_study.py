@@ -68,7 +68,7 @@ def key(config: Mapping[str, Any], name: str) -> str:
     without = ("undeclared", "data", "out", "workers", "tracking")
     decisive = {each: value for each, value in config.items() if each not in without}
     digest = hashlib.sha256(json.dumps([name, config["undeclared"][name], decisive], sort_keys=True).encode())
-    digest.update(f"{code_version()} {identity.code_version()}".encode())
+    digest.update(f"{code_version('loop', 'virtual_bench.py')} {identity.code_version()}".encode())
     package = Path(learn.sim_to_real.__file__).parent
     for source in (Path(__file__), package / "judging.py", package / "scores.py"):
         digest.update(source.read_bytes())

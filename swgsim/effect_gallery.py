@@ -127,7 +127,7 @@ act. The pictures show what an effect of typical size changes at 2000 rpm and 70
 the session), by channel and order, as a share of the channel's largest line. Choices (an order, a gauge) are at their
 first value. Load and speed say by what factor the largest change grows from 7 to 70 N m and from 2000 to 4000 rpm; the
 share is of a line that may itself grow. The full physics, signature and source of every effect are in its docstring in
-`swgsim/effects/`."""
+`swgsim/effects/`; rows such as SE20 are those of [physics.md](physics.md)."""
 HEADER = (
     "| effect | physics | size | inner parameters | largest change | share | 70 / 7 N m | 4000 / 2000 rpm |\n"
     "|---|---|---|---|---|---|---|---|"

@@ -29,11 +29,18 @@ SHOWING_PACKAGES = ("blind", "defects", "intake", "loop", "oracle")
 
 
 @cache
-def code_version() -> str:
-    """Version of the package, with a digest of the sources that recordings depend on."""
+def code_version(*also: str) -> str:
+    """Version of the package, with a digest of the sources that recordings depend on, and of others.
+
+    Parameters
+    ----------
+    also : str
+        Packages and modules of those that only show or question, such as "loop" or "virtual_bench.py".
+    """
     digest = hashlib.sha256()
     folder = Path(__file__).parent
     for source in sorted(folder.rglob("*.py")):
-        if source.name not in SHOWING and source.relative_to(folder).parts[0] not in SHOWING_PACKAGES:
+        place = source.relative_to(folder).parts[0]
+        if place in also or (place not in SHOWING and place not in SHOWING_PACKAGES):
             digest.update(source.read_bytes())
     return f"{version('swg-workbench')}+{digest.hexdigest()[:12]}"

@@ -76,6 +76,7 @@ def folders(tmp_path_factory):
 def choices(folders: Path, recordings: str, **changes: object) -> dict:
     plain = {
         "recordings": str(folders / recordings), "commissioning": str(folders / "healthy"), "mapping": None,
+        "commissioning_mapping": None,
         "gear": GEAR, "effects": [], "out": str(folders / f"{recordings}-answer"), "searched": SEARCHED, "library": [],
         "truth": None, "seed": 0,
     }  # fmt: skip

@@ -14,7 +14,7 @@ from swgsim.gauges import LAYOUT
 class BoltPreload(Effect):
     """Bolts tightened unequally, or a seat that is not flat, leave a static field of two waves around the collar, as
     when bolts are tightened crosswise (physics.md SE18). At four gauges it has one number, whatever its direction; one
-    wave and three waves are :class:`TiltingMoment`.
+    wave and three waves are the tilting moment.
 
     Signature: equal means of opposite gauges, opposite ones of neighbours, at all loads and speeds; s0 and the orders
     stay. Changes when the gear is assembled anew. Typical: 5 to 50 um/m, 0.0025 to 0.025 mV/V.

@@ -62,10 +62,10 @@ def run(config: Mapping[str, Any]) -> Outcome:
         raise ValueError("no recordings: give recordings=FOLDER, a folder with manifest.csv or a file of recordings")
     kinds = library(config)
     hidden = None if config["truth"] is None else _hidden(Path(config["truth"]), config["recordings"])
-    mapping = None if config["mapping"] is None else Path(config["mapping"])
-    recordings, defects = _read(config["recordings"], "recordings", mapping)
+    recordings, defects = _read(config["recordings"], "recordings", config["mapping"])
     unit = Unit(Model(settings.gear(config["gear"]), settings.effects(config["effects"])))
     if config["commissioning"] is not None:
+        mapping = config["commissioning_mapping"] or config["mapping"]
         healthy, more = _read(config["commissioning"], "commissioning", mapping)
         recordings, healthy = _alike(recordings, healthy)
         defects = (*defects, *more)
@@ -140,9 +140,9 @@ def digest(recordings: Sequence[Recording]) -> str:
     return made.hexdigest()[:16]
 
 
-def _read(path: str, what: str, mapping: Path | None) -> tuple[tuple[Recording, ...], tuple[Defect, ...]]:
+def _read(path: str, what: str, mapping: str | None) -> tuple[tuple[Recording, ...], tuple[Defect, ...]]:
     """Recordings of one gear with what the loop needs."""
-    recordings, defects = read_recordings(Path(path), mapping)
+    recordings, defects = read_recordings(Path(path), Path(mapping) if mapping else None)
     gears = list(dict.fromkeys(recording.gear for recording in recordings))
     if len(gears) > 1:
         raise ValueError(
