@@ -5,9 +5,10 @@ import pytest
 from loop_fixtures import BUMP, Bump, drawn, fitted_to, holding
 
 from swgsim.loop import evidence
-from swgsim.loop.closing import Trial, _in_company, _outdone
+from swgsim.loop.beside import in_company, outdone
 from swgsim.loop.features import Layout
 from swgsim.loop.screening import Score
+from swgsim.loop.trial import Trial
 from swgsim.loop.vocabulary import Atom, columns, describe, set_free
 
 LAYOUT = Layout(("T_in", "s1", "s2", "s3", "s4"))
@@ -56,19 +57,19 @@ def test_a_regularity_that_tells_the_same_better_outdoes_an_effect(fitted, stray
     rng = np.random.default_rng(3)
     mimic = stray + 0.5 * np.linalg.norm(stray) / np.linalg.norm(signature) * signature
     now = holding(fitted, 2 * stray + drawn(fitted.whole, rng))
-    assert _outdone(trial(now, mimic), named(now, STRAY), now)
+    assert outdone(trial(now, mimic), named(now, STRAY), now)
 
 
 def test_another_thing_of_like_size_does_not_outdo_an_effect(fitted, stray, signature):
     now = holding(fitted, signature + 2 * stray + drawn(fitted.whole, np.random.default_rng(4)))
     plain = named(now, STRAY)
     assert plain.gain > 1.2 * trial(now, signature).explained(now)
-    assert not _outdone(trial(now, signature), plain, now)
+    assert not outdone(trial(now, signature), plain, now)
 
 
 def test_what_dwarfs_an_effect_makes_it_doubtful(fitted, stray, signature):
     now = holding(fitted, signature + 6 * stray + drawn(fitted.whole, np.random.default_rng(5)))
-    assert _outdone(trial(now, signature), named(now, STRAY), now)
+    assert outdone(trial(now, signature), named(now, STRAY), now)
 
 
 def test_a_regularity_that_is_set_free_is_gone(fitted, stray):
@@ -83,7 +84,7 @@ def test_an_effect_is_accepted_in_the_company_of_a_regularity(fitted, stray, sig
     now, after = holding(fitted, signature + stray + noise), holding(fitted, stray + noise)
     alone = trial(after, signature)
     assert not alone.sound
-    found = _in_company(now, alone, 0)
+    found = in_company(now, alone, 0.005, 0)
     assert found.sound
     assert found.effects == alone.effects
 
@@ -94,4 +95,4 @@ def test_an_effect_that_lives_off_a_regularity_is_not(fitted, stray, signature):
     now = holding(fitted, 2 * stray + noise)
     mimic = stray + 0.1 * np.linalg.norm(stray) / np.linalg.norm(signature) * signature
     after = holding(fitted, 2 * stray - mimic + noise)
-    assert _in_company(now, trial(after, mimic), 0) is None
+    assert in_company(now, trial(after, mimic), 0.005, 0) is None

@@ -12,13 +12,13 @@ from swgsim.blind.bench import Setting, in_question, unseen
 from swgsim.blind.drawing import unit_known
 from swgsim.blind.prediction import unseen_error
 from swgsim.blind.sealed import Sealed
-from swgsim.blind.strength import is_random
 from swgsim.effects import text
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import size_of
 from swgsim.loop.answer import Answer, answer
-from swgsim.loop.closing import Trial
 from swgsim.loop.fitting import Fitted, Unit, fit
+from swgsim.loop.sidelines import is_random
+from swgsim.loop.trial import Trial
 from swgsim.recording import Recording
 
 

@@ -25,19 +25,22 @@ from swgsim.blind.strata import DETECTABLE, plans
 from swgsim.blind.table import table
 from swgsim.effects.library import SEARCHED, named
 from swgsim.files import sole_maker, write_json, write_text
-from swgsim.loop import closing, evidence, fitting, screening, sidelines
+from swgsim.loop import beside, closing, evidence, fitting, screening, sidelines, trial
 from swgsim.version import code_version
 
 THRESHOLDS = {
     "alpha": closing.ALPHA,
-    "least_gain": closing.LEAST_GAIN,
+    "least_gain": trial.LEAST_GAIN,
+    "least_evidence": trial.LEAST_EVIDENCE,
+    "exact": trial.EXACT,
     "pair_gain": closing.PAIR_GAIN,
     "form_tolerance": evidence.FORM_TOLERANCE,
     "contradiction": evidence.CONTRADICTION,
     "visible": screening.VISIBLE,
     "structure": fitting.STRUCTURE,
     "tolerance_of_lines": sidelines.TOLERANCE,
-    "outdone": closing.OUTDONE,
+    "outdone": [beside.OUTDONE, beside.OUTDONE_SHARE, beside.SAME_THING, beside.DWARFED],
+    "another_thing": beside.ANOTHER_THING,
     "detectable": DETECTABLE,
     "look_alike": judged.LOOK_ALIKE,
     "worse": judged.WORSE,

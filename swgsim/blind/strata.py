@@ -6,9 +6,8 @@ from itertools import product
 
 from swgsim.blind.outside import OUTSIDE
 from swgsim.effects.base import Effect
-from swgsim.effects.quantity import Role, quantities
 from swgsim.gear import OperatingPoint
-from swgsim.loop.sidelines import has_sidelines
+from swgsim.loop.sidelines import has_sidelines, is_random
 from swgsim.seeds import generator
 
 EASY_NULL, HARD_NULL, SINGLE, PAIR, TAKEN_OUT, WRITTEN, UNTESTABLE = (
@@ -127,5 +126,4 @@ def _card(deck: Sequence[type[Effect]], dealt: int, seed: int, stratum: str) -> 
 
 def searched(kind: type[Effect]) -> bool:
     """Whether the loop has a way to look for an effect: random phases within the chain have none."""
-    random = any(q.role is Role.RANDOM for q in quantities(kind).values())
-    return not random or has_sidelines(kind)
+    return not is_random(kind) or has_sidelines(kind)

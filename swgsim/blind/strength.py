@@ -6,19 +6,15 @@ from dataclasses import replace
 import numpy as np
 
 from swgsim.effects.base import Effect
-from swgsim.effects.quantity import Quantity, Role, quantities, size_of
+from swgsim.effects.quantity import Quantity, quantities, size_of
+from swgsim.loop.between import between
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.hypotheses import hypotheses, signatures
 from swgsim.loop.model import predict
-from swgsim.loop.sidelines import between
+from swgsim.loop.sidelines import is_random
 
 # Shares of the way from nothing to the bound at which the strength is tried, and how far at most.
 FARTHEST, COARSE, FINE = 0.9, 13, 5
-
-
-def is_random(kind: type[Effect]) -> bool:
-    """Whether an effect has another phase in every recording, and so is seen between the orders only."""
-    return any(q.role is Role.RANDOM for q in quantities(kind).values())
 
 
 def strengths(effects: Sequence[Effect], of: Sequence[type[Effect]], fitted: Fitted) -> np.ndarray:

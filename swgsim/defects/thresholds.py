@@ -60,7 +60,7 @@ S0_SCALE = 30.0
 CLIPPED_RUN = 4
 # Share of a gauge's samples that are cut: below, the rest still shows what it was, and a search for effects names it.
 CLIPPED_REFUSES = 1 / 3
-# How sharp the edge of such a plateau is against the peak of a coarsely digitised signal (see channel_defects.py).
+# How sharp the edge of such a plateau is against the peak of a coarsely digitised signal (see channel.py).
 CLIPPED_EDGE = 2.0
 # Equal values in a row of a gauge in whose signal a whole order-2 period is half a revolution [revolutions, samples].
 STUCK_TURN = 0.125

@@ -6,11 +6,13 @@ from dataclasses import dataclass, replace
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities, size_of
 from swgsim.effects.regularity import Regularity
-from swgsim.loop.closing import ALPHA, LEAST_GAIN, Closed, Trial, close
+from swgsim.loop.between import between
+from swgsim.loop.closing import ALPHA, Closed, close
 from swgsim.loop.fitting import Fitted, Unit, extended
 from swgsim.loop.screening import VISIBLE, Score
 from swgsim.loop.session import Measured
 from swgsim.loop.sidelines import Sideline, search
+from swgsim.loop.trial import LEAST_GAIN, Trial
 from swgsim.loop.unnamed import Unnamed, unnamed
 from swgsim.loop.vocabulary import Described, describe, set_free
 from swgsim.recording import Recording
@@ -30,8 +32,10 @@ class Answer:
     verdict : str
         NOTHING, FOUND or UNKNOWN.
     closed : Closed
+    known : tuple of Effect
+        Declared effects between the orders; the model of the order lines does without them.
     lines : tuple of Sideline
-        Effects between the orders.
+        Effects between the orders that were found.
     unknown : tuple of Described
         Regularities that no effect of the library explains.
     unnamed : Unnamed or None
@@ -42,16 +46,27 @@ class Answer:
 
     verdict: str
     closed: Closed
+    known: tuple[Effect, ...]
     lines: tuple[Sideline, ...]
     unknown: tuple[Described, ...]
     unnamed: Unnamed | None
     absorbed: tuple[Score, ...]
 
     @property
+    def added(self) -> tuple[Effect, ...]:
+        """What the model of the order lines has now and lacked before."""
+        return self.closed.after.model.effects[len(self.closed.before.model.effects) :]
+
+    @property
+    def patches(self) -> tuple[Regularity, ...]:
+        """Regularities without a cause among it."""
+        return tuple(effect for effect in self.added if isinstance(effect, Regularity))
+
+    @property
     def effects(self) -> tuple[Effect, ...]:
-        """The physical effects that were found; regularities without a cause are none."""
-        chain = self.closed.after.model.effects[len(self.closed.before.model.effects) :]
-        return tuple(e for e in (*chain, *(line.effect for line in self.lines)) if not isinstance(e, Regularity))
+        """The physical effects that were found."""
+        chain = (effect for effect in self.added if not isinstance(effect, Regularity))
+        return (*chain, *(line.effect for line in self.lines))
 
     @property
     def left(self) -> str:
@@ -61,7 +76,7 @@ class Answer:
     @property
     def nearest(self) -> Trial | None:
         """Where nothing was accepted: the known effect that comes nearest, of the wrong form."""
-        return self.closed.rejected[0] if self.closed.rejected else None
+        return self.closed.nearest
 
     @property
     def sentence(self) -> str:
@@ -72,20 +87,31 @@ class Answer:
                 f"library stands out of it ({len(self.absorbed)} of {len(self.closed.scores)} cannot be tested with "
                 "these recordings)."
             )
-        found = " and ".join(_named(effect) for effect in self.effects)
-        rivals = " or ".join(_named(e) for step in self.closed.steps for trial in step.rivals for e in trial.effects)
-        either = f", or {rivals}, which these recordings cannot tell from it" if rivals else ""
         rest = f"; something unknown is left: {self.left}" if self.left else ""
         if self.verdict == FOUND:
-            return f"The model lacks {found}{either}{rest}."
-        near = (
-            f"; the nearest known effect, {_named(self.nearest.effects[0])}, has another form" if self.nearest else ""
-        )
+            return f"The model lacks {' and '.join(self._explanations())}{rest}."
+        near = f"; the nearest known effect, {_named(self.nearest.effects[0])}, does not hold" if self.nearest else ""
         what = self.left or "a regularity without a simple description"
         return f"The model lacks something that is not in the library: {what}{near}."
 
+    def _explanations(self) -> list[str]:
+        """What was found, step by step, each with what these recordings cannot tell from it."""
+        found, effects = [], iter(self.effects)
+        for step in self.closed.steps:
+            own = " and ".join(_named(next(effects)) for _ in step.accepted.effects)
+            rivals = " or ".join(" with ".join(map(_named, rival.effects)) for rival in step.rivals)
+            found.append(own + (f" (or {rivals}, which these recordings cannot tell from it)" if rivals else ""))
+        return [*found, *map(_named, effects)]
 
-def answer(recordings: Sequence[Recording], unit: Unit, kinds: Sequence[type[Effect]], *, seed: int = 0) -> Answer:
+
+def answer(
+    recordings: Sequence[Recording],
+    unit: Unit,
+    kinds: Sequence[type[Effect]],
+    *,
+    known: Sequence[Effect] = (),
+    seed: int = 0,
+) -> Answer:
     """Close the loop on recordings.
 
     Parameters
@@ -95,16 +121,19 @@ def answer(recordings: Sequence[Recording], unit: Unit, kinds: Sequence[type[Eff
         What is known of the gear before.
     kinds : sequence of effect classes
         The library.
+    known : sequence of Effect
+        Declared effects between the orders.
     seed : int
     """
     closed = close(Measured.of(recordings), unit, kinds, seed=seed)
-    lines, spectra = search(recordings, kinds, ALPHA)
-    nameless = unnamed(spectra, ALPHA)
+    spectra = [each.without(known) if known else each for each in between(recordings)]
+    lines, rest = search(spectra, kinds, ALPHA)
+    nameless = unnamed(rest, ALPHA)
     unknown = _unknown(closed.asked, seed)
     absorbed = tuple(score for score in closed.scores if score.visible < VISIBLE)
     found = closed.steps or lines
     verdict = FOUND if found else UNKNOWN if closed.rejected or unknown or nameless else NOTHING
-    return Answer(verdict, _patched(closed, unknown), tuple(lines), unknown, nameless, absorbed)
+    return Answer(verdict, _patched(closed, unknown), tuple(known), tuple(lines), unknown, nameless, absorbed)
 
 
 def _unknown(fitted: Fitted, seed: int) -> tuple[Described, ...]:
@@ -120,12 +149,13 @@ def _unknown(fitted: Fitted, seed: int) -> tuple[Described, ...]:
 
 
 def _patched(closed: Closed, unknown: Sequence[Described]) -> Closed:
-    """With the regularities in the model too, if they pay on operating points that they were not fitted to."""
-    if not unknown:
-        return closed
-    fitted = extended(closed.after, [each.effect for each in unknown])
-    pays = fitted.calibrated.settled and (fitted.predictive - closed.after.predictive).sum() > LEAST_GAIN
-    return replace(closed, after=fitted) if pays else closed
+    """With those regularities in the model too that pay on operating points they were not fitted to."""
+    for each in unknown if len(closed.after.predictive) > 1 else ():
+        fitted = extended(closed.after, [each.effect])
+        gain = float((fitted.predictive - closed.after.predictive).sum())
+        if fitted.calibrated.settled and gain > LEAST_GAIN:
+            closed = replace(closed, after=fitted)
+    return closed
 
 
 def _named(effect: Effect) -> str:

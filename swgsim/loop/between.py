@@ -11,7 +11,7 @@ from swgsim.effects.base import Effect, Scene
 from swgsim.effects.quantity import Role, quantities
 from swgsim.loop.features import FITTED, Layout, basis, remainder
 from swgsim.loop.noise import GUARD, Floor, floors
-from swgsim.recording import Recording
+from swgsim.recording import CHANNELS, Recording
 from swgsim.recordings import SENSORS
 
 # Share of a pattern that must lie between the orders, and of its largest direction; less is rounding.
@@ -50,6 +50,8 @@ class Between:
         What turns a line of the spectrum into units of the noise.
     orders : array (time, column)
         Orthonormal basis of the orders that were fitted, with a drift.
+    revolutions : float
+        Of the wave generator, as measured: line k lies at the order k / revolutions.
     clear : array (line,)
         Lines that no integer order leaks into.
     left : array (number,)
@@ -62,6 +64,7 @@ class Between:
     gauges: tuple[str, ...]
     scale: Float[np.ndarray, "gauge line"]
     orders: Float[np.ndarray, "time column"]
+    revolutions: float
     clear: Bool[np.ndarray, " line"]
     left: Float[np.ndarray, " number"]
     taken: Float[np.ndarray, "number direction"]
@@ -79,17 +82,18 @@ class Between:
             else np.full(len(angle), float(recording.point.T_out))
         )
         time = recording.time[:length:step] - recording.time[0]
-        frequency = np.fft.rfftfreq(length, 1 / recording.rate)
+        revolutions = abs(float(angle[-1] - angle[0])) / (2 * np.pi) * len(angle) / (len(angle) - 1)
         # The mean, and lines beyond the orders that were fitted, say nothing.
-        frequency = frequency[1 : np.searchsorted(frequency, FITTED * recording.point.n_in_rpm / 60)]
+        lines = np.arange(1, int(np.ceil(FITTED * revolutions)))
+        frequency = lines * recording.rate / length
         scale = np.array([np.sqrt(2 * length / np.maximum(floor.at(frequency), 1e-300)) for floor in noise])
-        order = frequency * 60 / recording.point.n_in_rpm
-        revolutions = abs(float(angle[-1] - angle[0])) / (2 * np.pi)
+        order = lines / revolutions
         bare = cls(
             Scene(time, angle, load, recording.point, recording.conditions),
             gauges,
             scale,
             np.linalg.qr(_columns(angle, time))[0],
+            revolutions,
             np.abs(order - np.round(order)) * revolutions > GUARD,
             np.zeros(2 * scale.size),
             np.empty((2 * scale.size, 0)),
@@ -146,8 +150,10 @@ class Between:
 
     def _alone(self, effect: Effect) -> Float[np.ndarray, "gauge time"]:
         """What an effect puts on silent gauges."""
-        silent = effect.gauge(np.zeros((len(SENSORS), len(self.scene.time))), self.scene)
-        channels = effect.acquisition(dict(zip(SENSORS, silent, strict=True)), self.scene)
+        effect = effect.at(self.scene.point, self.scene.conditions)
+        gauges = effect.gauge(np.zeros((len(SENSORS), len(self.scene.time))), self.scene)
+        others = dict.fromkeys(CHANNELS, np.zeros(len(self.scene.time)))
+        channels = effect.acquisition(others | dict(zip(SENSORS, gauges, strict=True)), self.scene)
         return np.array([channels[gauge] for gauge in self.gauges])
 
 

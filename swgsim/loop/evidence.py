@@ -47,9 +47,9 @@ def signature(fitted: Fitted, number: int) -> Float[np.ndarray, " row"]:
     return measured.rows(found[0] - found[1])
 
 
-def parts(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
-    """The signature of an effect split by operating point, channel and order."""
-    whole, layout = signature(fitted, number), fitted.measured.layout
+def parts(fitted: Fitted, whole: Float[np.ndarray, " row"]) -> Float[np.ndarray, "row part"]:
+    """A signature split by operating point, channel and order."""
+    layout = fitted.measured.layout
     channels, orders = (np.tile(what, len(fitted.measured)) for what in (layout.channel, layout.order))
     masks = [
         *fitted.measured.point_rows(),
@@ -66,22 +66,23 @@ def allowance(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
     whole of it may not: that is its size.
     """
     measured, layout = fitted.measured, fitted.measured.layout
-    lines = layout.lines(signature(fitted, number).reshape(measured.values.shape))
-    columns = [parts(fitted, number)]
+    signed = signature(fitted, number)
+    lines = layout.lines(signed.reshape(measured.values.shape))
+    columns = [parts(fitted, signed)]
     for turn in (1, 1j):
         for channel in range(lines.shape[1]):
             for order in np.flatnonzero(np.abs(lines[:, channel]).max(axis=0) > 0):
                 one = np.zeros_like(lines)
                 one[:, channel, order] = turn * lines[:, channel, order]
                 columns.append(layout.vector(one).reshape(-1, 1))
-    whole, open_ = signature(fitted, number)[:, None], np.hstack(columns)
+    whole, open_ = signed[:, None], np.hstack(columns)
     weighed = whole / fitted.errors.variance[:, None]
     return FORM_TOLERANCE * (open_ - whole @ (weighed.T @ open_) / float((weighed * whole).sum()))
 
 
 def coherence(fitted: Fitted, number: int) -> Coherence:
     """Whether the parts of an effect's signature agree on its size."""
-    split = fitted.whole.whiten(parts(fitted, number))
+    split = fitted.whole.whiten(parts(fitted, signature(fitted, number)))
     if not np.any(split):
         return Coherence(0.0, 0.0, 0.0)
     U, s, _ = np.linalg.svd(split, full_matrices=False)

@@ -23,6 +23,7 @@ from swgsim.loop.model import Model
 from swgsim.loop.page import figure, page
 from swgsim.loop.reporting.report import report
 from swgsim.loop.session import Measured
+from swgsim.loop.sidelines import has_sidelines
 from swgsim.recording import Recording
 from swgsim.style import words
 
@@ -63,14 +64,16 @@ def run(config: Mapping[str, Any]) -> Outcome:
     kinds = library(config)
     hidden = None if config["truth"] is None else _hidden(Path(config["truth"]), config["recordings"])
     recordings, defects = _read(config["recordings"], "recordings", config["mapping"])
-    unit = Unit(Model(settings.gear(config["gear"]), settings.effects(config["effects"])))
+    declared = settings.effects(config["effects"])
+    between = tuple(effect for effect in declared if has_sidelines(type(effect)))
+    unit = Unit(Model(settings.gear(config["gear"]), tuple(e for e in declared if e not in between)))
     if config["commissioning"] is not None:
         mapping = config["commissioning_mapping"] or config["mapping"]
         healthy, more = _read(config["commissioning"], "commissioning", mapping)
         recordings, healthy = _alike(recordings, healthy)
         defects = (*defects, *more)
         unit = commission(Measured.of(healthy), unit)
-    found = answer(recordings, unit, kinds, seed=config["seed"])
+    found = answer(recordings, unit, kinds, known=between, seed=config["seed"])
     said = report(found, kinds, next_experiments(found), defects, time.perf_counter() - start)
     if hidden is not None:
         said = {**said, "hidden": hidden}
@@ -91,7 +94,7 @@ def write(folder: Path, found: Answer, said: Mapping[str, Any]) -> dict[str, "Fi
 
     drawn = pictures(found, said)
     html = page(said, [picture for picture, _ in drawn.values()])
-    effects = (*found.closed.after.model.effects, *(line.effect for line in found.lines))
+    effects = (*found.closed.after.model.effects, *found.known, *(line.effect for line in found.lines))
     write_json(folder / "report.json", said)
     write_text(folder / "effects.yaml", as_text(effects))
     write_text(folder / "page.html", html)

@@ -139,6 +139,9 @@ def _score(hypothesis: Hypothesis, projected: Projected, u: Float[np.ndarray, " 
     if hypothesis.phase:
         size, phase = span * float(np.hypot(*weights)), float(np.arctan2(weights[1], weights[0]) % (2 * np.pi))
     size = float(np.clip(quantity.nothing + size, quantity.low, quantity.high))
+    if size == quantity.nothing:
+        # It would have to be less than nothing.
+        return Score(hypothesis, 0.0, len(u), size, phase, deviation, projected.visible, 1.0)
     return Score(hypothesis, float(u @ u), len(u), size, phase, deviation, projected.visible, chance)
 
 

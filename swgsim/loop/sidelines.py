@@ -10,10 +10,9 @@ import numpy as np
 from scipy.stats import chi2, f
 
 from swgsim.effects.base import Effect
-from swgsim.effects.quantity import Role, quantities, size_of
-from swgsim.loop.between import Between, between
+from swgsim.effects.quantity import Quantity, Role, quantities, size_of
+from swgsim.loop.between import Between
 from swgsim.loop.tail import log_tail
-from swgsim.recording import Recording
 
 # A line's size may differ from its law over load and speed by this share.
 TOLERANCE = 0.3
@@ -21,8 +20,8 @@ CONTRADICTION = 1e-4
 ZOOMS = 3
 # The noise beside a line is what was estimated of all lines together, as so many numbers would say it.
 ALL_TOGETHER = 20
-# Effects that are added at most.
-MOST = 3
+# Effects that are added at most, and values of a parameter that are tried at most.
+MOST, MOST_TRIED = 3, 400
 
 
 @dataclass(frozen=True)
@@ -55,7 +54,7 @@ class Sideline:
     @property
     def rank(self) -> float:
         """How unlikely the gain is by luck."""
-        return -2 * float(log_tail(self.gain, self.freedom))
+        return -2 * float(log_tail(self.gain, self.freedom)) if self.freedom else 0.0
 
     @property
     def holds(self) -> bool:
@@ -64,18 +63,18 @@ class Sideline:
 
 
 def search(
-    recordings: Sequence[Recording], kinds: Iterable[type[Effect]], level: float
-) -> tuple[list[Sideline], list[Between]]:
+    spectra: Sequence[Between], kinds: Iterable[type[Effect]], level: float
+) -> tuple[list[Sideline], Sequence[Between]]:
     """Effects between the orders, one after the other as long as one is too unlikely to be luck; and what they leave.
 
     Parameters
     ----------
-    recordings : sequence of Recording
+    spectra : sequence of Between
+        Of all recordings.
     kinds : iterable of effect classes
     level : float
         Probability of a false one.
     """
-    spectra = between(recordings)
     found: list[Sideline] = []
     sought = list(kinds)
     while len(found) < MOST:
@@ -83,26 +82,19 @@ def search(
         if best is None or best.chance > level or not best.holds:
             break
         found.append(best)
-        # Where the line lies is known to a part of the distance of the last values that were tried.
-        around = [best.effect, *(e for name in _searched(best.effect) for e in _around(best.effect, name, ZOOMS))]
-        spectra = [each.without(around) for each in spectra]
+        spectra = [each.without(_nearby(best.effect, spectra)) for each in spectra]
         sought = [kind for kind in sought if kind is not type(best.effect)]
     return found, spectra
 
 
-def sidelines(recordings: Sequence[Recording], kinds: Iterable[type[Effect]]) -> list[Sideline]:
-    """The best hypothesis of every effect that has a random phase and acts on the signals, the likeliest first."""
-    return ranked(between(recordings), kinds)
-
-
 def ranked(spectra: Sequence[Between], kinds: Iterable[type[Effect]]) -> list[Sideline]:
-    """The best hypothesis of every such effect in these spectra, the likeliest first."""
+    """The best hypothesis of every effect with a random phase that acts on the signals, the likeliest first."""
     kinds = [kind for kind in kinds if has_sidelines(kind)] if spectra else []
     found = []
     for kind in kinds:
         declared = quantities(kind)
         size = size_of(kind)
-        inner = {name: q.tried for name, q in declared.items() if q.role in (Role.SHAPE, Role.CHOICE)}
+        inner = {name: _tried(q, spectra) for name, q in declared.items() if q.role in (Role.SHAPE, Role.CHOICE)}
         tries = [
             kind(**dict(zip(inner, values, strict=True)), **{size: declared[size].typical})
             for values in product(*inner.values())
@@ -111,13 +103,22 @@ def ranked(spectra: Sequence[Between], kinds: Iterable[type[Effect]]) -> list[Si
         chances = 2 * len(tries) * len(kinds)
         best = max((_judged(effect, spectra, chances) for effect in tries), key=lambda line: line.rank)
         found.append(_zoomed(best, spectra, chances))
-    return sorted(found, key=lambda line: -line.rank)
+    return sorted(found, key=lambda line: (line.chance, -line.rank))
 
 
 def has_sidelines(kind: type[Effect]) -> bool:
     """Whether an effect has a random phase, and acts on the recorded signals rather than within the chain."""
-    random = any(q.role is Role.RANDOM for q in quantities(kind).values())
-    return random and any(getattr(kind, place) is not getattr(Effect, place) for place in ("gauge", "acquisition"))
+    return is_random(kind) and acts_on_signals(kind)
+
+
+def is_random(kind: type[Effect]) -> bool:
+    """Whether an effect has another phase in every recording."""
+    return any(q.role is Role.RANDOM for q in quantities(kind).values())
+
+
+def acts_on_signals(kind: type[Effect]) -> bool:
+    """Whether an effect acts on the recorded signals."""
+    return any(getattr(kind, place) is not getattr(Effect, place) for place in ("gauge", "acquisition"))
 
 
 def _judged(effect: Effect, spectra: Sequence[Between], tried: int) -> Sideline:
@@ -137,7 +138,9 @@ def _judged(effect: Effect, spectra: Sequence[Between], tried: int) -> Sideline:
     numbers = max(freedom.sum(), 1)
     chance = float(min(1.0, tried * f.sf(gain.sum() / numbers, numbers, beside.sum() + ALL_TOGETHER)))
     estimate = float(np.clip(getattr(effect, name) * np.sqrt(share), declared[name].low, declared[name].high))
-    deviation = abs(getattr(effect, name)) / float(np.sqrt(max(size.sum(), 1e-300)))
+    deviation = float(abs(getattr(effect, name)) / np.sqrt(max(size.sum(), 1e-300)))
+    # The law may be off in every recording, and then so is the mean.
+    deviation = float(np.hypot(deviation, TOLERANCE * estimate / np.sqrt(max(used.sum(), 1))))
     return Sideline(
         replace(effect, **{name: estimate}), float(gain.sum()), int(freedom.sum()), chance, deviation, agrees
     )
@@ -146,10 +149,17 @@ def _judged(effect: Effect, spectra: Sequence[Between], tried: int) -> Sideline:
 def _zoomed(best: Sideline, spectra: Sequence[Between], tried: int) -> Sideline:
     """The line with its order or frequency no longer on the grid."""
     for name in _searched(best.effect):
+        reach = _spacing(quantities(type(best.effect))[name], spectra)
         for zoom in range(ZOOMS):
-            around = _around(best.effect, name, zoom)
+            around = _around(best.effect, name, reach / 2**zoom)
             best = max((_judged(effect, spectra, tried) for effect in around), key=lambda line: line.rank)
     return best
+
+
+def _nearby(effect: Effect, spectra: Sequence[Between]) -> list[Effect]:
+    """An effect and its neighbours: where its line lies is known to a part of the last zoom."""
+    reaches = {name: _spacing(quantities(type(effect))[name], spectra) / 2**ZOOMS for name in _searched(effect)}
+    return [effect, *(each for name, reach in reaches.items() for each in _around(effect, name, reach))]
 
 
 def _searched(effect: Effect) -> list[str]:
@@ -157,11 +167,24 @@ def _searched(effect: Effect) -> list[str]:
     return [name for name, q in quantities(type(effect)).items() if q.role is Role.SHAPE and q.points > 1]
 
 
-def _around(effect: Effect, name: str, zoom: int) -> list[Effect]:
-    """The effect at typical size with a parameter moved, half as far with every zoom."""
-    q = quantities(type(effect))[name]
-    reach = (q.high - q.low) / q.points / 2**zoom
-    size = size_of(type(effect))
+def _tried(quantity: Quantity, spectra: Sequence[Between]) -> tuple[float, ...]:
+    """Values of a parameter that are tried: those declared, closer together where the lines of the spectra are."""
+    if quantity.role is not Role.SHAPE or quantity.points == 1:
+        return quantity.tried
+    count = int(np.ceil((quantity.high - quantity.low) / _spacing(quantity, spectra))) + 1
+    return tuple(np.linspace(quantity.low, quantity.high, count).tolist())
+
+
+def _spacing(quantity: Quantity, spectra: Sequence[Between]) -> float:
+    """Distance of the values that are tried: no more than that of two lines of the finest spectrum."""
+    declared = (quantity.high - quantity.low) / (quantity.points - 1)
+    finest = min(each.step if quantity.unit == "Hz" else 1 / each.revolutions for each in spectra)
+    return max(min(declared, finest), (quantity.high - quantity.low) / MOST_TRIED)
+
+
+def _around(effect: Effect, name: str, reach: float) -> list[Effect]:
+    """The effect at typical size with a parameter moved."""
+    q, size = quantities(type(effect))[name], size_of(type(effect))
     typical = quantities(type(effect))[size].typical
     values = np.clip(getattr(effect, name) + reach * np.linspace(-1, 1, 5), q.low, q.high)
     return [replace(effect, **{name: float(value), size: typical}) for value in values]

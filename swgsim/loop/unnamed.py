@@ -11,6 +11,10 @@ from swgsim.loop.between import BESIDE, Between
 from swgsim.loop.features import FITTED
 from swgsim.loop.sidelines import ALL_TOGETHER
 
+KINDS = ("order", "frequency")
+# Lines to either side that may hold a part of a line between them.
+SPILLED = 1
+
 
 @dataclass(frozen=True)
 class Unnamed:
@@ -19,7 +23,7 @@ class Unnamed:
     Attributes
     ----------
     kind : str
-        "order" of the wave generator, or "frequency".
+        Of :data:`KINDS`: an order of the wave generator, or a frequency.
     at : float
         Where it lies [-] or [Hz].
     amplitude : float
@@ -54,56 +58,52 @@ def unnamed(spectra: Sequence[Between], level: float) -> Unnamed | None:
     level : float
         Probability of a false one.
     """
-    if not spectra:
-        return None
-    fastest = max(each.scene.point.n_in_rpm for each in spectra) / 60
-    grids = {
-        "order": [each.step * 60 / each.scene.point.n_in_rpm for each in spectra],
-        "frequency": [each.step for each in spectra],
-    }
-    ends = {"order": FITTED, "frequency": FITTED * fastest}
-    found = [_best(spectra, kind, steps, ends[kind]) for kind, steps in grids.items()]
-    best = min((line for line in found if line), key=lambda line: line.chance, default=None)
-    return best if best and best.chance <= level / len(grids) else None
+    found = [line for kind in KINDS for line in _best(spectra, kind)] if spectra else []
+    best = min(found, key=lambda line: line.chance, default=None)
+    return best if best and best.chance <= level else None
 
 
-def _best(spectra: Sequence[Between], kind: str, steps: Sequence[float], end: float) -> Unnamed | None:
-    """The best line of a grid on which the lines of each spectrum lie so far apart."""
+def _best(spectra: Sequence[Between], kind: str) -> list[Unnamed]:
+    """The best line at one order, or at one frequency; none if no place has a clear line in most recordings."""
+    steps = [each.step if kind == "frequency" else 1 / each.revolutions for each in spectra]
+    end = FITTED * max(1.0 if kind == "order" else each.revolutions * each.step for each in spectra)
     grid = np.arange(min(steps), end, min(steps) / 2)
-    power = np.full((len(spectra), len(spectra[0].gauges), len(grid)), np.nan)
-    for i, (each, step) in enumerate(zip(spectra, steps, strict=True)):
+    gain, freedom, rest, beside, seen = np.zeros((5, len(grid)))
+    for each, step in zip(spectra, steps, strict=True):
         line = np.round(grid / step).astype(int) - 1
         there = (line >= 0) & (line < len(each.clear))
-        there[there] &= each.clear[line[there]]
-        power[i][:, there] = each.power[:, line[there]]
-    seen = np.isfinite(power).all(axis=1).sum(axis=0)
-    freedom = 2 * power.shape[1] * seen
-    gain = np.nansum(power, axis=(0, 1))
-    # Half a line apart, and without the line's own neighbours.
-    window = np.ones(4 * BESIDE + 1)
-    window[2 * BESIDE - 3 : 2 * BESIDE + 4] = 0
-    beside = np.convolve(freedom, window, "same") / 2
-    noise = (np.convolve(gain, window, "same") / 2 + ALL_TOGETHER) / (beside + ALL_TOGETHER)
-    # Some recordings do not have a frequency as a clear line; most must.
+        there[there] = each.clear[line[there]]
+        power, numbers = each.power.sum(axis=0) * each.clear, 2.0 * len(each.gauges) * each.clear
+        gain[there] += power[line[there]]
+        freedom[there] += numbers[line[there]]
+        rest[there] += _beside(power)[line[there]]
+        beside[there] += _beside(numbers)[line[there]]
+        seen += there
     tried = np.flatnonzero(seen > len(spectra) / 2)
     if not len(tried):
-        return None
-    chances = f.sf((gain / noise)[tried] / freedom[tried], freedom[tried], beside[tried] + ALL_TOGETHER) * len(tried)
+        return []
+    gain, freedom, rest, beside = (each[tried] for each in (gain, freedom, rest, beside))
+    noise = (rest + ALL_TOGETHER) / (beside + ALL_TOGETHER)
+    chances = f.sf(gain / noise / freedom, freedom, beside + ALL_TOGETHER)
     best = tried[int(np.argmin(chances))]
-    amplitude = _amplitudes(spectra, power[:, :, best], [grid[best] / step for step in steps])
+    amplitude = _amplitudes(spectra, [round(grid[best] / step) - 1 for step in steps])
     largest = int(np.argmax(amplitude))
-    return Unnamed(
-        kind, float(grid[best]), float(amplitude[largest]), spectra[0].gauges[largest], float(min(1.0, chances.min()))
-    )
+    chance = float(min(1.0, chances.min() * len(tried) * len(KINDS)))
+    return [Unnamed(kind, float(grid[best]), float(amplitude[largest]), spectra[0].gauges[largest], chance)]
 
 
-def _amplitudes(
-    spectra: Sequence[Between], power: Float[np.ndarray, "recording gauge"], position: Sequence[float]
-) -> Float[np.ndarray, " gauge"]:
+def _beside(lines: Float[np.ndarray, " line"]) -> Float[np.ndarray, " line"]:
+    """Sum over the lines to both sides of each, without those that may hold a part of it."""
+    window = np.ones(2 * BESIDE + 1)
+    window[BESIDE - SPILLED : BESIDE + SPILLED + 1] = 0
+    return np.convolve(np.pad(lines, BESIDE), window, "valid")
+
+
+def _amplitudes(spectra: Sequence[Between], lines: Sequence[int]) -> Float[np.ndarray, " gauge"]:
     """Amplitude of a line in every gauge [mV/V], root mean square over the recordings that show it."""
-    squares = []
-    for each, own, at in zip(spectra, power, position, strict=True):
-        if np.isfinite(own).all():
-            scale = each.scale[:, round(at) - 1]
-            squares.append(4 * np.maximum(own - 2, 0) / scale**2)
+    squares = [
+        4 * np.maximum(each.power[:, line] - 2, 0) / each.scale[:, line] ** 2
+        for each, line in zip(spectra, lines, strict=True)
+        if 0 <= line < len(each.clear) and each.clear[line]
+    ]
     return np.sqrt(np.mean(squares, axis=0))

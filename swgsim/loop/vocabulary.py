@@ -136,4 +136,5 @@ def describe(fitted: Fitted, rng: np.random.Generator) -> list[Described]:
 def set_free(fitted: Fitted, described: Described) -> Fitted:
     """A fit in which an atom may be as large as it likes."""
     taken = columns(described.atom, fitted) * max(described.amplitude, 1e-12) * WIDE
-    return replace(fitted, open=np.hstack([fitted.open, taken]))
+    # What the form of effects leaves open comes last.
+    return replace(fitted, open=np.hstack([taken, fitted.open]))

@@ -7,11 +7,12 @@ from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities
 from swgsim.effects.text import path_of
 from swgsim.loop.answer import Answer
-from swgsim.loop.closing import LEAST_GAIN, Step, Trial
+from swgsim.loop.closing import Step
 from swgsim.loop.errors import errors
 from swgsim.loop.reporting.numbers import estimate, number, probability
 from swgsim.loop.reporting.sizes import Sizes
 from swgsim.loop.sidelines import Sideline
+from swgsim.loop.trial import LEAST_EVIDENCE, LEAST_GAIN, Trial
 
 
 def names(trial: Trial) -> str:
@@ -70,7 +71,7 @@ def rejected(answer: Answer, sizes: Sizes) -> list[dict[str, Any]]:
     """Effects that were fitted but not added."""
     steps = answer.closed.steps
     # What was put off in one step may be found, or be a rival, in a later one.
-    held = {names(trial) for step in steps for trial in (step.accepted, *step.rivals)}
+    held = {path_of(type(e)) for step in steps for trial in (step.accepted, *step.rivals) for e in trial.effects}
     tried: dict[str, tuple[Trial, Trial | None]] = {
         names(trial): (trial, step.accepted) for step in steps for trial in step.others if names(trial) not in held
     }
@@ -79,14 +80,20 @@ def rejected(answer: Answer, sizes: Sizes) -> list[dict[str, Any]]:
         {
             "name": name,
             "heldout_error": sizes.overall(errors(trial.fitted).heldout),
-            "why": why(trial, accepted),
+            "why": why(trial, answer, better),
         }
-        for name, (trial, accepted) in tried.items()
+        for name, (trial, better) in tried.items()
     ]
 
 
-def why(trial: Trial, accepted: Trial | None) -> str:
+def why(trial: Trial, answer: Answer, better: Trial | None = None) -> str:
     """Why a trial was not accepted, in words."""
+    outdone_by = answer.closed.outdone_by
+    if better is None and outdone_by and trial is answer.closed.nearest:
+        return (
+            f"a bare regularity explains the same thing better, or far more beside it: {outdone_by} (fall of the sum "
+            f"of squares {outdone_by.gain:.0f} against {trial.explained(answer.closed.asked):.0f})"
+        )
     if not trial.fitted.calibrated.settled:
         return "its fit did not come to rest"
     poorest = min(trial.coherence, key=lambda each: each.chance)
@@ -96,16 +103,17 @@ def why(trial: Trial, accepted: Trial | None) -> str:
             "one size does not serve all operating points, channels and orders "
             f"(probability {probability(poorest.chance)}{form})"
         )
-    if trial.gain <= LEAST_GAIN:
+    if not trial.pays:
         return (
             f"it does not help to predict operating points left out: log-likelihood {trial.gain:+.1f}, "
             f"at least {LEAST_GAIN:g} are asked for"
         )
-    if accepted is None:
-        return "it was sound only beside an effect that was not"
+    if better is None:
+        return "another effect explains more, which was not accepted, and the runner-up is never taken instead"
     return (
-        f"it predicts operating points left out worse than {' and '.join(e.title() for e in accepted.effects)}: "
-        f"log-likelihood {trial.gain:+.0f} against {accepted.gain:+.0f}"
+        f"it explains less than {' and '.join(e.title() for e in better.effects)}: log-likelihood of operating points "
+        f"left out {trial.gain:+.0f} against {better.gain:+.0f}, of all recordings {trial.evidence:+.0f} against "
+        f"{better.evidence:+.0f}"
     )
 
 
@@ -129,7 +137,7 @@ def _rival(trial: Trial) -> dict[str, Any]:
     first = len(trial.fitted.model.effects) - len(trial.effects)
     return {
         "effects": [
-            {"name": path_of(type(e)), "parameters": _parameters(e, trial.fitted.deviation, first + i)}
+            {"name": path_of(type(e)), "parameters": _parameters(e, trial.deviation, first + i)}
             for i, e in enumerate(trial.effects)
         ],
         "heldout_gain": number(trial.gain),
@@ -141,14 +149,22 @@ def _evidence(step: Step, which: int) -> dict[str, Any]:
     trial, score = step.accepted, step.accepted.score
     agreement = trial.coherence[which]
     together = " (together with the other effect of the pair)" if len(trial.effects) > 1 else ""
+    raised = (
+        f"operating points left out by {trial.gain:.0f} (at least {LEAST_GAIN:g} are asked for)"
+        if trial.gain > LEAST_GAIN
+        else f"all recordings together by {trial.evidence:.0f} (at least {LEAST_EVIDENCE:g} are asked for; every "
+        "operating point shows it alike, so those left out do not tell)"
+    )
+    beside = "; ".join(map(str, trial.beside))
+    once = f", once what has nothing to do with it is taken out: {beside}" if beside else ""
     return {
         "words": (
-            f"adding it{together} raises the log-likelihood of operating points left out by {trial.gain:.0f} "
-            f"(at least {LEAST_GAIN:g} are asked for); so high a score comes by luck with probability "
-            f"{probability(score.chance)} in the whole library; one size serves all operating points, "
-            f"channels and orders, with parts that differ by {100 * agreement.form_error:.0f} %"
+            f"adding it{together} raises the log-likelihood of {raised}; so high a score comes by luck with "
+            f"probability {probability(score.chance)} in the whole library; one size serves all operating points, "
+            f"channels and orders, with parts that differ by {100 * agreement.form_error:.0f} %{once}"
         ),
         "heldout_gain": number(trial.gain),
+        "evidence": number(trial.evidence),
         "score": number(score.gain),
         "chance": number(score.chance),
         "visible": number(score.visible),

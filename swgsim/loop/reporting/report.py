@@ -14,7 +14,7 @@ from swgsim.loop.experiment import Experiment
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.reporting.effects import accepted, of_line, rejected
 from swgsim.loop.reporting.numbers import estimate
-from swgsim.loop.reporting.open import absorbed, detectable, next_experiment, score, unknown, untried
+from swgsim.loop.reporting.remaining import absorbed, detectable, next_experiment, scored, unknown, untried
 from swgsim.loop.reporting.sizes import Sizes, error
 from swgsim.loop.session import Measured
 from swgsim.recording import CHANNELS
@@ -58,7 +58,7 @@ def report(
         "moved": moved(before, after),
         "absorbed": [absorbed(each) for each in answer.absorbed] + untried(answer, kinds),
         "detectable": {each.hypothesis.kind.name(): detectable(each) for each in answer.closed.scores},
-        "scores": [score(each) for each in answer.closed.scores],
+        "scores": [scored(each) for each in answer.closed.scores],
         "commissioned": before.unit.commissioned,
         "channels": {name: CHANNELS[name].unit for name in measured.layout.channels},
         "recordings": _recordings(measured),
@@ -70,11 +70,12 @@ def report(
 def calibrated(fitted: Fitted) -> dict[str, dict[str, Any]]:
     """The declared parameters at which the chain ran, with what is left open of them."""
     unit = fitted.unit
-    if unit.reach is None:
+    if unit.reach is None or unit.nominal is None:
         declared = {name: p for name, p in fitted.parameters.items() if ": " not in name}
         deviations = [fitted.deviation[name] for name in declared]
     else:
-        declared = of_unit(unit.model.gear)
+        # By whose spread the reach of commissioning is counted.
+        declared = of_unit(unit.nominal)
         spread = np.sqrt((unit.reach**2).sum(axis=1))[: len(declared)].tolist()
         deviations = [s * p.sd for s, p in zip(spread, declared.values(), strict=True)]
     return {

@@ -8,13 +8,13 @@ import numpy as np
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities
-from swgsim.effects.regularity import Regularity
 from swgsim.effects.text import entries, path_of
 from swgsim.loop.answer import UNKNOWN, Answer
 from swgsim.loop.experiment import Experiment
 from swgsim.loop.reporting.effects import names, why
 from swgsim.loop.reporting.numbers import number
 from swgsim.loop.screening import Score
+from swgsim.loop.sidelines import acts_on_signals, is_random
 from swgsim.loop.vocabulary import Described
 
 
@@ -24,7 +24,6 @@ def unknown(answer: Answer) -> dict[str, Any] | None:
         return None
     atoms = [_described(each) for each in answer.unknown]
     nearest, line = answer.nearest, answer.unnamed
-    added = [effect for effect in answer.closed.after.model.effects if isinstance(effect, Regularity)]
     return {
         "words": answer.left or "a regularity without a simple description",
         "orders": sorted({each["order"] for each in atoms}),
@@ -33,8 +32,8 @@ def unknown(answer: Answer) -> dict[str, Any] | None:
         "regularities": atoms,
         "line": asdict(line) | {"words": str(line)} if line else None,
         "effects": entries([each.effect for each in answer.unknown]),
-        "added": entries(added),
-        "nearest": {"name": names(nearest), "why": why(nearest, None)} if nearest else None,
+        "added": entries(answer.patches),
+        "nearest": {"name": names(nearest), "why": why(nearest, answer)} if nearest else None,
     }
 
 
@@ -92,21 +91,15 @@ def absorbed(score: Score) -> dict[str, Any]:
 
 def untried(answer: Answer, kinds: Sequence[type[Effect]]) -> list[dict[str, Any]]:
     """Effects that no test looks at."""
-    screened = {score.hypothesis.kind for score in answer.closed.scores}
-    between = {type(line.effect) for line in answer.lines}
-    return [
-        {
-            "name": path_of(kind),
-            "visible": None,
-            "why": "its phase is another one in every recording and it acts inside the chain: there is no test for it",
-        }
+    gauges = any(channel.startswith("s") for channel in answer.closed.before.measured.layout.channels)
+    whys = {
+        kind: "its phase is another one in every recording and no gauge was recorded in all of them"
+        if acts_on_signals(kind)
+        else "its phase is another one in every recording and it acts inside the chain: there is no test for it"
         for kind in kinds
-        if kind not in screened | between and not _on_signals(kind)
-    ]
-
-
-def _on_signals(kind: type[Effect]) -> bool:
-    return any(getattr(kind, place) is not getattr(Effect, place) for place in ("gauge", "acquisition"))
+        if is_random(kind) and not (gauges and acts_on_signals(kind))
+    }
+    return [{"name": path_of(kind), "visible": None, "why": why_not} for kind, why_not in whys.items()]
 
 
 def detectable(score: Score) -> dict[str, Any]:
@@ -122,7 +115,7 @@ def detectable(score: Score) -> dict[str, Any]:
     }
 
 
-def score(score: Score) -> dict[str, Any]:
+def scored(score: Score) -> dict[str, Any]:
     """Score of one effect in the first search."""
     return {
         "name": path_of(score.hypothesis.kind),

@@ -1,0 +1,56 @@
+"""An effect beside bare regularities: they may spoil its form, tell the same better, or dwarf it."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from swgsim.loop.evidence import coherence
+from swgsim.loop.fitting import Fitted
+from swgsim.loop.trial import Trial, gain
+from swgsim.loop.vocabulary import Described, columns, describe, set_free
+from swgsim.seeds import generator
+
+# A regularity explains the same thing better than an effect only if it does so by this much (twice a log-likelihood,
+# and a share), and leaves the effect less than half of its gain. What explains so many times more makes any effect
+# beside it doubtful, even if it is another thing.
+OUTDONE, OUTDONE_SHARE, SAME_THING, DWARFED = 17.0, 0.05, 0.5, 4.0
+# Regularities that may spoil the agreement of an effect's parts, at most; it keeps so much of its gain if they are
+# another thing.
+COMPANY, ANOTHER_THING = 2, 0.8
+
+
+def outdone(trial: Trial, plain: Described, now: Fitted) -> bool:
+    """Whether a bare regularity explains what a trial explains, and more; or by far more of something else."""
+    explained = trial.explained(now)
+    if plain.gain <= explained * (1 + OUTDONE_SHARE) + OUTDONE:
+        return False
+    together = gain(now, np.hstack([trial.signature, columns(plain.atom, now)]))
+    return plain.gain > DWARFED * explained or together - plain.gain < SAME_THING * explained
+
+
+def in_company(now: Fitted, trial: Trial, level: float, seed: int) -> Trial | None:
+    """A trial that pays, if its parts agree once regularities that have nothing to do with it are taken out.
+
+    Parameters
+    ----------
+    now : Fitted
+        The model without it.
+    trial : Trial
+    level : float
+        Probability of a regularity by luck.
+    seed : int
+    """
+    if not trial.pays:
+        return None
+    known = len(trial.fitted.model.effects) - len(trial.effects)
+    before, after, explained = now, trial.fitted, trial.explained(now)
+    beside: tuple[Described, ...] = ()
+    for number in range(COMPANY):
+        best = describe(after, generator("company", seed, number))[0]
+        before, after, beside = set_free(before, best), set_free(after, best), (*beside, best)
+        if best.chance > level or trial.explained(before) < max(ANOTHER_THING * explained, best.gain):
+            return None
+        agreement = tuple(coherence(after, known + i) for i in range(len(trial.effects)))
+        if all(each.holds for each in agreement):
+            return replace(trial, coherence=agreement, beside=beside)
+    return None

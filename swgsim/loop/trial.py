@@ -1,0 +1,136 @@
+"""A hypothesis fitted with everything else, and what speaks for it."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.effects.base import Effect
+from swgsim.effects.quantity import quantities, size_of
+from swgsim.loop.evidence import Coherence, coherence, signature
+from swgsim.loop.fitting import Fitted, extended
+from swgsim.loop.model import Model
+from swgsim.loop.refining import zoom
+from swgsim.loop.screening import Score
+from swgsim.loop.vocabulary import Described
+from swgsim.seeds import generator
+
+# Log-likelihood of left-out operating points that an effect must gain; and of all recordings if those do not tell.
+LEAST_GAIN, LEAST_EVIDENCE = 3.0, 10.0
+# Share to which the chain has the size of an effect right at all: an estimate, of what its mesh makes.
+EXACT = 0.01
+# Directions below this share of the largest one are rounding.
+ROUNDING = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A hypothesis fitted with everything else.
+
+    Attributes
+    ----------
+    score : Score
+    effects : tuple of Effect
+        As fitted.
+    fitted : Fitted
+        The model with it.
+    gains : array (point,)
+        Of the log-likelihood of each operating point left out.
+    evidence : float
+        Of the log-likelihood of all recordings together, their parameters being open within their spreads. It also
+        counts what every operating point shows alike, such as a zero beyond its spread, which the others tell already.
+    coherence : tuple of Coherence
+        Of each effect of the trial.
+    beside : tuple of Described
+        Regularities beside it that were taken out before its parts agreed.
+    """
+
+    score: Score
+    effects: tuple[Effect, ...]
+    fitted: Fitted
+    gains: Float[np.ndarray, " point"]
+    evidence: float
+    coherence: tuple[Coherence, ...]
+    beside: tuple[Described, ...] = ()
+
+    @property
+    def gain(self) -> float:
+        """Of all operating points."""
+        return float(self.gains.sum())
+
+    @cached_property
+    def signature(self) -> Float[np.ndarray, "row effect"]:
+        """What each of its effects does to the features."""
+        first = len(self.fitted.model.effects) - len(self.effects)
+        return np.stack([signature(self.fitted, first + i) for i in range(len(self.effects))], axis=1)
+
+    def explained(self, before: Fitted) -> float:
+        """Fall of the residual's sum of squares that it brings to the model before, as a score counts it."""
+        return gain(before, self.signature)
+
+    @property
+    def sound(self) -> bool:
+        """Whether it pays and does not contradict itself."""
+        return self.pays and all(each.holds for each in self.coherence)
+
+    @property
+    def pays(self) -> bool:
+        """Whether its fit came to rest and helps on operating points it was not fitted on."""
+        helps = self.gain > LEAST_GAIN or (self.evidence > LEAST_EVIDENCE and self.gain > -LEAST_GAIN)
+        return helps and self.fitted.calibrated.settled
+
+    @property
+    def deviation(self) -> dict[str, float]:
+        """Standard deviation of each fitted parameter, by noise and by an imperfect form."""
+        first = len(self.fitted.model.effects) - len(self.effects)
+        return widened(self.fitted.deviation, self.fitted.model, first, self.coherence)
+
+    @property
+    def merit(self) -> float:
+        """What trials are ordered by; one that was fitted down to nothing is none."""
+        return self.gain + self.evidence if self.signature.any(axis=0).all() else -np.inf
+
+
+def tried(now: Fitted, scores: tuple[Score, ...], seed: int) -> Trial:
+    """Hypotheses added to a model and fitted with it."""
+    rng = generator("zoom", seed, *(str(score.hypothesis) for score in scores))
+    added = tuple(zoom(score, now, rng) for score in scores)
+    known = len(now.model.effects)
+    fitted = extended(now, added)
+    effects = fitted.model.effects[known:]
+    found = tuple(coherence(fitted, known + number) for number in range(len(added)))
+    evidence = fitted.log_likelihood - now.log_likelihood
+    return Trial(scores[0], effects, fitted, fitted.predictive - now.predictive, evidence, found)
+
+
+def widened(
+    deviation: Mapping[str, float], model: Model, first: int, coherences: Sequence[Coherence]
+) -> dict[str, float]:
+    """Standard deviations of parameters, those of sizes also by what an imperfect form leaves in doubt.
+
+    Parameters
+    ----------
+    deviation : mapping
+        By noise, of every fitted parameter.
+    model : Model
+    first : int
+        Number of the effect to which the first coherence belongs.
+    coherences : sequence of Coherence
+    """
+    found = dict(deviation)
+    for number, agreement in enumerate(coherences, first):
+        effect = model.effects[number]
+        size = size_of(type(effect))
+        by = getattr(effect, size) - quantities(type(effect))[size].nothing
+        name = f"{effect.title()} {number + 1}: {size}"
+        found[name] = float(np.linalg.norm([found[name], agreement.doubt * by, EXACT * by]))
+    return found
+
+
+def gain(fitted: Fitted, directions: Float[np.ndarray, "row direction"]) -> float:
+    """Fall of a residual's sum of squares by directions of any size."""
+    U, s, _ = np.linalg.svd(fitted.whole.whiten(directions), full_matrices=False)
+    along = U[:, s > ROUNDING * max(float(s[0]), ROUNDING)].T @ fitted.whole.whiten(fitted.from_start)
+    return float(along @ along)
