@@ -40,7 +40,7 @@ def _rates(axes: Any, found: Mapping[str, Any]) -> None:
     axes.set_ylim(len(rows) - 0.5, -0.5)
     axes.set_xlim(-0.03, 1.03)
     if named:
-        axes.legend(fontsize=8)
+        axes.legend(fontsize=8, ncols=3, loc="upper center", bbox_to_anchor=(0.5, -0.14))
     label(axes, "share of cases, with 95 % interval", "", "The loop and simpler methods")
 
 
