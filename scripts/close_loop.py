@@ -9,9 +9,13 @@ import hydra
 from misspelt import answered
 from omegaconf import DictConfig, OmegaConf
 
-from swgsim.loop.job import Outcome, run
+from swgsim.joint import job as of_joint
+from swgsim.loop import job as of_gauges
+from swgsim.loop.job import Outcome
 
 EXPERIMENT = "loop"
+# What is asked of recordings of a robot joint.
+CHOICES = ("joint", "signal", "holdout")
 
 
 def record(config: Mapping[str, Any], outcome: Outcome) -> None:
@@ -22,12 +26,13 @@ def record(config: Mapping[str, Any], outcome: Outcome) -> None:
 
     said = outcome.report
     store = settings.store({**config["tracking"], "experiment": EXPERIMENT})
-    chosen = {name: config[name] for name in ("recordings", "commissioning", "seed")}
+    asked = ("recordings", "commissioning", "seed") if config["source"] is None else ("recordings", "source", *CHOICES)
+    chosen = {name: config[name] for name in asked}
     key = hashlib.sha256(json.dumps([config, outcome.digest], sort_keys=True).encode()).hexdigest()[:16]
     tags = {"data_digest": outcome.digest, "verdict": said["verdict"], "sentence": said["sentence"][:5000]}
     with tracking.job_run(store, said["verdict"], key, chosen, config, tags) as job:
-        job.record(metrics(said), {f"figures/{n}.png": f for n, f in outcome.figures.items()},
-                   {"tables/scores.parquet": pd.DataFrame(said["scores"])})  # fmt: skip
+        tables = {f"tables/{name}.parquet": pd.DataFrame(said[name]) for name in ("scores", "rungs") if name in said}
+        job.record(metrics(said), {f"figures/{n}.png": f for n, f in outcome.figures.items()}, tables)
 
 
 def metrics(said: Mapping[str, Any]) -> dict[str, float]:
@@ -45,7 +50,7 @@ def metrics(said: Mapping[str, Any]) -> dict[str, float]:
 def main(config: DictConfig) -> None:
     """Resolve the configuration, run the job and keep its run."""
     resolved: dict[str, Any] = OmegaConf.to_container(config, resolve=True)  # type: ignore[assignment]
-    record(resolved, run(resolved))
+    record(resolved, (of_gauges if resolved["source"] is None else of_joint).run(resolved))
 
 
 if __name__ == "__main__":

@@ -150,8 +150,8 @@ def test_nothing_is_missing_in_a_sound_gear(folders, capsys):
 
 
 def test_next_experiment_is_named_where_one_helps():
-    """Load sharing shows at another speed, growth with heat on a warm gear; less damping is what b1 of the series may
-    be as well, at any point.
+    """Load sharing shows at another speed, and so does growth with heat, for which the gear need not be warmed; less
+    damping is what b1 of the series may be as well, at any point.
     """
     recordings = recorded(seed=4, points=POINTS[2:3])
     found = answer(recordings, Unit(model.Model(gear(GEAR))), [LoadSharing, ReducedDamping, ThermalGrowth])
@@ -162,8 +162,11 @@ def test_next_experiment_is_named_where_one_helps():
     assert helpful.separation >= SEPARATED
     assert helpful.situation.point != POINTS[2]
     assert helpful.situation.conditions == Conditions()
-    assert experiments["thermal growth"].situation.conditions.temperature == 45
-    assert "with the gear at 45 degC" in str(experiments["thermal growth"])
+    growth = experiments["thermal growth"]
+    assert growth.separation >= SEPARATED
+    assert growth.situation.conditions == Conditions()
+    warm = replace(growth, situation=replace(growth.situation, conditions=Conditions(45.0)))
+    assert "with the gear at 45 degC" in str(warm)
     assert helpless.recordings is None
     assert "no recording on the bench tells reduced damping" in str(helpless)
     assert next_experiments(replace(found, absorbed=())) == ()

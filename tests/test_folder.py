@@ -27,7 +27,7 @@ from swgsim.intake.source_map import read_map
 from swgsim.intake.sources import read_mapped
 from swgsim.recording import Recording
 
-EXAMPLE_MAP = Path(__file__).parents[1] / "conf" / "source" / "example.yaml"
+EXAMPLE_MAP = Path(__file__).parents[1] / "conf" / "sources" / "example.yaml"
 ROWS = 600
 
 

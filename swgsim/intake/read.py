@@ -30,7 +30,7 @@ def read_recordings(path: Path, mapping: Path | None = None) -> Intake:
         A folder with a manifest, a file of :func:`swgsim.intake.recording_file.write_file`, or, with a map, files of
         others.
     mapping : Path, optional
-        A column map (conf/source/example.yaml).
+        A column map (conf/sources/example.yaml).
 
     Raises
     ------

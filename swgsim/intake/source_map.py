@@ -73,7 +73,7 @@ class ColumnSource:
 
 @dataclass(frozen=True)
 class SourceMap:
-    """A column map (conf/source/example.yaml).
+    """A column map (conf/sources/example.yaml).
 
     Attributes
     ----------
@@ -121,9 +121,9 @@ def read_map(path: Path) -> SourceMap:
         config = yaml.safe_load(path.read_text(encoding="utf-8"))
         return _source_map(config)
     except (yaml.YAMLError, UnicodeDecodeError, RecursionError) as error:
-        raise FileDefect(str(path), f"no YAML ({error})", "a column map such as conf/source/example.yaml") from None
+        raise FileDefect(str(path), f"no YAML ({error})", "a column map such as conf/sources/example.yaml") from None
     except (TypeError, ValueError) as error:
-        raise FileDefect(str(path), str(error), "a column map such as conf/source/example.yaml") from None
+        raise FileDefect(str(path), str(error), "a column map such as conf/sources/example.yaml") from None
 
 
 def _source_map(config: Any) -> SourceMap:

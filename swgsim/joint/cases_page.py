@@ -1,0 +1,47 @@
+"""All cases on one page, for a robot engineer to pass on: what the textbook lacked and what each effect bought."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from swgsim.joint.page import capital
+from swgsim.loop.page import figure
+from swgsim.page import environment
+
+
+def page(said: Mapping[str, Mapping[str, Any]], missing: Mapping[str, str], folders: Mapping[str, Path]) -> str:
+    """The page of all cases.
+
+    Parameters
+    ----------
+    said : mapping
+        Name of a case to its report.
+    missing : mapping
+        Name of a case to why it has no answer.
+    folders : mapping
+        Name of a case to the folder of its answer, where the pictures are.
+    """
+    templates = environment("swgsim")
+    templates.filters["figure"] = figure
+    templates.filters["capital"] = capital
+    ladders = {name: (folder / "ladder.png").read_bytes() for name, folder in folders.items()}
+    return templates.get_template("joint/cases.html.jinja").render(said=said, missing=missing, ladders=ladders)
+
+
+def tables(said: Mapping[str, Mapping[str, Any]]) -> str:
+    """The ladders as Markdown, for the documentation."""
+    parts = ["<!-- Written by scripts/joints.py; do not edit. -->"]
+    for name, each in said.items():
+        unit, floor = each["unit"], each["noise_floor"]
+        parts.append(
+            f"\n## {capital(name)}\n\n{each['sentence']}\n\n"
+            f"Fitted: {len(each['split']['fit'])} recordings; held out: {', '.join(each['split']['heldout'])}. "
+            f"Noise at rest: {figure(floor) + ' ' + unit if floor is not None else 'not recorded'}.\n\n"
+            f"| effect | fit [{unit}] | held out [{unit}] | held out below 5 Hz [{unit}] | |\n|---|---|---|---|---|"
+        )
+        parts += [
+            f"| {'+ ' if rung['kept'] and rung['effect'] != 'textbook' else ''}{rung['title']} | {rung['fit']:.4f} | "
+            f"{rung['heldout']:.4f} | {rung['heldout_slow']:.4f} | {'kept' if rung['kept'] else rung['why']} |"
+            for rung in each["rungs"]
+        ]
+    return "\n".join(parts) + "\n"

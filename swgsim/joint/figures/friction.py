@@ -1,0 +1,67 @@
+"""Picture: friction over speed by session."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from swgsim import style
+from swgsim.joint.days import OF_SPEED, Days, rising
+from swgsim.joint.figures.parts import face, pieces, session_key, sessions, short, tables, unit
+from swgsim.joint.judged import Judged
+from swgsim.joint.recording import JointRecording
+from swgsim.joint.textbook import Zero
+
+# Below, a probability rests on assumptions that nobody can check.
+SMALL = 1e-6
+
+
+def friction(judged: Judged, days: Days) -> Figure:
+    """Left friction at the mean speeds of stretches and the curve of every session, right its part that rises."""
+    picture = style.figure(11, 4.4)
+    over, beside = picture.subplots(1, 2, width_ratios=[2, 1])
+    look, speeds = sessions(judged), _points(judged, over)
+    for place, day in enumerate(days.days):
+        colour, marker = look[day.session]
+        low, high = speeds[day.session]
+        grid = np.linspace(low, high, 400)
+        at = _at(grid)
+        curve = day.coulomb * at.sense + day.zero + day.share * rising(at, judged.ladder.top.terms)
+        over.plot(grid, curve, color=colour, linewidth=1.2)
+        beside.errorbar(place, day.share, yerr=1.96 * day.deviation, color=colour, marker=marker, capsize=4)
+    beside.set_xticks(
+        range(len(days.days)), short([day.session for day in days.days]), rotation=30, ha="right", fontsize=8
+    )
+    beside.set_xlim(-0.6, len(days.days) - 0.4)
+    style.label(over, "speed of the joint [rad/s]", f"friction [{unit(judged)}]")
+    style.label(
+        beside, "", "rising friction, share of all sessions", f"all the same: probability {_chance(days.chance)}"
+    )
+    session_key(picture, judged)
+    return picture
+
+
+def _at(speeds: np.ndarray) -> JointRecording:
+    """A joint at these speeds."""
+    return JointRecording("", "", "", "", 0.01 * np.arange(len(speeds)), {"q": np.zeros(len(speeds)), "omega": speeds})
+
+
+def _chance(value: float) -> str:
+    return f"{value:.1g}" if value >= SMALL else f"below {SMALL:g}"
+
+
+def _points(judged: Judged, axes: Axes) -> dict[str, tuple[float, float]]:
+    """Draw friction at mean speeds; the lowest and the highest speed of every session."""
+    others = [term for term in judged.ladder.top.terms if not isinstance(term, (*OF_SPEED, Zero))]
+    look = sessions(judged)
+    found: dict[str, tuple[float, float]] = {}
+    for table, heldout in tables(judged):
+        rest = table.signal - sum(table.columns(term) @ np.array(term.weights) for term in others)
+        for number, each in enumerate(table.recordings):
+            own, (colour, marker) = rest[table.run == number], look[each.session]
+            for chosen in pieces(each):
+                speed = float(each.speed[chosen].mean())
+                shown = face(colour, heldout)
+                axes.plot(speed, own[chosen].mean(), color=colour, marker=marker, markerfacecolor=shown, markersize=5)
+                low, high = found.get(each.session, (0.0, 0.0))
+                found[each.session] = min(low, speed), max(high, speed)
+    return found

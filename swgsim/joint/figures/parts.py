@@ -1,0 +1,114 @@
+"""What the pictures of a joint have in common: colours, and stretches of recordings at like speed."""
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+import numpy as np
+from jaxtyping import Bool
+from matplotlib.axis import Axis
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
+
+from swgsim.joint.judged import Judged
+from swgsim.joint.recording import SIGNALS, JointRecording
+from swgsim.joint.regression import Table
+
+BEFORE, AFTER, FLOOR, GREY = "#D55E00", "#0072B2", "#000000", "#8c8c8c"
+# Of sessions; neighbours differ in brightness too.
+COLOURS = ("#000000", "#E69F00", "#0072B2", "#009E73", "#D55E00", "#56B4E9")
+MARKERS = "os^D"
+# What is written at axes of a signal.
+SHORT = {"T_sensor": "torque", "current": "current"}
+# Of a motion in one direction, the net way is at least this share of the angles that it covers.
+ONE_WAY = 0.9
+# Classes of speed to which each direction of a motion to and fro is cut, and fewest samples that say anything of one.
+CLASSES, FEWEST = 5, 50
+# Letters that fit in a line of a legend.
+LINE = 110
+
+
+def unit(judged: Judged) -> str:
+    """Unit of the signal that is explained."""
+    return SIGNALS[judged.table.of].unit
+
+
+def one_way(recording: JointRecording) -> bool:
+    """Whether the joint turned in one direction only; noise at a creep does not count."""
+    q = recording.signals["q"]
+    return bool(abs(q[-1] - q[0]) > ONE_WAY * np.ptp(q))
+
+
+def steady(judged: Judged) -> bool:
+    """Whether most held-out recordings are runs in one direction, not trajectories to and fro."""
+    return bool(np.mean([one_way(each) for each in judged.heldout.recordings]) > 0.5)
+
+
+def tables(judged: Judged) -> tuple[tuple[Table, bool], ...]:
+    """What was fitted and what was held out, each with whether it was held out."""
+    return (judged.table, False), (judged.heldout, True)
+
+
+def pieces(recording: JointRecording) -> Iterator[Bool[np.ndarray, " time"]]:
+    """Samples of like speed: all of a run in one direction, classes of speed in each direction of a trajectory."""
+    if one_way(recording):
+        yield np.ones(len(recording), bool)
+        return
+    speed = recording.speed
+    edges = np.linspace(0, np.abs(speed).max(), CLASSES + 2)
+    # The lowest class holds the turns, where the speed is not like anything.
+    for low, high in pairwise(edges[1:]):
+        for side in (-1, 1):
+            chosen = (side * speed > low) & (side * speed <= high)
+            if chosen.sum() >= FEWEST:
+                yield chosen
+
+
+def sessions(judged: Judged) -> dict[str, tuple[str, str]]:
+    """Colour and marker of every session."""
+    names = sorted({each.session for table, _ in tables(judged) for each in table.recordings})
+    return {
+        name: (COLOURS[number % len(COLOURS)], MARKERS[number // len(COLOURS) % len(MARKERS)])
+        for number, name in enumerate(names)
+    }
+
+
+def session_key(picture: Figure, judged: Judged) -> None:
+    """A legend for sessions and for what was held out."""
+    look = sessions(judged)
+    names = short(list(look))
+    entries = [dot(colour, name, True, marker) for name, (colour, marker) in zip(names, look.values(), strict=True)]
+    entries += [dot(GREY, "fitted", False), dot(GREY, "held out", True)]
+    columns = max(1, min(len(entries), LINE // (max(map(len, names)) + 6)))
+    picture.legend(handles=entries, ncols=columns, loc="outside upper center", fontsize=9)
+
+
+def dot(colour: str, label: str, filled: bool, marker: str = "o") -> Line2D:
+    """An entry of a legend."""
+    return Line2D([], [], color=colour, linestyle="", marker=marker, markerfacecolor=face(colour, filled), label=label)
+
+
+def logarithmic(axis: Axis) -> None:
+    """Plain numbers at 1, 2 and 5 of every decade."""
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter(FormatStrFormatter("%g"))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def face(colour: str, filled: bool) -> str:
+    """What a marker is filled with."""
+    return colour if filled else "white"
+
+
+def short(names: Sequence[str]) -> list[str]:
+    """Names without what all of them begin with, up to a separator.
+
+    >>> short(["ur-20_01", "ur-20_02"]), short(["a"])
+    (['01', '02'], ['a'])
+    """
+    common = 0
+    if len(names) > 1:
+        same = [len(set(letters)) == 1 for letters in zip(*names, strict=False)]
+        begin = names[0][: same.index(False) if False in same else 0]
+        common = max(begin.rfind(mark) for mark in "_- ") + 1
+    return [name[common:] for name in names]

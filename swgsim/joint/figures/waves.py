@@ -1,0 +1,149 @@
+"""Picture: amplitude and phase of every ripple that was found, as measured in each recording and as modelled."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from swgsim import style
+from swgsim.joint.effects.ripple import Ripple
+from swgsim.joint.figures.parts import face, logarithmic, pieces, session_key, sessions, tables, unit
+from swgsim.joint.judged import Judged
+from swgsim.joint.naming import part_of
+from swgsim.joint.recording import JointRecording
+
+# Orders that are shown, those that gained most; panels beside one another.
+MOST, BESIDE = 9, 3
+# Waves that a stretch must hold, and share of the rate up to which a wave is seen well.
+WAVES, SEEN = 1.0, 0.45
+# Places of the neighbouring orders that say what noise there is, in resolutions of the stretch.
+NEIGHBOURS = (-5, -4, -3, -2, 2, 3, 4, 5)
+# A phase is shown from so many times the noise on.
+CLEAR = 2.0
+# Least range of the phase axis [degrees], so that small differences look small.
+LEAST_PHASE = 90.0
+# Least range of the frequency axis, in its natural logarithm: a factor of 10.
+LEAST_DECADE = 2.3
+
+
+@dataclass(frozen=True)
+class Seen:
+    """An order in a stretch: frequency [Hz], complex amplitude, what neighbouring orders have, and whence it comes."""
+
+    frequency: float
+    value: complex
+    noise: float
+    session: str
+    heldout: bool
+
+
+def waves(judged: Judged) -> Figure | None:
+    """Amplitude and phase of the ripples over their frequency; None where there is none, or none can be seen."""
+    steps = sorted(judged.ladder.steps, key=lambda step: -step.gain)
+    orders = list(dict.fromkeys(step.term.order for step in steps if isinstance(step.term, Ripple)))[:MOST]
+    measured = {order: seen(judged, order) for order in sorted(orders)}
+    measured = {order: points for order, points in measured.items() if points}
+    if not measured:
+        return None
+    columns = min(BESIDE, len(measured))
+    rows = -(-len(measured) // columns)
+    picture = style.figure(11, 4.1 * rows + 0.4)
+    panels = picture.subplots(2 * rows, columns, squeeze=False, height_ratios=[1.15, 1.0] * rows)
+    for number, (order, points) in enumerate(measured.items()):
+        row, column = divmod(number, columns)
+        _draw(panels[2 * row, column], panels[2 * row + 1, column], judged, order, points)
+    for number in range(len(measured), rows * columns):
+        row, column = divmod(number, columns)
+        panels[2 * row, column].set_visible(False)
+        panels[2 * row + 1, column].set_visible(False)
+    session_key(picture, judged)
+    return picture
+
+
+def modelled(judged: Judged, order: float, omega: np.ndarray) -> np.ndarray:
+    """Complex amplitude of an order in the model at speeds [rad/s], such that the signal is its real part times
+    exp(1j order q).
+    """
+    terms = [each for each in judged.ladder.top.terms if isinstance(each, Ripple) and each.order == order]
+    return sum(((t.weights[0] - 1j * t.weights[1]) * t.response(omega) for t in terms), np.zeros(len(omega), complex))
+
+
+def seen(judged: Judged, order: float) -> list[Seen]:
+    """An order in all recordings, by least squares on what all other terms leave."""
+    found = []
+    for table, heldout in tables(judged):
+        terms = [each for each in judged.ladder.top.terms if isinstance(each, Ripple) and each.order == order]
+        rest = judged.ladder.top.missed(table) + sum(table.columns(term) @ np.array(term.weights) for term in terms)
+        for number, each in enumerate(table.recordings):
+            own = rest[table.run == number]
+            for chosen in pieces(each):
+                point = _point(each, own, chosen, order)
+                if point is not None:
+                    speed, value, noise = point
+                    base = complex(modelled(judged, order, np.array([abs(speed)]))[0])
+                    if speed < 0 and base:
+                        # A lag turns the phase the other way; about that of the wave itself it is a mirror image.
+                        itself = sum(t.weights[0] - 1j * t.weights[1] for t in terms)
+                        value = itself * np.conj(value / itself)
+                    found.append(Seen(order * abs(speed) / (2 * np.pi), value, noise, each.session, heldout))
+    return found
+
+
+def _point(
+    recording: JointRecording, rest: np.ndarray, chosen: np.ndarray, order: float
+) -> tuple[float, complex, float] | None:
+    """Mean speed, complex amplitude and noise of an order in a stretch; None if it holds too little of it."""
+    q, speed = recording.signals["q"][chosen], float(recording.speed[chosen].mean())
+    way = abs(speed) * chosen.sum() / recording.rate
+    if order * way < WAVES * 2 * np.pi or order * abs(speed) > SEEN * 2 * np.pi * recording.rate:
+        return None
+    resolution = 2 * np.pi / float(np.ptp(q))
+    beside = [order + place * resolution for place in NEIGHBOURS if order + place * resolution > 0]
+    noise = float(np.median([abs(_fitted(q, rest[chosen], each)) for each in beside]))
+    return speed, _fitted(q, rest[chosen], order), noise
+
+
+def _fitted(q: np.ndarray, signal: np.ndarray, order: float) -> complex:
+    """Complex amplitude of a wave beside a constant."""
+    columns = np.stack([np.cos(order * q), np.sin(order * q), np.ones(len(q))], axis=1)
+    a, b, _ = np.linalg.lstsq(columns, signal)[0].tolist()
+    return complex(a, -b)
+
+
+def _draw(above: Axes, below: Axes, judged: Judged, order: float, points: list[Seen]) -> None:
+    """Amplitude above, phase below."""
+    f = np.array([point.frequency for point in points])
+    # About their middle, half the range in the logarithm.
+    middle, half = np.log(f.min() * f.max()) / 2, max(np.log(1.44 * f.max() / f.min()), LEAST_DECADE) / 2
+    grid = np.exp(np.linspace(middle - half, middle + half, 300))
+    curve = modelled(judged, order, 2 * np.pi * grid / order)
+    phase = np.rad2deg(np.unwrap(np.angle(curve)))
+    above.plot(grid, np.abs(curve), color="#777777", linewidth=1.4, zorder=1)
+    below.plot(grid, phase, color="#777777", linewidth=1.4, zorder=1)
+    for point in points:
+        colour, marker = sessions(judged)[point.session]
+        how: dict[str, Any] = {
+            "color": colour,
+            "marker": marker,
+            "markerfacecolor": face(colour, point.heldout),
+            "markersize": 4.5,
+        }
+        above.errorbar(point.frequency, abs(point.value), yerr=point.noise, elinewidth=0.7, **how)
+        if abs(point.value) > CLEAR * point.noise:
+            model = complex(np.interp(point.frequency, grid, curve.real), np.interp(point.frequency, grid, curve.imag))
+            off = np.angle(point.value / model) if model else np.angle(point.value)
+            below.plot(point.frequency, np.interp(point.frequency, grid, phase) + np.rad2deg(off), **how)
+    for axes in (above, below):
+        axes.set_xscale("log")
+        logarithmic(axes.xaxis)
+        axes.set_xlim(grid[0], grid[-1])
+    above.set_ylim(bottom=0)
+    low, high = below.get_ylim()
+    middle, half = (low + high) / 2, max(high - low, LEAST_PHASE) / 2
+    below.set_ylim(middle - half, middle + half)
+    style.label(above, "", f"amplitude [{unit(judged)}]")
+    part = part_of(order, judged.table.recordings[0].gear_ratio)
+    above.set_title(f"order {order:.6g}" + (f": {part}" if part else ""), loc="left", fontsize=9)
+    style.label(below, "frequency [Hz]", "phase [degrees]")

@@ -1,0 +1,1 @@
+"""Recordings of robot joints in: files of any maker through a column map, checked on the way."""

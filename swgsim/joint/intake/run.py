@@ -1,0 +1,131 @@
+"""One joint in one file, as it was read and before it has a time of its own."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.intake.file_defect import FileDefect, shown
+from swgsim.joint.intake.column import Column
+from swgsim.joint.intake.path_pattern import said_by
+from swgsim.joint.intake.source import JointColumns, JointSource
+from swgsim.joint.intake.table import Columns, read_table
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """What a file says of one joint after its start, in SI units.
+
+    Attributes
+    ----------
+    file : str
+        Path in the folder.
+    name, session : str
+    joint : JointColumns
+    signals : mapping
+        Name of :data:`swgsim.joint.recording.SIGNALS` to array (time,); a wrapped angle is unwrapped.
+    posture : array (joint, time)
+        [rad], of no joint if the source names none.
+    time : array (time,), optional
+        [s].
+    span : float
+        Largest minus smallest angle as written [revolutions].
+    first_row : int
+        Row of the file with the first sample, counted from 1.
+    """
+
+    file: str
+    name: str
+    session: str
+    joint: JointColumns
+    signals: Mapping[str, Float[np.ndarray, " time"]]
+    posture: Float[np.ndarray, "joint time"]
+    time: Float[np.ndarray, " time"] | None
+    span: float
+    first_row: int
+
+    @property
+    def label(self) -> str:
+        """What findings call it."""
+        return f"{self.name} {self.joint.name}"
+
+    def __len__(self) -> int:
+        return len(self.signals["q"])
+
+
+def read_runs(folder: Path, name: str, source: JointSource, start: bool) -> list[Run]:
+    """Every joint of a file, or only the one that the path names.
+
+    Parameters
+    ----------
+    folder : Path
+    name : str
+        Path in the folder.
+    source : JointSource
+    start : bool
+        Whether the run has a start, which is cut.
+
+    Raises
+    ------
+    FileDefect
+        If the file cannot be read, or its path names a joint that the source does not have.
+    """
+    said = said_by(source.path, name)
+    joints = [joint for joint in source.joints if said.get("joint", joint.name) == joint.name]
+    if not joints:
+        known = ", ".join(joint.name for joint in source.joints)
+        raise FileDefect(name, f"the joint {shown(said['joint'])}", f"one of {known}")
+    signals = [column for joint in joints for column in joint.signals]
+    times = [source.time] if source.time else []
+    wanted = [column.column for column in [*times, *signals, *source.posture]]
+    table = read_table(folder / name, name, wanted, source.header)
+    lengths = {column: len(values) for column, values in table.items()}
+    if len(set(lengths.values())) > 1:
+        raise FileDefect(name, f"columns of different lengths {lengths}", "as many values of every signal")
+    cut = _start(table, source) if start else 0
+    table = {column: values[cut:] for column, values in table.items()}
+    time = _values(table, source.time) if source.time else None
+    posture = np.empty((len(source.posture), min(len(values) for values in table.values())))
+    for row, column in zip(posture, source.posture, strict=True):
+        row[:] = _values(table, column)
+    first_row = cut + (2 if source.header else 1)
+    return [
+        Run(
+            name, said["run"], said["session"], joint,
+            {column.quantity: _values(table, column) for column in joint.signals},
+            posture, time, _span(table, joint), first_row,
+        )
+        for joint in joints
+    ]  # fmt: skip
+
+
+def _start(table: Columns, source: JointSource) -> int:
+    """Samples to cut at the start."""
+    if source.time:
+        late = np.diff(_values(table, source.time), prepend=np.nan)
+        late = np.cumsum(np.nan_to_num(late)) >= source.start_seconds
+        by_seconds = int(np.argmax(late)) if late.any() else len(late)
+    else:
+        by_seconds = round(source.start_seconds * (source.rate_hz or 0))
+    return max(source.start_samples, by_seconds)
+
+
+def _values(table: Columns, column: Column) -> Float[np.ndarray, " time"]:
+    """One signal in its unit."""
+    values = table[column.column]
+    # A number beyond all limits, and one that is none, is named by the findings.
+    with np.errstate(over="ignore", invalid="ignore"):
+        if column.wraps and np.isfinite(values).all():
+            values = np.unwrap(values, period=column.revolution)
+        return values * column.factor
+
+
+def _span(table: Columns, joint: JointColumns) -> float:
+    """How far the angle goes as it is written [revolutions]; 0 if it is no number somewhere."""
+    column = next(column for column in joint.signals if column.quantity == "q")
+    values = table[column.column]
+    with np.errstate(over="ignore", invalid="ignore"):
+        span = float(np.ptp(values)) / column.revolution if len(values) else 0.0
+    return span if np.isfinite(span) else 0.0

@@ -1,0 +1,56 @@
+"""Terms in words, and orders as revolutions of the parts of a gear."""
+
+from collections.abc import Iterable
+
+from swgsim.joint.effects.position_friction import PositionFriction
+from swgsim.joint.effects.ripple import Ripple
+from swgsim.joint.term import Term
+
+# An order is a multiple of another one if it is one but for so much.
+SAME = 0.5
+# Highest multiple of a revolution of the motor that is named.
+MOST = 30
+
+
+def in_words(term: Term, gear_ratio: float | None) -> str:
+    """A term with its order, if it has one, and what turns so often."""
+    if not isinstance(term, Ripple | PositionFriction):
+        return term.title()
+    part = part_of(term.order, gear_ratio)
+    return f"{term.title()} of order {term.order:.6g}" + (f" ({part})" if part else "")
+
+
+def part_of(order: float, gear_ratio: float | None) -> str:
+    """What turns with an order: output, motor, or the wave generator relative to the flex spline; empty if none does.
+
+    The wave generator turns with the motor; seen from a flex spline that is the output, it makes one revolution more
+    for each of the output. An ellipse repeats twice in each.
+    """
+    if gear_ratio is not None:
+        for ratio, what in ((gear_ratio, "motor"), (gear_ratio + 1, "wave generator in the flex spline")):
+            multiple = round(order / ratio)
+            if 1 <= multiple <= MOST and abs(order - multiple * ratio) < SAME:
+                return f"{multiple} per revolution of the {what}"
+    return f"{round(order)} per revolution of the output" if order == round(order) else ""
+
+
+def listed(terms: Iterable[Term], gear_ratio: float | None) -> str:
+    """Several terms in words; waves of a kind together, by what they turn with."""
+    waves: dict[str, list[str]] = {}
+    for term in terms:
+        if isinstance(term, Ripple | PositionFriction):
+            part = part_of(term.order, gear_ratio)
+            number, _, of = part.partition(" ") if part else (f"{term.order:.6g}", "", "per revolution of the output")
+            waves.setdefault(f"{term.title()} {of}", []).append(number)
+        else:
+            waves.setdefault(term.title(), [])
+    named = []
+    for what, numbers in waves.items():
+        kind, _, of = what.partition(" per ")
+        numbers = [f"{number:g}" for number in sorted({float(number) for number in numbers})]
+        named.append(f"{kind} of {_and(numbers)} per {of}" if of else what)
+    return _and(named)
+
+
+def _and(words: list[str]) -> str:
+    return ", ".join(words[:-1]) + (" and " if words[1:] else "") + words[-1] if words else ""

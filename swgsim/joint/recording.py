@@ -1,0 +1,115 @@
+"""One recording of one joint of a robot, of which only the output's motion, torque and motor current are known."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.joint.kinematics import CREEP, direction, smooth
+
+
+class Signal(NamedTuple):
+    """Unit of a signal, and what it says."""
+
+    unit: str
+    says: str
+
+
+SIGNALS: Mapping[str, Signal] = {
+    "q": Signal("rad", "angle of the joint at its output, unwrapped"),
+    "omega": Signal("rad/s", "speed of the joint"),
+    "T_sensor": Signal("N m", "torque sensor behind the gear"),
+    "current": Signal("A", "motor current"),
+    "T_rigid": Signal("N m", "torque at the output by the controller's rigid-body model, without friction"),
+}
+# Share of the time that a joint moves in a direction if it was moved there on purpose.
+BACK = 0.02
+# Signals that a forward model predicts; the others tell it what the joint did.
+PREDICTED = ("T_sensor", "current")
+
+
+@dataclass(frozen=True, eq=False)
+class JointRecording:
+    """One recording of one joint.
+
+    Attributes
+    ----------
+    name : str
+        Of the run, unique within a joint.
+    robot, joint : str
+    session : str
+        Recordings between which nothing was taken apart: a day, or a trajectory.
+    time : array (time,)
+        [s], increasing.
+    signals : mapping
+        Name of :data:`SIGNALS` to array (time,) in its unit; ``q`` and ``omega`` are always there.
+    posture : array (joint, time)
+        Angles [rad] of those joints of the robot whose axes are level and parallel, from its base to its tip, for what
+        gravity does, if known.
+    gear_ratio : float or None
+        Revolutions of the motor to one of the output, if known.
+    torque_constant : float or None
+        Torque at the output for one ampere [N m/A], if known.
+    """
+
+    name: str
+    robot: str
+    joint: str
+    session: str
+    time: Float[np.ndarray, " time"]
+    signals: Mapping[str, Float[np.ndarray, " time"]]
+    posture: Float[np.ndarray, "joint time"] | None = None
+    gear_ratio: float | None = None
+    torque_constant: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("q", "omega"):
+            if name not in self.signals:
+                raise ValueError(f"recording {self.name} has no signal {name}: {SIGNALS[name].says} is needed")
+        for name, values in self.signals.items():
+            if name not in SIGNALS:
+                raise ValueError(f"recording {self.name}: unknown signal {name!r}; choose from {', '.join(SIGNALS)}")
+            if len(values) != len(self.time):
+                raise ValueError(f"recording {self.name}: {len(values)} values of {name} at {len(self.time)} times")
+        if self.posture is not None and self.posture.shape[1] != len(self.time):
+            raise ValueError(f"recording {self.name}: {self.posture.shape[1]} postures at {len(self.time)} times")
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    @cached_property
+    def speed(self) -> Float[np.ndarray, " time"]:
+        """Speed of the joint without its noise [rad/s]."""
+        return smooth(self.signals["omega"], self.rate, 0)
+
+    @cached_property
+    def acceleration(self) -> Float[np.ndarray, " time"]:
+        """[rad/s^2]."""
+        return smooth(self.signals["omega"], self.rate, 1)
+
+    @cached_property
+    def sense(self) -> Float[np.ndarray, " time"]:
+        """Of Coulomb friction, from -1 to 1. A joint that is moved one way only, and sticks on it, keeps its sense."""
+        if turns_back([self]):
+            return direction(self.signals["omega"])
+        return np.full(len(self), float(np.sign(self.speed.sum())))
+
+    @property
+    def rate(self) -> float:
+        """Sampling rate [Hz], the mean over the recording."""
+        return (len(self.time) - 1) / float(self.time[-1] - self.time[0])
+
+    def cut(self, chosen: slice) -> "JointRecording":
+        """A stretch of the recording."""
+        signals = {name: values[chosen] for name, values in self.signals.items()}
+        posture = None if self.posture is None else self.posture[:, chosen]
+        return replace(self, time=self.time[chosen], signals=signals, posture=posture)
+
+
+def turns_back(recordings: Iterable[JointRecording]) -> bool:
+    """Whether a joint was moved in both directions, and not only shaken in one."""
+    speed = np.concatenate([each.speed for each in recordings])
+    return min(float((speed > CREEP).mean()), float((speed < -CREEP).mean())) > BACK

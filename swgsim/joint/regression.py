@@ -1,0 +1,175 @@
+"""Weights of terms by least squares over many recordings, and what they predict of recordings they have not seen."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Float, Int
+from scipy.stats import t
+
+from swgsim.joint.recording import JointRecording
+from swgsim.joint.term import Term
+
+# Stretch of a recording whose errors are taken to be independent of those of the next one [s].
+STRETCH = 1.0
+# Groups to which a single recording is cut for cross-validation.
+PARTS = 5
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """One signal of some recordings, all their samples in rows.
+
+    Attributes
+    ----------
+    recordings : tuple of JointRecording
+    of : str
+        Name of the signal that is explained.
+    """
+
+    recordings: tuple[JointRecording, ...]
+    of: str
+
+    def __post_init__(self) -> None:
+        lacking = [each.name for each in self.recordings if self.of not in each.signals]
+        if lacking or not self.recordings:
+            raise ValueError(
+                f"no recording has the signal {self.of}" if not self.recordings else
+                f"recording {lacking[0]} has no signal {self.of}: leave it out, or choose another signal"
+            )  # fmt: skip
+
+    @cached_property
+    def signal(self) -> Float[np.ndarray, " row"]:
+        """What is explained, without the zero of every run where the sensor has one."""
+        return self.rows([each.signals[self.of][:, None] for each in self.recordings])[:, 0]
+
+    def columns(self, term: Term) -> Float[np.ndarray, "row column"]:
+        """Columns of a term, treated as the signal is."""
+        return self.rows([term.columns(each) for each in self.recordings])
+
+    def rows(self, each: Sequence[Float[np.ndarray, "_ column"]]) -> Float[np.ndarray, "row column"]:
+        """Columns of all recordings; a torque sensor has another zero in every run, which is taken out."""
+        return np.vstack([part - part.mean(axis=0) for part in each] if self.of == "T_sensor" else list(each))
+
+    @cached_property
+    def run(self) -> Int[np.ndarray, " row"]:
+        """Number of the recording of every row."""
+        return np.repeat(np.arange(len(self.recordings)), [len(each) for each in self.recordings])
+
+    @cached_property
+    def session(self) -> Int[np.ndarray, " row"]:
+        """Number of the session of every row."""
+        sessions = list(dict.fromkeys(each.session for each in self.recordings))
+        return np.array([sessions.index(each.session) for each in self.recordings])[self.run]
+
+    @cached_property
+    def group(self) -> Int[np.ndarray, " row"]:
+        """What is left out together: a run, or a part of it if there is one only."""
+        return self.run if len(self.recordings) > 1 else np.arange(len(self.run)) * PARTS // len(self.run)
+
+    @cached_property
+    def stretch(self) -> Int[np.ndarray, " row"]:
+        """Number of the stretch of every row."""
+        found, first = [], 0
+        for each in self.recordings:
+            number = np.floor((each.time - each.time[0]) / STRETCH).astype(int)
+            found.append(first + number)
+            first += int(number[-1]) + 1
+        return np.concatenate(found)
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """Terms with their weights.
+
+    Attributes
+    ----------
+    table : Table
+        To which they were fitted.
+    terms : tuple of Term
+        With weights.
+    X : array (row, column)
+        Columns of all terms.
+    """
+
+    table: Table
+    terms: tuple[Term, ...]
+    X: Float[np.ndarray, "row column"]
+
+    @cached_property
+    def weights(self) -> Float[np.ndarray, " column"]:
+        """Of all columns."""
+        return np.concatenate([term.weights for term in self.terms])
+
+    @cached_property
+    def residual(self) -> Float[np.ndarray, " row"]:
+        """Measured less predicted."""
+        return self.table.signal - self.X @ self.weights
+
+    @cached_property
+    def basis(self) -> Float[np.ndarray, "row rank"]:
+        """Orthonormal directions of all columns."""
+        U, s, _ = np.linalg.svd(self.X / _scale(self.X), full_matrices=False)
+        return U[:, s > 1e-9 * s.max()]
+
+    @property
+    def error(self) -> float:
+        """Root of the mean square of the residual, in the unit of the signal."""
+        return rms(self.residual)
+
+    @cached_property
+    def unseen(self) -> Float[np.ndarray, " row"]:
+        """Residual of every group as the others predict it."""
+        scaled, y = self.X / _scale(self.X), self.table.signal
+        starts = np.flatnonzero(np.diff(self.table.group, prepend=-1))
+        parts = [slice(a, b) for a, b in zip(starts, [*starts[1:], len(y)], strict=True)]
+        squares = [scaled[part].T @ scaled[part] for part in parts]
+        products = [scaled[part].T @ y[part] for part in parts]
+        square, product = sum(squares), sum(products)
+        # Scaled columns, so the normal equations lose no more digits than the noise leaves.
+        return np.concatenate([
+            y[part] - scaled[part] @ np.linalg.lstsq(square - own, product - other, rcond=1e-9)[0]
+            for part, own, other in zip(parts, squares, products, strict=True)
+        ])  # fmt: skip
+
+    @cached_property
+    def half_interval(self) -> Float[np.ndarray, " column"]:
+        """Half of the 95 % interval of every weight, the errors being alike within a stretch only."""
+        scale = _scale(self.X)
+        inverse = np.linalg.pinv((self.X / scale).T @ (self.X / scale))
+        stretches = int(self.table.stretch.max()) + 1
+        scores = np.zeros((stretches, self.X.shape[1]))
+        np.add.at(scores, self.table.stretch, self.X / scale * self.residual[:, None])
+        spread = np.sqrt(np.diag(inverse @ (scores.T @ scores) @ inverse)) / scale
+        return float(t.ppf(0.975, max(stretches - 1, 1))) * spread
+
+    def missed(self, other: Table) -> Float[np.ndarray, " row"]:
+        """Residual on recordings that it was not fitted to."""
+        return other.signal - sum(other.columns(term) @ np.array(term.weights) for term in self.terms)
+
+
+def fit(table: Table, terms: Sequence[Term]) -> Fit:
+    """The weights of terms by least squares."""
+    columns = [table.columns(term) for term in terms]
+    X = np.hstack(columns)
+    ends = np.cumsum([each.shape[1] for each in columns])[:-1]
+    weights = np.split(solved(X, table.signal), ends)
+    return Fit(table, tuple(term.weighted(own) for term, own in zip(terms, weights, strict=True)), X)
+
+
+def solved(X: Float[np.ndarray, "row column"], y: Float[np.ndarray, " row"]) -> Float[np.ndarray, " column"]:
+    """Weights of columns by least squares; columns that cannot be told apart share them."""
+    scale = _scale(X)
+    return np.linalg.lstsq(X / scale, y, rcond=1e-9)[0] / scale
+
+
+def rms(values: Float[np.ndarray, " row"]) -> float:
+    """Root of the mean square."""
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def _scale(X: Float[np.ndarray, "row column"]) -> Float[np.ndarray, " column"]:
+    """Size of every column; 1 where there is nothing."""
+    size = np.sqrt((X**2).mean(axis=0))
+    return np.where(size > 0, size, 1.0)

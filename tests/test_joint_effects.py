@@ -1,0 +1,277 @@
+"""Effects on a joint: what each of them is proportional to, what turns its sign, and its limits."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from joint_fixtures import strain
+from scipy.signal import lsim
+
+from swgsim.joint.effects.asymmetric_friction import AsymmetricFriction
+from swgsim.joint.effects.gravity_error import GravityError
+from swgsim.joint.effects.inertia_error import InertiaError
+from swgsim.joint.effects.load_curve import LoadCurve
+from swgsim.joint.effects.load_dependent_friction import LoadDependentFriction
+from swgsim.joint.effects.load_viscosity import LoadViscosity
+from swgsim.joint.effects.maxwell_slip import MaxwellSlip
+from swgsim.joint.effects.position_friction import PositionFriction
+from swgsim.joint.effects.quadratic_friction import QuadraticFriction
+from swgsim.joint.effects.ripple import STATED, Ripple
+from swgsim.joint.effects.stribeck_friction import StribeckFriction
+from swgsim.joint.effects.sublinear_friction import SublinearFriction
+from swgsim.joint.kinematics import CREEP
+from swgsim.joint.library import SEARCHED
+from swgsim.joint.recording import JointRecording
+from swgsim.joint.term import Term
+from swgsim.joint.textbook import Friction, RigidBody, Zero, textbook
+
+RATE = 100.0
+TIME = np.arange(400) / RATE
+ALL = [*(kind() for kind in SEARCHED), Ripple(order=8.0), PositionFriction(order=8.0), RigidBody(), Friction(), Zero()]
+
+
+def recorded(q: np.ndarray, omega: np.ndarray, load: np.ndarray | None = None, rate: float = RATE) -> JointRecording:
+    signals = {"q": q, "omega": omega, "T_rigid": np.full(len(q), 10.0) if load is None else load}
+    return JointRecording("made up", "robot", "joint", "day", np.arange(len(q)) / rate, signals)
+
+
+def turning(speed: float, load: float = 10.0) -> JointRecording:
+    return recorded(speed * TIME, np.full(len(TIME), speed), np.full(len(TIME), load))
+
+
+def swing() -> JointRecording:
+    phase = 2 * np.pi * TIME / TIME[-1]
+    return recorded(np.sin(phase + 0.4), np.pi / 2 * np.cos(phase + 0.4), 10 * np.cos(1.7 * phase))
+
+
+def name(term: Term) -> str:
+    return type(term).__name__
+
+
+@pytest.mark.parametrize("term", ALL, ids=name)
+def test_units_are_those_of_the_columns(term: Term) -> None:
+    columns = term.columns(swing())
+    assert np.isfinite(columns).all()
+    assert len(columns) == len(TIME)
+    assert len(term.units("A")) in (1, columns.shape[1])
+    assert all(unit.startswith("A") for unit in term.units("A"))
+    weights = np.arange(1.0, 1 + columns.shape[1])
+    np.testing.assert_allclose(term.weighted(weights).signal(swing()), columns @ weights)
+
+
+@pytest.mark.parametrize("kind", SEARCHED)
+def test_an_effect_needs_the_signals_of_its_columns(kind: type[Term]) -> None:
+    whole = swing()
+    assert kind.possible(whole)
+    bare = replace(whole, signals={name: whole.signals[name] for name in ("q", "omega")})
+    assert kind.possible(bare) == ("T_rigid" not in kind.needs)
+
+
+@pytest.mark.parametrize(
+    ("term", "factors"),
+    [
+        (Friction(), (1, 2)),
+        (AsymmetricFriction(), (1, 2)),
+        (SublinearFriction(power=0.5), (np.sqrt(2),)),
+        (SublinearFriction(power=2 / 3), (2 ** (2 / 3),)),
+        (QuadraticFriction(), (4,)),
+        (LoadViscosity(), (2,)),
+    ],
+    ids=lambda value: name(value) if isinstance(value, Term) else "",
+)
+def test_growth_with_speed(term: Term, factors: tuple[float, ...]) -> None:
+    slow, fast = term.columns(turning(0.3)), term.columns(turning(0.6))
+    np.testing.assert_allclose(fast / slow, np.tile(factors, (len(TIME), 1)), rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("term", "factors"),
+    [(LoadDependentFriction(), (2,)), (LoadViscosity(), (2,)), (LoadCurve(), (4, 8)), (RigidBody(), (2,))],
+    ids=lambda value: name(value) if isinstance(value, Term) else "",
+)
+def test_growth_with_load(term: Term, factors: tuple[float, ...]) -> None:
+    light, heavy = term.columns(turning(0.3, 5.0))[1:], term.columns(turning(0.3, 10.0))[1:]
+    np.testing.assert_allclose(heavy / light, np.tile(factors, (len(light), 1)), rtol=1e-9)
+
+
+@pytest.mark.parametrize("term", [LoadDependentFriction(), LoadViscosity()], ids=name)
+def test_friction_by_load_is_none_without_load_and_the_same_for_both_signs_of_it(term: Term) -> None:
+    assert not term.columns(turning(0.3, 0.0)).any()
+    np.testing.assert_array_equal(term.columns(turning(0.3, -7.0)), term.columns(turning(0.3, 7.0)))
+
+
+def test_load_curve_follows_the_sign_of_the_load_alone() -> None:
+    here = swing()
+    mirrored = replace(here, signals={**here.signals, "T_rigid": -here.signals["T_rigid"]})
+    np.testing.assert_allclose(LoadCurve().columns(mirrored), -LoadCurve().columns(here))
+    still = replace(here, signals={**here.signals, "omega": 0 * TIME, "q": 0 * TIME})
+    np.testing.assert_array_equal(LoadCurve().columns(still), LoadCurve().columns(here))
+
+
+@pytest.mark.parametrize(
+    ("term", "sign"),
+    [
+        (Friction(), -1),
+        (SublinearFriction(), -1),
+        (QuadraticFriction(), -1),
+        (StribeckFriction(), -1),
+        (LoadViscosity(), -1),
+        (PositionFriction(order=8.0), -1),
+        (AsymmetricFriction(), 1),
+        (LoadCurve(), 1),
+        (GravityError(), 1),
+        (InertiaError(), 1),
+        (Ripple(order=8.0), 1),
+    ],
+    ids=lambda value: name(value) if isinstance(value, Term) else "",
+)
+def test_sign_on_the_same_way_back(term: Term, sign: int) -> None:
+    """Friction turns its sign where a motion is run backwards; gravity, inertia and waves do not."""
+    there = swing()
+    turned = {name: values[::-1] * (-1 if name == "omega" else 1) for name, values in there.signals.items()}
+    back = replace(there, signals=turned)
+    np.testing.assert_allclose(term.columns(back)[::-1], sign * term.columns(there), atol=1e-3)
+
+
+@pytest.mark.parametrize("term", [MaxwellSlip(distance=0.01), LoadDependentFriction(distance=0.01)], ids=name)
+def test_slip_has_the_opposite_sign_in_the_mirrored_motion(term: Term) -> None:
+    here = swing()
+    mirrored = replace(here, signals={**here.signals, "q": -here.signals["q"]})
+    np.testing.assert_allclose(term.columns(mirrored), -term.columns(here), atol=1e-12)
+
+
+def test_stribeck_friction_is_whole_at_creep_and_gone_at_speed() -> None:
+    term = StribeckFriction(v_s=0.2)
+    shares = [term.columns(turning(speed))[:, 0].mean() for speed in (0.03, 0.2, 2.0, -0.2)]
+    np.testing.assert_allclose(shares, [np.exp(-0.0225), np.exp(-1), 0, -np.exp(-1)], atol=1e-9)
+
+
+def test_acceleration_of_a_speed_that_is_a_parabola_is_exact() -> None:
+    omega = 0.5 * TIME**2 - TIME
+    np.testing.assert_allclose(InertiaError().columns(recorded(0 * TIME, omega))[:, 0], TIME - 1, atol=1e-9)
+
+
+def test_slip_over_a_short_distance_is_the_sense_of_the_motion() -> None:
+    here = swing()
+    moving = np.abs(np.diff(here.signals["q"], prepend=np.nan)) > 2 * 2e-4
+    sense = np.sign(here.signals["omega"])
+    slip = MaxwellSlip(distance=2e-4).columns(here)
+    np.testing.assert_allclose(slip[moving, 0], sense[moving], atol=1e-9)
+    load = LoadDependentFriction(distance=2e-4).columns(here)[:, 0]
+    np.testing.assert_allclose(load[moving], (np.abs(here.signals["T_rigid"]) * sense)[moving], atol=1e-9)
+
+
+def test_slip_is_that_of_a_bristle_and_the_second_element_bends_five_times_as_far() -> None:
+    here = swing()
+    slip = MaxwellSlip(distance=0.02).columns(here)
+    np.testing.assert_allclose(slip[:, 0], strain(here.signals["q"], 0.02), atol=1e-9)
+    np.testing.assert_allclose(slip[:, 1], strain(here.signals["q"], 0.1), atol=1e-9)
+
+
+@pytest.mark.parametrize("distance", [0.002, 0.01, 0.05])
+def test_slip_loses_the_area_of_its_loop(distance: float) -> None:
+    """A cycle of amplitude A takes 4 (A - distance) by a friction of 1; nothing while it only bends."""
+    q = 0.02 * np.sin(2 * np.pi * np.arange(3001) / 1000)
+    force = MaxwellSlip(distance=distance).columns(recorded(q, q))[1000:, 0]
+    lost = np.sum((force[1:] + force[:-1]) / 2 * np.diff(q[1000:])) / 2
+    assert lost == pytest.approx(4 * max(0.02 - distance, 0), abs=2e-4)
+
+
+@pytest.mark.parametrize("power", [0, 1, 2])
+@pytest.mark.parametrize(("corner", "damping"), [(60.0, 0.4), (150.0, 1.2)])
+@pytest.mark.parametrize("speed", [0.4, 1.0, -0.7])
+def test_ripple_is_what_a_second_order_system_answers(power: int, corner: float, damping: float, speed: float) -> None:
+    """At constant speed, against the solution in time; the input is a derivative of the wave, 1 at 100 Hz."""
+    fine = 20
+    time = np.arange(int(1.0 * 500 * fine)) / (500 * fine)
+    q, w, order = speed * time, 2 * np.pi * corner, 200.0
+    wave = (1j * order * speed / (2 * np.pi * STATED)) ** power * np.exp(1j * order * q)
+    system = ([w**2], [1, 2 * damping * w, w**2])
+    answers = [lsim(system, part, time)[1][len(time) // 2 :: fine] for part in (wave.real, wave.imag)]
+    here = recorded(q[::fine], np.full(500, speed), rate=500.0)
+    term = Ripple(order=order, power=power, corner=corner, damping=damping)
+    np.testing.assert_allclose(term.columns(here)[250:], np.stack(answers, axis=1), atol=5e-3 * np.abs(wave).max())
+
+
+def test_an_infinite_corner_filters_nothing() -> None:
+    here = turning(0.5)
+    free = np.exp(8j * here.signals["q"])
+    np.testing.assert_allclose(Ripple(order=8.0).columns(here), np.stack([free.real, free.imag], axis=1), atol=2e-4)
+
+
+def test_far_above_its_corner_a_ripple_falls_with_the_square_of_the_speed() -> None:
+    term = Ripple(order=2000.0, corner=30.0, damping=0.5)
+    slow, fast = np.abs(term.response(np.array([2.0, 4.0])))
+    assert fast / slow == pytest.approx(1 / 4, rel=0.01)
+    assert abs(term.response(np.array([30.0 * 2 * np.pi / 2000]))[0]) == pytest.approx(1.0)  # 1 / (2 damping)
+
+
+def test_amplitude_and_phase_of_a_ripple() -> None:
+    term = Ripple(order=8.0, weights=(3.0, 4.0))
+    q = np.linspace(0, 2 * np.pi / 8, 4001)
+    wave = term.signal(recorded(q, np.full(len(q), 0.1)))
+    assert wave.max() == pytest.approx(term.amplitude, rel=1e-3) == 5.0
+    assert 8 * q[wave.argmax()] == pytest.approx(term.phase, abs=5e-3)
+
+
+def test_position_friction_is_a_wave_with_the_sense_of_the_motion() -> None:
+    for speed in (0.3, -0.3):
+        here = turning(speed)
+        expected = np.sign(speed) * np.stack([np.cos(8 * here.signals["q"]), np.sin(8 * here.signals["q"])], axis=1)
+        np.testing.assert_allclose(PositionFriction(order=8.0).columns(here), expected, atol=1e-9)
+
+
+def test_gravity_error_holds_the_payload_of_a_planar_arm() -> None:
+    """Torque at each of two joints of a payload at the tip, and of a payload at the elbow."""
+    first, second = np.sin(3 * TIME), 0.5 * np.cos(2 * TIME)
+    tip = 0.6 * np.cos(first) + 0.4 * np.cos(first + second + 0.3)
+    for own, torque in ((first, tip), (second, 0.4 * np.cos(first + second + 0.3))):
+        here = replace(recorded(own, 0 * TIME), posture=np.stack([first, second]))
+        columns = GravityError().columns(here)
+        left = torque - columns @ np.linalg.lstsq(columns, torque)[0]
+        assert np.abs(left).max() < 1e-9
+
+
+def test_gravity_error_without_posture_is_that_of_one_link() -> None:
+    here = swing()
+    q = here.signals["q"]
+    np.testing.assert_allclose(GravityError().columns(here), np.stack([np.cos(q), np.sin(q)], axis=1))
+
+
+@pytest.mark.parametrize(
+    ("term", "wrong", "right"),
+    [
+        (StribeckFriction(), (-0.1,), (0.1,)),
+        (QuadraticFriction(), (-0.1,), (0.1,)),
+        (SublinearFriction(), (-0.1,), (0.1,)),
+        (LoadDependentFriction(), (-0.1,), (0.1,)),
+        (MaxwellSlip(), (-0.2, -0.1), (0.1, 0.2)),
+    ],
+    ids=lambda value: name(value) if isinstance(value, Term) else "",
+)
+def test_friction_that_drives_is_not_sound(term: Term, wrong: tuple[float, ...], right: tuple[float, ...]) -> None:
+    assert not term.weighted(np.array(wrong)).sound
+    assert term.weighted(np.array(right)).sound
+
+
+def test_textbook_takes_the_controllers_model_where_there_is_one() -> None:
+    whole = swing()
+    bare = replace(whole, signals={name: whole.signals[name] for name in ("q", "omega")})
+    assert [name(term) for term in textbook((whole,), "current")] == ["RigidBody", "Friction", "Zero"]
+    assert [name(term) for term in textbook((whole,), "T_sensor")] == ["RigidBody"]
+    assert textbook((whole,), "current")[0].columns(whole).shape[1] == 1
+    assert textbook((whole, bare), "current")[0].columns(whole).shape[1] == 3
+
+
+def test_rigid_body_of_one_link() -> None:
+    here = turning(0.5)
+    q = here.signals["q"]
+    expected = np.stack([0 * q, np.cos(q), np.sin(q)], axis=1)
+    np.testing.assert_allclose(RigidBody(modelled=False).columns(here), expected, atol=1e-9)
+
+
+def test_friction_keeps_its_sense_where_a_joint_sticks_on_its_way_and_changes_it_where_it_turns() -> None:
+    sticking = 0.5 * (np.arange(len(TIME)) < len(TIME) / 2)
+    np.testing.assert_array_equal(recorded(np.cumsum(sticking), sticking).sense, 1.0)
+    here = swing()
+    np.testing.assert_allclose(here.sense, np.tanh(here.signals["omega"] / CREEP))

@@ -1,0 +1,200 @@
+"""The ladder on simulated joints: what is hidden is found and named, and nothing is found where nothing is."""
+
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from joint_fixtures import NOTHING, Hidden, Wave, sessions, steady, trajectories
+
+from swgsim.joint.effects.stribeck_friction import StribeckFriction
+from swgsim.joint.ladder import Ladder, climb
+from swgsim.joint.library import SEARCHED
+from swgsim.joint.recording import JointRecording
+from swgsim.joint.regression import Table, fit, rms
+from swgsim.joint.term import Term
+from swgsim.joint.textbook import textbook
+
+# Enough speeds to tell one law of friction from another.
+SOME = (0.05, 0.1, 0.25, 0.55, 1.0)
+
+
+def climbed(recordings: tuple[JointRecording, ...], of: str) -> Ladder:
+    return climb(Table(recordings, of), SEARCHED)
+
+
+def names(ladder: Ladder) -> list[str]:
+    return [type(step.term).__name__ for step in ladder.steps]
+
+
+def days(seed: object, hidden: Hidden = NOTHING, which: str = "AB") -> tuple[JointRecording, ...]:
+    return sessions(seed, hidden, which, SOME, rate=100.0, seconds=3.0)
+
+
+def short_days(seed: object, hidden: Hidden = NOTHING) -> tuple[JointRecording, ...]:
+    return sessions(seed, hidden, "AB", SOME[::2], rate=80.0, seconds=2.0)
+
+
+def runs(seed: object, hidden: Hidden = NOTHING, weight: float = 40.0) -> tuple[JointRecording, ...]:
+    return trajectories(seed, hidden, weight=weight, rate=50.0)
+
+
+# What is hidden, the signal that shows it, the effect's name, an order or None, the size of its first wave or weight.
+STEADY = {
+    "ripple": (Hidden(ripple=(Wave(200.0, 0.02),)), "T_sensor", "Ripple", 200.0, 0.02),
+    "ripple of the output": (Hidden(ripple=(Wave(8.0, 0.02),)), "T_sensor", "Ripple", 8.0, 0.02),
+    "cogging": (Hidden(cogging=(Wave(200.0, 0.05),)), "current", "Ripple", 200.0, 0.05),
+    "stribeck": (Hidden(stribeck=(0.15, 0.15)), "current", "StribeckFriction", None, 0.15),
+    "sublinear": (Hidden(sublinear=1.0), "current", "SublinearFriction", None, None),
+    "quadratic": (Hidden(quadratic=0.3), "current", "QuadraticFriction", None, 0.3),
+}
+MOVED = {
+    "load": (Hidden(load=0.01), "current", "LoadDependentFriction", None, 0.01),
+    "presliding": (Hidden(presliding=(0.3, 0.01)), "current", "MaxwellSlip", None, 0.3),
+    "gravity": (Hidden(gravity=0.1), "current", "GravityError", None, None),
+    "inertia": (Hidden(inertia=0.1), "current", "InertiaError", None, 0.1),
+    "asymmetric": (Hidden(asymmetric=0.1), "current", "AsymmetricFriction", None, None),
+    "tight": (Hidden(tight=(Wave(101.0, 0.08),)), "current", "PositionFriction", 101.0, None),
+    "cogging": (Hidden(cogging=(Wave(202.0, 0.08),)), "current", "Ripple", 202.0, 0.08),
+}
+
+
+@cache
+def steady_ladder(case: str) -> Ladder:
+    hidden, of, *_ = STEADY[case]
+    return climbed(days(case, hidden), of)
+
+
+@cache
+def moved_ladder(case: str) -> Ladder:
+    hidden, of, *_ = MOVED[case]
+    return climbed(runs(case, hidden), of)
+
+
+def check(ladder: Ladder, floor: float, name: str, order: float | None, size: float | None) -> None:
+    first = ladder.steps[0].fit.terms[-1]
+    assert type(first).__name__ == name
+    if order is not None:
+        assert getattr(first, "order", None) == order
+    # The same draws of noise without the effect leave this much.
+    assert ladder.top.error < 1.03 * floor
+    assert ladder.textbook.error > 1.08 * floor
+    if size is not None:
+        found = getattr(first, "amplitude", first.weights[0])
+        deviation = first_deviation(ladder, first)
+        assert abs(found - size) < 2 * deviation
+
+
+def first_deviation(ladder: Ladder, first: Term) -> float:
+    """Largest half width of the intervals of the effect that was found first."""
+    start = len(ladder.textbook.weights)
+    return float(ladder.steps[0].fit.half_interval[start : start + len(first.weights)].max())
+
+
+@pytest.mark.parametrize("case", STEADY)
+def test_a_hidden_effect_is_found_first_in_steady_runs(case: str) -> None:
+    _, of, name, order, size = STEADY[case]
+    without = days(case)
+    check(steady_ladder(case), fit(Table(without, of), textbook(without, of)).error, name, order, size)
+
+
+@pytest.mark.parametrize("case", MOVED)
+def test_a_hidden_effect_is_found_first_in_trajectories(case: str) -> None:
+    _, of, name, order, size = MOVED[case]
+    without = runs(case)
+    check(moved_ladder(case), fit(Table(without, of), textbook(without, of)).error, name, order, size)
+
+
+@pytest.mark.parametrize("case", STEADY)
+def test_error_on_a_session_that_was_held_out_falls_near_the_noise(case: str) -> None:
+    hidden, of, *_ = STEADY[case]
+    ladder, held_out, without = steady_ladder(case), Table(days(case, hidden, "C"), of), days(case, which="C")
+    floor = fit(Table(without, of), textbook(without, of)).error
+    assert rms(ladder.top.missed(held_out)) < 1.05 * floor
+    assert rms(ladder.textbook.missed(held_out)) > 1.08 * floor
+
+
+def test_nothing_is_found_where_nothing_is_hidden() -> None:
+    """16 draws, of which one may show something by luck."""
+    findings = []
+    for draw in range(4):
+        findings.append(names(climbed(short_days(("nothing", draw)), "T_sensor")))
+        findings.append(names(climbed(short_days(("nothing", draw)), "current")))
+    findings += [names(climbed(runs(("nothing", draw)), "current")) for draw in range(8)]
+    assert sum(map(bool, findings)) <= 1, findings
+
+
+def test_two_effects_are_told_apart() -> None:
+    hidden = Hidden(load=0.01, gravity=0.1)
+    ladder = climbed(runs("two", hidden), "current")
+    assert set(names(ladder)[:2]) == {"LoadDependentFriction", "GravityError"}
+    assert ladder.top.error < 1.03 * fit(Table(runs("two"), "current"), textbook(runs("two"), "current")).error
+
+
+@pytest.mark.parametrize("draw", range(2))
+def test_load_dependent_friction_is_not_found_on_an_axis_without_load(draw: int) -> None:
+    """Presliding is at its largest where the motion turns, and so is the load that is left, that of inertia."""
+    presliding = climbed(runs(draw, Hidden(presliding=(0.3, 0.01)), weight=0.0), "current")
+    assert names(presliding)[:1] == ["MaxwellSlip"]
+    assert "LoadDependentFriction" not in names(presliding)
+    assert "LoadDependentFriction" not in names(climbed(runs(draw, weight=0.0), "current"))
+
+
+@pytest.mark.parametrize("draw", range(2))
+def test_stribeck_friction_is_not_claimed_of_coulomb_and_viscous_friction(draw: int) -> None:
+    """Not even if the friction differs from run to run, as that of a joint that warms up does."""
+    ladder = climbed(days(("coulomb", draw), Hidden(scatter=0.02)), "current")
+    assert names(ladder) == []
+    refused = next(trial for trial in ladder.refused if isinstance(trial.term, StribeckFriction))
+    assert refused.why
+
+
+def test_an_effect_of_one_session_alone_is_refused_for_that() -> None:
+    here, there = Hidden(ripple=(Wave(200.0, 0.02),)), NOTHING
+    mixed = (*days("mixed", there, "AB"), *days("mixed", here, "C"))
+    ladder = climbed(mixed, "T_sensor")
+    assert names(ladder) == []
+    wave = next(trial for trial in ladder.refused if getattr(trial.term, "order", None) == 200.0)
+    assert wave.gain > 0
+    assert "session" in wave.why
+
+
+def test_why_is_said_of_every_refused_effect_and_of_no_step() -> None:
+    ladder = steady_ladder("stribeck")
+    assert all(trial.why for trial in ladder.refused if not trial.pays)
+    assert not any(step.why for step in ladder.steps)
+    assert all(step.pays for step in ladder.steps)
+
+
+def test_steps_lower_the_error_and_hold_what_was_found_before() -> None:
+    ladder = moved_ladder("presliding")
+    fits = [ladder.textbook, *(step.fit for step in ladder.steps)]
+    assert all(after.error < before.error for before, after in pairwise(fits))
+    assert [len(each.terms) for each in fits] == list(range(3, 3 + len(fits)))
+    assert ladder.top is fits[-1]
+
+
+def test_the_same_recordings_give_the_same_ladder() -> None:
+    hidden, of, *_ = MOVED["presliding"]
+    first, again = moved_ladder("presliding"), climbed(runs("presliding", hidden), of)
+    assert again.top.terms == first.top.terms
+    assert [trial.term for trial in again.refused] == [trial.term for trial in first.refused]
+
+
+def test_every_step_is_told() -> None:
+    said: list[str] = []
+    ladder = climb(Table(runs("load", MOVED["load"][0]), "current"), SEARCHED, said.append)
+    assert len(said) == len(ladder.steps) > 0
+    assert said[0].startswith("load dependent friction")
+
+
+def test_a_library_without_the_effect_does_not_find_it() -> None:
+    kinds = [kind for kind in SEARCHED if not kind.__name__.startswith("Load")]
+    ladder = climb(Table(runs("load", MOVED["load"][0]), "current"), kinds)
+    assert ladder.top.error > 1.2 * moved_ladder("load").top.error
+
+
+def test_a_single_run_can_be_climbed() -> None:
+    one = (steady(0.8, "one", Hidden(ripple=(Wave(200.0, 0.03),)), rate=200.0, seconds=10.0),)
+    ladder = climbed(one, "T_sensor")
+    assert np.isclose(ladder.steps[0].term.order, 200, atol=1.0)
