@@ -89,7 +89,10 @@ def fit_temperature(probabilities: Float[np.ndarray, "row class"], y: Int[np.nda
 def tempered_by_others(
     probabilities: Float[np.ndarray, "row class"], y: Int[np.ndarray, " row"], gears: np.ndarray
 ) -> tuple[Float[np.ndarray, "row class"], Float[np.ndarray, " gear"]]:
-    """Probabilities of every gear with the temperature that all the other gears give, so none of its own labels.
+    """Probabilities of every gear with the temperature that the predictions on all the other gears give.
+
+    Predictions on a gear enter its own temperature nowhere. Its labels may still: where gears are judged in folds, the
+    models that judge the others have learnt from it.
 
     Parameters
     ----------
@@ -112,7 +115,9 @@ def tempered_by_others(
     """
     names = np.unique(gears)
     if len(names) < 2:
-        raise ValueError(f"{len(names)} gear, at least 2 are needed to fit the temperature of one on the others")
+        raise ValueError(
+            f"{len(names)} gear, at least 2 are needed to fit the temperature of one on the others: judge more gears"
+        )
     result, temperatures = np.empty_like(probabilities), np.empty(len(names))
     for number, gear in enumerate(names):
         here = gears == gear

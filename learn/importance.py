@@ -46,12 +46,13 @@ def grouped_permutation(
         Number of the operating point of each row.
     rng : Generator
     repeats : int
-        Permutations per group.
+        Permutations per group, 2 at least for a doubt.
 
     Returns
     -------
     DataFrame
-        ``group``, ``label``, mean ``drop`` of recall and its standard deviation ``spread`` over the repeats [points].
+        ``group``, ``label``, mean ``drop`` of recall and its ``doubt``, twice the standard error over the repeats
+        [points].
 
     Raises
     ------
@@ -72,8 +73,8 @@ def grouped_permutation(
             for copy in permuted:
                 copy[np.ix_(rows, chosen)] = X[np.ix_(rng.permutation(rows), chosen)]
         drop = full - _recalls(model, permuted, y)
-        parts.append(pd.DataFrame({"group": name, "drop": drop.mean(), "spread": drop.std(ddof=0)}))
-    return pd.concat(parts).rename_axis("label").reset_index()[["group", "label", "drop", "spread"]]
+        parts.append(pd.DataFrame({"group": name, "drop": drop.mean(), "doubt": 2 * drop.sem()}))
+    return pd.concat(parts).rename_axis("label").reset_index()[["group", "label", "drop", "doubt"]]
 
 
 def _recalls(model: Predictor, X: Float[np.ndarray, "copy row feature"], y: np.ndarray) -> pd.DataFrame:

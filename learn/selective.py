@@ -50,7 +50,7 @@ def conformal_threshold(
     probabilities: Float[np.ndarray, "row class"],
     y: Int[np.ndarray, " row"],
     gears: np.ndarray,
-    nominal: float = 0.9,
+    nominal: float,
 ) -> float:
     """The lowest probability with which a class still belongs to the set of a recording of a new gear.
 

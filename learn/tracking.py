@@ -207,8 +207,8 @@ def finished_runs(store: Store, **parameters: str) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        Columns are the parameters (text), the metrics (numbers), ``data_digest`` and ``run_id``; empty if there is no
-        run.
+        Columns are the parameters (text), the metrics (numbers), ``data_digest``, ``code_version`` (empty where a run
+        has none) and ``run_id``; empty if there is no run.
     """
     conditions = [f"params.{name} = '{value}'" for name, value in parameters.items()]
     query = " and ".join(["tags.kind = 'job'", "attributes.status = 'FINISHED'", *conditions])
@@ -220,10 +220,13 @@ def finished_runs(store: Store, **parameters: str) -> pd.DataFrame:
         newest.setdefault(tuple(sorted(run.data.params.items())), run)
     return pd.DataFrame(
         [
-            {**r.data.params, **r.data.metrics, "data_digest": r.data.tags["data_digest"], "run_id": r.info.run_id}
+            {
+                **r.data.params, **r.data.metrics, "data_digest": r.data.tags["data_digest"],
+                "code_version": r.data.tags.get("code_version", ""), "run_id": r.info.run_id,
+            }
             for r in newest.values()
         ]
-    )
+    )  # fmt: skip
 
 
 def table_of(store: Store, run_id: str, path: str) -> pd.DataFrame:

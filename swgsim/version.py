@@ -5,6 +5,8 @@ from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
+from swgsim.checks import require_known
+
 # Modules that only show, check or question what the others make: a new caption is no new data set.
 SHOWING = (
     "benchmark.py",
@@ -25,7 +27,7 @@ SHOWING = (
     "virtual_bench.py",
 )
 # Packages of such modules.
-SHOWING_PACKAGES = ("blind", "defects", "intake", "loop", "oracle")
+SHOWING_PACKAGES = ("blind", "defects", "intake", "joint", "loop", "oracle")
 
 
 @cache
@@ -36,7 +38,13 @@ def code_version(*also: str) -> str:
     ----------
     also : str
         Packages and modules of those that only show or question, such as "loop" or "virtual_bench.py".
+
+    Raises
+    ------
+    ValueError
+        If there is no such package or module; it lists the choices.
     """
+    require_known("code_version", also, (*SHOWING, *SHOWING_PACKAGES))
     digest = hashlib.sha256()
     folder = Path(__file__).parent
     for source in sorted(folder.rglob("*.py")):

@@ -42,6 +42,16 @@ def test_each_group_carries_what_the_rule_reads_from_it():
     assert (drop["noise"] == 0).all()
 
 
+def test_doubt_is_twice_the_standard_error_of_the_repeats():
+    few, many = (importance(repeats=repeats)["doubt"]["pair", "cracked"] for repeats in (10, 160))
+    expected = (
+        2 * 100 * np.sqrt(2 / 9 / 500 / 160)
+    )  # of a share among 500 cracked rows, a little less without replacing
+    assert expected / 2 < many < 1.2 * expected
+    assert many < few / 2
+    assert importance()["doubt"]["noise", "cracked"] == 0
+
+
 def test_values_stay_at_their_operating_point():
     X, y, block = rows()
     assert (importance()["drop"]["speed"] == 0).all()

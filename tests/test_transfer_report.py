@@ -15,22 +15,23 @@ from hydra import compose, initialize_config_dir
 from omegaconf import OmegaConf
 
 from learn import settings, tracking
-from learn.identity import flat
+from learn.identity import code_version, flat
 from learn.levels import NewGears
 from learn.residuals import ERRORS
 from learn.transfer_report import adapted as transfer_adapted
-from learn.transfer_report import carried, job, map_study, results, sentences
+from learn.transfer_report import carried, job, map_study, practice, results, sentences
 from learn.transfer_report import judging as transfer_judging
 from learn.transfer_report import runs as transfer_runs
 from learn.transfer_report import studies as transfer_studies
 from learn.transfer_report.content import cnn_fit, content
+from learn.transfer_report.page import Table
 from swgsim import storage
 from swgsim.oracle.job import KNOWN
 from swgsim.recordings import CLASSES
 from swgsim.seeds import generator
 
 ROOT = Path(__file__).parents[1]
-POOLS = {"folds": 2, "development": 2, "labelled": 2, "unlabelled": 1, "kept_out": 1}
+POOLS = {"folds": 2, "development": 2, "labelled": 2, "unlabelled": 1, "kept_out": 1, "variants": None}
 METHODS = (("rf", "selection_1", 0.4), ("logistic_regression", "harmonics", 0.15), ("perceptron", "harmonics", 0.2))
 CASES = ("1_2_to_3", "2_3_to_1", "1_3_to_2")
 
@@ -79,10 +80,10 @@ class Keeper:
     def __init__(self, folder, digests):
         self.store, self.digests = tracking.local_store(str(folder)), digests
 
-    def __call__(self, study, condition="bench", metrics=None, tables=None, config=None, **parameters):
-        everything = {"study": study, "adaptation": "none", "draws": 2, "seed": 0, "shots": "[1, 2]", **parameters}
-        everything |= {f"protocol.{name}": value for name, value in POOLS.items()}
-        tags = {"data_digest": self.digests[condition], "code_version": "1"}
+    def __call__(self, study, condition="bench", metrics=None, tables=None, config=None, code="1", **parameters):
+        everything = {"study": study, "adaptation": "none", "draws": 2, "seed": 0, "shots": "[1, 2]"}
+        everything |= {f"protocol.{name}": value for name, value in POOLS.items()} | parameters
+        tags = {"data_digest": self.digests[condition], "code_version": code}
         with tracking.job_run(self.store, "run", "key", everything, config or {}, tags) as run:
             kept = {f"tables/{name}.parquet": table for name, table in (tables or {}).items()}
             run.record({"test_score": 80.0, "fit_seconds": 1.0, **(metrics or {})}, {}, kept)
@@ -115,8 +116,9 @@ def keep_all(keep, data):
         ("coral", 0.3, (0,)),
     ):
         specimens, gears = adapted(after, 0.2, shots)
+        few = {"protocol.variants": 5} if adaptation == "coral" else {}
         keep("transfer", metrics={"trial/1": 90.0 - 10 * after}, tables={"specimens": specimens, "gears": gears},
-             classifier="perceptron", features="harmonics", adaptation=adaptation)  # fmt: skip
+             classifier="perceptron", features="harmonics", adaptation=adaptation, **few)  # fmt: skip
 
 
 def write_data(folder):
@@ -173,6 +175,51 @@ def test_whole_report_from_fabricated_runs(tmp_path):
     assert "gears of grid=far have" in page
     assert "experiment=transfer_map grid=gears" in page  # what is left out names its command
     assert page.count("✓ reached") + page.count("✗ missed") == 5
+    assert "MLP: CORAL (trained on 5 variants)" in page
+    assert "replay (trained on" not in page
+    assert re.search(r"studies with runs of older code</td>\s*<td[^>]*>zero_shot, zero_shot_disturbed, inputs", page)
+
+
+def test_runs_of_the_present_code_replace_older_ones_of_their_study(tmp_path):
+    keep = Keeper(tmp_path, {"bench": "a", "foreign": "a+b", "changed": "a+c", "other": "c"})
+    for study, condition, classifier, code in (
+        ("inputs", "bench", "retired", "1"), ("inputs", "bench", "cnn", code_version()),
+        ("no_reference", "bench", "cnn", "1"), ("transfer_map", "foreign", "rf", "1"),
+        ("transfer_map", "changed", "knn", "1"), ("transfer", "other", "rf", "1"),
+    ):  # fmt: skip
+        keep(study, condition, code=code, classifier=classifier, features="harmonics")
+    found = transfer_runs.present_runs(keep.store, ["a"], ["a", "b"])
+    assert set(zip(found["study"], found["classifier"], strict=True)) == {
+        ("inputs", "cnn"), ("no_reference", "cnn"), ("transfer_map", "rf")
+    }  # fmt: skip
+    assert transfer_runs.of_older_code(found) == ["no_reference", "transfer_map"]
+
+
+def test_every_experiment_of_a_study_is_among_its_commands():
+    found = {study: set() for study in transfer_runs.EXPERIMENTS}
+    for path in (ROOT / "conf" / "experiment").glob("*.yaml"):
+        study = yaml.safe_load(path.read_text()).get("study")
+        if study in found and not path.stem.endswith("_small"):
+            found[study].add(path.stem)
+    assert found == {study: set(names) for study, names in transfer_runs.EXPERIMENTS.items()}
+
+
+def test_options_are_those_of_the_best_trial_the_first_of_equals():
+    config = {"classifier": {"trials": [{"columns": 0.1}, {"columns": 0.2}, {"columns": 0.3}]}}
+    for scores, chosen in (([80.0, 90.0, 85.0], 0.2), ([80.0, 90.0, 90.0], 0.2), ([90.0, 90.0, 80.0], 0.1)):
+        run = pd.Series({f"trial/{number}": score for number, score in enumerate(scores, start=1)})
+        assert carried.options_of(config, run, NewGears(**POOLS)) == {"columns": chosen}
+
+
+def test_a_single_gear_has_no_temperature():
+    table = predictions(0.2, "one gear")
+    table = table[table["gear"] == table["gear"].min()].reset_index(drop=True)
+    rows = [("efficiency", label, 5.0, 1.0) for label in CLASSES[1:]]
+    drops = pd.DataFrame(rows, columns=["group", "label", "drop", "doubt"])
+    section = practice.section("best", {"best": table}, None, "best", carried.Carried(drops, drops, 1))
+    (judged,) = [part for part in section.parts if isinstance(part, Table) and "temperatures" in part.header]
+    assert judged.rows[0][3:6] == ["-", "-", "-"]
+    assert any("on the 1 gears of the first fold" in part for part in section.parts if isinstance(part, str))
 
 
 def test_cnn_is_timed_on_no_more_recordings_than_the_data_set_has(monkeypatch, tmp_path):
@@ -280,14 +327,25 @@ def test_json_has_no_interval_with_few_gears():
     json.dumps(said, allow_nan=False)
 
 
-def test_physics_is_checked_by_the_largest_drop():
-    rows = [("efficiency", "reduced_damping", 30.0), ("torque ripple", "reduced_damping", 1.0),
-            ("efficiency", "reduced_stiffness", 9.0), ("torque ripple", "reduced_stiffness", 4.0),
-            ("efficiency", "tip_tooth_crack", 0.2), ("torque ripple", "tip_tooth_crack", 0.1)]  # fmt: skip
-    damping, stiffness, tip = carried.physics_checked(pd.DataFrame(rows, columns=["group", "label", "drop"]))
+def test_physics_is_checked_by_what_costs_most_beyond_doubt():
+    rows = [("efficiency", "reduced_damping", 30.0, 1.0), ("torque ripple", "reduced_damping", 1.0, 0.5),
+            ("efficiency", "reduced_stiffness", 9.0, 1.0), ("torque ripple", "reduced_stiffness", 4.0, 1.0),
+            ("efficiency", "root_tooth_crack", 9.0, 1.0), ("gauge offsets", "root_tooth_crack", 8.5, 1.0),
+            ("efficiency", "tip_tooth_crack", 3.0, 4.0), ("torque ripple", "tip_tooth_crack", 0.1, 0.2)]  # fmt: skip
+    drops = pd.DataFrame(rows, columns=["group", "label", "drop", "doubt"])
+    damping, stiffness, root, tip = carried.physics_checked(drops)
     assert "most recall is lost with efficiency (30.0 points), as its physics says" in damping
     assert "its physics names torque ripple (torque ripple 4.0)" in stiffness
-    assert "no single group costs more than 0.2 points" in tip
+    assert "with efficiency, as much as with gauge offsets (9.0 points), as its physics says" in root
+    assert "no single group costs recall beyond chance" in tip
+
+
+def test_lines_are_named_beyond_doubt_and_ties_are_counted():
+    lines = [("a", 9.0, 1.0), ("b", 8.5, 1.0), ("c", 8.4, 1.0), ("d", 8.2, 1.0), ("e", 2.0, 1.0), ("f", 0.5, 1.0)]
+    drops = pd.DataFrame([(*line, "tip_tooth_crack") for line in lines], columns=["group", "drop", "doubt", "label"])
+    said = carried.lines_said(drops)[-1]
+    assert said.endswith("a (9.0), b (8.5) and c (8.4); 1 more cost as much as the first, within the doubt.")
+    assert carried.lines_said(drops.assign(doubt=10.0))[-1].endswith("none.")
 
 
 def test_every_feature_of_the_harmonics_has_its_group():
@@ -297,6 +355,11 @@ def test_every_feature_of_the_harmonics_has_its_group():
     assert set(groups["operating point"]) == {"speed", "load", "temperature", *ERRORS}
     assert {"s0[0]", "|s1..s4[0]| wave 2"} <= set(groups["gauge offsets"])
     assert all("[0]" not in name for name in groups["torque ripple"])
+    common = {f"|s1..s4[{order}]| wave 0" for order in (2, 4)}
+    assert common <= set(groups["torque ripple"])
+    lines = {line: {names[i] for i in columns} for line, columns in carried.lines_of(names).items()}
+    assert common <= lines["mean[2]"] | lines["mean[4]"]
+    assert lines["mean[2]"] == {"|s1..s4[2]| wave 0", "Re mean[2] / healthy", "Im mean[2] / healthy"}
 
 
 def test_sets_of_new_gears_keep_their_promise():
@@ -322,18 +385,20 @@ def test_costliest_lines_come_first():
 def test_map_names_the_best_method_without_adaptation():
     specimens, _ = adapted(0.05, 0.2, (5,))
     place = {"features": "harmonics", "target": "few-bench", "protocol.sources": "2", "features.acquisitions": "1"}
-    plain = pd.DataFrame([{**place, "classifier": name, "adaptation": "none"} for name in ("rf", "extra_trees")])
-    tables = {"0": predictions(0.5, "worse"), "1": predictions(0.0, "better")}
+    names = ("rf", "extra_trees", "rf")
+    plain = pd.DataFrame([{**place, "classifier": name, "adaptation": "none"} for name in names])
+    tables = {"0": predictions(0.5, "worse"), "1": predictions(0.0, "better"), "2": predictions(0.0, "outdated")}
     best = map_study.best_unadapted(plain, tables)
     adapts = pd.DataFrame([{**place, "classifier": "perceptron", "adaptation": "replay"}])
     table = map_study.transfer_map(adapts, {"0": specimens}, best)
-    assert list(table["best"]) == ["extra trees on harmonics"]
+    assert list(table["best"]) == ["extra trees on harmonics (of 2)"]
     assert table["best_low"].item() > 0 > table["high"].item()
-    parts = transfer_adapted.where_it_pays(table).parts
+    parts = transfer_adapted.where_it_pays(table, "2").parts
+    assert "Draws of the shots for each gear: 2." in parts[0]
     assert "clearly better in 0 of 1 cases and clearly worse in 1." in parts[1]
     assert parts[-1].rows[0][6] == "yes"
     alone = map_study.transfer_map(adapts, {"0": specimens}, {})
-    assert "is not compared here" in transfer_adapted.where_it_pays(alone).parts[1]
+    assert "is not compared here" in transfer_adapted.where_it_pays(alone, "1").parts[1]
 
 
 def test_map_tells_gain_from_harm():
@@ -345,7 +410,7 @@ def test_map_tells_gain_from_harm():
     table = map_study.transfer_map(pd.DataFrame(rows), {"0": specimens, "1": harmed}, {})
     where = ("gears far outside the sources", "other gears of the sources' population")
     assert list(table["scenario"]) == [f"{target}: 2 source gears, 1 reference acquisition" for target in where]
-    verdicts = [row[6] for row in transfer_adapted.where_it_pays(table).parts[-1].rows]
+    verdicts = [row[6] for row in transfer_adapted.where_it_pays(table, "1").parts[-1].rows]
     assert verdicts == ["yes", "harms"]
 
 

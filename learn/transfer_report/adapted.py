@@ -1,5 +1,7 @@
 """The sections of the report on adapting to a gear: error against shots, what is forgotten, and where it pays."""
 
+from collections.abc import Mapping
+
 import numpy as np
 import pandas as pd
 
@@ -9,8 +11,10 @@ from learn.transfer_report.results import FOREST, FROM_SCRATCH, ORACLE_OF_SESSIO
 from learn.transfer_report.sentences import FORGETTING_GOAL, number, of_row
 
 
-def transfer(zero: ZeroShot, few: pd.DataFrame, forgotten: pd.DataFrame, draws: str, labelled: int) -> Section:
-    """Error against shots, per method, and what is forgotten."""
+def transfer(
+    zero: ZeroShot, few: pd.DataFrame, forgotten: pd.DataFrame, draws: str, labelled: int, variants: Mapping[str, str]
+) -> Section:
+    """Error against shots, per method, and what is forgotten; `variants` of methods whose source model had few."""
     curves = few[few["shots"] > 0].rename(columns={"value": "error"})
     shots = sorted(few["shots"].unique())
     level = {
@@ -22,7 +26,8 @@ def transfer(zero: ZeroShot, few: pd.DataFrame, forgotten: pd.DataFrame, draws: 
     wide = said.pivot(index="method", columns="shots", values="text").fillna("-")
     unadapted = few.groupby("method")["unadapted"].first()
     wide = wide.loc[few.groupby("method")["value"].min().sort_values().index]
-    rows = [[str(m), f"{unadapted[m]:.1f}", *wide.loc[m]] for m in wide.index]
+    few_variants = {name: f" (trained on {number} variants)" for name, number in variants.items()}
+    rows = [[f"{m}{few_variants.get(str(m), '')}", f"{unadapted[m]:.1f}", *wide.loc[m]] for m in wide.index]
     parts: list = [
         "Levels Z2 to Z4 on the bench. Every method but from scratch starts from a model that was trained on the "
         "source gears; options were chosen on development gears. Shots are of the same session as the recordings that "
@@ -61,7 +66,7 @@ def _forgetting(forgotten: pd.DataFrame) -> list:
     return [Table(header, rows, note), *([figures.forgotten_against_shots(with_labels)] if len(with_labels) else [])]
 
 
-def where_it_pays(table: pd.DataFrame) -> Section:
+def where_it_pays(table: pd.DataFrame, draws: str) -> Section:
     """The map of scenarios."""
     rows = [
         [r["scenario"], r["method"], f"{r['shots']}", f"{r['unadapted']:.1f}", f"{r['error']:.1f}",
@@ -74,12 +79,12 @@ def where_it_pays(table: pd.DataFrame) -> Section:
     parts: list = [
         f"Adapting pays in {int(pays.sum())} of {len(transferred)} cases (a scenario and a number of shots): there the "
         "whole 95 % interval of the change that adapting makes to its source model lies below 0. Each interval stands "
-        "alone: of cases without any effect, one in forty would lie below 0 by chance. One draw of the shots for each "
-        "gear. From scratch is what the shots give without any source gear.",
+        "alone: of cases without any effect, one in forty would lie below 0 by chance. Draws of the shots for each "
+        f"gear: {draws}. From scratch is what the shots give without any source gear.",
         _beside_the_best(transferred),
         figures.where_transfer_pays(table),
         Table(["scenario", "method", "K", "source model [%]", "adapted [%]", "change [points]", "pays",
-               "beside the best without adaptation [points]"], rows, left=2),
+               "beside the best without adaptation, chosen on the judged gears [points]"], rows, left=2),
     ]  # fmt: skip
     return Section("map", "Where transfer pays", parts)
 

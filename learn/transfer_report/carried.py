@@ -19,7 +19,6 @@ from learn.inputs import OPERATING_POINT
 from learn.job import learning_set_of
 from learn.levels import NewGears
 from learn.tracking import Store
-from learn.transfer_report.results import row_of
 from learn.transfer_report.sentences import listed
 from swgsim import storage
 from swgsim.seeds import generator
@@ -34,12 +33,13 @@ EFFICIENCY, RIPPLE, OFFSETS, SHAPE, POINT = (
 )
 REPEATS, LINE_REPEATS = 5, 3  # permutations of each group, and of each of the many lines
 SHOWN, NAMED = 12, 3  # lines of the finer map, and those named for each fault
-# Names of features to their group, the first that fits.
+# Names of features to their group, the first that fits. What s1 to s4 have in common is the torque ripple.
+COMMON = r"^\|s1\.\.s4\[([24])\]\| wave 0$"
 GROUPS: Mapping[str, str] = {
     EFFICIENCY: r"eta|viscous",
     OFFSETS: r"^s\d\[0\]$|^\|s1\.\.s4\[0\]",
+    RIPPLE: rf"\b(s0|mean)\[|{COMMON}",
     SHAPE: r"^\|s1\.\.s4\[",
-    RIPPLE: r"\b(s0|mean)\[",
     POINT: r".*",
 }
 # A fault to the groups of features in which its physics (docs/chain.md) lets it show, and why.
@@ -69,12 +69,12 @@ def lines_of(names: tuple[str, ...]) -> dict[str, list[int]]:
     """Columns of every pattern of gauges and order: parts of a line, also relative to the healthy one, are one group.
 
     >>> lines_of(("Re s0[2]", "Im s0[2]", "Re s0[2] / healthy", "|s1..s4[2]| wave 1", "log eta_rel"))
-    {'s0[2]': [0, 1, 2], '|s1..s4[2]| wave 1': [3], 'efficiency': [4]}
+    {'efficiency': [4], 's0[2]': [0, 1, 2], '|s1..s4[2]| wave 1': [3]}
     """
     found: dict[str, list[int]] = {}
     for whole, columns in groups_of(names).items():
         for column in columns:
-            line = re.sub(r"^(Re|Im) | / healthy$", "", names[column])
+            line = re.sub(COMMON, r"mean[\1]", re.sub(r"^(Re|Im) | / healthy$", "", names[column]))
             found.setdefault(whole if whole in (EFFICIENCY, POINT) else line, []).append(column)
     return found
 
@@ -93,6 +93,8 @@ class Refitted:
         Number of the operating point.
     names : tuple of str
         One per feature.
+    gears : int
+        Judged gears, of which the recordings are.
     """
 
     model: Predictor
@@ -100,14 +102,16 @@ class Refitted:
     truth: np.ndarray
     points: Int[np.ndarray, " row"]
     names: tuple[str, ...]
+    gears: int
 
 
 @dataclass(frozen=True)
 class Carried:
-    """Drop of every fault's recall by groups of features and by single lines, as of :func:`importance`."""
+    """Drop of every fault's recall on some gears, by groups of features and by single lines: :func:`importance`."""
 
     groups: pd.DataFrame
     lines: pd.DataFrame
+    gears: int
 
 
 def carried(refitted: Refitted) -> Carried:
@@ -116,6 +120,7 @@ def carried(refitted: Refitted) -> Carried:
         return Carried(
             importance(refitted, groups_of(refitted.names), REPEATS),
             importance(refitted, lines_of(refitted.names), LINE_REPEATS),
+            refitted.gears,
         )
 
 
@@ -138,8 +143,9 @@ def refit(store: Store, run: pd.Series, data: Path) -> Refitted:
     model = settings.classifier(config["classifier"], chosen.layout)(**options_of(config, run, protocol))
     with threadpool_limits(1):  # only now, as it limits no library that is loaded later
         model.fit(chosen.features[split.train], y[split.train])
-    points = chosen.table.iloc[split.test].groupby(list(OPERATING_POINT)).ngroup().to_numpy()
-    return Refitted(model, chosen.features[split.test], y[split.test], points, chosen.names)
+    judged = chosen.table.iloc[split.test]
+    points = judged.groupby(list(OPERATING_POINT)).ngroup().to_numpy()
+    return Refitted(model, chosen.features[split.test], y[split.test], points, chosen.names, judged["gear"].nunique())
 
 
 def importance(refitted: Refitted, groups: Mapping[str, Sequence[int]], repeats: int) -> pd.DataFrame:
@@ -188,35 +194,43 @@ def options_of(config: Mapping[str, Any], run: pd.Series, protocol: object) -> M
     return trials[0] if isinstance(protocol, NewGears) and protocol.development else {}
 
 
+def costly(drops: pd.DataFrame, label: str) -> pd.DataFrame:
+    """Groups that cost a fault recall beyond doubt, the costliest first; ``tied`` ones cost as much within theirs."""
+    found = drops[(drops["label"] == label) & (drops["drop"] > drops["doubt"])].sort_values("drop", ascending=False)
+    return found.assign(tied=found["drop"] + found["doubt"] >= found["drop"].max())
+
+
 def physics_checked(drops: pd.DataFrame) -> list[str]:
     """One sentence per fault: which group of features carries it, and whether its physics says so."""
-    table = drops.pivot(index="label", columns="group", values="drop")
     sentences = []
     for label, (expected, why) in PHYSICS.items():
-        if label not in table.index:
+        here = drops[drops["label"] == label].set_index("group")["drop"]
+        if here.empty:
             continue
-        largest = row_of(table, label).astype(float)
-        group, drop = str(largest.idxmax()), float(largest.max())
-        if drop < 1:
-            found = f"no single group costs more than {max(drop, 0):.1f} points, several know the same"
-        elif group in expected:
-            found = f"most recall is lost with {group} ({drop:.1f} points), as its physics says: {why}"
+        found = costly(drops, label)
+        first, *others = found.loc[found["tied"], "group"] if len(found) else [""]
+        most = f"most recall is lost with {first}" + (f", as much as with {listed(others)}" if others else "")
+        if found.empty:
+            said = "no single group costs recall beyond chance, several know the same or none is used"
+        elif {first, *others} & set(expected):
+            said = f"{most} ({here[first]:.1f} points), as its physics says: {why}"
         else:
-            there = {name: f"{largest[name]:.1f}" for name in expected if name in largest.index}
-            beside = ", ".join(f"{name} {value}" for name, value in there.items()) or "not among the features"
-            named = " or ".join(expected)
-            found = (
-                f"most recall is lost with {group} ({drop:.1f} points); its physics names {named} ({beside}), as {why}"
+            beside = ", ".join(f"{name} {here[name]:.1f}" for name in expected if name in here.index)
+            said = (
+                f"{most} ({here[first]:.1f} points); its physics names {' or '.join(expected)} "
+                f"({beside or 'not among the features'}), as {why}"
             )
-        sentences.append(f"{words(label)}: {found}.")
+        sentences.append(f"{words(label)}: {said}.")
     return sentences
 
 
 def lines_said(drops: pd.DataFrame) -> list[str]:
-    """One sentence per fault: the lines that cost most recall."""
+    """One sentence per fault: the lines that cost most recall, and how many cost as much as the first."""
     sentences = []
     for label in PHYSICS:
-        most = drops[drops["label"] == label].nlargest(NAMED, "drop")
-        named = listed(f"{row['group']} ({row['drop']:.1f})" for row in most.to_dict("records") if row["drop"] >= 0.1)
-        sentences.append(f"{words(label)}, lines that cost most [points of recall]: {named}.")
+        found = costly(drops, label)
+        named = listed(f"{row['group']} ({row['drop']:.1f})" for row in found[:NAMED].to_dict("records"))
+        more = int(found["tied"][NAMED:].sum())
+        tied = f"; {more} more cost as much as the first, within the doubt" if more else ""
+        sentences.append(f"{words(label)}, lines that cost most [points of recall]: {named}{tied}.")
     return sentences

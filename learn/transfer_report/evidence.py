@@ -98,5 +98,6 @@ def gathered(config: Mapping[str, Any]) -> Evidence:
         for name, condition in (("bench", config["condition"]), ("disturbed", "disturbed"))
     }
     digests = {name: storage.digest(path) for name, path in paths.items()}
+    foreign = [storage.digest(path) for path in Path(config["data"]).glob("*-*.h5")]
     store = settings.store(config["tracking"])
-    return Evidence(grids, paths, digests, store, runs_of.present_runs(store, digests.values()))
+    return Evidence(grids, paths, digests, store, runs_of.present_runs(store, digests.values(), foreign))

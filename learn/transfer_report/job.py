@@ -91,7 +91,14 @@ def report_of(evidence: Evidence, benchmark: Path, began: float, started: float 
         sections.disturbed(cases, spectrum, change),
         sections.new_gears(zero, optional.no_reference(evidence, of_inputs, signals)),
         sections.inputs(inputs, optional.operating_point(evidence)),
-        adapted.transfer(zero, few, forgotten, str(by_adaptation["draws"].iloc[0]), labelled),
+        adapted.transfer(
+            zero,
+            few,
+            forgotten,
+            str(by_adaptation["draws"].iloc[0]),
+            labelled,
+            runs_of.few_variants(by_adaptation),
+        ),
         optional.where_it_pays(evidence),
         practice_of(evidence, main),
         optional.harder(evidence),
@@ -109,6 +116,7 @@ def report_of(evidence: Evidence, benchmark: Path, began: float, started: float 
         "on the clock" if started else "the steps added up",
         versions(storage.attributes(evidence.paths["bench"])["swgsim"], evidence.digests),
     )
+    facts.append(("studies with runs of older code", sentences.listed(runs_of.of_older_code(evidence.runs))))
     return TransferReport(
         grid=evidence.grids["bench"],
         content=content(zero, few, inputs, cases, fit, seconds),

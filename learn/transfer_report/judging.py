@@ -22,8 +22,11 @@ def found_sizes(predictions: pd.DataFrame) -> list[tuple[str, ...]]:
     return rows
 
 
-def conformal(predictions: pd.DataFrame, nominal: float = 0.9) -> pd.DataFrame:
-    """Figures of the prediction sets of every gear, each with the threshold that all the other gears give."""
+def conformal(predictions: pd.DataFrame, nominal: float) -> pd.DataFrame:
+    """Figures of the prediction sets of every gear, each with the threshold that all the other gears give.
+
+    The models that judge the others may have learnt from the gear, so `nominal` is aimed at and not promised.
+    """
     said, y, gears = probabilities(predictions), class_numbers(predictions), predictions["gear"].to_numpy()
     parts = []
     for gear in np.unique(gears):

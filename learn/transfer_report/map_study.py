@@ -1,5 +1,6 @@
 """The study of where transfer pays as a table: what adapting gives with few or many gears, references and labels."""
 
+from collections import defaultdict
 from collections.abc import Mapping
 
 import numpy as np
@@ -36,21 +37,25 @@ def scenario_of(run: Mapping[str, object]) -> str:
 
 
 def best_unadapted(runs: pd.DataFrame, predictions: Mapping[str, pd.DataFrame]) -> dict[str, tuple[str, pd.DataFrame]]:
-    """The method without adaptation that errs least in each scenario, with its table of specimens.
+    """The method without adaptation that errs least in each scenario, of how many, with its table of specimens.
+
+    It is chosen on the judged gears, which flatters it, and so never the adapted methods beside it.
 
     Parameters
     ----------
     runs : DataFrame
-        Of the study ``transfer_map``, those with ``adaptation=none``.
+        Of the study ``transfer_map``, those with ``adaptation=none``, newest first.
     predictions : mapping
         Index of a run to its table of predictions.
     """
-    best: dict[str, tuple[str, pd.DataFrame]] = {}
+    tables: dict[str, dict[str, pd.DataFrame]] = defaultdict(dict)
     for key, run in runs.rename(index=str).iterrows():
-        facts, table = _facts(run), specimens(predictions[str(key)])
-        known = best.get(scenario_of(facts))
-        if known is None or table["error"].mean() < known[1]["error"].mean():
-            best[scenario_of(facts)] = (method_of(facts), table)
+        facts = _facts(run)
+        tables[scenario_of(facts)].setdefault(method_of(facts), specimens(predictions[str(key)]))
+    best = {}
+    for scenario, methods in tables.items():
+        name = min(methods, key=lambda method: methods[method]["error"].mean())
+        best[scenario] = (f"{name} (of {len(methods)})", methods[name])
     return best
 
 

@@ -35,7 +35,8 @@ def where_it_pays(evidence: Evidence) -> Section:
         return sections.left_out("map", "Where transfer pays", evidence.command("transfer_map"))
     plain = found.drop(index=adapts.index)
     best = map_study.best_unadapted(plain, evidence.tables(plain, "predictions"))
-    return adapted.where_it_pays(map_study.transfer_map(adapts, evidence.tables(adapts, "specimens"), best))
+    table = map_study.transfer_map(adapts, evidence.tables(adapts, "specimens"), best)
+    return adapted.where_it_pays(table, " or ".join(sorted(adapts["draws"].unique())))
 
 
 def harder(evidence: Evidence) -> Section:

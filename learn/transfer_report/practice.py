@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 import pandas as pd
+from jaxtyping import Float, Int
 
 from learn.calibration import (
     expected_calibration_error,
@@ -72,8 +73,10 @@ def section(
             figures.risk_coverage_curves(curves),
             _sets(chosen),
             *_novelty(novelty, best),
-            f"Which features carry which fault: {refitted}, trained anew on the first fold. One group of features at "
-            "a time is exchanged between recordings of a fault and healthy ones at the same operating point.",
+            f"Which features carry which fault: {refitted}, trained anew, on the {carried.gears} gears of the first "
+            "fold. One group of features at a time is exchanged between recordings of a fault and healthy ones at the "
+            "same operating point. Named is what costs more than twice the standard error of these exchanges; other "
+            "gears may differ by more.",
             heat_figures.importance_map(carried.groups),
             Listed(physics_checked(carried.groups)),
             heat_figures.line_map(costliest(carried.lines)),
@@ -94,14 +97,11 @@ def _calibration(
     rows = []
     for name, table in predictions.items():
         said, y = probabilities(table), class_numbers(table)
-        tempered, temperatures = tempered_by_others(said, y, table["gear"].to_numpy())
         rows.append([
             name,
             f"{expected_calibration_error(bins[name]):.1f}",
             f"{negative_log_likelihood(said, y):.2f}",
-            f"{temperatures.min():.2f} to {temperatures.max():.2f}",
-            f"{expected_calibration_error(reliability(tempered, y)):.1f}",
-            f"{negative_log_likelihood(tempered, y):.2f}",
+            *_tempered(said, y, table["gear"].to_numpy()),
             f"{100 * area_under_risk(curves[name]):.1f}",
             f"{100 * coverage_at(curves[name], 0.05):.0f}",
             f"{100 * coverage_at(curves[name], 0.01):.0f}",
@@ -111,9 +111,22 @@ def _calibration(
          "calibration error with temperature", "negative log-likelihood with temperature",
          "area under risk and coverage [%]", "decided at 5 % error [%]", "decided at 1 % error [%]"], rows,
         "Probabilities as each method gives them, and with one temperature per gear that was fitted (highest "
-        "likelihood) to the predictions on all the other judged gears: none of the gear's own labels. A temperature "
-        "above 1 makes probabilities more even, decisions stay. The last three columns are without a temperature.",
+        "likelihood) to the predictions on all the other judged gears, none to its own; models of other folds have "
+        "learnt from the gear, though. A temperature above 1 makes probabilities more even, decisions stay. The last "
+        "three columns are without a temperature.",
     )  # fmt: skip
+
+
+def _tempered(said: Float[np.ndarray, "row class"], y: Int[np.ndarray, " row"], gears: np.ndarray) -> list[str]:
+    """The temperatures, and calibration error and likelihood with them; nothing for a single gear."""
+    if len(np.unique(gears)) < 2:
+        return ["-", "-", "-"]
+    tempered, temperatures = tempered_by_others(said, y, gears)
+    return [
+        f"{temperatures.min():.2f} to {temperatures.max():.2f}",
+        f"{expected_calibration_error(reliability(tempered, y)):.1f}",
+        f"{negative_log_likelihood(tempered, y):.2f}",
+    ]
 
 
 def _novelty(novelty: Novelty | None, best: str) -> list:
@@ -127,11 +140,12 @@ def _sets(predictions: pd.DataFrame) -> str:
     """Coverage and size of conformal sets, in words."""
     sets = conformal(predictions, NOMINAL)
     if sets["mean_size"].min() >= len(predictions["label"].unique()):
-        return f"Sets of classes: {len(sets)} gears are too few to promise {100 * NOMINAL:.0f} %, every set holds all."
+        return f"Sets of classes: {len(sets)} gears are too few to aim at {100 * NOMINAL:.0f} %, every set holds all."
     spread = f"{100 * sets['coverage'].min():.0f} to {100 * sets['coverage'].max():.0f} %"
     return (
         f"Sets of classes that shall hold the truth in {100 * NOMINAL:.0f} % of recordings of a new gear, the "
-        f"threshold of every gear from the other {len(sets) - 1}: they hold it in {100 * sets['coverage'].mean():.1f} "
-        f"% ({spread} in single gears), with {sets['mean_size'].mean():.2f} classes on average and "
+        f"threshold of every gear from the other {len(sets) - 1} (cross-conformal: models of other folds have learnt "
+        f"from the gear, so this is a target, not a promise): they hold it in {100 * sets['coverage'].mean():.1f} % "
+        f"({spread} in single gears), with {sets['mean_size'].mean():.2f} classes on average and "
         f"{100 * np.mean(sets['empty']):.1f} % of sets without a class."
     )

@@ -7,6 +7,7 @@ from typing import cast
 
 import pandas as pd
 
+from learn.identity import code_version
 from learn.inputs import OPERATING_POINT, SPECIMEN
 from learn.tracking import Store, finished_runs, table_of
 from swgsim.oracle.job import KNOWN
@@ -17,12 +18,12 @@ os.environ.setdefault("MLFLOW_ENABLE_ARTIFACTS_PROGRESS_BAR", "false")
 
 # A study to the experiments that make it, and whether they run on the paper's grid.
 EXPERIMENTS: Mapping[str, tuple[str, ...]] = {
-    "zero_shot": ("zero_shot",),
+    "zero_shot": ("zero_shot", "zero_shot_lines", "zero_shot_signals"),
     "zero_shot_disturbed": ("zero_shot_disturbed",),
     "inputs": ("inputs", "inputs_features"),
     "inputs_operating_point": ("inputs_operating_point",),
     "no_reference": ("no_reference",),
-    "transfer": ("transfer_network", "transfer_forest", "transfer_cnn"),
+    "transfer": ("transfer_network", "transfer_forest", "transfer_extra_trees", "transfer_cnn"),
     "transfer_map": ("transfer_map", "transfer_map_foreign"),
     "harder_splits": ("harder_splits",),
     "forest_robustness": ("forest_robustness",),
@@ -59,12 +60,29 @@ def command(study: str, grids: Mapping[str, str]) -> str:
     return " and ".join(f"'python scripts/train.py experiment={name} grid={grid}'" for name in EXPERIMENTS[study])
 
 
-def present_runs(store: Store, digests: Iterable[str]) -> pd.DataFrame:
-    """The finished runs on the present data sets, newest first; of several data sets, the first counts."""
+def present_runs(store: Store, digests: Iterable[str], foreign: Iterable[str] = ()) -> pd.DataFrame:
+    """The finished runs on the present data sets, newest first; of every study those of the present code, if any.
+
+    Parameters
+    ----------
+    store : Store
+    digests, foreign : iterable of str
+        Of the data sets that a run may be on, and of those that it may take further gears from.
+    """
     runs = finished_runs(store)
     if runs.empty:
-        return pd.DataFrame(columns=["study", "data_digest", "run_id"])
-    return runs[runs["data_digest"].str.split("+").str[0].isin(list(digests))].reset_index(drop=True)
+        return pd.DataFrame(columns=["study", "data_digest", "code_version", "run_id"])
+    known, others = set(digests), set(foreign)
+    each = runs["data_digest"].str.split("+")
+    runs = runs[[first in known and others.issuperset(rest) for first, *rest in each]]
+    present = runs["code_version"] == code_version()
+    return runs[present | ~runs["study"].isin(runs.loc[present, "study"])].reset_index(drop=True)
+
+
+def of_older_code(runs: pd.DataFrame) -> list[str]:
+    """The studies of the report whose runs were made by older code."""
+    older = set(runs.loc[runs["code_version"] != code_version(), "study"])
+    return [study for study in EXPERIMENTS if study in older]
 
 
 def of_study(runs: pd.DataFrame, study: str) -> pd.DataFrame:
@@ -114,6 +132,12 @@ def by_method(runs: pd.DataFrame) -> pd.DataFrame:
 def development_scores(runs: pd.DataFrame) -> pd.Series:
     """The score of the options chosen on development gears [%], NaN for methods with nothing to choose."""
     return runs.filter(regex=r"^trial/").max(axis="columns").astype(float)
+
+
+def few_variants(runs: pd.DataFrame) -> dict[str, str]:
+    """Variants of each class and source gear that runs were trained on, where not on all, by the runs' index."""
+    variants = runs["protocol.variants"]
+    return {str(key): str(number) for key, number in variants[variants != "None"].items()}
 
 
 def trials(runs: pd.DataFrame) -> list[int]:

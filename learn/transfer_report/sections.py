@@ -10,15 +10,15 @@ from learn.transfer_report.input_studies import INPUTS, NETWORKS
 from learn.transfer_report.judging_figures import difference_forest
 from learn.transfer_report.page import Section, Table
 from learn.transfer_report.results import FOREST, ORACLE, ZeroShot, least, row_of
+from learn.transfer_report.runs import CLASSIFIERS
 from learn.transfer_report.sentences import DISTURBED_GOAL, listed, number, of_row
 from learn.transfer_report.studies import best_disturbed
 
-METHODS: Mapping[str, str] = {"mlp": "MLP", "cnn": "CNN", "minirocket": "MiniRocket"}
+METHODS: Mapping[str, str] = {short: CLASSIFIERS[name] for name, short in NETWORKS.items()}
 
 
-def levels(labelled: int | None) -> list[tuple[str, str]]:
+def levels(labelled: int) -> list[tuple[str, str]]:
     """The levels of target information with what each means."""
-    pool = f"all {labelled} labelled specimens" if labelled else "all labelled specimens"
     return [
         ("Z0", "nothing: models see the recording as it is"),
         ("Z1", "healthy acquisitions of the gear, its reference: a commissioning run. The paper assumes as much"),
@@ -27,7 +27,11 @@ def levels(labelled: int | None) -> list[tuple[str, str]]:
             "Z3",
             "besides, K labelled specimens of each class, the shots; a shot is one specimen at all operating points",
         ),
-        ("Z4", f"besides, {pool} of each class; methods of Z3 and Z4 use no recordings without labels"),
+        (
+            "Z4",
+            f"besides, all {labelled} labelled specimens of each class; methods of Z3 and Z4 use no recordings without "
+            "labels",
+        ),
     ]
 
 

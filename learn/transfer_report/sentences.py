@@ -8,6 +8,7 @@ import pandas as pd
 
 from learn.transfer_report.results import (
     FOREST,
+    FROM_SCRATCH,
     ORACLE,
     ORACLE_OF_SESSION,
     ZeroShot,
@@ -189,7 +190,7 @@ def fancy_against_simple(zero: ZeroShot, networks: pd.DataFrame, few: pd.DataFra
     if len(networks):
         sentences.append(_sorted_out(networks, "Beside the MLP on the same input, with efficiency"))
     for shots, name in ((0, "unlabelled recordings (Z2)"), (GOAL_SHOTS, f"{GOAL_SHOTS} labelled specimens (Z3)")):
-        here = few[(few["shots"] == shots) & ~few["method"].str.endswith(": from scratch")].set_index("method")
+        here = few[(few["shots"] == shots) & ~few["method"].str.endswith(FROM_SCRATCH)].set_index("method")
         if len(here):
             gains = here[["gain", "gain_low", "gain_high"]].set_axis(["value", "low", "high"], axis="columns")
             sentences.append(_sorted_out(gains, f"Beside its own source model, with {name}"))
@@ -208,7 +209,7 @@ def _beside_no_transfer(zero: ZeroShot, few: pd.DataFrame) -> list[str]:
         f"With {GOAL_SHOTS} shots the best transfer, {best['method']}, is at {best['value']:.1f} %, {below} the "
         f"{plain:.1f} % that {zero.best} reaches with no label of the gear at all."
     ]
-    scratch = few[few["method"].str.endswith(": from scratch")]
+    scratch = few[few["method"].str.endswith(FROM_SCRATCH)]
     for shots, here in scratch[scratch["shots"] > 0].groupby("shots"):
         transfer = best_adapted(few, int(str(shots)))
         alone = least(here, "value")
