@@ -1,4 +1,4 @@
-"""The blind test of the loop: python scripts/blind.py [cases=20] [seed=4]"""
+"""The blind test of the loop: python scripts/blind.py [cases=20] [seed=5]"""
 
 import hydra
 from misspelt import answered

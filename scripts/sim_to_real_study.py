@@ -14,8 +14,8 @@ import joblib
 import pandas as pd
 from threadpoolctl import threadpool_limits
 
-import learn.sim_to_real
 from learn import identity, tracking
+from learn.sim_to_real import judging
 from learn.sim_to_real.finished import Finished
 from learn.sim_to_real.judging import Pair, judged
 from learn.sim_to_real.scores import scores
@@ -69,8 +69,7 @@ def key(config: Mapping[str, Any], name: str) -> str:
     decisive = {each: value for each, value in config.items() if each not in without}
     digest = hashlib.sha256(json.dumps([name, config["undeclared"][name], decisive], sort_keys=True).encode())
     digest.update(f"{code_version('loop', 'virtual_bench.py')} {identity.code_version()}".encode())
-    package = Path(learn.sim_to_real.__file__).parent
-    for source in (Path(__file__), package / "judging.py", package / "scores.py"):
+    for source in (Path(__file__), Path(judging.__file__)):
         digest.update(source.read_bytes())
     return digest.hexdigest()[:16]
 
@@ -141,10 +140,11 @@ def study(config: Mapping[str, Any], store: tracking.Store, name: str, key: str,
         tags = {"data_digest": storage.digest(acting), "verdict": said["verdict"], "sentence": said["sentence"][:5000]}
         with tracking.job_run(store, f"{STUDY} {name}", key, parameters, config, tags) as job:
             predictions = judged(models, Pair(bench_plain, acting), config["methods"])
-            result = scores(predictions)
             kept = pd.DataFrame({"said": [json.dumps({"hidden": text.entries(hidden), "loop": said})]})
-            tables = {"scores": result, "predictions": predictions, "loop": kept}
-            job.record(metrics(result), {}, {f"tables/{each}.parquet": table for each, table in tables.items()})
+            tables = {"predictions": predictions, "loop": kept}
+            job.record(
+                metrics(scores(predictions)), {}, {f"tables/{each}.parquet": table for each, table in tables.items()}
+            )
 
 
 def closed(
@@ -217,4 +217,5 @@ def _finished(store: tracking.Store, key: str) -> pd.DataFrame:
 def _read(store: tracking.Store, name: str, runs: pd.DataFrame) -> Finished:
     run_id = str(runs.iloc[0]["run_id"])
     kept = json.loads(tracking.table_of(store, run_id, "tables/loop.parquet")["said"].iloc[0])
-    return Finished(name, kept["hidden"], kept["loop"], tracking.table_of(store, run_id, "tables/scores.parquet"))
+    predictions = tracking.table_of(store, run_id, "tables/predictions.parquet")
+    return Finished(name, kept["hidden"], kept["loop"], scores(predictions))

@@ -12,9 +12,9 @@ from omegaconf import OmegaConf
 
 from swgsim import settings
 from swgsim.effects import EccentricWaveGenerator, Effect, ReducedDamping
-from swgsim.effects.library import LIBRARY, named
-from swgsim.effects.quantity import quantities
-from swgsim.effects.text import as_text, from_text, path_of
+from swgsim.effects.library import LIBRARY, SEARCHED, named
+from swgsim.effects.quantity import Role, quantities
+from swgsim.effects.text import as_text, from_text, in_words, path_of
 from swgsim.record import record
 
 ROOT = Path(__file__).parents[1]
@@ -59,6 +59,14 @@ def test_every_effect_comes_back_as_it_was(name: str) -> None:
             for key, q in quantities(LIBRARY[name]).items()
         })  # fmt: skip
         assert from_text(as_text([effect, effect]), "text") == (effect, effect)
+
+
+@pytest.mark.parametrize("kind", SEARCHED)
+def test_a_sentence_has_neither_code_nor_the_unit_of_a_share(kind: type[Effect]) -> None:
+    declared = quantities(kind)
+    effect = kind(**{name: q.typical if q.role is not Role.CHOICE else int(q.low) for name, q in declared.items()})
+    assert "_" not in in_words(effect)
+    assert "-)" not in in_words(effect)
 
 
 def test_text_that_looks_like_a_number_stays_text(mine: str) -> None:

@@ -7,7 +7,7 @@ from loop_fixtures import POINTS, Bump
 
 from swgsim.conditions import Conditions
 from swgsim.loop.calibration import calibrate
-from swgsim.loop.declared import Declared
+from swgsim.loop.declared import Declared, at, of_unit
 from swgsim.loop.features import Layout
 from swgsim.loop.gaussian import Covariance
 from swgsim.loop.model import Model, Situation
@@ -75,12 +75,14 @@ def test_prior_and_data_are_weighed_by_their_precision(monkeypatch, A):
     assert found.model.effects[0].height == pytest.approx(3 * information / (information + 4), rel=0.01)
 
 
-def test_a_step_uphill_is_halved(monkeypatch, A):
+@pytest.mark.parametrize("sd", [1.0, 30.0, 1000.0])
+def test_a_step_uphill_is_halved(monkeypatch, A, sd):
     """Newton's steps on the arc tangent swing ever further out when they begin beyond 1.4."""
     predicting(monkeypatch, lambda x, y: A[..., 0] * np.arctan(x))
-    found = fitted({"x": height(0)}, A[..., 0] * np.arctan(0.3), noise=1e-3, position={"x": 3.0})
-    assert found.settled
-    assert found.model.effects[0].height == pytest.approx(0.3, abs=1e-2)
+    found = fitted({"x": height(0, sd=sd)}, A[..., 0] * np.arctan(0.3), noise=1e-3, position={"x": 3.0 / sd})
+    # Small steps in units of a wide spread are no rest.
+    assert found.settled == (found.model.effects[0].height == pytest.approx(0.3, abs=1e-2))
+    assert found.settled or sd > 100
 
 
 def test_a_fit_that_does_not_come_to_rest_says_so(monkeypatch, A):
@@ -120,3 +122,13 @@ def test_a_model_without_parameters_is_only_predicted(monkeypatch, A):
     assert found.settled
     assert found.J.shape == (len(SITUATIONS), len(LAYOUT), 0)
     assert not found.predicted.any()
+
+
+def test_no_fit_makes_a_parameter_of_the_gear_that_cannot_be():
+    """A step that leads far below zero ends at the bound, which is that of a gear that still turns."""
+    model = Model(GEAR)
+    bounded = ("k1", "b0", "b1", "mu", "w0")
+    moved = at(model, {name: of_unit(GEAR)[name] for name in bounded}, dict.fromkeys(bounded, -1e3)).gear
+    for name in bounded[:4]:
+        assert 0 < getattr(moved.transmission, name) < getattr(GEAR.transmission, name)
+    assert 0 < moved.wave_generator.w0 < GEAR.wave_generator.w0

@@ -16,7 +16,7 @@ from swgsim.effects import Effect
 from swgsim.effects.library import LIBRARY
 from swgsim.gear import OperatingPoint
 from swgsim.loop.closing import ALPHA, Closed, close
-from swgsim.loop.fitting import Unit, commission
+from swgsim.loop.fitting import Unit, commission, fit
 from swgsim.loop.model import Model
 from swgsim.loop.session import Measured
 from swgsim.virtual_bench import Sessions, record_sessions
@@ -97,3 +97,12 @@ def test_two_effects_at_once_are_both_found(unit):
     assert len(accepted(closed)) == 2
     assert named == {"eccentric_wave_generator", "warm_grease"}
     assert np.sum(closed.after.predictive - closed.before.predictive) > 6
+
+
+def test_a_declared_effect_stays_where_commissioning_found_it():
+    model = Model(GEAR, (ECCENTRIC,))
+    measured = recorded((ECCENTRIC,), seed=5)
+    unit = commission(measured, Unit(model))
+    assert unit.reach.shape == commission(measured, Unit(Model(GEAR))).reach.shape
+    found = fit(recorded((ECCENTRIC,), seed=6), unit)
+    assert found.model.effects[0].r == pytest.approx(ECCENTRIC.r, rel=0.1)

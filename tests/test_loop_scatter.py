@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from swgsim.loop.features import ORDERS, Layout
-from swgsim.loop.scatter import DOUBT, STATED, covariance, estimate, kinds
+from swgsim.loop.scatter import CARRIED, DOUBT, STATED, Scatter, covariance, estimate, kinds
 
 LAYOUT = Layout(("T_in", "T_out", "s0", "s1"))
 KINDS = kinds(LAYOUT)
@@ -94,3 +94,15 @@ def test_kinds_follow_the_channels():
     assert "zero of T_in" in kinds(LAYOUT)
     assert "zero of s4" not in kinds(LAYOUT)
     assert len(LAYOUT) == 4 * (2 * ORDERS + 1)
+
+
+def test_what_commissioning_found_holds_without_repeats_and_yields_to_many():
+    before = Scatter({kind: 3 * STATED[kind] for kind in KINDS}, 30, 0.01 * np.eye(len(KINDS)))
+    alone = estimate(*fabricated(1, [1] * 6, {}), LAYOUT, before)
+    assert alone.sd == before.sd
+    np.testing.assert_allclose(np.diag(alone.doubt), 0.01 + CARRIED**2)
+    many = estimate(*fabricated(1, [60] * 5, {}), LAYOUT, before)
+    np.testing.assert_allclose([many.sd[kind] / STATED[kind] for kind in KINDS], 1, rtol=0.25)
+    few = estimate(*fabricated(1, [2] * 3, {}), LAYOUT, before)
+    shares = np.array([few.sd[kind] / STATED[kind] for kind in KINDS])
+    assert ((shares > 1) & (shares < 3.5)).all()

@@ -1,15 +1,25 @@
 """The score test is right about chance, size and what cannot be seen."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 from loop_fixtures import BUMP, WAVE, drawn, fitted_to, holding
 from scipy.stats import binom, kstest
 
+from swgsim.effects import Effect
+from swgsim.effects.quantity import size
 from swgsim.loop.features import Layout
 from swgsim.loop.hypotheses import Hypothesis
 from swgsim.loop.screening import VISIBLE, Score, best_of_kind, screen
+
+
+@dataclass(frozen=True)
+class Growth(Effect):
+    """An effect that there cannot be less of than nothing."""
+
+    height: float = size(unit="-", low=0, high=100, typical=2)
+
 
 LAYOUT = Layout(("s0",))
 TYPICAL = 2.0
@@ -145,3 +155,14 @@ def test_one_effect_of_twenty_is_seen_at_the_size_that_is_called_detectable(fitt
         r = size / TYPICAL * signatures[-1][:, 0] + drawn(fitted.whole, rng)
         seen.append(min(s.chance for s in found_for(fitted, r, signatures, seed=seed)) <= 0.01)
     assert np.mean(seen) >= 0.7
+
+
+def test_an_effect_of_less_than_nothing_is_none(fitted):
+    """It ranks behind all others, but it can be tested: it is not absorbed."""
+    one_sided = Hypothesis(Growth, (), 1)
+    signatures = library(fitted)
+    kinds = [one_sided if number == 0 else BUMP for number in range(len(signatures))]
+    score = next(s for s in found_for(fitted, -5 * signatures[0][:, 0], signatures, kinds) if s.hypothesis is one_sided)
+    assert (score.gain, score.chance) == (0, 1)
+    assert np.isfinite(score.detectable)
+    assert score.visible > VISIBLE

@@ -11,7 +11,7 @@ from swgsim.effects.base import Effect, Scene
 from swgsim.effects.library import LIBRARY
 from swgsim.effects.quantity import random_phase, shape, size
 from swgsim.loop.between import between
-from swgsim.loop.sidelines import ranked, search
+from swgsim.loop.sidelines import nearby, ranked, search
 from swgsim.loop.unnamed import unnamed
 from swgsim.recording import Recording
 from swgsim.recordings import SENSORS
@@ -173,3 +173,13 @@ def test_a_line_without_a_name_is_described():
     assert 0.6e-3 < line.amplitude < 1.2e-3
     assert line.chance < 1e-6
     assert "order 5.3" in str(line) or "order 5.4" in str(line)
+
+
+def test_a_line_that_is_declared_is_not_found_again():
+    hum = LIBRARY["mains_hum"](frequency=57.3, amplitude=5e-3)
+    spectra = between(measured((hum,), 3))
+    (found, *_), _ = search(spectra, KINDS, 0.01)
+    assert found.effect.frequency == pytest.approx(57.3, abs=0.3)
+    for declared in (found.effect, hum):
+        rest = [each.without(nearby(declared, spectra)) for each in spectra]
+        assert not search(rest, KINDS, 0.01)[0]

@@ -195,3 +195,11 @@ def test_verdict_says_whether_it_helped(wrong, hidden, found, verdict, name):
     said, reason = verdicts.why(each, "m", COMMISSIONING)
     assert (said, verdicts.named(each)) == (verdict, name)
     assert reason.endswith(".")
+
+
+@pytest.mark.parametrize(("low", "verdict"), [(0.1, "helps"), (0.0, "does not clearly help")])
+def test_what_may_be_chance_does_not_clearly_help(low, verdict):
+    table = scores(fabricated_predictions(COMING))
+    table.loc[table["model"] == "after", "gain_low"] = low
+    loop = {"found": [{"coning": {}}], "rivals": [], "absorbed": []}
+    assert verdicts.why(Finished("a", [{"coning": {}}], loop, table), "m", COMMISSIONING)[0] == verdict

@@ -44,16 +44,16 @@ def why(finished: Finished, method: str, day: str) -> tuple[str, str]:
         return _safe(after)
     if not worth(oracle):
         return _unneeded(before, after, oracle)
-    share = after["gain"] / oracle["gain"]
-    if share >= RECOVERED:
-        return "helps", (
-            f"Regenerating with {_listed(finished.loop['found'])} brings {share:.0%} of what knowing the effect brings."
-        )
     if not finished.loop["found"]:
         return "does not help", f"The loop found no effect to add. {_unfound(finished)}"
+    share = after["gain"] / oracle["gain"]
+    brings = f"{_listed(finished.loop['found'])} brings {share:.0%} of what knowing the effect brings"
     if after["gain_low"] > 0:
-        return "helps in part", (
-            f"What was found, {_listed(finished.loop['found'])}, brings {share:.0%} of what knowing the effect brings."
+        return ("helps" if share >= RECOVERED else "helps in part"), f"Regenerating with {brings}."
+    if share >= RECOVERED:
+        return "does not clearly help", (
+            f"Regenerating with {brings}, but by {after['gain_low']:+.1f} to {after['gain_high']:+.1f} points: the "
+            "specimens are too few to tell it from nothing."
         )
     return "does not help", (
         f"What was found, {_listed(finished.loop['found'])}, does not act on this method's features as the truth does."

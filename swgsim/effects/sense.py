@@ -6,6 +6,6 @@ import numpy as np
 SMALL = 1e-3
 
 
-def sense(speed: np.ndarray) -> np.ndarray:
+def sense(speed: np.ndarray, small: float = SMALL) -> np.ndarray:
     """From -1 to 1, as the friction of eq. (5) changes its sign with the sliding speed."""
-    return np.tanh(speed / SMALL)
+    return np.tanh(speed / small)

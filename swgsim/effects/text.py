@@ -18,7 +18,7 @@ import yaml
 
 from swgsim.effects.base import Effect
 from swgsim.effects.library import LIBRARY, named
-from swgsim.effects.quantity import Role
+from swgsim.effects.quantity import Role, quantities, size_of
 
 EXAMPLE = "{eccentric_wave_generator: {r: 1.0e-5, theta: 1.0}}"
 
@@ -98,6 +98,18 @@ def path_of(kind: type[Effect]) -> str:
             "again: define it at the top of a module of its own"
         )
     return f"{kind.__module__}:{kind.__qualname__}"
+
+
+def in_words(effect: Effect) -> str:
+    """An effect for a sentence, with its size."""
+    name = size_of(type(effect))
+    unit = quantities(type(effect))[name].unit
+    return f"{effect.title()} ({sized(name, format(getattr(effect, name), '.3g'), unit)})"
+
+
+def sized(name: str, value: str, unit: str) -> str:
+    """A parameter for a sentence; a share has no unit."""
+    return f"{name.replace('_', ' ')} {value}" + ("" if unit == "-" else f" {unit}")
 
 
 def _effect(number: int, entry: Any) -> Effect:

@@ -4,14 +4,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from swgsim.effects.base import Effect
-from swgsim.effects.quantity import quantities, size_of
 from swgsim.effects.regularity import Regularity
+from swgsim.effects.text import in_words
 from swgsim.loop.between import between
 from swgsim.loop.closing import ALPHA, Closed, close
 from swgsim.loop.fitting import Fitted, Unit, extended
 from swgsim.loop.screening import VISIBLE, Score
 from swgsim.loop.session import Measured
-from swgsim.loop.sidelines import Sideline, search
+from swgsim.loop.sidelines import Sideline, nearby, search
 from swgsim.loop.trial import LEAST_GAIN, Trial
 from swgsim.loop.unnamed import Unnamed, unnamed
 from swgsim.loop.vocabulary import Described, describe, set_free
@@ -71,11 +71,12 @@ class Answer:
     @property
     def left(self) -> str:
         """What no known effect explains, in words; empty if there is nothing."""
-        return "; ".join(map(str, (*self.unknown, *([self.unnamed] if self.unnamed else []))))
+        described = "; ".join(map(str, (*self.unknown, *([self.unnamed] if self.unnamed else []))))
+        return described or ("a regularity without a simple description" if self.closed.rejected else "")
 
     @property
     def nearest(self) -> Trial | None:
-        """Where nothing was accepted: the known effect that comes nearest, of the wrong form."""
+        """Where something unknown is left: the known effect that comes nearest, of the wrong form."""
         return self.closed.nearest
 
     @property
@@ -87,21 +88,20 @@ class Answer:
                 f"library stands out of it ({len(self.absorbed)} of {len(self.closed.scores)} cannot be tested with "
                 "these recordings)."
             )
-        rest = f"; something unknown is left: {self.left}" if self.left else ""
+        near = f"; the nearest known effect, {in_words(self.nearest.effects[0])}, does not hold" if self.nearest else ""
+        rest = f"; something unknown is left: {self.left}{near}" if self.left else ""
         if self.verdict == FOUND:
             return f"The model lacks {' and '.join(self._explanations())}{rest}."
-        near = f"; the nearest known effect, {_named(self.nearest.effects[0])}, does not hold" if self.nearest else ""
-        what = self.left or "a regularity without a simple description"
-        return f"The model lacks something that is not in the library: {what}{near}."
+        return f"The model lacks something that is not in the library: {self.left}{near}."
 
     def _explanations(self) -> list[str]:
         """What was found, step by step, each with what these recordings cannot tell from it."""
         found, effects = [], iter(self.effects)
         for step in self.closed.steps:
-            own = " and ".join(_named(next(effects)) for _ in step.accepted.effects)
-            rivals = " or ".join(" with ".join(map(_named, rival.effects)) for rival in step.rivals)
+            own = " and ".join(in_words(next(effects)) for _ in step.accepted.effects)
+            rivals = " or ".join(" with ".join(map(in_words, rival.effects)) for rival in step.rivals)
             found.append(own + (f" (or {rivals}, which these recordings cannot tell from it)" if rivals else ""))
-        return [*found, *map(_named, effects)]
+        return [*found, *map(in_words, effects)]
 
 
 def answer(
@@ -126,7 +126,9 @@ def answer(
     seed : int
     """
     closed = close(Measured.of(recordings), unit, kinds, seed=seed)
-    spectra = [each.without(known) if known else each for each in between(recordings)]
+    spectra = between(recordings)
+    declared = [each for effect in known for each in nearby(effect, spectra)] if spectra else []
+    spectra = [each.without(declared) if declared else each for each in spectra]
     lines, rest = search(spectra, kinds, ALPHA)
     nameless = unnamed(rest, ALPHA)
     unknown = _unknown(closed.asked, seed)
@@ -156,9 +158,3 @@ def _patched(closed: Closed, unknown: Sequence[Described]) -> Closed:
         if fitted.calibrated.settled and gain > LEAST_GAIN:
             closed = replace(closed, after=fitted)
     return closed
-
-
-def _named(effect: Effect) -> str:
-    """An effect in words with its size."""
-    size = size_of(type(effect))
-    return f"{effect.title()} ({size} {getattr(effect, size):.3g} {quantities(type(effect))[size].unit})"

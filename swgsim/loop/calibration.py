@@ -90,8 +90,9 @@ def calibrate(
     here = np.array([(position or {}).get(name, 0.0) for name in names])
     low, high = _bounds(start, parameters)
     here = np.clip(here, low, high)
-    step, lowest, settled = np.zeros(len(here)), np.inf, False
+    lowest, settled = np.inf, False
     best = (start, here, np.empty((0, 0)), np.empty((0, 0, 0)))
+    step, slope, curvature = np.zeros(len(here)), np.zeros(len(here)), np.zeros((len(here), len(here)))
     for _ in range(STEPS):
         model = at(start, parameters, dict(zip(names, here.tolist(), strict=True)))
         predicted, J = linearised(model, parameters, situations, layout)
@@ -101,7 +102,7 @@ def calibrate(
             # The step led uphill, as the model is not linear: half of it from where it began.
             step = step / 2
             here = best[1] + step
-            settled = bool(np.abs(step).max() < DIFFERENCE)
+            settled = float(step @ (2 * slope - curvature @ step)) < SETTLED
             if settled:
                 break
             continue
@@ -110,7 +111,8 @@ def calibrate(
         if settled:
             break
         columns = errors.whiten(J[of_recording].reshape(-1, len(here)))
-        step = _step(columns, r, here, low, high)
+        curvature, slope = columns.T @ columns + np.eye(len(here)), columns.T @ r - here
+        step = _step(curvature, slope, here, low, high)
         step *= min(1.0, LONGEST / max(float(np.abs(step).max()), 1e-12))
         here = here + step
     model, here, predicted, J = best
@@ -125,15 +127,13 @@ def _bounds(start: Model, parameters: Mapping[str, Declared]) -> tuple[np.ndarra
 
 
 def _step(
-    columns: Float[np.ndarray, "row parameter"], r: Float[np.ndarray, " row"], here: Float[np.ndarray, " parameter"],
-    low: Float[np.ndarray, " parameter"], high: Float[np.ndarray, " parameter"],
+    curvature: Float[np.ndarray, "parameter parameter"], slope: Float[np.ndarray, " parameter"],
+    here: Float[np.ndarray, " parameter"], low: Float[np.ndarray, " parameter"], high: Float[np.ndarray, " parameter"],
 ) -> Float[np.ndarray, " parameter"]:  # fmt: skip
     """The Gauss-Newton step within the bounds; a parameter at its bound leaves the others free to follow."""
-    curvature = columns.T @ columns + np.eye(len(here))
-    target = columns.T @ r - here
-    free = np.linalg.solve(curvature, target)
+    free = np.linalg.solve(curvature, slope)
     if np.all((here + free >= low) & (here + free <= high)):
         return free
     root = np.linalg.cholesky(curvature).T
     room = (low - here - 1e-12, high - here + 1e-12)
-    return lsq_linear(root, np.linalg.solve(root.T, target), bounds=room).x
+    return lsq_linear(root, np.linalg.solve(root.T, slope), bounds=room).x

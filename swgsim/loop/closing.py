@@ -12,7 +12,7 @@ from swgsim.loop.fitting import Fitted, Unit, fit
 from swgsim.loop.hypotheses import hypotheses, signatures
 from swgsim.loop.screening import Score, best_of_kind, screen
 from swgsim.loop.session import Measured
-from swgsim.loop.trial import LEAST_GAIN, Trial, tried, widened
+from swgsim.loop.trial import LEAST_GAIN, Trial, begun, tried, widened
 from swgsim.loop.vocabulary import Described, describe
 from swgsim.seeds import generator
 
@@ -76,7 +76,7 @@ class Closed:
 
     @property
     def nearest(self) -> Trial | None:
-        """Where nothing was accepted: the trial that came nearest."""
+        """Of what was rejected: the trial that came nearest."""
         return self.rejected[0] if self.rejected else None
 
     @property
@@ -110,7 +110,7 @@ def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed
         leaders = _leaders(scores)
         if not leaders or len(steps) == MOST:
             break
-        trials = sorted((tried(now, (score,), seed) for score in leaders), key=lambda trial: -trial.merit)
+        trials = sorted((_alone(now, score, seed) for score in leaders), key=lambda trial: -trial.merit)
         best = trials[0]
         accepted = best if best.sound else _pair(now, trials, kinds, seed) or in_company(now, best, ALPHA, seed)
         if accepted is None:
@@ -141,12 +141,23 @@ def _leaders(scores: Sequence[Score]) -> list[Score]:
 
 def _pair(now: Fitted, trials: Sequence[Trial], kinds: Sequence[type[Effect]], seed: int) -> Trial | None:
     """Two effects that hide one another: the best pair with the best trial, if both members are sound together."""
-    first = trials[0].score
-    behind = _leaders(_screened(trials[0].fitted, kinds, generator("screen behind", seed)))[:BEHIND]
-    others = {score.hypothesis.kind: score for score in (*(trial.score for trial in trials[1:LEADERS]), *behind)}
-    pairs = [tried(now, (first, score), seed) for kind, score in others.items() if kind is not first.hypothesis.kind]
+    first = trials[0]
+    behind = _leaders(_screened(first.fitted, kinds, generator("screen behind", seed)))[:BEHIND]
+    others = {type(effect): effect for trial in trials[1:LEADERS] for effect in trial.effects}
+    # What leads behind the first shows where it is only beside it.
+    others |= {type(effect): effect for effect in (begun(first.fitted, score, seed) for score in behind)}
+    pairs = [
+        tried(now, first.score, (*first.effects, effect))
+        for kind, effect in others.items()
+        if kind is not first.score.hypothesis.kind
+    ]
     best = max(pairs, key=lambda pair: pair.merit, default=None)
-    return best if best and best.sound and best.merit > trials[0].merit + 2 * PAIR_GAIN else None
+    return best if best and best.sound and best.merit > first.merit + 2 * PAIR_GAIN else None
+
+
+def _alone(now: Fitted, score: Score, seed: int) -> Trial:
+    """The hypothesis of a score, on its own."""
+    return tried(now, score, (begun(now, score, seed),))
 
 
 def _with_allowance(accepted: Trial) -> Fitted:

@@ -9,6 +9,9 @@ from swgsim.effects.quantity import Role, quantities
 from swgsim.gear import Gear, KinematicError
 from swgsim.loop.model import Model
 
+# Below this share of its nominal value, a stiffness, a friction or the stroke of the wave generator is that of no gear.
+LEAST = 0.05
+
 
 @dataclass(frozen=True)
 class Declared:
@@ -39,16 +42,19 @@ class Declared:
         return self.moved(model, float(np.clip(value, self.low, self.high)))
 
 
-def _of_gear(unit: str, sd: float, value: Callable[[Gear], float], moved: Callable[[Gear, float], Gear]) -> Declared:
-    return Declared(unit, sd, lambda m: value(m.gear), lambda m, to: replace(m, gear=moved(m.gear, to)))
+def _of_gear(
+    unit: str, sd: float, value: Callable[[Gear], float], moved: Callable[[Gear, float], Gear], low: float = -np.inf
+) -> Declared:
+    return Declared(unit, sd, lambda m: value(m.gear), lambda m, to: replace(m, gear=moved(m.gear, to)), low)
 
 
-def _of_transmission(name: str, unit: str, sd: float) -> Declared:
+def _of_transmission(name: str, unit: str, nominal: float) -> Declared:
     return _of_gear(
         unit,
-        sd,
+        0.1 * nominal,
         lambda gear: float(getattr(gear.transmission, name)),
         lambda gear, to: replace(gear, transmission=replace(gear.transmission, **{name: to})),  # type: ignore[arg-type]
+        LEAST * nominal,
     )
 
 
@@ -82,15 +88,16 @@ def of_unit(gear: Gear) -> dict[str, Declared]:
     """The parameters that differ from unit to unit, with their spread in a series."""
     t = gear.transmission
     found = {
-        "k1": _of_transmission("k1", "N m/rad", 0.1 * t.k1),
-        "b0": _of_transmission("b0", "N m", 0.1 * t.b0),
-        "b1": _of_transmission("b1", "N m s/rad", 0.1 * t.b1),
-        "mu": _of_transmission("mu", "-", 0.1 * t.mu),
+        "k1": _of_transmission("k1", "N m/rad", t.k1),
+        "b0": _of_transmission("b0", "N m", t.b0),
+        "b1": _of_transmission("b1", "N m s/rad", t.b1),
+        "mu": _of_transmission("mu", "-", t.mu),
         "w0": _of_gear(
             "m",
             0.01 * gear.wave_generator.w0,
             lambda each: each.wave_generator.w0,
             lambda each, to: replace(each, wave_generator=replace(each.wave_generator, w0=to)),
+            LEAST * gear.wave_generator.w0,
         ),
     }
     for term in t.kinematic_error:

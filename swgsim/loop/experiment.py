@@ -97,18 +97,19 @@ def _best(adjusting: Fitted, truths: Sequence[Model], between: Sequence[tuple[st
         for number in range(len(truths)):
             if number in found and found[number].recordings:
                 continue
-            best = _easiest(separations[:, number])
+            best = easiest(separations[:, number])
             most = float(separations[best, number])
             enough = recordings if most >= SEPARATED else None
             found[number] = Experiment(between[number], further.candidates[best], enough, most)
     return list(found.values())
 
 
-def _easiest(separations: Float[np.ndarray, " candidate"]) -> int:
+def easiest(separations: Float[np.ndarray, " candidate"]) -> int:
     """The candidate that separates best, an operating point as the bench stands if it does nearly as well."""
     plain = int(separations[: len(FEASIBLE)].argmax())
     best = int(separations.argmax())
-    return plain if separations[plain] >= EASIER * separations[best] else best
+    needed = SEPARATED if separations[best] >= SEPARATED else EASIER * separations[best]
+    return plain if separations[plain] >= needed else best
 
 
 @dataclass(frozen=True, eq=False)

@@ -240,7 +240,7 @@ def fit(
             measured.situations, measured.of_recording, measured.layout, begin,
         )  # fmt: skip
         residual = measured.values - offset.reshape(measured.values.shape) - calibrated.predicted[measured.of_recording]
-        guess = scatter.estimate(residual, measured.variance, moves, measured.repeats, measured.layout)
+        guess = scatter.estimate(residual, measured.variance, moves, measured.repeats, measured.layout, unit.scatter)
         here, begin = calibrated.model, calibrated.position
     errors = scatter.covariance(measured.variance, guess.columns(moves)).with_columns(
         measured.session_columns(predicted)
@@ -268,6 +268,8 @@ def commission(measured: Measured, unit: Unit) -> Unit:
     # The parameters themselves stay where the fit has them; the deviations of the maps take up the rest.
     mean[: fitted.J.shape[1]] -= np.array(list(fitted.calibrated.position.values()))
     scale = np.concatenate([np.ones(fitted.J.shape[1]), np.full(directions.shape[1], unit.structure)])
-    reach = scale[:, None] * np.linalg.cholesky(covariance)
     nominal = unit.model.gear
-    return Unit(fitted.model, reach, scale * mean, unit.structure, fitted.scatter, nominal, largest)
+    # Declared effects stay as they were found: later fits have parameters of their own for them.
+    kept = np.flatnonzero([*(name in of_unit(nominal) for name in fitted.parameters), *[True] * directions.shape[1]])
+    reach = scale[kept, None] * np.linalg.cholesky(covariance[np.ix_(kept, kept)])
+    return Unit(fitted.model, reach, (scale * mean)[kept], unit.structure, fitted.scatter, nominal, largest)

@@ -12,7 +12,7 @@ from swgsim import settings, truth
 from swgsim.defects.defect import Defect
 from swgsim.effects.base import Effect
 from swgsim.effects.library import SEARCHED, named
-from swgsim.effects.text import as_text
+from swgsim.effects.text import as_text, sized
 from swgsim.files import write_json, write_text
 from swgsim.intake.read import read_recordings
 from swgsim.loop.answer import Answer, answer
@@ -129,8 +129,7 @@ def _percent(value: float | None) -> str:
 
 
 def _parameter(name: str, estimate: Mapping[str, Any]) -> str:
-    unit = "" if estimate["unit"] == "-" else f" {estimate['unit']}"
-    return f"{words(name)} {figure(estimate['value'])}{unit}"
+    return sized(name, figure(estimate["value"]), estimate["unit"])
 
 
 def digest(recordings: Sequence[Recording]) -> str:

@@ -26,6 +26,8 @@ STATED = {
 }
 # The stated values are good to this factor (standard deviation of the logarithm).
 DOUBT = np.log(3.0)
+# Those found by commissioning hold on another day to this factor.
+CARRIED = np.log(1.5)
 # Step of the differences: small against any nonlinearity, large against rounding.
 STEP = 1e-3
 
@@ -53,6 +55,11 @@ class Scatter:
         """What a test bench states, without any repeats."""
         names = kinds(layout)
         return cls({name: STATED[name] for name in names}, 0, DOUBT**2 * np.eye(len(names)))
+
+    @property
+    def carried(self) -> "Scatter":
+        """What it says of recordings of another day."""
+        return replace(self, doubt=self.doubt + CARRIED**2 * np.eye(len(self.doubt)))
 
     def drawn(self, rng: np.random.Generator, draws: int) -> Float[np.ndarray, "kind draw"]:
         """Factors on the standard deviations, as large as the repeats leave them."""
@@ -109,8 +116,9 @@ def estimate(
     directions: Float[np.ndarray, "recording feature kind"],
     groups: Sequence[object],
     layout: Layout,
+    before: Scatter | None = None,
 ) -> Scatter:
-    """The standard deviations that the repeats within each group are likeliest with, given what was stated.
+    """The standard deviations that the repeats within each group are likeliest with, given what was known before.
 
     Parameters
     ----------
@@ -121,9 +129,12 @@ def estimate(
     directions : array (recording, feature, kind)
     groups : sequence
         Recordings of the same value are repeats of each other.
+    layout : Layout
+    before : Scatter, optional
+        Found by commissioning; else what a test bench states.
     """
-    names = kinds(layout)
-    stated = np.array([STATED[name] for name in names])
+    known = before.carried if before else Scatter.stated(layout)
+    names, known_sd, precision = list(known.sd), np.array(list(known.sd.values())), np.linalg.inv(known.doubt)
     contrasts = []
     for group in dict.fromkeys(groups):
         rows = [i for i, each in enumerate(groups) if each == group]
@@ -134,7 +145,7 @@ def estimate(
             weights[rows[number]] = np.sqrt(number / (number + 1))
             contrasts.append((weights @ residual, weights**2 @ variance, directions[rows[number]]))
     if not contrasts:
-        return Scatter.stated(layout)
+        return known
     # What a contrast says of the errors is said by as many numbers as there are errors.
     small = []
     for r, v, B in contrasts:
@@ -142,8 +153,9 @@ def estimate(
         small.append((weighted.T @ B, weighted.T @ r))
 
     def cost(log_ratio: np.ndarray) -> tuple[float, np.ndarray]:
-        s = stated * np.exp(log_ratio)
-        total, slope = 0.5 * float(log_ratio @ log_ratio) / DOUBT**2, log_ratio / DOUBT**2
+        s = known_sd * np.exp(log_ratio)
+        slope = precision @ log_ratio
+        total = 0.5 * float(log_ratio @ slope)
         for K, b in small:
             # log det(I + S K S) - b' S (I + S K S)^-1 S b, and its slope over log s.
             inner = np.linalg.inv(np.eye(len(s)) + s[:, None] * K * s)
@@ -153,11 +165,11 @@ def estimate(
         return total, slope
 
     fitted = minimize(
-        cost, np.zeros(len(stated)), jac=True, method="L-BFGS-B", bounds=[(-8, 6)] * len(stated),
+        cost, np.zeros(len(names)), jac=True, method="L-BFGS-B", bounds=[(-8, 6)] * len(names),
         options={"ftol": 1e-14, "gtol": 1e-6, "maxiter": 500},
     )  # fmt: skip
-    sd = dict(zip(names, (stated * np.exp(fitted.x)).tolist(), strict=True))
-    return Scatter(sd, len(contrasts), _doubt(lambda x: cost(x)[1], fitted.x))
+    sd = dict(zip(names, (known_sd * np.exp(fitted.x)).tolist(), strict=True))
+    return Scatter(sd, known.repeats + len(contrasts), _doubt(lambda x: cost(x)[1], fitted.x))
 
 
 def _doubt(slope: Callable[[np.ndarray], np.ndarray], x: Float[np.ndarray, " kind"]) -> Float[np.ndarray, "kind kind"]:

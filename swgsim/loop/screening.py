@@ -97,7 +97,7 @@ def screen(
     r = fitted.whole.whiten(fitted.from_start)
     chances = family_wise([p.U for p in projected], r, fitted, rng)
     scores = [_score(h, p, p.U.T @ r, chance) for h, p, chance in zip(found, projected, chances, strict=True)]
-    return sorted(scores, key=lambda score: -score.rank)
+    return sorted(scores, key=lambda score: (-score.rank, -score.visible))
 
 
 def best_of_kind(scores: Sequence[Score]) -> list[Score]:

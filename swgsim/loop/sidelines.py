@@ -82,7 +82,7 @@ def search(
         if best is None or best.chance > level or not best.holds:
             break
         found.append(best)
-        spectra = [each.without(_nearby(best.effect, spectra)) for each in spectra]
+        spectra = [each.without(nearby(best.effect, spectra)) for each in spectra]
         sought = [kind for kind in sought if kind is not type(best.effect)]
     return found, spectra
 
@@ -104,6 +104,12 @@ def ranked(spectra: Sequence[Between], kinds: Iterable[type[Effect]]) -> list[Si
         best = max((_judged(effect, spectra, chances) for effect in tries), key=lambda line: line.rank)
         found.append(_zoomed(best, spectra, chances))
     return sorted(found, key=lambda line: (line.chance, -line.rank))
+
+
+def nearby(effect: Effect, spectra: Sequence[Between]) -> list[Effect]:
+    """An effect and its neighbours: where its line lies is known to a part of the last zoom."""
+    reaches = {name: _spacing(quantities(type(effect))[name], spectra) / 2**ZOOMS for name in _searched(effect)}
+    return [effect, *(each for name, reach in reaches.items() for each in _around(effect, name, reach))]
 
 
 def has_sidelines(kind: type[Effect]) -> bool:
@@ -154,12 +160,6 @@ def _zoomed(best: Sideline, spectra: Sequence[Between], tried: int) -> Sideline:
             around = _around(best.effect, name, reach / 2**zoom)
             best = max((_judged(effect, spectra, tried) for effect in around), key=lambda line: line.rank)
     return best
-
-
-def _nearby(effect: Effect, spectra: Sequence[Between]) -> list[Effect]:
-    """An effect and its neighbours: where its line lies is known to a part of the last zoom."""
-    reaches = {name: _spacing(quantities(type(effect))[name], spectra) / 2**ZOOMS for name in _searched(effect)}
-    return [effect, *(each for name, reach in reaches.items() for each in _around(effect, name, reach))]
 
 
 def _searched(effect: Effect) -> list[str]:

@@ -93,16 +93,28 @@ class Trial:
         return self.gain + self.evidence if self.signature.any(axis=0).all() else -np.inf
 
 
-def tried(now: Fitted, scores: tuple[Score, ...], seed: int) -> Trial:
-    """Hypotheses added to a model and fitted with it."""
-    rng = generator("zoom", seed, *(str(score.hypothesis) for score in scores))
-    added = tuple(zoom(score, now, rng) for score in scores)
+def begun(now: Fitted, score: Score, seed: int) -> Effect:
+    """The effect of a score, for a fit to begin with."""
+    return zoom(score, now, generator("zoom", seed, str(score.hypothesis)))
+
+
+def tried(now: Fitted, score: Score, added: tuple[Effect, ...]) -> Trial:
+    """Effects added to a model and fitted with it.
+
+    Parameters
+    ----------
+    now : Fitted
+    score : Score
+        Of the first of them.
+    added : tuple of Effect
+        Where the fit begins.
+    """
     known = len(now.model.effects)
     fitted = extended(now, added)
     effects = fitted.model.effects[known:]
     found = tuple(coherence(fitted, known + number) for number in range(len(added)))
     evidence = fitted.log_likelihood - now.log_likelihood
-    return Trial(scores[0], effects, fitted, fitted.predictive - now.predictive, evidence, found)
+    return Trial(score, effects, fitted, fitted.predictive - now.predictive, evidence, found)
 
 
 def widened(

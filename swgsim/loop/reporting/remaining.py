@@ -9,7 +9,7 @@ import numpy as np
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities
 from swgsim.effects.text import entries, path_of
-from swgsim.loop.answer import UNKNOWN, Answer
+from swgsim.loop.answer import Answer
 from swgsim.loop.experiment import Experiment
 from swgsim.loop.reporting.effects import names, why
 from swgsim.loop.reporting.numbers import number
@@ -20,12 +20,12 @@ from swgsim.loop.vocabulary import Described
 
 def unknown(answer: Answer) -> dict[str, Any] | None:
     """What no effect of the library explains, in words and numbers, and as effects that can be added."""
-    if not answer.left and answer.verdict != UNKNOWN:
+    if not answer.left:
         return None
     atoms = [_described(each) for each in answer.unknown]
     nearest, line = answer.nearest, answer.unnamed
     return {
-        "words": answer.left or "a regularity without a simple description",
+        "words": answer.left,
         "orders": sorted({each["order"] for each in atoms}),
         "pattern": atoms[0]["pattern"] if atoms else None,
         "law": atoms[0]["law"] if atoms else None,
