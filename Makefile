@@ -20,6 +20,8 @@ QUICK := $(if $(SMALL),shots=[1$(comma)2] draws=1 protocol.folds=2 protocol.deve
 FEW_EFFECTS := reduced_damping,warm_grease,flank_friction,input_unbalance,eccentric_wave_generator,cam_form,load_sharing,$(strip \
                )root_tooth_crack,tilting_moment,gauge_gain,channel_skew,mains_hum
 LEFT_OUT := tilting_moment channel_skew coning load_sharing stiffening_spring axial_thrust bridge_nonlinearity
+# Recordings of real joints, where they are; no file of theirs may be in the project.
+MEASURED ?= $(firstword $(wildcard measured ../shared/measured))
 CORES := $(shell nproc)
 # The four tables run side by side and share the cores; with two of them every table has one process.
 JOBS := $(shell echo $$(( ($(CORES) + 3) / 4 )))
@@ -27,7 +29,7 @@ JOBS := $(shell echo $$(( ($(CORES) + 3) / 4 )))
 export MLFLOW_DISABLE_TELEMETRY := true
 
 .DEFAULT_GOAL := help
-.PHONY: help install data experiments report paper transfer loop blind sim-to-real test lint benchmark convergence docs ui clean $(TABLES)
+.PHONY: help install data experiments report paper transfer loop blind sim-to-real joints test lint benchmark convergence docs ui clean $(TABLES)
 
 help:  ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-12s %s\n", $$1, $$2}'
@@ -76,10 +78,14 @@ loop: $(READY)  ## closing the loop once, from nothing: record, hide an effect, 
 	@echo "open loop/answer/page.html; 'make ui' shows the run"
 
 blind: $(READY)  ## the loop judged on sealed cases, report/blind.json (SMALL=1: 20 cases, 12 effects)
-	$(BIN)/python scripts/blind.py $(if $(SMALL),cases=20 'library=[$(FEW_EFFECTS)]' blind=blind/small)
+	$(BIN)/python scripts/blind.py $(if $(SMALL),cases=20 seed=4 'library=[$(FEW_EFFECTS)]' blind=blind/small)
 
 sim-to-real: $(READY)  ## classifiers before and after the loop found an undeclared effect, report/sim_to_real.html (SMALL=1: one effect)
 	$(BIN)/python scripts/sim_to_real.py $(if $(SMALL),grid.variants=4 $(addprefix ~undeclared.,$(LEFT_OUT)))
+
+joints: $(READY)  ## real robot joints, judged on recordings not seen; report/joints.html (their files: docs/joint_recordings.md)
+	$(BIN)/python scripts/joints.py $(if $(MEASURED),folder=$(MEASURED))
+	@echo "open report/joints.html, and joints/*/page.html for every case"
 
 test: $(READY)  ## all tests
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile -q
@@ -103,4 +109,4 @@ ui: $(READY)  ## the runs in the MLflow page, on this machine only
 	$(BIN)/python scripts/ui.py
 
 clean:  ## remove data sets, runs and reports
-	rm -rf data mlruns models report outputs loop blind
+	rm -rf data mlruns models report outputs loop blind joints
