@@ -1,6 +1,6 @@
 """A simulated robot joint by formulas of its own: runs at steady speeds, and trajectories under load."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.signal import cont2discrete, lfilter
@@ -162,6 +162,25 @@ def trajectory(
         "T_rigid": load,
     }
     return JointRecording(f"run {number}", "simulated", "joint", f"run {number}", time, signals, gear_ratio=101.0)
+
+
+def upright(
+    number: int, seed: object, size: float = 0.0, corner: float = 60.0, damping: float = 0.4, *, held: bool = True
+) -> JointRecording:
+    """A joint with an upright axis whose arm reaches out and back, with an inertia J from 2 to 8 kg m^2, and a wave of
+    order 202 that comes through a spring to the arm, in proportion to 1 / J, or if it is not ``held`` as it is.
+    """
+    level = trajectory(number, seed, weight=0.0)
+    q, folded = level.signals["q"], trajectory(number + 10, seed).signals["q"]
+    J = 2 + 6 * np.cos(folded) ** 2
+    omega = np.gradient(q, level.time)
+    load = np.gradient(J * omega, level.time)
+    x = 202 * omega / (2 * np.pi) * np.sqrt(J) / corner
+    answer = 1 / (1 - x**2 + 2j * damping * x) / J if held else 1.0
+    current = level.signals["current"] + PER_TORQUE * (load - level.signals["T_rigid"])
+    current = current + size * (np.exp(1j * (202 * q - 0.7)) * answer).real
+    signals = {**level.signals, "current": current, "T_rigid": load}
+    return replace(level, signals=signals, posture=folded[None])
 
 
 def trajectories(seed: object, hidden: Hidden = NOTHING, **how: float) -> tuple[JointRecording, ...]:

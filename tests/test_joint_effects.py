@@ -8,8 +8,10 @@ from joint_fixtures import strain
 from scipy.signal import lsim
 
 from swgsim.joint.effects.asymmetric_friction import AsymmetricFriction
+from swgsim.joint.effects.encoder_eccentricity import EncoderEccentricity
 from swgsim.joint.effects.gravity_error import GravityError
 from swgsim.joint.effects.inertia_error import InertiaError
+from swgsim.joint.effects.inertia_ripple import InertiaRipple
 from swgsim.joint.effects.load_curve import LoadCurve
 from swgsim.joint.effects.load_dependent_friction import LoadDependentFriction
 from swgsim.joint.effects.load_viscosity import LoadViscosity
@@ -230,6 +232,60 @@ def test_gravity_error_holds_the_payload_of_a_planar_arm() -> None:
         columns = GravityError().columns(here)
         left = torque - columns @ np.linalg.lstsq(columns, torque)[0]
         assert np.abs(left).max() < 1e-9
+
+
+@pytest.mark.parametrize("own", [0, 1])
+def test_encoder_eccentricity_holds_the_load_of_an_angle_that_is_read_wrong(own: int) -> None:
+    """At each of two joints, to the first order: what is left is e times as small."""
+    e, axes = 2e-3, np.stack([np.sin(3 * TIME), 0.5 * np.cos(2 * TIME)])
+
+    def load(axes: np.ndarray) -> np.ndarray:
+        first, second = np.cumsum(axes, axis=0)
+        return 30 * np.cos(first) * (own == 0) + 20 * np.cos(second + 0.3)
+
+    read = axes + e * np.cos(axes + 0.7) * (np.arange(2) == own)[:, None]
+    here = replace(recorded(read[own], np.gradient(read[own], TIME), load(read)), posture=read)
+    columns, missed = EncoderEccentricity().columns(here), load(axes) - load(read)
+    weights = np.linalg.lstsq(columns, missed)[0]
+    np.testing.assert_allclose(weights, -e * np.array([np.cos(0.7), -np.sin(0.7)]), rtol=0.02)
+    assert np.abs(missed - columns @ weights).max() < 5 * e * np.abs(missed).max()
+
+
+def test_encoder_eccentricity_of_one_link_is_two_waves_per_revolution() -> None:
+    here = swing()
+    q = here.signals["q"]
+    here = replace(here, signals={**here.signals, "T_rigid": 10 * np.cos(q)})
+    two = np.stack([np.cos(2 * q), np.sin(2 * q), np.ones(len(q))], axis=1)
+    columns = EncoderEccentricity().columns(here)
+    assert np.abs(columns - two @ np.linalg.lstsq(two, columns)[0]).max() < 1e-6
+
+
+def test_inertia_about_an_upright_axis_follows_the_reach_of_the_arm() -> None:
+    first, second = np.sin(1.1 * TIME), 1.2 * np.cos(1.7 * TIME)
+    reach = 0.6 * np.cos(first) + 0.4 * np.cos(first + second)
+    J, omega = 2 + 30 * reach**2, 0.8 * np.cos(2.3 * TIME)
+    here = replace(
+        recorded(np.cumsum(omega) / RATE, omega, np.gradient(J * omega, TIME)), posture=np.stack([first, second])
+    )
+    np.testing.assert_allclose(here.inertia, J, rtol=0.02)
+    # Of a joint that lifts its links there is none, nor of one whose torque is no inertia's.
+    assert replace(here, signals={**here.signals, "q": first}).inertia is None
+    assert replace(here, signals={**here.signals, "T_rigid": 50 * np.cos(first)}).inertia is None
+
+
+def test_inertia_ripple_falls_with_the_inertia_and_its_resonance_with_its_root() -> None:
+    here = replace(recorded(0.5 * TIME, np.full(len(TIME), 0.5)), posture=np.zeros((1, len(TIME))))
+    heavy, light = (replace(here, name=name) for name in ("heavy", "light"))
+    for each, inertia in ((heavy, 8.0), (light, 2.0)):
+        each.__dict__["inertia"] = np.full(len(TIME), inertia)
+    size = {
+        (each.name, corner): np.hypot(*InertiaRipple(order=200.0, corner=corner, damping=0.2).columns(each).T).mean()
+        for each in (heavy, light) for corner in (2000.0, 45.0)
+    }  # fmt: skip
+    assert size["light", 2000.0] / size["heavy", 2000.0] == pytest.approx(4)
+    # 16 Hz is the resonance of 45 Hz at 8 kg m^2; of 2 kg m^2 it is half of it.
+    assert size["heavy", 45.0] * 8 == pytest.approx(1 / 0.4, rel=0.02)
+    assert size["light", 45.0] * 2 == pytest.approx(4 / 3, rel=0.05)
 
 
 def test_gravity_error_without_posture_is_that_of_one_link() -> None:

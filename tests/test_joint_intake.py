@@ -31,6 +31,7 @@ from swgsim.intake.file_defect import FileDefect
 from swgsim.joint.intake import table
 from swgsim.joint.intake.read import read_joints
 from swgsim.joint.intake.source_file import read_source
+from swgsim.joint.split import chosen
 
 CONFIG = yaml.safe_load(KINOVA.read_text())
 JOINT = CONFIG["joints"]["joint_7"]
@@ -71,6 +72,20 @@ def test_a_ur_folder_is_read(tmp_path: Path) -> None:
     np.testing.assert_array_equal(first.posture, made[:, 2:5].T)
     for name, column in (("q", 2), ("omega", 8), ("current", 14), ("T_rigid", 26)):
         np.testing.assert_array_equal(first.signals[name], made[:, column])
+
+
+def test_joints_that_stand_beside_the_moved_one_show_the_noise_of_their_currents(tmp_path: Path) -> None:
+    """What they hold of the load of the others is slow, and no noise."""
+    table = ur_run((2,), "alone")
+    table[:, 13] += 0.5 * np.sin(2 * np.pi * 0.3 * table[:, 0])
+    files = read_joints(ur_folder(tmp_path, lambda _: table), UR)
+    assert [each.joint for each in files.standing] == [f"joint_{i}" for i in (1, 3, 4, 5, 6)]
+    for joint in ("joint_1", "joint_3"):
+        case = chosen(files, None, joint, "current", "*Load", None)
+        white = 0.1 * np.sqrt(1 - 2 * 5 / 94)
+        assert case.floor == pytest.approx(white, rel=0.05)
+        assert case.floor_how.startswith("above 5 Hz")
+    assert chosen(files, None, "joint_2", "current", "*Load", "ur-1").floor is None
 
 
 FULL = {

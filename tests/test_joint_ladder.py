@@ -1,19 +1,22 @@
 """The ladder on simulated joints: what is hidden is found and named, and nothing is found where nothing is."""
 
+from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 
 import numpy as np
 import pytest
-from joint_fixtures import NOTHING, Hidden, Wave, sessions, steady, trajectories
+from joint_fixtures import NOTHING, PER_TORQUE, Hidden, Wave, sessions, steady, trajectories, trajectory, upright
 
 from swgsim.joint.effects.stribeck_friction import StribeckFriction
 from swgsim.joint.ladder import Ladder, climb
 from swgsim.joint.library import SEARCHED
+from swgsim.joint.orders import lines
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.regression import Table, fit, rms
 from swgsim.joint.term import Term
 from swgsim.joint.textbook import textbook
+from swgsim.joint.waves import waves
 
 # Enough speeds to tell one law of friction from another.
 SOME = (0.05, 0.1, 0.25, 0.55, 1.0)
@@ -122,6 +125,54 @@ def test_nothing_is_found_where_nothing_is_hidden() -> None:
         findings.append(names(climbed(short_days(("nothing", draw)), "current")))
     findings += [names(climbed(runs(("nothing", draw)), "current")) for draw in range(8)]
     assert sum(map(bool, findings)) <= 1, findings
+
+
+def arm(number: int, seed: object, e: float) -> JointRecording:
+    """A joint that lifts a link and, beyond another joint, a second one; its angle is read wrong by e cos(q + 0.7)."""
+    level = trajectory(number, seed, weight=0.0, rate=50.0)
+    q, other = level.signals["q"], trajectory(number + 10, seed, rate=50.0).signals["q"]
+    read = q + e * np.cos(q + 0.7)
+    loads = [30 * np.cos(angle) + 20 * np.cos(angle + other) for angle in (q, read)]
+    signals = {
+        "q": read,
+        "omega": level.signals["omega"] * (1 - e * np.sin(q + 0.7)),
+        "current": level.signals["current"] + PER_TORQUE * loads[0],
+        "T_rigid": level.signals["T_rigid"] + loads[1],
+    }
+    return replace(level, signals=signals, posture=np.stack([read, other]))
+
+
+def test_an_encoder_off_its_axis_is_found_with_its_size_and_only_where_it_is() -> None:
+    found = climbed(tuple(arm(number, "eccentric", 0.02) for number in range(4)), "current")
+    assert names(found)[:1] == ["EncoderEccentricity"]
+    first = found.steps[0].fit.terms[-1]
+    assert np.hypot(*first.weights) == pytest.approx(0.02 * PER_TORQUE, abs=2 * first_deviation(found, first))
+    assert names(climbed(tuple(arm(number, "eccentric", 0.0) for number in range(4)), "current")) == []
+
+
+def test_a_wave_that_the_inertia_of_the_arm_holds_back_is_found_with_its_size_and_resonance() -> None:
+    found = climbed(tuple(upright(number, "upright", 0.3) for number in range(4)), "current")
+    assert names(found)[:1] == ["InertiaRipple"]
+    first = found.steps[0].fit.terms[-1]
+    assert (first.order, first.power) == (202.0, 0)
+    assert first.amplitude == pytest.approx(0.3, rel=0.15)
+    assert (first.corner, first.damping) == pytest.approx((60.0, 0.4), rel=0.2)
+
+
+def test_a_wave_that_does_not_heed_the_inertia_is_no_such_wave_and_nothing_is_none() -> None:
+    plain = climbed(tuple(upright(number, "plain", 0.08, held=False) for number in range(4)), "current")
+    assert names(plain)[:1] == ["Ripple"]
+    bare = [names(climbed(tuple(upright(number, ("bare", draw)) for number in range(4)), "current")) for draw in "ab"]
+    assert bare == [[], []]
+
+
+def test_a_wave_is_found_under_friction_that_is_not_explained() -> None:
+    """Friction builds up at other angles on each way, which is noise at every order; and it is slow."""
+    hidden = Hidden(cogging=(Wave(202.0, 0.08),), presliding=(1.0, 0.05))
+    table = Table(trajectories("under friction", hidden, rate=100.0), "current")
+    now = fit(table, textbook(table.recordings, "current"))
+    assert lines(table, now.residual, 0.005, 1, above=40)[:1] == []
+    assert 202.0 in [wave.order for wave in waves(now, 0.005, {})]
 
 
 def test_two_effects_are_told_apart() -> None:

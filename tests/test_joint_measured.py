@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from fabricated_joints import KINOVA, MEASURED, UR
 
+from swgsim.joint.effects.inertia_ripple import InertiaRipple
 from swgsim.joint.effects.load_dependent_friction import LoadDependentFriction
 from swgsim.joint.effects.stribeck_friction import StribeckFriction
 from swgsim.joint.intake.read import JointFiles, read_joints
@@ -52,6 +53,7 @@ def test_ur_files_are_read_without_refusal() -> None:
     assert len(files.recordings) == 39
     assert {round(each.rate) for each in files.recordings} <= {93, 94, 95}
     assert {each.joint for each in files.recordings if "joint_" in each.name} == {"joint_1", "joint_2", "joint_3"}
+    assert {(each.joint, each.name[-7:]) for each in files.standing} >= {("joint_1", "joint_3"), ("joint_2", "joint_1")}
     loaded = [each for each in files.recordings if each.name.endswith("Load")]
     assert {each.session for each in loaded} == {"ur-20_02_19_14harm50sec"}
 
@@ -75,6 +77,13 @@ def test_measured_files_that_were_spoiled_are_named(tmp_path: Path) -> None:
     assert found == {("half_rate", "0.30"), ("velocity_constant", "0.50"), ("angle_jumps", "0.70")}
 
 
+@with_ur
+@pytest.mark.parametrize(("joint", "noise"), [("joint_1", 0.052), ("joint_2", 0.050), ("joint_3", 0.031)])
+def test_noise_of_the_currents_is_that_of_the_joints_that_stand(joint: str, noise: float) -> None:
+    case = chosen(read_joints(UR_FILES, UR), None, joint, "current", "*-50sec_12harm", None)
+    assert case.floor == pytest.approx(noise, abs=1e-3)
+
+
 def ladder(
     folder: Path, source: Path, joint: str, signal: str, holdout: str, without: str | None, kinds: Sequence[type[Term]]
 ) -> Judged:
@@ -90,6 +99,10 @@ def test_friction_that_grows_with_the_load_is_found_where_there_is_load(joint: s
     assert (LoadDependentFriction in {type(step.term) for step in judged.ladder.steps}) == loaded
     if loaded:
         assert judged.after.heldout < 0.9 * judged.before.heldout
+    else:
+        # What is left there is the wave of both lobes of the wave generator, which the inertia of the arm holds back.
+        assert [step.term.order for step in judged.ladder.steps if isinstance(step.term, InertiaRipple)] == [202.0]
+        assert judged.after.heldout < 0.98 * judged.before.heldout
 
 
 @with_kinova

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from joint_fixtures import Hidden, Wave, steady, trajectories
 from matplotlib.figure import Figure
 
+from swgsim.joint import cases_page
 from swgsim.joint.days import Day, Days, days
 from swgsim.joint.effects.load_dependent_friction import LoadDependentFriction
 from swgsim.joint.effects.ripple import Ripple
@@ -20,6 +22,7 @@ from swgsim.joint.figures.spectrum import density
 from swgsim.joint.figures.waves import modelled, seen
 from swgsim.joint.judged import Judged
 from swgsim.joint.ladder import Ladder, Trial
+from swgsim.joint.naming import listed
 from swgsim.joint.page import page
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.regression import Table, fit
@@ -31,7 +34,7 @@ from swgsim.joint.textbook import textbook
 ORDER, SIZE, CORNER, DAMPING = 200.0, 0.05, 60.0, 0.4
 RIPPLE = Hidden(ripple=(Wave(ORDER, SIZE),), corner=CORNER, damping=DAMPING, stribeck=(0.2, 0.1))
 SPEEDS = (-0.6, 0.2, 0.6, 1.0, 1.5)
-LINE = RemainingLine(120.0, -300.0, 0.01, 0.6, ("B 0.6",))
+LINE = RemainingLine(120.0, -300.0, 0.01, 0.6, ("B 0.6",), -0.02)
 NASTY = "<script>alert('R&D')</script>"
 
 
@@ -76,7 +79,13 @@ def trajectory() -> tuple[Judged, Days]:
 
 def full(said: dict[str, Any]) -> dict[str, Any]:
     """A report as the job completes it."""
-    return {**said, "defects": [], "seconds": 1.0, "split": {**said["split"], "left_out": []}}
+    return {
+        **said,
+        "defects": [],
+        "seconds": 1.0,
+        "noise_floor_how": "of recordings at rest",
+        "split": {**said["split"], "left_out": []},
+    }
 
 
 def empty(figure: Figure) -> list[str]:
@@ -199,6 +208,21 @@ def test_all_text_of_the_page_is_escaped(trajectory: tuple[Judged, Days]) -> Non
     html = page(said, [picture for picture, _ in pictures(found, by_day, [], said).values()])
     assert "<script>" not in html
     assert html.count("&lt;script&gt;") > 10
+
+
+def test_waves_of_a_kind_are_named_together() -> None:
+    terms = [Ripple(order=700.0), Ripple(order=8.0), StribeckFriction(), Ripple(order=200.0), Ripple(order=2.0)]
+    said = "ripple of 2 and 7 per revolution of the motor, ripple of 2 and 8 per revolution of the output"
+    assert listed(terms, 100.0) == f"{said} and Stribeck friction"
+
+
+def test_the_page_of_all_cases_says_what_each_lacks(torque: Judged, tmp_path: Path) -> None:
+    said = full(report(torque, None, []))
+    (tmp_path / "ladder.png").write_bytes(b"")
+    html = cases_page.page({"a case": said}, {"another": "it is not there"}, {"a case": tmp_path})
+    assert f'<td class="text">{said["lacks"]}</td>' in html
+    assert said["lacks"] == "ripple of 2 per revolution of the motor"
+    assert "another has no answer" in html.lower()
 
 
 def test_page_says_what_is_not_known(trajectory: tuple[Judged, Days]) -> None:

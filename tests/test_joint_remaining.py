@@ -42,6 +42,33 @@ def test_the_law_of_a_line_is_found(fixed, order):
     assert len(line.runs) >= 6
 
 
+def sampled(each: JointRecording, wander: float) -> JointRecording:
+    """The torque of a wave of order 700 as a slower clock of 250 Hz holds it, which wanders by so many radians in a
+    root of a second.
+    """
+    rng = generator("slower clock", each.name, wander)
+    steps = rng.normal(size=len(each)) * wander / (2 * np.pi * np.sqrt(each.rate))
+    ticks = np.floor(250.0 * each.time + np.cumsum(steps) + rng.uniform())
+    # What is held is what was there at the first sample of a tick.
+    held = np.searchsorted(ticks, ticks)
+    torque = 0.03 * np.cos(700 * each.signals["q"][held] - 0.7)
+    return replace(each, signals={**each.signals, "T_sensor": each.signals["T_sensor"] + torque})
+
+
+@pytest.mark.parametrize(("wander", "lasts"), [(0.0, True), (3.0, False)])
+def test_the_image_of_a_wave_in_a_slower_clock_is_described_whether_its_phase_lasts_or_not(wander, lasts):
+    """What keeps its phase is foretold from one half of a run to the other."""
+    speeds = (0.33, 0.47, 0.61, 0.74, 0.9)
+    recordings = tuple(sampled(each, wander) for each in sessions("clock", names="AB", speeds=speeds, rate=870.0))
+    table = Table(recordings, "T_sensor")
+    wave = fit(table, (*textbook(recordings, "T_sensor"), Ripple(order=700.0, corner=110.0, damping=0.7)))
+    line = next(each for each in remaining([(wave, table)]) if each.order < 0)
+    assert line.fixed == pytest.approx(250, rel=0.02)
+    assert line.order == pytest.approx(-700, rel=0.03)
+    assert line.gain > 0.1 if lasts else line.gain < 0
+    assert ("lowers the error of the other" in str(line)) == lasts
+
+
 def test_lines_without_a_law_are_given_none():
     false = 0
     for draw in range(DRAWS):

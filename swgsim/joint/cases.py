@@ -96,6 +96,7 @@ def ladders(said: Mapping[str, Mapping[str, Any]], missing: Mapping[str, str]) -
             name: {
                 "sentence": each["sentence"], "verdict": each["verdict"], "rungs": each["rungs"],
                 "before": each["error"]["before"], "after": each["error"]["after"], "noise_floor": each["noise_floor"],
+                "noise_floor_how": each["noise_floor_how"],
                 "unit": each["unit"], "split": each["split"], "unknown": each["unknown"], "days": each["days"],
             }
             for name, each in said.items()

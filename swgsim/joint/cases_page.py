@@ -33,10 +33,11 @@ def tables(said: Mapping[str, Mapping[str, Any]]) -> str:
     parts = ["<!-- Written by scripts/joints.py; do not edit. -->"]
     for name, each in said.items():
         unit, floor = each["unit"], each["noise_floor"]
+        noise = "not recorded" if floor is None else f"{figure(floor)} {unit}, {each['noise_floor_how']}"
         parts.append(
             f"\n## {capital(name)}\n\n{each['sentence']}\n\n"
             f"Fitted: {len(each['split']['fit'])} recordings; held out: {', '.join(each['split']['heldout'])}. "
-            f"Noise at rest: {figure(floor) + ' ' + unit if floor is not None else 'not recorded'}.\n\n"
+            f"Noise at rest: {noise}.\n\n"
             f"| effect | fit [{unit}] | held out [{unit}] | held out below 5 Hz [{unit}] | |\n|---|---|---|---|---|"
         )
         parts += [

@@ -58,6 +58,7 @@ def run(config: Mapping[str, Any], tell: Callable[[str], None] = print) -> Outco
     lines = remaining([(judged.ladder.top, table) for table in tables])
     said = report(judged, by_day, lines)
     said["split"]["left_out"] = list(case.left_out)
+    said["noise_floor_how"] = case.floor_how
     said |= {"defects": [str(defect) for defect in _of(defects, tables)]}
     said["seconds"] = round(time.perf_counter() - start, 1)
     figures = _write(Path(config["out"]), judged, by_day, lines, said)
@@ -144,11 +145,10 @@ def _lines(said: Mapping[str, Any]) -> list[str]:
     both = {when: f"{figure(error[when]['fit'])} {unit}, on recordings not seen {figure(error[when]['heldout'])} {unit}"
             for when in ("before", "after")}  # fmt: skip
     floor = figure(said["noise_floor"]) + (f" {unit}" if said["noise_floor"] is not None else "")
-    found = ", ".join(effect["title"] for effect in said["effects"]) or "none"
     return [
         said["sentence"],
         f"error before   {both['before']}",
         f"error after    {both['after']}",
         f"noise at rest  {floor}",
-        f"effects found  {found}",
+        f"effects found  {said['lacks'] or 'none'}",
     ]

@@ -4,14 +4,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from jaxtyping import Float
-from scipy.signal import butter, sosfiltfilt
 
 from swgsim.joint.ladder import Ladder, Trial
 from swgsim.joint.regression import Fit, Table, rms
-
-# Up to this frequency gravity, inertia and friction act [Hz]; above are ripples and noise.
-SLOW = 5.0
+from swgsim.joint.slow import slow
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,17 +76,19 @@ class Judged:
         return Rung(trial, fit.error, rms(missed), rms(slow(self.heldout, missed)), kept)
 
 
-def slow(table: Table, residual: Float[np.ndarray, " row"]) -> Float[np.ndarray, " row"]:
-    """The part of a residual below SLOW; where a recording is too coarse or too short for that, all of it."""
-    found = residual.copy()
-    for number, each in enumerate(table.recordings):
-        if each.rate > 4 * SLOW and len(each) > 100:
-            own = table.run == number
-            found[own] = sosfiltfilt(butter(4, SLOW, fs=each.rate, output="sos"), residual[own])
-    return found
-
-
 def noise_floor(at_rest: Table) -> float:
     """Standard deviation of a signal of joints that stand still."""
     parts = [each.signals[at_rest.of] - each.signals[at_rest.of].mean() for each in at_rest.recordings]
     return rms(np.concatenate(parts))
+
+
+def standing_noise(standing: Table) -> float | None:
+    """Root of the mean square above SLOW of a signal of a joint that stands while others move, in the quietest
+    recording; None if all are too coarse to tell.
+
+    Below, the load that the others put on it changes, and friction holds as much of it as it likes; above, they shake
+    it.
+    """
+    fast = standing.signal - slow(standing, standing.signal)
+    found = (rms(fast[standing.run == number]) for number in range(len(standing.recordings)))
+    return min((each for each in found if each > 0), default=None)

@@ -1,6 +1,7 @@
 """The effects that are tried where the textbook model of a joint falls short; waves are tried at orders found."""
 
 from swgsim.joint.effects.asymmetric_friction import AsymmetricFriction
+from swgsim.joint.effects.encoder_eccentricity import EncoderEccentricity
 from swgsim.joint.effects.gravity_error import GravityError
 from swgsim.joint.effects.inertia_error import InertiaError
 from swgsim.joint.effects.load_curve import LoadCurve
@@ -14,6 +15,7 @@ from swgsim.joint.term import Term
 
 SEARCHED: tuple[type[Term], ...] = (
     AsymmetricFriction,
+    EncoderEccentricity,
     GravityError,
     InertiaError,
     LoadCurve,

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
+from swgsim.joint.inertia import inertia
 from swgsim.joint.kinematics import CREEP, direction, smooth
 
 
@@ -27,6 +28,8 @@ SIGNALS: Mapping[str, Signal] = {
 }
 # Share of the time that a joint moves in a direction if it was moved there on purpose.
 BACK = 0.02
+# A joint whose own angle is in the posture to this accuracy [rad] is one of those that gravity loads through others.
+SAME = 1e-6
 # Signals that a forward model predicts; the others tell it what the joint did.
 PREDICTED = ("T_sensor", "current")
 
@@ -96,6 +99,26 @@ class JointRecording:
         if turns_back([self]):
             return direction(self.signals["omega"])
         return np.full(len(self), float(np.sign(self.speed.sum())))
+
+    @cached_property
+    def inertia(self) -> Float[np.ndarray, " time"] | None:
+        """About the axis of a joint that is not one of the posture [kg m^2]; None if the recording does not say it."""
+        if self.posture is None or "T_rigid" not in self.signals or len(self.links[0]) > 1:
+            return None
+        reach = np.cos(np.cumsum(self.posture, axis=0))
+        return inertia(reach, self.speed, self.acceleration, self.time, self.signals["T_rigid"])
+
+    @property
+    def links(self) -> tuple[Float[np.ndarray, "link time"], int]:
+        """Angle of every link about parallel level axes against the first one's base [rad], and the number of the link
+        that this joint turns; its own angle only if it is not among them or the posture is unknown.
+        """
+        own = self.signals["q"][None]
+        if self.posture is not None:
+            same = (np.abs(self.posture - own) < SAME).all(axis=1)
+            if same.any():
+                return np.cumsum(self.posture, axis=0), int(same.argmax())
+        return own, 0
 
     @property
     def rate(self) -> float:

@@ -7,7 +7,8 @@ from itertools import combinations
 import numpy as np
 from scipy.signal import find_peaks, periodogram
 
-from swgsim.joint.regression import Fit, Table
+from swgsim.joint.coherence import foretold
+from swgsim.joint.regression import Fit, Table, rms
 from swgsim.seeds import generator
 
 # Speeds that vary by less than this share are steady.
@@ -46,6 +47,9 @@ class RemainingLine:
         Of the run where that is [rad/s].
     runs : tuple of str
         Names of the runs that show it.
+    gain : float
+        Share by which it lowers the error of those runs, each half of a run being told by the other; negative where its
+        phase does not last, so that no model of it predicts.
     """
 
     fixed: float
@@ -53,9 +57,14 @@ class RemainingLine:
     amplitude: float
     speed: float
     runs: tuple[str, ...]
+    gain: float
 
     def __str__(self) -> str:
-        where = f"largest at {self.speed:.2g} rad/s ({self.amplitude:.2g}), in {len(self.runs)} runs"
+        what = "lowers" if self.gain > 0 else "raises"
+        where = (
+            f"largest at {self.speed:.2g} rad/s ({self.amplitude:.2g}), in {len(self.runs)} runs; told by one half of "
+            f"a run it {what} the error of the other by {100 * abs(self.gain):.2g} %"
+        )
         if not self.fixed:
             return f"a wave of order {self.order:.4g} per revolution of the output, {where}"
         if not self.order:
@@ -98,10 +107,25 @@ def remaining(fits: Sequence[tuple[Fit, Table]]) -> tuple[RemainingLine, ...]:
         met, fixed, slope = best
         largest = max(met, key=lambda peak: peak.amplitude)
         runs = tuple(dict.fromkeys(p.run for p in met))
-        found.append(RemainingLine(fixed, 2 * np.pi * slope, largest.amplitude, largest.speed, runs))
+        gain = _gain(fits, runs, fixed, slope)
+        found.append(RemainingLine(fixed, 2 * np.pi * slope, largest.amplitude, largest.speed, runs, gain))
         # What is near it is its skirt.
         peaks = [peak for peak in peaks if _off(peak, fixed, slope) > SKIRT]
     return tuple(found)
+
+
+def _gain(fits: Sequence[tuple[Fit, Table]], runs: Sequence[str], fixed: float, slope: float) -> float:
+    """Share by which a line lowers the error of the runs that show it, each half of a run being told by the other."""
+    before, after = [], []
+    for fit, table in fits:
+        missed = fit.missed(table)
+        for number, each in enumerate(table.recordings):
+            if each.name in runs:
+                own = missed[table.run == number]
+                doubt = MET * max(abs(fixed), abs(slope) * float(np.abs(each.speed).mean()))
+                before.append(own)
+                after.append(foretold(each, own, fixed, 2 * np.pi * slope, doubt))
+    return 1 - rms(np.concatenate(after)) / rms(np.concatenate(before))
 
 
 def _luck(peaks: Sequence[_Peak], rng: np.random.Generator) -> int:
@@ -132,7 +156,7 @@ def _best(peaks: Sequence[_Peak], *, moving: bool = False) -> tuple[list[_Peak],
     power = near @ np.array([p.amplitude**2 for p in peaks])
     fixed, slope = laws[np.lexsort((power, runs))[-1]].tolist()
     met = _met(peaks, fixed, slope)
-    for _ in range(REFINED):
+    for _ in range(REFINED if met else 0):
         refined = _refined(met, fixed, slope)
         again = _met(peaks, *refined)
         if _runs(again) < _runs(met):

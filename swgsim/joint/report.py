@@ -32,6 +32,7 @@ def report(judged: Judged, days: Days | None, lines: Sequence[RemainingLine]) ->
     return {
         "verdict": FOUND if steps else UNKNOWN if words else NOTHING,
         "sentence": sentence(judged, words),
+        "lacks": listed([step.term for step in judged.ladder.steps], first.gear_ratio),
         "robot": first.robot,
         "joint": first.joint,
         "signal": judged.table.of,
@@ -203,7 +204,8 @@ def _next(judged: Judged, days: Days | None) -> dict[str, Any] | None:
         wishes.append("log the temperature of the joint, and record one session cold and warm on the same day")
     if judged.floor is None:
         wishes.append("record the joint at rest, for the noise of its signals")
-    unsteady = [r.trial.term.title() for r in judged.rungs if r.trial and not r.kept and r.trial.unsteady]
+    unsteady = [r.trial.term for r in judged.rungs if r.trial and not r.kept and r.trial.unsteady]
     if unsteady:
-        wishes.append(f"record more sessions, to decide about {', '.join(dict.fromkeys(unsteady))}")
+        ratio = judged.table.recordings[0].gear_ratio
+        wishes.append(f"record more sessions, to decide about {listed(unsteady, ratio)}")
     return {"words": "; ".join(wishes)} if wishes else None

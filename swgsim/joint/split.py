@@ -7,9 +7,10 @@ from fnmatch import fnmatchcase
 import numpy as np
 
 from swgsim.joint.intake.read import JointFiles
-from swgsim.joint.judged import noise_floor
+from swgsim.joint.judged import noise_floor, standing_noise
 from swgsim.joint.recording import PREDICTED, SIGNALS, JointRecording
 from swgsim.joint.regression import Table
+from swgsim.joint.slow import SLOW
 
 # A joint that moved less than a revolution of its motor, or this [rad] if the ratio is unknown, did not turn its gear.
 LEAST_WAY = 0.05
@@ -25,6 +26,8 @@ class Case:
         Recordings to fit, and to judge.
     floor : float or None
         Noise of the signal at rest.
+    floor_how : str
+        Of which rest, in words; empty if none is known.
     left_out : tuple of str
         Names of recordings in neither, with the reason.
     """
@@ -32,6 +35,7 @@ class Case:
     table: Table
     heldout: Table
     floor: float | None
+    floor_how: str
     left_out: tuple[str, ...]
 
 
@@ -74,10 +78,21 @@ def chosen(
             f"holdout={holdout} leaves {len(fitted)} recordings of {joint} to fit and {len(heldout)} to judge: give a "
             f"pattern of some of the sessions {sessions}, or of their runs, or a folder of recordings that judge"
         )
-    resting = tuple(each for each in files.at_rest if each.joint == joint and signal in each.signals)
-    floor = noise_floor(Table(resting, signal)) if resting else None
+    floor, how = _floor(files, joint, signal)
     left_out = tuple(f"{each.name}: {reasons[id(each)]}" for each in own if reasons[id(each)])
-    return Case(Table(fitted, signal), Table(heldout, signal), floor, left_out)
+    return Case(Table(fitted, signal), Table(heldout, signal), floor, how, left_out)
+
+
+def _floor(files: JointFiles, joint: str, signal: str) -> tuple[float | None, str]:
+    """Noise of a signal, of recordings at rest or else of those in which other joints moved; and which it is."""
+    resting, standing = (
+        tuple(each for each in recordings if each.joint == joint and signal in each.signals)
+        for recordings in (files.at_rest, files.standing)
+    )
+    if resting:
+        return noise_floor(Table(resting, signal)), "of recordings at rest"
+    floor = standing_noise(Table(standing, signal)) if standing else None
+    return floor, f"above {SLOW:g} Hz, of the joint standing while another one moved" if floor is not None else ""
 
 
 def _require_met(what: str, patterns: str | None, recordings: Sequence[JointRecording]) -> None:

@@ -5,19 +5,22 @@ from dataclasses import replace
 
 import numpy as np
 
+from swgsim.joint.effects.inertia_ripple import InertiaRipple
 from swgsim.joint.effects.position_friction import PositionFriction
 from swgsim.joint.effects.ripple import Ripple
-from swgsim.joint.orders import lines
+from swgsim.joint.orders import NEIGHBOURS, Line, lines
 from swgsim.joint.recording import turns_back
 from swgsim.joint.regression import Fit
 from swgsim.joint.shaping import gain, shaped
+from swgsim.joint.slow import slow
 from swgsim.joint.term import Term
 
 Wave = Ripple | PositionFriction
 # Up to this order, waves are fixed to the output and repeat after its revolution: whole numbers, of which so many are
 # tried in a round; the first one is gravity's.
 SLOW, SLOW_ORDERS = 40, 2
-# Above, so many lines are tried. An order is a whole number unless another one near it explains so many times as much.
+# Above, so many lines are tried. An order is a multiple of the motor's, or else a whole number, unless another one near
+# it explains so many times as much.
 ORDERS, OTHERWISE = 4, 1.25
 # Orders of which the best ones are proposed.
 LOOKED_AT = SLOW + ORDERS
@@ -38,15 +41,35 @@ def waves(now: Fit, level: float, known: dict[float, Wave]) -> list[Wave]:
     laws: list[Wave] = [Ripple(), Ripple(power=1)]
     if now.table.of == "current" and turns_back(now.table.recordings):
         laws.append(PositionFriction())
+    if now.table.of == "current" and all(map(InertiaRipple.possible, now.table.recordings)):
+        laws.append(InertiaRipple())
     there = {_what(term) for term in now.terms}
     fast = []
-    for line in lines(now.table, now.residual, level, ORDERS, above=SLOW):
+    for line in _lines(now, level):
         rough = _at_order(now, line.order, laws)
         if rough.order not in known or _what(known[rough.order]) in there:
             # A wave that is there already may leave one of another law at its order.
             known[rough.order] = _whole(now, shaped(now, rough))
         fast.append(known[rough.order])
     return [term for term in (*slow[:SLOW_ORDERS], *fast) if _what(term) not in there]
+
+
+def _lines(now: Fit, level: float) -> list[Line]:
+    """Lines of the residual, and of its fast part: what friction leaves at low frequency, at other angles on each way,
+    drowns the waves of a joint that moves to and fro.
+    """
+    fast = now.residual - slow(now.table, now.residual)
+    there = [line for part in (now.residual, fast) for line in lines(now.table, part, level / 2, ORDERS, above=SLOW)]
+    found: list[Line] = []
+    for line in sorted(there, key=lambda line: line.log_chance):
+        if all(abs(line.order - other.order) > NEIGHBOURS * _resolution(now) for other in found):
+            found.append(line)
+    return found[:ORDERS]
+
+
+def _resolution(now: Fit) -> float:
+    """Orders that the longest recording tells apart."""
+    return 2 * np.pi / max(float(np.ptp(each.signals["q"])) for each in now.table.recordings)
 
 
 def _what(term: Term) -> tuple:
@@ -56,12 +79,18 @@ def _what(term: Term) -> tuple:
 
 def _at_order(now: Fit, order: float, laws: Sequence[Wave]) -> Wave:
     """The wave at an order near one that gains most."""
-    resolution = 2 * np.pi / max(float(np.ptp(each.signals["q"])) for each in now.table.recordings)
-    near = order + resolution * np.linspace(-0.5, 0.5, 9)
+    near = order + _resolution(now) * np.linspace(-0.5, 0.5, 9)
     return max((replace(law, order=float(o)) for law in laws for o in near), key=lambda term: gain(now, term))
 
 
 def _whole(now: Fit, wave: Wave) -> Wave:
-    """The wave of the next whole order, if the recordings do not tell it from one."""
-    whole = shaped(now, replace(wave, order=float(round(wave.order))))
-    return wave if gain(now, wave) > OTHERWISE * gain(now, whole) else whole
+    """The wave of the next multiple of the motor's revolutions, or else of the output's, if the recordings do not tell
+    it from one.
+    """
+    ratio = now.table.recordings[0].gear_ratio or 1.0
+    orders = [whole * round(wave.order / whole) for whole in (ratio, 1.0)]
+    for order in (float(order) for order in orders if abs(order - wave.order) < _resolution(now)):
+        whole = shaped(now, replace(wave, order=order))
+        if gain(now, wave) <= OTHERWISE * gain(now, whole):
+            return whole
+    return wave

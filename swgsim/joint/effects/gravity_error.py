@@ -8,9 +8,6 @@ from jaxtyping import Float
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.term import Term
 
-# A joint whose own angle is in the posture to this accuracy [rad] is one of those that gravity loads through others.
-SAME = 1e-6
-
 
 @dataclass(frozen=True)
 class GravityError(Term):
@@ -27,10 +24,8 @@ class GravityError(Term):
 
     def columns(self, recording: JointRecording) -> Float[np.ndarray, "time column"]:
         """Cosine and sine of the angle of each link against the first one's base."""
-        links = recording.signals["q"][None]
-        if recording.posture is not None and (np.abs(recording.posture - links) < SAME).all(axis=1).any():
-            links = np.cumsum(recording.posture, axis=0)
-        return np.concatenate([np.cos(links), np.sin(links)]).T
+        angles, _ = recording.links
+        return np.concatenate([np.cos(angles), np.sin(angles)]).T
 
     def units(self, of: str) -> tuple[str, ...]:
         """That of the signal, for every column."""

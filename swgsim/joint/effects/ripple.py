@@ -1,6 +1,7 @@
 """Effect: a wave over the angle of the joint, through the joint's resonance or its sensor's filter."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from jaxtyping import Float
@@ -36,8 +37,8 @@ class Ripple(Term):
         Of resonance or filter, as a share of the critical one, from 0.1 to 1.5.
     """
 
-    explains = ("current", "T_sensor")
-    needs = ("q", "omega")
+    explains: ClassVar[tuple[str, ...]] = ("current", "T_sensor")
+    needs: ClassVar[tuple[str, ...]] = ("q", "omega")
     order: float = shape(1.0, unit="-", low=0.25, high=1e5)
     power: int = choice(0, low=0, high=2)
     corner: float = shape(OPEN, unit="Hz", low=20, high=OPEN, points=9)
@@ -48,10 +49,14 @@ class Ripple(Term):
         wave = np.exp(1j * self.order * recording.signals["q"]) * self.response(recording.speed)
         return np.stack([wave.real, wave.imag], axis=1)
 
-    def response(self, omega: Float[np.ndarray, "*speed"]) -> np.ndarray:
-        """Complex amplitude at speeds of the output [rad/s], for one of 1 before the filter at STATED."""
+    def response(
+        self, omega: Float[np.ndarray, "*speed"], lower: Float[np.ndarray, "*speed"] | float = 1.0
+    ) -> np.ndarray:
+        """Complex amplitude at speeds of the output [rad/s], for one of 1 before the filter at STATED, where the corner
+        is so many times ``lower``.
+        """
         frequency = self.order * omega / (2 * np.pi)
-        x = frequency / self.corner if self.corner < OPEN else 0.0
+        x = frequency * lower / self.corner if self.corner < OPEN else 0.0
         return (1j * frequency / STATED) ** self.power / (1 - x**2 + 2j * self.damping * x)
 
     def units(self, of: str) -> tuple[str, ...]:

@@ -7,8 +7,9 @@ from scipy.signal import welch
 
 from swgsim import style
 from swgsim.joint.figures.parts import AFTER, BEFORE, FLOOR, logarithmic, unit
-from swgsim.joint.judged import SLOW, Judged
+from swgsim.joint.judged import Judged
 from swgsim.joint.regression import Table
+from swgsim.joint.slow import SLOW
 
 # Stretch of a recording to one spectrum [s]; a shorter recording is one stretch.
 STRETCH = 4.0

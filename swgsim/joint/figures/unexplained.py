@@ -8,8 +8,9 @@ from scipy.signal import find_peaks, periodogram
 
 from swgsim import style
 from swgsim.joint.figures.parts import one_way, tables, unit
-from swgsim.joint.judged import SLOW, Judged
+from swgsim.joint.judged import Judged
 from swgsim.joint.remaining import RemainingLine
+from swgsim.joint.slow import SLOW
 
 # Lines of a recording that are shown, and the smallest one as a share of the largest of all.
 STRONGEST, SMALLEST = 10, 0.08

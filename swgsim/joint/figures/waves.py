@@ -1,18 +1,20 @@
 """Picture: amplitude and phase of every ripple that was found, as measured in each recording and as modelled."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from swgsim import style
+from swgsim.joint.effects.inertia_ripple import InertiaRipple
 from swgsim.joint.effects.ripple import Ripple
 from swgsim.joint.figures.parts import face, logarithmic, pieces, session_key, sessions, tables, unit
 from swgsim.joint.judged import Judged
 from swgsim.joint.naming import part_of
 from swgsim.joint.recording import JointRecording
+from swgsim.joint.term import Term
 
 # Orders that are shown, those that gained most; panels beside one another.
 MOST, BESIDE = 9, 3
@@ -42,7 +44,7 @@ class Seen:
 def waves(judged: Judged) -> Figure | None:
     """Amplitude and phase of the ripples over their frequency; None where there is none, or none can be seen."""
     steps = sorted(judged.ladder.steps, key=lambda step: -step.gain)
-    orders = list(dict.fromkeys(step.term.order for step in steps if isinstance(step.term, Ripple)))[:MOST]
+    orders = list(dict.fromkeys(step.term.order for step in steps if _of_speed(step.term)))[:MOST]
     measured = {order: seen(judged, order) for order in sorted(orders)}
     measured = {order: points for order, points in measured.items() if points}
     if not measured:
@@ -66,15 +68,24 @@ def modelled(judged: Judged, order: float, omega: np.ndarray) -> np.ndarray:
     """Complex amplitude of an order in the model at speeds [rad/s], such that the signal is its real part times
     exp(1j order q).
     """
-    terms = [each for each in judged.ladder.top.terms if isinstance(each, Ripple) and each.order == order]
+    terms = _at(judged, order)
     return sum(((t.weights[0] - 1j * t.weights[1]) * t.response(omega) for t in terms), np.zeros(len(omega), complex))
+
+
+def _of_speed(term: Term) -> TypeGuard[Ripple]:
+    """Whether a term is a ripple whose amplitude and phase follow from the speed alone."""
+    return isinstance(term, Ripple) and not isinstance(term, InertiaRipple)
+
+
+def _at(judged: Judged, order: float) -> list[Ripple]:
+    return [each for each in judged.ladder.top.terms if _of_speed(each) and each.order == order]
 
 
 def seen(judged: Judged, order: float) -> list[Seen]:
     """An order in all recordings, by least squares on what all other terms leave."""
     found = []
     for table, heldout in tables(judged):
-        terms = [each for each in judged.ladder.top.terms if isinstance(each, Ripple) and each.order == order]
+        terms = _at(judged, order)
         rest = judged.ladder.top.missed(table) + sum(table.columns(term) @ np.array(term.weights) for term in terms)
         for number, each in enumerate(table.recordings):
             own = rest[table.run == number]

@@ -32,11 +32,14 @@ class JointFiles:
         Those that may be used, in motion and at standstill, in the order of session, name and joint.
     defects : tuple of Defect
         All that was found; a recording with one that refuses is in neither of the others.
+    standing : tuple of JointRecording
+        Joints that stood while the one moved that the path of their file names, for the noise of their signals.
     """
 
     recordings: tuple[JointRecording, ...]
     at_rest: tuple[JointRecording, ...]
     defects: tuple[Defect, ...]
+    standing: tuple[JointRecording, ...] = ()
 
 
 def read_joints(folder: Path, source: JointSource | Path) -> JointFiles:
@@ -55,7 +58,10 @@ def read_joints(folder: Path, source: JointSource | Path) -> JointFiles:
     """
     source = read_source(source) if isinstance(source, Path) else source
     found = places(folder, source)
-    moving = [run for name in found.moving for run in read_runs(folder, name, source, start=True)]
+    in_motion = [run for name in found.moving for run in read_runs(folder, name, source, start=True)]
+    moving = [run for run in in_motion if not run.stands]
+    # Nobody asked for these: one that moved after all, or has no numbers, is no finding.
+    standing = [run for run in in_motion if run.stands and not any(chain(unusable(run), at_rest_findings(run)))]
     resting = [run for name in found.resting for run in read_runs(folder, name, source, start=False)]
     _require_names_of_their_own([*moving, *resting])
     defects = [*unsaid_findings(found.unsaid)]
@@ -79,7 +85,12 @@ def read_joints(folder: Path, source: JointSource | Path) -> JointFiles:
     defects += [defect for run in resting for defect in at_rest_findings(run)]
     defects += copy_findings([*moving, *resting])
     refused |= {defect.recording for defect in defects if defect.severity == "refuse"}
-    return JointFiles(_kept(moving, recordings, refused), _kept(resting, at_rest, refused), tuple(defects))
+    return JointFiles(
+        _kept(moving, recordings, refused),
+        _kept(resting, at_rest, refused),
+        tuple(defects),
+        tuple(_recording(run, usual | measured, source.robot) for run in standing),
+    )
 
 
 def _recording(run: Run, rates: Mapping[str, float], robot: str) -> JointRecording:

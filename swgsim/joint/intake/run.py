@@ -34,6 +34,8 @@ class Run:
         Largest minus smallest angle as written [revolutions].
     first_row : int
         Row of the file with the first sample, counted from 1.
+    stands : bool
+        Whether the path names another joint as the one that moved.
     """
 
     file: str
@@ -45,6 +47,7 @@ class Run:
     time: Float[np.ndarray, " time"] | None
     span: float
     first_row: int
+    stands: bool = False
 
     @property
     def label(self) -> str:
@@ -56,7 +59,7 @@ class Run:
 
 
 def read_runs(folder: Path, name: str, source: JointSource, start: bool) -> list[Run]:
-    """Every joint of a file, or only the one that the path names.
+    """Every joint of a file, or the one that the path names and, if the source says that they stand, the others.
 
     Parameters
     ----------
@@ -73,10 +76,11 @@ def read_runs(folder: Path, name: str, source: JointSource, start: bool) -> list
         If the file cannot be read, or its path names a joint that the source does not have.
     """
     said = said_by(source.path, name)
-    joints = [joint for joint in source.joints if said.get("joint", joint.name) == joint.name]
-    if not joints:
+    moved = [joint for joint in source.joints if said.get("joint", joint.name) == joint.name]
+    if not moved:
         known = ", ".join(joint.name for joint in source.joints)
         raise FileDefect(name, f"the joint {shown(said['joint'])}", f"one of {known}")
+    joints = source.joints if source.others_stand else moved
     signals = [column for joint in joints for column in joint.signals]
     times = [source.time] if source.time else []
     wanted = [column.column for column in [*times, *signals, *source.posture]]
@@ -95,7 +99,7 @@ def read_runs(folder: Path, name: str, source: JointSource, start: bool) -> list
         Run(
             name, said["run"], said["session"], joint,
             {column.quantity: _values(table, column) for column in joint.signals},
-            posture, time, _span(table, joint), first_row,
+            posture, time, _span(table, joint), first_row, joint not in moved,
         )
         for joint in joints
     ]  # fmt: skip

@@ -69,6 +69,8 @@ class JointSource:
         What is cut at the start of each run in motion.
     posture : tuple of Column
         Angles of all joints from base to tip.
+    others_stand : bool
+        Whether the joints that the path of a file does not name stand in it, and show the noise of their signals.
     """
 
     robot: str
@@ -84,6 +86,7 @@ class JointSource:
     start_samples: int = 0
     start_seconds: float = 0.0
     posture: tuple[Column, ...] = ()
+    others_stand: bool = False
 
     def __post_init__(self) -> None:
         require_pattern(self.path)

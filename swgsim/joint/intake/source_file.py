@@ -16,6 +16,7 @@ from swgsim.joint.intake.source import JointColumns, JointSource
 EXPECTED = "a source such as conf/sources/kinova_gen3.yaml"
 KEYS = (
     "robot", "path", "files", "rest", "leave_out", "header", "time", "rate", "rate_hz", "start_up", "joints", "posture",
+    "others_stand",
 )  # fmt: skip
 FROM_MOTION = "from_motion"
 LONGEST_TEXT = 1000
@@ -84,6 +85,7 @@ def _source(config: Any) -> JointSource:
         start_samples=start.get("samples", 0),
         start_seconds=_number("seconds of start_up", start.get("seconds", 0.0)) or 0.0,
         posture=_posture(config.get("posture")),
+        others_stand=_truth("others_stand", config.get("others_stand", False)),
     )
 
 
