@@ -14,7 +14,8 @@ from swgsim.chain import simulate_turns
 from swgsim.conditions import Conditions
 from swgsim.effects import Effect
 from swgsim.effects.library import LIBRARY
-from swgsim.gear import OperatingPoint
+from swgsim.effects.regularity import Regularity
+from swgsim.gear import Gear, OperatingPoint
 from swgsim.loop.closing import ALPHA, Closed, close
 from swgsim.loop.fitting import Unit, commission, fit
 from swgsim.loop.model import Model
@@ -30,9 +31,9 @@ NAMES = ("eccentric_wave_generator", "warm_grease", "reduced_damping", "zero_off
 SEARCHED = [LIBRARY[name] for name in NAMES]
 
 
-def recorded(effects: tuple[Effect, ...], seed: int) -> Measured:
+def recorded(effects: tuple[Effect, ...], seed: int, gear: Gear = GEAR) -> Measured:
     """Two recordings of each operating point, all at the reference temperature."""
-    recordings = record_sessions(GEAR, effects, PLAN, Bench(), seed=seed, window=Window(), sectors=SECTORS)
+    recordings = record_sessions(gear, effects, PLAN, Bench(), seed=seed, window=Window(), sectors=SECTORS)
     return Measured.of([replace(each, conditions=Conditions()) for each in recordings])
 
 
@@ -106,3 +107,39 @@ def test_a_declared_effect_stays_where_commissioning_found_it():
     assert unit.reach.shape == commission(measured, Unit(Model(GEAR))).reach.shape
     found = fit(recorded((ECCENTRIC,), seed=6), unit)
     assert found.model.effects[0].r == pytest.approx(ECCENTRIC.r, rel=0.1)
+
+
+def test_load_and_speed_control_of_the_bench_are_found_by_commissioning():
+    """They are nobody's fault, and make half of the ripple of speed and torque."""
+    t = GEAR.transmission
+    own = replace(GEAR, transmission=replace(t, J_out=0.75 * t.J_out, control_frequency=0.8 * t.control_frequency))
+    unit = commission(recorded((), seed=7, gear=own), Unit(Model(GEAR)))
+    found = unit.model.gear.transmission
+    assert found.J_out == pytest.approx(own.transmission.J_out, rel=0.05)
+    assert found.control_frequency == pytest.approx(own.transmission.control_frequency, rel=0.05)
+    closed = close(recorded((), seed=8, gear=own), unit, SEARCHED)
+    assert closed.steps == closed.rejected == ()
+
+
+def test_a_channel_that_the_model_does_not_describe_cannot_be_commissioned():
+    """The torque of a brake has no ripple of the gear."""
+    still = [
+        replace(each, channels={**each.channels, "T_out": np.full(len(each.time), each.point.T_out)})
+        for each in recorded((), seed=9).recordings
+    ]
+    with pytest.raises(ValueError, match=r"cannot be commissioned on these recordings.*T_out \(\d"):
+        commission(Measured.of(still), Unit(Model(GEAR)))
+
+
+def test_an_effect_is_found_behind_a_disturbance_that_dwarfs_it(unit):
+    stray = Regularity(7, 3e-3, 0.4, "in s2 alone", "constant")
+    closed = close(recorded((ECCENTRIC, stray), seed=2), unit, SEARCHED)
+    assert [(each.atom.order, each.atom.pattern) for each in closed.apart] == [(7, "in s2 alone")]
+    (found,) = accepted(closed)
+    assert found.r == pytest.approx(10e-6, rel=0.3)
+
+
+def test_what_is_set_apart_finds_no_effect_where_there_is_none(unit):
+    stray = Regularity(7, 3e-3, 0.4, "in s2 alone", "constant")
+    closed = close(recorded((stray,), seed=2), unit, SEARCHED)
+    assert closed.steps == closed.apart == ()

@@ -9,11 +9,12 @@ from swgsim.effects.text import in_words
 from swgsim.loop.between import between
 from swgsim.loop.closing import ALPHA, Closed, close
 from swgsim.loop.fitting import Fitted, Unit, extended
+from swgsim.loop.lines import cleaned, search
 from swgsim.loop.screening import VISIBLE, Score
 from swgsim.loop.session import Measured
-from swgsim.loop.sidelines import Sideline, nearby, search
+from swgsim.loop.sidelines import Sideline
 from swgsim.loop.trial import LEAST_GAIN, Trial
-from swgsim.loop.unnamed import Unnamed, unnamed
+from swgsim.loop.unnamed import Unnamed
 from swgsim.loop.vocabulary import Described, describe, set_free
 from swgsim.recording import Recording
 from swgsim.seeds import generator
@@ -38,8 +39,8 @@ class Answer:
         Effects between the orders that were found.
     unknown : tuple of Described
         Regularities that no effect of the library explains.
-    unnamed : Unnamed or None
-        A line between the orders that none explains.
+    unnamed : tuple of Unnamed
+        Lines between the orders that none explains.
     absorbed : tuple of Score
         Effects that these recordings cannot tell from what the model declares not to know.
     """
@@ -49,7 +50,7 @@ class Answer:
     known: tuple[Effect, ...]
     lines: tuple[Sideline, ...]
     unknown: tuple[Described, ...]
-    unnamed: Unnamed | None
+    unnamed: tuple[Unnamed, ...]
     absorbed: tuple[Score, ...]
 
     @property
@@ -71,7 +72,7 @@ class Answer:
     @property
     def left(self) -> str:
         """What no known effect explains, in words; empty if there is nothing."""
-        described = "; ".join(map(str, (*self.unknown, *([self.unnamed] if self.unnamed else []))))
+        described = "; ".join(map(str, (*self.unknown, *self.unnamed)))
         return described or ("a regularity without a simple description" if self.closed.rejected else "")
 
     @property
@@ -125,17 +126,14 @@ def answer(
         Declared effects between the orders.
     seed : int
     """
-    closed = close(Measured.of(recordings), unit, kinds, seed=seed)
-    spectra = between(recordings)
-    declared = [each for effect in known for each in nearby(effect, spectra)] if spectra else []
-    spectra = [each.without(declared) if declared else each for each in spectra]
-    lines, rest = search(spectra, kinds, ALPHA)
-    nameless = unnamed(rest, ALPHA)
-    unknown = _unknown(closed.asked, seed)
+    lines = search(between(recordings), kinds, ALPHA, known)
+    clean = [cleaned(recording, lines.effects) for recording in recordings] if lines.effects else recordings
+    closed = close(Measured.of(clean), unit, kinds, seed=seed)
+    unknown = (*closed.apart, *_unknown(closed.asked, seed))
     absorbed = tuple(score for score in closed.scores if score.visible < VISIBLE)
-    found = closed.steps or lines
-    verdict = FOUND if found else UNKNOWN if closed.rejected or unknown or nameless else NOTHING
-    return Answer(verdict, _patched(closed, unknown), tuple(known), tuple(lines), unknown, nameless, absorbed)
+    found = closed.steps or lines.named
+    verdict = FOUND if found else UNKNOWN if closed.rejected or unknown or lines.unnamed else NOTHING
+    return Answer(verdict, _patched(closed, unknown), tuple(known), lines.named, unknown, lines.unnamed, absorbed)
 
 
 def _unknown(fitted: Fitted, seed: int) -> tuple[Described, ...]:

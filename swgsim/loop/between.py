@@ -75,13 +75,8 @@ class Between:
         step = max(1, int(recording.rate * 60 / recording.point.n_in_rpm / SAMPLES))
         length = len(recording.time) // step * step
         # Patterns are narrow-band: fewer samples hold them as well.
-        angle = recording.channels["phi_in"][:length:step]
-        load = (
-            recording.channels["T_out"][:length:step]
-            if "T_out" in recording.channels
-            else np.full(len(angle), float(recording.point.T_out))
-        )
-        time = recording.time[:length:step] - recording.time[0]
+        scene = scene_of(recording, slice(0, length, step))
+        angle = scene.phi_in
         revolutions = abs(float(angle[-1] - angle[0])) / (2 * np.pi) * len(angle) / (len(angle) - 1)
         # The mean, and lines beyond the orders that were fitted, say nothing.
         lines = np.arange(1, int(np.ceil(FITTED * revolutions)))
@@ -89,17 +84,17 @@ class Between:
         scale = np.array([np.sqrt(2 * length / np.maximum(floor.at(frequency), 1e-300)) for floor in noise])
         order = lines / revolutions
         bare = cls(
-            Scene(time, angle, load, recording.point, recording.conditions),
+            scene,
             gauges,
             scale,
-            np.linalg.qr(_columns(angle, time))[0],
+            np.linalg.qr(ordinary(scene))[0],
             revolutions,
             np.abs(order - np.round(order)) * revolutions > GUARD,
             np.zeros(2 * scale.size),
             np.empty((2 * scale.size, 0)),
         )
-        columns = _columns(recording.channels["phi_in"], recording.time)
-        return replace(bare, left=bare._numbers(remainder(recording, Layout(gauges), columns)[:, :length]))
+        fitted = ordinary(scene_of(recording))
+        return replace(bare, left=bare._numbers(remainder(recording, Layout(gauges), fitted)[:, :length]))
 
     @property
     def step(self) -> float:
@@ -114,11 +109,7 @@ class Between:
 
     def pattern(self, effect: Effect) -> Float[np.ndarray, "column number"]:
         """What an effect can look like, whatever its random phases; a direction that the orders took is left out."""
-        random = [name for name, q in quantities(type(effect)).items() if q.role is Role.RANDOM]
-        phases = [dict.fromkeys(random, 0.0)]
-        phases += [{n: np.pi if n == name else 0.0 for n in random} for name in random[1:]]
-        phases += [{n: np.pi / 2 if n == name else 0.0 for n in random} for name in random]
-        seen = np.array([self._alone(replace(effect, **each)) for each in phases])
+        seen = shapes(effect, self.scene, self.gauges)
         between = self._numbers(seen - (seen @ self.orders) @ self.orders.T)
         between = between - (between @ self.taken) @ self.taken.T
         whole = np.linalg.norm(self._numbers(seen), axis=-1).max()
@@ -148,14 +139,6 @@ class Between:
         flat = lines.reshape(*lines.shape[:-2], -1)
         return np.concatenate([flat.real, flat.imag], axis=-1)
 
-    def _alone(self, effect: Effect) -> Float[np.ndarray, "gauge time"]:
-        """What an effect puts on silent gauges."""
-        effect = effect.at(self.scene.point, self.scene.conditions)
-        gauges = effect.gauge(np.zeros((len(SENSORS), len(self.scene.time))), self.scene)
-        others = dict.fromkeys(CHANNELS, np.zeros(len(self.scene.time)))
-        channels = effect.acquisition(others | dict(zip(SENSORS, gauges, strict=True)), self.scene)
-        return np.array([channels[gauge] for gauge in self.gauges])
-
 
 def between(recordings: Sequence[Recording]) -> list[Between]:
     """What lies between the orders of every recording; nothing if they have no gauge in common."""
@@ -164,9 +147,37 @@ def between(recordings: Sequence[Recording]) -> list[Between]:
     return [Between.of(recording, gauges, noise) for recording in recordings] if gauges else []
 
 
-def _columns(phi: Float[np.ndarray, " time"], time: Float[np.ndarray, " time"]) -> Float[np.ndarray, "time column"]:
+def scene_of(recording: Recording, samples: slice = slice(None)) -> Scene:
+    """What effects see of a recording, its time from 0."""
+    angle = recording.channels["phi_in"][samples]
+    load = recording.channels.get("T_out")
+    held = np.full(len(angle), float(recording.point.T_out)) if load is None else load[samples]
+    time = recording.time[samples] - recording.time[0]
+    return Scene(time, angle, held, recording.point, recording.conditions)
+
+
+def ordinary(scene: Scene) -> Float[np.ndarray, "time column"]:
     """The orders that are fitted, and a straight line over time, whose ends would leak into the whole spectrum."""
-    return np.column_stack([basis(phi, FITTED), (time - time.mean()) / float(np.ptp(time))])
+    time = scene.time
+    return np.column_stack([basis(scene.phi_in, FITTED), (time - time.mean()) / float(np.ptp(time))])
+
+
+def shapes(effect: Effect, scene: Scene, gauges: tuple[str, ...]) -> Float[np.ndarray, "variant gauge time"]:
+    """What an effect can put on silent gauges: sums of these, whatever its random phases."""
+    random = [name for name, q in quantities(type(effect)).items() if q.role is Role.RANDOM]
+    phases = [dict.fromkeys(random, 0.0)]
+    phases += [{n: np.pi if n == name else 0.0 for n in random} for name in random[1:]]
+    phases += [{n: np.pi / 2 if n == name else 0.0 for n in random} for name in random]
+    return np.array([_alone(replace(effect, **each), scene, gauges) for each in phases])
+
+
+def _alone(effect: Effect, scene: Scene, gauges: tuple[str, ...]) -> Float[np.ndarray, "gauge time"]:
+    """What an effect puts on silent gauges."""
+    effect = effect.at(scene.point, scene.conditions)
+    signals = effect.gauge(np.zeros((len(SENSORS), len(scene.time))), scene)
+    others = dict.fromkeys(CHANNELS, np.zeros(len(scene.time)))
+    channels = effect.acquisition(others | dict(zip(SENSORS, signals, strict=True)), scene)
+    return np.array([channels[gauge] for gauge in gauges])
 
 
 def _directions(pattern: Float[np.ndarray, "column number"]) -> Float[np.ndarray, "number rank"]:

@@ -1,7 +1,8 @@
 """Closing the loop: screen, refine, fit, judge, add, and ask again."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from swgsim.loop.hypotheses import hypotheses, signatures
 from swgsim.loop.screening import Score, best_of_kind, screen
 from swgsim.loop.session import Measured
 from swgsim.loop.trial import LEAST_GAIN, Trial, begun, tried, widened
-from swgsim.loop.vocabulary import Described, describe
+from swgsim.loop.vocabulary import Described, describe, set_free
 from swgsim.seeds import generator
 
 # Probability of a false effect on recordings in which nothing is missing.
@@ -21,6 +22,8 @@ ALPHA = 0.005
 # Leaders that are fitted, those that are as good but for this share of the gain and may be rivals, and effects that are
 # added at most.
 LEADERS, NEARLY, NEARLY_LEADERS, MOST = 4, 0.05, 8, 3
+# Disturbances of single channels that may stand before an effect and are set apart for it, at most.
+SET_APART = 2
 # Log-likelihood that a pair must gain over its better half; beside the leaders, so many are tried that lead behind it.
 PAIR_GAIN, BEHIND = 15.0, 2
 
@@ -63,6 +66,8 @@ class Closed:
         Significant, but of the wrong form: they contradict themselves, or a bare regularity explains more.
     outdone_by : Described or None
         That regularity.
+    apart : tuple of Described
+        Disturbances of single channels that were set apart before an effect was found behind them.
     """
 
     before: Fitted
@@ -73,6 +78,7 @@ class Closed:
     left: tuple[Score, ...]
     rejected: tuple[Trial, ...]
     outdone_by: Described | None
+    apart: tuple[Described, ...] = ()
 
     @property
     def nearest(self) -> Trial | None:
@@ -99,31 +105,62 @@ def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed
     """
     before = now = fit(measured, unit)
     steps: list[Step] = []
-    rejected: tuple[Trial, ...] = ()
-    outdone_by: Described | None = None
+    apart: tuple[Described, ...] = ()
     first: tuple[Score, ...] | None = None
     while True:
         scores = _screened(now, kinds, generator("screen", seed, len(steps)))
         first = scores if first is None else first
         if steps:
             steps[-1] = _with_rivals(steps[-1], scores)
-        leaders = _leaders(scores)
-        if not leaders or len(steps) == MOST:
+        found = _round(now, scores if len(steps) < MOST else (), kinds, seed, len(steps))
+        if found.trials and not found.accepted:
+            found, taken = _behind(now, found, kinds, seed, len(steps), SET_APART - len(apart))
+            apart += taken
+        if found.accepted is None:
             break
-        trials = sorted((_alone(now, score, seed) for score in leaders), key=lambda trial: -trial.merit)
-        best = trials[0]
-        accepted = best if best.sound else _pair(now, trials, kinds, seed) or in_company(now, best, ALPHA, seed)
-        if accepted is None:
-            rejected = tuple(trials)
+        others = tuple(trial for trial in found.trials if trial.effects != found.accepted.effects)
+        steps.append(Step(found.accepted, (), others))
+        now = _with_allowance(found.accepted)
+    return Closed(before, now.strict, now, tuple(steps), first, scores, found.trials, found.outdone_by, apart)
+
+
+class Round(NamedTuple):
+    """What asking once gave: fits, the best first; what of them is accepted; the regularity that outdoes it."""
+
+    trials: tuple[Trial, ...]
+    accepted: Trial | None
+    outdone_by: Described | None
+
+
+def _round(now: Fitted, scores: Sequence[Score], kinds: Sequence[type[Effect]], seed: int, number: int) -> Round:
+    """Fit the best hypotheses, and judge the best of them."""
+    leaders = _leaders(scores)
+    if not leaders:
+        return Round((), None, None)
+    trials = tuple(sorted((_alone(now, score, seed) for score in leaders), key=lambda trial: -trial.merit))
+    best = trials[0]
+    accepted = best if best.sound else _pair(now, trials, kinds, seed) or in_company(now, best, ALPHA, seed)
+    if accepted is None:
+        return Round(trials, None, None)
+    plain = describe(now, generator("vocabulary of a step", seed, number))[0]
+    return Round(trials, None, plain) if outdone(accepted, plain, now) else Round(trials, accepted, None)
+
+
+def _behind(
+    now: Fitted, found: Round, kinds: Sequence[type[Effect]], seed: int, number: int, most: int
+) -> tuple[Round, tuple[Described, ...]]:
+    """What is accepted once disturbances of single channels, which dwarf it, are set apart; else what was found."""
+    apart: tuple[Described, ...] = ()
+    while len(apart) < most:
+        plain = describe(now, generator("set apart", seed, number, len(apart)))[0]
+        if plain.chance > ALPHA or not plain.atom.alone:
             break
-        plain = describe(now, generator("vocabulary of a step", seed, len(steps)))[0]
-        if outdone(accepted, plain, now):
-            rejected, outdone_by = tuple(trials), plain
-            break
-        others = tuple(trial for trial in trials if trial.effects != accepted.effects)
-        steps.append(Step(accepted, (), others))
-        now = _with_allowance(accepted)
-    return Closed(before, now.strict, now, tuple(steps), first, scores, rejected, outdone_by)
+        now, apart = set_free(now, plain), (*apart, plain)
+        scores = _screened(now, kinds, generator("screen beside", seed, number, len(apart)))
+        behind = _round(now, scores, kinds, seed, number)
+        if behind.accepted:
+            return behind, apart
+    return found, ()
 
 
 def _screened(fitted: Fitted, kinds: Sequence[type[Effect]], rng: np.random.Generator) -> tuple[Score, ...]:
@@ -164,10 +201,8 @@ def _with_allowance(accepted: Trial) -> Fitted:
     """The fit of a trial, with its effects' form open within the tolerance."""
     fitted = accepted.fitted
     count = len(fitted.model.effects)
-    open_ = [allowance(fitted, number) for number in range(count - len(accepted.effects), count)]
-    kept = [] if fitted.allowed is None else [fitted.allowed]
-    allowed = np.hstack([*kept, *open_])
-    return replace(fitted, open=np.hstack([fitted.open, *open_]), allowed=allowed)
+    added = range(count - len(accepted.effects), count)
+    return fitted.allowing(np.hstack([allowance(fitted, number) for number in added]))
 
 
 def _with_rivals(step: Step, after: Sequence[Score]) -> Step:

@@ -9,6 +9,8 @@ from swgsim.effects.quantity import Role, quantities
 from swgsim.gear import Gear, KinematicError
 from swgsim.loop.model import Model
 
+# Spread of what belongs to the bench and not to the gear, as a share; an estimate.
+BENCH = 0.3
 # Below this share of its nominal value, a stiffness, a friction or the stroke of the wave generator is that of no gear.
 LEAST = 0.05
 
@@ -48,10 +50,10 @@ def _of_gear(
     return Declared(unit, sd, lambda m: value(m.gear), lambda m, to: replace(m, gear=moved(m.gear, to)), low)
 
 
-def _of_transmission(name: str, unit: str, nominal: float) -> Declared:
+def _of_transmission(name: str, unit: str, nominal: float, spread: float = 0.1) -> Declared:
     return _of_gear(
         unit,
-        0.1 * nominal,
+        spread * nominal,
         lambda gear: float(getattr(gear.transmission, name)),
         lambda gear, to: replace(gear, transmission=replace(gear.transmission, **{name: to})),  # type: ignore[arg-type]
         LEAST * nominal,
@@ -92,6 +94,10 @@ def of_unit(gear: Gear) -> dict[str, Declared]:
         "b0": _of_transmission("b0", "N m", t.b0),
         "b1": _of_transmission("b1", "N m s/rad", t.b1),
         "mu": _of_transmission("mu", "-", t.mu),
+        # Load and speed control belong to the test bench, of which a gear file says little.
+        "J_out": _of_transmission("J_out", "kg m^2", t.J_out, BENCH),
+        "control frequency": _of_transmission("control_frequency", "Hz", t.control_frequency, BENCH),
+        "control damping": _of_transmission("control_damping", "-", t.control_damping, BENCH),
         "w0": _of_gear(
             "m",
             0.01 * gear.wave_generator.w0,

@@ -22,6 +22,8 @@ from swgsim.loop.session import Measured
 
 # Declared accuracy of the structural model before the gear itself has been recorded: the mesh alone makes up to 2 %.
 STRUCTURE = 0.01
+# Mean square of a healthy gear's residual, in units of what is declared of it, beyond which the model is not its own.
+MISFIT = 3.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +119,8 @@ class Fitted:
     offset : array (row,)
         Deviation of the maps found by commissioning.
     allowed : array (row, column) or None
-        The part of ``open`` that the form of effects found earlier leaves open.
+        The part of ``open`` that the form of effects found earlier leaves open, and regularities that were set free; it
+        comes last.
     """
 
     measured: Measured
@@ -137,10 +140,15 @@ class Fitted:
 
     @property
     def strict(self) -> "Fitted":
-        """The same without what the form of effects leaves open, for predictions."""
+        """The same without what effects and regularities found earlier leave open, for predictions."""
         if self.allowed is None:
             return self
         return replace(self, open=self.open[:, : -self.allowed.shape[1]], allowed=None)
+
+    def allowing(self, columns: Float[np.ndarray, "row column"]) -> "Fitted":
+        """The same with more left open, one standard deviation each, also when effects are added to it."""
+        kept = [] if self.allowed is None else [self.allowed]
+        return replace(self, open=np.hstack([self.open, columns]), allowed=np.hstack([*kept, columns]))
 
     @cached_property
     def residual(self) -> Float[np.ndarray, " row"]:
@@ -161,6 +169,13 @@ class Fitted:
     def from_start(self) -> Float[np.ndarray, " row"]:
         """Residual of the linearised model at the values where the spreads begin: what :attr:`whole` describes."""
         return self.residual + self.J @ np.array(list(self.calibrated.position.values()))
+
+    @property
+    def misfit(self) -> dict[str, float]:
+        """Mean square of every channel's residual in units of what is declared of it: 1 where the model is right."""
+        layout = self.measured.layout
+        square = (self.whole.whiten(self.from_start) ** 2).reshape(-1, len(layout)).mean(axis=0)
+        return {channel: float(square[layout.channel == channel].mean()) for channel in layout.channels}
 
     @cached_property
     def deviation(self) -> dict[str, float]:
@@ -221,7 +236,7 @@ def fit(
     position : mapping, optional
         Where parameters begin, in spreads.
     allowed : array (row, column), optional
-        What the form of effects found earlier leaves open, one standard deviation each.
+        What effects and regularities found earlier leave open, one standard deviation each.
     """
     start = model or unit.model
     parameters = of_effects(start) if unit.commissioned else of_unit(unit.model.gear) | of_effects(start)
@@ -257,8 +272,22 @@ def extended(now: Fitted, added: Sequence[Effect]) -> Fitted:
 
 
 def commission(measured: Measured, unit: Unit) -> Unit:
-    """The unit with what recordings of its healthy state say about it."""
+    """The unit with what recordings of its healthy state say about it.
+
+    Raises
+    ------
+    ValueError
+        If the model does not describe the healthy gear: what it misses would later pass for an effect.
+    """
     fitted = fit(measured, unit)
+    poor = sorted(((size, name) for name, size in fitted.misfit.items() if size > MISFIT), reverse=True)
+    if poor:
+        differ = ", ".join(f"{name} ({np.sqrt(size):.1f} times)" for size, name in poor)
+        raise ValueError(
+            f"the model cannot be commissioned on these recordings: {differ} differ from it by more than noise and "
+            f"declared spreads allow (at most {np.sqrt(MISFIT):.1f} times). Correct the gear file (load inertia J_out, "
+            "speed control), the zero of the angle or a channel that is none of this gear, or leave that channel out"
+        )
     largest = largest_lines(fitted.calibrated.predicted, measured.layout)
     directions = measured.rows(form_columns(largest, measured.situations, measured.layout))
     columns = np.hstack([fitted.J, directions * unit.structure])

@@ -14,7 +14,8 @@ from swgsim.effects.base import Effect
 from swgsim.effects.library import SEARCHED, named
 from swgsim.effects.text import as_text, sized
 from swgsim.files import write_json, write_text
-from swgsim.intake.read import read_recordings
+from swgsim.intake.read import read_recordings, require_usable
+from swgsim.loop.angle_zero import zero_defects
 from swgsim.loop.answer import Answer, answer
 from swgsim.loop.experiment import next_experiments
 from swgsim.loop.features import COMPARED
@@ -67,10 +68,12 @@ def run(config: Mapping[str, Any]) -> Outcome:
     declared = settings.effects(config["effects"])
     between = tuple(effect for effect in declared if has_sidelines(type(effect)))
     unit = Unit(Model(settings.gear(config["gear"]), tuple(e for e in declared if e not in between)))
+    require_usable(Path(config["recordings"]), zero_defects(recordings, unit.model))
     if config["commissioning"] is not None:
         mapping = config["commissioning_mapping"] or config["mapping"]
         healthy, more = _read(config["commissioning"], "commissioning", mapping)
         recordings, healthy = _alike(recordings, healthy)
+        require_usable(Path(config["commissioning"]), zero_defects(healthy, unit.model))
         defects = (*defects, *more)
         unit = commission(Measured.of(healthy), unit)
     found = answer(recordings, unit, kinds, known=between, seed=config["seed"])

@@ -20,8 +20,8 @@ CONTRADICTION = 1e-4
 ZOOMS = 3
 # The noise beside a line is what was estimated of all lines together, as so many numbers would say it.
 ALL_TOGETHER = 20
-# Effects that are added at most, and values of a parameter that are tried at most.
-MOST, MOST_TRIED = 3, 400
+# Values of a parameter that are tried at most.
+MOST_TRIED = 400
 
 
 @dataclass(frozen=True)
@@ -42,6 +42,8 @@ class Sideline:
         Standard deviation of the size.
     agrees : float
         Probability that recordings differ so much from the effect's law, if that is right to TOLERANCE.
+    explained : float
+        Sum of squares that it explains beyond the noise beside its lines, in units of the floor.
     """
 
     effect: Effect
@@ -50,6 +52,7 @@ class Sideline:
     chance: float
     deviation: float
     agrees: float
+    explained: float
 
     @property
     def rank(self) -> float:
@@ -60,31 +63,6 @@ class Sideline:
     def holds(self) -> bool:
         """Whether all recordings follow the effect's law."""
         return self.agrees > CONTRADICTION
-
-
-def search(
-    spectra: Sequence[Between], kinds: Iterable[type[Effect]], level: float
-) -> tuple[list[Sideline], Sequence[Between]]:
-    """Effects between the orders, one after the other as long as one is too unlikely to be luck; and what they leave.
-
-    Parameters
-    ----------
-    spectra : sequence of Between
-        Of all recordings.
-    kinds : iterable of effect classes
-    level : float
-        Probability of a false one.
-    """
-    found: list[Sideline] = []
-    sought = list(kinds)
-    while len(found) < MOST:
-        best = next(iter(ranked(spectra, sought)), None)
-        if best is None or best.chance > level or not best.holds:
-            break
-        found.append(best)
-        spectra = [each.without(nearby(best.effect, spectra)) for each in spectra]
-        sought = [kind for kind in sought if kind is not type(best.effect)]
-    return found, spectra
 
 
 def ranked(spectra: Sequence[Between], kinds: Iterable[type[Effect]]) -> list[Sideline]:
@@ -134,6 +112,7 @@ def _judged(effect: Effect, spectra: Sequence[Between], tried: int) -> Sideline:
     gain, freedom, size, rest, beside = np.array([each.explained(effect) for each in spectra]).T
     # The floor holds for the whole spectrum; beside the lines it may be somewhat higher or lower.
     noise = (rest.sum() + ALL_TOGETHER) / (beside.sum() + ALL_TOGETHER)
+    explained = float(gain.sum() - noise * freedom.sum())
     gain, size = gain / noise, size / noise
     # Power of the effect beyond the noise, in units of its typical size squared.
     share = float(max(gain.sum() - freedom.sum(), 0.0) / max(size.sum(), 1e-300))
@@ -148,7 +127,7 @@ def _judged(effect: Effect, spectra: Sequence[Between], tried: int) -> Sideline:
     # The law may be off in every recording, and then so is the mean.
     deviation = float(np.hypot(deviation, TOLERANCE * estimate / np.sqrt(max(used.sum(), 1))))
     return Sideline(
-        replace(effect, **{name: estimate}), float(gain.sum()), int(freedom.sum()), chance, deviation, agrees
+        replace(effect, **{name: estimate}), float(gain.sum()), int(freedom.sum()), chance, deviation, agrees, explained
     )
 
 

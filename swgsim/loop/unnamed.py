@@ -7,13 +7,46 @@ import numpy as np
 from jaxtyping import Float
 from scipy.stats import f
 
+from swgsim.effects.base import Effect, Scene
+from swgsim.effects.quantity import random_phase, size
 from swgsim.loop.between import BESIDE, Between
 from swgsim.loop.features import FITTED
 from swgsim.loop.sidelines import ALL_TOGETHER
+from swgsim.recordings import SENSORS
 
 KINDS = ("order", "frequency")
 # Lines to either side that may hold a part of a line between them.
 SPILLED = 1
+
+
+@dataclass(frozen=True)
+class Line(Effect):
+    """A line in one gauge, with another phase in every recording.
+
+    Attributes
+    ----------
+    sensor : str
+    kind : str
+        Of :data:`KINDS`.
+    where : float
+        Order [-] or frequency [Hz].
+    amplitude : float
+        [mV/V]
+    phase : float
+        [rad]
+    """
+
+    sensor: str
+    kind: str
+    where: float
+    amplitude: float = size(unit="mV/V", low=0, high=1, typical=1.0)
+    phase: float = random_phase()
+
+    def gauge(self, signals: Float[np.ndarray, "5 time"], scene: Scene) -> Float[np.ndarray, "5 time"]:
+        """The signals with the line on one of them."""
+        angle = self.where * (scene.phi_in if self.kind == "order" else 2 * np.pi * scene.time)
+        mine = np.array([sensor == self.sensor for sensor in SENSORS])
+        return signals + mine[:, None] * self.amplitude * np.cos(angle + self.phase)
 
 
 @dataclass(frozen=True)
@@ -32,6 +65,10 @@ class Unnamed:
         That gauge.
     chance : float
         Of as much by noise anywhere.
+    explained : float
+        Sum of squares that it explains beyond the noise beside it, in units of the floor.
+    reach : float
+        Distance to the next place that was tried.
     """
 
     kind: str
@@ -39,6 +76,13 @@ class Unnamed:
     amplitude: float
     gauge: str
     chance: float
+    explained: float
+    reach: float
+
+    def effects(self, gauges: Sequence[str]) -> list[Effect]:
+        """Whatever it may be in these gauges, its place being known to a part of its reach."""
+        places = self.at + self.reach * np.array([-0.5, 0.0, 0.5])
+        return [Line(gauge, self.kind, float(place), 1.0) for gauge in gauges for place in places]
 
     def __str__(self) -> str:
         where = f"order {self.at:.2f}" if self.kind == "order" else f"{self.at:.1f} Hz"
@@ -49,7 +93,7 @@ class Unnamed:
 
 
 def unnamed(spectra: Sequence[Between], level: float) -> Unnamed | None:
-    """The line that is most unlikely to be luck, if any is.
+    """Of the lines that are too unlikely to be luck, the one that explains most, if there is any.
 
     Parameters
     ----------
@@ -58,13 +102,15 @@ def unnamed(spectra: Sequence[Between], level: float) -> Unnamed | None:
     level : float
         Probability of a false one.
     """
-    found = [line for kind in KINDS for line in _best(spectra, kind)] if spectra else []
-    best = min(found, key=lambda line: line.chance, default=None)
-    return best if best and best.chance <= level else None
+    found = [line for kind in KINDS for line in _best(spectra, kind, level)] if spectra else []
+    return max(found, key=lambda line: line.explained, default=None)
 
 
-def _best(spectra: Sequence[Between], kind: str) -> list[Unnamed]:
-    """The best line at one order, or at one frequency; none if no place has a clear line in most recordings."""
+def _best(spectra: Sequence[Between], kind: str, level: float) -> list[Unnamed]:
+    """The best line at one order, or at one frequency; none if all may be luck, or no place is clear in most.
+
+    The noise beside a line holds what leaks from it, so it tells that a strong line is none, and not which is stronger.
+    """
     steps = [each.step if kind == "frequency" else 1 / each.revolutions for each in spectra]
     end = FITTED * max(1.0 if kind == "order" else each.revolutions * each.step for each in spectra)
     grid = np.arange(min(steps), end, min(steps) / 2)
@@ -84,12 +130,20 @@ def _best(spectra: Sequence[Between], kind: str) -> list[Unnamed]:
         return []
     gain, freedom, rest, beside = (each[tried] for each in (gain, freedom, rest, beside))
     noise = (rest + ALL_TOGETHER) / (beside + ALL_TOGETHER)
-    chances = f.sf(gain / noise / freedom, freedom, beside + ALL_TOGETHER)
-    best = tried[int(np.argmin(chances))]
+    chances = np.minimum(1.0, len(tried) * len(KINDS) * f.sf(gain / noise / freedom, freedom, beside + ALL_TOGETHER))
+    explained = np.where(chances <= level, gain - noise * freedom, -np.inf)
+    most = int(np.argmax(explained))
+    if chances[most] > level:
+        return []
+    best = tried[most]
     amplitude = _amplitudes(spectra, [round(grid[best] / step) - 1 for step in steps])
     largest = int(np.argmax(amplitude))
-    chance = float(min(1.0, chances.min() * len(tried) * len(KINDS)))
-    return [Unnamed(kind, float(grid[best]), float(amplitude[largest]), spectra[0].gauges[largest], chance)]
+    return [
+        Unnamed(
+            kind, float(grid[best]), float(amplitude[largest]), spectra[0].gauges[largest], float(chances[most]),
+            float(explained[most]), min(steps) / 2,
+        )
+    ]  # fmt: skip
 
 
 def _beside(lines: Float[np.ndarray, " line"]) -> Float[np.ndarray, " line"]:

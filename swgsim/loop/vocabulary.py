@@ -4,7 +4,7 @@ Atoms are tested as the effects of the library are, after projecting out what th
 they are also the widest question that can be asked of a residual: whether anything regular is left in it at all.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
@@ -38,6 +38,11 @@ class Atom:
     order: int
     pattern: str
     law: str
+
+    @property
+    def alone(self) -> bool:
+        """Whether it is in one channel only, as a disturbance of one instrument is."""
+        return len(PATTERNS[self.pattern]) == 1
 
 
 @dataclass(frozen=True)
@@ -134,7 +139,6 @@ def describe(fitted: Fitted, rng: np.random.Generator) -> list[Described]:
 
 
 def set_free(fitted: Fitted, described: Described) -> Fitted:
-    """A fit in which an atom may be as large as it likes."""
+    """A fit in which an atom may be as large as it likes, also when effects are added to it."""
     taken = columns(described.atom, fitted) * max(described.amplitude, 1e-12) * WIDE
-    # What the form of effects leaves open comes last.
-    return replace(fitted, open=np.hstack([taken, fitted.open]))
+    return fitted.allowing(taken)

@@ -23,14 +23,14 @@ def unknown(answer: Answer) -> dict[str, Any] | None:
     if not answer.left:
         return None
     atoms = [_described(each) for each in answer.unknown]
-    nearest, line = answer.nearest, answer.unnamed
+    nearest = answer.nearest
     return {
         "words": answer.left,
         "orders": sorted({each["order"] for each in atoms}),
         "pattern": atoms[0]["pattern"] if atoms else None,
         "law": atoms[0]["law"] if atoms else None,
         "regularities": atoms,
-        "line": asdict(line) | {"words": str(line)} if line else None,
+        "lines": [asdict(line) | {"words": str(line)} for line in answer.unnamed],
         "effects": entries([each.effect for each in answer.unknown]),
         "added": entries(answer.patches),
         "nearest": {"name": names(nearest), "why": why(nearest, answer)} if nearest else None,

@@ -1,0 +1,106 @@
+"""What lies between the orders: effects with a name and lines without one, the strongest first, and recordings without
+them. A strong line leaks into the orders, and there would pass for something else in every recording.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.effects.base import Effect
+from swgsim.loop.between import Between, ordinary, scene_of, shapes
+from swgsim.loop.sidelines import Sideline, nearby, ranked
+from swgsim.loop.unnamed import Unnamed, unnamed
+from swgsim.recording import Recording
+from swgsim.recordings import SENSORS
+
+# Lines that are found at most, with a name or without.
+MOST = 4
+# A line without a name comes before an effect if it explains more than the effect does by this share and amount.
+OUTDONE_SHARE, OUTDONE = 0.05, 17.0
+# Shapes below this share of the largest one are rounding.
+ROUNDING = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """What was found between the orders.
+
+    Attributes
+    ----------
+    named : tuple of Sideline
+    unnamed : tuple of Unnamed
+    left : tuple of Between
+        The spectra without it.
+    effects : tuple of Effect
+        All that it may have put on the signals.
+    """
+
+    named: tuple[Sideline, ...]
+    unnamed: tuple[Unnamed, ...]
+    left: tuple[Between, ...]
+    effects: tuple[Effect, ...]
+
+    def taking_out(self, effects: Sequence[Effect]) -> "Lines":
+        """The same without what these effects may have put there."""
+        return replace(self, left=tuple(each.without(effects) for each in self.left), effects=(*self.effects, *effects))
+
+
+def search(
+    spectra: Sequence[Between], kinds: Iterable[type[Effect]], level: float, known: Sequence[Effect] = ()
+) -> Lines:
+    """Lines between the orders, one after the other as long as one is too unlikely to be luck.
+
+    Parameters
+    ----------
+    spectra : sequence of Between
+        Of all recordings.
+    kinds : iterable of effect classes
+    level : float
+        Probability of a false one.
+    known : sequence of Effect
+        Declared effects, which are taken out first.
+    """
+    found = Lines((), (), tuple(spectra), ())
+    for effect in known if spectra else ():
+        found = found.taking_out(nearby(effect, spectra))
+    sought = list(kinds)
+    while len(found.named) + len(found.unnamed) < MOST:
+        best = next((line for line in ranked(found.left, sought)[:1] if line.chance <= level and line.holds), None)
+        bare = unnamed(found.left, level)
+        if best and (bare is None or bare.explained <= (1 + OUTDONE_SHARE) * best.explained + OUTDONE):
+            found = replace(found, named=(*found.named, best)).taking_out(nearby(best.effect, spectra))
+            sought = [kind for kind in sought if kind is not type(best.effect)]
+        elif bare:
+            found = replace(found, unnamed=(*found.unnamed, bare)).taking_out(bare.effects(spectra[0].gauges))
+        else:
+            break
+    return found
+
+
+def cleaned(recording: Recording, effects: Sequence[Effect]) -> Recording:
+    """A recording without what effects between the orders may have put on its gauges.
+
+    Parameters
+    ----------
+    recording : Recording
+    effects : sequence of Effect
+        Their sizes and random phases mean nothing.
+    """
+    scene, channels = scene_of(recording), recording.channels
+    gauges = tuple(sensor for sensor in SENSORS if sensor in channels)
+    seen = np.concatenate([shapes(effect, scene, gauges) for effect in effects])
+    orders = ordinary(scene)
+    clean = {name: channels[name] - _part(channels[name], seen[:, i].T, orders) for i, name in enumerate(gauges)}
+    return replace(recording, channels={**channels, **clean})
+
+
+def _part(
+    signal: Float[np.ndarray, " time"], seen: Float[np.ndarray, "time shape"], orders: Float[np.ndarray, "time column"]
+) -> Float[np.ndarray, " time"]:
+    """The part of a signal that shapes explain beside the orders, by least squares."""
+    U, s, _ = np.linalg.svd(seen, full_matrices=False)
+    shown = U[:, s > ROUNDING * max(float(s[0]), 1e-300)]
+    weights = np.linalg.lstsq(np.hstack([orders, shown]), signal, rcond=None)[0]
+    return shown @ weights[orders.shape[1] :]
