@@ -1,6 +1,6 @@
 """The simulation chain (Fig. 2): input/output model, flex spline and gauges in a row, for many runs at once."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache, reduce
 
@@ -10,16 +10,16 @@ from threadpoolctl import threadpool_limits
 
 from swgsim.acquisition import Window
 from swgsim.conditions import Conditions
-from swgsim.dynamics import Drive, State
 from swgsim.effects.base import Effect, Scene, overrides
 from swgsim.flexspline import solve_flex_spline
 from swgsim.gauges import GaugeSet
 from swgsim.gear import Gear, OperatingPoint, WaveGenerator
 from swgsim.influence import InfluenceMap, harmonics, influence_map
-from swgsim.motion import Motion, advance, revolve, run, steady_state
+from swgsim.motion import Motion, run
 from swgsim.recording import Recording
 from swgsim.recordings import SENSORS
 from swgsim.silk_hat import SilkHat
+from swgsim.turning import Driven, one_turn, settled
 
 SECTORS = 100
 
@@ -51,6 +51,11 @@ class Run:
     def acting(self) -> tuple[Effect, ...]:
         """The effects as they are at the operating point and under the conditions of the run."""
         return tuple(effect.at(self.point, self.conditions) for effect in self.effects)
+
+    @property
+    def driving(self) -> tuple[Effect, ...]:
+        """Those of them that add torques."""
+        return tuple(effect for effect in self.acting if overrides(effect, "drive"))
 
     @property
     def affected_gear(self) -> Gear:
@@ -103,7 +108,9 @@ def simulate(runs: Sequence[Run], window: Window, sectors: int = SECTORS) -> Sim
     Simulation
         Ideal signals: noise, quantisation and disturbance are for the acquisition.
     """
-    motion, of_run = _motions(runs, lambda drive, state: run(drive, state, 1 / window.rate, window.samples))
+    driven, of_run = _driven(runs)
+    drive, state = settled(driven)
+    motion = run(drive, state, 1 / window.rate, window.samples)
     signals = _gauge_signals(runs, motion, of_run, window.samples, sectors)
     ideal = Simulation(signals, motion, of_run)
     seen = {
@@ -120,7 +127,8 @@ def simulate(runs: Sequence[Run], window: Window, sectors: int = SECTORS) -> Sim
 def simulate_turns(runs: Sequence[Run], revolutions: int, points: int, sectors: int = SECTORS) -> list[Recording]:
     """Recordings of whole revolutions of the wave generator in the steady state.
 
-    One revolution is integrated and repeated; effects on gauges and acquisition then act on all of them in time.
+    One revolution is integrated, unless it is remembered, and repeated; effects on gauges and acquisition then act on
+    all of them in time.
 
     Parameters
     ----------
@@ -131,7 +139,8 @@ def simulate_turns(runs: Sequence[Run], revolutions: int, points: int, sectors: 
     sectors : int
         Sectors of the flex spline's truss, even.
     """
-    motion, of_run = _motions(runs, lambda drive, state: revolve(drive, state, points))
+    driven, of_run = _driven(runs)
+    motion = one_turn(driven, points)
     simulation = Simulation(_gauge_signals(runs, motion, of_run, points, sectors), motion, of_run)
     recordings = []
     for i, each in enumerate(runs):
@@ -144,22 +153,13 @@ def simulate_turns(runs: Sequence[Run], revolutions: int, points: int, sectors: 
     return recordings
 
 
-def _motions(runs: Sequence[Run], integrate: Callable[[Drive, State], Motion]) -> tuple[Motion, np.ndarray]:
-    """The distinct motions from their steady state on, and which of them belongs to each run."""
+def _driven(runs: Sequence[Run]) -> tuple[list[Driven], np.ndarray]:
+    """The distinct motions, and which of them belongs to each run."""
     if not runs:
         raise ValueError(
             "no runs to simulate: the grid is empty; give it gears, classes, variants and operating points"
         )
-    motions, of_run = _distinct([
-        (r.affected_gear.transmission, r.point, tuple(e for e in r.acting if overrides(e, "drive")), r.start_angle)
-        for r in runs
-    ])  # fmt: skip
-    transmissions, points, effects, start = zip(*motions, strict=True)
-    drive = Drive(transmissions, points, effects)
-    state = steady_state(drive)
-    if any(start):
-        state = advance(drive, state, np.array(start))
-    return integrate(drive, state), of_run
+    return _distinct([Driven(r.affected_gear.transmission, r.point, r.driving, r.start_angle) for r in runs])
 
 
 def _gauge_signals(

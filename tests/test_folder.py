@@ -444,6 +444,10 @@ BAD_MAPS: dict[str, tuple[dict[str, object], str]] = {
     "strain without a bridge": ({"channels": {"s1": {"column": "a", "unit": "um/m"}}}, "gauge_factor and active_arms"),
     "no time": ({"channels": {"s1": {"column": "a", "unit": "V/V"}}}, "either the channel t or sampling_rate_hz"),
     "time twice": ({"sampling_rate_hz": 1000}, "either the channel t or sampling_rate_hz"),
+    "zero of a gauge": ({"channels": {"s1": {"column": "a", "unit": "V/V", "zero_rad": 0.1}}}, "only phi_in has one"),
+    "zero beyond a turn": (
+        {"channels": {"phi_in": {"column": "a", "unit": "deg", "zero_rad": 34.4}}}, "zero_rad of phi_in is 34.4",
+    ),
     "channels are a list": ({"channels": [1]}, "channels is '\\[1\\]', must be names with values"),
     "no such column": (
         {"channels": {"t": {"column": "Clock", "unit": "s"}}}, "run1.parquet: found columns Time.*expected 'Clock'",

@@ -26,6 +26,10 @@ JUMP_QUANTILE = 0.95
 # Steps of the running median that the jumps are seen against.
 JUMP_MEDIAN = 15
 
+# Zero of the angle against that of the nominal gear [rad]. An index is set within 0.02 rad and gauges are bonded within
+# 0.01 rad (standard deviations), which makes 0.021 for four gauges: about five times that.
+ANGLE_ZERO = 0.1
+
 # Mean torque at the output against the set point, relative and absolute [N m]. Flanges and load machines are off by a
 # few per cent; pound-feet are 26 % off.
 TORQUE_WARNS = (0.05, 0.5)

@@ -12,6 +12,8 @@ from swgsim.intake.file_defect import FIRST_ROW, FileDefect, shown
 from swgsim.intake.limits import MOST_ROWS, require_readable
 
 LONGEST_HEADER = 10_000
+# A row has at most as many cells as the header; what has no end of line is no table.
+LONGEST_LINE = 100_000
 
 
 def read_table(path: Path, name: str) -> dict[str, Float[np.ndarray, " time"]]:
@@ -62,7 +64,9 @@ def _lines(stream: TextIO, name: str) -> Iterator[str]:
     """The rows after the header; blank lines are allowed at the end only."""
     blank = 0
     rows = 0
-    for row, line in enumerate(stream, FIRST_ROW):
+    for row, line in enumerate(iter(lambda: stream.readline(LONGEST_LINE + 1), ""), FIRST_ROW):
+        if len(line) > LONGEST_LINE:
+            raise FileDefect(name, f"a line of more than {LONGEST_LINE} characters", "a row of numbers", row)
         if not line.strip():
             blank = blank or row
         elif blank:

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Mapping
-from math import isfinite
+from math import isfinite, nan
 
 from swgsim.conditions import REFERENCE_TEMPERATURE, Conditions
 from swgsim.gear import OperatingPoint
@@ -18,7 +18,8 @@ KNOWN = (*NEEDED, *OPTIONAL)
 LONGEST_TEXT = 200
 MOST_REPEATS = 1_000_000
 
-NUMBER = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*", re.ASCII)
+# Digits can be split in one way only: else a cell of many digits that is no number would take their number squared.
+NUMBER = re.compile(r"\s*[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\s*", re.ASCII)
 
 
 def parse(given: Mapping[str, object], file: str, row: int | None = None) -> dict[str, object]:
@@ -90,6 +91,10 @@ def _text(value: object, file: str, row: int | None, column: str, empty: bool = 
 def _number(value: object, file: str, row: int | None, column: str) -> float:
     if isinstance(value, str) and NUMBER.fullmatch(value):
         value = float(value)
-    if not isinstance(value, int | float) or isinstance(value, bool) or not isfinite(value):
+    try:
+        number = float(value) if isinstance(value, int | float) and not isinstance(value, bool) else nan
+    except OverflowError:  # of an integer
+        number = nan
+    if not isfinite(number):
         raise FileDefect(file, shown(value), "a finite number; leave out the column if it is not known", row, column)
-    return float(value)
+    return number

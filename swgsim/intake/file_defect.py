@@ -1,10 +1,15 @@
 """What is wrong with a file: always named by file, row, column, what was found and what was expected."""
 
+from reprlib import Repr
+
 # Rows are counted as an editor counts the lines of a CSV file: the header is row 1, the first sample row 2.
 FIRST_ROW = 2
 
 # A found value is shown up to this many characters.
 SHOWN = 60
+# What is no text may be nested so that it fills the memory when it is written out.
+_SHORT = Repr()
+_SHORT.maxlong = _SHORT.maxother = _SHORT.maxstring = 2 * SHOWN
 
 
 class FileDefect(ValueError):
@@ -31,5 +36,5 @@ def shown(value: object) -> str:
     >>> shown("3,14")
     "'3,14'"
     """
-    text = str(value)
+    text = value if isinstance(value, str) else _SHORT.repr(value)
     return repr(text if len(text) <= SHOWN else text[:SHOWN] + "…")

@@ -1,6 +1,7 @@
 """The named columns of files from elsewhere: MATLAB, Parquet and CSV. Only numbers are read, never objects."""
 
 from collections.abc import Sequence
+from math import prod
 from pathlib import Path
 
 import h5py
@@ -9,8 +10,11 @@ from jaxtyping import Float
 
 from swgsim.intake.csv_table import read_table
 from swgsim.intake.file_defect import FileDefect, shown
-from swgsim.intake.limits import require_readable, require_rows
+from swgsim.intake.limits import require_expansion, require_readable, require_rows
 from swgsim.intake.recording_file import numbers
+
+# Classes of MATLAB that are numbers.
+NUMERIC = ("double", "single", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)))
 
 Columns = dict[str, Float[np.ndarray, " time"]]
 
@@ -58,24 +62,44 @@ def _read_matlab(path: Path, name: str, wanted: Sequence[str]) -> Columns:
                 link = file.get(column, getlink=True)
                 if not isinstance(link, h5py.HardLink) or not isinstance(file[column], h5py.Dataset):
                     raise FileDefect(name, "a link or a struct", "a variable with numbers", column=column)
+            require_expansion(path, name, sum(file[column].size or 0 for column in wanted))
             return {column: numbers(file[column], name, column) for column in wanted}
     from scipy.io import loadmat, whosmat
 
     # Shapes first: what is compressed may be far larger than the file.
-    shapes = {variable: shape for variable, shape, _ in whosmat(path)}
-    _require_present(name, wanted, shapes)
-    for column in wanted:
-        require_rows(name, int(np.prod([float(length) for length in shapes[column]])))
+    variables = whosmat(path)
+    names = [variable for variable, _, _ in variables]
+    _require_present(name, wanted, names)
+    sizes = []
+    for variable, shape, kind in variables:
+        if variable in wanted and names.count(variable) > 1:
+            raise FileDefect(name, f"{names.count(variable)} variables of this name", "one", column=variable)
+        if variable in wanted and kind not in NUMERIC:
+            raise FileDefect(name, f"{shown(kind)} of shape {shown(shape)}", "real numbers", column=variable)
+        if variable in wanted:
+            sizes.append(prod(int(length) for length in shape))
+            require_rows(name, sizes[-1])
+    require_expansion(path, name, sum(sizes))
     content = loadmat(path, variable_names=list(wanted))
     return {column: _real(content[column], name, column) for column in wanted}
 
 
 def _read_parquet(path: Path, name: str, wanted: Sequence[str]) -> Columns:
-    from pyarrow import parquet  # type: ignore[import-untyped]
+    from pyarrow import parquet, types  # type: ignore[import-untyped]
 
     with parquet.ParquetFile(path) as file:
         _require_present(name, wanted, file.schema_arrow.names)
-        require_rows(name, file.metadata.num_rows)
+        for column in wanted:
+            if file.schema_arrow.names.count(column) > 1:
+                raise FileDefect(name, "several columns of this name", "one", column=column)
+            kind = file.schema_arrow.field(column).type
+            # A text or a list may be long and there once for all rows.
+            if not (types.is_integer(kind) or types.is_floating(kind)):
+                raise FileDefect(name, shown(kind), "real numbers", column=column)
+        groups = range(file.num_row_groups)
+        rows = max(file.metadata.num_rows, sum(file.metadata.row_group(group).num_rows for group in groups))
+        require_rows(name, rows)
+        require_expansion(path, name, rows * len(wanted))
         table = file.read(columns=list(wanted))
     return {column: _real(table[column].to_numpy(), name, column) for column in wanted}
 

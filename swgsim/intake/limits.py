@@ -9,6 +9,11 @@ LARGEST_FILE = 2 * 2**30
 MOST_ROWS = 50_000_000
 MOST_FILES = 10_000
 
+# Numbers may lie compressed: to 8 bytes each they may grow so many times, or to so many bytes whatever the file's size.
+# Measured signals shrink by less than 10; a file of a few kilobytes that fills the memory was made for that.
+MOST_EXPANSION = 100
+ALWAYS_EXPANDED = 256 * 2**20
+
 # No channel in its unit comes near it, and squares of it can still be computed with.
 LARGEST_NUMBER = 1e15
 
@@ -40,6 +45,23 @@ def require_rows(file: str, rows: int) -> None:
         raise FileDefect(file, f"{rows} samples", f"from {FEWEST_ROWS} to {MOST_ROWS}")
 
 
+def require_expansion(path: Path, file: str, count: int) -> None:
+    """Raise a FileDefect if a file says that it holds more numbers than one of its size does.
+
+    Parameters
+    ----------
+    path : Path
+    file : str
+        What messages call it.
+    count : int
+        Numbers that are to be read from it.
+    """
+    most = min(LARGEST_FILE, max(ALWAYS_EXPANDED, MOST_EXPANSION * path.stat().st_size))
+    if 8 * count > most:
+        found = f"{count} numbers in {path.stat().st_size} bytes"
+        raise FileDefect(file, found, f"at most {most // 8}: write it less compressed, or split the recording")
+
+
 def require_file_count(folder: Path, count: int) -> None:
     """Raise a FileDefect unless a folder holds at least one recording and not too many."""
     if not 1 <= count <= MOST_FILES:
@@ -69,6 +91,11 @@ def inside(folder: Path, name: str, table: str, row: int | None = None) -> Path:
     if not name.isprintable() or not parts or outside:
         raise FileDefect(table, shown(name), "the name of a file inside the folder, such as a.csv", row, "file")
     path = folder / name
+    try:
+        path.resolve(strict=True)
+    except (OSError, RuntimeError) as error:  # a name too long, or links in a circle
+        expected = "the name of a file in the folder"
+        raise FileDefect(table, f"{shown(name)}, which does not exist ({error})", expected, row, "file") from None
     if not path.resolve().is_relative_to(folder.resolve()):
         raise FileDefect(table, f"{shown(name)}, which leads outside", "a file inside the folder", row, "file")
     if not path.is_file():

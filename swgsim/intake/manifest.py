@@ -10,6 +10,8 @@ from swgsim.intake.file_defect import FIRST_ROW, FileDefect, shown
 from swgsim.intake.limits import inside, require_file_count, require_readable
 
 NAME = "manifest.csv"
+# It is read at once; the facts of 10 000 recordings have less.
+LARGEST = 32 * 2**20
 
 # Columns in the order in which they are written.
 COLUMNS = ("recording", "file", *(name for name in facts.KNOWN if name != "recording"))
@@ -26,6 +28,8 @@ def read(folder: Path) -> list[tuple[Path, dict[str, object]]]:
     """
     path = folder / NAME
     require_readable(path)
+    if path.stat().st_size > LARGEST:
+        raise FileDefect(NAME, f"{path.stat().st_size} bytes", f"at most {LARGEST}")
     rows = _rows(path)
     require_file_count(folder, len(rows) - 1)
     header = [cell.strip() for cell in rows[0]]
@@ -49,9 +53,17 @@ def read(folder: Path) -> list[tuple[Path, dict[str, object]]]:
             )
         found.append((file, said))
     for file in sorted(folder.rglob("*")):
-        if file.suffix.lower() == ".csv" and file.resolve() not in taken and file != path:
+        if file.suffix.lower() == ".csv" and _place(file) not in taken and file != path:
             raise FileDefect(str(file.relative_to(folder)), "no row for this file in the manifest", "one row per file")
     return found
+
+
+def _place(file: Path) -> Path:
+    """Where a file is; one that cannot be found, as links in a circle cannot, is at no place of another one."""
+    try:
+        return file.resolve()
+    except (OSError, RuntimeError):
+        return file
 
 
 def text(rows: Iterable[tuple[str, dict[str, object]]]) -> str:

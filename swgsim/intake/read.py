@@ -1,5 +1,6 @@
 """The one way in for recordings: whatever form they have, with what their numbers say of the test bench."""
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -38,10 +39,15 @@ def read_recordings(path: Path, mapping: Path | None = None) -> Intake:
         If a file cannot be read, or the numbers have a defect that forbids their use; all of those are listed.
     """
     intake = inspect_recordings(path, mapping)
-    refused = [defect for defect in intake.defects if defect.severity == "refuse"]
+    require_usable(path, intake.defects)
+    return intake
+
+
+def require_usable(path: Path, defects: Iterable[Defect]) -> None:
+    """Raise a ValueError that lists the defects that forbid the use of recordings, if there are any."""
+    refused = [defect for defect in defects if defect.severity == "refuse"]
     if refused:
         raise ValueError(f"{path}: these recordings cannot be used\n{summary(refused)}")
-    return intake
 
 
 def inspect_recordings(path: Path, mapping: Path | None = None) -> Intake:

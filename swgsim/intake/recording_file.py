@@ -57,11 +57,31 @@ def read_file(path: Path) -> tuple[Recording, ...]:
                 expected = f"a file titled {TITLE!r}; a data set of generate.py is another thing"
                 raise FileDefect(str(path), f"the title {shown(title)}", expected)
             require_file_count(path, len(file))
+            _require_all_inside(path, file)
             recordings = tuple(_read_group(file, name, f"{path}:{name}") for name in sorted(file))
-    except OSError as error:
-        raise FileDefect(str(path), f"no HDF5 file ({error})", "one that write_file made") from None
+    except FileDefect:
+        raise
+    # The library answers damaged bytes with errors of many kinds; a seal can be put on any.
+    except (OSError, RuntimeError, LookupError, TypeError, ValueError) as error:
+        raise FileDefect(str(path), f"no HDF5 file of recordings ({error})", "one that write_file made") from None
     require_alike(recordings)
     return recordings
+
+
+def _require_all_inside(path: Path, file: h5py.File) -> None:
+    """Raise unless all numbers lie in the file as they are.
+
+    write_file compresses nothing. So if they are more than the file is large, they are compressed, left out for a fill
+    value, or there under several names, and may fill the memory.
+    """
+    size = path.stat().st_size
+    for name in file:
+        group = _plain(file, name, h5py.Group, f"{path}:{name}")
+        for key in group:
+            variable = _plain(group, key, h5py.Dataset, f"{path}:{name}")
+            size -= (variable.size or 0) * variable.dtype.itemsize
+    if size < 0:
+        raise FileDefect(str(path), "more numbers than the file has room for", "numbers that are not compressed")
 
 
 def _write_group(group: h5py.Group, recording: Recording) -> None:

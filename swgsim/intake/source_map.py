@@ -2,10 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import pi
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import yaml
+from jaxtyping import Float
 
 from swgsim.checks import require, require_known
 from swgsim.intake.file_defect import FileDefect, shown
@@ -31,11 +34,13 @@ class ColumnSource:
         Whether its sign is to be turned.
     gauge_factor, active_arms : float and int, optional
         Of a bridge that is given as strain.
+    zero_rad : float
+        Of the angle: what its column reads, in rad and with its sign, where the major axis is at s1.
 
     Raises
     ------
     ValueError
-        If channel or unit is unknown, or a strain lacks what its bridge signal depends on.
+        If channel or unit is unknown, a zero is that of no angle, or a strain lacks what its bridge signal depends on.
     """
 
     channel: str
@@ -44,6 +49,7 @@ class ColumnSource:
     inverted: bool = False
     gauge_factor: float | None = None
     active_arms: int | None = None
+    zero_rad: float = 0.0
 
     def __post_init__(self) -> None:
         require_known("channels", [self.channel], ["t", *CHANNELS])
@@ -53,6 +59,9 @@ class ColumnSource:
             raise ValueError(
                 f"{self.channel}: gauge_factor and active_arms belong to a gauge in {STRAIN}, and only there"
             )
+        require(self.channel, "zero_rad", self.zero_rad, low=-2 * pi, high=2 * pi)
+        if self.zero_rad and self.channel != "phi_in":
+            raise ValueError(f"zero_rad of {self.channel} is {self.zero_rad:g}: only phi_in has one, leave it out")
         if self.unit == STRAIN:
             require(self.channel, "gauge_factor", self.gauge_factor, low=0.5, high=300)
             if self.active_arms not in (1, 2, 4):
@@ -65,6 +74,10 @@ class ColumnSource:
         if self.gauge_factor is not None and self.active_arms is not None:
             return sign * bridge_factor(self.gauge_factor, self.active_arms)
         return sign * FACTORS[self._target][self.unit]
+
+    def values(self, column: Float[np.ndarray, " time"]) -> Float[np.ndarray, " time"]:
+        """The channel from its column."""
+        return column * self.factor - self.zero_rad
 
     @property
     def _target(self) -> str:
@@ -135,7 +148,7 @@ def _source_map(config: Any) -> SourceMap:
     for name, entries in (("channels", config.get("channels", {})), ("files", config.get("files", {}))):
         for key, entry in entries.items():
             _require_mapping(f"{key} of {name}", entry)
-    choices = ["column", "unit", "inverted", "gauge_factor", "active_arms"]
+    choices = ["column", "unit", "inverted", "gauge_factor", "active_arms", "zero_rad"]
     channels = []
     for channel, entry in config.get("channels", {}).items():
         require_known(f"channel {channel}", entry, choices)

@@ -59,7 +59,7 @@ def _read_one(folder: Path, name: str, mapping: SourceMap) -> Recording:
     if len(set(lengths.values())) > 1:
         raise FileDefect(name, f"columns of different lengths {lengths}", "as many values of every channel")
     with np.errstate(over="ignore"):  # A number beyond all limits is named below, as one that is not finite.
-        channels = {source.channel: columns[source.column] * source.factor for source in mapping.channels}
+        channels = {source.channel: source.values(columns[source.column]) for source in mapping.channels}
     if mapping.sampling_rate_hz:
         length = next(iter(lengths.values()), 0)
         require_rows(name, length)

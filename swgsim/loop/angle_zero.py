@@ -33,13 +33,14 @@ def zero_defects(recordings: Sequence[Recording], model: Model) -> Iterator[Defe
     measured = layout.lines(np.array([features(each, layout) for each in recordings]))[..., 2]
     turned = predicted * measured.conj()
     ahead = float(np.angle(turned.sum())) / 2
-    # Lobes turn with load and channels lag with speed, a zero is off in every recording alike: the least one counts.
-    least = np.abs(np.angle(turned.sum(axis=1))).min() / 2
+    # Lobes turn with load, scanned channels lag with speed and one after another; a zero is off in every recording and
+    # at every gauge alike: the least one counts.
+    least = min(np.abs(np.angle(turned.sum(axis=axis))).min() for axis in (0, 1)) / 2
     if min(abs(ahead), least) > ANGLE_ZERO:
         yield Defect(
             "angle_zero", "refuse", recordings[0].name, "phi_in",
             f"an angle that is {ahead:.3f} rad ahead of the gear's in all recordings, known up to half a turn",
             f"at most {ANGLE_ZERO:g} rad: zero where the major axis of the wave generator is at s1",
-            f"subtract {ahead:.3f} rad, in the files or by 'zero_rad: {ahead:.3f}' in a column map, from recordings and "
-            "commissioning alike; by a quarter of a turn, the gauges may be inverted or numbered from another one",
+            f"subtract {ahead:.3f} rad, in the files or by 'zero_rad: {ahead:.3f}' in a column map, from recordings "
+            "and commissioning alike; by a quarter of a turn, the gauges may be inverted or numbered from another one",
         )  # fmt: skip

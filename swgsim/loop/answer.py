@@ -18,6 +18,7 @@ from swgsim.loop.unnamed import Unnamed
 from swgsim.loop.vocabulary import Described, describe, set_free
 from swgsim.recording import Recording
 from swgsim.seeds import generator
+from swgsim.turning import forget
 
 NOTHING, FOUND, UNKNOWN = "nothing_missing", "effect_found", "unknown_effect"
 # Regularities that are described at most.
@@ -126,6 +127,7 @@ def answer(
         Declared effects between the orders.
     seed : int
     """
+    forget()
     lines = search(between(recordings), kinds, ALPHA, known)
     clean = [cleaned(recording, lines.effects) for recording in recordings] if lines.effects else recordings
     closed = close(Measured.of(clean), unit, kinds, seed=seed)

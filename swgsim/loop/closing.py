@@ -83,7 +83,7 @@ class Closed:
     @property
     def nearest(self) -> Trial | None:
         """Of what was rejected: the trial that came nearest."""
-        return self.rejected[0] if self.rejected else None
+        return self.rejected[0] if self.rejected and np.isfinite(self.rejected[0].merit) else None
 
     @property
     def deviation(self) -> dict[str, float]:

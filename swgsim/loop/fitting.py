@@ -19,6 +19,7 @@ from swgsim.loop.gaussian import Covariance
 from swgsim.loop.model import Model, Situation
 from swgsim.loop.scatter import Scatter
 from swgsim.loop.session import Measured
+from swgsim.turning import forget
 
 # Declared accuracy of the structural model before the gear itself has been recorded: the mesh alone makes up to 2 %.
 STRUCTURE = 0.01
@@ -279,6 +280,7 @@ def commission(measured: Measured, unit: Unit) -> Unit:
     ValueError
         If the model does not describe the healthy gear: what it misses would later pass for an effect.
     """
+    forget()
     fitted = fit(measured, unit)
     poor = sorted(((size, name) for name, size in fitted.misfit.items() if size > MISFIT), reverse=True)
     if poor:

@@ -21,6 +21,8 @@ from swgsim.seeds import generator
 LEAST_GAIN, LEAST_EVIDENCE = 3.0, 10.0
 # Share to which the chain has the size of an effect right at all: an estimate, of what its mesh makes.
 EXACT = 0.01
+# An effect of which no more than this is left, in standard deviations, is none.
+NOTHING = 0.1
 # Directions below this share of the largest one are rounding.
 ROUNDING = 1e-6
 
@@ -90,7 +92,8 @@ class Trial:
     @property
     def merit(self) -> float:
         """What trials are ordered by; one that was fitted down to nothing is none."""
-        return self.gain + self.evidence if self.signature.any(axis=0).all() else -np.inf
+        seen = np.linalg.norm(self.fitted.whole.whiten(self.signature), axis=0)
+        return self.gain + self.evidence if (seen > NOTHING).all() else -np.inf
 
 
 def begun(now: Fitted, score: Score, seed: int) -> Effect:

@@ -103,12 +103,14 @@ def untried(answer: Answer, kinds: Sequence[type[Effect]]) -> list[dict[str, Any
 
 
 def detectable(score: Score) -> dict[str, Any]:
-    """The smallest size that would have been seen, counted from the one that changes nothing."""
+    """The smallest size that would have been seen, counted from the one that changes nothing; None if none within the
+    bounds would.
+    """
     q = quantities(score.hypothesis.kind)[score.hypothesis.size]
     smallest = q.nothing + float(np.copysign(score.detectable, q.typical - q.nothing))
     return {
         "parameter": score.hypothesis.size,
-        "value": number(smallest),
+        "value": number(smallest) if q.low <= smallest <= q.high else None,
         "typical": float(q.typical),
         "unit": q.unit,
         "typical_would_be_seen": bool(score.detectable <= abs(q.typical - q.nothing)),

@@ -1,0 +1,136 @@
+"""The zero of the angle: what no unit and no effect explains is refused with its value, all else is not."""
+
+import re
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+import yaml
+from bench_fixtures import POINTS, good, with_channel
+from chain_fixtures import GEAR, SECTORS
+
+from swgsim.chain import Run, simulate_turns
+from swgsim.defects.thresholds import ANGLE_ZERO
+from swgsim.effects import Effect
+from swgsim.effects.channel_skew import ChannelSkew
+from swgsim.effects.gauge_position import GaugePosition
+from swgsim.effects.lobe_shift import LobeShift
+from swgsim.effects.tilting_moment import TiltingMoment
+from swgsim.examples import EXAMPLES
+from swgsim.faults import FAULTS
+from swgsim.gear import Gear
+from swgsim.intake.folder import write_folder
+from swgsim.intake.read import read_recordings
+from swgsim.loop import angle_zero, job
+from swgsim.loop.angle_zero import zero_defects
+from swgsim.loop.model import Model, predict
+from swgsim.population import Population
+from swgsim.recording import Recording
+
+Recordings = tuple[Recording, ...]
+EFFECTS = (
+    TiltingMoment(0.05, 1.0),
+    ChannelSkew(100e-6),
+    ChannelSkew(-100e-6),
+    LobeShift(0.05),
+    LobeShift(0.2),
+    GaugePosition(2, 0.1),
+)
+CORNERS = (POINTS[0], POINTS[-1])
+GEAR_1 = Path(__file__).parent.parent / "conf" / "gear" / "gear1.yaml"
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _predicted_once():
+    """The same gear at the same points is asked for again and again here."""
+    once = cache(lambda models, situations, layout: predict(models, situations, layout))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(angle_zero, "predict", lambda models, s, layout: once(tuple(models), tuple(s), layout))
+        yield
+
+
+def ahead(recordings: Recordings, angle: float) -> Recordings:
+    return tuple(with_channel(each, "phi_in", each.channels["phi_in"] + angle) for each in recordings)
+
+
+def turning(*units: tuple[Gear, tuple[Effect, ...]]) -> list[Recordings]:
+    """Two revolutions without noise of several units, each at the least and at full load and speed."""
+    runs = [Run(gear, point, effects) for gear, effects in units for point in CORNERS]
+    found = simulate_turns(runs, revolutions=2, points=64, sectors=SECTORS)
+    return [tuple(found[i : i + len(CORNERS)]) for i in range(0, len(found), len(CORNERS))]
+
+
+def value(found: str) -> float:
+    return float(re.findall(r"(\S+) rad ahead", found)[0])
+
+
+def refused(recordings: Recordings) -> list[str]:
+    return [defect.found for defect in zero_defects(recordings, Model(GEAR))]
+
+
+@pytest.mark.parametrize(("angle", "said"), [(0.6, 0.6), (-0.4, -0.4), (0.15, 0.15), (0.6 + np.pi, 0.6)])
+def test_another_zero_is_refused_with_its_value(angle: float, said: float) -> None:
+    (found,) = refused(ahead(good(), angle))
+    assert value(found) == pytest.approx(said, abs=0.02)
+    assert "known up to half a turn" in found
+
+
+def test_it_is_found_by_one_gauge_and_through_an_eccentricity() -> None:
+    eccentric = ahead(good(effects=(EXAMPLES["eccentric_wave_generator"],)), 0.6)
+    one = tuple(replace(r, channels={name: r.channels[name] for name in ("phi_in", "s3")}) for r in good())
+    for recordings in (eccentric, ahead(one, 0.6)):
+        (found,) = refused(recordings)
+        assert value(found) == pytest.approx(0.6, abs=0.02)
+    bare = tuple(replace(r, channels={name: r.channels[name] for name in ("phi_in", "s0")}) for r in good())
+    assert not refused(ahead(bare, 0.6))
+
+
+@pytest.mark.parametrize("angle", [0.03, -0.03, np.pi])
+def test_an_index_set_as_usual_is_taken_and_half_a_turn_is_not_seen(angle: float) -> None:
+    assert not refused(ahead(good(), angle))
+
+
+def test_units_faults_and_strong_effects_are_taken() -> None:
+    units = Population(8, w0_ratio=(0.9, 1.1), position=0.01).draw(GEAR, seed=4)
+    effects = (*(EXAMPLES[label] for label in FAULTS), *EFFECTS)
+    for recordings in turning(*((unit, ()) for unit in units), *((GEAR, (effect,)) for effect in effects)):
+        for index in (-0.04, 0.04):
+            assert not refused(ahead(recordings, index))
+
+
+def test_a_zero_in_a_column_map_mends_it(tmp_path: Path) -> None:
+    folder, path = tmp_path / "foreign", tmp_path / "map.yaml"
+    folder.mkdir()
+    recordings = ahead(good(), 0.6)
+    files = {}
+    for each in recordings:
+        degrees = np.degrees(each.channels["phi_in"])
+        columns = {"t": each.time, "angle": -degrees, "s1": each.channels["s1"]}
+        pd.DataFrame(columns).to_csv(folder / f"{each.name}.csv", index=False)
+        files[f"{each.name}.csv"] = {
+            "n_in_rpm": each.point.n_in_rpm, "T_out_nm": each.point.T_out, "repeat": each.repeat,
+        }  # fmt: skip
+    angle = {"column": "angle", "unit": "deg", "inverted": True}
+    channels = {"t": {"column": "t", "unit": "s"}, "s1": {"column": "s1", "unit": "mV/V"}, "phi_in": angle}
+    source = {"channels": channels, "facts": {"gear": "A", "session": "1"}, "files": files}
+    for zero, count in ((0.0, 1), (0.6, 0)):
+        path.write_text(yaml.safe_dump(source | {"channels": {**channels, "phi_in": {**angle, "zero_rad": zero}}}))
+        assert len(refused(read_recordings(folder, path).recordings)) == count
+
+
+@pytest.mark.parametrize("spoiled", ["recordings", "commissioning"])
+def test_closing_the_loop_refuses_either_folder_by_its_name(tmp_path: Path, spoiled: str) -> None:
+    for name in ("recordings", "commissioning"):
+        write_folder(tmp_path / name, ahead(good(points=CORNERS), 0.6 * (name == spoiled)))
+    config = {
+        "recordings": str(tmp_path / "recordings"), "commissioning": str(tmp_path / "commissioning"), "mapping": None,
+        "commissioning_mapping": None, "gear": yaml.safe_load(GEAR_1.read_text()), "effects": [], "searched": None,
+        "library": [], "truth": None,
+    }  # fmt: skip
+    with pytest.raises(
+        ValueError, match=rf"(?s){spoiled}: these .* at most {ANGLE_ZERO} rad.*zero_rad.*\[angle_zero\]"
+    ):
+        job.run(config)
