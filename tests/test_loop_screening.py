@@ -11,6 +11,7 @@ from swgsim.effects import Effect
 from swgsim.effects.quantity import size
 from swgsim.loop.features import Layout
 from swgsim.loop.hypotheses import Hypothesis
+from swgsim.loop.reporting.remaining import detectable
 from swgsim.loop.screening import VISIBLE, Score, best_of_kind, screen
 
 
@@ -166,3 +167,11 @@ def test_an_effect_of_less_than_nothing_is_none(fitted):
     assert (score.gain, score.chance) == (0, 1)
     assert np.isfinite(score.detectable)
     assert score.visible > VISIBLE
+
+
+def test_no_size_beyond_its_bounds_is_called_the_smallest_that_is_seen():
+    clear = Score(Hypothesis(Growth, (), 1), 0.0, 1, 0.0, 0.0, 1.0, 0.5, 1.0)
+    assert detectable(clear)["value"] == pytest.approx(clear.detectable)
+    blurred = replace(clear, deviation=100.0)
+    assert detectable(blurred)["value"] is None
+    assert not detectable(blurred)["typical_would_be_seen"]
