@@ -170,7 +170,7 @@ def test_a_line_without_a_name_is_described():
     (line,) = found.unnamed
     assert found.named == ()
     assert line.kind == "order"
-    assert line.at == pytest.approx(5.37, abs=0.06)
+    assert line.at == pytest.approx(5.37, abs=0.03)
     # Between two lines of the spectrum some of it is lost.
     assert 0.6e-3 < line.amplitude < 1.2e-3
     assert line.chance < 1e-6
@@ -197,7 +197,7 @@ def test_a_strong_line_of_one_gauge_is_not_called_by_names_that_explain_less():
     """At 2000 rpm order 3.7 lies where the mains' second harmonic may."""
     found = search(between(in_one_gauge(Whistle(1e-2, 3.7), 8)), KINDS, 0.005)
     assert found.named == ()
-    assert found.unnamed[0].at == pytest.approx(3.7, abs=0.06)
+    assert found.unnamed[0].at == pytest.approx(3.7, abs=0.01)
     assert found.unnamed[0].gauge == "s2"
 
 

@@ -128,10 +128,18 @@ class Between:
         size = float((pattern[0] ** 2).sum())
         return Explained(float(along @ along), U.shape[1], size, float(rest @ rest), float(count))
 
+    def held(self, effects: Sequence[Effect]) -> float:
+        """Sum of squares of what these effects may have put there."""
+        along = self._span(effects).T @ self.left
+        return float(along @ along)
+
     def without(self, effects: Sequence[Effect]) -> "Between":
         """The spectrum without anything that these effects may have put there."""
-        U = _directions(np.concatenate([self.pattern(effect) for effect in effects]))
+        U = self._span(effects)
         return replace(self, left=self.left - U @ (U.T @ self.left), taken=np.hstack([self.taken, U]))
+
+    def _span(self, effects: Sequence[Effect]) -> Float[np.ndarray, "number rank"]:
+        return _directions(np.concatenate([self.pattern(effect) for effect in effects]))
 
     def _numbers(self, signals: np.ndarray) -> np.ndarray:
         """Lines of the spectrum in units of the noise, real parts before imaginary ones."""

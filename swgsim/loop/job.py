@@ -1,7 +1,6 @@
 """The job of scripts/close_loop.py: recordings in, the answer out as a folder."""
 
 import hashlib
-import json
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -207,9 +206,9 @@ def _hidden(path: Path, recordings: str) -> str:
     folder = Path(recordings)
     try:
         sealed = truth.truth_of(folder).resolve() == path.resolve()
-        told = truth.open_truth(folder) if sealed else json.loads(path.read_text(encoding="utf-8"))
-        effects = [(name, values) for entry in told["hidden"] for name, values in entry.items()]
-    except (json.JSONDecodeError, UnicodeDecodeError, KeyError, TypeError, AttributeError) as error:
+        told = truth.open_truth(folder) if sealed else truth.parsed(path, path.read_bytes())
+        effects = [(name, values.items()) for entry in told["hidden"] for name, values in entry.items()]
+    except (KeyError, TypeError, AttributeError) as error:
         raise ValueError(f"truth={path} is no truth of scripts/record.py: it has no list 'hidden' ({error})") from error
-    named_ = [f"{words(name)} ({', '.join(f'{k} {v}' for k, v in values.items())})" for name, values in effects]
+    named_ = [f"{words(name)} ({', '.join(f'{k} {v}' for k, v in values)})" for name, values in effects]
     return " and ".join(named_) or "none"

@@ -1,7 +1,7 @@
 """Lines between the integer orders that no effect of the library explains: at one order, or at one frequency."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -15,6 +15,8 @@ from swgsim.loop.sidelines import ALL_TOGETHER
 from swgsim.recordings import SENSORS
 
 KINDS = ("order", "frequency")
+# Times that the distance of the places that are tried is halved.
+ZOOMS = 3
 # Lines to either side that may hold a part of a line between them.
 SPILLED = 1
 
@@ -68,7 +70,7 @@ class Unnamed:
     explained : float
         Sum of squares that it explains beyond the noise beside it, in units of the floor.
     reach : float
-        Distance to the next place that was tried.
+        To which its place is known.
     """
 
     kind: str
@@ -80,9 +82,21 @@ class Unnamed:
     reach: float
 
     def effects(self, gauges: Sequence[str]) -> list[Effect]:
-        """Whatever it may be in these gauges, its place being known to a part of its reach."""
-        places = self.at + self.reach * np.array([-0.5, 0.0, 0.5])
+        """Whatever it may be in these gauges, its place being known to its reach."""
+        places = self.at + self.reach * np.array([-1.0, 0.0, 1.0])
         return [Line(gauge, self.kind, float(place), 1.0) for gauge in gauges for place in places]
+
+    def refined(self, spectra: Sequence[Between]) -> "Unnamed":
+        """The line where it explains most, no longer at a place of the grid."""
+        found = self
+        for _ in range(ZOOMS):
+            near = [replace(found, at=float(found.at + found.reach * step)) for step in (-1.0, -0.5, 0.0, 0.5, 1.0)]
+            best = max(near, key=lambda line: sum(each.held(line._exactly(each.gauges)) for each in spectra))
+            found = replace(best, reach=found.reach / 2)
+        return found
+
+    def _exactly(self, gauges: Sequence[str]) -> list[Effect]:
+        return [Line(gauge, self.kind, self.at, 1.0) for gauge in gauges]
 
     def __str__(self) -> str:
         where = f"order {self.at:.2f}" if self.kind == "order" else f"{self.at:.1f} Hz"
@@ -103,7 +117,8 @@ def unnamed(spectra: Sequence[Between], level: float) -> Unnamed | None:
         Probability of a false one.
     """
     found = [line for kind in KINDS for line in _best(spectra, kind, level)] if spectra else []
-    return max(found, key=lambda line: line.explained, default=None)
+    best = max(found, key=lambda line: line.explained, default=None)
+    return best.refined(spectra) if best else None
 
 
 def _best(spectra: Sequence[Between], kind: str, level: float) -> list[Unnamed]:
