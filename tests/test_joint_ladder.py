@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 from joint_fixtures import NOTHING, PER_TORQUE, Hidden, Wave, sessions, steady, trajectories, trajectory, upright
 
+from swgsim.joint.effects.ripple import Ripple
 from swgsim.joint.effects.stribeck_friction import StribeckFriction
 from swgsim.joint.ladder import Ladder, climb
 from swgsim.joint.library import SEARCHED
 from swgsim.joint.orders import lines
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.regression import Table, fit, rms
+from swgsim.joint.shaping import gain, shaped
 from swgsim.joint.term import Term
 from swgsim.joint.textbook import textbook
 from swgsim.joint.waves import waves
@@ -172,7 +174,27 @@ def test_a_wave_is_found_under_friction_that_is_not_explained() -> None:
     table = Table(trajectories("under friction", hidden, rate=100.0), "current")
     now = fit(table, textbook(table.recordings, "current"))
     assert lines(table, now.residual, 0.005, 1, above=40)[:1] == []
-    assert 202.0 in [wave.order for wave in waves(now, 0.005, {})]
+    assert 202.0 in [shapes[0].order for shapes in waves(now, 0.005, {})]
+
+
+def test_a_wave_is_found_although_a_sharp_resonance_that_only_few_stretches_want_is_likelier() -> None:
+    """The wave is the same at all speeds, but for more of it, at another phase, at one speed."""
+    more = Wave(200.0, 0.05, 5.25)
+    recordings = tuple(
+        replace(each, signals={**each.signals, "current": each.signals["current"] + more.at(each.signals["q"])})
+        if each.speed.mean() == pytest.approx(SOME[3], rel=0.1) else each
+        for each in days("sharp", Hidden(cogging=(Wave(200.0, 0.02),)))
+    )  # fmt: skip
+    table = Table(recordings, "current")
+    now = fit(table, textbook(recordings, "current"))
+    sharp = shaped(now, Ripple(order=200.0))
+    assert sharp.damping < 0.2
+    first = climb(table, SEARCHED).steps[0]
+    assert (first.term.order, first.term.power) == (200.0, 0)
+    np.testing.assert_allclose(first.term.response(np.array(SOME)), 1, atol=0.05)
+    assert gain(now, first.term) < gain(now, sharp)
+    # So steady that it would pay after as many trials again.
+    assert first.chance < 0.01
 
 
 def test_two_effects_are_told_apart() -> None:

@@ -119,13 +119,12 @@ def climb(table: Table, kinds: Sequence[type[Term]], tell: Callable[[str], None]
     """
     now = start = fit(table, textbook(table.recordings, table.of))
     steps: list[Trial] = []
-    known: dict[float, Wave] = {}
+    known: dict[float, tuple[Wave, ...]] = {}
     possible = [k for k in kinds if table.of in k.explains and all(map(k.possible, table.recordings))]
     while True:
         sought = [kind for kind in possible if kind not in {type(term) for term in now.terms}]
         effects = [_tried(now, shaped(now, kind()), len(sought)) for kind in sought]
-        # Of a wave, every order was tried that could have been it.
-        found = [_tried(now, wave, LOOKED_AT) for wave in waves(now, LINE_ALPHA, known)]
+        found = [_best(now, shapes) for shapes in waves(now, LINE_ALPHA, known)]
         trials = sorted((*effects, *found), key=lambda trial: -trial.gain)
         best = next((trial for trial in trials if trial.pays), None)
         if best is None or len(steps) == MOST:
@@ -133,6 +132,13 @@ def climb(table: Table, kinds: Sequence[type[Term]], tell: Callable[[str], None]
         steps.append(best)
         now = best.fit
         tell(f"{best.term.title()}: {now.error:.4g}")
+
+
+def _best(now: Fit, shapes: Sequence[Wave]) -> Trial:
+    """The shape of a wave that helps most, of those that pay if any does."""
+    # Every order was tried that could have been it, in as many shapes.
+    trials = [_tried(now, shape, LOOKED_AT * len(shapes)) for shape in shapes]
+    return max(trials, key=lambda trial: (trial.pays, trial.gain))
 
 
 def _tried(now: Fit, term: Term, trials: int) -> Trial:

@@ -19,7 +19,12 @@ ROUNDS = 35
 
 
 def shaped(now: Fit, term: T) -> T:
-    """A term at its likeliest inner parameters beside the terms of a fit: best of a grid, then downhill from there.
+    """A term at its likeliest inner parameters beside the terms of a fit."""
+    return max(shapes(now, term), key=lambda each: gain(now, each))
+
+
+def shapes(now: Fit, term: T) -> list[T]:
+    """A term at the likeliest inner parameters of each of its choices: best of a grid, then downhill from there.
 
     Parameters
     ----------
@@ -37,9 +42,7 @@ def shaped(now: Fit, term: T) -> T:
         for c in product(*choices.values())
     ]
     # A choice shows its worth only at the parameters that suit it.
-    return max(
-        (_downhill(now, each, searched) if searched else each for each in best), key=lambda each: gain(now, each)
-    )
+    return [_downhill(now, each, searched) if searched else each for each in best]
 
 
 def gain(now: Fit, term: Term) -> float:

@@ -11,7 +11,7 @@ from swgsim.joint.effects.ripple import Ripple
 from swgsim.joint.orders import NEIGHBOURS, Line, lines
 from swgsim.joint.recording import turns_back
 from swgsim.joint.regression import Fit
-from swgsim.joint.shaping import gain, shaped
+from swgsim.joint.shaping import gain, shapes
 from swgsim.joint.slow import slow
 from swgsim.joint.term import Term
 
@@ -26,8 +26,8 @@ ORDERS, OTHERWISE = 4, 1.25
 LOOKED_AT = SLOW + ORDERS
 
 
-def waves(now: Fit, level: float, known: dict[float, Wave]) -> list[Wave]:
-    """Waves fixed to the output, and waves at orders that stand out of the residual.
+def waves(now: Fit, level: float, known: dict[float, tuple[Wave, ...]]) -> list[tuple[Wave, ...]]:
+    """Waves fixed to the output, and waves at orders that stand out of the residual, each in all its shapes.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def waves(now: Fit, level: float, known: dict[float, Wave]) -> list[Wave]:
     level : float
         Chance of a false order.
     known : dict
-        Keeps what takes long to find: the wave of every order that was looked at.
+        Keeps what takes long to find: the shapes of every order that was looked at.
     """
     slow = sorted((Ripple(order=float(n)) for n in range(2, SLOW + 1)), key=lambda term: -gain(now, term))
     laws: list[Wave] = [Ripple(), Ripple(power=1)]
@@ -44,14 +44,15 @@ def waves(now: Fit, level: float, known: dict[float, Wave]) -> list[Wave]:
     if now.table.of == "current" and all(map(InertiaRipple.possible, now.table.recordings)):
         laws.append(InertiaRipple())
     there = {_what(term) for term in now.terms}
-    fast = []
+    found: list[tuple[Wave, ...]] = [(term,) for term in slow[:SLOW_ORDERS] if _what(term) not in there]
     for line in _lines(now, level):
         rough = _at_order(now, line.order, laws)
-        if rough.order not in known or _what(known[rough.order]) in there:
+        if rough.order not in known or any(_what(each) in there for each in known[rough.order]):
             # A wave that is there already may leave one of another law at its order.
-            known[rough.order] = _whole(now, shaped(now, rough))
-        fast.append(known[rough.order])
-    return [term for term in (*slow[:SLOW_ORDERS], *fast) if _what(term) not in there]
+            known[rough.order] = tuple(each for each in _shapes(now, rough) if _what(each) not in there)
+        if known[rough.order]:
+            found.append(known[rough.order])
+    return found
 
 
 def _lines(now: Fit, level: float) -> list[Line]:
@@ -83,14 +84,19 @@ def _at_order(now: Fit, order: float, laws: Sequence[Wave]) -> Wave:
     return max((replace(law, order=float(o)) for law in laws for o in near), key=lambda term: gain(now, term))
 
 
-def _whole(now: Fit, wave: Wave) -> Wave:
-    """The wave of the next multiple of the motor's revolutions, or else of the output's, if the recordings do not tell
-    it from one.
+def _shapes(now: Fit, wave: Wave) -> tuple[Wave, ...]:
+    """The likeliest shapes of a wave, one for each law of speed, and the wave that is the same at all speeds: a sharp
+    resonance may be the likeliest by what it does to few stretches.
+
+    Its order is the next multiple of the motor's revolutions, or else of the output's, if the recordings do not tell it
+    from one.
     """
+    found = shapes(now, wave)
     ratio = now.table.recordings[0].gear_ratio or 1.0
     orders = [whole * round(wave.order / whole) for whole in (ratio, 1.0)]
     for order in (float(order) for order in orders if abs(order - wave.order) < _resolution(now)):
-        whole = shaped(now, replace(wave, order=order))
-        if gain(now, wave) <= OTHERWISE * gain(now, whole):
-            return whole
-    return wave
+        whole = shapes(now, replace(wave, order=order))
+        if max(gain(now, each) for each in found) <= OTHERWISE * max(gain(now, each) for each in whole):
+            found = whole
+            break
+    return tuple(dict.fromkeys((*found, type(wave)(order=found[0].order))))
