@@ -29,7 +29,7 @@ JOBS := $(shell echo $$(( ($(CORES) + 3) / 4 )))
 export MLFLOW_DISABLE_TELEMETRY := true
 
 .DEFAULT_GOAL := help
-.PHONY: help install data experiments report paper transfer loop blind sim-to-real joints test lint benchmark convergence docs ui clean $(TABLES)
+.PHONY: help install data experiments report paper transfer loop blind sim-to-real joints test lint fuzz benchmark convergence docs ui clean $(TABLES)
 
 help:  ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-12s %s\n", $$1, $$2}'
@@ -94,6 +94,9 @@ lint: $(READY)  ## style and types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+
+fuzz: $(READY)  ## every reader on spoiled files, SECONDS=300 in all (docs/reliability.md)
+	OMP_NUM_THREADS=1 ARROW_DEFAULT_MEMORY_POOL=system $(BIN)/python scripts/fuzz.py --seconds $(or $(SECONDS),300)
 
 benchmark: $(READY)  ## the chain against the obvious ways of doing the same
 	$(BIN)/python scripts/benchmark.py

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from learn import neural
+from learn.archive import require_plain
 from learn.evaluation import fit
 from swgsim.files import replacing, sole_maker
 
@@ -47,6 +48,7 @@ def load(path: Path, device: str = "auto") -> Any:
     import skops.io
 
     try:
+        require_plain(path)
         return skops.io.load(path, trusted=TRUSTED)
     except Exception as error:  # skops raises what zip, JSON and NumPy raise
         raise ValueError(

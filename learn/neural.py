@@ -6,13 +6,12 @@ PyTorch is imported where it is needed, because the command line scripts import 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from pickle import UnpicklingError
 from typing import TYPE_CHECKING, Any
-from zipfile import BadZipFile, ZipFile
 
 import numpy as np
 from jaxtyping import Float
 
+from learn.archive import require_plain
 from swgsim.files import replacing
 
 if TYPE_CHECKING:
@@ -23,8 +22,6 @@ if TYPE_CHECKING:
 
 SUFFIX = ".pt"  # of the files
 CHUNK = 1024  # rows that are judged at a time: what they need in between stays small
-# What reading a file raises that is damaged, harmful or of something else.
-DAMAGE = (BadZipFile, UnpicklingError, RuntimeError, LookupError, TypeError, AttributeError, ValueError, EOFError)
 
 
 @dataclass(eq=False)
@@ -169,6 +166,8 @@ def load(path: Path, device: str = "auto") -> NeuralClassifier:
     ValueError
         If the file is anything else.
     """
+    import torch
+
     from learn.networks import Architecture
     from learn.training import Recipe, choose_device
 
@@ -177,9 +176,11 @@ def load(path: Path, device: str = "auto") -> NeuralClassifier:
         architecture = Architecture(**content["architecture"])
         model = NeuralClassifier(architecture, Recipe(**content["recipe"]), content["seed"], device)
         model.classes_ = np.array(content["classes"])
-        model.network_ = architecture.network(content["columns"], len(model.classes_), model.seed)
-        model.network_.load_state_dict(content["state"])
-    except DAMAGE as error:
+        with torch.device("meta"):  # without memory: a small file may speak of a large network
+            model.network_ = architecture.network(content["columns"], len(model.classes_), model.seed)
+        _require_state(content["state"], model.network_.state_dict())
+        model.network_.load_state_dict(content["state"], assign=True)
+    except Exception as error:  # PyTorch raises what zip, pickle and its own parts raise
         raise ValueError(f"{path} is no neural classifier: give a file that learn.neural.save has written") from error
     model.network_.to(choose_device(device)).eval()
     return model
@@ -189,13 +190,20 @@ def _content(path: Path) -> Mapping[str, Any]:
     """What the archive holds; a bare pickle, which is no archive, is not read, nor is one whose sums do not agree."""
     import torch
 
+    require_plain(path)
     with path.open("rb") as raw:
-        with ZipFile(raw) as archive:
-            if damaged := archive.testzip():
-                raise ValueError(f"{damaged} is damaged")
-        raw.seek(0)
         content: Mapping[str, Any] = torch.load(raw, map_location="cpu", weights_only=True)
     return content
+
+
+def _require_state(given: Mapping[str, "Tensor"], needed: Mapping[str, "Tensor"]) -> None:
+    """Raise unless all numbers are there, of the types and shapes that are needed, and finite."""
+    for name, like in needed.items():
+        value = given[name]
+        if value.dtype != like.dtype or value.shape != like.shape or not value.is_contiguous():
+            raise ValueError(f"{name} is {value.dtype} of shape {tuple(value.shape)}, must be {tuple(like.shape)}")
+        if not value.isfinite().all():
+            raise ValueError(f"{name} has numbers that are not finite")
 
 
 def _require_finite(X: np.ndarray) -> None:

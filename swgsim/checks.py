@@ -3,34 +3,39 @@
 from collections.abc import Iterable
 from math import isfinite
 from numbers import Integral, Real
+from reprlib import Repr
 from typing import Any
+
+# Of a value from a file, which may be nested so that it fills the memory when it is written out.
+_SHORT = Repr()
+_SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 200
 
 
 def require(owner: str, name: str, value: Any, low: float = float("-inf"), high: float = float("inf")) -> None:
     """Raise a ValueError unless ``value`` is a finite number within [low, high]."""
     if not (_is_number(value) and isfinite(value) and low <= value <= high):
-        raise ValueError(f"{name} of {owner} is {value!r}, must be a finite number from {low:g} to {high:g}")
+        raise ValueError(f"{name} of {owner} is {_SHORT.repr(value)}, must be a finite number from {low:g} to {high:g}")
 
 
 def require_positive(owner: str, **values: Any) -> None:
     """Raise a ValueError naming the first value that is not a finite number above 0."""
     for name, value in values.items():
         if not (_is_number(value) and isfinite(value) and value > 0):
-            raise ValueError(f"{name} of {owner} is {value!r}, must be a finite number above 0")
+            raise ValueError(f"{name} of {owner} is {_SHORT.repr(value)}, must be a finite number above 0")
 
 
 def require_integer(owner: str, name: str, value: Any, low: int, high: int) -> None:
     """Raise a ValueError unless ``value`` is an integer within [low, high]."""
     if not (isinstance(value, Integral) and not isinstance(value, bool) and low <= int(value) <= high):
-        raise ValueError(f"{name} of {owner} is {value!r}, must be an integer from {low} to {high}")
+        raise ValueError(f"{name} of {owner} is {_SHORT.repr(value)}, must be an integer from {low} to {high}")
 
 
 def require_range(owner: str, name: str, value: Any, low: float, high: float) -> None:
     """Raise a ValueError unless ``value`` is a pair of numbers in ascending order within [low, high]."""
     if not isinstance(value, tuple) or len(value) != 2 or not all(_is_number(v) for v in value):
-        raise ValueError(f"{name} of {owner} is {value!r}, must be a pair of numbers: from, to")
+        raise ValueError(f"{name} of {owner} is {_SHORT.repr(value)}, must be a pair of numbers: from, to")
     if not low <= value[0] <= value[1] <= high:
-        raise ValueError(f"{name} of {owner} is {value!r}, must ascend and stay from {low:g} to {high:g}")
+        raise ValueError(f"{name} of {owner} is {_SHORT.repr(value)}, must ascend and stay from {low:g} to {high:g}")
 
 
 def require_known(owner: str, given: Iterable[str], known: Iterable[str]) -> None:
@@ -42,4 +47,11 @@ def require_known(owner: str, given: Iterable[str], known: Iterable[str]) -> Non
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, Real) and not isinstance(value, bool)
+    """Whether a value is a real number that a float can hold; integers of Python know no limit."""
+    if not isinstance(value, Real) or isinstance(value, bool):
+        return False
+    try:
+        float(value)
+    except OverflowError:
+        return False
+    return True

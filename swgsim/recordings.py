@@ -76,8 +76,8 @@ class Recordings:
             raise ValueError(f"columns {list(self.table.columns)} found, expected {list(COLUMNS)}")
         if self.signals.shape[1] != len(SENSORS):
             raise ValueError(f"{self.signals.shape[1]} sensors found, expected {len(SENSORS)}: {SENSORS}")
-        if not self.rate > 0:
-            raise ValueError(f"sampling rate {self.rate} Hz must be above 0")
+        if not 0 < self.rate < float("inf"):
+            raise ValueError(f"sampling rate {self.rate} Hz must be a finite number above 0")
         bad = np.argwhere(~np.isfinite(self.signals))
         if len(bad):
             sample, sensor, time = bad[0]

@@ -5,6 +5,7 @@ The first 512 bytes (the HDF5 user block) hold the SHA-256 of all that follows; 
 
 import hashlib
 from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import h5py
@@ -98,7 +99,7 @@ def digest(path: Path) -> str:
     """
     with path.open("rb") as raw:
         seal = raw.read(SEAL_SIZE)
-    if len(seal) < SEAL_SIZE or not seal.startswith(SEAL_START):
+    if len(seal) < SEAL_SIZE or not seal.startswith(SEAL_START) or not seal[len(SEAL_START) :].split():
         raise ValueError(
             f"{path}: not a file of recordings (its first {SEAL_SIZE} bytes are no seal); generate it again"
         )
@@ -134,12 +135,15 @@ def blocks(path: Path, rows: int | None = None) -> Iterator[Recordings]:
     """The recordings of a file in blocks of so many rows (all at once by default), checked first."""
     verify(path)
     said = attributes(path)
-    with h5py.File(path) as file:
+    with _opened(path) as file:
+        _require_layout(path, file)
         rate = float(file.attrs["sampling_rate_hz"])
         total = len(file["signals"])
         for start in range(0, total, rows or total):
             where = slice(start, start + (rows or total))
             columns = {name: file[name][where] for name in COLUMNS}
+            if not np.isin(columns["label"], range(len(CLASSES))).all():
+                raise ValueError(f"label is not from 0 to {len(CLASSES) - 1} in recordings from {start}")
             columns["label"] = pd.Categorical.from_codes(columns["label"], categories=pd.Index(CLASSES))
             columns["reference"] = columns["reference"].astype(bool)
             yield Recordings(file["signals"][where], pd.DataFrame(columns), rate, said)
@@ -147,13 +151,51 @@ def blocks(path: Path, rows: int | None = None) -> Iterator[Recordings]:
 
 def attributes(path: Path) -> dict[str, str]:
     """What a file says of itself: configuration and version of the code."""
-    with h5py.File(path) as file:
+    with _opened(path) as file:
         return {name: value for name, value in file.attrs.items() if isinstance(value, str)}
 
 
 def shape(path: Path) -> tuple[int, int, int]:
     """Number of recordings in a file, of their sensors and of their samples; the file is checked first."""
     verify(path)
-    with h5py.File(path) as file:
+    with _opened(path) as file:
+        _require_layout(path, file)
         rows, sensors, samples = file["signals"].shape
     return rows, sensors, samples
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[h5py.File]:
+    """A file to read; whatever the library says of one that is not as it was written becomes a ValueError."""
+    try:
+        with h5py.File(path) as file:
+            yield file
+    except FileNotFoundError:
+        raise
+    except (OSError, RuntimeError, LookupError, TypeError, ValueError) as error:
+        raise ValueError(
+            f"{path}: not a file of recordings as they are written ({error}); generate it again"
+        ) from error
+
+
+def _require_layout(path: Path, file: h5py.File) -> None:
+    """Raise a ValueError unless every variable lies in the file itself, as it was laid out, and has room in it.
+
+    A seal can be put on any file. What is compressed, left out for a fill value, or in another file, was not written
+    here, and might fill the memory or bring numbers from elsewhere.
+    """
+    layout = {"signals": ("f4", 3)} | {name: (column.dtype, 1) for name, column in COLUMNS.items()}
+    size = path.stat().st_size
+    for name, (dtype, axes) in layout.items():
+        variable = file[name] if isinstance(file.get(name, getlink=True), h5py.HardLink) else None
+        if not isinstance(variable, h5py.Dataset) or variable.is_virtual or variable.external:
+            raise ValueError(f"{name} is no variable in the file itself")
+        if variable.dtype != dtype or len(variable.shape or ()) != axes:
+            raise ValueError(f"{name} is {variable.dtype} of shape {variable.shape}, must be {dtype} with {axes} axes")
+        if len(variable) != len(file["signals"]) or not len(variable):
+            raise ValueError(
+                f"{name} has {len(variable)} recordings, signals {len(file['signals'])}: as many, and some"
+            )
+        size -= variable.size * variable.dtype.itemsize
+    if size < 0:
+        raise ValueError("more numbers than the file has room for")

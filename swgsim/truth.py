@@ -79,17 +79,33 @@ def open_truth(folder: Path) -> dict[str, Any]:
         if not needed.is_file():
             raise ValueError(f"no {needed}: {folder} cannot be checked without it")
     content = path.read_bytes()
-    sealed = (folder / SEAL).read_text(encoding="utf-8").split()[:1]
+    sealed = (folder / SEAL).read_text(encoding="utf-8", errors="replace").split()[:1]
     if sealed != [_digest(content)]:
         raise ValueError(
             f"{path} is not the truth that was sealed in {folder / SEAL}: one of them was changed afterwards"
         )
-    truth = dict(json.loads(content))
+    truth = parsed(path, content)
+    if not isinstance(truth.get("files"), dict):
+        raise ValueError(f"{path} has no digests of the files: it is no truth of scripts/record.py")
     there = _digests(folder)
     changed = sorted(name for name in truth["files"] | there if truth["files"].get(name) != there.get(name))
     if changed:
         raise ValueError(f"{folder} is not as it was recorded: {', '.join(changed)} changed, added or removed")
     return truth
+
+
+def parsed(path: Path, content: bytes) -> dict[str, Any]:
+    """What the file of a truth says.
+
+    Raises
+    ------
+    ValueError
+        If it is no JSON, or no names with values.
+    """
+    try:
+        return dict(json.loads(content))
+    except (ValueError, TypeError, RecursionError) as error:  # a ValueError also for an integer of too many digits
+        raise ValueError(f"truth={path} is no truth of scripts/record.py ({error})") from error
 
 
 def _digests(folder: Path) -> dict[str, str]:

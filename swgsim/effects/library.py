@@ -1,6 +1,7 @@
 """The library of effects by their registered names."""
 
 import importlib
+import sys
 from collections.abc import Mapping
 
 from swgsim.effects.aged_grease import AgedGrease
@@ -169,6 +170,9 @@ def named(name: str) -> type[Effect]:
         raise ValueError(
             f"unknown effect {name!r}; choose from {', '.join(sorted(LIBRARY))}, or give the import path module:Class"
         )
+    if module.partition(".")[0] in sys.stdlib_module_names:
+        # Not imported: some of them act when they are.
+        raise ValueError(f"{name!r} is no effect: it must be a class derived from {Effect.__module__}.Effect")
     try:
         found = getattr(importlib.import_module(module), kind)
     except (ImportError, AttributeError) as error:

@@ -19,11 +19,12 @@ import yaml
 from swgsim.effects.base import Effect
 from swgsim.effects.library import LIBRARY, named
 from swgsim.effects.quantity import Role, quantities, size_of
+from swgsim.plain_yaml import PlainLoader, plain
 
 EXAMPLE = "{eccentric_wave_generator: {r: 1.0e-5, theta: 1.0}}"
 
 
-class _Loader(yaml.SafeLoader):
+class _Loader(PlainLoader):
     """Takes 1e-5 for a number, as YAML 1.2 and everybody else does; PyYAML asks for 1.0e-5."""
 
 
@@ -55,12 +56,15 @@ def from_text(text: str, origin: str) -> tuple[Effect, ...]:
         If it is no list of effects, or one of them cannot be made.
     """
     try:
-        found = yaml.load(text, Loader=_Loader)  # derived from the safe one
-    except yaml.YAMLError as error:
-        raise ValueError(f"{origin} is no YAML: {error}") from error
+        found = plain(text, _Loader)
+    except ValueError as error:
+        raise ValueError(f"{origin} is {error}") from error
     if not (isinstance(found, dict) and set(found) == {"effects"} and isinstance(found["effects"], list)):
         raise ValueError(f"{origin} holds no list of effects; it must look like 'effects: [{EXAMPLE}]'")
-    return from_entries(found["effects"])
+    try:
+        return from_entries(found["effects"])
+    except ValueError as error:
+        raise ValueError(f"{origin}: {error}") from error
 
 
 def entries(effects: Sequence[Effect]) -> list[dict[str, dict[str, Any]]]:

@@ -95,7 +95,7 @@ def _read_parquet(path: Path, name: str, wanted: Sequence[str]) -> Columns:
             kind = file.schema_arrow.field(column).type
             # A text or a list may be long and there once for all rows.
             if not (types.is_integer(kind) or types.is_floating(kind)):
-                raise FileDefect(name, shown(kind), "real numbers", column=column)
+                raise FileDefect(name, shown(str(kind)), "real numbers", column=column)
         groups = range(file.num_row_groups)
         rows = max(file.metadata.num_rows, sum(file.metadata.row_group(group).num_rows for group in groups))
         require_rows(name, rows)

@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
 from jaxtyping import Float
 
 from swgsim.checks import require, require_known
 from swgsim.intake.file_defect import FileDefect, shown
 from swgsim.intake.limits import require_readable
 from swgsim.intake.units import FACTORS, STRAIN, bridge_factor
+from swgsim.plain_yaml import plain
 from swgsim.recording import CHANNELS
 from swgsim.recordings import SENSORS
 
@@ -131,10 +131,7 @@ def read_map(path: Path) -> SourceMap:
     if path.stat().st_size > LARGEST_MAP:
         raise FileDefect(str(path), f"{path.stat().st_size} bytes", f"a column map of at most {LARGEST_MAP}")
     try:
-        config = yaml.safe_load(path.read_text(encoding="utf-8"))
-        return _source_map(config)
-    except (yaml.YAMLError, UnicodeDecodeError, RecursionError) as error:
-        raise FileDefect(str(path), f"no YAML ({error})", "a column map such as conf/sources/example.yaml") from None
+        return _source_map(plain(path.read_bytes()))
     except (TypeError, ValueError) as error:
         raise FileDefect(str(path), str(error), "a column map such as conf/sources/example.yaml") from None
 

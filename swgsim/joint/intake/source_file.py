@@ -4,14 +4,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from swgsim.checks import require_known
 from swgsim.intake.file_defect import FileDefect, shown
 from swgsim.intake.limits import require_readable
 from swgsim.intake.source_map import LARGEST_MAP
 from swgsim.joint.intake.column import MOST_COLUMNS, Column
 from swgsim.joint.intake.source import JointColumns, JointSource
+from swgsim.plain_yaml import plain
 
 EXPECTED = "a source such as conf/sources/kinova_gen3.yaml"
 KEYS = (
@@ -20,22 +19,6 @@ KEYS = (
 )  # fmt: skip
 FROM_MOTION = "from_motion"
 LONGEST_TEXT = 1000
-
-
-class _Loader(yaml.SafeLoader):
-    """Plain data, without aliases, which make a short file very long, and without a key twice, of which one is lost."""
-
-    def compose_node(self, parent: Any, index: Any) -> Any:
-        if self.check_event(yaml.AliasEvent):
-            raise yaml.YAMLError("an alias such as *name: write the values out")
-        return super().compose_node(parent, index)
-
-    def construct_mapping(self, node: Any, deep: bool = False) -> dict:
-        keys = [self.construct_object(key, deep=True) for key, _ in node.value]
-        for key in keys:
-            if keys.count(key) > 1:
-                raise yaml.YAMLError(f"the key {shown(key)} twice: keep one")
-        return super().construct_mapping(node, deep)
 
 
 def read_source(path: Path) -> JointSource:
@@ -50,9 +33,7 @@ def read_source(path: Path) -> JointSource:
     if path.stat().st_size > LARGEST_MAP:
         raise FileDefect(str(path), f"{path.stat().st_size} bytes", f"a source of at most {LARGEST_MAP}")
     try:
-        return _source(yaml.load(path.read_text(encoding="utf-8"), _Loader))
-    except (yaml.YAMLError, UnicodeDecodeError, RecursionError) as error:
-        raise FileDefect(str(path), f"no YAML ({error})", EXPECTED) from None
+        return _source(plain(path.read_bytes()))
     except (TypeError, ValueError, OverflowError) as error:
         raise FileDefect(str(path), str(error), EXPECTED) from None
 
