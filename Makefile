@@ -83,8 +83,8 @@ blind: $(READY)  ## the loop judged on sealed cases, report/blind.json (SMALL=1:
 sim-to-real: $(READY)  ## classifiers before and after the loop found an undeclared effect, report/sim_to_real.html (SMALL=1: one effect)
 	$(BIN)/python scripts/sim_to_real.py $(if $(SMALL),grid.variants=4 $(addprefix ~undeclared.,$(LEFT_OUT)))
 
-joints: $(READY)  ## real robot joints, judged on recordings not seen; report/joints.html (their files: docs/joint_recordings.md)
-	$(BIN)/python scripts/joints.py $(if $(MEASURED),folder=$(MEASURED))
+joints: $(READY)  ## real robot joints (files: docs/joint_recordings.md), report/joints.html (SMALL=1: one joint)
+	$(BIN)/python scripts/joints.py $(if $(MEASURED),folder=$(MEASURED)) $(if $(SMALL),'only=*joint 1')
 	@echo "open report/joints.html, and joints/*/page.html for every case"
 
 test: $(READY)  ## all tests
