@@ -28,10 +28,11 @@ from swgsim.effects.library import SEARCHED, named
 from swgsim.gear import Gear, OperatingPoint
 from swgsim.loop import job as loop_job
 from swgsim.loop.answer import answer
-from swgsim.loop.fitting import Unit, commission
+from swgsim.loop.commissioning import commission
 from swgsim.loop.model import Model
 from swgsim.loop.reporting.report import report
 from swgsim.loop.session import Measured
+from swgsim.loop.unit import Unit
 from swgsim.population import Population
 from swgsim.recording import Recording
 from swgsim.version import code_version

@@ -13,12 +13,13 @@ from swgsim.effects.quantity import phase, size
 from swgsim.gear import OperatingPoint
 from swgsim.loop.calibration import Calibrated
 from swgsim.loop.features import Layout
-from swgsim.loop.fitting import Fitted, Unit
+from swgsim.loop.fitting import Fitted
 from swgsim.loop.gaussian import Covariance
 from swgsim.loop.hypotheses import Hypothesis
 from swgsim.loop.model import Model
 from swgsim.loop.scatter import Scatter
 from swgsim.loop.session import Measured
+from swgsim.loop.unit import Unit
 from swgsim.recording import Recording
 
 POINTS = tuple(OperatingPoint(n, T) for n in (2000.0, 4000.0) for T in (7.0, 39.0, 70.0))

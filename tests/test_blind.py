@@ -38,10 +38,11 @@ from swgsim.gear import OperatingPoint
 from swgsim.loop import calibration
 from swgsim.loop.declared import of_unit
 from swgsim.loop.features import ORDERS, Layout, features
-from swgsim.loop.fitting import Fitted, Unit, fit
+from swgsim.loop.fitting import Fitted, fit
 from swgsim.loop.hypotheses import Hypothesis
 from swgsim.loop.model import Model
 from swgsim.loop.session import Measured
+from swgsim.loop.unit import Unit
 from swgsim.seeds import generator
 
 CONF = Path(__file__).parent.parent / "conf"

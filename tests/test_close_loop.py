@@ -25,8 +25,8 @@ from swgsim.intake.folder import write_folder
 from swgsim.loop import job, model
 from swgsim.loop.answer import NOTHING, answer
 from swgsim.loop.experiment import RECORDINGS, SEPARATED, next_experiments
-from swgsim.loop.fitting import Unit
 from swgsim.loop.session import Measured
+from swgsim.loop.unit import Unit
 from swgsim.recording import Recording
 from swgsim.settings import gear
 from swgsim.virtual_bench import Instruments, Sessions, record_sessions

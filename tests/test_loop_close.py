@@ -17,9 +17,11 @@ from swgsim.effects.library import LIBRARY
 from swgsim.effects.regularity import Regularity
 from swgsim.gear import Gear, OperatingPoint
 from swgsim.loop.closing import ALPHA, Closed, close
-from swgsim.loop.fitting import Unit, commission, fit
+from swgsim.loop.commissioning import commission
+from swgsim.loop.fitting import fit
 from swgsim.loop.model import Model
 from swgsim.loop.session import Measured
+from swgsim.loop.unit import Unit
 from swgsim.virtual_bench import Sessions, record_sessions
 
 SECTORS = 40

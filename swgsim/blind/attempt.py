@@ -16,9 +16,10 @@ from swgsim.effects import text
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import size_of
 from swgsim.loop.answer import Answer, answer
-from swgsim.loop.fitting import Fitted, Unit, fit
+from swgsim.loop.fitting import Fitted, fit
 from swgsim.loop.sidelines import is_random
 from swgsim.loop.trial import Trial
+from swgsim.loop.unit import Unit
 from swgsim.recording import Recording
 
 

@@ -11,10 +11,12 @@ from swgsim.blind.strata import HARD_NULL, OUTSIDE_STRATA, TAKEN_OUT, UNTESTABLE
 from swgsim.blind.strength import likeness, sized
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities, size_of
+from swgsim.loop.commissioning import commission
 from swgsim.loop.errors import per_channel
-from swgsim.loop.fitting import Fitted, Unit, commission, fit
+from swgsim.loop.fitting import Fitted, fit
 from swgsim.loop.model import Model, predict
 from swgsim.loop.session import Measured
+from swgsim.loop.unit import Unit
 from swgsim.seeds import generator, seed_hash
 
 EXPONENT, SPREAD = 0.2, 0.1

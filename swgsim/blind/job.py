@@ -25,7 +25,7 @@ from swgsim.blind.strata import DETECTABLE, plans
 from swgsim.blind.table import table
 from swgsim.effects.library import SEARCHED, named
 from swgsim.files import sole_maker, write_json, write_text
-from swgsim.loop import beside, closing, evidence, fitting, screening, sidelines, trial
+from swgsim.loop import beside, closing, commissioning, evidence, lines, screening, sidelines, trial, unit
 from swgsim.version import code_version
 
 THRESHOLDS = {
@@ -37,9 +37,12 @@ THRESHOLDS = {
     "form_tolerance": evidence.FORM_TOLERANCE,
     "contradiction": evidence.CONTRADICTION,
     "visible": screening.VISIBLE,
-    "structure": fitting.STRUCTURE,
+    "set_apart": closing.SET_APART,
+    "structure": unit.STRUCTURE,
+    "misfit": commissioning.MISFIT,
     "tolerance_of_lines": sidelines.TOLERANCE,
     "outdone": [beside.OUTDONE, beside.OUTDONE_SHARE, beside.SAME_THING, beside.DWARFED],
+    "outdone_by_lines": [lines.OUTDONE, lines.OUTDONE_SHARE],
     "another_thing": beside.ANOTHER_THING,
     "detectable": DETECTABLE,
     "look_alike": judged.LOOK_ALIKE,

@@ -8,12 +8,13 @@ from swgsim.effects.regularity import Regularity
 from swgsim.effects.text import in_words
 from swgsim.loop.between import between
 from swgsim.loop.closing import ALPHA, Closed, close
-from swgsim.loop.fitting import Fitted, Unit, extended
+from swgsim.loop.fitting import Fitted, extended
 from swgsim.loop.lines import cleaned, search
 from swgsim.loop.screening import VISIBLE, Score
 from swgsim.loop.session import Measured
 from swgsim.loop.sidelines import Sideline
 from swgsim.loop.trial import LEAST_GAIN, Trial
+from swgsim.loop.unit import Unit
 from swgsim.loop.unnamed import Unnamed
 from swgsim.loop.vocabulary import Described, describe, set_free
 from swgsim.recording import Recording

@@ -9,11 +9,12 @@ import numpy as np
 from swgsim.effects.base import Effect
 from swgsim.loop.beside import in_company, outdone
 from swgsim.loop.evidence import allowance
-from swgsim.loop.fitting import Fitted, Unit, fit
+from swgsim.loop.fitting import Fitted, fit
 from swgsim.loop.hypotheses import hypotheses, signatures
 from swgsim.loop.screening import Score, best_of_kind, screen
 from swgsim.loop.session import Measured
 from swgsim.loop.trial import LEAST_GAIN, Trial, begun, tried, widened
+from swgsim.loop.unit import Unit
 from swgsim.loop.vocabulary import Described, describe, set_free
 from swgsim.seeds import generator
 

@@ -3,101 +3,19 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
 
 from swgsim.effects.base import Effect
-from swgsim.gear import Gear
 from swgsim.loop import scatter
-from swgsim.loop.calibration import Calibrated, calibrate, linearised
+from swgsim.loop.calibration import Calibrated, calibrate
 from swgsim.loop.declared import Declared, at, of_effects, of_unit
-from swgsim.loop.features import Layout
-from swgsim.loop.form import form_columns, largest_lines
 from swgsim.loop.gaussian import Covariance
-from swgsim.loop.model import Model, Situation
+from swgsim.loop.model import Model
 from swgsim.loop.scatter import Scatter
 from swgsim.loop.session import Measured
-from swgsim.turning import forget
-
-# Declared accuracy of the structural model before the gear itself has been recorded: the mesh alone makes up to 2 %.
-STRUCTURE = 0.01
-# Mean square of a healthy gear's residual, in units of what is declared of it, beyond which the model is not its own.
-MISFIT = 3.0
-
-
-@dataclass(frozen=True, eq=False)
-class Unit:
-    """What is known of a unit before the recordings in question.
-
-    Attributes
-    ----------
-    model : Model
-        At its nominal or commissioned parameters.
-    reach : array (direction, direction) or None
-        After commissioning, how far the directions (declared parameters, then deviations of the maps) may still lie
-        from where they were found, as columns of one standard deviation; None for a unit never seen.
-    shift : array (direction,) or None
-        Where commissioning found them, in spreads.
-    structure : float
-        Declared accuracy of the maps, as a share of a gauge's largest line.
-    scatter : Scatter or None
-        Errors of single recordings found by commissioning.
-    nominal : Gear or None
-        After commissioning, the gear by whose spread the declared parameters are counted.
-    largest : mapping or None
-        After commissioning, the largest line of each gauge, by which deviations of the maps are counted.
-    """
-
-    model: Model
-    reach: Float[np.ndarray, "direction direction"] | None = None
-    shift: Float[np.ndarray, " direction"] | None = None
-    structure: float = STRUCTURE
-    scatter: Scatter | None = None
-    nominal: Gear | None = None
-    largest: Mapping[str, float] | None = None
-
-    @property
-    def commissioned(self) -> bool:
-        """Whether the unit was recorded in its healthy state before."""
-        return self.reach is not None
-
-    def left_open(
-        self,
-        model: Model,
-        situations: Sequence[Situation],
-        layout: Layout,
-        parameters: Mapping[str, Declared] | None = None,
-    ) -> "LeftOpen":
-        """Prediction of a model of this unit, and all directions in which it may still lie elsewhere.
-
-        Parameters
-        ----------
-        model : Model
-        situations : sequence of Situation
-        layout : Layout
-        parameters : mapping, optional
-            Those that are fitted.
-        """
-        known = of_unit(self.nominal) if self.nominal else {}
-        predicted, J = linearised(model, known | dict(parameters or {}), situations, layout)
-        maps = form_columns(self.largest or largest_lines(predicted, layout), situations, layout)
-        directions = np.concatenate([J[..., : len(known)], maps], axis=-1)
-        reach = self.structure * np.eye(directions.shape[-1]) if self.reach is None else self.reach
-        shift = np.zeros(predicted.shape) if self.shift is None else directions @ self.shift
-        return LeftOpen(predicted, shift, directions @ reach, J[..., len(known) :])
-
-
-class LeftOpen(NamedTuple):
-    """Prediction of a model, the shift of its maps that commissioning found, what the unit leaves open (one standard
-    deviation each), and the change by one spread of each fitted parameter.
-    """
-
-    predicted: Float[np.ndarray, "situation feature"]
-    shift: Float[np.ndarray, "situation feature"]
-    columns: Float[np.ndarray, "situation feature direction"]
-    J: Float[np.ndarray, "situation feature parameter"]
+from swgsim.loop.unit import Unit
 
 
 @dataclass(frozen=True, eq=False)
@@ -270,37 +188,3 @@ def extended(now: Fitted, added: Sequence[Effect]) -> Fitted:
     # Parameters of effects are counted from where the effects are, so only the unit's keep their position.
     position = {name: by for name, by in now.calibrated.position.items() if ": " not in name}
     return fit(now.measured, now.unit, now.unit.model.plus(*own, *added), position=position, allowed=now.allowed)
-
-
-def commission(measured: Measured, unit: Unit) -> Unit:
-    """The unit with what recordings of its healthy state say about it.
-
-    Raises
-    ------
-    ValueError
-        If the model does not describe the healthy gear: what it misses would later pass for an effect.
-    """
-    forget()
-    fitted = fit(measured, unit)
-    poor = sorted(((size, name) for name, size in fitted.misfit.items() if size > MISFIT), reverse=True)
-    if poor:
-        differ = ", ".join(f"{name} ({np.sqrt(size):.1f} times)" for size, name in poor)
-        raise ValueError(
-            f"the model cannot be commissioned on these recordings: {differ} differ from it by more than noise and "
-            f"declared spreads allow (at most {np.sqrt(MISFIT):.1f} times). Correct the gear file (load inertia J_out, "
-            "speed control), the zero of the angle or a channel that is none of this gear, or leave that channel out"
-        )
-    largest = largest_lines(fitted.calibrated.predicted, measured.layout)
-    directions = measured.rows(form_columns(largest, measured.situations, measured.layout))
-    columns = np.hstack([fitted.J, directions * unit.structure])
-    white = fitted.errors.whiten(columns)
-    covariance = np.linalg.inv(white.T @ white + np.eye(columns.shape[1]))
-    mean = covariance @ (white.T @ fitted.errors.whiten(fitted.from_start[:, None])[:, 0])
-    # The parameters themselves stay where the fit has them; the deviations of the maps take up the rest.
-    mean[: fitted.J.shape[1]] -= np.array(list(fitted.calibrated.position.values()))
-    scale = np.concatenate([np.ones(fitted.J.shape[1]), np.full(directions.shape[1], unit.structure)])
-    nominal = unit.model.gear
-    # Declared effects stay as they were found: later fits have parameters of their own for them.
-    kept = np.flatnonzero([*(name in of_unit(nominal) for name in fitted.parameters), *[True] * directions.shape[1]])
-    reach = scale[kept, None] * np.linalg.cholesky(covariance[np.ix_(kept, kept)])
-    return Unit(fitted.model, reach, (scale * mean)[kept], unit.structure, fitted.scatter, nominal, largest)

@@ -16,14 +16,15 @@ from swgsim.files import write_json, write_text
 from swgsim.intake.read import read_recordings, require_usable
 from swgsim.loop.angle_zero import zero_defects
 from swgsim.loop.answer import Answer, answer
+from swgsim.loop.commissioning import commission
 from swgsim.loop.experiment import next_experiments
 from swgsim.loop.features import COMPARED
-from swgsim.loop.fitting import Unit, commission
 from swgsim.loop.model import Model
 from swgsim.loop.page import figure, page
 from swgsim.loop.reporting.report import report
 from swgsim.loop.session import Measured
 from swgsim.loop.sidelines import has_sidelines
+from swgsim.loop.unit import Unit
 from swgsim.recording import Recording
 from swgsim.style import words
 
