@@ -10,10 +10,9 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.checks import require, require_known
-from swgsim.intake.file_defect import FileDefect, shown
-from swgsim.intake.limits import require_readable
+from swgsim.intake.file_defect import shown
+from swgsim.intake.plain_file import described, require_names
 from swgsim.intake.units import FACTORS, STRAIN, bridge_factor
-from swgsim.plain_yaml import plain
 from swgsim.recording import CHANNELS
 from swgsim.recordings import SENSORS
 
@@ -116,9 +115,6 @@ class SourceMap:
                 raise ValueError(f"column {column!r} is mapped to two channels: give each its own")
 
 
-LARGEST_MAP = 2**20
-
-
 def read_map(path: Path) -> SourceMap:
     """A column map from YAML.
 
@@ -127,24 +123,17 @@ def read_map(path: Path) -> SourceMap:
     FileDefect
         If it is no YAML or says something that no map says; the choices are listed.
     """
-    require_readable(path)
-    if path.stat().st_size > LARGEST_MAP:
-        raise FileDefect(str(path), f"{path.stat().st_size} bytes", f"a column map of at most {LARGEST_MAP}")
-    try:
-        return _source_map(plain(path.read_bytes()))
-    except (TypeError, ValueError) as error:
-        raise FileDefect(str(path), str(error), "a column map such as conf/sources/example.yaml") from None
+    return described(path, "a column map", "conf/sources/example.yaml", _source_map)
 
 
 def _source_map(config: Any) -> SourceMap:
     """A column map from plain data."""
-    _require_mapping("the column map", config)
-    require_known("the column map", config, ["channels", "facts", "files", "sampling_rate_hz"])
+    require_names("the column map", config, ["channels", "facts", "files", "sampling_rate_hz"])
     for name in ("channels", "facts", "files"):
-        _require_mapping(name, config.get(name, {}))
+        require_names(name, config.get(name, {}))
     for name, entries in (("channels", config.get("channels", {})), ("files", config.get("files", {}))):
         for key, entry in entries.items():
-            _require_mapping(f"{key} of {name}", entry)
+            require_names(f"{key} of {name}", entry)
     choices = ["column", "unit", "inverted", "gauge_factor", "active_arms", "zero_rad"]
     channels = []
     for channel, entry in config.get("channels", {}).items():
@@ -154,8 +143,3 @@ def _source_map(config: Any) -> SourceMap:
                 raise ValueError(f"{name} of channel {channel} is {shown(entry.get(name))}, must be a {kind.__name__}")
         channels.append(ColumnSource(channel, **entry))
     return SourceMap(tuple(channels), config.get("facts", {}), config.get("files", {}), config.get("sampling_rate_hz"))
-
-
-def _require_mapping(owner: str, value: Any) -> None:
-    if not isinstance(value, dict) or not all(isinstance(key, str) for key in value):
-        raise ValueError(f"{owner} is {shown(value)}, must be names with values")

@@ -1,18 +1,14 @@
 """A source from YAML: plain data only, and every key that is not known is refused with those that are."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from swgsim.checks import require_known
-from swgsim.intake.file_defect import FileDefect, shown
-from swgsim.intake.limits import require_readable
-from swgsim.intake.source_map import LARGEST_MAP
+from swgsim.intake.file_defect import shown
+from swgsim.intake.plain_file import described, require_names
 from swgsim.joint.intake.column import MOST_COLUMNS, Column
 from swgsim.joint.intake.source import JointColumns, JointSource
-from swgsim.plain_yaml import plain
 
-EXPECTED = "a source such as conf/sources/kinova_gen3.yaml"
 KEYS = (
     "robot", "path", "files", "rest", "leave_out", "header", "time", "rate", "rate_hz", "start_up", "joints", "posture",
     "others_stand",
@@ -29,18 +25,12 @@ def read_source(path: Path) -> JointSource:
     FileDefect
         If it is no YAML or says something that no source says; the choices are listed.
     """
-    require_readable(path)
-    if path.stat().st_size > LARGEST_MAP:
-        raise FileDefect(str(path), f"{path.stat().st_size} bytes", f"a source of at most {LARGEST_MAP}")
-    try:
-        return _source(plain(path.read_bytes()))
-    except (TypeError, ValueError, OverflowError) as error:
-        raise FileDefect(str(path), str(error), EXPECTED) from None
+    return described(path, "a source", "conf/sources/kinova_gen3.yaml", _source)
 
 
 def _source(config: Any) -> JointSource:
     """A source from plain data."""
-    _require_names("the source", config, KEYS)
+    require_names("the source", config, KEYS)
     for name in ("robot", "path", "files", "joints"):
         if name not in config:
             raise ValueError(f"the source has no {name}")
@@ -48,10 +38,10 @@ def _source(config: Any) -> JointSource:
     if rate != FROM_MOTION:
         raise ValueError(f"rate is {shown(rate)}, must be {FROM_MOTION}; a number belongs to rate_hz")
     start = config.get("start_up", {})
-    _require_names("start_up", start, ("samples", "seconds"))
+    require_names("start_up", start, ("samples", "seconds"))
     if len(start) > 1:
         raise ValueError("start_up has both samples and seconds: keep one")
-    _require_names("joints", config["joints"])
+    require_names("joints", config["joints"])
     return JointSource(
         robot=_text("robot", config["robot"]),
         path=_text("path", config["path"]),
@@ -71,8 +61,8 @@ def _source(config: Any) -> JointSource:
 
 
 def _joint(name: str, entry: Any) -> JointColumns:
-    _require_names(name, entry, ("signals", "gear_ratio", "torque_constant"))
-    _require_names(f"signals of {name}", entry.get("signals"))
+    require_names(name, entry, ("signals", "gear_ratio", "torque_constant"))
+    require_names(f"signals of {name}", entry.get("signals"))
     signals = tuple(_column(signal, column) for signal, column in entry["signals"].items())
     gear_ratio, constant = (_number(f"{key} of {name}", entry.get(key)) for key in ("gear_ratio", "torque_constant"))
     return JointColumns(_text("joint", name), signals, gear_ratio, constant)
@@ -80,7 +70,7 @@ def _joint(name: str, entry: Any) -> JointColumns:
 
 def _column(quantity: str, entry: Any) -> Column:
     choices = ("column", "unit", *(() if quantity == "time" else ("inverted", "wraps")))
-    _require_names(quantity, entry, choices)
+    require_names(quantity, entry, choices)
     switches = {name: _truth(f"{name} of {quantity}", entry.get(name, False)) for name in ("inverted", "wraps")}
     return Column(quantity, _column_name(quantity, entry.get("column")), _text("unit", entry.get("unit")), **switches)
 
@@ -88,7 +78,7 @@ def _column(quantity: str, entry: Any) -> Column:
 def _posture(entry: Any) -> tuple[Column, ...]:
     if entry is None:
         return ()
-    _require_names("posture", entry, ("columns", "unit"))
+    require_names("posture", entry, ("columns", "unit"))
     columns, unit = entry.get("columns"), _text("unit of posture", entry.get("unit"))
     if not isinstance(columns, list) or not 1 <= len(columns) <= MOST_COLUMNS:
         raise ValueError(
@@ -130,11 +120,3 @@ def _number(name: str, value: Any) -> float | None:
     if not isinstance(value, int | float) or isinstance(value, bool):
         raise ValueError(f"{name} is {shown(value)}, must be a number")
     return float(value)
-
-
-def _require_names(owner: str, value: Any, known: Sequence[str] | None = None) -> None:
-    """Raise unless a value is names with values, and known ones where they are listed."""
-    if not isinstance(value, Mapping) or not all(isinstance(key, str) for key in value):
-        raise ValueError(f"{owner} is {shown(value)}, must be names with values")
-    if known is not None:
-        require_known(owner, value, known)
