@@ -67,7 +67,7 @@ def adapt_and_judge(
     y = data.table["label"].astype(str).to_numpy()
     specimens, gears = [], []
     for episode in episodes:
-        kept = Labelled(data.features[episode.source], y[episode.source])
+        kept = Labelled(np.asarray(data.features[episode.source]), y[episode.source])
         model = source_model(*kept)
         before = _accuracy(model, data, y, episode.kept_out)
         for target in episode.targets:
@@ -92,9 +92,9 @@ def _adapted(
     number: int, draw: int,
 ) -> Any:  # fmt: skip
     rows = target.shots(data.table, number, draw)
-    unlabelled = data.features[target.unlabelled[: 0 if number else None]]
+    unlabelled = np.asarray(data.features[target.unlabelled[: 0 if number else None]])
     seed = seed_hash("adaptation", target.gear, number, draw) % 2**31
-    return adaptation.adapt(model, kept, Labelled(data.features[rows], y[rows]), unlabelled, seed)
+    return adaptation.adapt(model, kept, Labelled(np.asarray(data.features[rows]), y[rows]), unlabelled, seed)
 
 
 def _accuracy(model: Any, data: LearningSet, y: np.ndarray, rows: np.ndarray) -> float:

@@ -11,7 +11,8 @@ import numpy as np
 from jaxtyping import Float
 
 from learn.feature_space import Space, feature_space
-from learn.neural import NeuralClassifier, as_tensor
+from learn.neural import NeuralClassifier
+from learn.rows import as_tensor
 from learn.transfer import FittedClassifier, Labelled, copied_network, require_rows, untrained
 from swgsim.checks import require
 

@@ -1,4 +1,4 @@
-"""The five classifiers of Table VI, with scikit-learn's standard settings otherwise, on features as they are.
+"""The five classifiers of Inputs VI, with scikit-learn's standard settings otherwise, on features as they are.
 
 Like the paper, none scales its features. Each is a scikit-learn estimator: ``fit(X, y)`` and ``predict(X)``.
 """
@@ -6,18 +6,19 @@ Like the paper, none scales its features. Each is a scikit-learn estimator: ``fi
 from typing import Protocol, runtime_checkable
 
 import numpy as np
-from jaxtyping import Float
+
+from learn.rows import Inputs
 
 
 @runtime_checkable
 class Classifier(Protocol):
     """What evaluation asks of a method."""
 
-    def fit(self, X: Float[np.ndarray, "row feature"], y: np.ndarray) -> object:
+    def fit(self, X: Inputs, y: np.ndarray) -> object:
         """Learn from features and class names."""
         ...
 
-    def predict(self, X: Float[np.ndarray, "row feature"]) -> np.ndarray:
+    def predict(self, X: Inputs) -> np.ndarray:
         """The class name of each row."""
         ...
 

@@ -11,6 +11,7 @@ from jaxtyping import Float, Int
 
 from learn.classical import Classifier
 from learn.inputs import OPERATING_POINT, SPECIMEN
+from learn.rows import Inputs
 from learn.splits import Split
 
 FACTS = [*SPECIMEN, "severity", *OPERATING_POINT]
@@ -89,7 +90,7 @@ def metric_key(split: str) -> str:
 
 
 def evaluate(
-    features: Float[np.ndarray, "row feature"],
+    features: Inputs,
     labels: np.ndarray,
     splits: Iterable[Split],
     method: Callable[[], Classifier],
@@ -125,7 +126,7 @@ def evaluate(
     return Evaluation(tuple(scores), tuple(map(str, classes)), confusion, np.concatenate(tested), np.concatenate(said))
 
 
-def _probabilities(classifier: Classifier, X: np.ndarray, classes: pd.Index) -> Float[np.ndarray, "row class"]:
+def _probabilities(classifier: Classifier, X: Inputs, classes: pd.Index) -> Float[np.ndarray, "row class"]:
     """Probability of every class; 1 for the class that a method without probabilities names."""
     result = np.zeros((len(X), len(classes)))
     if hasattr(classifier, "predict_proba") and hasattr(classifier, "classes_"):
@@ -135,7 +136,7 @@ def _probabilities(classifier: Classifier, X: np.ndarray, classes: pd.Index) -> 
     return result
 
 
-def fit(classifier: Classifier, features: np.ndarray, labels: np.ndarray) -> bool:
+def fit(classifier: Classifier, features: Inputs, labels: np.ndarray) -> bool:
     """Fit, and say whether the optimiser came to its end; one that stops at its bound is no warning here."""
     from sklearn.exceptions import ConvergenceWarning
 

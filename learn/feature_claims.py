@@ -48,6 +48,7 @@ class Features:
 def features_of(blocks: Sequence[Recordings]) -> Features:
     """The features of a clean data set."""
     learning = SPECTRUM.learning_set(blocks)
+    relative = np.asarray(learning.features)
     lines = np.concatenate([signal_quantities(block, SPECTRUM) for block in blocks])
     facts = pd.concat([block.table for block in blocks], ignore_index=True)
     reference = facts["reference"].to_numpy()
@@ -57,8 +58,8 @@ def features_of(blocks: Sequence[Recordings]) -> Features:
         learning.table,
         np.abs(lines[~reference] - healthy).max(axis=1),
         lines[~reference],
-        learning.features[:, :-1],
-        learning.features[:, -1],
+        relative[:, :-1],
+        relative[:, -1],
         float(healthy[:, odd].max()),
     )
 

@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from learn.neural import NeuralClassifier, as_tensor
+from learn.neural import NeuralClassifier
+from learn.rows import as_tensor
 
 Space = Callable[[np.ndarray], np.ndarray]  # (row, column) to (row, feature)
 

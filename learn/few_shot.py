@@ -49,7 +49,10 @@ def results(
 
     def source_score(options: Mapping[str, Any]) -> float:
         shares = [
-            np.mean(source_model(data.features[train], y[train], **options).predict(data.features[test]) == y[test])
+            np.mean(
+                source_model(np.asarray(data.features[train]), y[train], **options).predict(data.features[test])
+                == y[test]
+            )
             for _, train, test in protocol.development_splits(data.table)
         ]
         return 100 * float(np.mean(shares))

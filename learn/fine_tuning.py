@@ -14,7 +14,8 @@ from jaxtyping import Float
 from torch import Tensor, nn
 
 from learn.networks import Network
-from learn.neural import NeuralClassifier, as_tensor
+from learn.neural import NeuralClassifier
+from learn.rows import as_tensor
 from learn.training import Recipe, train
 from learn.transfer import Labelled, copied_network, positions_in, require_rows
 from swgsim.checks import require, require_integer, require_positive

@@ -9,10 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from jaxtyping import Float, Int
+from jaxtyping import Int
 
 from learn.fault_size import size
 from learn.inputs import OPERATING_POINT
+from learn.rows import Inputs
 from learn.splits import Split
 from swgsim.checks import require_integer
 from swgsim.seeds import generator
@@ -54,7 +55,7 @@ class LeaveSeverityOut:
             return ("mild", "medium", "severe")
         return tuple(f"part {number} of {self.parts}" for number in range(1, self.parts + 1))
 
-    def split(self, features: Float[np.ndarray, "row feature"], table: pd.DataFrame) -> Iterator[Split]:
+    def split(self, features: Inputs, table: pd.DataFrame) -> Iterator[Split]:
         """One split per part, which is tested; every row is tested once."""
         part = np.empty(len(table), dtype=int)
         for label, rows in table.groupby("label", observed=True).indices.items():
@@ -118,7 +119,7 @@ class LeaveOperatingPointOut:
     def __post_init__(self) -> None:
         require_integer("the protocol", "folds", self.folds, low=2, high=10_000)
 
-    def split(self, features: Float[np.ndarray, "row feature"], table: pd.DataFrame) -> Iterator[Split]:
+    def split(self, features: Inputs, table: pd.DataFrame) -> Iterator[Split]:
         """One split per operating point, named as ``2000 rpm, 7 N m``, from low to high speed and load."""
         points, point = np.unique(table[list(OPERATING_POINT)].to_numpy(), axis=0, return_inverse=True)
         if len(points) < 2:

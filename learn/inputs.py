@@ -1,13 +1,16 @@
 """What every method is given: one row of numbers per recording, and the facts beside it."""
 
-from collections.abc import Hashable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Hashable, Iterable, Iterator
+from dataclasses import dataclass, replace
+from itertools import groupby
+from pathlib import Path
 from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 import pandas as pd
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
+from learn.rows import Inputs, on_disk
 from swgsim.recordings import Recordings
 
 OPERATING_POINT = ("n_in_rpm", "T_out_nm")
@@ -41,6 +44,7 @@ class LearningSet:
     Attributes
     ----------
     features : array (sample, feature)
+        Of a large data set, rows in a file.
     table : DataFrame
         One row of facts per sample, with the columns of :data:`swgsim.recordings.COLUMNS`.
     names : tuple of str
@@ -49,7 +53,7 @@ class LearningSet:
         Which columns are a signal; methods that know no signals take all columns alike.
     """
 
-    features: Float[np.ndarray, "sample feature"]
+    features: Inputs
     table: pd.DataFrame
     names: tuple[str, ...]
     layout: Layout = NO_SIGNAL
@@ -81,3 +85,55 @@ class Representation(Hashable, Protocol):
     def learning_set(self, blocks: Iterable[Recordings]) -> LearningSet:
         """The inputs of the samples of a data set, which comes in one block or in many that are dropped one by one."""
         ...
+
+
+def gear_by_gear(
+    blocks: Iterable[Recordings], representation: Representation, folder: Path, progress: Callable[[int], object]
+) -> LearningSet:
+    """The inputs of a data set that is too large for the memory, one gear after the other, in a file.
+
+    A gear is a data set of its own: inputs are set in relation to no other gear.
+
+    Parameters
+    ----------
+    blocks : iterable of Recordings
+        The recordings of a gear in a row, as data sets have them.
+    representation : Representation
+    folder : Path
+        Where the file may lie; it has no name and leaves nothing behind.
+    progress : callable
+        Called with the number of recordings whenever that many more are done.
+
+    Raises
+    ------
+    ValueError
+        If the recordings of a gear are not in a row.
+    """
+    facts: list[LearningSet] = []
+
+    def features() -> Iterator[Float[np.ndarray, "sample feature"]]:
+        for recordings in _gears(blocks):
+            made = representation.learning_set(recordings)
+            facts.append(replace(made, features=made.features[:0]))
+            progress(sum(map(len, recordings)))
+            yield np.asarray(made.features)
+
+    rows = on_disk(features(), folder)
+    table = pd.concat([each.table for each in facts], ignore_index=True)
+    return LearningSet(rows, table, facts[0].names, facts[0].layout)
+
+
+def _gears(blocks: Iterable[Recordings]) -> Iterator[list[Recordings]]:
+    """The recordings of each gear."""
+    pieces = (block.where(rows) for block in blocks for rows in _runs(block.table["gear"].to_numpy()))
+    before: set[int] = set()
+    for gear, held in groupby(pieces, key=lambda piece: int(piece.table["gear"].iloc[0])):
+        if gear in before:
+            raise ValueError(f"recordings of gear {gear} in two places of the data set: they must be in a row")
+        before.add(gear)
+        yield list(held)
+
+
+def _runs(values: Int[np.ndarray, " row"]) -> list[Int[np.ndarray, " run"]]:
+    """Row numbers of equal values in a row."""
+    return np.split(np.arange(len(values)), np.flatnonzero(np.diff(values)) + 1)

@@ -7,20 +7,26 @@ from pathlib import Path
 from typing import Any
 
 from threadpoolctl import threadpool_limits
+from tqdm import tqdm
 
 from learn import few_shot, identity, settings, tracking, zero_shot
-from learn.inputs import LearningSet, Representation, beside_foreign
+from learn.inputs import LearningSet, Representation, beside_foreign, gear_by_gear
 from swgsim import storage
 
 log = logging.getLogger(__name__)
 
 BLOCK = 1024  # recordings in memory at a time
+LARGE = 100_000  # recordings from which on their inputs lie in a file
 
 
 @lru_cache(maxsize=4)
 def learning_set_of(path: Path, digest: str, representation: Representation) -> LearningSet:
     """The inputs of a data set; computed once per process while the file's digest stays the same."""
-    return representation.learning_set(storage.blocks(path, BLOCK))
+    recordings, blocks = storage.shape(path)[0], storage.blocks(path, BLOCK)
+    if recordings < LARGE:
+        return representation.learning_set(blocks)
+    with tqdm(total=recordings, desc="inputs", unit=" recordings") as bar:
+        return gear_by_gear(blocks, representation, path.parent, bar.update)
 
 
 def run(config: Mapping[str, Any]) -> dict[str, float]:

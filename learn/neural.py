@@ -12,7 +12,9 @@ import numpy as np
 from jaxtyping import Float
 
 from learn.archive import require_plain
+from learn.rows import Inputs, Rows, as_tensor, chunks
 from swgsim.files import replacing
+from swgsim.seeds import generator
 
 if TYPE_CHECKING:
     from torch import Tensor
@@ -21,7 +23,8 @@ if TYPE_CHECKING:
     from learn.training import Recipe
 
 SUFFIX = ".pt"  # of the files
-CHUNK = 1024  # rows that are judged at a time: what they need in between stays small
+# Rows from which the scaling is taken, at most: more would not change it, and may be too many for the memory.
+SCALED = 50_000
 
 
 @dataclass(eq=False)
@@ -49,7 +52,7 @@ class NeuralClassifier:
     classes_: np.ndarray = field(init=False, repr=False)
     network_: "Network" = field(init=False, repr=False)
 
-    def fit(self, X: Float[np.ndarray, "row column"], y: np.ndarray) -> "NeuralClassifier":
+    def fit(self, X: Inputs, y: np.ndarray) -> "NeuralClassifier":
         """Train a new network on rows and their class names; scaling is taken from these rows too.
 
         Raises
@@ -66,13 +69,13 @@ class NeuralClassifier:
         if len(classes) < 2:
             raise ValueError(f"the rows are of {len(classes)} class ({', '.join(map(str, classes))}), 2 are needed")
         network = self.architecture.network(X.shape[1], len(classes), self.seed)
-        network.set_scaling(X)
+        network.set_scaling(self._some(X))
         network.to(choose_device(self.device))
-        train(network, as_tensor(X), torch.from_numpy(numbers), self.recipe, self.seed)
+        train(network, X if isinstance(X, Rows) else as_tensor(X), torch.from_numpy(numbers), self.recipe, self.seed)
         self.classes_, self.network_ = classes, network
         return self
 
-    def predict_proba(self, X: Float[np.ndarray, "row column"]) -> Float[np.ndarray, "row class"]:
+    def predict_proba(self, X: Inputs) -> Float[np.ndarray, "row class"]:
         """Probability of each class of ``classes_``.
 
         Raises
@@ -92,26 +95,25 @@ class NeuralClassifier:
             raise ValueError(f"rows have {X.shape[1]} columns, the network was trained with {len(centre)}")
         self.network_.eval()
         with torch.inference_mode(), one_thread():
-            logits = [self.network_(rows.to(centre.device)) for rows in as_tensor(X).split(CHUNK)]
+            logits = [self.network_(as_tensor(rows).to(centre.device)) for rows in chunks(X)]
             return np.asarray(torch.cat(logits).cpu().double().softmax(dim=1).numpy())
 
-    def predict(self, X: Float[np.ndarray, "row column"]) -> np.ndarray:
+    def predict(self, X: Inputs) -> np.ndarray:
         """The most probable class of each row."""
         most_probable = self.predict_proba(X).argmax(axis=1)
         return self.classes_[most_probable]
+
+    def _some(self, X: Inputs) -> Float[np.ndarray, "some column"]:
+        """All rows, or of too many a choice, drawn."""
+        if len(X) <= SCALED:
+            return np.asarray(X)
+        return np.asarray(X[np.sort(generator("scaling", self.seed).choice(len(X), SCALED, replace=False))])
 
     def with_network(self, network: "Network") -> "NeuralClassifier":
         """The same classifier with another network for the same classes, such as one trained further."""
         other = replace(self)
         other.classes_, other.network_ = self.classes_, network
         return other
-
-
-def as_tensor(X: Float[np.ndarray, "row column"]) -> "Tensor":
-    """A copy of the rows as networks take them, in single precision, on the processor."""
-    import torch
-
-    return torch.from_numpy(np.array(X, dtype=np.float32, order="C"))
 
 
 def neural_perceptron(
@@ -206,8 +208,13 @@ def _require_state(given: Mapping[str, "Tensor"], needed: Mapping[str, "Tensor"]
             raise ValueError(f"{name} has numbers that are not finite")
 
 
-def _require_finite(X: np.ndarray) -> None:
-    bad = np.argwhere(~np.isfinite(X))
-    if len(bad):
-        row, column = bad[0]
-        raise ValueError(f"column {column} of row {row} is {X[row, column]}: leave out or fill in what is missing")
+def _require_finite(X: Inputs) -> None:
+    start = 0
+    for rows in chunks(X):
+        bad = np.argwhere(~np.isfinite(rows))
+        if len(bad):
+            row, column = bad[0]
+            raise ValueError(
+                f"column {column} of row {start + row} is {rows[row, column]}: leave out or fill in what is missing"
+            )
+        start += len(rows)

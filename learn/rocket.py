@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
+from learn.rows import Inputs
 from learn.strong import compression
 from swgsim.checks import require_integer
 
@@ -49,7 +50,7 @@ class MiniRocket:
                 f"{self.points}: take features=raw, differenced or residual"
             )
 
-    def fit(self, X: Float[np.ndarray, "row column"], y: np.ndarray) -> "MiniRocket":
+    def fit(self, X: Inputs, y: np.ndarray) -> "MiniRocket":
         """Learn from rows and class names."""
         from sklearn.linear_model import LogisticRegression, RidgeClassifierCV
         from sklearn.preprocessing import StandardScaler
@@ -69,17 +70,18 @@ class MiniRocket:
         self.classes_ = self._probability.classes_
         return self
 
-    def predict_proba(self, X: Float[np.ndarray, "row column"]) -> Float[np.ndarray, "row class"]:
+    def predict_proba(self, X: Inputs) -> Float[np.ndarray, "row class"]:
         """Probability of each class: a logistic regression on the ridge's decision values."""
         signal, side = self._split(X)
         features = self._joined(self._convolved(signal), side)
         return self._probability.predict_proba(self._ridge.decision_function(features))
 
-    def predict(self, X: Float[np.ndarray, "row column"]) -> np.ndarray:
+    def predict(self, X: Inputs) -> np.ndarray:
         """The class name of each row."""
         return self.classes_[self.predict_proba(X).argmax(axis=1)]
 
-    def _split(self, X: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _split(self, X: Inputs) -> tuple[np.ndarray, np.ndarray]:
+        X = np.asarray(X)
         columns = self.channels * self.points
         signal = X[:, :columns].reshape(len(X), self.channels, self.points)
         return signal.astype(np.float32), X[:, columns:]

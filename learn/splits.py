@@ -9,9 +9,10 @@ from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 import pandas as pd
-from jaxtyping import Float, Int
+from jaxtyping import Int
 
 from learn.inputs import SPECIMEN
+from learn.rows import Inputs
 
 
 class Split(NamedTuple):
@@ -26,7 +27,7 @@ class Split(NamedTuple):
 class Splitting(Protocol):
     """A rule that divides the rows of a data set."""
 
-    def split(self, features: Float[np.ndarray, "row feature"], table: pd.DataFrame) -> Iterator[Split]:
+    def split(self, features: Inputs, table: pd.DataFrame) -> Iterator[Split]:
         """The splits, one after another."""
         ...
 
@@ -50,7 +51,7 @@ class RandomFolds:
     def __post_init__(self) -> None:
         _at_least_two(self.folds)
 
-    def split(self, features: Float[np.ndarray, "row feature"], table: pd.DataFrame) -> Iterator[Split]:
+    def split(self, features: Inputs, table: pd.DataFrame) -> Iterator[Split]:
         """One split per fold, named ``fold 1`` and so on; every row is tested once."""
         from sklearn.model_selection import StratifiedKFold
 
@@ -81,7 +82,7 @@ class GroupedFolds:
     def __post_init__(self) -> None:
         _at_least_two(self.folds)
 
-    def split(self, features: Float[np.ndarray, "row feature"], table: pd.DataFrame) -> Iterator[Split]:
+    def split(self, features: Inputs, table: pd.DataFrame) -> Iterator[Split]:
         """One split per fold, named ``fold 1`` and so on; every row that can be tested is tested once."""
         from sklearn.model_selection import StratifiedGroupKFold
 
@@ -100,7 +101,7 @@ class GroupedFolds:
             yield Split(f"fold {number}", np.setdiff1d(np.arange(len(label)), rows[test]), rows[test])
 
 
-def independent_groups(features: Float[np.ndarray, "row feature"], table: pd.DataFrame) -> Int[np.ndarray, " row"]:
+def independent_groups(features: Inputs, table: pd.DataFrame) -> Int[np.ndarray, " row"]:
     """Number of each row's group: rows of one variant, and rows with equal features (to 9 decimals), belong together.
 
     The groups are the connected components of the graph whose nodes are variants and distinct rows of features.
@@ -124,7 +125,7 @@ def _groups_that_hold_a_whole_class(group: Int[np.ndarray, " row"], label: np.nd
 
 @dataclass(frozen=True)
 class LeaveOneGearOut:
-    """Train on all gears but one and test on that one, which is out of distribution; named as in Table IX: ``1,2->3``.
+    """Train on all gears but one and test on that one, which is out of distribution; named as in Inputs IX: ``1,2->3``.
 
     With more gears than `folds`, the gears are dealt into that many folds and each fold is left out in turn. The order
     is the paper's: 1,2->3; 2,3->1; 1,3->2. As in the paper, the features of the gear left out are relative to its own
@@ -141,7 +142,7 @@ class LeaveOneGearOut:
     def __post_init__(self) -> None:
         _at_least_two(self.folds)
 
-    def split(self, features: Float[np.ndarray, "row feature"], table: pd.DataFrame) -> Iterator[Split]:
+    def split(self, features: Inputs, table: pd.DataFrame) -> Iterator[Split]:
         """One split per gear, or per fold of gears."""
         gear = table["gear"].to_numpy()
         gears = np.unique(gear)

@@ -10,6 +10,7 @@ from jaxtyping import Float, Int
 from torch import Tensor, nn
 
 from learn.networks import Network, seeded
+from learn.rows import Rows, as_tensor
 from swgsim.checks import require, require_integer
 from swgsim.seeds import generator, seed_hash
 
@@ -42,7 +43,7 @@ class Recipe:
 
 
 def train(
-    network: Network, X: Float[Tensor, "row column"], y: Int[Tensor, " row"], recipe: Recipe, seed: int,
+    network: Network, X: Float[Tensor, "row column"] | Rows, y: Int[Tensor, " row"], recipe: Recipe, seed: int,
     *, parameters: Iterable[nn.Parameter] | None = None, penalty: Callable[[Network], Tensor] | None = None,
     frozen_statistics: bool = False,
 ) -> None:  # fmt: skip
@@ -56,7 +57,7 @@ def train(
     network : Network
         On the device on which it is to be trained.
     X, y : tensor
-        Rows and numbers of their classes, on any device.
+        Rows and numbers of their classes, on any device. Rows in a file are read batch by batch.
     recipe : Recipe
     seed : int
         Of the order of the rows and of dropout.
@@ -75,7 +76,7 @@ def train(
     if not len(X):
         raise ValueError("there are 0 rows to train on, at least 1 is needed")
     device = network.centre.device
-    X, y = X.to(device), y.to(device)
+    batch, y = _reader(X, device), y.to(device)
     trained = list(network.parameters() if parameters is None else parameters)
     steps = ceil(len(X) / recipe.batch)
     optimiser = torch.optim.AdamW(trained, lr=recipe.rate, weight_decay=recipe.decay, fused=True)
@@ -90,7 +91,7 @@ def train(
         for _ in range(recipe.epochs):
             # Batches of equal size, to one row: a small rest would unsettle batch normalisation.
             for rows in torch.from_numpy(order.permutation(len(X))).to(device).tensor_split(steps):
-                loss = nn.functional.cross_entropy(network(X.index_select(0, rows)), y.index_select(0, rows))
+                loss = nn.functional.cross_entropy(network(batch(rows)), y.index_select(0, rows))
                 if penalty is not None:
                     loss = loss + penalty(network)
                 optimiser.zero_grad()
@@ -100,6 +101,14 @@ def train(
     network.eval()
     if not torch.isfinite(loss):
         raise ValueError(f"training ended with a loss of {loss.item()}: lower the rate, which is {recipe.rate:g}")
+
+
+def _reader(X: Float[Tensor, "row column"] | Rows, device: torch.device) -> Callable[[Tensor], Tensor]:
+    """What gives the rows of a batch, on a device."""
+    if isinstance(X, Rows):
+        return lambda rows: as_tensor(X[rows.cpu().numpy()]).to(device)
+    there = X.to(device)
+    return lambda rows: there.index_select(0, rows)
 
 
 def choose_device(device: str) -> torch.device:

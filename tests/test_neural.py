@@ -176,7 +176,7 @@ def test_chunks_do_not_show(monkeypatch):
     X, y = task(30)
     model = classifier("convolutional", epochs=1).fit(X, y)
     whole = model.predict_proba(X)
-    monkeypatch.setattr(neural, "CHUNK", 7)
+    monkeypatch.setattr("learn.rows.CHUNK", 7)
     np.testing.assert_allclose(model.predict_proba(X), whole, atol=1e-6)
 
 

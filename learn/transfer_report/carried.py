@@ -145,7 +145,8 @@ def refit(store: Store, run: pd.Series, data: Path) -> Refitted:
         model.fit(chosen.features[split.train], y[split.train])
     judged = chosen.table.iloc[split.test]
     points = judged.groupby(list(OPERATING_POINT)).ngroup().to_numpy()
-    return Refitted(model, chosen.features[split.test], y[split.test], points, chosen.names, judged["gear"].nunique())
+    X = np.asarray(chosen.features[split.test])
+    return Refitted(model, X, y[split.test], points, chosen.names, judged["gear"].nunique())
 
 
 def importance(refitted: Refitted, groups: Mapping[str, Sequence[int]], repeats: int) -> pd.DataFrame:
