@@ -87,6 +87,15 @@ def test_an_eccentric_wave_generator_is_found_with_its_size(unit):
     assert min(score.chance for score in closed.left) > ALPHA
 
 
+def test_an_effect_of_a_hundredth_of_its_bounds_is_found(unit):
+    coning = LIBRARY["coning"]
+    closed = close(recorded((coning(share=0.005),), seed=2), unit, [*SEARCHED, coning])
+    (found,) = accepted(closed)
+    assert closed.steps[0].accepted.merit > 10
+    assert found.name() == "coning"
+    assert found.share == pytest.approx(0.005, rel=0.3)
+
+
 def test_warm_grease_and_reduced_damping_are_rivals(unit):
     closed = close(recorded((WARM,), seed=2), unit, SEARCHED)
     (step,) = closed.steps

@@ -19,8 +19,8 @@ from swgsim.recordings import SENSORS
 MOST = 4
 # A line without a name comes before an effect if it explains more than the effect does by this share and amount.
 OUTDONE_SHARE, OUTDONE = 0.05, 17.0
-# Shapes below this share of the largest one are rounding.
-ROUNDING = 1e-3
+# Shapes below this share of the largest one are rounding; above the other one they are seen as well as it.
+ROUNDING, WELL_SEEN = 1e-3, 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,8 +99,18 @@ def cleaned(recording: Recording, effects: Sequence[Effect]) -> Recording:
 def _part(
     signal: Float[np.ndarray, " time"], seen: Float[np.ndarray, "time shape"], orders: Float[np.ndarray, "time column"]
 ) -> Float[np.ndarray, " time"]:
-    """The part of a signal that shapes explain beside the orders, by least squares."""
-    U, s, _ = np.linalg.svd(seen, full_matrices=False)
-    shown = U[:, s > ROUNDING * max(float(s[0]), 1e-300)]
-    weights = np.linalg.lstsq(np.hstack([orders, shown]), signal, rcond=None)[0]
-    return shown @ weights[orders.shape[1] :]
+    """The part of a signal that shapes explain beside the orders.
+
+    Shapes that the orders nearly hold, such as those of order 12.01, or that nearly hold one another, are told apart by
+    noise alone: least squares would give them any size. None is taken to be larger than those that are seen well are.
+    """
+    Q = np.linalg.qr(orders)[0]
+    left, beside = (each - Q @ (Q.T @ each) for each in (signal, seen))
+    U, s, V = np.linalg.svd(beside, full_matrices=False)
+    shown = s > ROUNDING * max(float(s[0]), 1e-300)
+    U, s, V = U[:, shown], s[shown], V[shown]
+    along = U.T @ left
+    noise = (left @ left - along @ along) / (len(left) - orders.shape[1] - len(s))
+    well = s > WELL_SEEN * s[:1]
+    power = np.mean((along[well] / s[well]) ** 2) if len(s) else 1.0
+    return seen @ (V.T @ (along * s / (s**2 + noise / max(power, 1e-300))))

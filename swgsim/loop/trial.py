@@ -92,7 +92,8 @@ class Trial:
     @property
     def merit(self) -> float:
         """What trials are ordered by; one that was fitted down to nothing is none."""
-        seen = np.linalg.norm(self.fitted.whole.whiten(self.signature), axis=0)
+        # Beside the errors alone: its own size is open too, and against that a small share of its spread is nothing.
+        seen = np.linalg.norm(self.fitted.errors.whiten(self.signature), axis=0)
         return self.gain + self.evidence if (seen > NOTHING).all() else -np.inf
 
 
