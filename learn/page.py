@@ -5,11 +5,7 @@ table. The format is not documented; ``tests/test_tracking.py`` guards it.
 """
 
 import base64
-import contextlib
 import json
-import os
-import subprocess
-import sys
 import time
 import zlib
 from collections.abc import Mapping
@@ -17,6 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from learn.tracking import Store
+from learn.tracking.server import run_mlflow, until_stopped
 
 METRICS = ("test_score", "train_score", "fit_seconds")
 WHAT = ("classifier", "features", "protocol", "condition")  # the name of a run begins with its study
@@ -91,16 +88,11 @@ def link(store: Store, server: str, view: View = SCORES) -> str:
 
 
 def serve(store: Store, host: str, port: int) -> None:
-    """Run MLflow's page for a local store until it is interrupted; with a server, only print the links.
-
-    One worker and no job execution: three processes instead of fifteen.
-    """
+    """Run MLflow's page for a local store until it is interrupted; with a server, only print the links."""
     save_views(store)
     server = f"http://{host}:{port}" if store.folder else store.uri
     for view in VIEWS:
         print(f"{view.name}: {link(store, server, view)}", flush=True)
     if store.folder:
-        command = [sys.executable, "-m", "mlflow", "ui", "--workers", "1", "--host", host, "--port", str(port)]
-        light = {"MLFLOW_SERVER_ENABLE_JOB_EXECUTION": "false"}
-        with contextlib.suppress(KeyboardInterrupt):
-            subprocess.run([*command, "--backend-store-uri", store.uri], env={**os.environ, **light}, check=False)
+        with until_stopped():
+            run_mlflow(store.uri, host, port, "--workers", "1")

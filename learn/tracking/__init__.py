@@ -1,0 +1,32 @@
+"""MLflow behind a few functions: the store, the runs of jobs and sweeps, queries, and the way to a team's server."""
+
+import os
+
+os.environ.setdefault("MLFLOW_DISABLE_TELEMETRY", "true")  # read when mlflow is imported
+os.environ.setdefault("MLFLOW_HTTP_REQUEST_MAX_RETRIES", "2")  # a lost server is noticed in seconds, not minutes
+os.environ.setdefault("MLFLOW_HTTP_REQUEST_TIMEOUT", "20")  # [s]
+os.environ.setdefault("MLFLOW_ENABLE_ARTIFACTS_PROGRESS_BAR", "false")  # one for every table of a report
+
+from learn.tracking.job import Results, job_run
+from learn.tracking.queries import finished_metrics, finished_runs, table_of
+from learn.tracking.store import EXPERIMENT, ServerAway, Store, local_store, server_store
+from learn.tracking.sweeps import SWEEP, close_sweep, find_sweep, open_sweep
+from learn.tracking.upload import upload
+
+__all__ = [
+    "EXPERIMENT",
+    "SWEEP",
+    "Results",
+    "ServerAway",
+    "Store",
+    "close_sweep",
+    "find_sweep",
+    "finished_metrics",
+    "finished_runs",
+    "job_run",
+    "local_store",
+    "open_sweep",
+    "server_store",
+    "table_of",
+    "upload",
+]

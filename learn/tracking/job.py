@@ -1,0 +1,154 @@
+"""The run of one job; where the server goes away meanwhile, its results are kept on disk until they are uploaded."""
+
+import logging
+import os
+import tempfile
+import time
+import uuid
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+from learn.tracking.store import Store, lost
+from learn.tracking.sweeps import SWEEP
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Job:
+    """What is known of a job when it begins.
+
+    Attributes
+    ----------
+    name : str
+        Name of its run.
+    parameters : mapping
+    config : mapping
+    tags : mapping
+    start : int
+        Time at which it began [ms since 1970].
+    """
+
+    name: str
+    parameters: Mapping[str, Any]
+    config: Mapping[str, Any]
+    tags: Mapping[str, str]
+    start: int
+
+    def begin(self, store: Store) -> str:
+        """Open a run in a store and return its id."""
+        from mlflow.entities import Param
+
+        run = store.client.create_run(store.experiment_id, self.start, dict(self.tags), self.name)
+        run_id = str(run.info.run_id)
+        store.client.log_batch(run_id, params=[Param(name, str(value)) for name, value in self.parameters.items()])
+        store.client.log_dict(run_id, dict(self.config), "config.yaml")
+        return run_id
+
+
+@dataclass
+class Results:
+    """What there is to say at the end of a job; figures and tables have their path among the artifacts."""
+
+    metrics: Mapping[str, float] = field(default_factory=dict)
+    figures: Mapping[str, "Figure"] = field(default_factory=dict)
+    tables: Mapping[str, pd.DataFrame] = field(default_factory=dict)
+
+    def record(
+        self, metrics: Mapping[str, float], figures: Mapping[str, "Figure"], tables: Mapping[str, pd.DataFrame]
+    ) -> None:
+        """Say it, once; it is written when the job ends."""
+        self.metrics, self.figures, self.tables = metrics, figures, tables
+
+    def write(self, store: Store, run_id: str) -> None:
+        """Fill a run and finish it: metrics in one transaction, tables as Parquet."""
+        from mlflow.entities import Metric
+
+        now = _now()
+        store.client.log_batch(run_id, metrics=[Metric(name, value, now, 0) for name, value in self.metrics.items()])
+        for path, figure in self.figures.items():
+            store.client.log_figure(run_id, figure, path)
+        with tempfile.TemporaryDirectory() as folder:
+            for path, table in self.tables.items():
+                file = Path(folder) / Path(path).name
+                table.to_parquet(file)
+                store.client.log_artifact(run_id, str(file), str(Path(path).parent))
+        store.client.set_terminated(run_id)
+
+
+@contextmanager
+def job_run(
+    store: Store, name: str, key: str, parameters: Mapping[str, Any], config: Mapping[str, Any], tags: Mapping[str, str]
+) -> Iterator[Results]:
+    """The run of one job: finished at the end, failed after an exception, and left running by a killed job.
+
+    It is a child of the run that the environment variable ``SWEEP`` names; a job outside a sweep has no parent. A run
+    that its server does not take is kept among the store's pending ones; both bear the same tag ``origin``.
+
+    Parameters
+    ----------
+    store : Store
+    name : str
+        Name of the run.
+    key : str
+        What :func:`finished_metrics` finds it by.
+    parameters : mapping
+        Parameters by which the run is looked up and compared.
+    config : mapping
+        Resolved configuration, kept as ``config.yaml``.
+    tags : mapping
+        Further facts.
+    """
+    parent = os.environ.get(SWEEP)
+    facts = {"kind": "job", "key": key, "origin": uuid.uuid4().hex, **tags}
+    job = Job(name, parameters, config, {**facts, **({"mlflow.parentRunId": parent} if parent else {})}, _now())
+    store, run_id = _begun(store, job)
+    results = Results()
+    try:
+        yield results
+        _keep(store, run_id, job, results)
+    except BaseException:
+        with suppress(*lost()):
+            store.client.set_terminated(run_id, "FAILED")
+        raise
+
+
+def _begun(store: Store, job: Job) -> tuple[Store, str]:
+    """The store that has taken the run of a job, and the run's id."""
+    try:
+        return store, job.begin(store)
+    except lost() as error:
+        pending = _pending(store, job, error)
+        return pending, job.begin(pending)
+
+
+def _keep(store: Store, run_id: str, job: Job, results: Results) -> None:
+    try:
+        results.write(store, run_id)
+    except lost() as error:
+        pending = _pending(store, job, error)
+        results.write(pending, job.begin(pending))
+
+
+def _pending(store: Store, job: Job, error: Exception) -> Store:
+    """Where the job is kept instead, which is said; without such a place the error stands."""
+    if store.pending is None:
+        raise error
+    log.warning(
+        "%s: the MLflow server at %s has gone away; the results are kept in %s. When it is back, bring them to it with "
+        "'python scripts/upload.py tracking.uri=%s tracking.pending=%s'. It was noticed by: %s",
+        job.name, store.uri, store.pending.folder, store.uri, store.pending.folder, str(error)[:300],
+    )  # fmt: skip
+    return store.pending
+
+
+def _now() -> int:
+    return int(1000 * time.time())

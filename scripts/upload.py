@@ -1,0 +1,22 @@
+"""Bring runs that were kept on this machine to a team's server."""
+
+import hydra
+from misspelt import answered
+from omegaconf import DictConfig, OmegaConf
+
+
+@hydra.main(version_base="1.3", config_path="../conf", config_name="upload")
+def main(config: DictConfig) -> None:
+    """Upload what the server lacks."""
+    from learn.settings import store
+    from learn.tracking import upload
+
+    try:
+        new = upload(store(OmegaConf.to_container(config.tracking)))  # type: ignore[arg-type]
+    except ValueError as error:
+        raise SystemExit(str(error)) from error
+    print(f"{new} runs were new to {config.tracking.uri}")
+
+
+if __name__ == "__main__":
+    answered(main, "upload")
