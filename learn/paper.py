@@ -39,7 +39,7 @@ def paper_table(table: str) -> pd.DataFrame:
     """
     if table not in PROTOCOLS:
         raise ValueError(f"unknown table {table!r}; choose from {', '.join(PROTOCOLS)}")
-    with (files("learn") / "paper_tables" / f"{table}.csv").open() as file:
+    with (files("learn") / "paper_tables" / f"{table}.csv").open(encoding="utf-8") as file:
         cells = pd.read_csv(file, comment="#")
     if "split" not in cells:
         cells.insert(1, "split", cells.pop("train_gears") + "->" + cells.pop("test_gear").astype(str))

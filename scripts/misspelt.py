@@ -14,9 +14,12 @@ CONF = Path(__file__).parent.parent / "conf"
 
 
 def answered(main: Callable[[], object], config_name: str) -> None:
-    """Run a Hydra main; where it fails, name the choices of every key that does not exist."""
+    """Run a Hydra main; where it fails, name the choices of every key that does not exist; stop quietly at Ctrl-C."""
     try:
         main()
+    except KeyboardInterrupt:
+        print("\ninterrupted; what is finished is kept, and the same command goes on from there", file=sys.stderr)
+        sys.exit(130)  # as a shell says it
     except SystemExit as stop:
         if stop.code:
             for answer in unknown(config_name, [word for word in sys.argv[1:] if not word.startswith("-")]):

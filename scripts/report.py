@@ -23,6 +23,7 @@ from swgsim import settings as chain_settings
 from swgsim import storage
 from swgsim.claims import chain_claims
 from swgsim.examples import FIGURE_POINT, Subject
+from swgsim.files import write_text
 
 BLOCK = 1024  # recordings in memory at a time
 CONFUSIONS = (
@@ -103,8 +104,8 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
     )
     folder = Path(config["out"])
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "report.json").write_text(written.json())
-    (folder / "index.html").write_text(written.html())
+    write_text(folder / "report.json", written.json())
+    write_text(folder / "index.html", written.html())
     held = sum(finding.holds for finding in findings)
     print(f"{folder / 'index.html'}: {held} of {len(findings)} claims hold; {time.time() - began:.1f} s")
     return {"claims_that_hold": held, "seconds": time.time() - began}

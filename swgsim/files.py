@@ -1,5 +1,6 @@
 """Files that are complete or absent, and that one process at a time makes."""
 
+import errno
 import fcntl
 import json
 import os
@@ -8,22 +9,40 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any
 
+# What to do where a file cannot be written.
+ROOM = "make room and start again, what is finished is kept"
+OTHER_FOLDER = "choose a folder that can be written"
+REMEDIES = {
+    errno.ENOSPC: ROOM,
+    errno.EDQUOT: ROOM,
+    errno.EFBIG: "raise the limit of file sizes (ulimit -f) and start again, what is finished is kept",
+    errno.EROFS: OTHER_FOLDER,
+    errno.EACCES: OTHER_FOLDER,
+    errno.EPERM: OTHER_FOLDER,
+}
+
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
     """A file aside to write; when that has succeeded it takes the place of ``path``.
 
     Its name is always the same, so that what a killed process leaves is overwritten and not kept for ever.
+
+    Raises
+    ------
+    OSError
+        If the disk is full or the folder cannot be written; it names the file and the remedy.
     """
-    path.parent.mkdir(parents=True, exist_ok=True)
     aside = path.with_name(f".{path.name}.tmp")
-    try:
-        yield aside
-        with aside.open("r+b") as raw:
-            os.fsync(raw.fileno())
-        os.replace(aside, path)
-    finally:
-        aside.unlink(missing_ok=True)
+    with _remedied(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            yield aside
+            with aside.open("r+b") as raw:
+                os.fsync(raw.fileno())
+            os.replace(aside, path)
+        finally:
+            aside.unlink(missing_ok=True)
 
 
 @contextmanager
@@ -40,14 +59,30 @@ def sole_maker(path: Path, *, wait: bool = False) -> Iterator[None]:
     ------
     RuntimeError
         If another process is making it, and this one does not wait.
+    OSError
+        If the folder cannot be written; it names the file and the remedy.
     """
-    path.parent.mkdir(parents=True, exist_ok=True)
     lock = path.with_name(f".{path.name}.lock")
-    with _locked(lock, path, wait):
+    with _remedied(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        owned = _locked(lock, path, wait)
+    with owned:
         try:
             yield
         finally:
             lock.unlink(missing_ok=True)
+
+
+@contextmanager
+def _remedied(path: Path) -> Iterator[None]:
+    """Say which file could not be written and what to do."""
+    try:
+        yield
+    except OSError as error:
+        number = error.errno or 0
+        if number not in REMEDIES:
+            raise
+        raise OSError(number, f"{os.strerror(number)}: {path} was not written; {REMEDIES[number]}") from error
 
 
 def _locked(lock: Path, path: Path, wait: bool) -> IO[bytes]:

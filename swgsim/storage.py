@@ -4,6 +4,7 @@ The first 512 bytes (the HDF5 user block) hold the SHA-256 of all that follows; 
 """
 
 import hashlib
+import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -12,11 +13,14 @@ import h5py
 import numpy as np
 import pandas as pd
 
+from swgsim.attributes import say, told
 from swgsim.files import replacing
+from swgsim.hdf5_writer import created
 from swgsim.recordings import CLASSES, COLUMNS, SENSORS, Recordings
 
 SEAL_SIZE = 512
 SEAL_START = b"swgsim recordings, sha256 "
+SEAL = re.compile(re.escape(SEAL_START) + rb"([0-9a-f]{64})\n *")
 
 
 def write(path: Path, blocks: Iterable[Recordings], rows: int) -> None:
@@ -34,9 +38,11 @@ def write(path: Path, blocks: Iterable[Recordings], rows: int) -> None:
     ------
     ValueError
         If the blocks do not hold exactly ``rows`` recordings.
+    OSError
+        If the disk is full or the folder cannot be written; the message says what to do.
     """
     with replacing(path) as aside:
-        with h5py.File(aside, "w", userblock_size=SEAL_SIZE) as file:
+        with created(aside, SEAL_SIZE) as (file, raw):
             done = 0
             for block in blocks:
                 if not done:
@@ -48,43 +54,49 @@ def write(path: Path, blocks: Iterable[Recordings], rows: int) -> None:
                 for name in COLUMNS:
                     values = block.table[name].cat.codes if name == "label" else block.table[name]
                     file[name][where] = values.to_numpy()
+                raw.require_written()
                 done += len(block)
         if done != rows:
             raise ValueError(f"{path}: {done} recordings found, {rows} announced")
-        with aside.open("r+b") as raw:
-            raw.seek(SEAL_SIZE)
-            seal = SEAL_START + hashlib.file_digest(raw, "sha256").hexdigest().encode() + b"\n"
-            raw.seek(0)
-            raw.write(seal.ljust(SEAL_SIZE, b" "))
+        seal(aside)
 
 
 def _lay_out(file: h5py.File, first: Recordings, rows: int) -> None:
     """Create all variables with their dimensions, units and descriptions."""
     samples = first.signals.shape[2]
-    file.attrs.update({"Conventions": "CF-1.11", "title": "strain wave gear gauge signals", **first.attributes})
-    file.attrs["sampling_rate_hz"] = first.rate
+    say(file, **{"Conventions": "CF-1.11", "title": "strain wave gear gauge signals", **first.attributes})
+    say(file, sampling_rate_hz=first.rate)
     coordinates = {
         "sample": (np.arange(rows), "1", "number of the recording"),
-        "sensor": (np.array(SENSORS, dtype=h5py.string_dtype()), "1", "strain-gauge bridge"),
+        "sensor": (np.array(SENSORS, dtype="S"), "1", "strain-gauge bridge"),
         "time": (np.arange(samples) / first.rate, "s", "time since the trigger"),
     }
     for name, (values, units, long_name) in coordinates.items():
         variable = file.create_dataset(name, data=values)
         variable.make_scale(name)
-        variable.attrs.update({"units": units, "long_name": long_name})
+        say(variable, units=units, long_name=long_name)
+    say(file["sensor"], _Encoding="utf-8")  # so that xarray gives text
     shape, dimensions = (rows, len(SENSORS), samples), ("sample", "sensor", "time")
     signals = file.create_dataset("signals", shape, "f4", chunks=(1, *shape[1:]), fletcher32=True)
-    signals.attrs.update({"units": "mV/V", "long_name": "bridge signal"})
+    say(signals, units="mV/V", long_name="bridge signal")
     variables: list[tuple[h5py.Dataset, tuple[str, ...]]] = [(signals, dimensions)]
     for name, column in COLUMNS.items():
         variable = file.create_dataset(name, (rows,), column.dtype, chunks=(min(rows, 4096),), fletcher32=True)
-        variable.attrs.update({"units": column.units, "long_name": column.long_name})
+        say(variable, units=column.units, long_name=column.long_name)
         variables.append((variable, ("sample",)))
-    file["label"].attrs["flag_values"] = np.arange(len(CLASSES), dtype="i1")
-    file["label"].attrs["flag_meanings"] = " ".join(CLASSES)
+    say(file["label"], flag_values=np.arange(len(CLASSES), dtype="i1"), flag_meanings=" ".join(CLASSES))
     for variable, names in variables:
         for axis, name in enumerate(names):
             variable.dims[axis].attach_scale(file[name])
+
+
+def seal(path: Path) -> None:
+    """Write the SHA-256 of all that follows into the first bytes of a file, where HDF5 leaves them free."""
+    with path.open("r+b") as raw:
+        raw.seek(SEAL_SIZE)
+        digest = hashlib.file_digest(raw, "sha256").hexdigest()
+        raw.seek(0)
+        raw.write((SEAL_START + digest.encode() + b"\n").ljust(SEAL_SIZE))
 
 
 def digest(path: Path) -> str:
@@ -98,12 +110,13 @@ def digest(path: Path) -> str:
         If it is not a file of recordings.
     """
     with path.open("rb") as raw:
-        seal = raw.read(SEAL_SIZE)
-    if len(seal) < SEAL_SIZE or not seal.startswith(SEAL_START) or not seal[len(SEAL_START) :].split():
+        start = raw.read(SEAL_SIZE)
+    found = SEAL.fullmatch(start)
+    if not found or len(start) < SEAL_SIZE:
         raise ValueError(
             f"{path}: not a file of recordings (its first {SEAL_SIZE} bytes are no seal); generate it again"
         )
-    return seal[len(SEAL_START) :].split()[0].decode(errors="replace")
+    return found[1].decode()
 
 
 def verify(path: Path) -> None:
@@ -137,7 +150,7 @@ def blocks(path: Path, rows: int | None = None) -> Iterator[Recordings]:
     said = attributes(path)
     with _opened(path) as file:
         _require_layout(path, file)
-        rate = float(file.attrs["sampling_rate_hz"])
+        rate = float(told(file, "sampling_rate_hz"))
         total = len(file["signals"])
         for start in range(0, total, rows or total):
             where = slice(start, start + (rows or total))
@@ -152,7 +165,8 @@ def blocks(path: Path, rows: int | None = None) -> Iterator[Recordings]:
 def attributes(path: Path) -> dict[str, str]:
     """What a file says of itself: configuration and version of the code."""
     with _opened(path) as file:
-        return {name: value for name, value in file.attrs.items() if isinstance(value, str)}
+        said = {name: told(file, name) for name in file.attrs}
+    return {name: value for name, value in said.items() if isinstance(value, str)}
 
 
 def shape(path: Path) -> tuple[int, int, int]:

@@ -331,9 +331,9 @@ def test_a_damaged_or_foreign_file_is_named(tmp_path: Path) -> None:
 
 
 FOREIGN: dict[str, tuple[Callable[[h5py.File], object], str]] = {
-    "title": (lambda f: f.attrs.__setitem__("title", "other"), "the title 'other'"),
+    "title": (lambda f: f.attrs.__setitem__("title", np.bytes_("other")), "the title 'other'"),
     "no fact": (lambda f: f["recording_0001"].attrs.__delitem__("gear"), "found no gear"),
-    "unknown unit": (lambda f: f["recording_0001/s1"].attrs.__setitem__("units", "V/V"), "found unit 'V/V'"),
+    "unknown unit": (lambda f: f["recording_0001/s1"].attrs.__setitem__("units", np.bytes_("V/V")), "found unit 'V/V'"),
     "unknown variable": (lambda f: f["recording_0001"].create_dataset("x", data=np.ones(ROWS)), "unknown variable 'x'"),
     "no time": (lambda f: f["recording_0001"].__delitem__("time"), "found lengths"),
     "external link": (
@@ -342,7 +342,7 @@ FOREIGN: dict[str, tuple[Callable[[h5py.File], object], str]] = {
     "soft link": (lambda f: f.__setitem__("recording_0004", h5py.SoftLink("/recording_0001")), "which is a link"),
     "text": (
         lambda f: (f["recording_0001"].__delitem__("s1"), f["recording_0001"].create_dataset("s1", data=["a"] * ROWS),
-                   f["recording_0001/s1"].attrs.__setitem__("units", "mV/V")),
+                   f["recording_0001/s1"].attrs.__setitem__("units", np.bytes_("mV/V"))),
         "expected real numbers",
     ),
     "empty": (lambda f: f.clear(), "found 0 recordings"),
@@ -355,7 +355,7 @@ def test_a_sealed_file_with_other_contents_is_named(tmp_path: Path, name: str, m
     path = tmp_path / "bench.h5"
     write_file(path, GOOD)
     with h5py.File(path, "r+") as file:
-        assert file.attrs["title"] == TITLE
+        assert file.attrs["title"].decode() == TITLE
         change(file)
     monkeypatch.setattr("swgsim.intake.recording_file.verify", lambda path: None)
     with pytest.raises(FileDefect, match=message):

@@ -217,6 +217,7 @@ RECORDINGS: dict[str, tuple[Callable[[h5py.File], object], str]] = {
     "never written": (never_written("recording_0001/s1"), "more numbers than the file has room for"),
     "under many names": (under_many_names, "more numbers than the file has room for"),
     "link": (lambda f: f["recording_0001"].__setitem__("x", h5py.ExternalLink("/etc/passwd", "/")), "is a link"),
+    "text without a length": (lambda f: f["recording_0001"].attrs.__setitem__("gear", "A17"), "attribute gear is obj"),
 }
 
 
@@ -247,6 +248,8 @@ DATA_SETS: dict[str, Callable[[h5py.File], object]] = {
     "label of no class": lambda f: f["label"].__setitem__(0, 77),
     "rate without end": lambda f: f.attrs.__setitem__("sampling_rate_hz", np.inf),
     "no rate": lambda f: f.attrs.__delitem__("sampling_rate_hz"),
+    "text without a length": lambda f: f.attrs.__setitem__("configuration", "a: 1"),
+    "many texts": lambda f: f.attrs.__setitem__("configuration", np.full(100, b"a: 1")),
 }
 
 

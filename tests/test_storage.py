@@ -1,5 +1,6 @@
 """The one file: round trip, xarray, damage."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -50,23 +51,27 @@ def test_xarray_opens_it_with_units(path: Path) -> None:
         assert "root_tooth_crack" in data["label"].attrs["flag_meanings"]
 
 
-@given(position=st.floats(0, 1, exclude_max=True), flip=st.integers(1, 255))
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-def test_any_flipped_byte_is_noticed_or_harmless(
-    path: Path, tmp_path: Path, recordings: Recordings, position: float, flip: int
-) -> None:
-    """Harmless are only the blanks that fill the seal."""
+def spoiled(path: Path, damaged: Path, where: int, bits: int) -> Path:
+    """A copy in which some bits of one byte are turned."""
     content = bytearray(path.read_bytes())
-    where = int(position * len(content))
-    content[where] ^= flip
-    damaged = tmp_path / "damaged.h5"
+    content[where] ^= bits
     damaged.write_bytes(content)
-    seal = len(storage.SEAL_START) + 64 + 1
-    if seal <= where < storage.SEAL_SIZE:
-        np.testing.assert_array_equal(storage.read(damaged).signals, recordings.signals)
-    else:
+    return damaged
+
+
+@given(position=st.floats(0, 1, exclude_max=True), bits=st.integers(1, 255))
+@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_any_spoiled_byte_is_noticed(path: Path, tmp_path: Path, position: float, bits: int) -> None:
+    damaged = spoiled(path, tmp_path / "damaged.h5", int(position * path.stat().st_size), bits)
+    with pytest.raises(ValueError, match=r"damaged\.h5"):
+        storage.read(damaged)
+
+
+def test_every_byte_of_the_seal_and_of_what_follows_it_counts(path: Path, tmp_path: Path) -> None:
+    for where in range(2048):
+        damaged = spoiled(path, tmp_path / "damaged.h5", where, 1 << where % 8)
         with pytest.raises(ValueError, match=r"damaged\.h5"):
-            storage.read(damaged)
+            storage.verify(damaged)
 
 
 @pytest.mark.parametrize("size", [0, 100, 512, 5000])
@@ -98,6 +103,14 @@ def test_signals_that_are_no_numbers_are_named(recordings: Recordings) -> None:
     signals[2, 3, 17] = np.nan
     with pytest.raises(ValueError, match="recording 2, s3, sample 17: found nan, expected a finite number"):
         Recordings(signals, recordings.table, recordings.rate)
+
+
+def test_what_a_file_says_of_itself_has_a_length(tmp_path: Path, recordings: Recordings) -> None:
+    said = {"configuration": "größe: 1\n", "empty": ""}
+    storage.write(tmp_path / "a.h5", [replace(recordings, attributes=said)], 6)
+    assert said.items() <= storage.attributes(tmp_path / "a.h5").items()
+    with pytest.raises(ValueError, match="configuration has 64001 bytes, a file says at most 64000"):
+        storage.write(tmp_path / "b.h5", [replace(recordings, attributes={"configuration": 64_001 * "x"})], 6)
 
 
 def test_facts_must_fit(recordings: Recordings) -> None:

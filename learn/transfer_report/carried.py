@@ -181,7 +181,7 @@ def costliest(drops: pd.DataFrame, count: int = SHOWN) -> pd.DataFrame:
 def configuration(store: Store, run_id: str) -> dict[str, Any]:
     """The resolved configuration that a run keeps."""
     with tempfile.TemporaryDirectory() as folder:
-        text = Path(store.client.download_artifacts(run_id, "config.yaml", folder)).read_text()
+        text = Path(store.client.download_artifacts(run_id, "config.yaml", folder)).read_text(encoding="utf-8")
     result: dict[str, Any] = yaml.safe_load(text)
     return result
 

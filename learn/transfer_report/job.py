@@ -19,6 +19,7 @@ from learn.transfer_report.novelty import novelty
 from learn.transfer_report.page import Section, TransferReport
 from learn.transfer_report.spectrum import disturbance_beside_faults
 from swgsim import storage
+from swgsim.files import write_text
 
 
 @dataclass(frozen=True)
@@ -57,8 +58,8 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
     report = report_of(gathered(config), Path(config["out"]) / "benchmark.json", began, config["started"])
     folder = Path(config["out"])
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "transfer.json").write_text(report.json())
-    (folder / "transfer.html").write_text(report.html())
+    write_text(folder / "transfer.json", report.json())
+    write_text(folder / "transfer.html", report.html())
     reached = sum(goal.reached for goal in report.goals)
     print(f"{folder / 'transfer.html'}: {reached} of {len(report.goals)} goals reached; {time.time() - began:.1f} s")
     return {"goals_reached": reached, "seconds": time.time() - began}

@@ -45,6 +45,11 @@ def require_rows(file: str, rows: int) -> None:
         raise FileDefect(file, f"{rows} samples", f"from {FEWEST_ROWS} to {MOST_ROWS}")
 
 
+def most_expanded(path: Path) -> int:
+    """Bytes that what lies compressed in a file may grow to."""
+    return min(LARGEST_FILE, max(ALWAYS_EXPANDED, MOST_EXPANSION * path.stat().st_size))
+
+
 def require_expansion(path: Path, file: str, count: int) -> None:
     """Raise a FileDefect if a file says that it holds more numbers than one of its size does.
 
@@ -56,7 +61,7 @@ def require_expansion(path: Path, file: str, count: int) -> None:
     count : int
         Numbers that are to be read from it.
     """
-    most = min(LARGEST_FILE, max(ALWAYS_EXPANDED, MOST_EXPANSION * path.stat().st_size))
+    most = most_expanded(path)
     if 8 * count > most:
         found = f"{count} numbers in {path.stat().st_size} bytes"
         raise FileDefect(file, found, f"at most {most // 8}: write it less compressed, or split the recording")

@@ -1,19 +1,20 @@
 """Recordings as one HDF5 file laid out as NetCDF-4: a group for each, sealed as data sets are (swgsim/storage.py)."""
 
-import hashlib
 from collections.abc import Sequence
 from pathlib import Path
 
 import h5py
 import numpy as np
 
+from swgsim.attributes import say, told
 from swgsim.files import replacing
+from swgsim.hdf5_writer import created
 from swgsim.intake import facts
 from swgsim.intake.assembly import assemble, require_alike, require_sound
 from swgsim.intake.file_defect import FileDefect, shown
 from swgsim.intake.limits import require_file_count, require_readable, require_rows
 from swgsim.recording import CHANNELS, Recording
-from swgsim.storage import SEAL_SIZE, SEAL_START, verify
+from swgsim.storage import SEAL_SIZE, seal, verify
 
 TITLE = "recordings of strain wave gears"
 
@@ -29,15 +30,11 @@ def write_file(path: Path, recordings: Sequence[Recording]) -> None:
     require_file_count(path, len(recordings))
     require_alike(recordings)
     with replacing(path) as aside:
-        with h5py.File(aside, "w", userblock_size=SEAL_SIZE) as file:
-            file.attrs.update({"Conventions": "CF-1.11", "title": TITLE})
+        with created(aside, SEAL_SIZE) as (file, _):
+            say(file, Conventions="CF-1.11", title=TITLE)
             for number, recording in enumerate(recordings, 1):
                 _write_group(file.create_group(f"recording_{number:04d}"), recording)
-        with aside.open("r+b") as raw:
-            raw.seek(SEAL_SIZE)
-            seal = SEAL_START + hashlib.file_digest(raw, "sha256").hexdigest().encode() + b"\n"
-            raw.seek(0)
-            raw.write(seal.ljust(SEAL_SIZE, b" "))
+        seal(aside)
 
 
 def read_file(path: Path) -> tuple[Recording, ...]:
@@ -52,7 +49,7 @@ def read_file(path: Path) -> tuple[Recording, ...]:
     verify(path)
     try:
         with h5py.File(path, "r") as file:
-            title = file.attrs.get("title")
+            title = told(file, "title")
             if title != TITLE:
                 expected = f"a file titled {TITLE!r}; a data set of generate.py is another thing"
                 raise FileDefect(str(path), f"the title {shown(title)}", expected)
@@ -89,20 +86,20 @@ def _write_group(group: h5py.Group, recording: Recording) -> None:
     said = facts.of(recording)
     facts.parse(said, f"recording {recording.name}")
     require_sound(f"recording {recording.name}", {"t": recording.time, **recording.channels})
-    group.attrs.update(said)
+    say(group, **said)
     time = group.create_dataset("time", data=recording.time, dtype="f8", chunks=True, fletcher32=True)
     time.make_scale("time")
-    time.attrs.update({"units": "s", "long_name": "time"})
+    say(time, units="s", long_name="time")
     for name, values in recording.channels.items():
         variable = group.create_dataset(name, data=values, dtype="f8", chunks=True, fletcher32=True)
-        variable.attrs.update({"units": CHANNELS[name].unit, "long_name": CHANNELS[name].says})
+        say(variable, units=CHANNELS[name].unit, long_name=CHANNELS[name].says)
         variable.dims[0].attach_scale(time)
 
 
 def _read_group(file: h5py.File, name: str, where: str) -> Recording:
     """One recording; units must be those that were written."""
     group = _plain(file, name, h5py.Group, where)
-    attributes = {key: _native(group.attrs[key]) for key in facts.KNOWN if key in group.attrs}
+    attributes = {key: told(group, key) for key in facts.KNOWN if key in group.attrs}
     said = facts.parse(attributes, where)
     columns = {}
     for key in group:
@@ -110,8 +107,8 @@ def _read_group(file: h5py.File, name: str, where: str) -> Recording:
             raise FileDefect(where, f"unknown variable {shown(key)}", f"time and some of {', '.join(CHANNELS)}")
         unit = "s" if key == "time" else CHANNELS[key].unit
         variable = _plain(group, key, h5py.Dataset, where)
-        if variable.attrs.get("units") != unit:
-            raise FileDefect(where, f"unit {shown(variable.attrs.get('units'))}", unit, column=key)
+        if (found := told(variable, "units")) != unit:
+            raise FileDefect(where, f"unit {shown(found)}", unit, column=key)
         columns["t" if key == "time" else key] = numbers(variable, where, key)
     lengths = {key: len(values) for key, values in columns.items()}
     if "t" not in columns or len(set(lengths.values())) != 1:
@@ -141,8 +138,3 @@ def numbers(variable: h5py.Dataset, where: str, column: str) -> np.ndarray:
         raise FileDefect(where, found, "real numbers in one row or column", column=column)
     require_rows(where, variable.size)
     return variable[()].astype("f8").ravel()
-
-
-def _native(value: object) -> object:
-    """An attribute as Python's own type."""
-    return value.item() if isinstance(value, np.generic) else value

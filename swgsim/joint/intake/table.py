@@ -14,7 +14,7 @@ from jaxtyping import Float
 from swgsim.intake.facts import NUMBER
 from swgsim.intake.file_defect import FileDefect, shown
 from swgsim.intake.foreign import read_columns
-from swgsim.intake.limits import LARGEST_FILE, MOST_ROWS, require_readable
+from swgsim.intake.limits import MOST_ROWS, most_expanded, require_readable
 
 # Six joints with five signals of 20 characters have 600; a line without end is no table.
 LONGEST_LINE = 100_000
@@ -42,8 +42,8 @@ def read_table(path: Path, name: str, wanted: Sequence[str | int], header: bool)
     Raises
     ------
     FileDefect
-        If the file is damaged, decompresses to more than :data:`swgsim.intake.limits.LARGEST_FILE` characters, or a
-        column is not there or holds no numbers.
+        If the file is damaged, decompresses to more than :func:`swgsim.intake.limits.most_expanded` allows, or a column
+        is not there or holds no numbers.
     """
     require_readable(path)
     wanted = list(dict.fromkeys(wanted))
@@ -55,15 +55,15 @@ def read_table(path: Path, name: str, wanted: Sequence[str | int], header: bool)
     opened = gzip.open if path.suffix.lower() == ".gz" else open
     try:
         with opened(path, "rt", encoding="utf-8-sig", newline="") as stream:
-            return _read_csv(stream, name, wanted, header)
+            return _read_csv(stream, name, wanted, header, most_expanded(path))
     except (EOFError, gzip.BadGzipFile, zlib.error) as error:
         raise FileDefect(name, f"a damaged file ({error})", "a sound .csv.gz") from None
     except UnicodeDecodeError:
         raise FileDefect(name, "bytes that are no text", "a CSV file in UTF-8") from None
 
 
-def _read_csv(stream: TextIOWrapper, name: str, wanted: list[str | int], header: bool) -> Columns:
-    lines = _lines(stream, name)
+def _read_csv(stream: TextIOWrapper, name: str, wanted: list[str | int], header: bool, most: int) -> Columns:
+    lines = _lines(stream, name, most, min(MOST_ROWS, most // (8 * len(wanted))))
     _, first = next(lines, (0, ""))
     if not first:
         raise FileDefect(name, "an empty file", "a row of numbers per sample", 1)
@@ -87,17 +87,17 @@ def _read_csv(stream: TextIOWrapper, name: str, wanted: list[str | int], header:
     return {column: np.ascontiguousarray(table[:, i]) for i, column in enumerate(wanted)}
 
 
-def _lines(stream: TextIOWrapper, name: str) -> Iterator[tuple[int, str]]:
-    """Lines with their numbers from 1, within the limits; blank ones are allowed at the end only."""
+def _lines(stream: TextIOWrapper, name: str, most: int, most_rows: int) -> Iterator[tuple[int, str]]:
+    """Lines with their numbers from 1, within so many characters and rows; blank ones are allowed at the end only."""
     size = row = blank = 0
     while line := stream.readline(LONGEST_LINE + 1):
         row += 1
         size += len(line)
         if len(line) > LONGEST_LINE:
             raise FileDefect(name, f"a line of more than {LONGEST_LINE} characters", "a row of numbers", row)
-        if size > LARGEST_FILE or row > MOST_ROWS:
-            found = f"more than {LARGEST_FILE} characters or {MOST_ROWS} rows"
-            raise FileDefect(name, found, "less, also decompressed: split the recording", row)
+        if size > most or row > most_rows:
+            found = f"more than {most} characters or {most_rows} rows"
+            raise FileDefect(name, found, "less in a file of this size: write it less compressed, or split it", row)
         if not line.strip():
             blank = blank or row
         elif blank:

@@ -1,0 +1,1 @@
+"""Work that is killed at random moments and started again: data sets and sweeps."""
