@@ -29,7 +29,7 @@ JOBS := $(shell echo $$(( ($(CORES) + 3) / 4 )))
 export MLFLOW_DISABLE_TELEMETRY := true
 
 .DEFAULT_GOAL := help
-.PHONY: help install data experiments report paper transfer loop blind sim-to-real joints test lint fuzz benchmark convergence docs ui clean $(TABLES)
+.PHONY: help install data experiments report paper transfer loop blind sim-to-real joints test lint fuzz chaos scale benchmark convergence docs ui clean $(TABLES)
 
 help:  ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-12s %s\n", $$1, $$2}'
@@ -49,7 +49,7 @@ experiments: data  ## the paper's Tables VII to X, every job a run in MLflow
 	@$(MAKE) --no-print-directory --jobs=$(CORES) $(TABLES)
 
 $(TABLES): $(READY)
-	$(BIN)/python scripts/train.py experiment=$@ grid=$(GRID) hydra.launcher.n_jobs=$(JOBS)
+	$(BIN)/python scripts/train.py experiment=$@ grid=$(GRID) workers=$(JOBS)
 
 report: $(READY)  ## report/index.html and report/report.json from what has been run
 	$(BIN)/python scripts/report.py grid=$(GRID)
@@ -97,6 +97,13 @@ lint: $(READY)  ## style and types
 
 fuzz: $(READY)  ## every reader on spoiled files, SECONDS=300 in all (docs/reliability.md)
 	OMP_NUM_THREADS=1 ARROW_DEFAULT_MEMORY_POOL=system $(BIN)/python scripts/fuzz.py --seconds $(or $(SECONDS),300)
+
+chaos: $(READY)  ## data sets and sweeps killed at random moments, KILLS=200 (docs/reliability.md)
+	OMP_NUM_THREADS=1 $(BIN)/python scripts/chaos.py --kills $(or $(KILLS),200) $(if $(SECONDS),--seconds $(SECONDS))
+
+scale: $(READY)  ## engines beside one another, and data sets larger than the memory: half an hour, 12 GiB (docs/scale.md)
+	$(BIN)/python scripts/scale.py
+	$(BIN)/python scripts/large.py
 
 benchmark: $(READY)  ## the chain against the obvious ways of doing the same
 	$(BIN)/python scripts/benchmark.py

@@ -10,7 +10,8 @@ from typing import Any
 
 from swgsim import orders
 
-WHEREABOUTS = ("data", "models", "tracking")  # parts of a configuration that no result depends on
+# Parts of a configuration that no result depends on.
+WHEREABOUTS = ("data", "models", "tracking", "workers", "compute", "scheduler")
 PRESENTATION = (  # modules that only show results, beside the package transfer_report
     "bootstrap.py",
     "calibration.py",

@@ -1,6 +1,5 @@
 """What happens around the jobs of a sweep: the store is made ready before they start, their common run closed after."""
 
-import os
 from typing import Any
 
 from hydra.core.override_parser.overrides_parser import OverridesParser
@@ -22,14 +21,16 @@ class Sweep(Callback):
                 swept.pop(key, None)
         try:
             store = _store(config)
-            os.environ[tracking.SWEEP] = tracking.open_sweep(store, config.study, named.get("grid", config.grid.name))
+            self._run = tracking.open_sweep(store, config.study, named.get("grid", config.grid.name))
             page.save_views(store)
         except ValueError as error:  # of which Hydra would make a warning, and start the jobs
             raise SystemExit(str(error)) from error
+        # Hydra composes every job anew where it is done, on whatever machine, from these words.
+        config.hydra.overrides.hydra.append(f"+hydra.job.env_set.{tracking.SWEEP}={self._run}")
 
     def on_multirun_end(self, config: DictConfig, **_: Any) -> None:
         """Close the study's run."""
-        tracking.close_sweep(_store(config), os.environ.pop(tracking.SWEEP))
+        tracking.close_sweep(_store(config), self._run)
 
 
 def named_on_command_line(overrides: list[str]) -> dict[str, str]:

@@ -10,7 +10,6 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-import joblib
 import pandas as pd
 from threadpoolctl import threadpool_limits
 
@@ -22,6 +21,7 @@ from learn.sim_to_real.scores import scores
 from swgsim import generation, settings, storage
 from swgsim.acquisition import Window
 from swgsim.bench import Bench
+from swgsim.compute import Engine
 from swgsim.effects import text
 from swgsim.effects.base import Effect
 from swgsim.effects.library import SEARCHED, named
@@ -58,15 +58,15 @@ def study_all(config: Mapping[str, Any], store: tracking.Store) -> list[Finished
             unit = commission(Measured.of(bench.recorded((), "commissioning")), Unit(Model(bench.nominal)))
         for whose, gear, mesh in _sides(config, bench, unit):
             data_set(config, f"{whose}-none", gear, (), mesh, number=whose == "bench")
-        workers = min(config["workers"] or joblib.cpu_count(), len(missing))
-        jobs = (joblib.delayed(study)(config, store, name, keys[name], bench, unit) for name in missing)
-        joblib.Parallel(n_jobs=workers)(jobs)
+        tasks = ((config, store, name, keys[name], bench, unit) for name in missing)
+        for _ in Engine.of(config).results(study, tasks, len(missing)):
+            pass
     return [_read(store, name, _finished(store, keys[name])) for name in hidden]
 
 
 def key(config: Mapping[str, Any], name: str) -> str:
     """Sixteen hexadecimal digits that change when the result for an undeclared effect may change."""
-    without = ("undeclared", "data", "out", "workers", "tracking")
+    without = ("undeclared", "data", "out", "workers", "compute", "scheduler", "tracking")
     decisive = {each: value for each, value in config.items() if each not in without}
     digest = hashlib.sha256(json.dumps([name, config["undeclared"][name], decisive], sort_keys=True).encode())
     digest.update(f"{code_version('loop', 'virtual_bench.py')} {identity.code_version()}".encode())

@@ -7,16 +7,18 @@ file. Where a run was killed, the next one keeps the parts that are whole and of
 import os
 import resource
 import shutil
+import socket
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-import joblib
 import numpy as np
 from threadpoolctl import threadpool_limits
 
 from swgsim import storage
+from swgsim.compute import Engine
 from swgsim.disturbance import Disturbance
+from swgsim.files import sole_maker
 from swgsim.grid import Case
 from swgsim.plan import Plan, block_size, provenance
 from swgsim.record import record
@@ -28,7 +30,7 @@ from swgsim.seeds import generator
 class Usage:
     """Memory that a process has needed so far."""
 
-    process: int
+    process: str
     peak_memory_mib: float
 
 
@@ -52,10 +54,10 @@ class Part:
 
 def usage() -> Usage:
     """That of this process."""
-    return Usage(os.getpid(), resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
+    return Usage(f"{socket.gethostname()} {os.getpid()}", resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
 
 
-def generate(plan: Plan, path: Path, workers: int, progress: Callable[[int], object]) -> float:
+def generate(plan: Plan, path: Path, engine: Engine, progress: Callable[[int], object]) -> float:
     """Generate a data set; one process at a time may (:func:`swgsim.files.sole_maker`).
 
     Parameters
@@ -63,8 +65,8 @@ def generate(plan: Plan, path: Path, workers: int, progress: Callable[[int], obj
     plan : Plan
     path : Path
         The file to make.
-    workers : int
-        Processes to use; the file is the same for any number.
+    engine : Engine
+        What makes the blocks; the file is the same for any. Its workers need to see the folder of ``path``.
     progress : callable
         Called with the number of recordings whenever that many more are done.
 
@@ -75,18 +77,17 @@ def generate(plan: Plan, path: Path, workers: int, progress: Callable[[int], obj
     """
     parts = path.with_name(f".{path.name}.parts")
     files = [parts / f"{number:06d}.h5" for number in range(plan.block_count)]
-    jobs = (
-        joblib.delayed(_part)(plan, cases, file, os.getpid()) for cases, file in zip(plan.blocks(), files, strict=True)
-    )
-    peak: dict[int, float] = {}
-    for part in joblib.Parallel(n_jobs=min(workers, len(files)), return_as="generator_unordered")(jobs):
+    tasks = ((plan, cases, file) for cases, file in zip(plan.blocks(), files, strict=True))
+    peak: dict[str, float] = {}
+    for part in engine.results(_part, tasks, len(files)):
         if part.flaw:
             print(f"{part.flaw}; it has been made again")
         peak[part.usage.process] = max(part.usage.peak_memory_mib, peak.get(part.usage.process, 0))
         progress(part.rows)
-    storage.write(path, map(storage.read, files), len(plan))
-    shutil.rmtree(parts)
-    peak[os.getpid()] = usage().peak_memory_mib
+    storage.write(path, (_read(plan, file) for file in files), len(plan))
+    shutil.rmtree(parts, ignore_errors=True)  # where a worker of a killed run may be at its last part
+    own = usage()
+    peak[own.process] = own.peak_memory_mib
     return sum(peak.values())
 
 
@@ -114,26 +115,31 @@ def disturb(source: Path, path: Path, disturbance: Disturbance, configuration: s
     storage.write(path, disturbed(), rows)
 
 
-def _part(plan: Plan, cases: list[Case], file: Path, maker: int) -> Part:
-    """Simulate one block and keep it, unless that is done; ``maker`` is the process that makes the data set."""
+def _part(plan: Plan, cases: list[Case], file: Path) -> Part:
+    """Simulate one block and keep it, unless that is done."""
     flaw = _flaw(plan, cases, file) if file.exists() else ""
     if flaw or not file.exists():
         with threadpool_limits(1):  # so that the bytes do not depend on the number of cores
             recordings = record(plan, cases)
-        if maker not in (os.getpid(), os.getppid()):
-            os._exit(1)  # The maker was killed and this worker is left over: the next one may be at this very part.
-        storage.write(file, [recordings], len(recordings))
+        with sole_maker(file, wait=True):  # A worker of a killed run may be at this very part.
+            storage.write(file, [recordings], len(recordings))
     return Part(len(cases), flaw, usage())
+
+
+def _read(plan: Plan, file: Path) -> Recordings:
+    """A part, which a worker of a killed run with another plan may have replaced meanwhile."""
+    part = storage.read(file)
+    if not plan.attributes.items() <= part.attributes.items():
+        raise ValueError(f"{file}: made by other choices or code")
+    return part
 
 
 def _flaw(plan: Plan, cases: list[Case], file: Path) -> str:
     """Why a part that was found is not what the plan says; empty if it is."""
     try:
-        part = storage.read(file)
+        part = _read(plan, file)
     except ValueError as damage:
         return str(damage)
-    if not plan.attributes.items() <= part.attributes.items():
-        return f"{file}: made by other choices or code"
     if part.signals.shape[2] != plan.window.samples or list(part.table["seed"]) != [case.seed for case in cases]:
         return f"{file}: not the recordings that belong there"
     return ""

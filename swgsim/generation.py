@@ -11,6 +11,7 @@ import joblib
 from tqdm import tqdm
 
 from swgsim import settings, storage
+from swgsim.compute import Engine
 from swgsim.dataset import disturb, generate, usage
 from swgsim.files import sole_maker, write_json
 from swgsim.plan import Plan, provenance
@@ -27,7 +28,7 @@ def run(config: Mapping[str, Any]) -> dict[str, Any]:
     dict
         path, recordings, seconds, recordings_per_second, peak_memory_mib, cores; also kept beside the data set as JSON.
     """
-    workers = _workers(config)
+    engine = Engine.of(config)
     path = Path(config["data"]) / f"{_name(config, 'grid')}-{_name(config, 'condition')}.h5"
     summary = path.with_suffix(".json")
     if is_current(path, settings.as_text(config)) and summary.exists():
@@ -35,13 +36,13 @@ def run(config: Mapping[str, Any]) -> dict[str, Any]:
         return dict(json.loads(summary.read_text()))
     plan = settings.plan(config)
     with sole_maker(path):
-        result = _make(config, plan, path, workers)
+        result = _make(config, plan, path, engine)
         write_json(summary, result)
     print("{path}: {recordings} recordings in {seconds:.1f} s, peak memory {peak_memory_mib:.0f} MiB".format(**result))
     return result
 
 
-def _make(config: Mapping[str, Any], plan: Plan, path: Path, workers: int) -> dict[str, Any]:
+def _make(config: Mapping[str, Any], plan: Plan, path: Path, engine: Engine) -> dict[str, Any]:
     """Make the data set and sum up what that took."""
     disturbance = settings.disturbance(config)
     if disturbance:
@@ -53,7 +54,7 @@ def _make(config: Mapping[str, Any], plan: Plan, path: Path, workers: int) -> di
             disturb(source, path, disturbance, plan.configuration, bar.update)
             peak = usage().peak_memory_mib
         else:
-            peak = generate(plan, path, workers, bar.update)
+            peak = generate(plan, path, engine, bar.update)
     seconds = time.perf_counter() - start
     return {
         "path": str(path),
@@ -73,26 +74,16 @@ def _name(config: Mapping[str, Any], group: str) -> str:
     return name
 
 
-def _workers(config: Mapping[str, Any]) -> int:
-    """Processes to use: as chosen, or one per core."""
-    chosen = config["workers"]
-    if chosen is None:
-        return joblib.cpu_count()
-    if not isinstance(chosen, int) or isinstance(chosen, bool) or chosen < 1:
-        raise ValueError(f"workers is {chosen!r}, must be an integer from 1, or null for one per core")
-    return chosen
-
-
 def is_current(path: Path, configuration: str) -> bool:
     """Whether a file is whole and made by the same choices and code."""
     if not path.exists():
         return False
     try:
         storage.verify(path)
+        said, now = storage.attributes(path), provenance(configuration)
     except ValueError as damage:
         print(damage)
         return False
-    said, now = storage.attributes(path), provenance(configuration)
     other = [what for key, what in (("configuration", "choices"), ("swgsim", "code")) if said.get(key) != now[key]]
     if other:
         print(f"{path} was made by other {' and '.join(other)} and is replaced")

@@ -39,6 +39,9 @@ GRID = (
     "population",
 )
 
+# Choices that no recording depends on.
+WHEREABOUTS = ("data", "workers", "compute", "scheduler")
+
 T = TypeVar("T")
 Config = Mapping[str, Any]
 
@@ -137,7 +140,7 @@ def as_text(config: Config) -> str:
     Effects stand there in full, wherever they were read from, with a digest of code from outside this package; if there
     are none, there is no word of them.
     """
-    choices = {key: value for key, value in config.items() if key not in ("data", "workers", "effects")}
+    choices = {key: value for key, value in config.items() if key not in (*WHEREABOUTS, "effects")}
     declared = effects(config.get("effects", ()))
     if declared:
         choices |= {"effects": text.entries(declared), "code_of_effects": _foreign_code(declared)}

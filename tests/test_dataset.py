@@ -3,6 +3,7 @@
 import signal
 import subprocess
 import sys
+import threading
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -15,8 +16,10 @@ from swgsim import dataset, storage
 from swgsim import plan as plans
 from swgsim.acquisition import Window
 from swgsim.bench import Bench
+from swgsim.compute import Engine
 from swgsim.dataset import disturb, generate
 from swgsim.disturbance import Disturbance
+from swgsim.files import sole_maker
 from swgsim.grid import Case
 from swgsim.plan import Plan, block_size
 from swgsim.population import Population
@@ -34,7 +37,7 @@ def clean(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("data") / "clean.h5"
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(plans, "BLOCK", 10)
-        generate(small_plan(), path, 1, nothing)
+        generate(small_plan(), path, Engine(1), nothing)
     return path
 
 
@@ -66,7 +69,7 @@ def kill(program: str, path: Path, lines: int) -> None:
         "import sys, time; sys.path[:0] = ['tests']\n"
         "from pathlib import Path\n"
         "from chain_fixtures import small_plan\n"
-        "from swgsim import dataset, plan, storage\n"
+        "from swgsim import compute, dataset, plan, storage\n"
         "plan.BLOCK = 10\n"
     )
     command = [sys.executable, "-c", head + program, str(path)]
@@ -86,7 +89,7 @@ def stop(plan: Plan, path: Path, blocks: int) -> list[Path]:
 
     parts = path.with_name(f".{path.name}.parts")
     with pytest.raises(KeyboardInterrupt):
-        generate(plan, path, 1, progress)
+        generate(plan, path, Engine(1), progress)
     return sorted(parts.glob("*.h5"))
 
 
@@ -118,7 +121,7 @@ def test_blocks_hold_the_whole_plan_gear_by_gear(monkeypatch: pytest.MonkeyPatch
 @pytest.mark.usefixtures("small_blocks")
 def test_same_bytes_with_two_workers(clean: Path, tmp_path: Path) -> None:
     again = tmp_path / "clean.h5"
-    generate(small_plan(), again, 2, nothing)
+    generate(small_plan(), again, Engine(2), nothing)
     assert again.read_bytes() == clean.read_bytes()
 
 
@@ -127,13 +130,13 @@ def test_a_run_killed_between_blocks_resumes(clean: Path, tmp_path: Path, made: 
     path = tmp_path / "killed.h5"
     program = (
         "report = lambda n: (print(n, flush=True), time.sleep(0.5))\n"
-        "dataset.generate(small_plan(), Path(sys.argv[1]), 1, report)\n"
+        "dataset.generate(small_plan(), Path(sys.argv[1]), compute.Engine(1), report)\n"
     )
     kill(program, path, lines=3)
     assert not path.exists()
     kept = {seed for part in tmp_path.glob(".killed.h5.parts/*.h5") for seed in storage.read(part).table["seed"]}
     assert len(kept) >= 10 + 10 + 8
-    generate(small_plan(), path, 1, nothing)
+    generate(small_plan(), path, Engine(1), nothing)
     assert kept.isdisjoint(made)
     assert len(kept) + len(made) == len(small_plan())
     assert path.read_bytes() == clean.read_bytes()
@@ -150,11 +153,11 @@ def test_a_run_killed_while_blocks_are_joined_resumes(clean: Path, tmp_path: Pat
         "    time.sleep(0.5)\n"
         "    return read(part)\n"
         "storage.read = slow\n"
-        "dataset.generate(small_plan(), Path(sys.argv[1]), 1, lambda n: None)\n"
+        "dataset.generate(small_plan(), Path(sys.argv[1]), compute.Engine(1), lambda n: None)\n"
     )
     kill(program, path, lines=3)
     assert {p.name for p in tmp_path.iterdir()} == {".killed.h5.parts", ".killed.h5.tmp"}
-    generate(small_plan(), path, 1, nothing)
+    generate(small_plan(), path, Engine(1), nothing)
     assert not made
     assert path.read_bytes() == clean.read_bytes()
     assert list(tmp_path.iterdir()) == [path]
@@ -191,7 +194,7 @@ def test_a_bad_part_is_named_and_made_again(
     parts = stop(small_plan(), path, 3)
     damage(parts[1], parts[2])
     made.clear()
-    generate(small_plan(), path, 1, nothing)
+    generate(small_plan(), path, Engine(1), nothing)
     answer = capsys.readouterr().out.splitlines()
     assert len(answer) == 1
     assert answer[0].startswith(f"{parts[1]}: ")
@@ -211,7 +214,7 @@ def test_parts_of_other_choices_are_not_mixed_in(
     path = tmp_path / "a.h5"
     others = stop(small_plan(**changes), path, 2)
     made.clear()
-    generate(small_plan(), path, 1, nothing)
+    generate(small_plan(), path, Engine(1), nothing)
     assert len(made) == len(small_plan())
     assert capsys.readouterr().out.count("made again") == len(others)
     assert path.read_bytes() == clean.read_bytes()
@@ -220,20 +223,40 @@ def test_parts_of_other_choices_are_not_mixed_in(
 
 def test_nothing_is_left_of_a_plan_that_fails(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="must be even"):
-        generate(small_plan(sectors=33), tmp_path / "a.h5", 1, nothing)
+        generate(small_plan(sectors=33), tmp_path / "a.h5", Engine(1), nothing)
     assert not list(tmp_path.iterdir())
 
 
-def test_a_worker_that_outlives_its_run_writes_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def leave(_: int) -> None:
-        raise SystemExit
-
-    monkeypatch.setattr("os._exit", leave)
+@pytest.mark.usefixtures("made")
+def test_a_part_that_a_worker_of_a_killed_run_is_at_is_not_written_at_once(tmp_path: Path) -> None:
     plan, file = small_plan(), tmp_path / "000000.h5"
-    no_process = 0
-    with pytest.raises(SystemExit):
-        dataset._part(plan, next(plan.blocks())[:2], file, no_process)
-    assert not file.exists()
+    successor = threading.Thread(target=dataset._part, args=(plan, next(plan.blocks())[:2], file))
+    with sole_maker(file):
+        successor.start()
+        successor.join(0.5)
+        assert successor.is_alive()
+        assert not file.exists()
+    successor.join()
+    assert len(storage.read(file)) == 2
+
+
+@pytest.mark.usefixtures("small_blocks", "made")
+def test_a_part_that_a_worker_of_a_killed_run_of_other_choices_replaced_is_not_joined(
+    clean: Path, tmp_path: Path
+) -> None:
+    path = tmp_path / "a.h5"
+    part = tmp_path / ".a.h5.parts" / "000000.h5"
+
+    def replaced(_: int) -> None:
+        if part.with_name("000005.h5").exists():
+            storage.write(part, [replace(storage.read(part), attributes=other.attributes)], 10)
+
+    other = small_plan(configuration="other choices")
+    with pytest.raises(ValueError, match=r"000000\.h5: made by other choices or code"):
+        generate(small_plan(), path, Engine(1), replaced)
+    assert not path.exists()
+    generate(small_plan(), path, Engine(1), nothing)
+    assert path.read_bytes() == clean.read_bytes()
 
 
 def test_disturbed_is_clean_plus_equation_10(clean: Path, tmp_path: Path) -> None:

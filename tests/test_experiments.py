@@ -83,7 +83,7 @@ def train(*arguments):
 
 def test_parallel_sweep_loses_no_run_and_a_second_one_does_only_what_is_new(data, tmp_path):
     where = ["grid=small", f"data={data}", f"tracking.folder={tmp_path / 'runs'}", f"hydra.sweep.dir={tmp_path}"]
-    sweep = ["-m", "experiment=table10", "hydra.launcher.n_jobs=2", *where]
+    sweep = ["-m", "experiment=table10", "workers=2", *where]
 
     first = train(*sweep, "classifier=nb,knn")
     assert first.returncode == 0, first.stderr
@@ -110,7 +110,7 @@ def test_parallel_sweep_loses_no_run_and_a_second_one_does_only_what_is_new(data
 
 def test_a_sweep_without_an_experiment_is_kept_as_one(data, tmp_path):
     where = ["grid=small", f"data={data}", f"tracking.folder={tmp_path / 'runs'}", f"hydra.sweep.dir={tmp_path}"]
-    answer = train("-m", "classifier=nb,knn", "hydra.launcher.n_jobs=2", *where)
+    answer = train("-m", "classifier=nb,knn", "workers=2", *where)
     assert answer.returncode == 0, answer.stderr
     assert "Callback" not in answer.stderr
     store = tracking.local_store(str(tmp_path / "runs"))

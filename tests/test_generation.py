@@ -128,7 +128,7 @@ def test_two_processes_do_not_make_the_same_data_set(tmp_path: Path) -> None:
     program = (
         "import json, sys, time\n"
         "from swgsim import dataset, generation\n"
-        "def generate(plan, path, workers, progress):\n"
+        "def generate(plan, path, engine, progress):\n"
         "    print('makes', path, flush=True)\n"
         "    time.sleep(60)\n"
         "generation.generate = generate\n"
@@ -172,7 +172,7 @@ def test_a_lock_that_its_owner_removes_meanwhile_keeps_others_out(
     [
         ("generate", "conditon=bench", "condition, data, effects, gears, grid"),
         ("generate", "grid.varients=3", "speeds_rpm, variants"),
-        ("train", "clasifier=rf", "classifier, condition, data"),
+        ("train", "clasifier=rf", "classifier, compute, condition, data"),
     ],
 )
 def test_a_misspelt_key_is_answered_with_the_keys(script: str, word: str, choices: str) -> None:

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import joblib
 import numpy as np
 from threadpoolctl import threadpool_limits
 from tqdm import tqdm
@@ -23,6 +22,7 @@ from swgsim.blind.score import score
 from swgsim.blind.sealed import as_json, from_json
 from swgsim.blind.strata import DETECTABLE, plans
 from swgsim.blind.table import table
+from swgsim.compute import Engine
 from swgsim.effects.library import SEARCHED, named
 from swgsim.files import sole_maker, write_json, write_text
 from swgsim.loop import beside, closing, commissioning, evidence, lines, screening, sidelines, trial, unit
@@ -68,7 +68,7 @@ def run(config: Mapping[str, Any]) -> dict[str, Any]:
         setting = setting_of(config)
         digest = _seal(folder, setting, config)
         key = {"truth": digest, "code": _code()}
-        answers = _answer(folder, setting, key, config["workers"])
+        answers = _answer(folder, setting, key, Engine.of(config))
         cases = [Judged(from_json(plain), said) for plain, said in zip(_opened(folder), answers, strict=True)]
     found = {
         "truth_sha256": digest,
@@ -106,7 +106,7 @@ def _seal(folder: Path, setting: Setting, config: Mapping[str, Any]) -> str:
     if not seal.exists():
         planned = plans(config["cases"], setting.seed, setting.library)
         jobs = {folder / "drawn" / f"{plan.number:04d}.json": (plan, setting) for plan in planned}
-        drawn = _all(jobs, _draw, made_from, config["workers"], "sealed set")
+        drawn = _all(jobs, _draw, made_from, Engine.of(config), "sealed set")
         write_json(truth, {"made_from": made_from, "drawn_by": _code(), "cases": drawn})
         write_text(seal, _digest(truth) + "\n")
     if _digest(truth) != seal.read_text().strip():
@@ -116,10 +116,10 @@ def _seal(folder: Path, setting: Setting, config: Mapping[str, Any]) -> str:
     return _digest(truth)
 
 
-def _answer(folder: Path, setting: Setting, key: Mapping[str, str], workers: int | None) -> list[dict[str, Any]]:
+def _answer(folder: Path, setting: Setting, key: Mapping[str, str], engine: Engine) -> list[dict[str, Any]]:
     """What the loop says of every case; cases that it answered before, by the same code, are not asked again."""
     jobs = {folder / "answers" / f"{plain['number']:04d}.json": (plain, setting) for plain in _opened(folder)}
-    return _all(jobs, _attempted, key, workers, "answers")
+    return _all(jobs, _attempted, key, engine, "answers")
 
 
 def _opened(folder: Path) -> list[dict[str, Any]]:
@@ -140,23 +140,24 @@ def _attempted(plain: Mapping[str, Any], setting: Setting) -> dict[str, Any]:
 
 
 def _all(
-    jobs: Mapping[Path, tuple], work: Callable[..., dict], key: Mapping[str, Any], workers: int | None, what: str
+    jobs: Mapping[Path, tuple], work: Callable[..., dict], key: Mapping[str, Any], engine: Engine, what: str
 ) -> list[dict[str, Any]]:
     """Results of all jobs; each is a file as soon as it is there, so that a killed run goes on."""
-    left = [path for path in jobs if _kept(path, key) is None]
-    tasks = (joblib.delayed(_one)(path, work, jobs[path], key) for path in left)
-    pool = joblib.Parallel(
-        n_jobs=min(workers or joblib.cpu_count(), max(len(left), 1)), return_as="generator_unordered"
-    )
+    kept = {path: _kept(path, key) for path in jobs}
+    left = [path for path, found in kept.items() if found is None]
+    tasks = ((path, work, jobs[path], key) for path in left)
     with tqdm(total=len(jobs), initial=len(jobs) - len(left), desc=what, unit=" cases") as bar:
-        for _ in pool(tasks):
+        for path, found in zip(left, engine.results(_one, tasks, len(left)), strict=True):
+            kept[path] = found
             bar.update()
-    return [found for path in jobs if (found := _kept(path, key)) is not None]
+    return [found for found in kept.values() if found is not None]
 
 
-def _one(path: Path, work: Callable[..., dict], job: Sequence[Any], key: Mapping[str, Any]) -> None:
+def _one(path: Path, work: Callable[..., dict], job: Sequence[Any], key: Mapping[str, Any]) -> dict[str, Any] | None:
+    """Do a job and keep its result, which is given as it will be read."""
     with threadpool_limits(1):
         write_json(path, {"key": dict(key), "found": work(*job)})
+    return _kept(path, key)
 
 
 def _kept(path: Path, key: Mapping[str, Any]) -> dict[str, Any] | None:

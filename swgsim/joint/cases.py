@@ -7,9 +7,9 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
-from joblib import Parallel, delayed
 from tqdm import tqdm
 
+from swgsim.compute import Engine
 from swgsim.files import replacing, write_json, write_text
 from swgsim.joint import job
 from swgsim.joint.cases_page import page, tables
@@ -39,12 +39,10 @@ def run(config: Mapping[str, Any]) -> None:
         print(f"{name}: {reason}")
     there = {name: case for name, case in chosen.items() if name not in missing}
     tasks = (
-        delayed(answered)(
-            {**OPEN, **case} | {"recordings": str(folders[name]), "out": str(Path(config["out"]) / _plain(name))}
-        )
+        ({**OPEN, **case} | {"recordings": str(folders[name]), "out": str(Path(config["out"]) / _plain(name))},)
         for name, case in there.items()
     )
-    answers = Parallel(n_jobs=config["workers"] or -1, return_as="generator")(tasks)
+    answers = Engine.of(config).results(answered, tasks, len(there))
     said = dict(zip(there, tqdm(answers, "joints", total=len(there), unit=" cases"), strict=True))
     for name, reason in [(name, each) for name, each in said.items() if isinstance(each, str)]:
         missing[name] = reason

@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-import joblib
 import numpy as np
 import pandas as pd
 import yaml
@@ -15,6 +14,7 @@ from threadpoolctl import threadpool_limits
 from tqdm import tqdm
 
 from swgsim import orders, settings, storage
+from swgsim.compute import Engine
 from swgsim.files import replacing, sole_maker
 from swgsim.gear import Gear
 from swgsim.oracle.cells import Resolution
@@ -61,7 +61,7 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
         print(f"{path} is there already, for the same data set, gears, resolution and code")
     else:
         with sole_maker(path):
-            found = _make(plan, source, chosen, resolution, made_from, path, config["workers"])
+            found = _make(plan, source, chosen, resolution, made_from, path, Engine.of(config))
             _keep(path, found, attributes)
             shutil.rmtree(_parts(path))
     result = _score(found, plan, chosen)
@@ -111,20 +111,19 @@ def _make(
     resolution: Resolution,
     made_from: Mapping[str, Any],
     path: Path,
-    workers: int | None,
+    engine: Engine,
 ) -> pd.DataFrame:
     """Judge the gears one by one, each of which is a part that a killed run leaves to the next one."""
     files = {number: _parts(path) / f"{number:06d}.parquet" for number in chosen}
     parts = {number: part for number, file in files.items() if (part := _kept(file, made_from)) is not None}
     left = [number for number in chosen if number not in parts]
-    jobs = (
-        joblib.delayed(_judged)(plan, gear, resolution, first, samples)
+    tasks = (
+        (plan, gear, resolution, first, samples)
         for gear, first, samples in _samples(plan, source)
         if gear.number in left
     )
-    pool = joblib.Parallel(n_jobs=min(workers or joblib.cpu_count(), max(len(left), 1)), return_as="generator")
     with tqdm(total=len(chosen), initial=len(parts), desc=path.stem, unit=" gears") as bar:
-        for number, part in zip(left, pool(jobs), strict=True):
+        for number, part in zip(left, engine.results(_judged, tasks, len(left)), strict=True):
             _keep(files[number], part, made_from)
             parts[number] = part
             bar.update()

@@ -1,0 +1,121 @@
+"""Data sets larger than the memory: ``python scripts/large.py`` (docs/scale.md).
+
+Each size is generated, turned into inputs and trained on, every process with 2 GiB of memory of its own at most.
+"""
+
+import argparse
+import json
+import resource
+import subprocess
+import sys
+import time
+from math import ceil
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).parents[1]
+LIMIT = 2 * 2**30  # bytes
+VARIANTS = 60  # of the grid, at most
+SIZES = (1_000, 10_000, 100_000, 500_000)
+STAGES = ("generate", "inputs", "training")
+
+
+def main() -> None:
+    """Print a table, and write ``large.json`` and ``large.png``."""
+    asked = argparse.ArgumentParser(description=__doc__)
+    asked.add_argument("--recordings", type=int, nargs="+", default=SIZES, help="sizes of the data sets")
+    asked.add_argument("--folder", type=Path, default=ROOT / "data" / "large", help="where the data sets are kept")
+    asked.add_argument("--report", type=Path, default=ROOT / "report")
+    asked.add_argument("--learn", help=argparse.SUPPRESS)  # what the child process is started with
+    chosen = asked.parse_args()
+    if chosen.learn:
+        print(json.dumps(learnt(Path(chosen.learn))))
+        return
+    print("| recordings | GiB | " + " | ".join(f"{s} [ms]" for s in STAGES) + " | most memory [MiB] |")
+    print("|--:|--:|--:|--:|--:|--:|")
+    rows = []
+    for size in chosen.recordings:
+        row = measured(size, chosen.folder / str(size))
+        cells = [f"{row[f'{stage}_ms']:.2f}" for stage in STAGES]
+        print(f"| {row['recordings']} | {row['gib']:.2f} | {' | '.join(cells)} | {row['peak_mib']:.0f} |", flush=True)
+        rows.append(row)
+    from swgsim.files import write_json
+
+    write_json(chosen.report / "large.json", {"limit_mib": LIMIT // 2**20, "rows": rows})
+    draw(rows, chosen.report / "large.png")
+
+
+def measured(recordings: int, folder: Path) -> dict[str, Any]:
+    """Milliseconds per recording of every stage, and the most memory that a stage needed, in all its processes."""
+    per_gear = 36 * VARIANTS + 120
+    variants, gears = (VARIANTS, round(recordings / per_gear)) if recordings > per_gear else (ceil(recordings / 38), 1)
+    made = ["grid=sampled", "condition=bench", f"grid.population.count={gears}", f"grid.variants={variants}"]
+    if folder.exists():
+        for left in folder.glob("sampled-bench.*"):
+            left.unlink()  # to be timed, it is made anew
+    started(["scripts/generate.py", *made, f"data={folder}"])
+    path = folder / "sampled-bench.h5"
+    summary = json.loads(path.with_suffix(".json").read_text())
+    learning = json.loads(started(["scripts/large.py", "--learn", str(path)]).splitlines()[-1])
+    count = summary["recordings"]
+    seconds = {"generate": summary["seconds"], "inputs": learning["inputs"], "training": learning["training"]}
+    return {
+        "recordings": count,
+        "gib": path.stat().st_size / 2**30,
+        **{f"{stage}_ms": 1000 * seconds[stage] / count for stage in STAGES},
+        "peak_mib": max(summary["peak_memory_mib"], learning["peak_mib"]),
+    }
+
+
+def started(arguments: list[str]) -> str:
+    """What a command prints that has so much memory and no more, in every process."""
+
+    def limited() -> None:
+        resource.setrlimit(resource.RLIMIT_DATA, (LIMIT, LIMIT))
+
+    command = [sys.executable, *arguments]
+    return subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True, preexec_fn=limited).stdout
+
+
+def learnt(path: Path) -> dict[str, float]:
+    """Seconds to make the inputs of a data set and to train a convolutional network on them once over."""
+    import torch  # noqa: F401  (before the clock starts)
+
+    from learn.job import learning_set_of
+    from learn.neural import convolutional_network
+    from learn.signals import Signals
+    from swgsim import storage
+    from swgsim.dataset import usage
+
+    began = time.perf_counter()
+    data = learning_set_of(path, storage.digest(path), Signals("residual"))
+    there = time.perf_counter()
+    network = convolutional_network(**data.layout._asdict(), epochs=1, device="cpu")
+    network.fit(data.features, data.table["label"].astype(str).to_numpy())
+    return {"inputs": there - began, "training": time.perf_counter() - there, "peak_mib": usage().peak_memory_mib}
+
+
+def draw(rows: list[dict[str, Any]], path: Path) -> None:
+    """Cost per recording, and memory, over the size of the data set."""
+    from matplotlib.figure import Figure
+
+    from swgsim.files import replacing
+
+    figure = Figure(figsize=(9, 3.6), layout="constrained")
+    cost, memory = figure.subplots(1, 2)
+    sizes = [row["recordings"] for row in rows]
+    for stage in STAGES:
+        cost.plot(sizes, [row[f"{stage}_ms"] for row in rows], "o-", label=stage)
+    memory.plot(sizes, [row["peak_mib"] for row in rows], "o-", color="black", label="all processes of a stage")
+    memory.axhline(LIMIT / 2**20, ls="--", color="grey", label="limit")
+    cost.set(xscale="log", xlabel="recordings", ylabel="ms per recording")
+    memory.set(xscale="log", xlabel="recordings", ylabel="memory [MiB]")
+    for axes in (cost, memory):
+        axes.set_ylim(0)
+        axes.legend()
+    with replacing(path) as aside:
+        figure.savefig(aside, format="png", dpi=130)
+
+
+if __name__ == "__main__":
+    main()
