@@ -12,7 +12,7 @@ from swgsim import orders
 
 # Parts of a configuration that no result depends on.
 WHEREABOUTS = ("data", "models", "tracking", "workers", "compute", "scheduler")
-PRESENTATION = (  # modules that only show results, beside the package transfer_report
+PRESENTATION = (  # modules that only show results, beside the packages tracking and transfer_report
     "bootstrap.py",
     "calibration.py",
     "choices.py",

@@ -62,7 +62,7 @@ def dask(workers: int) -> Iterator[Engine]:
     """A Dask cluster on this machine."""
     from distributed import LocalCluster
 
-    with LocalCluster(workers, threads_per_worker=1, dashboard_address=None) as cluster:
+    with LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None) as cluster:
         yield warm(Engine(scheduler=cluster.scheduler_address))
 
 

@@ -79,12 +79,17 @@ def generate(plan: Plan, path: Path, engine: Engine, progress: Callable[[int], o
     files = [parts / f"{number:06d}.h5" for number in range(plan.block_count)]
     tasks = ((plan, cases, file) for cases, file in zip(plan.blocks(), files, strict=True))
     peak: dict[str, float] = {}
-    for part in engine.results(_part, tasks, len(files)):
-        if part.flaw:
-            print(f"{part.flaw}; it has been made again")
-        peak[part.usage.process] = max(part.usage.peak_memory_mib, peak.get(part.usage.process, 0))
-        progress(part.rows)
-    storage.write(path, (_read(plan, file) for file in files), len(plan))
+
+    def made() -> Iterator[Recordings]:
+        """The parts in their order: they are joined while the workers make the next ones."""
+        for part, file in zip(engine.results(_part, tasks, len(files)), files, strict=True):
+            if part.flaw:
+                print(f"{part.flaw}; it has been made again")
+            peak[part.usage.process] = max(part.usage.peak_memory_mib, peak.get(part.usage.process, 0))
+            progress(part.rows)
+            yield _read(plan, file)
+
+    storage.write(path, made(), len(plan))
     shutil.rmtree(parts, ignore_errors=True)  # where a worker of a killed run may be at its last part
     own = usage()
     peak[own.process] = own.peak_memory_mib

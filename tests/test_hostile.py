@@ -293,6 +293,17 @@ def test_an_archive_that_is_compressed_or_has_more_parts_than_room(tmp_path: Pat
     refused(lambda: models.load(path, "cpu"), path.name)
 
 
+def test_an_array_larger_than_its_part_is_not_laid_out(tmp_path: Path) -> None:
+    seeds.forest(tmp_path)
+    (path,) = tmp_path.iterdir()
+    with zipfile.ZipFile(path) as archive:
+        name = next(name for name in archive.namelist() if name.endswith(".npy"))
+    head = io.BytesIO()
+    np.lib.format.write_array_header_1_0(head, {"shape": (2**32,), "fortran_order": False, "descr": "<f8"})
+    rezipped(path, **{name: head.getvalue()})
+    refused(lambda: models.load(path, "cpu"), rf"{path.name}.*{name} says it holds \(4294967296,\) numbers")
+
+
 def test_a_network_larger_than_its_file_is_not_made(tmp_path: Path) -> None:
     seeds.network(tmp_path)
     path = tmp_path / "model.pt"

@@ -4,7 +4,7 @@ from contextlib import suppress
 
 from learn.tracking.store import Store, lost
 
-SWEEP = "STRAIN_WAVE_GEARS_SWEEP"  # environment variable, which worker processes inherit: the run that jobs belong to
+SWEEP = "STRAIN_WAVE_GEARS_SWEEP"  # environment variable, which Hydra sets for every job: the run that it belongs to
 
 
 def open_sweep(store: Store, study: str, grid: str) -> str:

@@ -96,8 +96,7 @@ def parts_there(folder: Path) -> str:
         return "both made"
     if "small-clean.h5" in there:
         return "clean one made"
-    parts = len(list((folder / "data" / ".small-clean.h5.parts").glob("*.h5")))
-    return "joining" if ".small-clean.h5.tmp" in there else f"{parts} parts"
+    return f"{len(list((folder / 'data' / '.small-clean.h5.parts').glob('*.h5')))} parts"
 
 
 def runs_begun(folder: Path) -> str:
