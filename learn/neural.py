@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 SUFFIX = ".pt"  # of the files
 # Rows from which the scaling is taken, at most: more would not change it, and may be too many for the memory.
-SCALED = 50_000
+SCALED = 30_000
 
 
 @dataclass(eq=False)
