@@ -1,4 +1,4 @@
-"""The five classifiers of Inputs VI, with scikit-learn's standard settings otherwise, on features as they are.
+"""The five classifiers of Table VI, with scikit-learn's standard settings otherwise, on features as they are.
 
 Like the paper, none scales its features. Each is a scikit-learn estimator: ``fit(X, y)`` and ``predict(X)``.
 """

@@ -114,7 +114,7 @@ def gear_by_gear(
     def features() -> Iterator[Float[np.ndarray, "sample feature"]]:
         for recordings in _gears(blocks):
             made = representation.learning_set(recordings)
-            facts.append(replace(made, features=made.features[:0]))
+            facts.append(replace(made, features=np.empty((0, len(made.names)))))
             progress(sum(map(len, recordings)))
             yield np.asarray(made.features)
 

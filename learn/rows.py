@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from jaxtyping import Float, Int
 
+from swgsim.files import remedied
+
 if TYPE_CHECKING:
     from torch import Tensor
 
@@ -55,7 +57,8 @@ class Rows:
         table = np.empty(self.shape)
         size = self.shape[1] * self.dtype.itemsize
         for row, number in zip(table, self._numbers.tolist(), strict=True):
-            os.preadv(self._file.descriptor, [row.data], number * size)
+            if os.preadv(self._file.descriptor, [row.data], number * size) < size:
+                raise OSError(f"row {number} of a file of inputs could not be read: its disk may have gone away")
         return table if dtype is None else table.astype(dtype, copy=False)
 
 
@@ -64,7 +67,7 @@ Inputs = Float[np.ndarray, "row feature"] | Rows  # in memory or not
 
 def on_disk(parts: Iterable[Float[np.ndarray, "_ column"]], folder: Path) -> Rows:
     """Rows that come in parts, in a file without a name in a folder."""
-    with tempfile.TemporaryFile(dir=folder) as file:
+    with remedied(folder), tempfile.TemporaryFile(dir=folder) as file:
         rows = columns = 0
         for part in parts:
             file.write(np.ascontiguousarray(part, dtype=Rows.dtype).data)

@@ -125,7 +125,7 @@ def _groups_that_hold_a_whole_class(group: Int[np.ndarray, " row"], label: np.nd
 
 @dataclass(frozen=True)
 class LeaveOneGearOut:
-    """Train on all gears but one and test on that one, which is out of distribution; named as in Inputs IX: ``1,2->3``.
+    """Train on all gears but one and test on that one, which is out of distribution; named as in Table IX: ``1,2->3``.
 
     With more gears than `folds`, the gears are dealt into that many folds and each fold is left out in turn. The order
     is the paper's: 1,2->3; 2,3->1; 1,3->2. As in the paper, the features of the gear left out are relative to its own

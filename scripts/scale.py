@@ -27,7 +27,7 @@ def main() -> None:
     asked.add_argument("--repeats", type=int, default=3)
     asked.add_argument("--classifiers", default="rf,extra_trees,cnn", help="files of conf/classifier: the jobs")
     chosen = asked.parse_args()
-    print("| engine | workers | ms per empty task | s per data set | of which joining | times one worker |")
+    print("| engine | workers | ms per empty task | s per data set | of which after the last part | times one worker |")
     print("|---|--:|--:|--:|--:|--:|")
     for name, engines in (("this machine", local), ("Dask", dask)):
         alone = 0.0

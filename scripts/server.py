@@ -14,7 +14,7 @@ def main(config: DictConfig) -> None:
 
     try:
         serve_team(Path(config.folder), config.host, config.port, config.workers, config.allowed_hosts)
-    except (ValueError, RuntimeError) as error:
+    except (ValueError, RuntimeError, OSError) as error:
         raise SystemExit(str(error)) from error
 
 

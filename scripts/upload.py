@@ -10,11 +10,16 @@ def main(config: DictConfig) -> None:
     """Upload what the server lacks."""
     from learn.settings import store
     from learn.tracking import upload
+    from learn.tracking.store import lost
 
     try:
         new = upload(store(OmegaConf.to_container(config.tracking)))  # type: ignore[arg-type]
     except ValueError as error:
         raise SystemExit(str(error)) from error
+    except lost() as error:
+        raise SystemExit(
+            f"the server at {config.tracking.uri} went away: when it is back, give the same command again ({error})"
+        ) from error
     print(f"{new} runs were new to {config.tracking.uri}")
 
 

@@ -28,29 +28,33 @@ class Place(NamedTuple):
     folder: str
 
 
-def here() -> Place:
-    """That of this process."""
+def here(beside: Callable[[], str]) -> Place:
+    """That of this process, with what results depend on beside this package."""
     libraries = ", ".join(f"{name} {version(name)}" for name in ("numpy", "scipy", "h5py"))
     code = code_version(*SHOWING, *SHOWING_PACKAGES)
-    return Place(f"swgsim {code}, Python {platform.python_version()}, {libraries}", os.getcwd())
+    installed = f"swgsim {code}, Python {platform.python_version()}, {libraries} {beside()}"
+    return Place(installed.rstrip(), os.getcwd())
 
 
-def results(scheduler: str, function: Callable[..., Any], tasks: Iterable[tuple]) -> Iterator[Any]:
+def results(
+    scheduler: str, function: Callable[..., Any], tasks: Iterable[tuple], beside: Callable[[], str]
+) -> Iterator[Any]:
     """What a function gives for every task; see :meth:`swgsim.compute.Engine.results`.
 
     Joblib's way to Dask keeps to the workers of its first moment, and does all tasks itself if there is but one.
     """
-    with _connected(scheduler) as client:
+    with _connected(scheduler, beside) as client:
         from distributed import as_completed
 
-        place, left = here(), enumerate(tasks)
+        place, left = here(beside), enumerate(tasks)
         numbers: dict[Any, int] = {}  # of the tasks that are handed out
         done: dict[int, Any] = {}
 
         def more() -> Iterator["Future"]:
-            """As many as make two for every worker that is there now."""
-            for number, task in islice(left, max(2 * len(client.ncores()) - len(numbers), 0)):
-                future = client.submit(task_of_another, place, function, task, pure=False)
+            """As many as make two for every worker that is there now; one waits for a worker where there is none."""
+            most = max(2 * len(client.ncores()) - len(numbers), 0 if numbers else 1)
+            for number, task in islice(left, most):
+                future = client.submit(task_of_another, place, beside, function, task, pure=False)
                 numbers[future.key] = number
                 yield future
 
@@ -64,7 +68,7 @@ def results(scheduler: str, function: Callable[..., Any], tasks: Iterable[tuple]
 
 
 @contextmanager
-def _connected(scheduler: str) -> Iterator["Client"]:
+def _connected(scheduler: str, beside: Callable[[], str]) -> Iterator["Client"]:
     """A client of the cluster; what Dask says of one that is absent, not fit or lost becomes one sentence.
 
     Raises
@@ -86,7 +90,7 @@ def _connected(scheduler: str) -> Iterator["Client"]:
             "the address, or use compute=local"
         ) from None
     with client, dask.config.set({"distributed.admin.large-graph-warning-threshold": "1GiB"}):  # of the oracle's tasks
-        _require_fit(client, scheduler)
+        _require_fit(client, scheduler, beside)
         try:
             yield client
         except (CancelledError, CommClosedError):
@@ -100,17 +104,17 @@ def _connected(scheduler: str) -> Iterator["Client"]:
             ) from None
 
 
-def _require_fit(client: "Client", scheduler: str) -> None:
+def _require_fit(client: "Client", scheduler: str, beside: Callable[[], str]) -> None:
     """Raise a ValueError unless there are workers, and all of them and the scheduler can do the tasks.
 
     Dask would wait for ever where there is no worker, and where one or the scheduler cannot import what it is sent.
     """
-    own = here()
+    own = here(beside)
     try:
         client.wait_for_workers(1, timeout=PRESENCE)
         client.sync(client.run_on_scheduler, import_module, __name__, callback_timeout=ANSWER)
         client.sync(client.run, import_module, __name__, callback_timeout=ANSWER)
-        found = client.sync(client.run, _fitness, own.folder, callback_timeout=ANSWER)
+        found = client.sync(client.run, _fitness, own.folder, beside, callback_timeout=ANSWER)
     except TimeoutError:
         raise ValueError(
             f"{scheduler} has no worker, or one that does not answer within {ANSWER} s: start them with "
@@ -131,13 +135,13 @@ def _require_same(worker: str, installed: str, expected: str) -> None:
         raise ValueError(f"{worker} has {installed}, must have {expected}: {REMEDY}")
 
 
-def _fitness(folder: str, dask_worker: "Worker") -> tuple[str, bool, int]:
+def _fitness(folder: str, beside: Callable[[], str], dask_worker: "Worker") -> tuple[str, bool, int]:
     """What a worker has installed, whether it sees a folder, and its threads."""
-    return here().installed, os.path.isdir(folder), dask_worker.state.nthreads
+    return here(beside).installed, os.path.isdir(folder), dask_worker.state.nthreads
 
 
-def task_of_another(place: Place, function: Callable[..., Any], task: tuple) -> Any:
+def task_of_another(place: Place, beside: Callable[[], str], function: Callable[..., Any], task: tuple) -> Any:
     """Do a task on a worker, which may have joined after the others were looked at, as in the place it comes from."""
-    _require_same(f"a worker on {socket.gethostname()}", here().installed, place.installed)
+    _require_same(f"a worker on {socket.gethostname()}", here(beside).installed, place.installed)
     with chdir(place.folder):
         return function(*task)

@@ -54,7 +54,9 @@ class Engine:
             )
         return cls(workers, scheduler and str(scheduler))
 
-    def results(self, function: Callable[..., Any], tasks: Iterable[tuple], count: int) -> Iterator[Any]:
+    def results(
+        self, function: Callable[..., Any], tasks: Iterable[tuple], count: int, beside: Callable[[], str] = str
+    ) -> Iterator[Any]:
         """What a function gives for every task, in their order, as soon as it is there.
 
         Parameters
@@ -64,6 +66,8 @@ class Engine:
             Its arguments; they are taken as workers get free.
         count : int
             How many there are.
+        beside : callable
+            Says what results depend on beside this package; a worker where it says something else is refused.
 
         Raises
         ------
@@ -74,4 +78,4 @@ class Engine:
             pool = joblib.Parallel(min(self.workers or joblib.cpu_count(), max(count, 1)), return_as="generator")
             yield from pool(joblib.delayed(function)(*task) for task in tasks)
             return
-        yield from cluster.results(self.scheduler, function, tasks)
+        yield from cluster.results(self.scheduler, function, tasks, beside)

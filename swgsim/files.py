@@ -12,6 +12,7 @@ from typing import IO, Any
 # What to do where a file cannot be written.
 ROOM = "make room and start again, what is finished is kept"
 OTHER_FOLDER = "choose a folder that can be written"
+OTHER_FOLDER_WITH_LOCKS = "choose a folder on a disk that has locks (flock)"
 REMEDIES = {
     errno.ENOSPC: ROOM,
     errno.EDQUOT: ROOM,
@@ -19,6 +20,8 @@ REMEDIES = {
     errno.EROFS: OTHER_FOLDER,
     errno.EACCES: OTHER_FOLDER,
     errno.EPERM: OTHER_FOLDER,
+    errno.ENOLCK: OTHER_FOLDER_WITH_LOCKS,
+    errno.EOPNOTSUPP: OTHER_FOLDER_WITH_LOCKS,
 }
 
 
@@ -34,7 +37,7 @@ def replacing(path: Path) -> Iterator[Path]:
         If the disk is full or the folder cannot be written; it names the file and the remedy.
     """
     aside = path.with_name(f".{path.name}.tmp")
-    with _remedied(path):
+    with remedied(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         try:
             yield aside
@@ -63,7 +66,7 @@ def sole_maker(path: Path, *, wait: bool = False) -> Iterator[None]:
         If the folder cannot be written; it names the file and the remedy.
     """
     lock = path.with_name(f".{path.name}.lock")
-    with _remedied(path):
+    with remedied(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         owned = _locked(lock, path, wait)
     with owned:
@@ -74,8 +77,8 @@ def sole_maker(path: Path, *, wait: bool = False) -> Iterator[None]:
 
 
 @contextmanager
-def _remedied(path: Path) -> Iterator[None]:
-    """Say which file could not be written and what to do."""
+def remedied(path: Path) -> Iterator[None]:
+    """Say which file, or in which folder, could not be written and what to do."""
     try:
         yield
     except OSError as error:

@@ -1,5 +1,7 @@
 """Data sets larger than the memory: the same inputs, networks and scores as in memory."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from fabricated import recordings
@@ -48,6 +50,21 @@ def test_a_large_data_set_has_the_same_inputs(data, representation, tmp_path):
     assert (large.names, large.layout) == (whole.names, whole.layout)
     assert sum(done) == len(data)
     assert not list(tmp_path.iterdir()), "the file has no name, so that nothing is left of it"
+
+
+def test_the_memory_it_takes_is_that_of_one_gear(tmp_path):
+    """A gear more takes its facts, and not its inputs, which are three times as much."""
+
+    def peak(gears: int) -> int:
+        data = recordings(gears, variants=20)
+        tracemalloc.start()
+        in_file(data, Signals("residual", points=256), tmp_path)
+        most = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+        return most
+
+    inputs = 4 * 6 * 20 * 5 * 256 * 8  # bytes of a gear
+    assert peak(4) - peak(2) < 0.5 * 2 * inputs
 
 
 def network(kind: str, data: LearningSet) -> NeuralClassifier:

@@ -32,11 +32,21 @@ def database(folder: Path) -> Iterator[str]:
         _create(programs, folder)
     options = f"-c listen_addresses= -k {shlex.quote(str(folder))}"
     control = [str(programs / "pg_ctl"), "-D", str(folder), "-m", "fast", "-w"]
-    _call(*control, "-l", str(folder / "server.log"), "-o", options, "restart")
+    begin = "restart" if _runs(folder) else "start"
+    _call(*control, "-l", str(folder / "server.log"), "-o", options, begin)
     try:
         yield f"postgresql+psycopg2://{USER}@/postgres?host={quote(str(folder))}"
     finally:
         _call(*control, "stop")
+
+
+def _runs(folder: Path) -> bool:
+    """Whether PostgreSQL works in a folder. After a power failure its number may be that of another process."""
+    try:
+        number = int((folder / "postmaster.pid").read_text().split()[0])
+        return Path(f"/proc/{number}/cwd").resolve(strict=True) == folder
+    except (OSError, ValueError, IndexError):
+        return False
 
 
 def _programs(folder: Path) -> Path:

@@ -152,6 +152,7 @@ def _server_client(uri: str, experiment: str) -> "MlflowClient":
         client.get_experiment_by_name(experiment)
     except (MlflowException, requests.RequestException) as error:
         raise ServerAway(
-            f"no MLflow server answers at tracking.uri={uri}: start it, correct the address, or use tracking=local"
+            f"no MLflow server answers at tracking.uri={uri}: start it, name it in its allowed_hosts, correct the "
+            f"address, or use tracking=local ({str(error)[:300]})"
         ) from error
     return client

@@ -49,9 +49,12 @@ class Upload:
 
     def run(self) -> int:
         """Bring the jobs that the server lacks, with their sweeps, and return how many."""
-        missing = [job for job in _search(self.source, "kind = 'job'", FINISHED) if self._lacks(job)]
-        parents = {self._bring(job) for job in missing}
-        for sweep in _search(self.server, "kind = 'sweep'", "attributes.status = 'RUNNING'") if missing else ():
+        waiting = _search(self.source, "kind = 'job'", FINISHED)
+        missing = [job for job in waiting if self._lacks(job)]
+        for job in missing:
+            self._bring(job)
+        parents = {self._parent(job.data.tags.get(PARENT)) for job in waiting}
+        for sweep in _search(self.server, "kind = 'sweep'", "attributes.status = 'RUNNING'"):
             if sweep.info.run_id in parents:  # left open when the server went away, or by a killed upload
                 close_sweep(self.server, sweep.info.run_id)
         return len(missing)
@@ -65,12 +68,11 @@ class Upload:
             self.server.client.delete_run(half.info.run_id)
         return True
 
-    def _bring(self, run: "Run") -> str | None:
-        """Copy the run of a job and return that of its sweep on the server."""
+    def _bring(self, run: "Run") -> None:
+        """Copy the run of a job into that of its sweep on the server."""
         parent = self._parent(run.data.tags.get(PARENT))
         self._copy(run, {PARENT: parent} if parent else {})
         log.info("%s: uploaded", run.info.run_name)
-        return parent
 
     def _parent(self, run_id: str | None) -> str | None:
         """The sweep on the server that stands for a run; one that is no local sweep is the server's own."""

@@ -25,6 +25,7 @@ class EngineLauncher(Launcher):
         """Do the jobs; one that fails is told of by Hydra when all are done."""
         from hydra_plugins.hydra_joblib_launcher._core import execute_job
 
+        from learn.identity import code_version
         from swgsim.compute import Engine
 
         configure_log(self._config.hydra.hydra_logging, self._config.hydra.verbose)
@@ -34,4 +35,4 @@ class EngineLauncher(Launcher):
             (number, overrides, self._context, self._config, self._function, state)
             for number, overrides in enumerate(job_overrides, initial_job_idx)
         )
-        return list(Engine.of(self._chosen).results(execute_job, tasks, len(job_overrides)))
+        return list(Engine.of(self._chosen).results(execute_job, tasks, len(job_overrides), code_version))

@@ -155,7 +155,7 @@ def _all(
 
 def _one(path: Path, work: Callable[..., dict], job: Sequence[Any], key: Mapping[str, Any]) -> dict[str, Any] | None:
     """Do a job and keep its result, which is given as it will be read."""
-    with threadpool_limits(1):
+    with threadpool_limits(1), sole_maker(path, wait=True):  # a worker of a killed run may be at this very case
         write_json(path, {"key": dict(key), "found": work(*job)})
     return _kept(path, key)
 
