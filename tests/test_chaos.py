@@ -85,11 +85,11 @@ def mounted(folder: Path, options: str) -> Iterator[None]:
 def test_a_full_disk_is_named_and_the_rest_is_made_when_there_is_room(tmp_path: Path, undisturbed: bytes) -> None:
     folder = tmp_path / "disk"
     with mounted(folder, "size=600k"):
-        with pytest.raises(OSError, match=r"No space left on device: .*000003\.h5 was not written; make room") as full:
+        with pytest.raises(OSError, match=r"No space left on device: .*\.h5 was not written; make room") as full:
             generation.run(tiny(folder))
         assert full.value.errno == errno.ENOSPC
         parts = sorted((folder / ".small-clean.h5.parts").iterdir())
-        assert [part.name for part in parts] == ["000000.h5", "000001.h5", "000002.h5"]
+        assert 0 < len(parts) < PARTS
         assert list(folder.iterdir()) == [parts[0].parent]
         written = [part.stat().st_mtime_ns for part in parts]
         with pytest.raises(OSError, match="make room"):
@@ -100,8 +100,8 @@ def test_a_full_disk_is_named_and_the_rest_is_made_when_there_is_room(tmp_path: 
         assert made(folder) == undisturbed
 
 
-def test_the_data_set_does_not_fit_though_its_parts_do(tmp_path: Path, undisturbed: bytes) -> None:
-    """Files may not be larger than a few parts; nobody needs to be root for that."""
+def test_a_data_set_that_is_larger_than_a_file_may_be_is_named(tmp_path: Path, undisturbed: bytes) -> None:
+    """Files may not be larger than a few parts, which stay; nobody needs to be root for that."""
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (400_000, limits[1]))
     try:
@@ -109,7 +109,7 @@ def test_the_data_set_does_not_fit_though_its_parts_do(tmp_path: Path, undisturb
             generation.run(tiny(tmp_path))
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
-    assert len(list((tmp_path / ".small-clean.h5.parts").iterdir())) == PARTS
+    assert 1 < len(list((tmp_path / ".small-clean.h5.parts").iterdir())) < PARTS
     assert len(list(tmp_path.iterdir())) == 1
     generation.run(tiny(tmp_path))
     assert made(tmp_path) == undisturbed
