@@ -66,7 +66,7 @@ def study_all(config: Mapping[str, Any], store: tracking.Store) -> list[Finished
 
 def key(config: Mapping[str, Any], name: str) -> str:
     """Sixteen hexadecimal digits that change when the result for an undeclared effect may change."""
-    without = ("undeclared", "data", "out", "workers", "compute", "scheduler", "tracking")
+    without = ("undeclared", "data", "out", "workers", "tracking")
     decisive = {each: value for each, value in config.items() if each not in without}
     digest = hashlib.sha256(json.dumps([name, config["undeclared"][name], decisive], sort_keys=True).encode())
     digest.update(f"{code_version('loop', 'virtual_bench.py')} {identity.code_version()}".encode())

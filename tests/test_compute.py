@@ -110,6 +110,12 @@ def test_a_worker_that_is_killed_loses_nothing(expected: bytes, tmp_path: Path) 
     assert (tmp_path / "a.h5").read_bytes() == expected
 
 
+def test_tasks_wait_where_no_worker_is_there_for_a_moment(two_workers: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As at the end of an allocation, when all that was handed out is done."""
+    monkeypatch.setattr(distributed.Client, "ncores", lambda _: {})
+    assert list(Engine(scheduler=two_workers).results(neg, ((i,) for i in range(5)), 5)) == [0, -1, -2, -3, -4]
+
+
 @pytest.mark.usefixtures("small_blocks")
 def test_a_scheduler_that_is_lost_is_told_of_and_the_run_goes_on_without_it(expected: bytes, tmp_path: Path) -> None:
     path = tmp_path / "a.h5"

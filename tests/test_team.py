@@ -258,6 +258,7 @@ def test_runs_are_uploaded_whole_and_once(server, lost, monkeypatch):
     def runs():
         return {run.info.run_id for run in store.client.search_runs([store.experiment_id])}
 
+    left_open = tracking.open_sweep(store, "alone", "small")  # by an upload that was killed before its last step
     before = runs()
     command = [sys.executable, str(ROOT / "scripts" / "upload.py")]
     again = subprocess.run(
@@ -266,6 +267,7 @@ def test_runs_are_uploaded_whole_and_once(server, lost, monkeypatch):
     )  # fmt: skip
     assert again.stdout.endswith(f"0 runs were new to {server.uri}\n"), again.stderr
     assert runs() == before
+    assert store.client.get_run(left_open).info.status == "FINISHED"
 
 
 def test_an_upload_of_nothing_says_what_to_give(tmp_path):
@@ -283,6 +285,17 @@ def test_a_missing_postgresql_is_named(tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(ValueError, match="apt-get install postgresql"), postgresql.database(tmp_path / "database"):
         pass
+
+
+def test_another_process_is_not_taken_for_the_database(tmp_path):
+    """After a power failure the number that PostgreSQL left may be that of anybody, such as of this process."""
+    assert not postgresql._runs(tmp_path)
+    (tmp_path / "postmaster.pid").write_text(f"{os.getpid()}\n{tmp_path}\n")
+    assert not postgresql._runs(tmp_path)
+    with subprocess.Popen(["sleep", "60"], cwd=tmp_path) as there:
+        (tmp_path / "postmaster.pid").write_text(f"{there.pid}\n{tmp_path}\n")
+        assert postgresql._runs(tmp_path)
+        there.kill()
 
 
 def test_a_folder_of_another_version_is_refused(tmp_path, monkeypatch):

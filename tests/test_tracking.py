@@ -7,6 +7,7 @@ import time
 from contextlib import closing
 
 import pytest
+from mlflow.exceptions import MlflowException
 
 from learn import identity, page, tracking
 
@@ -33,6 +34,14 @@ def test_a_finished_job_is_found_by_its_key_a_failed_or_killed_one_is_not(store)
     store.client.create_run(store.experiment_id, tags={"kind": "job", "key": "killed"})  # stays running
     assert tracking.finished_metrics(store, "killed") is None
     assert tracking.finished_metrics(store, "other") is None
+
+
+def test_a_local_store_that_is_damaged_is_not_taken_for_a_lost_server(store, monkeypatch):
+    monkeypatch.setenv(tracking.SWEEP, tracking.open_sweep(store, "trial", "small"))
+    with closing(sqlite3.connect(store.folder / "mlflow.db")) as database:
+        database.execute("drop table tags")
+    with pytest.raises(MlflowException, match="no such table"):
+        tracking.finished_metrics(store, "key")
 
 
 def test_the_newest_run_of_a_configuration_comes_first_and_alone(store):
