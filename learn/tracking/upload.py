@@ -53,7 +53,7 @@ class Upload:
         missing = [job for job in waiting if self._lacks(job)]
         for job in missing:
             self._bring(job)
-        parents = {self._parent(job.data.tags.get(PARENT)) for job in waiting}
+        parents = {self._parent(sweep) for sweep in {job.data.tags.get(PARENT) for job in waiting}}
         for sweep in _search(self.server, "kind = 'sweep'", "attributes.status = 'RUNNING'"):
             if sweep.info.run_id in parents:  # left open when the server went away, or by a killed upload
                 close_sweep(self.server, sweep.info.run_id)
