@@ -36,7 +36,8 @@ def test_a_finished_job_is_found_by_its_key_a_failed_or_killed_one_is_not(store)
     assert tracking.finished_metrics(store, "other") is None
 
 
-def test_a_local_store_that_is_damaged_is_not_taken_for_a_lost_server(store, monkeypatch):
+def test_a_local_store_that_is_damaged_is_not_taken_for_a_lost_server(tmp_path, monkeypatch):
+    store = tracking.local_store(str(tmp_path))
     monkeypatch.setenv(tracking.SWEEP, tracking.open_sweep(store, "trial", "small"))
     with closing(sqlite3.connect(store.folder / "mlflow.db")) as database:
         database.execute("drop table tags")
