@@ -20,6 +20,8 @@ QUICK := $(if $(SMALL),shots=[1$(comma)2] draws=1 protocol.folds=2 protocol.deve
 FEW_EFFECTS := reduced_damping,warm_grease,flank_friction,input_unbalance,eccentric_wave_generator,cam_form,load_sharing,$(strip \
                )root_tooth_crack,tilting_moment,gauge_gain,channel_skew,mains_hum
 LEFT_OUT := tilting_moment channel_skew coning load_sharing stiffening_spring axial_thrust bridge_nonlinearity
+# Methods on microcontrollers that the small form leaves out.
+LARGER := paper_forest paper_forest_selection_3 forest_20 extra_trees_10 extra_trees_30 paper_mlp mlp_32 mlp_128 cnn_16
 # Recordings of real joints, where they are; no file of theirs may be in the project.
 MEASURED ?= $(firstword $(wildcard measured ../shared/measured))
 CORES := $(shell nproc)
@@ -29,14 +31,14 @@ JOBS := $(shell echo $$(( ($(CORES) + 3) / 4 )))
 export MLFLOW_DISABLE_TELEMETRY := true
 
 .DEFAULT_GOAL := help
-.PHONY: help install data experiments report paper transfer loop blind sim-to-real joints test lint fuzz chaos scale benchmark convergence docs ui clean $(TABLES)
+.PHONY: help install data experiments report paper transfer loop blind sim-to-real joints embedded test lint fuzz chaos scale matrix benchmark convergence docs ui clean $(TABLES)
 
 help:  ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-12s %s\n", $$1, $$2}'
 
 $(READY): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,rocket,dask,slurm,postgresql]'
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,rocket,dask,slurm,postgresql,embedded]'
 	touch $@
 
 install: $(READY)  ## virtual environment with everything in it
@@ -87,6 +89,14 @@ joints: $(READY)  ## real robot joints (files: docs/joint_recordings.md), report
 	$(BIN)/python scripts/joints.py $(if $(MEASURED),folder=$(MEASURED)) $(if $(SMALL),'only=*joint 1')
 	@echo "open report/joints.html, and joints/*/page.html for every case"
 
+embedded: $(READY)  ## classifiers as C on microcontrollers, report/embedded.md; with scripts/install_arm.sh (SMALL=1: three of them)
+	$(BIN)/python scripts/generate.py grid=$(GEARS) condition=bench
+	$(BIN)/python scripts/generate.py grid=$(GRID) condition=disturbed
+	$(BIN)/python scripts/embedded.py unseen=$(GEARS)-bench disturbed=$(GRID)-disturbed \
+	    $(if $(SMALL),judged=2 proof=72 counted=4 $(addprefix ~methods.,$(LARGER)))
+	$(BIN)/python scripts/export.py grid=$(GEARS) target=c numbers=int8
+	$(BIN)/python scripts/export.py grid=$(GEARS) target=onnx
+
 test: $(READY)  ## all tests
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile -q
 
@@ -105,6 +115,9 @@ scale: $(READY)  ## engines beside one another, and data sets larger than the me
 	$(BIN)/python scripts/scale.py
 	$(BIN)/python scripts/large.py
 
+matrix: $(READY)  ## the same numbers on the oldest and the newest NumPy that pyproject.toml allows (docs/reliability.md)
+	$(BIN)/python scripts/matrix.py
+
 benchmark: $(READY)  ## the chain against the obvious ways of doing the same
 	$(BIN)/python scripts/benchmark.py
 
@@ -119,4 +132,4 @@ ui: $(READY)  ## the runs in the MLflow page, on this machine only
 	$(BIN)/python scripts/ui.py
 
 clean:  ## remove data sets, runs and reports
-	rm -rf data mlruns models report outputs loop blind joints
+	rm -rf data mlruns models report outputs loop blind joints embedded
