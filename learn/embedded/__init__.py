@@ -1,0 +1,1 @@
+"""Trained classifiers with their features as C for the microcontroller beside the gauges, or as ONNX for gateways."""

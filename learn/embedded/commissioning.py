@@ -1,0 +1,107 @@
+"""What the commissioning of a gear writes: its healthy numbers at every operating point, as ``gear.c``."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Complex, Float, Int
+
+from learn.embedded.front import Front, operating_points
+from learn.embedded.source import array, number, pairs, values
+from learn.references import healthy_reference
+from swgsim.checks import require
+from swgsim.orders import whole_revolutions
+from swgsim.recordings import Recordings
+
+HEAD = """/* The healthy gear, written by its commissioning. */
+#include <math.h>
+#include <stddef.h>
+
+#include "swg.h"
+
+"""
+WAVE = 2**30  # unit of the waves that samples are multiplied with
+DEVIATION, SUM = 2**29, 2**39  # counts that a deviation, and the sum of all deviations, may have (window.c)
+
+
+@dataclass(frozen=True)
+class _Clock:
+    """Sampling at one operating point: samples in whole revolutions, and revolutions from one to the next."""
+
+    samples: int
+    turns: float
+
+    def wave(self, orders: int) -> Complex[np.ndarray, " order"]:
+        """exp(-i k angle) of the angle between two samples, for k from 1."""
+        return np.exp(-2j * np.pi * self.turns * np.arange(1, orders + 1))
+
+    def offset(self, orders: int) -> Complex[np.ndarray, " order"]:
+        """Mean over the samples of the wave, which is 0 but where a revolution is no whole number of samples."""
+        angle = 2 * np.pi * self.turns * np.outer(np.arange(self.samples), np.arange(1, orders + 1))
+        return np.exp(-1j * angle).mean(axis=0)
+
+
+def gear_source(references: Recordings, front: Front, saturation: float) -> str:
+    """The C source that tells a method of one gear.
+
+    Parameters
+    ----------
+    references : Recordings
+        Healthy recordings of one gear at all operating points.
+    front : Front
+        The features of the method.
+    saturation : float
+        Limit of the gauges' amplifiers [mV/V], from which on there is no decision.
+
+    Raises
+    ------
+    ValueError
+        If the recordings are not of one gear or not healthy, or reach the limit.
+    """
+    table = references.table
+    gears = sorted(map(str, table["gear"].unique()))
+    if len(gears) != 1 or not table["reference"].all():
+        raise ValueError(f"references of gears {', '.join(gears)} found: give the healthy references of one gear")
+    highest = float(np.abs(references.signals).max())
+    require("the amplifiers", "saturation", saturation, low=highest * (1 + 1e-6), high=1e6)
+    scale = _scale(saturation, references.signals.shape[-1])
+    points = operating_points(references)
+    measured = healthy_reference(table[["efficiency", "temperature_c"]].to_numpy(), table, points)
+    healthy = front.healthy(references)
+    arrays, entries = [], []
+    for place, (speed, load) in enumerate(zip(points["n_in_rpm"], points["T_out_nm"], strict=True)):
+        lines = _fixed(healthy.lines[place], 4 * scale)
+        arrays += [f"static const swg_fixed line{place}[] = {pairs(lines)};\n"] if lines.size else []
+        arrays += [array(f"healthy{place}", healthy.numbers[place], storage="static const")]
+        of_point = ((table["n_in_rpm"] == speed) & (table["T_out_nm"] == load)).to_numpy()
+        facts = ", ".join(map(number, (speed, load, *measured[place])))
+        names = f"{f'line{place}' if lines.size else 'NULL'}, healthy{place}"
+        entries.append(f"{{{facts},\n    {_signal(references.where(of_point), speed, front.orders)},\n    {names}}}")
+    listed = ",\n".join(entries)
+    return (
+        f"{HEAD}{''.join(arrays)}static const swg_point points[] = {{\n{listed}}};\n"
+        f"const swg_gear swg_this_gear = {{{number(saturation)}, {number(scale)}, {len(points)}, points}};\n"
+    )
+
+
+def _scale(saturation: float, samples: int) -> float:
+    """Counts to 1 mV/V: the largest power of 2 for which nothing overflows."""
+    return float(2 ** np.floor(np.log2(min(DEVIATION, SUM / samples) / (2 * saturation))))
+
+
+def _signal(references: Recordings, speed: float, orders: int) -> str:
+    """What one operating point says of the signals."""
+    length = whole_revolutions(speed, references.rate, references.signals.shape[-1])
+    clock = _Clock(length, speed / 60 / references.rate)
+    signals = references.signals[:, :, :length].astype(np.float64)
+    mean, extent = signals.mean(axis=(0, 2)), np.ptp(signals, axis=2).mean(axis=0)
+    turn, offset = clock.wave(max(orders, 1)), clock.offset(max(orders, 1))
+    return ", ".join([str(length), values(mean), values(extent), pairs(_fixed(turn, WAVE)), pairs(_parts(offset))])
+
+
+def _fixed(numbers: Complex[np.ndarray, "..."], unit: float) -> Int[np.ndarray, "number part"]:
+    return np.rint(_parts(numbers) * unit).astype(np.int64)
+
+
+def _parts(numbers: Complex[np.ndarray, "..."]) -> Float[np.ndarray, "number part"]:
+    """Real and imaginary parts, one after the other whatever the shape was."""
+    return np.stack([numbers.real, numbers.imag], axis=-1).reshape(-1, 2)

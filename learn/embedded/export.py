@@ -1,0 +1,76 @@
+"""A trained method as a folder of C files that needs nothing but a C compiler and its mathematical functions."""
+
+import shutil
+from collections.abc import Iterable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from learn.embedded import forest, network
+from learn.embedded.commissioning import gear_source
+from learn.embedded.front import front
+from learn.embedded.source import Sizes, macros
+from learn.inputs import Representation
+from swgsim.files import remedied
+from swgsim.recordings import Recordings
+
+SOURCES = Path(__file__).parent / "c"
+NUMBERS = ("float", "int16", "int8")
+
+
+def export_c(
+    model: Any,
+    representation: Representation,
+    references: Recordings,
+    folder: Path,
+    *,
+    numbers: str = "float",
+    saturation: float = 2.0,
+) -> None:
+    """Write a trained classifier with its features, for one gear; the folder is complete or as it was before.
+
+    Parameters
+    ----------
+    model : classifier
+        A trained forest, logistic regression, perceptron or convolutional network.
+    representation : Representation
+        The features it was trained on: a selection of Table III, harmonics or residual.
+    references : Recordings
+        Healthy recordings of the gear at all its operating points.
+    folder : Path
+        What it held is removed.
+    numbers : {"float", "int16", "int8"}
+        How trained numbers are kept; forests have no int8.
+    saturation : float
+        Limit of the gauges' amplifiers [mV/V].
+
+    Raises
+    ------
+    ValueError
+        If the method has no C, or the references do not fit.
+    """
+    if numbers not in NUMBERS:
+        raise ValueError(f"unknown numbers {numbers!r}; choose from {', '.join(NUMBERS)}")
+    parts = front(representation)
+    gear = gear_source(references, parts, saturation)
+    with remedied(folder):
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        with TemporaryDirectory(dir=folder.parent, prefix=f".{folder.name}.") as aside:
+            made = Path(aside) / folder.name
+            made.mkdir()
+            write = forest.write if forest.is_forest(model) else network.write
+            files, sizes = write(model, made, numbers)
+            (made / "gear.c").write_text(gear)
+            (made / "model.h").write_text(_model_header(model.classes_, {**parts.sizes, **sizes}))
+            for name in (*parts.files, *files):
+                shutil.copyfile(SOURCES / name, made / name)
+            if folder.exists():
+                shutil.rmtree(folder)
+            made.rename(folder)
+
+
+def _model_header(classes: Iterable[Any], sizes: Sizes) -> str:
+    names = [str(name) for name in classes]
+    listed = ", ".join(f'"{name}"' for name in names)
+    own = macros({"CLASSES": len(names), "CLASS_NAMES": f"{{{listed}}}", **sizes})
+    return f"/* Sizes of the exported method. */\n#ifndef MODEL_H\n#define MODEL_H\n\n{own}\n#endif\n"

@@ -1,0 +1,134 @@
+"""The part of an exported method before the classifier: which C files make its features, and from which numbers."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+from jaxtyping import Complex, Float
+
+from learn.embedded.source import Sizes, values
+from learn.features import Selection, signal_quantities
+from learn.harmonics import RIPPLE_ORDERS, SMALLEST_RIPPLE, WAVE_NUMBERS, Harmonics
+from learn.inputs import Representation
+from learn.references import HEALTHY, healthy_reference
+from learn.residuals import BENCH, ERRORS, healthy_lines, leakage
+from learn.signals import Signals
+from swgsim.recordings import SENSORS, Recordings
+
+COMMON = ("swg.h", "window.c", "decide.c", "lines.h", "lines.c")
+
+
+class Healthy(NamedTuple):
+    """What features are set in relation to, at each operating point in the order of :func:`operating_points`.
+
+    Order lines [mV/V], array (point, sensor, order), which may be empty (point, 0, 0); and other numbers.
+    """
+
+    lines: Complex[np.ndarray, "point sensor order"]
+    numbers: Float[np.ndarray, "point number"]
+
+
+@dataclass(frozen=True)
+class Front:
+    """How features are made on the microcontroller.
+
+    Attributes
+    ----------
+    files : tuple of str
+        Names of the C files, of :mod:`learn.embedded`'s folder ``c``.
+    sizes : Sizes
+        Their macros.
+    orders : int
+        Highest order whose lines are taken.
+    healthy : callable
+        From the healthy recordings of a gear, what features are set in relation to.
+    """
+
+    files: tuple[str, ...]
+    sizes: Sizes
+    orders: int
+    healthy: Callable[[Recordings], Healthy]
+
+
+def front(representation: Representation) -> Front:
+    """The front end that makes the features of a representation.
+
+    Raises
+    ------
+    ValueError
+        If there is none in C for this representation.
+    """
+    if isinstance(representation, Selection):
+        return _selection(representation)
+    if isinstance(representation, Harmonics):
+        columns = len(SENSORS) + len(WAVE_NUMBERS) * (representation.orders // 2 + 1) + 6 * len(RIPPLE_ORDERS)
+        ripple = values(np.array(RIPPLE_ORDERS))
+        own: Sizes = {"RIPPLE_ORDERS": ripple, "SMALLEST_RIPPLE": SMALLEST_RIPPLE}
+        return _of_residual(representation, "harmonics.c", columns, own)
+    if isinstance(representation, Signals) and representation.name == "residual":
+        points = representation.points
+        cosines = values(np.cos(2 * np.pi * np.arange(points) / points)).replace("\n", "\\\n")
+        return _of_residual(representation, "signal.c", len(SENSORS) * points, {"POINTS": points, "COSINES": cosines})
+    name = getattr(representation, "name", type(representation).__name__)
+    raise ValueError(
+        f"features={name} have no front end in C: take selection_1, selection_2, selection_3, harmonics or residual"
+    )
+
+
+def operating_points(references: Recordings) -> pd.DataFrame:
+    """One row of facts for each operating point of a gear's healthy recordings, by speed and load."""
+    return references.table.drop_duplicates(HEALTHY).sort_values(HEALTHY)
+
+
+def _selection(selection: Selection) -> Front:
+    orders = selection.orders if selection.spectrum != "none" else 0
+    sizes: Sizes = {
+        "ORDERS": orders,
+        "COLUMNS": len(selection.names),
+        "FLOOR": float(selection.floor),
+        "STATISTICS": int(selection.statistics),
+        "GAUGE_SPECTRUM": int(selection.spectrum in ("gauges", "both")),
+        "DIFFERENCE_SPECTRUM": int(selection.spectrum in ("differences", "both")),
+        "EFFICIENCY": int(selection.efficiency in ("eta_rel", "both")),
+        "ROOT_OF_EFFICIENCY": int(selection.efficiency in ("eta2_rel", "both")),
+        "OPERATING_POINT": int(selection.operating_point),
+    }
+
+    def healthy(references: Recordings) -> Healthy:
+        quantities = signal_quantities(references, selection)
+        numbers = healthy_reference(quantities, references.table, operating_points(references))
+        return Healthy(np.empty((len(numbers), 0, 0), complex), numbers)
+
+    return Front((*COMMON, "selection.c"), sizes, orders, healthy)
+
+
+def _of_residual(representation: Harmonics | Signals, file: str, columns: int, own: Sizes) -> Front:
+    """With columns made of the residual lines, the side columns and the errors that were taken out."""
+    orders, acquisitions = representation.orders, representation.acquisitions
+    sizes: Sizes = {
+        "ORDERS": orders,
+        "COLUMNS": columns + 3 * representation.efficiency + 3 * representation.operating_point + len(ERRORS),
+        "LIKELY_LOAD": BENCH.load,
+        "LIKELY_ANGLE": BENCH.angle,
+        "LIKELY_SPEED": BENCH.speed,
+        "LIKELY_LINE": BENCH.line,
+        "EFFICIENCY": int(representation.efficiency),
+        "OPERATING_POINT": int(representation.operating_point),
+        **own,
+    }
+    files = (*COMMON, "residual.h", "residual.c", file)
+    return Front(files, sizes, orders, lambda references: _healthy_lines(references, orders, acquisitions))
+
+
+def _healthy_lines(references: Recordings, orders: int, acquisitions: int | None) -> Healthy:
+    """The healthy lines and their change with each error, of :func:`learn.residuals.residual`."""
+    rows = references.table.index.get_indexer(operating_points(references).index)
+    asked = references.where(rows)  # a recording of each point as a sample, for which the healthy lines are asked
+    asked = replace(asked, table=asked.table.assign(reference=False))
+    healthy = healthy_lines([references, asked], orders, acquisitions)
+    lines = healthy.reference
+    turned = 1j * np.arange(orders + 1) * lines
+    changes = np.stack([healthy.slope, turned, leakage(lines, healthy.revolutions)], axis=1)
+    return Healthy(lines, np.stack([changes.real, changes.imag], axis=-1).reshape(len(rows), -1))
