@@ -1,0 +1,95 @@
+"""What the study finds out about one method: accuracy of its code, and what the code takes of microcontrollers."""
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from learn import settings
+from learn.embedded.fold import Fold, folds, judged
+from learn.embedded.machines import CORTEX_M4, CORTEX_M7, Machine, build, missing
+from learn.embedded.proof import agreement, operations, together
+from learn.embedded.running import decide
+from learn.embedded.sizes import sizes
+from learn.inputs import SPECIMEN, Layout
+from learn.levels import NewGears
+from learn.splits import LeaveOneGearOut
+
+MICROCONTROLLERS = (CORTEX_M4, CORTEX_M7)
+
+
+def outcome(config: Mapping[str, Any], name: str) -> list[dict[str, Any]]:
+    """One entry for each kind of numbers in which a method is exported.
+
+    Parameters
+    ----------
+    config : mapping
+        Resolved configuration ``conf/embedded.yaml``.
+    name : str
+        Of one of its methods.
+    """
+    method = config["methods"][name]
+    representation = settings.representation(config["inputs"][method["features"]])
+
+    def make(layout: Layout) -> Any:
+        return settings.classifier(config["classifiers"][method["classifier"]], layout)(**method["options"])
+
+    unseen, disturbed = (Path(config["data"]) / f"{config[each]}.h5" for each in ("unseen", "disturbed"))
+    every_variant = NewGears(judged=config["judged"], development=0, labelled=0, unlabelled=0, kept_out=0)
+    (new,) = folds(unseen, every_variant, representation, make)
+    others = list(folds(disturbed, LeaveOneGearOut(), representation, make))
+    return [
+        {"method": name, "numbers": numbers, **_accuracy(new, others, numbers), **_cost(new, numbers, config)}
+        for numbers in method["numbers"]
+    ]
+
+
+def _accuracy(new: Fold, others: list[Fold], numbers: str) -> dict[str, Any]:
+    errors, equal = judged(new, numbers)
+    tables, agreements = zip(*(judged(fold, numbers) for fold in others), strict=True)
+    specimens = errors.groupby(list(SPECIMEN), observed=True)["error"].mean().reset_index()
+    return {
+        "specimens": specimens.astype({"label": str}).to_dict("list"),
+        "disturbed": 100 - float(np.mean([table["error"].mean() for table in tables])),
+        "host": asdict(together([equal, *agreements])),
+    }
+
+
+def _cost(fold: Fold, numbers: str, config: Mapping[str, Any]) -> dict[str, Any]:
+    """Of the first gear's code, on the microcontrollers whose tools are there."""
+    there = [machine for machine in MICROCONTROLLERS if not missing(machine)]
+    part = fold.of_gear(fold.gears[0])
+    with TemporaryDirectory(prefix="swg-") as folder:
+        part.export(Path(folder) / "c", numbers)
+        taken = sizes(Path(folder) / "c", CORTEX_M4) if CORTEX_M4 in there else None
+        return {
+            "flash": dict(taken.flash) if taken else {},
+            "ram": taken.ram if taken else None,
+            "machines": {machine.name: _on(machine, part, Path(folder), config) for machine in there},
+        }
+
+
+def _on(machine: Machine, part: Fold, folder: Path, config: Mapping[str, Any]) -> dict[str, Any]:
+    """Labels on some of the recordings, evenly chosen; instructions and stack on a few of them."""
+    program = build(folder / "c", machine, folder / machine.name)
+    samples = part.recordings.samples
+
+    def some(count: int) -> np.ndarray:
+        return np.linspace(0, len(samples) - 1, min(count, len(samples))).round().astype(int)
+
+    def said(rows: np.ndarray, counted: bool) -> Any:
+        chosen = samples.where(rows)
+        return decide(program, machine, chosen.signals, operations(chosen.table), counted=counted)
+
+    rows = some(config["proof"])
+    counts = said(some(config["counted"]), True)
+    return {
+        "agreement": asdict(agreement(said(rows, False), part.model.predict_proba(part.features[rows]))),
+        "instructions": pd.DataFrame(counts.instructions).mean().to_dict(),
+        "most_instructions": int((counts.instructions["window"] + counts.instructions["decide"]).max()),
+        "stack": counts.stack,
+    }

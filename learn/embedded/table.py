@@ -1,0 +1,146 @@
+"""Results of the study as tables."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from learn.bootstrap import hierarchical_bootstrap, mean_error
+from learn.embedded.proof import Agreement
+from learn.embedded.trade import Part, Recommendation
+from learn.inputs import SPECIMEN
+from swgsim.seeds import generator
+
+# C files by what they are for; other names are those of the compiler's libraries.
+FEATURES = ("window", "decide", "lines", "residual", "harmonics", "signal", "selection")
+CLASSIFIERS = ("dense", "parameters", "perceptron", "convolutional", "forest")
+COUNTER = "cortex-m4"  # of instructions; other Cortex-M with single precision take as many
+
+
+def name_of(entry: Mapping[str, Any]) -> str:
+    """A variant's name."""
+    return f"{entry['method']}, {entry['numbers']}"
+
+
+def errors_of(results: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
+    """Error [%] of each variant (column) for every specimen of the gears never seen."""
+    first = pd.DataFrame(results[0]["specimens"])[list(SPECIMEN)]
+    columns = {name_of(entry): np.array(entry["specimens"]["error"]) for entry in results}
+    return first.assign(**columns)
+
+
+def variants_of(results: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
+    """One row for each variant, with sizes and instructions where microcontrollers were there.
+
+    Returns
+    -------
+    DataFrame
+        Indexed by name: ``unseen``, ``low``, ``high`` and ``disturbed`` accuracy [%]; ``equal`` and ``recordings``, on
+        this machine, and the same of each microcontroller; ``difference`` of a probability; ``flash`` and its parts,
+        ``ram`` with ``stack`` in it [bytes]; ``instructions`` and its parts.
+    """
+    errors = errors_of(results)
+    accuracy = 100 - hierarchical_bootstrap(errors, mean_error, generator("embedded", 1))
+    rows = {}
+    for entry in results:
+        of_gears = accuracy.loc[name_of(entry)]
+        host = Agreement(**entry["host"])
+        row = {
+            "unseen": of_gears["value"],
+            "low": of_gears["high"],
+            "high": of_gears["low"],
+            "disturbed": entry["disturbed"],
+            "recordings": host.recordings,
+            "decided": host.decided,
+            "equal": host.equal,
+            "difference": host.difference,
+        }
+        rows[name_of(entry)] = row | _cost(entry) if entry["machines"] else row
+    return pd.DataFrame.from_dict(rows, orient="index").rename_axis("variant")
+
+
+def _cost(entry: Mapping[str, Any]) -> dict[str, Any]:
+    flash = pd.Series(entry["flash"])
+    features, classifier = (flash.reindex(names).sum() for names in (FEATURES, CLASSIFIERS))
+    counts = entry["machines"][COUNTER]["instructions"]
+    stack = max(machine["stack"] for machine in entry["machines"].values())
+    cost = {
+        "flash": int(flash.sum()),
+        "flash_features": int(features),
+        "flash_classifier": int(classifier),
+        "flash_gear": int(flash["gear"]),
+        "flash_library": int(flash.sum() - features - classifier - flash["gear"]),
+        "ram": entry["ram"] + stack,
+        "stack": stack,
+        "instructions": counts["window"] + counts["decide"],
+        "instructions_window": counts["window"],
+        "instructions_features": counts["features"],
+        "instructions_classify": counts["classify"],
+    }
+    for name, machine in entry["machines"].items():
+        found = Agreement(**machine["agreement"])
+        cost |= {f"{name}_equal": found.equal, f"{name}_recordings": found.recordings}
+    return cost
+
+
+def markdown(variants: pd.DataFrame, part: Part, advice: Recommendation | None) -> str:
+    """The table and what is recommended, in words."""
+    head = [
+        "method and its numbers",
+        "gears never seen [%]",
+        "disturbed [%]",
+        "labels as in Python",
+        "probabilities within",
+    ]
+    lines = [[name, *_accuracies(row)] for name, row in variants.iterrows()]
+    if "flash" in variants:
+        head += ["on the microcontrollers", "flash [kB]", "of it classifier", "gear", "RAM [kB]", "instructions [10³]",
+                 "of it window", "classifier"]  # fmt: skip
+        lines = [line + _costs(row) for line, (_, row) in zip(lines, variants.iterrows(), strict=True)]
+    aligned = "|".join([":--", *["--:"] * (len(head) - 1)])
+    table = "\n".join(f"| {' | '.join(map(str, line))} |" for line in lines)
+    return f"| {' | '.join(head)} |\n|{aligned}|\n{table}\n\n{_in_words(variants, part, advice)}\n"
+
+
+def _accuracies(row: pd.Series) -> list[str]:
+    unseen = f"{row['unseen']:.1f} ({row['low']:.1f} to {row['high']:.1f})"
+    same = f"{row['equal']:.0f} of {row['recordings']:.0f}"
+    return [unseen, f"{row['disturbed']:.1f}", same, f"{row['difference']:.0e}"]
+
+
+def _costs(row: pd.Series) -> list[str]:
+    equal, asked = (
+        sum(value for name, value in row.items() if str(name).startswith("cortex") and str(name).endswith(end))
+        for end in ("_equal", "_recordings")
+    )
+    flash = [f"{row[name] / 1024:.1f}" for name in ("flash", "flash_classifier", "flash_gear", "ram")]
+    counts = [f"{row[name] / 1000:.0f}" for name in ("instructions", "instructions_window", "instructions_classify")]
+    return [f"{equal:.0f} of {asked:.0f}", *flash, *counts]
+
+
+def _in_words(variants: pd.DataFrame, part: Part, advice: Recommendation | None) -> str:
+    asked = (
+        f"{part.flash / 1024:.0f} kB of flash, {part.ram / 1024:.0f} kB of RAM, {part.rate:g} decisions a second and "
+        f"{part.instructions / 1e6:g} million instructions a second"
+    )
+    if "flash" not in variants:
+        return "Flash, RAM and instructions need the tools that scripts/install_arm.sh installs."
+    out = [name for name in variants.index[~part.fits(variants)]]
+    left_out = f" These do not fit: {'; '.join(out)}." if out else ""
+    if advice is None:
+        return f"None of the methods fits in {asked}."
+    row = variants.loc[advice.variant]
+    chosen = (
+        f"For {asked}: **{advice.variant}**, {row['flash'] / 1024:.1f} kB of flash, {row['ram'] / 1024:.1f} kB of RAM, "
+        f"{part.rate * row['instructions'] / 1e6:.1f} million instructions a second."
+    )
+    if advice.variant == advice.most_accurate:
+        return f"{chosen} It is the most accurate of those that fit, and none that is smaller does as well.{left_out}"
+    more = (
+        f"{advice.difference:.1f} points more ({advice.low:.1f} to {advice.high:.1f}, gears and specimens drawn anew)"
+    )
+    return (
+        f"{chosen} Of those that fit, {advice.most_accurate} is the most accurate; this one errs {more}, which is not "
+        f"clearly more, and it is the smallest of which that can be said.{left_out}"
+    )

@@ -1,0 +1,85 @@
+"""Which exported method to take for a given part: what fits, what is not clearly worse than the best, the smallest."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from learn.bootstrap import difference_to, hierarchical_bootstrap
+from learn.inputs import SPECIMEN
+
+
+@dataclass(frozen=True)
+class Part:
+    """A microcontroller and what is asked of it.
+
+    Attributes
+    ----------
+    flash, ram : int
+        Bytes.
+    rate : float
+        Decisions per second.
+    instructions : float
+        Per second, that the firmware leaves for this.
+    """
+
+    flash: int
+    ram: int
+    rate: float
+    instructions: float
+
+    @classmethod
+    def of(cls, config: Mapping[str, float]) -> "Part":
+        """That of ``part`` of a configuration."""
+        kib = 1024
+        return cls(
+            round(config["flash_kib"] * kib), round(config["ram_kib"] * kib), config["rate"], 1e6 * config["mips"]
+        )
+
+    def fits(self, variants: pd.DataFrame) -> pd.Series:
+        """Whether each variant (columns flash, ram, instructions) fits."""
+        return (
+            (variants["flash"] <= self.flash)
+            & (variants["ram"] <= self.ram)
+            & (self.rate * variants["instructions"] <= self.instructions)
+        )
+
+
+class Recommendation(NamedTuple):
+    """The chosen variant, the most accurate one that fits, and how much more the chosen one errs [points]."""
+
+    variant: str
+    most_accurate: str
+    difference: float
+    low: float
+    high: float
+
+
+def recommend(
+    variants: pd.DataFrame, errors: pd.DataFrame, part: Part, rng: np.random.Generator
+) -> Recommendation | None:
+    """The smallest of those that fit and are not clearly worse than the most accurate of them; None if none fits.
+
+    Parameters
+    ----------
+    variants : DataFrame
+        Indexed by variant: flash, ram, instructions.
+    errors : DataFrame
+        Errors [%] of each variant (column) on gears never seen, as :func:`learn.bootstrap.hierarchical_bootstrap`
+        takes them.
+    part : Part
+    rng : Generator
+    """
+    fitting = variants.index[part.fits(variants)]
+    if fitting.empty:
+        return None
+    of_fitting = errors[[*SPECIMEN, *fitting]]
+    best = str(of_fitting[list(fitting)].mean().idxmin())
+    others = hierarchical_bootstrap(of_fitting, difference_to(best), rng)
+    none = pd.DataFrame({"value": 0.0, "low": 0.0, "high": 0.0}, index=pd.Index([best]))
+    table = pd.concat([none, others])
+    candidates = table.index[~(table["low"] > 0)]
+    chosen = str(variants.loc[candidates, "flash"].idxmin())
+    return Recommendation(chosen, best, *(float(value) for value in table.loc[chosen].to_numpy()))

@@ -1,0 +1,92 @@
+"""What the study of exported methods concludes from its results, which are made up here."""
+
+import numpy as np
+import pytest
+
+from learn.embedded.figure import drawn
+from learn.embedded.report import run
+from learn.embedded.table import errors_of, markdown, variants_of
+from learn.embedded.trade import Part, recommend
+from learn.inputs import SPECIMEN
+
+PART = Part.of({"flash_kib": 128, "ram_kib": 32, "rate": 10, "mips": 24})
+# mean error on gears never seen [%] and flash [kB]; one that is best does not fit
+METHODS = {"huge": (5.0, 900), "large": (10.0, 100), "small": (10.5, 20), "tiny": (30.0, 5)}
+
+
+def entry(method, error, flash, rng, *, machines=True):
+    """A result as outcome.py gives it: errors of specimens scatter by five points around the method's."""
+    gears, labels, draws = (each.ravel() for each in np.meshgrid(range(8), ["A", "B", "C"], range(4), indexing="ij"))
+    columns = dict(zip(SPECIMEN, (gears.tolist(), labels.tolist(), draws.tolist()), strict=True))
+    agreement = {"recordings": 540, "decided": 540, "equal": 539, "difference": 2e-6}
+    counts = {"window": 400e3, "push": 700.0, "decide": 30e3, "features": 20e3, "classify": 9e3}
+    machine = {"agreement": agreement, "instructions": counts, "most_instructions": 431_000, "stack": 1000}
+    return {
+        "method": method,
+        "numbers": "float",
+        "specimens": columns | {"error": (error + centred(rng, len(gears))).tolist()},
+        "disturbed": 99.0,
+        "host": agreement,
+        "flash": {"window": 1024, "forest": 1024 * (flash - 3), "gear": 1024, "libm": 1024} if machines else {},
+        "ram": 2000 if machines else None,
+        "machines": {"cortex-m4": machine, "cortex-m7": machine} if machines else {},
+    }
+
+
+def centred(rng, count):
+    """Scatter whose mean is 0, so that the order of the methods is the one that was made up."""
+    scatter = 5 * rng.standard_normal(count)
+    return scatter - scatter.mean()
+
+
+def results(**options):
+    rng = np.random.default_rng(3)
+    return [entry(method, *each, rng, **options) for method, each in METHODS.items()]
+
+
+def advice_for(part):
+    found = results()
+    return recommend(variants_of(found), errors_of(found), part, np.random.default_rng(0))
+
+
+def test_the_smallest_that_is_not_clearly_worse_is_recommended():
+    advice = advice_for(PART)
+    assert (advice.variant, advice.most_accurate) == ("small, float", "large, float")
+    assert advice.low <= 0 < advice.difference < advice.high
+
+
+def test_what_does_not_fit_is_not_recommended():
+    assert advice_for(Part.of({"flash_kib": 6, "ram_kib": 32, "rate": 10, "mips": 24})).variant == "tiny, float"
+    assert advice_for(Part.of({"flash_kib": 128, "ram_kib": 2, "rate": 10, "mips": 24})) is None
+    assert advice_for(Part.of({"flash_kib": 128, "ram_kib": 32, "rate": 60, "mips": 24})) is None
+
+
+def test_the_table_adds_up_and_says_what_was_left_out():
+    found = results()
+    variants = variants_of(found)
+    parts = variants[["flash_features", "flash_classifier", "flash_gear", "flash_library"]].sum(axis=1)
+    assert parts.equals(variants["flash"])
+    assert (variants["flash"] == 1024 * np.array([flash for _, flash in METHODS.values()])).all()
+    assert (variants["low"] < variants["unseen"]).all()
+    assert (variants["unseen"] < variants["high"]).all()
+    text = markdown(variants, PART, advice_for(PART))
+    (line,) = (line for line in text.splitlines() if line.startswith("| small"))
+    assert "1078 of 1080" in line  # both microcontrollers
+    assert "**small, float**, 20.0 kB of flash, 2.9 kB of RAM, 4.3 million instructions" in text
+    assert "These do not fit: huge, float." in text
+    assert len(drawn(variants, PART).axes) == 4
+
+
+def test_without_the_tools_accuracies_are_left():
+    variants = variants_of(results(machines=False))
+    assert "scripts/install_arm.sh" in markdown(variants, PART, None)
+    assert "flash" not in variants
+    assert (variants["disturbed"] == 99.0).all()
+
+
+def test_an_absent_data_set_is_named_with_the_command_that_makes_it(tmp_path):
+    config = {"data": str(tmp_path), "unseen": "gears-bench", "disturbed": "paper-disturbed", "methods": {}}
+    config |= {"embedded": str(tmp_path), "report": str(tmp_path)}
+    with pytest.raises(ValueError, match="grid=gears condition=bench"):
+        run(config)
+    assert not list(tmp_path.iterdir())
