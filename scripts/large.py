@@ -15,7 +15,9 @@ from typing import Any
 
 ROOT = Path(__file__).parents[1]
 LIMIT = 2 * 2**30  # bytes
-VARIANTS = 60  # of the grid, at most
+OF_VARIANT = 36  # recordings: six classes at six operating points
+REFERENCES = 120  # healthy recordings of a gear
+VARIANTS = 60  # of a gear, at most
 SIZES = (1_000, 10_000, 100_000, 500_000)
 STAGES = ("generate", "inputs", "training")
 
@@ -47,8 +49,8 @@ def main() -> None:
 
 def measured(recordings: int, folder: Path) -> dict[str, Any]:
     """Milliseconds per recording of every stage, and the most memory that a stage needed, in all its processes."""
-    per_gear = 36 * VARIANTS + 120
-    variants, gears = (VARIANTS, round(recordings / per_gear)) if recordings > per_gear else (ceil(recordings / 38), 1)
+    gears = max(round(recordings / (OF_VARIANT * VARIANTS + REFERENCES)), 1)
+    variants = min(ceil((recordings / gears - REFERENCES) / OF_VARIANT), VARIANTS)
     made = ["grid=sampled", "condition=bench", f"grid.population.count={gears}", f"grid.variants={variants}"]
     if folder.exists():
         for left in folder.glob("sampled-bench.*"):
