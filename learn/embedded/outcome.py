@@ -55,7 +55,7 @@ def _accuracy(new: Fold, others: list[Fold], numbers: str) -> dict[str, Any]:
     return {
         "specimens": specimens.astype({"label": str}).to_dict("list"),
         "disturbed": 100 - float(np.mean([table["error"].mean() for table in tables])),
-        "host": asdict(together([equal, *agreements])),
+        "host": {"unseen": asdict(equal), "disturbed": asdict(together(agreements))},
     }
 
 

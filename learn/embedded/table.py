@@ -8,7 +8,7 @@ import pandas as pd
 
 from learn.bootstrap import hierarchical_bootstrap, mean_error
 from learn.embedded.proof import Agreement
-from learn.embedded.trade import Part, Recommendation
+from learn.embedded.trade import FAITHFUL, Part, Recommendation
 from learn.inputs import SPECIMEN
 from swgsim.seeds import generator
 
@@ -36,28 +36,33 @@ def variants_of(results: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        Indexed by name: ``unseen``, ``low``, ``high`` and ``disturbed`` accuracy [%]; ``equal`` and ``recordings``, on
-        this machine, and the same of each microcontroller; ``difference`` of a probability; ``flash`` and its parts,
-        ``ram`` with ``stack`` in it [bytes]; ``instructions`` and its parts.
+        Indexed by name: ``unseen``, ``low``, ``high`` and ``disturbed`` accuracy [%]; ``…_equal`` of ``…_recordings``
+        labels on both data sets and on each microcontroller, ``same``, the lowest share of them [%], and the largest
+        ``difference`` of a probability on gears never seen; ``flash`` and its parts, ``ram`` with ``stack`` in it
+        [bytes]; ``instructions`` and its parts.
     """
     errors = errors_of(results)
     accuracy = 100 - hierarchical_bootstrap(errors, mean_error, generator("embedded", 1))
     rows = {}
     for entry in results:
         of_gears = accuracy.loc[name_of(entry)]
-        host = Agreement(**entry["host"])
         row = {
             "unseen": of_gears["value"],
             "low": of_gears["high"],
             "high": of_gears["low"],
             "disturbed": entry["disturbed"],
-            "recordings": host.recordings,
-            "decided": host.decided,
-            "equal": host.equal,
-            "difference": host.difference,
+            "difference": entry["host"]["unseen"]["difference"],
         }
-        rows[name_of(entry)] = row | _cost(entry) if entry["machines"] else row
+        rows[name_of(entry)] = row | _agreement(entry) | (_cost(entry) if entry["machines"] else {})
     return pd.DataFrame.from_dict(rows, orient="index").rename_axis("variant")
+
+
+def _agreement(entry: Mapping[str, Any]) -> dict[str, Any]:
+    of_machines = {name: machine["agreement"] for name, machine in entry["machines"].items()}
+    found = {name: Agreement(**each) for name, each in {**entry["host"], **of_machines}.items()}
+    counts = {f"{name}_equal": each.equal for name, each in found.items()}
+    counts |= {f"{name}_recordings": each.recordings for name, each in found.items()}
+    return {**counts, "same": min(100 * each.equal / each.recordings for each in found.values())}
 
 
 def _cost(entry: Mapping[str, Any]) -> dict[str, Any]:
@@ -65,7 +70,7 @@ def _cost(entry: Mapping[str, Any]) -> dict[str, Any]:
     features, classifier = (flash.reindex(names).sum() for names in (FEATURES, CLASSIFIERS))
     counts = entry["machines"][COUNTER]["instructions"]
     stack = max(machine["stack"] for machine in entry["machines"].values())
-    cost = {
+    return {
         "flash": int(flash.sum()),
         "flash_features": int(features),
         "flash_classifier": int(classifier),
@@ -78,24 +83,15 @@ def _cost(entry: Mapping[str, Any]) -> dict[str, Any]:
         "instructions_features": counts["features"],
         "instructions_classify": counts["classify"],
     }
-    for name, machine in entry["machines"].items():
-        found = Agreement(**machine["agreement"])
-        cost |= {f"{name}_equal": found.equal, f"{name}_recordings": found.recordings}
-    return cost
 
 
 def markdown(variants: pd.DataFrame, part: Part, advice: Recommendation | None) -> str:
     """The table and what is recommended, in words."""
-    head = [
-        "method and its numbers",
-        "gears never seen [%]",
-        "disturbed [%]",
-        "labels as in Python",
-        "probabilities within",
-    ]
+    head = ["method and its numbers", "gears never seen [%]", "disturbed [%]",
+            "labels as in Python", "disturbed", "probabilities within"]  # fmt: skip
     lines = [[name, *_accuracies(row)] for name, row in variants.iterrows()]
     if "flash" in variants:
-        head += ["on the microcontrollers", "flash [kB]", "of it classifier", "gear", "RAM [kB]", "instructions [10³]",
+        head += ["on a Cortex-M4", "M7", "flash [kB]", "of it classifier", "gear", "RAM [kB]", "instructions [10³]",
                  "of it window", "classifier"]  # fmt: skip
         lines = [line + _costs(row) for line, (_, row) in zip(lines, variants.iterrows(), strict=True)]
     aligned = "|".join([":--", *["--:"] * (len(head) - 1)])
@@ -105,18 +101,18 @@ def markdown(variants: pd.DataFrame, part: Part, advice: Recommendation | None) 
 
 def _accuracies(row: pd.Series) -> list[str]:
     unseen = f"{row['unseen']:.1f} ({row['low']:.1f} to {row['high']:.1f})"
-    same = f"{row['equal']:.0f} of {row['recordings']:.0f}"
-    return [unseen, f"{row['disturbed']:.1f}", same, f"{row['difference']:.0e}"]
+    same = [_of(row, name) for name in ("unseen", "disturbed")]
+    return [unseen, f"{row['disturbed']:.1f}", *same, f"{row['difference']:.0e}"]
 
 
 def _costs(row: pd.Series) -> list[str]:
-    equal, asked = (
-        sum(value for name, value in row.items() if str(name).startswith("cortex") and str(name).endswith(end))
-        for end in ("_equal", "_recordings")
-    )
     flash = [f"{row[name] / 1024:.1f}" for name in ("flash", "flash_classifier", "flash_gear", "ram")]
     counts = [f"{row[name] / 1000:.0f}" for name in ("instructions", "instructions_window", "instructions_classify")]
-    return [f"{equal:.0f} of {asked:.0f}", *flash, *counts]
+    return [_of(row, "cortex-m4"), _of(row, "cortex-m7"), *flash, *counts]
+
+
+def _of(row: pd.Series, name: str) -> str:
+    return f"{row[f'{name}_equal']:.0f} of {row[f'{name}_recordings']:.0f}"
 
 
 def _in_words(variants: pd.DataFrame, part: Part, advice: Recommendation | None) -> str:
@@ -127,7 +123,9 @@ def _in_words(variants: pd.DataFrame, part: Part, advice: Recommendation | None)
     if "flash" not in variants:
         return "Flash, RAM and instructions need the tools that scripts/install_arm.sh installs."
     out = [name for name in variants.index[~part.fits(variants)]]
+    unlike = variants.index[variants["same"] < FAITHFUL]
     left_out = f" These do not fit: {'; '.join(out)}." if out else ""
+    left_out += f" Less than {FAITHFUL} % of labels as in Python: {'; '.join(unlike)}." if len(unlike) else ""
     if advice is None:
         return f"None of the methods fits in {asked}."
     row = variants.loc[advice.variant]

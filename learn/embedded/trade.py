@@ -1,4 +1,4 @@
-"""Which exported method to take for a given part: what fits, what is not clearly worse than the best, the smallest."""
+"""Which exported method to take for a part: the smallest that fits, is faithful and not clearly worse than the best."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,6 +9,8 @@ import pandas as pd
 
 from learn.bootstrap import difference_to, hierarchical_bootstrap
 from learn.inputs import SPECIMEN
+
+FAITHFUL = 99.5  # labels as in Python, at least [%]
 
 
 @dataclass(frozen=True)
@@ -60,19 +62,19 @@ class Recommendation(NamedTuple):
 def recommend(
     variants: pd.DataFrame, errors: pd.DataFrame, part: Part, rng: np.random.Generator
 ) -> Recommendation | None:
-    """The smallest of those that fit and are not clearly worse than the most accurate of them; None if none fits.
+    """The smallest of those that fit, are faithful and not clearly worse than the best of them; None if none is.
 
     Parameters
     ----------
     variants : DataFrame
-        Indexed by variant: flash, ram, instructions.
+        Indexed by variant: flash, ram, instructions, and same, the share of labels as in Python [%].
     errors : DataFrame
         Errors [%] of each variant (column) on gears never seen, as :func:`learn.bootstrap.hierarchical_bootstrap`
         takes them.
     part : Part
     rng : Generator
     """
-    fitting = variants.index[part.fits(variants)]
+    fitting = variants.index[part.fits(variants) & (variants["same"] >= FAITHFUL)]
     if fitting.empty:
         return None
     of_fitting = errors[[*SPECIMEN, *fitting]]
