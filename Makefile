@@ -94,7 +94,7 @@ embedded: $(READY)  ## classifiers as C on microcontrollers, report/embedded.md;
 	$(BIN)/python scripts/generate.py grid=$(GRID) condition=disturbed
 	$(BIN)/python scripts/embedded.py unseen=$(GEARS)-bench disturbed=$(GRID)-disturbed \
 	    $(if $(SMALL),judged=2 proof=72 counted=4 $(addprefix ~methods.,$(LARGER)))
-	$(BIN)/python scripts/export.py grid=$(GEARS) target=c numbers=int8
+	$(BIN)/python scripts/export.py grid=$(GEARS) target=c numbers=int16
 	$(BIN)/python scripts/export.py grid=$(GEARS) target=onnx
 
 test: $(READY)  ## all tests

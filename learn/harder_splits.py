@@ -128,7 +128,7 @@ class LeaveOperatingPointOut:
             )
         group = _dealt(table, self.folds, "folds", self.seed)
         for number, (speed, load) in enumerate(points):
-            here, chosen = point == number, group == number % self.folds
+            here, chosen = point.ravel() == number, group == number % self.folds  # NumPy 2.0 gives a column
             name = f"{_written(speed)} rpm, {_written(load)} N m"
             yield Split(name, np.flatnonzero(~here & ~chosen), np.flatnonzero(here & chosen))
 

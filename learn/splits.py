@@ -111,7 +111,7 @@ def independent_groups(features: Inputs, table: pd.DataFrame) -> Int[np.ndarray,
 
     variant = table.groupby(list(SPECIMEN), observed=True).ngroup().to_numpy()
     _, content = np.unique(np.round(features, 9), axis=0, return_inverse=True)
-    node = variant.max() + 1 + content
+    node = variant.max() + 1 + content.ravel()  # of NumPy 2.0 a column
     size = node.max() + 1
     graph = coo_array((np.ones(len(table)), (variant, node)), shape=(size, size))
     _, component = connected_components(graph, directed=False)

@@ -4,6 +4,7 @@ Every job hands out its tasks here, and keeps what they give as files, so that a
 """
 
 import re
+import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -75,6 +76,8 @@ class Engine:
             If the cluster does not answer, is not fit or is lost; it names the address and the remedy.
         """
         if self.scheduler is None:
+            # A worker that has grown by 300 MiB is replaced, and says so as if it were an error.
+            warnings.filterwarnings("ignore", "A worker stopped while some jobs were given", UserWarning)
             pool = joblib.Parallel(min(self.workers or joblib.cpu_count(), max(count, 1)), return_as="generator")
             yield from pool(joblib.delayed(function)(*task) for task in tasks)
             return

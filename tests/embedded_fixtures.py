@@ -1,14 +1,18 @@
-"""The exported C on this machine, without a program around it: its functions called from Python."""
+"""Trained methods, and their exported C without a program around it: its functions called from Python."""
 
 import ctypes
 import shutil
 import subprocess
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 import pytest
+from fabricated import recordings
 
+from learn.evaluation import fit
 from swgsim.recordings import CLASSES, Recordings
 
 needs_compiler = pytest.mark.skipif(shutil.which("gcc") is None, reason="no gcc on this machine")
@@ -30,6 +34,27 @@ void drive(const swg_operation *operation, const float *sample, int count, int s
     }
 }
 """
+
+
+def noisy() -> Recordings:
+    """Recordings of three gears with noise, without which rounding would be all that some features hold."""
+    clean = recordings(gears=3, variants=6)
+    noise = 1e-3 * np.random.default_rng(7).standard_normal(clean.signals.shape)
+    table = clean.table.assign(temperature_c=25.0 + clean.table["variant"])
+    return replace(clean, signals=(clean.signals + noise).astype(np.float32), table=table)
+
+
+def of_gear(data: Recordings, gear: int = 2) -> Recordings:
+    return data.where((data.table["gear"] == gear).to_numpy())
+
+
+def trained(data: Recordings, representation: Any, model: Any) -> tuple[Any, np.ndarray]:
+    """A model that has seen all gears but the second, and the features of that one."""
+    made = representation.learning_set([data])
+    y = made.table["label"].astype(str).to_numpy()
+    others = made.table["gear"].to_numpy() != 2
+    fit(model, made.features[others], y[others])
+    return model, made.features[~others]
 
 
 def compiled(folder: Path) -> ctypes.CDLL:

@@ -1,16 +1,13 @@
 """The exported C makes the features and the decisions of its original, and none where the window is bad."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
-from embedded_fixtures import compiled, driven, driven_signals, needs_compiler
+from embedded_fixtures import compiled, driven, driven_signals, needs_compiler, noisy, of_gear, trained
 from fabricated import recordings
 
 from learn.classical import multi_layer_perceptron
 from learn.embedded.export import export_c
 from learn.embedded.layers import layers_of
-from learn.evaluation import fit
 from learn.features import Selection
 from learn.harmonics import Harmonics
 from learn.lines import ResidualLines
@@ -30,23 +27,7 @@ pytestmark = needs_compiler
 
 @pytest.fixture(scope="module")
 def data():
-    """Recordings with noise, without which rounding would be all that some features hold."""
-    clean = recordings(gears=3, variants=6)
-    noise = 1e-3 * np.random.default_rng(7).standard_normal(clean.signals.shape)
-    table = clean.table.assign(temperature_c=25.0 + clean.table["variant"])
-    return replace(clean, signals=(clean.signals + noise).astype(np.float32), table=table)
-
-
-def of_gear(data, gear=2):
-    return data.where(data.table["gear"] == gear)
-
-
-def trained(data, representation, model):
-    made = representation.learning_set([data])
-    y = made.table["label"].astype(str).to_numpy()
-    others = made.table["gear"].to_numpy() != 2
-    fit(model, made.features[others], y[others])
-    return model, made.features[~others]
+    return noisy()
 
 
 @pytest.mark.parametrize("representation", REPRESENTATIONS, ids=lambda each: type(each).__name__)

@@ -27,12 +27,19 @@ def entry(method, error, flash, equal, rng, *, machines=True):
     columns = dict(zip(SPECIMEN, (gears.tolist(), labels.tolist(), draws.tolist()), strict=True))
     agreement = {"recordings": 540, "decided": 540, "equal": 539, "difference": 2e-6}
     counts = {"window": 400e3, "push": 700.0, "decide": 30e3, "features": 20e3, "classify": 9e3}
-    machine = {"agreement": agreement, "instructions": counts, "most_instructions": 431_000, "stack": 1000}
+    machine = {
+        "agreement": agreement,
+        "instructions": counts,
+        "most_instructions": 431_000,
+        "longest_push": 700,
+        "stack": 1000,
+    }
     return {
         "method": method,
         "numbers": "float",
         "specimens": columns | {"error": (error + centred(rng, len(gears))).tolist()},
         "disturbed": 99.0,
+        "sanitized": agreement,
         "host": {"unseen": agreement, "disturbed": {**agreement, "equal": equal}},
         "flash": {"window": 1024, "forest": 1024 * (flash - 3), "gear": 1024, "libm": 1024} if machines else {},
         "ram": 2000 if machines else None,

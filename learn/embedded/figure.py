@@ -3,6 +3,7 @@
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from learn.embedded.trade import Part
 from swgsim import style
@@ -13,6 +14,7 @@ COSTS = {"flash": "flash [kB]", "instructions": "instructions per decision [10³
 UNITS = {"flash": 1024.0, "instructions": 1000.0}
 ACCURACIES = {"unseen": "gears never seen [%]", "disturbed": "disturbed recordings [%]"}
 GREY = "#888888"
+BESIDE = ((4, 4), (4, -11), (-13, 4), (-13, -11))  # a marker, in turn, for numbers of neighbours not to overlap [pt]
 
 
 def drawn(variants: pd.DataFrame, part: Part) -> Figure:
@@ -33,7 +35,9 @@ def drawn(variants: pd.DataFrame, part: Part) -> Figure:
             _points(axes, variants, accuracy, cost)
             axes.axvline(limits[cost] / UNITS[cost], color=GREY, linestyle="--", linewidth=1)
             axes.set_xscale("log")
+            axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
             axes.xaxis.set_major_formatter("{x:g}")
+            axes.xaxis.set_minor_formatter(NullFormatter())
             style.label(axes, COSTS[cost] if row else "", "" if column else title)
     picture.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside right center", fontsize=8, frameon=False)
     return picture
@@ -48,4 +52,5 @@ def _points(axes: Axes, variants: pd.DataFrame, accuracy: str, cost: str) -> Non
         if accuracy == "unseen":
             axes.vlines(x, row["low"], row["high"], color=colour, linewidth=0.8, alpha=0.6)
         axes.plot(x, row[accuracy], MARKERS[numbers], color=colour, markersize=5, label=f"{number}  {name}")
-        axes.annotate(str(number), (x, row[accuracy]), (3, 3), textcoords="offset points", fontsize=8, color=colour)
+        place = BESIDE[number % len(BESIDE)]
+        axes.annotate(str(number), (x, row[accuracy]), place, textcoords="offset points", fontsize=8, color=colour)

@@ -11,9 +11,9 @@ import pandas as pd
 
 from learn import settings
 from learn.embedded.fold import Fold, folds, judged
-from learn.embedded.machines import CORTEX_M4, CORTEX_M7, Machine, build, missing
+from learn.embedded.machines import CORTEX_M4, CORTEX_M7, HOST_SANITIZED, Machine, build, missing
 from learn.embedded.proof import agreement, operations, together
-from learn.embedded.running import decide
+from learn.embedded.running import Decisions, decide
 from learn.embedded.sizes import sizes
 from learn.inputs import SPECIMEN, Layout
 from learn.levels import NewGears
@@ -60,13 +60,16 @@ def _accuracy(new: Fold, others: list[Fold], numbers: str) -> dict[str, Any]:
 
 
 def _cost(fold: Fold, numbers: str, config: Mapping[str, Any]) -> dict[str, Any]:
-    """Of the first gear's code, on the microcontrollers whose tools are there."""
+    """Of the first gear's code, on the microcontrollers whose tools are there; before that, under sanitizers."""
     there = [machine for machine in MICROCONTROLLERS if not missing(machine)]
     part = fold.of_gear(fold.gears[0])
     with TemporaryDirectory(prefix="swg-") as folder:
-        part.export(Path(folder) / "c", numbers)
-        taken = sizes(Path(folder) / "c", CORTEX_M4) if CORTEX_M4 in there else None
+        code = Path(folder) / "c"
+        part.export(code, numbers)
+        checked = build(code, HOST_SANITIZED, Path(folder) / "checked")
+        taken = sizes(code, CORTEX_M4) if CORTEX_M4 in there else None
         return {
+            "sanitized": _decided(checked, HOST_SANITIZED, part, config["proof"])[1],
             "flash": dict(taken.flash) if taken else {},
             "ram": taken.ram if taken else None,
             "machines": {machine.name: _on(machine, part, Path(folder), config) for machine in there},
@@ -74,22 +77,23 @@ def _cost(fold: Fold, numbers: str, config: Mapping[str, Any]) -> dict[str, Any]
 
 
 def _on(machine: Machine, part: Fold, folder: Path, config: Mapping[str, Any]) -> dict[str, Any]:
-    """Labels on some of the recordings, evenly chosen; instructions and stack on a few of them."""
     program = build(folder / "c", machine, folder / machine.name)
-    samples = part.recordings.samples
-
-    def some(count: int) -> np.ndarray:
-        return np.linspace(0, len(samples) - 1, min(count, len(samples))).round().astype(int)
-
-    def said(rows: np.ndarray, counted: bool) -> Any:
-        chosen = samples.where(rows)
-        return decide(program, machine, chosen.signals, operations(chosen.table), counted=counted)
-
-    rows = some(config["proof"])
-    counts = said(some(config["counted"]), True)
+    counts, _ = _decided(program, machine, part, config["counted"], counted=True)
+    parts = pd.DataFrame(counts.instructions)
     return {
-        "agreement": asdict(agreement(said(rows, False), part.model.predict_proba(part.features[rows]))),
-        "instructions": pd.DataFrame(counts.instructions).mean().to_dict(),
-        "most_instructions": int((counts.instructions["window"] + counts.instructions["decide"]).max()),
+        "agreement": _decided(program, machine, part, config["proof"])[1],
+        "instructions": parts.mean().to_dict(),
+        "most_instructions": int((parts["window"] + parts["decide"]).max()),
+        "longest_push": int(parts["push"].max()),
         "stack": counts.stack,
     }
+
+
+def _decided(
+    program: Path, machine: Machine, part: Fold, count: int, *, counted: bool = False
+) -> tuple[Decisions, dict[str, Any]]:
+    """What a program says of some of a gear's recordings, evenly chosen, and its agreement with the original."""
+    rows = np.linspace(0, len(part.features) - 1, min(count, len(part.features))).round().astype(int)
+    chosen = part.recordings.samples.where(rows)
+    said = decide(program, machine, chosen.signals, operations(chosen.table), counted=counted)
+    return said, asdict(agreement(said, part.model.predict_proba(part.features[rows])))

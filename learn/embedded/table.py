@@ -37,9 +37,9 @@ def variants_of(results: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
     -------
     DataFrame
         Indexed by name: ``unseen``, ``low``, ``high`` and ``disturbed`` accuracy [%]; ``…_equal`` of ``…_recordings``
-        labels on both data sets and on each microcontroller, ``same``, the lowest share of them [%], and the largest
-        ``difference`` of a probability on gears never seen; ``flash`` and its parts, ``ram`` with ``stack`` in it
-        [bytes]; ``instructions`` and its parts.
+        labels on both data sets, under sanitizers and on each microcontroller, ``same``, the lowest share of them [%],
+        and the largest ``difference`` of a probability on gears never seen; ``flash`` and its parts, ``ram`` with
+        ``stack`` in it [bytes]; ``instructions`` and its parts.
     """
     errors = errors_of(results)
     accuracy = 100 - hierarchical_bootstrap(errors, mean_error, generator("embedded", 1))
@@ -59,7 +59,8 @@ def variants_of(results: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
 
 def _agreement(entry: Mapping[str, Any]) -> dict[str, Any]:
     of_machines = {name: machine["agreement"] for name, machine in entry["machines"].items()}
-    found = {name: Agreement(**each) for name, each in {**entry["host"], **of_machines}.items()}
+    every = {**entry["host"], "sanitized": entry["sanitized"], **of_machines}
+    found = {name: Agreement(**each) for name, each in every.items()}
     counts = {f"{name}_equal": each.equal for name, each in found.items()}
     counts |= {f"{name}_recordings": each.recordings for name, each in found.items()}
     return {**counts, "same": min(100 * each.equal / each.recordings for each in found.values())}

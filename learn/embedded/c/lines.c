@@ -8,7 +8,7 @@ float swg_deviation(const swg_window *window, int gauge)
 /* A line [mV/V] from its sum; the healthy one is taken off in integers, where nothing is lost. */
 static float line_of(int64_t sum, int32_t samples, int32_t healthy)
 {
-    const int64_t line = 2 * (sum / samples) - ((int64_t)healthy << 22);
+    const int64_t line = 2 * (sum / samples) - (int64_t)healthy * (1 << 22);
     return (float)line / (16777216.0f * swg_this_gear.scale);
 }
 
