@@ -23,7 +23,7 @@ from tqdm import tqdm
 from swgsim.files import write_json
 
 ROOT = Path(__file__).parents[1]
-LIBRARIES = ("numpy", "scipy", "pandas", "scikit-learn")
+LIBRARIES = ("numpy", "scipy", "pandas")  # not scikit-learn: its versions deal grouped folds differently
 CONDITIONS = ("clean", "disturbed")
 TABLES = ("table7", "table8", "table9", "table10")
 FEATURES = ("selection_all", "harmonics")
@@ -73,9 +73,9 @@ def worked(name: str, folder: Path, tables: list[str]) -> Path:
 
 def environment(name: str, folder: Path) -> Path:
     """The Python of an environment, which is made anew unless it is whole and pip would change nothing in it."""
-    python, ready = folder / "bin" / "python", folder / "ready"
+    python, ready, asked = folder / "bin" / "python", folder / "ready", "\n".join(requirements(name))
     pip = [sys.executable, "-m", "pip", "--python", python, "install", "--upgrade", *requirements(name)]
-    if ready.exists():
+    if ready.exists() and ready.read_text() == asked:
         report = subprocess.run([*pip, "--quiet", "--dry-run", "--report", "-"], check=True, stdout=subprocess.PIPE)
         if not json.loads(report.stdout)["install"]:
             return python
@@ -85,7 +85,7 @@ def environment(name: str, folder: Path) -> Path:
     (own / "project.pth").write_text(f"import site; site.addsitedir({sysconfig.get_path('purelib')!r})\n")
     print(f"{name}: {', '.join(requirements(name))}", flush=True)
     subprocess.run(pip, check=True)
-    ready.touch()
+    ready.write_text(asked)
     return python
 
 
