@@ -12,7 +12,7 @@ from swgsim.effects.quantity import size
 from swgsim.loop.features import Layout
 from swgsim.loop.hypotheses import Hypothesis
 from swgsim.loop.reporting.remaining import detectable
-from swgsim.loop.screening import VISIBLE, Score, best_of_kind, screen
+from swgsim.loop.screening import Score, best_of_kind, screen
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ def test_what_declared_parameters_absorb_is_never_claimed(fitted):
     for seed in range(20):
         residual = 100 * absorbed[:, 0] + drawn(fitted.errors, rng)
         (score,) = found_for(wide, residual, [absorbed], seed=seed)
-        assert score.visible < VISIBLE
+        assert score.absorbed
         assert (score.gain, score.freedom, score.chance, score.deviation) == (0.0, 0, 1.0, np.inf)
 
 
@@ -166,7 +166,7 @@ def test_an_effect_of_less_than_nothing_is_none(fitted):
     score = next(s for s in found_for(fitted, -5 * signatures[0][:, 0], signatures, kinds) if s.hypothesis is one_sided)
     assert (score.gain, score.chance) == (0, 1)
     assert np.isfinite(score.detectable)
-    assert score.visible > VISIBLE
+    assert not score.absorbed
 
 
 def test_no_size_beyond_its_bounds_is_called_the_smallest_that_is_seen():

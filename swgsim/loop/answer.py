@@ -10,7 +10,7 @@ from swgsim.loop.between import between
 from swgsim.loop.closing import ALPHA, Closed, close
 from swgsim.loop.fitting import Fitted, extended
 from swgsim.loop.lines import cleaned, search
-from swgsim.loop.screening import VISIBLE, Score
+from swgsim.loop.screening import Score
 from swgsim.loop.session import Measured
 from swgsim.loop.sidelines import Sideline
 from swgsim.loop.trial import LEAST_GAIN, Trial
@@ -133,7 +133,7 @@ def answer(
     clean = [cleaned(recording, lines.effects) for recording in recordings] if lines.effects else recordings
     closed = close(Measured.of(clean), unit, kinds, seed=seed)
     unknown = (*closed.apart, *_unknown(closed.asked, seed))
-    absorbed = tuple(score for score in closed.scores if score.visible < VISIBLE)
+    absorbed = tuple(score for score in closed.scores if score.absorbed)
     found = closed.steps or lines.named
     verdict = FOUND if found else UNKNOWN if closed.rejected or unknown or lines.unnamed else NOTHING
     return Answer(verdict, _patched(closed, unknown), tuple(known), lines.named, unknown, lines.unnamed, absorbed)

@@ -21,6 +21,8 @@ COMPANY, ANOTHER_THING = 2, 0.8
 
 def outdone(trial: Trial, plain: Described, now: Fitted) -> bool:
     """Whether a bare regularity explains what a trial explains, and more; or by far more of something else."""
+    if gain(trial.with_open_form, columns(plain.atom, now)) <= OUTDONE:
+        return False  # beyond what the tolerance of form allows the effect, it says nothing more
     explained = trial.explained(now)
     if plain.gain <= explained * (1 + OUTDONE_SHARE) + OUTDONE:
         return False

@@ -8,7 +8,6 @@ import numpy as np
 
 from swgsim.effects.base import Effect
 from swgsim.loop.beside import in_company, outdone
-from swgsim.loop.evidence import allowance
 from swgsim.loop.fitting import Fitted, fit
 from swgsim.loop.hypotheses import hypotheses, signatures
 from swgsim.loop.screening import Score, best_of_kind, screen
@@ -121,7 +120,7 @@ def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed
             break
         others = tuple(trial for trial in found.trials if trial.effects != found.accepted.effects)
         steps.append(Step(found.accepted, (), others))
-        now = _with_allowance(found.accepted)
+        now = found.accepted.with_open_form
     return Closed(before, now.strict, now, tuple(steps), first, scores, found.trials, found.outdone_by, apart)
 
 
@@ -196,14 +195,6 @@ def _pair(now: Fitted, trials: Sequence[Trial], kinds: Sequence[type[Effect]], s
 def _alone(now: Fitted, score: Score, seed: int) -> Trial:
     """The hypothesis of a score, on its own."""
     return tried(now, score, (begun(now, score, seed),))
-
-
-def _with_allowance(accepted: Trial) -> Fitted:
-    """The fit of a trial, with its effects' form open within the tolerance."""
-    fitted = accepted.fitted
-    count = len(fitted.model.effects)
-    added = range(count - len(accepted.effects), count)
-    return fitted.allowing(np.hstack([allowance(fitted, number) for number in added]))
 
 
 def _with_rivals(step: Step, after: Sequence[Score]) -> Step:

@@ -17,8 +17,10 @@ from swgsim.loop.fitting import Fitted
 from swgsim.loop.hypotheses import Hypothesis
 from swgsim.loop.tail import log_tail
 
-# Part of a signature that must remain visible beside the declared parameters; below, it cannot be told from them.
-VISIBLE = 1e-4
+# Share of a signature beside the declared parameters below which what is left is rounding, of the chain and of its
+# differences. It says nothing of what can be seen: however far a residual lies beyond the spread of a declared
+# parameter, this share is small where the noise is small beside that spread.
+VISIBLE = 1e-8
 # Directions of a signature below this part of its largest one are rounding.
 NEGLIGIBLE = 1e-6
 DRAWS = 1000
@@ -68,6 +70,13 @@ class Score:
     def detectable(self) -> float:
         """Smallest size that would be seen with 80 % power at the level of one in a hundred of the whole library."""
         return 5.0 * self.deviation
+
+    @property
+    def absorbed(self) -> bool:
+        """Whether no size within the bounds would be seen."""
+        quantity = quantities(self.hypothesis.kind)[self.hypothesis.size]
+        largest = max(quantity.high - quantity.nothing, quantity.nothing - quantity.low)
+        return self.visible < VISIBLE or self.detectable > largest
 
 
 def screen(

@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities, size_of
-from swgsim.loop.evidence import Coherence, coherence, signature
+from swgsim.loop.evidence import Coherence, allowance, coherence, signature
 from swgsim.loop.fitting import Fitted, extended
 from swgsim.loop.model import Model
 from swgsim.loop.refining import zoom
@@ -67,6 +67,13 @@ class Trial:
         """What each of its effects does to the features."""
         first = len(self.fitted.model.effects) - len(self.effects)
         return np.stack([signature(self.fitted, first + i) for i in range(len(self.effects))], axis=1)
+
+    @cached_property
+    def with_open_form(self) -> Fitted:
+        """The fit, with the form of its effects open within the tolerance."""
+        count = len(self.fitted.model.effects)
+        added = range(count - len(self.effects), count)
+        return self.fitted.allowing(np.hstack([allowance(self.fitted, number) for number in added]))
 
     def explained(self, before: Fitted) -> float:
         """Fall of the residual's sum of squares that it brings to the model before, as a score counts it."""

@@ -83,8 +83,8 @@ def absorbed(score: Score) -> dict[str, Any]:
         "why": (
             "these recordings do not show it: the channels do not see it at the recorded operating points"
             if score.visible <= 0
-            else "declared parameters can imitate it at the recorded operating points: only "
-            f"{100 * score.visible:.2g} % of its signature is left beside them"
+            else "no size within its bounds would stand out at the recorded operating points: "
+            f"{100 * score.visible:.2g} % of its signature is left beside the declared parameters"
         ),
     }
 
