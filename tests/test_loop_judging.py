@@ -67,6 +67,22 @@ def test_another_thing_of_like_size_does_not_outdo_an_effect(fitted, stray, sign
     assert not outdone(trial(now, signature), plain, now)
 
 
+def test_a_regularity_within_the_tolerance_of_form_does_not_outdo_an_effect(fitted, monkeypatch):
+    """An effect whose law is a little another one: a regularity with the right law explains more, and says nothing."""
+    law = Atom(5, "in s2 alone", "proportional to the load")
+    constant, load = (columns(atom, fitted)[:, 0] for atom in (STRAY, law))
+    supposed = 200 * constant / np.linalg.norm(fitted.whole.whiten(constant))
+    other = 200 * load / np.linalg.norm(fitted.whole.whiten(load))
+    other -= supposed * (fitted.whole.whiten(supposed) @ fitted.whole.whiten(other)) / 200**2  # its size is fitted
+    monkeypatch.setattr(evidence, "signature", lambda fitted, number: supposed)
+    for share, better in ((1.0, False), (60.0, True)):
+        noise = drawn(fitted.whole, np.random.default_rng(9))
+        now, after = holding(fitted, supposed + share * other + noise), holding(fitted, share * other + noise)
+        plain = named(now, law)
+        assert plain.gain > 1.2 * trial(after, supposed).explained(now)
+        assert outdone(trial(after, supposed), plain, now) == better
+
+
 def test_what_dwarfs_an_effect_makes_it_doubtful(fitted, stray, signature):
     now = holding(fitted, signature + 6 * stray + drawn(fitted.whole, np.random.default_rng(5)))
     assert outdone(trial(now, signature), named(now, STRAY), now)

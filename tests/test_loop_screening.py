@@ -81,6 +81,21 @@ def test_what_declared_parameters_absorb_is_never_claimed(fitted):
         assert (score.gain, score.freedom, score.chance, score.deviation) == (0.0, 0, 1.0, np.inf)
 
 
+def test_what_lies_far_beyond_the_spread_of_a_declared_parameter_stands_out(fitted):
+    """However little of it is left beside a spread that is wide against the noise."""
+    wide = replace(fitted, open=30 * fitted.open)
+    signature = wide.open[:, :1]  # one spread for every typical size
+    found = []
+    for seed in range(10):
+        r = 20 * signature[:, 0] + drawn(fitted.errors, np.random.default_rng(seed))
+        (score,) = found_for(wide, r, [signature], seed=seed)
+        assert score.visible < 1e-5
+        assert not score.absorbed
+        assert score.chance < 1e-6
+        found.append(score.estimate / TYPICAL)
+    np.testing.assert_allclose(found, 20, atol=0.1)
+
+
 def test_what_declared_parameters_absorb_in_part_counts_for_its_rest(fitted):
     rng = np.random.default_rng(5)
     wide = replace(fitted, open=1e4 * fitted.open)
