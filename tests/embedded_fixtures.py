@@ -13,9 +13,13 @@ import pytest
 from fabricated import recordings
 
 from learn.evaluation import fit
+from learn.features import Selection
 from swgsim.recordings import CLASSES, Recordings
 
 needs_compiler = pytest.mark.skipif(shutil.which("gcc") is None, reason="no gcc on this machine")
+SELECTION = Selection(
+    "all", statistics=True, spectrum="both", efficiency="both", orders=4, floor=1e-4, operating_point=True
+)
 OPERATION = ["n_in_rpm", "T_out_nm", "efficiency", "temperature_c"]
 DRIVER = """
 #include <string.h>

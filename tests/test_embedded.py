@@ -2,22 +2,18 @@
 
 import numpy as np
 import pytest
-from embedded_fixtures import compiled, driven, driven_signals, needs_compiler, noisy, of_gear, trained
+from embedded_fixtures import SELECTION, compiled, driven, driven_signals, needs_compiler, noisy, of_gear, trained
 from fabricated import recordings
 
 from learn.classical import multi_layer_perceptron
 from learn.embedded.export import export_c
 from learn.embedded.layers import layers_of
-from learn.features import Selection
 from learn.harmonics import Harmonics
 from learn.lines import ResidualLines
 from learn.neural import convolutional_network, neural_perceptron
 from learn.signals import Signals
 from learn.strong import extra_trees, logistic_regression
 
-SELECTION = Selection(
-    "all", statistics=True, spectrum="both", efficiency="both", orders=4, floor=1e-4, operating_point=True
-)
 HARMONICS = Harmonics("harmonics", 6)
 RESIDUAL = Signals("residual", points=16, orders=6)
 REPRESENTATIONS = (SELECTION, HARMONICS, RESIDUAL, Harmonics("harmonics", 5, efficiency=False, operating_point=False))
@@ -103,11 +99,15 @@ def test_one_bad_sample_is_no_class(library, sample, value, answer, gauge, time)
 
 
 @pytest.mark.parametrize("gauge", range(5))
-@pytest.mark.parametrize("value", [0.0, 0.2])
-def test_a_dead_gauge_is_no_class(data, library, gauge, value):
+@pytest.mark.parametrize(
+    ("first", "last", "value"),
+    [(0, 600, 0.0), (0, 600, 0.2), (100, 600, 0.1), (0, 150, 0.1), (1, 600, 0.0)],
+    ids=["at 0", "constant", "from a sixth on", "in the first quarter", "but for one sample"],
+)
+def test_a_dead_gauge_is_no_class(data, library, gauge, first, last, value):
     samples = of_gear(data).samples
     dead = samples.signals.copy()
-    dead[:, gauge] = value
+    dead[:, gauge, first:last] = value
     assert (driven_signals(library, dead, samples.table, COLUMNS)[2] == DEAD).all()
 
 
@@ -117,6 +117,8 @@ def test_a_dead_gauge_is_no_class(data, library, gauge, value):
         ({"efficiency": 0.0}, NOT_A_NUMBER),
         ({"efficiency": np.nan}, NOT_A_NUMBER),
         ({"efficiency": -0.7}, NOT_A_NUMBER),
+        ({"efficiency": 71.0}, NOT_A_NUMBER),
+        ({"temperature_c": 298.0}, NOT_A_NUMBER),
         ({"n_in_rpm": 3000.0}, NOT_COMMISSIONED),
         ({"T_out_nm": np.nan}, NOT_COMMISSIONED),
     ],
@@ -142,9 +144,27 @@ def test_what_has_no_c_is_refused_and_what_was_there_stays(data, tmp_path):
         export_c(model, ResidualLines("lines", 6), references, folder)
     with pytest.raises(ValueError, match="saturation of the amplifiers is"):
         export_c(model, HARMONICS, references, folder, saturation=0.1)
+    with pytest.raises(ValueError, match="saturation of the amplifiers is 100"):
+        export_c(model, HARMONICS, references, folder, saturation=100)
+    with pytest.raises(ValueError, match="signals of 50 points have no front end"):
+        export_c(model, Signals("residual", points=50, orders=6), references, folder)
     with pytest.raises(ValueError, match="references of gears 1, 2, 3 found"):
         export_c(model, HARMONICS, data.references, folder)
     with pytest.raises(ValueError, match="Harmonics has no layers"):
         layers_of(HARMONICS)
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
     assert sorted(path.name for path in tmp_path.iterdir()) == ["c"]
+
+
+def test_only_a_folder_of_an_export_is_replaced(data, tmp_path):
+    model, _ = trained(data, HARMONICS, logistic_regression(iterations=30))
+    references = of_gear(data).references
+    for _ in range(2):
+        export_c(model, HARMONICS, references, tmp_path / "c")
+    (tmp_path / "c" / "main.c").write_text("mine")
+    with pytest.raises(ValueError, match=r"c holds main\.c, which no export wrote"):
+        export_c(model, HARMONICS, references, tmp_path / "c")
+    with pytest.raises(ValueError, match=r"main\.c is a file"):
+        export_c(model, HARMONICS, references, tmp_path / "c" / "main.c")
+    assert (tmp_path / "c" / "main.c").read_text() == "mine"
+    assert [path.name for path in tmp_path.iterdir()] == ["c"]

@@ -37,7 +37,7 @@ def trained(request, data):
 def probabilities(folder, model, rows, numbers):
     """What the C says of each row."""
     files, sizes = forest.write(model, folder, numbers)
-    sizes |= {"COLUMNS": rows.shape[1], "CLASSES": len(model.classes_), "ORDERS": 1, "HEALTHY": 1}
+    sizes |= {"COLUMNS": rows.shape[1], "CLASSES": len(model.classes_), "ORDERS": 1}
     (folder / "model.h").write_text(macros(sizes))
     for name in (*files, "swg.h"):
         shutil.copyfile(SOURCES / name, folder / name)

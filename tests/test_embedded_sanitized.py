@@ -2,21 +2,17 @@
 
 import numpy as np
 import pytest
-from embedded_fixtures import OPERATION, noisy, of_gear, trained
+from embedded_fixtures import OPERATION, SELECTION, noisy, of_gear, trained
 
 from learn.classical import multi_layer_perceptron
 from learn.embedded.export import export_c
 from learn.embedded.machines import CORTEX_M4, CORTEX_M7, HOST, HOST_SANITIZED, build, missing
 from learn.embedded.running import decide
-from learn.features import Selection
 from learn.harmonics import Harmonics
 from learn.neural import convolutional_network
 from learn.signals import Signals
 from learn.strong import extra_trees, logistic_regression
 
-SELECTION = Selection(
-    "all", statistics=True, spectrum="both", efficiency="both", orders=4, floor=1e-4, operating_point=True
-)
 METHODS = {
     "regression": (Harmonics("harmonics", 6), logistic_regression(), "int16"),
     "trees": (Harmonics("harmonics", 6), extra_trees(20), "int16"),
@@ -29,7 +25,7 @@ METHODS = {
     ),
 }
 SPOILT = (np.nan, np.inf, -np.inf, 1e38, -1e38, 2.0, 1.9999999)
-OPERATIONS = (np.nan, np.inf, 0.0, -1.0, 1e-38)
+OPERATIONS = (np.nan, np.inf, 0.0, -1.0, 1e-38, 1.5, 1e9)
 
 
 @pytest.fixture(scope="module")

@@ -1,15 +1,18 @@
 """What the study of exported methods concludes from its results, which are made up here."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from learn.embedded.figure import drawn
 from learn.embedded.report import run
-from learn.embedded.table import errors_of, markdown, variants_of
+from learn.embedded.table import errors_of, variants_of
+from learn.embedded.text import markdown
 from learn.embedded.trade import Part, recommend
 from learn.inputs import SPECIMEN
 
-PART = Part.of({"flash_kib": 128, "ram_kib": 32, "rate": 10, "mips": 24})
+PART = Part.of({"flash_kib": 128, "ram_kib": 32, "rate": 10, "sampling": 10_000, "mips": 24})
 # Mean error on gears never seen [%], flash [kB] and labels as in Python, of 540; one that is best does not fit, and one
 # that is smallest is another method.
 METHODS = {
@@ -21,10 +24,12 @@ METHODS = {
 }
 
 
-def entry(method, error, flash, equal, rng, *, machines=True):
+def entry(method, error, flash, equal, rng, *, machines=True, gears=8):
     """A result as outcome.py gives it: errors of specimens scatter by five points around the method's."""
-    gears, labels, draws = (each.ravel() for each in np.meshgrid(range(8), ["A", "B", "C"], range(4), indexing="ij"))
-    columns = dict(zip(SPECIMEN, (gears.tolist(), labels.tolist(), draws.tolist()), strict=True))
+    units, labels, draws = (
+        each.ravel() for each in np.meshgrid(range(gears), ["A", "B", "C"], range(4), indexing="ij")
+    )
+    columns = dict(zip(SPECIMEN, (units.tolist(), labels.tolist(), draws.tolist()), strict=True))
     agreement = {"recordings": 540, "decided": 540, "equal": 539, "difference": 2e-6}
     counts = {"window": 400e3, "push": 700.0, "decide": 30e3, "features": 20e3, "classify": 9e3}
     machine = {
@@ -37,7 +42,7 @@ def entry(method, error, flash, equal, rng, *, machines=True):
     return {
         "method": method,
         "numbers": "float",
-        "specimens": columns | {"error": (error + centred(rng, len(gears))).tolist()},
+        "specimens": columns | {"error": (error + centred(rng, len(units))).tolist()},
         "disturbed": 99.0,
         "sanitized": agreement,
         "host": {"unseen": agreement, "disturbed": {**agreement, "equal": equal}},
@@ -70,9 +75,18 @@ def test_the_smallest_that_is_not_clearly_worse_is_recommended():
 
 
 def test_what_does_not_fit_is_not_recommended():
-    assert advice_for(Part.of({"flash_kib": 6, "ram_kib": 32, "rate": 10, "mips": 24})).variant == "tiny, float"
-    assert advice_for(Part.of({"flash_kib": 128, "ram_kib": 2, "rate": 10, "mips": 24})) is None
-    assert advice_for(Part.of({"flash_kib": 128, "ram_kib": 32, "rate": 60, "mips": 24})) is None
+    assert advice_for(replace(PART, flash=6 * 1024)).variant == "tiny, float"
+    assert advice_for(replace(PART, ram=2 * 1024)) is None
+    assert advice_for(replace(PART, rate=60)) is None  # decisions a second
+    assert advice_for(replace(PART, sampling=40_000)) is None  # a sample takes longer than there is till the next
+
+
+def test_of_few_gears_the_most_accurate_is_recommended_and_no_interval_is_given():
+    found = results(gears=2)
+    variants = variants_of(found)
+    advice = recommend(variants, errors_of(found), PART, np.random.default_rng(0))
+    assert advice == ("large, float", "large, float", 0, 0, 0)
+    assert "nan" not in markdown(variants, PART, advice)
 
 
 def test_the_table_adds_up_and_says_what_was_left_out():
@@ -84,8 +98,8 @@ def test_the_table_adds_up_and_says_what_was_left_out():
     assert (variants["low"] < variants["unseen"]).all()
     assert (variants["unseen"] < variants["high"]).all()
     text = markdown(variants, PART, advice_for(PART))
-    (line,) = (line for line in text.splitlines() if line.startswith("| small"))
-    assert line.count("539 of 540") == 3  # gears never seen, and both microcontrollers
+    line, _ = (line for line in text.splitlines() if line.startswith("| small"))
+    assert line.count("539 of 540") == 4  # gears never seen, both microcontrollers, sanitizers
     assert "538 of 540" in line
     assert "**small, float**, 20.0 kB of flash, 2.9 kB of RAM, 4.3 million instructions" in text
     assert "These do not fit: huge, float." in text

@@ -20,7 +20,10 @@ HEAD = """/* The healthy gear, written by its commissioning. */
 
 """
 WAVE = 2**30  # unit of the waves that samples are multiplied with
-DEVIATION, SUM = 2**29, 2**39  # counts that a deviation, and the sum of all deviations, may have (window.c)
+DEVIATION, SUM = 2**29, 2**38  # counts that a deviation, and the sum of all deviations, may have (window.c)
+QUARTERS = 4  # of a window, in each of which a gauge has to move (window.c)
+LONGEST = 2**16  # samples of a window; beyond, the rounding of the waves shows
+FULL_SCALE = 20.0  # mV/V, beyond which a count would be coarser than what single precision resolves
 
 
 @dataclass(frozen=True)
@@ -55,14 +58,14 @@ def gear_source(references: Recordings, front: Front, saturation: float) -> str:
     Raises
     ------
     ValueError
-        If the recordings are not of one gear or not healthy, or reach the limit.
+        If the recordings are not of one gear, not healthy or reach the limit, or the limit or a window is too large.
     """
     table = references.table
     gears = sorted(map(str, table["gear"].unique()))
     if len(gears) != 1 or not table["reference"].all():
         raise ValueError(f"references of gears {', '.join(gears)} found: give the healthy references of one gear")
     highest = float(np.abs(references.signals).max())
-    require("the amplifiers", "saturation", saturation, low=highest * (1 + 1e-6), high=1e6)
+    require("the amplifiers", "saturation", saturation, low=highest * (1 + 1e-6), high=FULL_SCALE)
     scale = _scale(saturation, references.signals.shape[-1])
     points = operating_points(references)
     measured = healthy_reference(table[["efficiency", "temperature_c"]].to_numpy(), table, points)
@@ -76,10 +79,10 @@ def gear_source(references: Recordings, front: Front, saturation: float) -> str:
         facts = ", ".join(map(number, (speed, load, *measured[place])))
         names = f"{f'line{place}' if lines.size else 'NULL'}, healthy{place}"
         entries.append(f"{{{facts},\n    {_signal(references.where(of_point), speed, front.orders)},\n    {names}}}")
-    listed = ",\n".join(entries)
+    listed, facts = ",\n".join(entries), ", ".join(map(number, (references.rate, saturation, scale)))
     return (
         f"{HEAD}{''.join(arrays)}static const swg_point points[] = {{\n{listed}}};\n"
-        f"const swg_gear swg_this_gear = {{{number(saturation)}, {number(scale)}, {len(points)}, points}};\n"
+        f"const swg_gear swg_this_gear = {{{facts}, {len(points)}, points}};\n"
     )
 
 
@@ -91,11 +94,19 @@ def _scale(saturation: float, samples: int) -> float:
 def _signal(references: Recordings, speed: float, orders: int) -> str:
     """What one operating point says of the signals."""
     length = whole_revolutions(speed, references.rate, references.signals.shape[-1])
+    require("the window", "samples", length, low=QUARTERS, high=LONGEST)
     clock = _Clock(length, speed / 60 / references.rate)
     signals = references.signals[:, :, :length].astype(np.float64)
-    mean, extent = signals.mean(axis=(0, 2)), np.ptp(signals, axis=2).mean(axis=0)
+    mean, extent = signals.mean(axis=(0, 2)), _least_movement(signals)
     turn, offset = clock.wave(max(orders, 1)), clock.offset(max(orders, 1))
     return ", ".join([str(length), values(mean), values(extent), pairs(_fixed(turn, WAVE)), pairs(_parts(offset))])
+
+
+def _least_movement(signals: Float[np.ndarray, "recording sensor sample"]) -> Float[np.ndarray, " sensor"]:
+    """Range of each gauge in the quarter of a window in which it moves least."""
+    length = signals.shape[-1] // QUARTERS
+    quarters = np.split(signals, [length * i for i in range(1, QUARTERS)], axis=-1)
+    return np.min([np.ptp(quarter, axis=-1) for quarter in quarters], axis=(0, 1))
 
 
 def _fixed(numbers: Complex[np.ndarray, "..."], unit: float) -> Int[np.ndarray, "number part"]:

@@ -9,13 +9,14 @@ from typing import Any
 from learn.embedded import forest, network
 from learn.embedded.commissioning import gear_source
 from learn.embedded.front import front
-from learn.embedded.source import Sizes, macros
+from learn.embedded.source import Macros, macros
 from learn.inputs import Representation
 from swgsim.files import remedied
 from swgsim.recordings import Recordings
 
 SOURCES = Path(__file__).parent / "c"
 NUMBERS = ("float", "int16", "int8")
+WRITTEN = {"gear.c", "model.h", "parameters.c", "forest_tables.h"}  # beside copies of the sources
 
 
 def export_c(
@@ -38,7 +39,7 @@ def export_c(
     references : Recordings
         Healthy recordings of the gear at all its operating points.
     folder : Path
-        What it held is removed.
+        What an export before wrote there is removed.
     numbers : {"float", "int16", "int8"}
         How trained numbers are kept; forests have no int8.
     saturation : float
@@ -47,10 +48,11 @@ def export_c(
     Raises
     ------
     ValueError
-        If the method has no C, or the references do not fit.
+        If the method has no C, the references do not fit, or the folder holds what no export wrote.
     """
     if numbers not in NUMBERS:
         raise ValueError(f"unknown numbers {numbers!r}; choose from {', '.join(NUMBERS)}")
+    folder = free(folder)
     parts = front(representation)
     gear = gear_source(references, parts, saturation)
     with remedied(folder):
@@ -65,12 +67,24 @@ def export_c(
             for name in (*parts.files, *files):
                 shutil.copyfile(SOURCES / name, made / name)
             if folder.exists():
-                shutil.rmtree(folder)
+                folder.rename(Path(aside) / "before")
             made.rename(folder)
 
 
-def _model_header(classes: Iterable[Any], sizes: Sizes) -> str:
+def free(folder: Path) -> Path:
+    """A folder's full path; a ValueError if it holds anything that an export did not write."""
+    folder = folder.resolve()
+    if folder.exists() and not folder.is_dir():
+        raise ValueError(f"{folder} is a file: choose another folder")
+    own = WRITTEN | {path.name for path in SOURCES.iterdir()}
+    strange = sorted({path.name for path in folder.iterdir()} - own) if folder.exists() else []
+    if strange:
+        raise ValueError(f"{folder} holds {strange[0]}, which no export wrote: choose another folder, or empty it")
+    return folder
+
+
+def _model_header(classes: Iterable[Any], sizes: Macros) -> str:
     names = [str(name) for name in classes]
     listed = ", ".join(f'"{name}"' for name in names)
     own = macros({"CLASSES": len(names), "CLASS_NAMES": f"{{{listed}}}", **sizes})
-    return f"/* Sizes of the exported method. */\n#ifndef MODEL_H\n#define MODEL_H\n\n{own}\n#endif\n"
+    return f"/* Macros of the exported method. */\n#ifndef SWG_MODEL_H\n#define SWG_MODEL_H\n\n{own}\n#endif\n"

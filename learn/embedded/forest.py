@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float, Int, Int16
 
-from learn.embedded.source import Sizes, array
+from learn.embedded.source import Macros, array
 from learn.flat_forest import FlatForest, flatten
 from swgsim.checks import require_known
 
@@ -33,7 +33,7 @@ def is_forest(model: Any) -> bool:
     return isinstance(model, (RandomForestClassifier, ExtraTreesClassifier))
 
 
-def write(model: Any, folder: Path, numbers: str) -> tuple[tuple[str, ...], Sizes]:
+def write(model: Any, folder: Path, numbers: str) -> tuple[tuple[str, ...], Macros]:
     """Write ``forest_tables.h`` of a trained forest.
 
     Parameters
@@ -48,19 +48,21 @@ def write(model: Any, folder: Path, numbers: str) -> tuple[tuple[str, ...], Size
     -------
     tuple of str
         Names of the C files that go with it.
-    Sizes
+    Macros
         Their macros.
 
     Raises
     ------
     ValueError
-        If the model is no forest, or there are no such numbers for forests.
+        If the model is no forest, none of its trees splits, or there are no such numbers for forests.
     """
     require_known("numbers of a forest", [numbers], KINDS)
     forest = flatten(model)
     order = _left_first(forest)
     is_leaf = forest.left[order] == order
     splits, ends = order[~is_leaf], order[is_leaf]
+    if not len(splits):
+        raise ValueError("no tree of this forest splits: train it on more rows")
     before = np.empty_like(order)  # leaves that come before a node
     before[order] = np.cumsum(is_leaf) - is_leaf
     kind, sure = KINDS[numbers]
@@ -82,7 +84,7 @@ def write(model: Any, folder: Path, numbers: str) -> tuple[tuple[str, ...], Size
         _table("vote", vote),
     ]
     (folder / "forest_tables.h").write_text("\n".join(text))
-    sizes: Sizes = {"TREES": len(forest.roots), "VALUE": kind, "CODED": int(numbers == "int16")}
+    sizes: Macros = {"TREES": len(forest.roots), "VALUE": kind, "CODED": int(numbers == "int16")}
     return ("forest.c",), sizes
 
 

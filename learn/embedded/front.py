@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 from jaxtyping import Complex, Float
 
-from learn.embedded.source import Sizes, values
+from learn.embedded.source import Macros, values
 from learn.features import Selection, signal_quantities
 from learn.harmonics import RIPPLE_ORDERS, SMALLEST_RIPPLE, WAVE_NUMBERS, Harmonics
 from learn.inputs import Representation
@@ -38,7 +38,7 @@ class Front:
     ----------
     files : tuple of str
         Names of the C files, of :mod:`learn.embedded`'s folder ``c``.
-    sizes : Sizes
+    sizes : Macros
         Their macros.
     orders : int
         Highest order whose lines are taken.
@@ -47,7 +47,7 @@ class Front:
     """
 
     files: tuple[str, ...]
-    sizes: Sizes
+    sizes: Macros
     orders: int
     healthy: Callable[[Recordings], Healthy]
 
@@ -58,17 +58,19 @@ def front(representation: Representation) -> Front:
     Raises
     ------
     ValueError
-        If there is none in C for this representation.
+        If there is none in C for this representation, or for so many points.
     """
     if isinstance(representation, Selection):
         return _selection(representation)
     if isinstance(representation, Harmonics):
         columns = len(SENSORS) + len(WAVE_NUMBERS) * (representation.orders // 2 + 1) + 6 * len(RIPPLE_ORDERS)
         ripple = values(np.array(RIPPLE_ORDERS))
-        own: Sizes = {"RIPPLE_ORDERS": ripple, "SMALLEST_RIPPLE": SMALLEST_RIPPLE}
+        own: Macros = {"RIPPLE_ORDERS": ripple, "SMALLEST_RIPPLE": SMALLEST_RIPPLE}
         return _of_residual(representation, "harmonics.c", columns, own)
     if isinstance(representation, Signals) and representation.name == "residual":
         points = representation.points
+        if points % 4:
+            raise ValueError(f"signals of {points} points have no front end in C: take a multiple of 4")
         cosines = values(np.cos(2 * np.pi * np.arange(points) / points)).replace("\n", "\\\n")
         return _of_residual(representation, "signal.c", len(SENSORS) * points, {"POINTS": points, "COSINES": cosines})
     name = getattr(representation, "name", type(representation).__name__)
@@ -84,7 +86,7 @@ def operating_points(references: Recordings) -> pd.DataFrame:
 
 def _selection(selection: Selection) -> Front:
     orders = selection.orders if selection.spectrum != "none" else 0
-    sizes: Sizes = {
+    sizes: Macros = {
         "ORDERS": orders,
         "COLUMNS": len(selection.names),
         "FLOOR": float(selection.floor),
@@ -104,10 +106,10 @@ def _selection(selection: Selection) -> Front:
     return Front((*COMMON, "selection.c"), sizes, orders, healthy)
 
 
-def _of_residual(representation: Harmonics | Signals, file: str, columns: int, own: Sizes) -> Front:
+def _of_residual(representation: Harmonics | Signals, file: str, columns: int, own: Macros) -> Front:
     """With columns made of the residual lines, the side columns and the errors that were taken out."""
     orders, acquisitions = representation.orders, representation.acquisitions
-    sizes: Sizes = {
+    sizes: Macros = {
         "ORDERS": orders,
         "COLUMNS": columns + 3 * representation.efficiency + 3 * representation.operating_point + len(ERRORS),
         "LIKELY_LOAD": BENCH.load,

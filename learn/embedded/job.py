@@ -10,11 +10,11 @@ import numpy as np
 
 from learn import identity, models, settings
 from learn.embedded import gateway
-from learn.embedded.export import NUMBERS, export_c
+from learn.embedded.export import NUMBERS, export_c, free
 from learn.embedded.fold import of_gears
 from learn.embedded.front import front
 from learn.embedded.machines import HOST, missing
-from learn.embedded.proof import prove
+from learn.embedded.proof import FAITHFUL, Agreement, prove
 from learn.inputs import LearningSet
 from learn.job import learning_set_of
 from swgsim import storage
@@ -31,32 +31,40 @@ def run(config: Mapping[str, Any]) -> None:
     Raises
     ------
     ValueError
-        If a choice is unknown, the gear is not in the data set, or the model has other inputs; when an exported model
-        does not say what its original says.
+        If a choice is unknown, the gear is not in the data set, the model has another number of inputs, or the folder
+        holds what no export wrote.
     """
     require_known("target", [config["target"]], TARGETS)
     require_known("numbers", [config["numbers"]], NUMBERS)
     representation = settings.representation(config["features"])
-    front(representation)
+    out = Path(config["out"])
+    if config["target"] == "c":
+        front(representation)
+        free(out)
     chosen = {group: config[group]["name"] for group in ("grid", "condition")}
     path = settings.data_set({**config, **chosen})
-    gear = int(config["gear"])
+    gear = int(config["exported_gear"])
     recordings = of_gears(path, [gear])
     data = learning_set_of(path, storage.digest(path), representation)
     others = data.table["gear"].to_numpy() != gear
     model = _read(Path(config["model"]), data) if config["model"] else _trained(config, data, others)
-    out = Path(config["out"])
     inputs = np.asarray(data.features[np.flatnonzero(~others)])
     if config["target"] == "onnx":
         gateway.write(model, out / "model.onnx")
-        log.info("%s: %s", out / "model.onnx", gateway.check(out / "model.onnx", model, inputs))
+        _compared(out / "model.onnx", gateway.check(out / "model.onnx", model, inputs))
         return
     kept = {"numbers": config["numbers"], "saturation": config["saturation"]}
     export_c(model, representation, recordings.references, out, **kept)
     if not missing(HOST):
-        log.info("%s: %s", out, prove(out, HOST, model, inputs, recordings.samples))
+        _compared(out, prove(out, HOST, model, inputs, recordings.samples))
     else:
         log.info("%s: not compared with its original, as there is no C compiler", out)
+
+
+def _compared(path: Path, found: Agreement) -> None:
+    """Say how an export agrees with its original, as a warning if it does not."""
+    say = log.info if found.share >= FAITHFUL else log.warning
+    say("%s: %s", path, found)
 
 
 def _trained(config: Mapping[str, Any], data: LearningSet, others: np.ndarray) -> Any:

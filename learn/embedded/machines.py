@@ -4,6 +4,7 @@ import shutil
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 BENCH = Path(__file__).parent / "bench"
 LANGUAGE = ("-std=c11", "-Wall", "-Wextra", "-Wdouble-promotion", "-Werror")
@@ -110,9 +111,11 @@ def require_tools(machine: Machine) -> None:
 
 def call(command: list[str], folder: Path, timeout: float = TIMEOUT) -> None:
     """Run a command in a folder; raise a RuntimeError with the end of what it says if it fails."""
-    done = subprocess.run(
-        command, cwd=folder, timeout=timeout, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False
-    )
+    quiet: dict[str, Any] = {"stdin": subprocess.DEVNULL, "capture_output": True, "text": True}
+    try:
+        done = subprocess.run(command, cwd=folder, timeout=timeout, check=False, **quiet)
+    except subprocess.TimeoutExpired as error:
+        raise RuntimeError(f"{command[0]} was stopped after {timeout:g} s in {folder}") from error
     if done.returncode:
         said = (done.stderr + done.stdout)[-3000:]
         raise RuntimeError(f"{command[0]} failed with status {done.returncode} in {folder}:\n{said}")

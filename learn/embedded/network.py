@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from learn.embedded.layers import Dense, layers_of
-from learn.embedded.source import Sizes, array
+from learn.embedded.source import Macros, array
 
 WEIGHTS = {"float": "float", "int16": "int16_t", "int8": "int8_t"}
 
@@ -28,7 +28,7 @@ def quantised(
     return np.rint(weight / scale[:, None]).astype(int), scale
 
 
-def write(model: Any, folder: Path, numbers: str) -> tuple[tuple[str, ...], Sizes]:
+def write(model: Any, folder: Path, numbers: str) -> tuple[tuple[str, ...], Macros]:
     """Write ``parameters.c`` of a trained model.
 
     Parameters
@@ -43,7 +43,7 @@ def write(model: Any, folder: Path, numbers: str) -> tuple[tuple[str, ...], Size
     -------
     tuple of str
         Names of the C files that go with it.
-    Sizes
+    Macros
         Their macros.
     """
     layers = layers_of(model)
@@ -56,7 +56,7 @@ def write(model: Any, folder: Path, numbers: str) -> tuple[tuple[str, ...], Size
     text += [_arrays(name, dense, numbers) for name, dense in named]
     text += [f"const swg_dense swg_layer[] = {{{', '.join(_entry(*each) for each in named[: len(layers.dense)])}}};\n"]
     widest = max(max(dense.weight.shape) for _, dense in named)
-    sizes: Sizes = {
+    sizes: Macros = {
         "COMPRESSED": int(layers.centre is not None),
         "LAYERS": len(layers.dense),
         "WIDEST": widest,
@@ -73,7 +73,7 @@ def write(model: Any, folder: Path, numbers: str) -> tuple[tuple[str, ...], Size
     text += [f"const swg_convolution swg_block[] = {{{', '.join(blocks)}}};\n"]
     text += [f"const swg_dense swg_beside = {_entry('beside', layers.beside)};\n"]
     signals = [len(dense.bias) * layers.points >> i for i, (_, dense) in enumerate(layers.blocks, start=1)]
-    of_blocks: Sizes = {
+    of_blocks: Macros = {
         "CHANNELS": layers.channels,
         "BLOCKS": len(layers.blocks),
         "PATCH": max(dense.weight.shape[1] for _, dense in layers.blocks),

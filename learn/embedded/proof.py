@@ -14,7 +14,9 @@ from learn.embedded.machines import Machine, build
 from learn.embedded.running import Decisions, decide
 from swgsim.recordings import Recordings
 
-OPERATION = ["n_in_rpm", "T_out_nm", "efficiency", "temperature_c"]
+FACTS = ["n_in_rpm", "T_out_nm", "efficiency", "temperature_c"]
+
+FAITHFUL = 99.5  # labels as in Python, at least [%]
 
 
 @dataclass(frozen=True)
@@ -33,6 +35,11 @@ class Agreement:
     decided: int
     equal: int
     difference: float
+
+    @property
+    def share(self) -> float:
+        """Labels that are those of the original [%]."""
+        return 100 * self.equal / self.recordings
 
     def __str__(self) -> str:
         return (
@@ -67,7 +74,7 @@ def said_by(folder: Path, machine: Machine, recordings: Recordings) -> Decisions
 
 def operations(table: pd.DataFrame) -> Float[np.ndarray, "recording quantity"]:
     """What the drive knows beside the gauges, of :data:`learn.embedded.running.OPERATION`."""
-    return table[OPERATION].to_numpy(dtype=float)
+    return table[FACTS].to_numpy(dtype=float)
 
 
 def prove(folder: Path, machine: Machine, model: Any, features: np.ndarray, recordings: Recordings) -> Agreement:

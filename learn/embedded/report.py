@@ -17,7 +17,8 @@ from learn import identity, settings
 from learn.embedded.figure import drawn
 from learn.embedded.machines import HOST, missing, require_tools
 from learn.embedded.outcome import MICROCONTROLLERS, outcome
-from learn.embedded.table import errors_of, markdown, variants_of
+from learn.embedded.table import errors_of, variants_of
+from learn.embedded.text import markdown
 from learn.embedded.trade import Part, recommend
 from swgsim import storage
 from swgsim.compute import Engine
@@ -27,7 +28,15 @@ from swgsim.style import png
 
 log = logging.getLogger(__name__)
 
-PRESENTATION = ("report.py", "table.py", "figure.py", "trade.py", "job.py", "gateway.py")  # no result depends on them
+PRESENTATION = (
+    "report.py",
+    "table.py",
+    "text.py",
+    "figure.py",
+    "trade.py",
+    "job.py",
+    "gateway.py",
+)  # no result depends on them
 
 
 def run(config: Mapping[str, Any]) -> dict[str, Any]:

@@ -6,7 +6,7 @@ import numpy as np
 
 LINE = 12  # values to a line
 
-Sizes = Mapping[str, int | float | str]  # macros of a method without their SWG_, with their values
+Macros = Mapping[str, int | float | str]  # macros of a method without their SWG_, with their values
 
 
 def number(value: float | np.floating) -> str:
@@ -47,7 +47,7 @@ def array(name: str, content: np.ndarray, kind: str = "float", storage: str = "c
     return f"{storage} {kind} {name}[{content.size}] = {values(content)};\n"
 
 
-def macros(sizes: Sizes) -> str:
+def macros(sizes: Macros) -> str:
     """A ``#define`` for each entry; floats in single precision, text as it is."""
     lines = (
         f"#define SWG_{name} {number(value) if isinstance(value, float) else value}" for name, value in sizes.items()

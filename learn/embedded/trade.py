@@ -8,9 +8,8 @@ import numpy as np
 import pandas as pd
 
 from learn.bootstrap import difference_to, hierarchical_bootstrap
+from learn.embedded.proof import FAITHFUL
 from learn.inputs import SPECIMEN
-
-FAITHFUL = 99.5  # labels as in Python, at least [%]
 
 
 @dataclass(frozen=True)
@@ -21,8 +20,8 @@ class Part:
     ----------
     flash, ram : int
         Bytes.
-    rate : float
-        Decisions per second.
+    rate, sampling : float
+        Decisions and samples per second.
     instructions : float
         Per second, that the firmware leaves for this.
     """
@@ -30,22 +29,23 @@ class Part:
     flash: int
     ram: int
     rate: float
+    sampling: float
     instructions: float
 
     @classmethod
     def of(cls, config: Mapping[str, float]) -> "Part":
         """That of ``part`` of a configuration."""
         kib = 1024
-        return cls(
-            round(config["flash_kib"] * kib), round(config["ram_kib"] * kib), config["rate"], 1e6 * config["mips"]
-        )
+        flash, ram = (round(config[name] * kib) for name in ("flash_kib", "ram_kib"))
+        return cls(flash, ram, config["rate"], config["sampling"], 1e6 * config["mips"])
 
     def fits(self, variants: pd.DataFrame) -> pd.Series:
-        """Whether each variant (columns flash, ram, instructions) fits."""
+        """Whether each variant fits, and its decisions as well as every single sample come in time."""
         return (
             (variants["flash"] <= self.flash)
             & (variants["ram"] <= self.ram)
-            & (self.rate * variants["instructions"] <= self.instructions)
+            & (self.rate * variants["most_instructions"] <= self.instructions)
+            & (self.sampling * variants["longest_push"] <= self.instructions)
         )
 
 
@@ -67,7 +67,7 @@ def recommend(
     Parameters
     ----------
     variants : DataFrame
-        Indexed by variant: flash, ram, instructions, and same, the share of labels as in Python [%].
+        Of :func:`learn.embedded.table.variants_of`, with flash and instructions.
     errors : DataFrame
         Errors [%] of each variant (column) on gears never seen, as :func:`learn.bootstrap.hierarchical_bootstrap`
         takes them.
@@ -82,6 +82,6 @@ def recommend(
     others = hierarchical_bootstrap(of_fitting, difference_to(best), rng)
     none = pd.DataFrame({"value": 0.0, "low": 0.0, "high": 0.0}, index=pd.Index([best]))
     table = pd.concat([none, others])
-    candidates = table.index[~(table["low"] > 0)]
+    candidates = table.index[table["low"] <= 0]  # of few gears the bounds are not known, and the best one stays
     chosen = str(variants.loc[candidates, "flash"].idxmin())
     return Recommendation(chosen, best, *(float(value) for value in table.loc[chosen].to_numpy()))

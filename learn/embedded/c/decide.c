@@ -4,7 +4,8 @@
 
 #include "swg.h"
 
-#define ALIVE 0.1f /* share of its healthy range that a gauge moves over, at least */
+#define COLDEST -60.0f /* of a gear that is measured [degC] */
+#define HOTTEST 250.0f
 
 static uint32_t faults(const swg_window *window, const swg_operation *operation)
 {
@@ -15,11 +16,10 @@ static uint32_t faults(const swg_window *window, const swg_operation *operation)
         return found | SWG_NOT_COMMISSIONED;
     if (window->count < window->point->samples)
         found |= SWG_NOT_WHOLE;
-    if (!(isfinite(operation->efficiency) && operation->efficiency > 0))
+    if (!(operation->efficiency > 0 && operation->efficiency <= 1))
         found |= SWG_NOT_A_NUMBER;
-    for (int i = 0; i < SWG_GAUGES && found == 0; i++) /* else the samples were not taken */
-        if ((float)(window->high[i] - window->low[i]) < ALIVE * window->point->range[i] * swg_this_gear.scale)
-            found |= SWG_DEAD_GAUGE;
+    if (operation->temperature < COLDEST || operation->temperature > HOTTEST)
+        found |= SWG_NOT_A_NUMBER;
     return found;
 }
 

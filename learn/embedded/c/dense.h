@@ -1,6 +1,6 @@
 /* A fully connected layer, or its rows of small integers with a scale each. */
-#ifndef DENSE_H
-#define DENSE_H
+#ifndef SWG_DENSE_H
+#define SWG_DENSE_H
 
 #include "swg.h"
 

@@ -1,6 +1,6 @@
 /* Order lines of a whole window. */
-#ifndef LINES_H
-#define LINES_H
+#ifndef SWG_LINES_H
+#define SWG_LINES_H
 
 #include <math.h>
 #include <stddef.h>

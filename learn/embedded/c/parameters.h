@@ -1,6 +1,6 @@
 /* The trained numbers, in parameters.c. */
-#ifndef PARAMETERS_H
-#define PARAMETERS_H
+#ifndef SWG_PARAMETERS_H
+#define SWG_PARAMETERS_H
 
 #include "dense.h"
 

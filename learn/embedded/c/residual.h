@@ -1,6 +1,6 @@
 /* Order lines relative to the healthy gear, without what errors of load, trigger and speed change in them. */
-#ifndef RESIDUAL_H
-#define RESIDUAL_H
+#ifndef SWG_RESIDUAL_H
+#define SWG_RESIDUAL_H
 
 #include "lines.h"
 

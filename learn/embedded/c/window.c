@@ -1,7 +1,7 @@
 /* One pass over the samples: sums for mean, variance and order lines. Samples are not kept.
  *
  * In integers, whose sums are exact. A count is the gear's scale, a deviation has 30 bits and a wave 25, so that sums of
- * 512 samples fill 64 bits; the scale is coarser for longer windows. */
+ * 512 samples fill 63 bits and a sign; the scale is coarser for longer windows. */
 #include <limits.h>
 #include <math.h>
 #include <stddef.h>
@@ -9,14 +9,32 @@
 
 #include "swg.h"
 
+#define QUARTERS 4
+#define ALIVE 0.1f /* share of its least healthy movement that a gauge makes in a quarter, at least */
+
 static const swg_point *commissioned(const swg_operation *operation)
 {
     for (int32_t i = 0; i < swg_this_gear.points; i++) {
         const swg_point *point = &swg_this_gear.point[i];
         if (point->n_in == operation->n_in && point->T_out == operation->T_out)
-            return point;
+            return point->samples >= QUARTERS ? point : NULL;
     }
     return NULL;
+}
+
+static void begin_quarter(swg_window *window)
+{
+    for (int i = 0; i < SWG_GAUGES; i++) {
+        window->low[i] = INT_MAX;
+        window->high[i] = INT_MIN;
+    }
+}
+
+static void end_quarter(swg_window *window)
+{
+    for (int i = 0; i < SWG_GAUGES; i++)
+        if ((float)(window->high[i] - window->low[i]) < ALIVE * window->point->range[i] * swg_this_gear.scale)
+            window->faults |= SWG_DEAD_GAUGE;
 }
 
 static void begin(swg_window *window, const swg_operation *operation)
@@ -26,10 +44,7 @@ static void begin(swg_window *window, const swg_operation *operation)
     window->point = commissioned(operation);
     for (int k = 0; k < SWG_LINES; k++)
         window->wave[k].re = 1 << 30;
-    for (int i = 0; i < SWG_GAUGES; i++) {
-        window->low[i] = INT_MAX;
-        window->high[i] = INT_MIN;
-    }
+    begin_quarter(window);
 }
 
 /* a b - c d of numbers whose unit is 2^30. */
@@ -77,7 +92,14 @@ bool swg_push(swg_window *window, const swg_operation *operation, const float sa
         if (fabsf(sample[i]) >= swg_this_gear.saturation)
             window->faults |= SWG_SATURATED;
     }
-    if (!(window->faults & (SWG_NOT_A_NUMBER | SWG_SATURATED))) /* nothing that could overflow */
-        add(window, sample);
-    return window->count == window->point->samples;
+    const bool whole = window->count == window->point->samples;
+    if (window->faults & (SWG_NOT_A_NUMBER | SWG_SATURATED)) /* which could overflow */
+        return whole;
+    add(window, sample);
+    const int32_t quarter = window->point->samples / QUARTERS;
+    if (whole || (window->count % quarter == 0 && window->count < QUARTERS * quarter)) {
+        end_quarter(window);
+        begin_quarter(window);
+    }
+    return whole;
 }
