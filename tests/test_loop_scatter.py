@@ -4,10 +4,13 @@ import numpy as np
 import pytest
 
 from swgsim.loop.features import ORDERS, Layout
-from swgsim.loop.scatter import CARRIED, DOUBT, STATED, Scatter, covariance, estimate, kinds
+from swgsim.loop.gaussian import Covariance
+from swgsim.loop.repeats import from_all, from_repeats
+from swgsim.loop.scatter import CARRIED, DOUBT, STATED, Scatter, covariance, kinds
 
 LAYOUT = Layout(("T_in", "T_out", "s0", "s1"))
 KINDS = kinds(LAYOUT)
+STATEMENT = Scatter.stated(LAYOUT)
 
 
 def fabricated(
@@ -26,7 +29,7 @@ def fabricated(
 
 def ratios(seed: int, repeats: list[int], factor: dict[str, float], noise: float = 0.3) -> np.ndarray:
     """Estimated over stated standard deviations."""
-    found = estimate(*fabricated(seed, repeats, factor, noise=noise), LAYOUT)
+    found = from_repeats(*fabricated(seed, repeats, factor, noise=noise), STATEMENT)
     return np.array([found.sd[kind] / STATED[kind] for kind in KINDS])
 
 
@@ -55,9 +58,26 @@ def test_noise_of_no_account_does_not_stop_the_search():
 
 
 def test_without_repeats_it_is_what_was_stated():
-    found = estimate(*fabricated(1, [1] * 6, {"load": 10.0}), LAYOUT)
+    found = from_repeats(*fabricated(1, [1] * 6, {"load": 10.0}), STATEMENT)
     assert found.repeats == 0
     assert found.sd == {kind: STATED[kind] for kind in KINDS}
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_without_repeats_all_recordings_tell_it_beside_what_is_open(seed):
+    factor = {"load": 4.0, "trigger": 0.25}
+    residual, variance, B, _ = fabricated(seed, [1] * 18, factor)
+    rng = np.random.default_rng(seed + 100)
+    open_ = 5.0 * rng.normal(size=(residual.size, 12))
+    # Less the offset of every group, which only repeats cancel.
+    offset = np.random.default_rng(seed).normal(size=residual.shape)
+    residual = (residual - offset).ravel() + open_ @ rng.standard_normal(12)
+    found = from_all(residual, Covariance(variance.ravel(), open_), B, STATEMENT)
+    share = np.array([found.sd[kind] / STATED[kind] / factor.get(kind, 1.0) for kind in KINDS])
+    assert found.repeats == 0
+    # Eighteen errors of each kind leave a sixth.
+    np.testing.assert_allclose(np.log(share), 0, atol=4 / np.sqrt(2 * 18))
+    assert np.sqrt(np.diag(found.doubt)) == pytest.approx(np.full(len(KINDS), 1 / np.sqrt(2 * 18)), rel=0.25)
 
 
 def test_an_error_that_cannot_be_seen_stays_as_stated():
@@ -65,7 +85,9 @@ def test_an_error_that_cannot_be_seen_stays_as_stated():
     unseen = KINDS.index("dry friction")
     B = B.copy()
     B[:, :, unseen] = 0
-    assert estimate(residual, variance, B, groups, LAYOUT).sd["dry friction"] == pytest.approx(STATED["dry friction"])
+    assert from_repeats(residual, variance, B, groups, STATEMENT).sd["dry friction"] == pytest.approx(
+        STATED["dry friction"]
+    )
 
 
 def test_two_repeats_weigh_the_statement_with_what_they_show():
@@ -75,7 +97,9 @@ def test_two_repeats_weigh_the_statement_with_what_they_show():
     B[:, :rows, KINDS.index("load")] = 1 / STATED["load"]
     residual = np.zeros((2, len(LAYOUT)))
     residual[1, :rows] = size * np.sqrt(2)
-    found = np.log(estimate(residual, np.full(residual.shape, 1.0), B, [0, 0], LAYOUT).sd["load"] / STATED["load"])
+    found = np.log(
+        from_repeats(residual, np.full(residual.shape, 1.0), B, [0, 0], STATEMENT).sd["load"] / STATED["load"]
+    )
     # Derivative of the logarithm of the posterior: size^2 / s^2 - 1 - log(s) / DOUBT^2 = 0.
     assert size**2 * np.exp(-2 * found) - 1 - found / DOUBT**2 == pytest.approx(0, abs=0.03)
 
@@ -98,11 +122,11 @@ def test_kinds_follow_the_channels():
 
 def test_what_commissioning_found_holds_without_repeats_and_yields_to_many():
     before = Scatter({kind: 3 * STATED[kind] for kind in KINDS}, 30, 0.01 * np.eye(len(KINDS)))
-    alone = estimate(*fabricated(1, [1] * 6, {}), LAYOUT, before)
+    alone = from_repeats(*fabricated(1, [1] * 6, {}), before.carried)
     assert alone.sd == before.sd
     np.testing.assert_allclose(np.diag(alone.doubt), 0.01 + CARRIED**2)
-    many = estimate(*fabricated(1, [60] * 5, {}), LAYOUT, before)
+    many = from_repeats(*fabricated(1, [60] * 5, {}), before.carried)
     np.testing.assert_allclose([many.sd[kind] / STATED[kind] for kind in KINDS], 1, rtol=0.25)
-    few = estimate(*fabricated(1, [2] * 3, {}), LAYOUT, before)
+    few = from_repeats(*fabricated(1, [2] * 3, {}), before.carried)
     shares = np.array([few.sd[kind] / STATED[kind] for kind in KINDS])
     assert ((shares > 1) & (shares < 3.5)).all()

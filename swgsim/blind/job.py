@@ -25,15 +25,15 @@ from swgsim.blind.table import table
 from swgsim.compute import Engine
 from swgsim.effects.library import SEARCHED, named
 from swgsim.files import sole_maker, write_json, write_text
-from swgsim.loop import beside, closing, commissioning, evidence, lines, screening, sidelines, trial, unit
+from swgsim.loop import asking, beside, closing, commissioning, evidence, lines, screening, sidelines, trial, unit
 from swgsim.version import code_version
 
 THRESHOLDS = {
-    "alpha": closing.ALPHA,
+    "alpha": asking.ALPHA,
     "least_gain": trial.LEAST_GAIN,
     "least_evidence": trial.LEAST_EVIDENCE,
     "exact": trial.EXACT,
-    "pair_gain": closing.PAIR_GAIN,
+    "pair_gain": asking.PAIR_GAIN,
     "form_tolerance": evidence.FORM_TOLERANCE,
     "contradiction": evidence.CONTRADICTION,
     "visible": screening.VISIBLE,

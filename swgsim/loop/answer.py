@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 from swgsim.effects.base import Effect
 from swgsim.effects.regularity import Regularity
 from swgsim.effects.text import in_words
+from swgsim.loop.asking import ALPHA
 from swgsim.loop.between import between
-from swgsim.loop.closing import ALPHA, Closed, close
+from swgsim.loop.closing import Closed, close
 from swgsim.loop.fitting import Fitted, extended
 from swgsim.loop.lines import cleaned, search
 from swgsim.loop.screening import Score

@@ -1,4 +1,4 @@
-"""Closing the loop: screen, refine, fit, judge, add, and ask again."""
+"""Closing the loop: ask, add, and ask again; then ask for each effect once more with all the others in the model."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,25 +7,18 @@ from typing import NamedTuple
 import numpy as np
 
 from swgsim.effects.base import Effect
-from swgsim.loop.beside import in_company, outdone
-from swgsim.loop.fitting import Fitted, fit
-from swgsim.loop.hypotheses import hypotheses, signatures
-from swgsim.loop.screening import Score, best_of_kind, screen
+from swgsim.loop.asking import ALPHA, Round, ask, ask_behind, screened
+from swgsim.loop.evidence import allowance
+from swgsim.loop.fitting import Fitted, extended, fit
+from swgsim.loop.screening import Score
 from swgsim.loop.session import Measured
-from swgsim.loop.trial import LEAST_GAIN, Trial, begun, tried, widened
+from swgsim.loop.trial import LEAST_GAIN, Trial, widened
 from swgsim.loop.unit import Unit
-from swgsim.loop.vocabulary import Described, describe, set_free
+from swgsim.loop.vocabulary import Described, set_free
 from swgsim.seeds import generator
 
-# Probability of a false effect on recordings in which nothing is missing.
-ALPHA = 0.005
-# Leaders that are fitted, those that are as good but for this share of the gain and may be rivals, and effects that are
-# added at most.
-LEADERS, NEARLY, NEARLY_LEADERS, MOST = 4, 0.05, 8, 3
-# Disturbances of single channels that may stand before an effect and are set apart for it, at most.
-SET_APART = 2
-# Log-likelihood that a pair must gain over its better half; beside the leaders, so many are tried that lead behind it.
-PAIR_GAIN, BEHIND = 15.0, 2
+# Effects that are added at most, and disturbances of single channels that are set apart for one behind them at most.
+MOST, SET_APART = 3, 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,6 +85,29 @@ class Closed:
         return widened(self.after.deviation, self.after.model, len(self.before.model.effects), found)
 
 
+class Asked(NamedTuple):
+    """Where asking came to its end.
+
+    Attributes
+    ----------
+    now : Fitted
+        With what was found, its form open within the tolerance.
+    steps : tuple of Step
+    apart : tuple of Described
+        What was set apart.
+    scores : tuple of tuple of Score
+        Of each screening; the last found nothing more.
+    last : Round
+        What the last asking gave.
+    """
+
+    now: Fitted
+    steps: tuple[Step, ...]
+    apart: tuple[Described, ...]
+    scores: tuple[tuple[Score, ...], ...]
+    last: Round
+
+
 def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed: int = 0) -> Closed:
     """Find what the model of a unit lacks.
 
@@ -103,106 +119,82 @@ def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed
         The library.
     seed : int
     """
-    before = now = fit(measured, unit)
-    steps: list[Step] = []
-    apart: tuple[Described, ...] = ()
-    first: tuple[Score, ...] | None = None
+    before = fit(measured, unit)
+    asked = _forward(before, (), (), kinds, seed)
+    first = asked.scores[0]
+    if len(asked.steps) > 1:
+        base = before
+        for each in asked.apart:
+            base = set_free(base, each)
+        revised = _backward(base, asked.steps, kinds, seed)
+        if _names(revised) == _names(asked.steps):
+            asked = asked._replace(steps=revised)
+        else:
+            asked = _forward(_joined(base, revised), revised, asked.apart, kinds, seed)
+    left = asked.scores[-1]
+    steps = tuple(_with_rivals(step, left) for step in asked.steps)
+    return Closed(
+        before, asked.now.strict, asked.now, steps, first, left, asked.last.trials, asked.last.outdone_by, asked.apart
+    )
+
+
+def _forward(
+    now: Fitted, steps: tuple[Step, ...], apart: tuple[Described, ...], kinds: Sequence[type[Effect]], seed: int
+) -> Asked:
+    """Add what is accepted until nothing more is."""
+    scores: tuple[tuple[Score, ...], ...] = ()
     while True:
-        scores = _screened(now, kinds, generator("screen", seed, len(steps)))
-        first = scores if first is None else first
-        if steps:
-            steps[-1] = _with_rivals(steps[-1], scores)
-        found = _round(now, scores if len(steps) < MOST else (), kinds, seed, len(steps))
+        number = len(steps)
+        scores = (*scores, screened(now, kinds, generator("screen", seed, number)))
+        found = ask(now, scores[-1] if number < MOST else (), kinds, seed, number)
         if found.trials and not found.accepted:
-            found, taken = _behind(now, found, kinds, seed, len(steps), SET_APART - len(apart))
+            found, taken = ask_behind(now, found, kinds, seed, number, SET_APART - len(apart))
             apart += taken
         if found.accepted is None:
-            break
-        others = tuple(trial for trial in found.trials if trial.effects != found.accepted.effects)
-        steps.append(Step(found.accepted, (), others))
+            return Asked(now, steps, apart, scores, found)
+        steps = (*steps, Step(found.accepted, (), found.others))
         now = found.accepted.with_open_form
-    return Closed(before, now.strict, now, tuple(steps), first, scores, found.trials, found.outdone_by, apart)
 
 
-class Round(NamedTuple):
-    """What asking once gave: fits, the best first; what of them is accepted; the regularity that outdoes it."""
+def _backward(base: Fitted, steps: tuple[Step, ...], kinds: Sequence[type[Effect]], seed: int) -> tuple[Step, ...]:
+    """Each step asked again with all the others in the model, which hid what it is when it was asked first.
 
-    trials: tuple[Trial, ...]
-    accepted: Trial | None
-    outdone_by: Described | None
-
-
-def _round(now: Fitted, scores: Sequence[Score], kinds: Sequence[type[Effect]], seed: int, number: int) -> Round:
-    """Fit the best hypotheses, and judge the best of them."""
-    leaders = _leaders(scores)
-    if not leaders:
-        return Round((), None, None)
-    trials = tuple(sorted((_alone(now, score, seed) for score in leaders), key=lambda trial: -trial.merit))
-    best = trials[0]
-    accepted = best if best.sound else _pair(now, trials, kinds, seed) or in_company(now, best, ALPHA, seed)
-    if accepted is None:
-        return Round(trials, None, None)
-    plain = describe(now, generator("vocabulary of a step", seed, number))[0]
-    return Round(trials, None, plain) if outdone(accepted, plain, now) else Round(trials, accepted, None)
+    The last one was asked so. A step in whose place nothing stands out any more is dropped; one in whose place
+    something does that is not accepted stays as it was.
+    """
+    kept = steps
+    for number, step in enumerate(steps[:-1]):
+        others = tuple(each for each in kept if each is not step)
+        without = _joined(base, others)
+        scores = screened(without, kinds, generator("screen again", seed, number))
+        found = ask(without, scores, kinds, seed, number)
+        if not found.trials:
+            kept = others
+        elif found.accepted:
+            again = Step(found.accepted, (), found.others)
+            kept = tuple(again if each is step else each for each in kept)
+    return kept
 
 
-def _behind(
-    now: Fitted, found: Round, kinds: Sequence[type[Effect]], seed: int, number: int, most: int
-) -> tuple[Round, tuple[Described, ...]]:
-    """What is accepted once disturbances of single channels, which dwarf it, are set apart; else what was found."""
-    apart: tuple[Described, ...] = ()
-    while len(apart) < most:
-        plain = describe(now, generator("set apart", seed, number, len(apart)))[0]
-        if plain.chance > ALPHA or not plain.atom.alone:
-            break
-        now, apart = set_free(now, plain), (*apart, plain)
-        scores = _screened(now, kinds, generator("screen beside", seed, number, len(apart)))
-        behind = _round(now, scores, kinds, seed, number)
-        if behind.accepted:
-            return behind, apart
-    return found, ()
+def _joined(base: Fitted, steps: Sequence[Step]) -> Fitted:
+    """A model with the effects of steps, their form open within the tolerance."""
+    fitted = extended(base, [effect for step in steps for effect in step.accepted.effects])
+    added = range(len(base.model.effects), len(fitted.model.effects))
+    return fitted.allowing(np.hstack([allowance(fitted, number) for number in added]))
 
 
-def _screened(fitted: Fitted, kinds: Sequence[type[Effect]], rng: np.random.Generator) -> tuple[Score, ...]:
-    """The best hypothesis of every effect."""
-    found = list(hypotheses(kinds))
-    return tuple(best_of_kind(screen(found, signatures(found, fitted.model, fitted.measured), fitted, rng)))
-
-
-def _leaders(scores: Sequence[Score]) -> list[Score]:
-    """What is fitted: the best scores that are no luck, and those hardly worse than the very best."""
-    real = [score for score in scores if score.chance <= ALPHA]
-    nearly = [s for s in real[LEADERS:NEARLY_LEADERS] if s.gain > (1 - NEARLY) * real[0].gain]
-    return [*real[:LEADERS], *nearly]
-
-
-def _pair(now: Fitted, trials: Sequence[Trial], kinds: Sequence[type[Effect]], seed: int) -> Trial | None:
-    """Two effects that hide one another: the best pair with the best trial, if both members are sound together."""
-    first = trials[0]
-    behind = _leaders(_screened(first.fitted, kinds, generator("screen behind", seed)))[:BEHIND]
-    others = {type(effect): effect for trial in trials[1:LEADERS] for effect in trial.effects}
-    # What leads behind the first shows where it is only beside it.
-    others |= {type(effect): effect for effect in (begun(first.fitted, score, seed) for score in behind)}
-    pairs = [
-        tried(now, first.score, (*first.effects, effect))
-        for kind, effect in others.items()
-        if kind is not first.score.hypothesis.kind
-    ]
-    best = max(pairs, key=lambda pair: pair.merit, default=None)
-    return best if best and best.sound and best.merit > first.merit + 2 * PAIR_GAIN else None
-
-
-def _alone(now: Fitted, score: Score, seed: int) -> Trial:
-    """The hypothesis of a score, on its own."""
-    return tried(now, score, (begun(now, score, seed),))
+def _names(steps: Sequence[Step]) -> list[list[str]]:
+    """The effects of each step."""
+    return [[effect.name() for effect in step.accepted.effects] for step in steps]
 
 
 def _with_rivals(step: Step, after: Sequence[Score]) -> Step:
     """Of the other trials, those as good as the accepted one that say nothing more once it is in the model."""
     silent = {score.hypothesis.kind for score in after if score.chance > ALPHA}
-    others = (*step.rivals, *step.others)
-    rivals = tuple(t for t in others if t.sound and _as_good(t, step.accepted) and t.score.hypothesis.kind in silent)
-    return Step(step.accepted, rivals, tuple(t for t in others if t not in rivals))
+    rivals = tuple(
+        t for t in step.others if t.sound and _as_good(t, step.accepted) and t.score.hypothesis.kind in silent
+    )
+    return Step(step.accepted, rivals, tuple(t for t in step.others if t not in rivals))
 
 
 def _as_good(trial: Trial, best: Trial) -> bool:

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from swgsim import style
 from swgsim.loop import scatter
 from swgsim.loop.answer import Answer
-from swgsim.loop.closing import ALPHA
+from swgsim.loop.asking import ALPHA
 from swgsim.loop.features import ORDERS, basis
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.session import Measured

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.effects.base import Effect
-from swgsim.loop import scatter
+from swgsim.loop import repeats, scatter
 from swgsim.loop.calibration import Calibrated, calibrate
 from swgsim.loop.declared import Declared, at, of_effects, of_unit
 from swgsim.loop.gaussian import Covariance
@@ -159,7 +159,9 @@ def fit(
     """
     start = model or unit.model
     parameters = of_effects(start) if unit.commissioned else of_unit(unit.model.gear) | of_effects(start)
-    guess = unit.scatter or Scatter.stated(measured.layout)
+    known = unit.scatter.carried if unit.scatter else Scatter.stated(measured.layout)
+    repeated = len(set(measured.repeats)) < len(measured)
+    guess = known
     here, begin = at(start, parameters, position or {}), position
     for _ in range(1 if unit.scatter and model else 2):
         moves = scatter.directions(here, measured.situations, measured.layout)[measured.of_recording]
@@ -174,7 +176,13 @@ def fit(
             measured.situations, measured.of_recording, measured.layout, begin,
         )  # fmt: skip
         residual = measured.values - offset.reshape(measured.values.shape) - calibrated.predicted[measured.of_recording]
-        guess = scatter.estimate(residual, measured.variance, moves, measured.repeats, measured.layout, unit.scatter)
+        if repeated or unit.scatter:
+            guess = repeats.from_repeats(residual, measured.variance, moves, measured.repeats, known)
+        else:
+            J = measured.rows(calibrated.J).reshape(residual.size, -1)
+            common = Covariance(measured.variance.ravel(), np.hstack([measured.session_columns(predicted), open_, J]))
+            from_start = residual.ravel() + J @ np.array(list(calibrated.position.values()))
+            guess = repeats.from_all(from_start, common, moves, known)
         here, begin = calibrated.model, calibrated.position
     errors = scatter.covariance(measured.variance, guess.columns(moves)).with_columns(
         measured.session_columns(predicted)

@@ -1,11 +1,10 @@
 """Errors of single recordings: what differs from one repeat to the next although nothing about the gear has changed."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
-from scipy.optimize import minimize
 
 from swgsim.effects import ParameterScatter
 from swgsim.loop.features import ORDERS, Layout
@@ -107,77 +106,6 @@ def directions(
             channel = kind.removeprefix("zero of ")
             found.append(np.broadcast_to((layout.channel == channel) & (layout.order == 0), base.shape).astype(float))
     return np.stack(found, axis=-1)
-
-
-def estimate(
-    residual: Float[np.ndarray, "recording feature"],
-    variance: Float[np.ndarray, "recording feature"],
-    directions: Float[np.ndarray, "recording feature kind"],
-    groups: Sequence[object],
-    layout: Layout,
-    before: Scatter | None = None,
-) -> Scatter:
-    """The standard deviations that the repeats within each group are likeliest with, given what was known before.
-
-    Parameters
-    ----------
-    residual : array (recording, feature)
-        Measured less predicted.
-    variance : array (recording, feature)
-        Of the white noise.
-    directions : array (recording, feature, kind)
-    groups : sequence
-        Recordings of the same value are repeats of each other.
-    layout : Layout
-    before : Scatter, optional
-        Found by commissioning; else what a test bench states.
-    """
-    known = before.carried if before else Scatter.stated(layout)
-    names, known_sd, precision = list(known.sd), np.array(list(known.sd.values())), np.linalg.inv(known.doubt)
-    contrasts = []
-    for group in dict.fromkeys(groups):
-        rows = [i for i, each in enumerate(groups) if each == group]
-        for number in range(1, len(rows)):
-            # Helmert contrasts: independent of each other and of the mean.
-            weights = np.zeros(len(residual))
-            weights[rows[:number]] = -1 / np.sqrt(number * (number + 1))
-            weights[rows[number]] = np.sqrt(number / (number + 1))
-            contrasts.append((weights @ residual, weights**2 @ variance, directions[rows[number]]))
-    if not contrasts:
-        return known
-    # What a contrast says of the errors is said by as many numbers as there are errors.
-    small = []
-    for r, v, B in contrasts:
-        weighted = B / v[:, None]
-        small.append((weighted.T @ B, weighted.T @ r))
-
-    def cost(log_ratio: np.ndarray) -> tuple[float, np.ndarray]:
-        s = known_sd * np.exp(log_ratio)
-        slope = precision @ log_ratio
-        total = 0.5 * float(log_ratio @ slope)
-        for K, b in small:
-            # log det(I + S K S) - b' S (I + S K S)^-1 S b, and its slope over log s.
-            inner = np.linalg.inv(np.eye(len(s)) + s[:, None] * K * s)
-            half = inner @ (s * b)
-            total += -0.5 * np.linalg.slogdet(inner)[1] - 0.5 * float((s * b) @ half)
-            slope = slope + (1 - np.diag(inner)) - half * (s * b) + half * ((s[:, None] * K * s) @ half)
-        return total, slope
-
-    fitted = minimize(
-        cost, np.zeros(len(names)), jac=True, method="L-BFGS-B", bounds=[(-8, 6)] * len(names),
-        options={"ftol": 1e-14, "gtol": 1e-6, "maxiter": 500},
-    )  # fmt: skip
-    sd = dict(zip(names, (known_sd * np.exp(fitted.x)).tolist(), strict=True))
-    return Scatter(sd, known.repeats + len(contrasts), _doubt(lambda x: cost(x)[1], fitted.x))
-
-
-def _doubt(slope: Callable[[np.ndarray], np.ndarray], x: Float[np.ndarray, " kind"]) -> Float[np.ndarray, "kind kind"]:
-    """Inverse of the curvature (Laplace), which is at least that of what was stated."""
-    step = 1e-3
-    moved = step * np.eye(len(x))
-    curvature = np.array([(slope(x + by) - slope(x - by)) / (2 * step) for by in moved])
-    values, vectors = np.linalg.eigh((curvature + curvature.T) / 2)
-    return (vectors / np.maximum(values, 1 / DOUBT**2)) @ vectors.T
 
 
 def covariance(

@@ -1,0 +1,100 @@
+"""Asking once what a model lacks: screen, refine, fit, and judge the best."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from swgsim.effects.base import Effect
+from swgsim.loop.beside import in_company, outdone
+from swgsim.loop.fitting import Fitted
+from swgsim.loop.hypotheses import hypotheses, signatures
+from swgsim.loop.screening import Score, best_of_kind, screen
+from swgsim.loop.trial import Trial, begun, tried
+from swgsim.loop.vocabulary import Described, describe, set_free
+from swgsim.seeds import generator
+
+# Probability of a false effect on recordings in which nothing is missing.
+ALPHA = 0.005
+# Leaders that are fitted, and those that are as good but for this share of the gain and may be rivals.
+LEADERS, NEARLY, NEARLY_LEADERS = 4, 0.05, 8
+# Log-likelihood that a pair must gain over its better half; beside the leaders, so many are tried that lead behind it.
+PAIR_GAIN, BEHIND = 15.0, 2
+
+
+class Round(NamedTuple):
+    """What asking once gave: fits, the best first; what of them is accepted; the regularity that outdoes it."""
+
+    trials: tuple[Trial, ...]
+    accepted: Trial | None
+    outdone_by: Described | None
+
+    @property
+    def others(self) -> tuple[Trial, ...]:
+        """The fits of effects that were not accepted."""
+        return tuple(t for t in self.trials if self.accepted is None or t.effects != self.accepted.effects)
+
+
+def ask(now: Fitted, scores: Sequence[Score], kinds: Sequence[type[Effect]], seed: int, number: int) -> Round:
+    """Fit the best hypotheses, and judge the best of them."""
+    leaders = _leaders(scores)
+    if not leaders:
+        return Round((), None, None)
+    trials = tuple(sorted((_alone(now, score, seed) for score in leaders), key=lambda trial: -trial.merit))
+    best = trials[0]
+    accepted = best if best.sound else _pair(now, trials, kinds, seed) or in_company(now, best, ALPHA, seed)
+    if accepted is None:
+        return Round(trials, None, None)
+    plain = describe(now, generator("vocabulary of a step", seed, number))[0]
+    return Round(trials, None, plain) if outdone(accepted, plain, now) else Round(trials, accepted, None)
+
+
+def ask_behind(
+    now: Fitted, found: Round, kinds: Sequence[type[Effect]], seed: int, number: int, most: int
+) -> tuple[Round, tuple[Described, ...]]:
+    """What is accepted once disturbances of single channels, which dwarf it, are set apart; else what was found."""
+    apart: tuple[Described, ...] = ()
+    while len(apart) < most:
+        plain = describe(now, generator("set apart", seed, number, len(apart)))[0]
+        if plain.chance > ALPHA or not plain.atom.alone:
+            break
+        now, apart = set_free(now, plain), (*apart, plain)
+        scores = screened(now, kinds, generator("screen beside", seed, number, len(apart)))
+        behind = ask(now, scores, kinds, seed, number)
+        if behind.accepted:
+            return behind, apart
+    return found, ()
+
+
+def screened(fitted: Fitted, kinds: Sequence[type[Effect]], rng: np.random.Generator) -> tuple[Score, ...]:
+    """The best hypothesis of every effect."""
+    found = list(hypotheses(kinds))
+    return tuple(best_of_kind(screen(found, signatures(found, fitted.model, fitted.measured), fitted, rng)))
+
+
+def _leaders(scores: Sequence[Score]) -> list[Score]:
+    """What is fitted: the best scores that are no luck, and those hardly worse than the very best."""
+    real = [score for score in scores if score.chance <= ALPHA]
+    nearly = [s for s in real[LEADERS:NEARLY_LEADERS] if s.gain > (1 - NEARLY) * real[0].gain]
+    return [*real[:LEADERS], *nearly]
+
+
+def _pair(now: Fitted, trials: Sequence[Trial], kinds: Sequence[type[Effect]], seed: int) -> Trial | None:
+    """Two effects that hide one another: the best pair with the best trial, if both members are sound together."""
+    first = trials[0]
+    behind = _leaders(screened(first.fitted, kinds, generator("screen behind", seed)))[:BEHIND]
+    others = {type(effect): effect for trial in trials[1:LEADERS] for effect in trial.effects}
+    # What leads behind the first shows where it is only beside it.
+    others |= {type(effect): effect for effect in (begun(first.fitted, score, seed) for score in behind)}
+    pairs = [
+        tried(now, first.score, (*first.effects, effect))
+        for kind, effect in others.items()
+        if kind is not first.score.hypothesis.kind
+    ]
+    best = max(pairs, key=lambda pair: pair.merit, default=None)
+    return best if best and best.sound and best.merit > first.merit + 2 * PAIR_GAIN else None
+
+
+def _alone(now: Fitted, score: Score, seed: int) -> Trial:
+    """The hypothesis of a score, on its own."""
+    return tried(now, score, (begun(now, score, seed),))
