@@ -1,5 +1,7 @@
 """An effect beside a bare regularity: the same thing told better, another thing, or one that dwarfs it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from loop_fixtures import BUMP, Bump, drawn, fitted_to, holding
@@ -7,8 +9,9 @@ from loop_fixtures import BUMP, Bump, drawn, fitted_to, holding
 from swgsim.loop import evidence
 from swgsim.loop.beside import in_company, outdone
 from swgsim.loop.features import Layout
+from swgsim.loop.scatter import Scatter, covariance
 from swgsim.loop.screening import Score
-from swgsim.loop.trial import Trial
+from swgsim.loop.trial import Trial, gained
 from swgsim.loop.vocabulary import Atom, columns, describe, set_free
 
 LAYOUT = Layout(("T_in", "s1", "s2", "s3", "s4"))
@@ -112,3 +115,38 @@ def test_an_effect_that_lives_off_a_regularity_is_not(fitted, stray, signature):
     mimic = stray + 0.1 * np.linalg.norm(stray) / np.linalg.norm(signature) * signature
     after = holding(fitted, 2 * stray - mimic + noise)
     assert in_company(now, trial(after, mimic), 0.005, 0) is None
+
+
+def scattered(fitted, factor: float):
+    """A fit whose recordings also err in two ways, by so much."""
+    moves = np.random.default_rng(5).standard_normal((*fitted.measured.values.shape, 2))
+    scatter = Scatter({"load": factor, "speed": 2.0}, 6, 0.1 * np.eye(2))
+    errors = covariance(fitted.measured.variance, scatter.columns(moves)).with_columns(fitted.errors.G)
+    return replace(fitted, scatter=scatter, errors=errors)
+
+
+def test_other_errors_of_single_recordings_are_those_it_would_have_been_given(fitted):
+    found, expected = scattered(fitted, 1.0).scattering(scattered(fitted, 7.0).scatter), scattered(fitted, 7.0)
+    assert found.scatter.sd == expected.scatter.sd
+    np.testing.assert_allclose(found.errors.G, expected.errors.G)
+
+
+def test_what_larger_errors_of_single_recordings_explain_is_no_merit_of_an_effect(fitted):
+    """Thermal output that is not there drifts from repeat to repeat; zeros that scatter more then hide an offset."""
+    truth = scattered(fitted, 10.0)
+    residual = drawn(truth.whole, np.random.default_rng(6))
+    now, after = holding(scattered(fitted, 1.0), residual), holding(truth, residual)
+    assert after.log_likelihood - now.log_likelihood > 100
+    points, together = gained(now, after)
+    np.testing.assert_allclose(points, 0, atol=1e-6)
+    assert together == pytest.approx(0, abs=1e-6)
+
+
+def test_smaller_errors_of_single_recordings_are(fitted):
+    """An effect that explains why repeats differ."""
+    small = scattered(fitted, 1.0)
+    calm = drawn(small.whole, np.random.default_rng(7))
+    differing = drawn(scattered(fitted, 10.0).whole, np.random.default_rng(8))
+    points, together = gained(holding(scattered(fitted, 10.0), differing), holding(small, calm))
+    assert points.sum() > 20
+    assert together > 20

@@ -14,7 +14,7 @@ from swgsim.loop.lines import cleaned, search
 from swgsim.loop.screening import Score
 from swgsim.loop.session import Measured
 from swgsim.loop.sidelines import Sideline
-from swgsim.loop.trial import LEAST_GAIN, Trial
+from swgsim.loop.trial import LEAST_GAIN, Trial, gained
 from swgsim.loop.unit import Unit
 from swgsim.loop.unnamed import Unnamed
 from swgsim.loop.vocabulary import Described, describe, set_free
@@ -156,7 +156,6 @@ def _patched(closed: Closed, unknown: Sequence[Described]) -> Closed:
     """With those regularities in the model too that pay on operating points they were not fitted to."""
     for each in unknown if len(closed.after.predictive) > 1 else ():
         fitted = extended(closed.after, [each.effect])
-        gain = float((fitted.predictive - closed.after.predictive).sum())
-        if fitted.calibrated.settled and gain > LEAST_GAIN:
+        if fitted.calibrated.settled and gained(closed.after, fitted)[0].sum() > LEAST_GAIN:
             closed = replace(closed, after=fitted)
     return closed

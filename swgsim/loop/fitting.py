@@ -69,6 +69,13 @@ class Fitted:
         kept = [] if self.allowed is None else [self.allowed]
         return replace(self, open=np.hstack([self.open, columns]), allowed=np.hstack([*kept, columns]))
 
+    def scattering(self, scatter: Scatter) -> "Fitted":
+        """The same with other errors of single recordings, which are the first columns of all errors."""
+        ratio = np.array(list(scatter.sd.values())) / np.array(list(self.scatter.sd.values()))
+        scale = np.ones(self.errors.G.shape[1])
+        scale[: len(self.measured) * len(ratio)] = np.tile(ratio, len(self.measured))
+        return replace(self, scatter=scatter, errors=Covariance(self.errors.variance, self.errors.G * scale))
+
     @cached_property
     def residual(self) -> Float[np.ndarray, " row"]:
         """Measured less predicted."""

@@ -124,8 +124,18 @@ def tried(now: Fitted, score: Score, added: tuple[Effect, ...]) -> Trial:
     fitted = extended(now, added)
     effects = fitted.model.effects[known:]
     found = tuple(coherence(fitted, known + number) for number in range(len(added)))
-    evidence = fitted.log_likelihood - now.log_likelihood
-    return Trial(score, effects, fitted, fitted.predictive - now.predictive, evidence, found)
+    return Trial(score, effects, fitted, *gained(now, fitted), found)
+
+
+def gained(now: Fitted, fitted: Fitted) -> tuple[Float[np.ndarray, " point"], float]:
+    """Log-likelihood of each operating point left out, and of all together, that a fit gains over the model before.
+
+    An effect that makes repeats differ makes the errors of single recordings larger, and these explain much without
+    it; so the model before has them as large, if that makes it likelier.
+    """
+    wider = now.scattering(fitted.scatter)
+    without = wider if wider.log_likelihood > now.log_likelihood else now
+    return fitted.predictive - without.predictive, fitted.log_likelihood - without.log_likelihood
 
 
 def widened(
