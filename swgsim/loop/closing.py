@@ -8,7 +8,7 @@ import numpy as np
 
 from swgsim.effects.base import Effect
 from swgsim.loop.asking import ALPHA, Round, ask, ask_behind, screened
-from swgsim.loop.evidence import allowance
+from swgsim.loop.evidence import FORM_TOLERANCE, allowance
 from swgsim.loop.fitting import Fitted, extended, fit
 from swgsim.loop.screening import Score
 from swgsim.loop.session import Measured
@@ -198,7 +198,9 @@ def _with_rivals(step: Step, after: Sequence[Score]) -> Step:
 
 
 def _as_good(trial: Trial, best: Trial) -> bool:
-    """Whether left-out operating points do not tell a trial from the best one."""
+    """Whether left-out operating points do not tell a trial from the best one, or an imperfect form might."""
     difference = best.gains - trial.gains
     doubt = 2 * float(difference.std(ddof=1)) * np.sqrt(len(difference)) if len(difference) > 1 else 0.0
-    return bool(max(difference.sum(), best.evidence - trial.evidence) < max(LEAST_GAIN, doubt))
+    # A form that is wrong by a share costs an effect the square of that share of its likelihood.
+    form = FORM_TOLERANCE**2 * best.evidence
+    return bool(max(difference.sum(), best.evidence - trial.evidence) < max(LEAST_GAIN, doubt, form))
