@@ -1,5 +1,6 @@
 """What closing the loop makes of what asking says: effects asked again with all the others, and rivals."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -8,11 +9,11 @@ from loop_fixtures import BUMP, WAVE, Bump, Wave, fitted_to
 
 from swgsim.loop import closing
 from swgsim.loop.asking import ALPHA, Round
-from swgsim.loop.closing import Step
 from swgsim.loop.evidence import FORM_TOLERANCE, Coherence
 from swgsim.loop.features import Layout
 from swgsim.loop.hypotheses import Hypothesis
 from swgsim.loop.screening import Score
+from swgsim.loop.steps import Step, what, with_rivals
 from swgsim.loop.trial import Trial
 
 FITTED = fitted_to(Layout(("T_in", "s1")), np.random.default_rng(1))
@@ -40,44 +41,63 @@ def kinds(steps: tuple[Step, ...]) -> tuple[type, ...]:
     return tuple(type(effect) for step in steps for effect in step.accepted.effects)
 
 
-def backward(monkeypatch, said: list[Round], *first: Trial) -> tuple[tuple[type, ...], list[tuple[type, ...]]]:
+def backward(monkeypatch, said: Sequence[Round], *first: Trial) -> tuple[tuple[type, ...], list[tuple[type, ...]]]:
     """Effects after the backward pass, and beside which others each was asked."""
-    beside = []
+    beside, answers = [], iter(said)
 
     def joined(base, steps):
         beside.append(kinds(tuple(steps)))
         return base
 
-    monkeypatch.setattr(closing, "_joined", joined)
+    monkeypatch.setattr(closing, "joined", joined)
     monkeypatch.setattr(closing, "screened", lambda *_: ())
-    monkeypatch.setattr(closing, "ask", lambda *_: said.pop(0))
+    monkeypatch.setattr(closing, "ask", lambda *_: next(answers))
     kept = closing._backward(FITTED, tuple(Step(trial, (), ()) for trial in first), (), 0)
+    assert next(answers, None) is None
     return kinds(kept), beside
 
 
+STILL, ANOTHER, NOTHING = Round((A, MIMIC), A, None), Round((MIMIC, A), MIMIC, None), Round((), None, None)
+REFUSED, SECOND = Round((MIMIC,), None, None), Round((B,), B, None)
+
+
 @pytest.mark.parametrize(
-    ("said", "left"),
+    ("said", "left", "beside"),
     [
-        (Round((A, MIMIC), A, None), (Bump, Wave)),
-        (Round((MIMIC, A), MIMIC, None), (Mimic, Wave)),
-        (Round((), None, None), (Wave,)),
-        (Round((MIMIC,), None, None), (Bump, Wave)),
+        ([STILL], (Bump, Wave), [(Wave,)]),
+        ([ANOTHER, SECOND], (Mimic, Wave), [(Wave,), (Mimic,)]),
+        ([ANOTHER, NOTHING, ANOTHER], (Mimic,), [(Wave,), (Mimic,), ()]),
+        ([NOTHING, SECOND], (Wave,), [(Wave,), ()]),
+        ([REFUSED], (Bump, Wave), [(Wave,)]),
+        ([SECOND], (Bump, Wave), [(Wave,)]),
     ],
-    ids=["still the best", "another was meant", "nothing stands out any more", "what stands out is not accepted"],
-)
-def test_the_first_effect_is_asked_again_beside_the_second(monkeypatch, said, left):
-    assert backward(monkeypatch, [said], A, B) == (left, [(Wave,)])
+    ids=[
+        "still the best", "another was meant", "and the second only mended the first",
+        "nothing stands out any more", "what stands out is not accepted", "the other one once more",
+    ],
+)  # fmt: skip
+def test_each_effect_is_asked_again_until_it_was_asked_beside_the_others_that_are_left(monkeypatch, said, left, beside):
+    assert backward(monkeypatch, said, A, B) == (left, beside)
 
 
-def test_later_effects_are_asked_beside_what_the_earlier_ones_became(monkeypatch):
-    said = [Round((MIMIC,), MIMIC, None), Round((), None, None)]
-    assert backward(monkeypatch, said, A, B, C) == ((Mimic, Dip), [(Wave, Dip), (Mimic, Dip)])
+def test_three_effects(monkeypatch):
+    third = Round((C,), C, None)
+    assert backward(monkeypatch, [STILL, SECOND], A, B, C) == ((Bump, Wave, Dip), [(Wave, Dip), (Bump, Dip)])
+    assert backward(monkeypatch, [STILL, NOTHING, STILL, third], A, B, C) == (
+        (Bump, Dip),
+        [(Wave, Dip), (Bump, Dip), (Dip,), (Bump,)],
+    )
+
+
+def test_a_pair_is_not_halved(monkeypatch):
+    pair = replace(A, effects=(*A.effects, *B.effects))
+    assert backward(monkeypatch, [STILL], pair, C) == ((Bump, Wave, Dip), [(Dip,)])
 
 
 def rivals(other: Trial, chance: float) -> tuple[Trial, ...]:
     """Rivals of an effect, where the other one is as unlikely as this once that is in the model."""
     after = (replace(other.score, chance=chance),)
-    step = closing._with_rivals(Step(A, (), (other,)), after)
+    step = with_rivals(Step(A, (), (other,)), after, what([Step(A, (), ())]))
     assert {*step.rivals, *step.others} == {other}
     return step.rivals
 
@@ -91,3 +111,10 @@ def test_what_an_imperfect_form_may_cost_does_not_tell_rivals(less, rival):
 @pytest.mark.parametrize(("chance", "agrees"), [(ALPHA / 2, 1.0), (2 * ALPHA, 0.0)])
 def test_what_says_more_or_contradicts_itself_is_no_rival(chance, agrees):
     assert rivals(tried(MIMIC.score.hypothesis, agrees=agrees), chance) == ()
+
+
+def test_what_is_in_the_model_is_no_rival():
+    step, other = Step(A, (), (B,)), Step(B, (), ())
+    after = (replace(B.score, chance=2 * ALPHA),)
+    assert with_rivals(step, after, what([step])).rivals == (B,)
+    assert with_rivals(step, after, what([step, other])).rivals == ()

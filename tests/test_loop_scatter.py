@@ -57,7 +57,7 @@ def test_noise_of_no_account_does_not_stop_the_search():
     assert found[KINDS.index("speed")] == pytest.approx(0.1, rel=0.15)
 
 
-def test_without_repeats_it_is_what_was_stated():
+def test_repeats_that_are_not_there_tell_nothing():
     found = from_repeats(*fabricated(1, [1] * 6, {"load": 10.0}), STATEMENT)
     assert found.repeats == 0
     assert found.sd == {kind: STATED[kind] for kind in KINDS}

@@ -7,36 +7,20 @@ from typing import NamedTuple
 import numpy as np
 
 from swgsim.effects.base import Effect
-from swgsim.loop.asking import ALPHA, Round, ask, ask_behind, screened
-from swgsim.loop.evidence import FORM_TOLERANCE, allowance
-from swgsim.loop.fitting import Fitted, extended, fit
+from swgsim.loop.asking import Round, ask, ask_behind, screened
+from swgsim.loop.fitting import Fitted, fit
 from swgsim.loop.screening import Score
 from swgsim.loop.session import Measured
-from swgsim.loop.trial import LEAST_GAIN, Trial, widened
+from swgsim.loop.steps import Step, joined, what, with_rivals
+from swgsim.loop.trial import Trial, widened
 from swgsim.loop.unit import Unit
 from swgsim.loop.vocabulary import Described, set_free
 from swgsim.seeds import generator
 
 # Effects that are added at most, and disturbances of single channels that are set apart for one behind them at most.
 MOST, SET_APART = 3, 2
-
-
-@dataclass(frozen=True, eq=False)
-class Step:
-    """One effect, or a pair, that was added.
-
-    Attributes
-    ----------
-    accepted : Trial
-    rivals : tuple of Trial
-        Trials that the recordings cannot tell from it.
-    others : tuple of Trial
-        Trials that were worse.
-    """
-
-    accepted: Trial
-    rivals: tuple[Trial, ...]
-    others: tuple[Trial, ...]
+# Times that an effect is asked again with all the others in the model, at most.
+MOST_AGAIN = 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +45,8 @@ class Closed:
         That regularity.
     apart : tuple of Described
         Disturbances of single channels that were set apart before an effect was found behind them.
+    withdrawn : tuple of Trial
+        Accepted at first, and another one, or nothing, in its place once the others were in the model.
     """
 
     before: Fitted
@@ -72,6 +58,7 @@ class Closed:
     rejected: tuple[Trial, ...]
     outdone_by: Described | None
     apart: tuple[Described, ...] = ()
+    withdrawn: tuple[Trial, ...] = ()
 
     @property
     def nearest(self) -> Trial | None:
@@ -85,7 +72,7 @@ class Closed:
         return widened(self.after.deviation, self.after.model, len(self.before.model.effects), found)
 
 
-class Asked(NamedTuple):
+class End(NamedTuple):
     """Where asking came to its end.
 
     Attributes
@@ -96,7 +83,7 @@ class Asked(NamedTuple):
     apart : tuple of Described
         What was set apart.
     scores : tuple of tuple of Score
-        Of each screening; the last found nothing more.
+        Of each screening.
     last : Round
         What the last asking gave.
     """
@@ -120,27 +107,28 @@ def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed
     seed : int
     """
     before = fit(measured, unit)
-    asked = _forward(before, (), (), kinds, seed)
-    first = asked.scores[0]
-    if len(asked.steps) > 1:
+    end = forward = _forward(before, (), (), kinds, seed)
+    if len(forward.steps) > 1:
         base = before
-        for each in asked.apart:
+        for each in forward.apart:
             base = set_free(base, each)
-        revised = _backward(base, asked.steps, kinds, seed)
-        if _names(revised) == _names(asked.steps):
-            asked = asked._replace(steps=revised)
-        else:
-            asked = _forward(_joined(base, revised), revised, asked.apart, kinds, seed)
-    left = asked.scores[-1]
-    steps = tuple(_with_rivals(step, left) for step in asked.steps)
+        revised = _backward(base, forward.steps, kinds, seed)
+        if [what([step]) for step in revised] == [what([step]) for step in forward.steps]:
+            end = forward._replace(steps=revised)
+        elif (together := joined(base, revised)).calibrated.settled:
+            end = _forward(together, revised, forward.apart, kinds, seed)
+    found, left = what(end.steps), end.scores[-1]
+    steps = tuple(with_rivals(step, left, found) for step in end.steps)
+    withdrawn = tuple(step.accepted for step in forward.steps if not what([step]) <= found)
     return Closed(
-        before, asked.now.strict, asked.now, steps, first, left, asked.last.trials, asked.last.outdone_by, asked.apart
-    )
+        before, end.now.strict, end.now, steps, forward.scores[0], left, end.last.trials, end.last.outdone_by,
+        end.apart, withdrawn,
+    )  # fmt: skip
 
 
 def _forward(
     now: Fitted, steps: tuple[Step, ...], apart: tuple[Described, ...], kinds: Sequence[type[Effect]], seed: int
-) -> Asked:
+) -> End:
     """Add what is accepted until nothing more is."""
     scores: tuple[tuple[Score, ...], ...] = ()
     while True:
@@ -151,56 +139,32 @@ def _forward(
             found, taken = ask_behind(now, found, kinds, seed, number, SET_APART - len(apart))
             apart += taken
         if found.accepted is None:
-            return Asked(now, steps, apart, scores, found)
+            return End(now, steps, apart, scores, found)
         steps = (*steps, Step(found.accepted, (), found.others))
         now = found.accepted.with_open_form
 
 
-def _backward(base: Fitted, steps: tuple[Step, ...], kinds: Sequence[type[Effect]], seed: int) -> tuple[Step, ...]:
-    """Each step asked again with all the others in the model, which hid what it is when it was asked first.
+def _backward(base: Fitted, steps: Sequence[Step], kinds: Sequence[type[Effect]], seed: int) -> tuple[Step, ...]:
+    """Every step asked again with all the others in the model, which hid what it is when it was asked first.
 
-    The last one was asked so. A step in whose place nothing stands out any more is dropped; one in whose place
-    something does that is not accepted stays as it was.
+    Until each was asked beside just those others that are left. A step in whose place nothing stands out any more is
+    dropped; one in whose place something does that is not accepted, half of it, or one of the others, stays as it was.
     """
-    kept = steps
-    for number, step in enumerate(steps[:-1]):
-        others = tuple(each for each in kept if each is not step)
-        without = _joined(base, others)
-        scores = screened(without, kinds, generator("screen again", seed, number))
-        found = ask(without, scores, kinds, seed, number)
+    kept = list(steps)
+    beside = {kept[-1]: what(kept[:-1])}  # as which it was accepted
+    for number in range(MOST_AGAIN):
+        stale = next((s for s in kept if beside.get(s) != what(each for each in kept if each is not s)), None)
+        if stale is None:
+            break
+        others = [each for each in kept if each is not stale]
+        without = joined(base, others)
+        found = ask(without, screened(without, kinds, generator("screen again", seed, number)), kinds, seed, number)
         if not found.trials:
             kept = others
-        elif found.accepted:
-            again = Step(found.accepted, (), found.others)
-            kept = tuple(again if each is step else each for each in kept)
-    return kept
-
-
-def _joined(base: Fitted, steps: Sequence[Step]) -> Fitted:
-    """A model with the effects of steps, their form open within the tolerance."""
-    fitted = extended(base, [effect for step in steps for effect in step.accepted.effects])
-    added = range(len(base.model.effects), len(fitted.model.effects))
-    return fitted.allowing(np.hstack([allowance(fitted, number) for number in added]))
-
-
-def _names(steps: Sequence[Step]) -> list[list[str]]:
-    """The effects of each step."""
-    return [[effect.name() for effect in step.accepted.effects] for step in steps]
-
-
-def _with_rivals(step: Step, after: Sequence[Score]) -> Step:
-    """Of the other trials, those as good as the accepted one that say nothing more once it is in the model."""
-    silent = {score.hypothesis.kind for score in after if score.chance > ALPHA}
-    rivals = tuple(
-        t for t in step.others if t.sound and _as_good(t, step.accepted) and t.score.hypothesis.kind in silent
-    )
-    return Step(step.accepted, rivals, tuple(t for t in step.others if t not in rivals))
-
-
-def _as_good(trial: Trial, best: Trial) -> bool:
-    """Whether left-out operating points do not tell a trial from the best one, or an imperfect form might."""
-    difference = best.gains - trial.gains
-    doubt = 2 * float(difference.std(ddof=1)) * np.sqrt(len(difference)) if len(difference) > 1 else 0.0
-    # A form that is wrong by a share costs an effect the square of that share of its likelihood.
-    form = FORM_TOLERANCE**2 * best.evidence
-    return bool(max(difference.sum(), best.evidence - trial.evidence) < max(LEAST_GAIN, doubt, form))
+            continue
+        again = Step(found.accepted, (), found.others) if found.accepted else stale
+        if what([again]) < what([stale]) or what([again]) & what(others):
+            again = stale
+        kept[kept.index(stale)] = again
+        beside[again] = what(others)
+    return tuple(kept)

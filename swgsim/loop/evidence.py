@@ -67,6 +67,8 @@ def allowance(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
     """
     measured, layout = fitted.measured, fitted.measured.layout
     signed = signature(fitted, number)
+    if not signed.any():
+        return np.zeros((len(signed), 0))
     lines = layout.lines(signed.reshape(measured.values.shape))
     columns = [parts(fitted, signed)]
     for turn in (1, 1j):
@@ -78,6 +80,12 @@ def allowance(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
     whole, open_ = signed[:, None], np.hstack(columns)
     weighed = whole / fitted.errors.variance[:, None]
     return FORM_TOLERANCE * (open_ - whole @ (weighed.T @ open_) / float((weighed * whole).sum()))
+
+
+def open_form(fitted: Fitted, added: int) -> Fitted:
+    """A fit with the form of the effects that were added last open within the tolerance."""
+    count = len(fitted.model.effects)
+    return fitted.allowing(np.hstack([allowance(fitted, number) for number in range(count - added, count)]))
 
 
 def coherence(fitted: Fitted, number: int) -> Coherence:

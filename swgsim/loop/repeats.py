@@ -1,4 +1,4 @@
-"""How large the errors of single recordings are, as repeats tell it, or all recordings where nothing was repeated."""
+"""How large the errors of single recordings are: repeats tell it, or all recordings where nothing was ever repeated."""
 
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
@@ -8,7 +8,7 @@ from jaxtyping import Float
 from scipy.optimize import minimize
 
 from swgsim.loop.gaussian import Covariance
-from swgsim.loop.scatter import DOUBT, Scatter
+from swgsim.loop.scatter import DOUBT, Scatter, covariance
 
 
 class Told(NamedTuple):
@@ -79,10 +79,7 @@ def from_all(
     directions : array (recording, feature, kind)
     known : Scatter
     """
-    recordings, features, kinds = directions.shape
-    # Kind after kind within a recording, each recording with errors of its own.
-    B = np.einsum("rfk,rs->rfsk", directions, np.eye(recordings)).reshape(recordings * features, recordings * kinds)
-    B = common.whiten(B)
+    B = common.whiten(covariance(common.variance.reshape(directions.shape[:2]), directions).G)
     return _likeliest([Told(B.T @ B, B.T @ common.whiten(residual))], known, 0)
 
 

@@ -40,7 +40,7 @@ class Scatter:
     sd : mapping
         Name as in :data:`STATED` to standard deviation, relative for load, speed and friction, else in the unit.
     repeats : int
-        Contrasts between repeats that the estimate rests on; 0 if it is only what was stated.
+        Contrasts between repeats that the estimate rests on; 0 where nothing was repeated.
     doubt : array (kind, kind)
         Covariance of the logarithms of the standard deviations.
     """

@@ -163,7 +163,7 @@ def family_wise(
     """Of every hypothesis, how often pure noise gives any of them a score as unlikely.
 
     Hypotheses overlap, so their scores are taken of the same draws of noise. The errors of single recordings are known
-    from a few repeats only: each draw has them as large as these may be.
+    from few recordings only: each draw has them as large as these may be.
     """
     freedom = np.array([basis.shape[1] for basis in bases])
     used = np.flatnonzero(freedom)

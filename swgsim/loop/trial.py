@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities, size_of
-from swgsim.loop.evidence import Coherence, allowance, coherence, signature
+from swgsim.loop.evidence import Coherence, coherence, open_form, signature
 from swgsim.loop.fitting import Fitted, extended
 from swgsim.loop.model import Model
 from swgsim.loop.refining import zoom
@@ -39,10 +39,11 @@ class Trial:
     fitted : Fitted
         The model with it.
     gains : array (point,)
-        Of the log-likelihood of each operating point left out.
+        Of the log-likelihood of each operating point left out, over a model whose single recordings may err as much.
     evidence : float
-        Of the log-likelihood of all recordings together, their parameters being open within their spreads. It also
-        counts what every operating point shows alike, such as a zero beyond its spread, which the others tell already.
+        Of the log-likelihood of all recordings together, over the same, parameters being open within their spreads. It
+        also counts what every operating point shows alike, such as a zero beyond its spread, which the others tell
+        already.
     coherence : tuple of Coherence
         Of each effect of the trial.
     beside : tuple of Described
@@ -71,9 +72,7 @@ class Trial:
     @cached_property
     def with_open_form(self) -> Fitted:
         """The fit, with the form of its effects open within the tolerance."""
-        count = len(self.fitted.model.effects)
-        added = range(count - len(self.effects), count)
-        return self.fitted.allowing(np.hstack([allowance(self.fitted, number) for number in added]))
+        return open_form(self.fitted, len(self.effects))
 
     def explained(self, before: Fitted) -> float:
         """Fall of the residual's sum of squares that it brings to the model before, as a score counts it."""

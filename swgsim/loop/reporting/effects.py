@@ -7,11 +7,11 @@ from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities
 from swgsim.effects.text import path_of
 from swgsim.loop.answer import Answer
-from swgsim.loop.closing import Step
 from swgsim.loop.errors import errors
 from swgsim.loop.reporting.numbers import estimate, number, probability
 from swgsim.loop.reporting.sizes import Sizes
 from swgsim.loop.sidelines import Sideline
+from swgsim.loop.steps import Step
 from swgsim.loop.trial import LEAST_EVIDENCE, LEAST_GAIN, Trial
 
 
@@ -75,7 +75,8 @@ def rejected(answer: Answer, sizes: Sizes) -> list[dict[str, Any]]:
     tried: dict[str, tuple[Trial, Trial | None]] = {
         names(trial): (trial, step.accepted) for step in steps for trial in step.others if names(trial) not in held
     }
-    tried |= {names(trial): (trial, None) for trial in answer.closed.rejected}
+    put_off = (*answer.closed.rejected, *(t for t in answer.closed.withdrawn if names(t) not in held))
+    tried |= {names(trial): (trial, None) for trial in put_off}
     return [
         {
             "name": name,
@@ -94,6 +95,8 @@ def why(trial: Trial, answer: Answer, better: Trial | None = None) -> str:
             f"a bare regularity explains the same thing better, or far more beside it: {outdone_by} (fall of the sum "
             f"of squares {outdone_by.gain:.0f} against {trial.explained(answer.closed.asked):.0f})"
         )
+    if trial in answer.closed.withdrawn:
+        return "accepted at first; once the others were in the model, another one, or nothing, stood in its place"
     if not trial.fitted.calibrated.settled:
         return "its fit did not come to rest"
     poorest = min(trial.coherence, key=lambda each: each.chance)

@@ -1,0 +1,72 @@
+"""Steps of closing the loop: what was added, what else it might have been, and the model that steps make together."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from swgsim.effects.base import Effect
+from swgsim.effects.quantity import Role, quantities
+from swgsim.loop.asking import ALPHA
+from swgsim.loop.evidence import FORM_TOLERANCE, open_form
+from swgsim.loop.fitting import Fitted, extended
+from swgsim.loop.screening import Score
+from swgsim.loop.trial import LEAST_GAIN, Trial
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """One effect, or a pair, that was added.
+
+    Attributes
+    ----------
+    accepted : Trial
+    rivals : tuple of Trial
+        Trials that the recordings cannot tell from it.
+    others : tuple of Trial
+        Trials that were worse.
+    """
+
+    accepted: Trial
+    rivals: tuple[Trial, ...]
+    others: tuple[Trial, ...]
+
+
+def joined(base: Fitted, steps: Sequence[Step]) -> Fitted:
+    """A model with the effects of steps, their form open within the tolerance."""
+    added = [effect for step in steps for effect in step.accepted.effects]
+    return open_form(extended(base, added), len(added)) if added else base
+
+
+def what(steps: Iterable[Step]) -> frozenset[tuple[object, ...]]:
+    """The effects of steps: their kinds, and what of them is chosen and never fitted."""
+    return frozenset(chosen(effect) for step in steps for effect in step.accepted.effects)
+
+
+def chosen(effect: Effect) -> tuple[object, ...]:
+    """The kind of an effect, and what of it is chosen."""
+    declared = quantities(type(effect))
+    return type(effect), *(getattr(effect, name) for name, q in declared.items() if q.role is Role.CHOICE)
+
+
+def with_rivals(step: Step, after: Sequence[Score], found: frozenset[tuple[object, ...]]) -> Step:
+    """Of the other trials, those as good as the accepted one that say nothing more once it is in the model."""
+    silent = {score.hypothesis.kind for score in after if score.chance > ALPHA}
+    rivals = tuple(
+        trial
+        for trial in step.others
+        if trial.sound
+        and _as_good(trial, step.accepted)
+        and trial.score.hypothesis.kind in silent
+        and not found.issuperset(map(chosen, trial.effects))
+    )
+    return Step(step.accepted, rivals, tuple(trial for trial in step.others if trial not in rivals))
+
+
+def _as_good(trial: Trial, best: Trial) -> bool:
+    """Whether left-out operating points do not tell a trial from the best one, or an imperfect form might."""
+    difference = best.gains - trial.gains
+    doubt = 2 * float(difference.std(ddof=1)) * np.sqrt(len(difference)) if len(difference) > 1 else 0.0
+    # A form that is wrong by a share costs an effect the square of that share of its likelihood.
+    form = FORM_TOLERANCE**2 * best.evidence
+    return bool(max(difference.sum(), best.evidence - trial.evidence) < max(LEAST_GAIN, doubt, form))
