@@ -15,7 +15,7 @@ from swgsim.conditions import Conditions
 from swgsim.gear import OperatingPoint
 from swgsim.loop import scatter
 from swgsim.loop.answer import Answer
-from swgsim.loop.evidence import FORM_TOLERANCE
+from swgsim.loop.evidence import FORM_TOLERANCE, allowance
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.gaussian import Covariance
 from swgsim.loop.model import Model, Situation, predict
@@ -153,8 +153,12 @@ class _Further:
         predicted, directions = _directions(fitted, situations)
         seen = predict(truths, situations, measured.layout) - predicted
         differences = np.moveaxis(seen, 0, -1)
-        C = fitted.errors.whiten(measured.rows(directions[:count]))
-        d = fitted.errors.whiten(measured.rows(differences[:count]))
+        # A difference within the tolerance of form told nothing, so far.
+        errors = fitted.errors
+        for number in _added(fitted):
+            errors = errors.with_columns(allowance(fitted, number))
+        C = errors.whiten(measured.rows(directions[:count]))
+        d = errors.whiten(measured.rows(differences[:count]))
         shared = [
             np.hstack([_session(measured, situation, line), form])
             for situation, line, form in zip(
@@ -190,13 +194,17 @@ def _directions(
     return unsure.predicted, np.concatenate([unsure.columns, unsure.J], axis=-1)
 
 
+def _added(fitted: Fitted) -> range:
+    """Numbers of the effects that were added to the unit's."""
+    return range(len(fitted.unit.model.effects), len(fitted.model.effects))
+
+
 def _tolerance(
     fitted: Fitted, candidates: Sequence[Situation], predicted: Float[np.ndarray, "candidate feature"]
 ) -> Float[np.ndarray, "candidate feature column"]:
     """What an imperfect form of the fitted effects leaves open at a new operating point, channel and order by each."""
     layout = fitted.measured.layout
-    count = len(fitted.unit.model.effects)
-    effects = range(count, len(fitted.model.effects))
+    effects = _added(fitted)
     if not effects:
         return np.zeros((*predicted.shape, 0))
     without = predict([fitted.model.without(number) for number in effects], candidates, layout)
