@@ -147,20 +147,21 @@ def _forward(
 def _backward(base: Fitted, steps: Sequence[Step], kinds: Sequence[type[Effect]], seed: int) -> tuple[Step, ...]:
     """Every step asked again with all the others in the model, which hid what it is when it was asked first.
 
-    Until each was asked beside just those others that are left. A step in whose place nothing stands out any more is
+    Until each was asked beside all the others that are left. A step in whose place nothing stands out any more is
     dropped; one in whose place something does that is not accepted, half of it, or one of the others, stays as it was.
     """
     kept = list(steps)
     beside = {kept[-1]: what(kept[:-1])}  # as which it was accepted
     for number in range(MOST_AGAIN):
-        stale = next((s for s in kept if beside.get(s) != what(each for each in kept if each is not s)), None)
+        beside_now = {step: what(each for each in kept if each is not step) for step in kept}
+        stale = next((step for step in kept if step not in beside or not beside_now[step] <= beside[step]), None)
         if stale is None:
             break
         others = [each for each in kept if each is not stale]
         without = joined(base, others)
         found = ask(without, screened(without, kinds, generator("screen again", seed, number)), kinds, seed, number)
         if not found.trials:
-            kept = others
+            kept = others  # which stood out even beside it
             continue
         again = Step(found.accepted, (), found.others) if found.accepted else stale
         if what([again]) < what([stale]) or what([again]) & what(others):
