@@ -80,7 +80,7 @@ loop: $(READY)  ## closing the loop once, from nothing: record, hide an effect, 
 	@echo "open loop/answer/page.html; 'make ui' shows the run"
 
 blind: $(READY)  ## the loop judged on sealed cases, report/blind.json (SMALL=1: 20 cases, 12 effects)
-	$(BIN)/python scripts/blind.py $(if $(SMALL),cases=20 seed=4 'sectors=[130,110]' 'library=[$(FEW_EFFECTS)]' blind=blind/small)
+	$(BIN)/python scripts/blind.py $(if $(SMALL),cases=20 seed=4 'sectors=[130$(comma)110]' 'library=[$(FEW_EFFECTS)]' blind=blind/small)
 
 sim-to-real: $(READY)  ## classifiers before and after the loop found an undeclared effect, report/sim_to_real.html (SMALL=1: one effect)
 	$(BIN)/python scripts/sim_to_real.py $(if $(SMALL),grid.variants=4 $(addprefix ~undeclared.,$(LEFT_OUT)))
