@@ -34,7 +34,7 @@ def chances(*, known: bool) -> np.ndarray:
         sd = stated * np.exp(rng.normal(0, np.log(2), len(KINDS)))
         noise = np.sqrt(fitted.measured.variance) * rng.standard_normal(fitted.measured.variance.shape)
         r = np.einsum("rfk,rk->rf", B, sd * rng.standard_normal((len(GROUPS), len(KINDS)))) + noise
-        guess = from_repeats(r, fitted.measured.variance, B, GROUPS, Scatter.stated(LAYOUT))
+        guess = from_repeats(r, fitted.measured.variance, B, B[..., :0], GROUPS, Scatter.stated(LAYOUT))
         if known:
             guess = Scatter(dict(zip(KINDS, sd.tolist(), strict=True)), 1000, np.zeros((len(KINDS), len(KINDS))))
         errors = covariance(fitted.measured.variance, guess.columns(B))

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+from swgsim.conditions import Conditions
 from swgsim.loop.features import ORDERS, Layout
 from swgsim.loop.gaussian import Covariance
 from swgsim.loop.repeats import from_all, from_repeats
-from swgsim.loop.scatter import CARRIED, DOUBT, STATED, Scatter, covariance, kinds
+from swgsim.loop.scatter import CARRIED, COMMON, DOUBT, PER_HOUR, PER_KELVIN, STATED, Scatter, covariance, kinds, trends
 
 LAYOUT = Layout(("T_in", "T_out", "s0", "s1"))
 KINDS = kinds(LAYOUT)
@@ -15,7 +16,7 @@ STATEMENT = Scatter.stated(LAYOUT)
 
 def fabricated(
     seed: int, repeats: list[int], factor: dict[str, float], *, noise: float = 0.3
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, list[object]]:
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, list[object]]:
     """Residuals whose errors of single recordings are `factor` times those stated, on an offset of each group."""
     rng = np.random.default_rng(seed)
     groups = [group for group, number in enumerate(repeats) for _ in range(number)]
@@ -24,7 +25,7 @@ def fabricated(
     s = np.array([STATED[kind] * factor.get(kind, 1.0) for kind in KINDS])
     errors = np.einsum("rfk,rk->rf", B, s * rng.normal(size=(len(groups), len(KINDS))))
     variance = np.full((len(groups), len(LAYOUT)), noise**2)
-    return offset[groups] + errors + noise * rng.standard_normal(errors.shape), variance, B, groups
+    return offset[groups] + errors + noise * rng.standard_normal(errors.shape), variance, B, B[..., :0], groups
 
 
 def ratios(seed: int, repeats: list[int], factor: dict[str, float], noise: float = 0.3) -> np.ndarray:
@@ -66,7 +67,7 @@ def test_repeats_that_are_not_there_tell_nothing():
 @pytest.mark.parametrize("seed", range(6))
 def test_without_repeats_all_recordings_tell_it_beside_what_is_open(seed):
     factor = {"load": 4.0, "trigger": 0.25}
-    residual, variance, B, _ = fabricated(seed, [1] * 18, factor)
+    residual, variance, B, _, _ = fabricated(seed, [1] * 18, factor)
     rng = np.random.default_rng(seed + 100)
     open_ = 5.0 * rng.normal(size=(residual.size, 12))
     # Less the offset of every group, which only repeats cancel.
@@ -80,12 +81,40 @@ def test_without_repeats_all_recordings_tell_it_beside_what_is_open(seed):
     assert np.sqrt(np.diag(found.doubt)) == pytest.approx(np.full(len(KINDS), 1 / np.sqrt(2 * 18)), rel=0.25)
 
 
+@pytest.mark.parametrize("size", [0.0, 3.0])
+def test_what_follows_the_temperature_is_no_error_of_single_recordings(size):
+    """A zero that follows it at three times its bound leaves the estimate of its scatter as it is."""
+    found = []
+    for seed in range(30):
+        residual, variance, B, _, groups = fabricated(seed, [3] * 6, {})
+        rng = np.random.default_rng(seed + 100)
+        conditions = [Conditions(25 + warmer, 60.0 * i) for i, warmer in enumerate(rng.uniform(0, 8, len(groups)))]
+        warming = np.array([each.warmer for each in conditions])[:, None] * B[..., KINDS.index("zero of s0")]
+        residual += size * PER_KELVIN * STATED["zero of s0"] * warming
+        scatter = from_repeats(residual, variance, B, trends(B, conditions, LAYOUT), groups, STATEMENT)
+        found.append(np.log(scatter.sd["zero of s0"] / STATED["zero of s0"]))
+    # Twelve contrasts less one each for temperature and time.
+    expected = 1 / np.sqrt(2 * 10)
+    assert np.mean(found) == pytest.approx(0, abs=4 * expected / np.sqrt(30) + 1 / 10)
+    assert np.std(found) == pytest.approx(expected, rel=0.45)
+
+
+def test_what_recordings_have_in_common_is_no_error_of_single_ones():
+    """Every error may be common to all; friction and zeros also follow temperature and time."""
+    B = np.random.default_rng(1).normal(size=(2, len(LAYOUT), len(KINDS)))
+    moves = B * np.array([STATED[kind] for kind in KINDS])
+    following = moves[..., [i for i, kind in enumerate(KINDS) if kind not in ("load", "speed", "trigger")]]
+    found = trends(B, [Conditions(26.0, 0.0), Conditions(25.0, 3600.0)], LAYOUT)
+    np.testing.assert_allclose(found[0], np.hstack([COMMON * moves[0], PER_KELVIN * following[0], 0 * following[0]]))
+    np.testing.assert_allclose(found[1], np.hstack([COMMON * moves[1], 0 * following[1], PER_HOUR * following[1]]))
+
+
 def test_an_error_that_cannot_be_seen_stays_as_stated():
-    residual, variance, B, groups = fabricated(1, [3] * 6, {})
+    residual, variance, B, none, groups = fabricated(1, [3] * 6, {})
     unseen = KINDS.index("dry friction")
     B = B.copy()
     B[:, :, unseen] = 0
-    assert from_repeats(residual, variance, B, groups, STATEMENT).sd["dry friction"] == pytest.approx(
+    assert from_repeats(residual, variance, B, none, groups, STATEMENT).sd["dry friction"] == pytest.approx(
         STATED["dry friction"]
     )
 
@@ -97,9 +126,8 @@ def test_two_repeats_weigh_the_statement_with_what_they_show():
     B[:, :rows, KINDS.index("load")] = 1 / STATED["load"]
     residual = np.zeros((2, len(LAYOUT)))
     residual[1, :rows] = size * np.sqrt(2)
-    found = np.log(
-        from_repeats(residual, np.full(residual.shape, 1.0), B, [0, 0], STATEMENT).sd["load"] / STATED["load"]
-    )
+    scatter = from_repeats(residual, np.full(residual.shape, 1.0), B, B[..., :0], [0, 0], STATEMENT)
+    found = np.log(scatter.sd["load"] / STATED["load"])
     # Derivative of the logarithm of the posterior: size^2 / s^2 - 1 - log(s) / DOUBT^2 = 0.
     assert size**2 * np.exp(-2 * found) - 1 - found / DOUBT**2 == pytest.approx(0, abs=0.03)
 

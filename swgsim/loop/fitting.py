@@ -183,11 +183,13 @@ def fit(
             measured.situations, measured.of_recording, measured.layout, begin,
         )  # fmt: skip
         residual = measured.values - offset.reshape(measured.values.shape) - calibrated.predicted[measured.of_recording]
+        trends = scatter.trends(moves, [each.conditions for each in measured.recordings], measured.layout)
         if repeated or unit.scatter:
-            guess = repeats.from_repeats(residual, measured.variance, moves, measured.repeats, known)
+            guess = repeats.from_repeats(residual, measured.variance, moves, trends, measured.repeats, known)
         else:
-            J = measured.rows(calibrated.J).reshape(residual.size, -1)
-            common = Covariance(measured.variance.ravel(), np.hstack([measured.session_columns(predicted), open_, J]))
+            J, following = (whole.reshape(residual.size, -1) for whole in (measured.rows(calibrated.J), trends))
+            open_to_all = np.hstack([measured.session_columns(predicted), open_, J, following])
+            common = Covariance(measured.variance.ravel(), open_to_all)
             from_start = residual.ravel() + J @ np.array(list(calibrated.position.values()))
             guess = repeats.from_all(from_start, common, moves, known)
         here, begin = calibrated.model, calibrated.position

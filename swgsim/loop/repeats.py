@@ -12,28 +12,35 @@ from swgsim.loop.scatter import DOUBT, Scatter, covariance
 
 
 class Told(NamedTuple):
-    """What numbers with known noise say of errors: by as many numbers as there are errors, kind after kind.
+    """What numbers with noise of covariance V say of errors, kind after kind, that move them by B.
 
     Attributes
     ----------
     K : array (error, error)
-        B' V^-1 B for errors that move what was measured by B, in noise of covariance V.
-    b : array (error,)
-        B' V^-1 r of the residual r.
+        B' V^-1 B.
+    F : array (error, column)
+        B' V^-1 X of columns X: what else may move these numbers, one standard deviation each, and the residual, last.
+    H : array (column, column)
+        X' V^-1 X.
     """
 
     K: Float[np.ndarray, "error error"]
-    b: Float[np.ndarray, " error"]
+    F: Float[np.ndarray, "error column"]
+    H: Float[np.ndarray, "column column"]
 
 
 def from_repeats(
     residual: Float[np.ndarray, "recording feature"],
     variance: Float[np.ndarray, "recording feature"],
     directions: Float[np.ndarray, "recording feature kind"],
+    trends: Float[np.ndarray, "recording feature column"],
     groups: Sequence[object],
     known: Scatter,
 ) -> Scatter:
     """The standard deviations that the repeats within each group are likeliest with, given what was known before.
+
+    What follows the temperature or the time may be what the model lacks, and tells nothing of them (restricted
+    likelihood).
 
     Parameters
     ----------
@@ -42,10 +49,13 @@ def from_repeats(
     variance : array (recording, feature)
         Of the white noise.
     directions : array (recording, feature, kind)
+    trends : array (recording, feature, column)
+        What may follow temperature or time, one standard deviation each.
     groups : sequence
         Recordings of the same value are repeats of each other.
     known : Scatter
     """
+    columns = np.concatenate([trends, residual[..., None]], axis=-1)
     contrasts = []
     for group in dict.fromkeys(groups):
         rows = [i for i, each in enumerate(groups) if each == group]
@@ -55,8 +65,7 @@ def from_repeats(
             weights[rows[:number]] = -1 / np.sqrt(number * (number + 1))
             weights[rows[number]] = np.sqrt(number / (number + 1))
             B = directions[rows[number]]
-            weighted = B / (weights**2 @ variance)[:, None]
-            contrasts.append(Told(weighted.T @ B, weighted.T @ (weights @ residual)))
+            contrasts.append(_told(B, np.tensordot(weights, columns, axes=1), weights**2 @ variance))
     return _likeliest(contrasts, known, len(contrasts)) if contrasts else known
 
 
@@ -80,25 +89,44 @@ def from_all(
     known : Scatter
     """
     B = common.whiten(covariance(common.variance.reshape(directions.shape[:2]), directions).G)
-    return _likeliest([Told(B.T @ B, B.T @ common.whiten(residual))], known, 0)
+    return _likeliest([_told(B, common.whiten(residual)[:, None], np.ones(len(residual)))], known, 0)
+
+
+def _told(
+    B: Float[np.ndarray, "row error"], X: Float[np.ndarray, "row column"], variance: Float[np.ndarray, " row"]
+) -> Told:
+    """What numbers tell whose noise is independent."""
+    weighted = X / variance[:, None]
+    return Told(B.T @ (B / variance[:, None]), B.T @ weighted, X.T @ weighted)
 
 
 def _likeliest(told: Sequence[Told], known: Scatter, contrasts: int) -> Scatter:
     known_sd, precision = np.array(list(known.sd.values())), np.linalg.inv(known.doubt)
     kinds = len(known_sd)
+    H = np.sum([each.H for each in told], axis=0)
+    H[:-1, :-1] += np.eye(len(H) - 1)
 
     def cost(log_ratio: np.ndarray) -> tuple[float, np.ndarray]:
         slope = precision @ log_ratio
         total = 0.5 * float(log_ratio @ slope)
-        for K, b in told:
-            s = np.tile(known_sd * np.exp(log_ratio), len(b) // kinds)
-            # log det(I + S K S) - b' S (I + S K S)^-1 S b, and its slope over log s.
-            scaled = s[:, None] * K * s
-            inner = np.linalg.inv(np.eye(len(s)) + scaled)
-            half = inner @ (s * b)
-            total += -0.5 * np.linalg.slogdet(inner)[1] - 0.5 * float((s * b) @ half)
-            each = (1 - np.diag(inner)) - half * (s * b) + half * (scaled @ half)
-            slope = slope + each.reshape(-1, kinds).sum(axis=0)
+        sd = known_sd * np.exp(log_ratio)
+        # X' (V + B S^2 B')^-1 X of all columns, where S holds the standard deviations.
+        within, halves = H.copy(), []
+        for K, F, _ in told:
+            s = np.tile(sd, len(K) // kinds)[:, None]
+            inner = np.linalg.inv(np.eye(len(s)) + s * K * s.T)
+            half = inner @ (s * F)
+            within -= (s * F).T @ half
+            total -= 0.5 * np.linalg.slogdet(inner)[1]
+            slope = slope + (1 - np.diag(inner)).reshape(-1, kinds).sum(axis=0)
+            halves.append(half)
+        spread = np.linalg.inv(within[:-1, :-1])
+        left = np.append(-spread @ within[:-1, -1], 1.0)
+        total += 0.5 * (float(left @ within @ left) - np.linalg.slogdet(spread)[1])
+        by = np.outer(left, left)
+        by[:-1, :-1] += spread
+        for half in halves:
+            slope = slope - (half @ by * half).sum(axis=1).reshape(-1, kinds).sum(axis=0)
         return total, slope
 
     fitted = minimize(

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
+from swgsim.conditions import Conditions
 from swgsim.effects import ParameterScatter
 from swgsim.loop.features import ORDERS, Layout
 from swgsim.loop.gaussian import Covariance
@@ -27,6 +28,9 @@ STATED = {
 DOUBT = np.log(3.0)
 # Those found by commissioning hold on another day to this factor.
 CARRIED = np.log(1.5)
+# What is common to all recordings, or follows their temperature or time, is no error of single ones. It may go as far,
+# in standard deviations as stated; the last two are bounds of effects of the library: thermal output, amplifier drift.
+COMMON, PER_KELVIN, PER_HOUR = 20.0, 5.0, 20.0
 # Step of the differences: small against any nonlinearity, large against rounding.
 STEP = 1e-3
 
@@ -106,6 +110,22 @@ def directions(
             channel = kind.removeprefix("zero of ")
             found.append(np.broadcast_to((layout.channel == channel) & (layout.order == 0), base.shape).astype(float))
     return np.stack(found, axis=-1)
+
+
+def trends(
+    directions: Float[np.ndarray, "recording feature kind"], conditions: Sequence[Conditions], layout: Layout
+) -> Float[np.ndarray, "recording feature column"]:
+    """How the features move with errors that are no errors of single recordings.
+
+    Those that all recordings have in common, and friction and zeros that follow the temperature, then the time.
+    """
+    names = kinds(layout)
+    moves = directions * np.array([STATED[name] for name in names])
+    following = moves[..., [number for number, name in enumerate(names) if "friction" in name or "zero" in name]]
+    warmer, later = np.array([(PER_KELVIN * each.warmer, PER_HOUR * each.elapsed / 3600) for each in conditions]).T
+    return np.concatenate(
+        [COMMON * moves, following * warmer[:, None, None], following * later[:, None, None]], axis=-1
+    )
 
 
 def covariance(

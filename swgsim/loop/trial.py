@@ -1,7 +1,7 @@
 """A hypothesis fitted with everything else, and what speaks for it."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -123,7 +123,9 @@ def tried(now: Fitted, score: Score, added: tuple[Effect, ...]) -> Trial:
     fitted = extended(now, added)
     effects = fitted.model.effects[known:]
     found = tuple(coherence(fitted, known + number) for number in range(len(added)))
-    return Trial(score, effects, fitted, *gained(now, fitted), found)
+    gains = gained(now, fitted)
+    # Many trials are kept, so without what was computed of them on the way.
+    return Trial(score, effects, replace(fitted), *gains, found)
 
 
 def gained(now: Fitted, fitted: Fitted) -> tuple[Float[np.ndarray, " point"], float]:
