@@ -9,10 +9,13 @@ from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Quantity, Role, quantities
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.hypotheses import Hypothesis, signatures
+from swgsim.loop.model import predict
 from swgsim.loop.screening import Score, screen
 
 # Values that are tried beside the best one, and rounds; every round looks at a third of the last one's reach.
 TRIED, ROUNDS = 2, 4
+# Sizes over the range that are tried beside the one found, for effects far from proportional to their size.
+SIZES = 13
 # A size at least this share of its range from nothing; a smaller one has no signature above rounding.
 LEAST = 1e-3
 
@@ -33,7 +36,19 @@ def zoom(score: Score, fitted: Fitted, rng: np.random.Generator) -> Effect:
         reach = {name: by / 3 for name, by in reach.items()}
     if not np.isfinite(best.estimate):
         best = score
-    return best.hypothesis.effect(best.estimate, best.phase if np.isfinite(best.phase) else 0.0)
+    return _likeliest_size(best, declared[score.hypothesis.size], fitted)
+
+
+def _likeliest_size(score: Score, quantity: Quantity, fitted: Fitted) -> Effect:
+    """The effect of a score at the size with which the chain leaves least of the residual."""
+    spaced = np.geomspace if quantity.low > 0 else np.linspace
+    sizes = [score.estimate, quantity.typical, *spaced(quantity.low, quantity.high, SIZES).tolist()]
+    effects = [score.hypothesis.effect(size, score.phase if np.isfinite(score.phase) else 0.0) for size in sizes]
+    models = [fitted.model, *(fitted.model.plus(effect) for effect in effects)]
+    predicted = predict(models, fitted.measured.situations, fitted.measured.layout)
+    changes = fitted.measured.rows(np.moveaxis(predicted[1:] - predicted[0], 0, -1))
+    left = fitted.whole.whiten(fitted.from_start[:, None] - changes)
+    return effects[int((left**2).sum(axis=0).argmin())]
 
 
 def _spacing(quantity: Quantity) -> float:
