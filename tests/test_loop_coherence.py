@@ -7,6 +7,7 @@ import pytest
 from loop_fixtures import drawn, fitted_to, holding
 
 from swgsim.loop import evidence
+from swgsim.loop.declared import Declared
 from swgsim.loop.features import Layout
 
 LAYOUT = Layout(("T_in", "s0", "s1"))
@@ -106,3 +107,20 @@ def test_doubt_is_how_far_parts_that_differ_lead_a_size_astray(planted, judged):
         sizes.append(float(unit @ fitted.whole.whiten(signal) / (unit @ unit)))
         doubts.append(judged(signal, rng).doubt)
     assert 0.5 < np.median(doubts) / np.std(sizes) < 2
+
+
+def test_doubt_does_not_rest_on_what_rounding_leaves_of_a_size_that_is_open_far(planted, monkeypatch):
+    """A size whose range is 1e5 times what it is absorbs its own signature but for the rounding of its derivative."""
+    rng = np.random.default_rng(9)
+    fitted, whole = planted
+    monkeypatch.setattr(evidence, "signature", lambda fitted, number: whole)
+    first = [list(fitted.measured.of_recording).index(i) for i in range(len(fitted.measured.situations))]
+    derivative = 1e5 * whole.reshape(fitted.measured.values.shape)[first]
+    derivative *= 1 + 1e-3 * rng.standard_normal(derivative.shape)
+    height = Declared("-", 1.0, lambda model: 0.0, lambda model, to: model)
+    calibrated = replace(fitted.calibrated, position={"bump 1: height": 0.0}, J=derivative[..., None])
+    far = replace(fitted, parameters={"bump 1: height": height}, calibrated=calibrated)
+    residual = split_by_form(fitted, whole, 0.2, rng) - whole + drawn(fitted.errors, rng)
+    found = evidence.coherence(holding(far, residual), 0)
+    assert found.form_error > 0.05
+    assert found.doubt < 2 * found.form_error

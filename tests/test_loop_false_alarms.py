@@ -7,9 +7,10 @@ import pytest
 from loop_fixtures import BUMP, POINTS, fitted_to, holding
 from scipy.stats import binom
 
+from swgsim.conditions import Conditions
 from swgsim.loop.features import Layout
 from swgsim.loop.repeats import from_repeats
-from swgsim.loop.scatter import STATED, Scatter, covariance, kinds
+from swgsim.loop.scatter import STATED, Scatter, covariance, kinds, trends
 from swgsim.loop.screening import screen
 
 LAYOUT = Layout(("T_in", "s0"))
@@ -25,6 +26,8 @@ def chances(*, known: bool) -> np.ndarray:
     stated = np.array([STATED[kind] for kind in KINDS])
     B = rng.normal(size=(len(POINTS), len(LAYOUT), len(KINDS))) * 10 ** rng.uniform(-0.5, 1, len(KINDS))
     B = (B / stated)[GROUPS]
+    # The gear warms while it is recorded.
+    following = trends(B, [Conditions(25 + 0.4 * i, 60.0 * i) for i in range(len(GROUPS))], LAYOUT)
     # Effects that act as the errors do, but by another law over the operating points.
     laws = rng.normal(size=(len(POINTS), len(KINDS), 2 * len(KINDS)))[GROUPS]
     laws *= np.tile(np.eye(len(KINDS)), 2)
@@ -34,7 +37,7 @@ def chances(*, known: bool) -> np.ndarray:
         sd = stated * np.exp(rng.normal(0, np.log(2), len(KINDS)))
         noise = np.sqrt(fitted.measured.variance) * rng.standard_normal(fitted.measured.variance.shape)
         r = np.einsum("rfk,rk->rf", B, sd * rng.standard_normal((len(GROUPS), len(KINDS)))) + noise
-        guess = from_repeats(r, fitted.measured.variance, B, B[..., :0], GROUPS, Scatter.stated(LAYOUT))
+        guess = from_repeats(r, fitted.measured.variance, B, following, GROUPS, Scatter.stated(LAYOUT))
         if known:
             guess = Scatter(dict(zip(KINDS, sd.tolist(), strict=True)), 1000, np.zeros((len(KINDS), len(KINDS))))
         errors = covariance(fitted.measured.variance, guess.columns(B))

@@ -73,7 +73,12 @@ def test_without_repeats_all_recordings_tell_it_beside_what_is_open(seed):
     # Less the offset of every group, which only repeats cancel.
     offset = np.random.default_rng(seed).normal(size=residual.shape)
     residual = (residual - offset).ravel() + open_ @ rng.standard_normal(12)
-    found = from_all(residual, Covariance(variance.ravel(), open_), B, STATEMENT)
+    # What all have in common, and a zero that follows the time.
+    elapsed = 600.0 * np.arange(len(B))
+    common = trends(B, [Conditions(elapsed=each) for each in elapsed], LAYOUT)
+    later = (elapsed / 3600)[:, None] * B[..., KINDS.index("zero of s0")] * STATED["zero of s0"]
+    residual += (COMMON * B[..., KINDS.index("zero of T_out")] * STATED["zero of T_out"] + PER_HOUR * later).ravel()
+    found = from_all(residual, Covariance(variance.ravel(), open_), B, common, STATEMENT)
     share = np.array([found.sd[kind] / STATED[kind] / factor.get(kind, 1.0) for kind in KINDS])
     assert found.repeats == 0
     # Eighteen errors of each kind leave a sixth.

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
-from scipy.optimize import brentq
 from scipy.stats import chi2
 
 from swgsim.loop.fitting import Fitted
@@ -12,6 +11,8 @@ from swgsim.loop.model import predict
 
 # A real cause never has the library's exact shape: its parts may differ from it by this share (standard deviation).
 FORM_TOLERANCE = 0.2
+# Shares of which the likeliest is sought.
+FORM_ERRORS = np.append(0.0, np.geomspace(1e-3, 10, 200))
 # Probability below which the parts contradict one another even so.
 CONTRADICTION = 1e-4
 
@@ -25,7 +26,7 @@ class Coherence:
     chance : float
         Probability of such a disagreement between the parts, if their form is right to FORM_TOLERANCE.
     form_error : float
-        Share by which the parts differ from the library's shape, as far as it can be seen.
+        Share by which the parts likeliest differ from the library's shape.
     doubt : float
         Share by which such parts make the size uncertain, which is a mean over them (standard deviation).
     """
@@ -96,18 +97,21 @@ def coherence(fitted: Fitted, number: int) -> Coherence:
     U, s, _ = np.linalg.svd(split, full_matrices=False)
     seen = s > 1e-3 * max(float(s.max()), 1e-12)
     u, s = (U.T @ fitted.whole.whiten(fitted.from_start))[seen], s[seen]
-    # What each part adds to the size: the parts of all operating points together are the whole.
+
+    chance = float(chi2.sf((u**2 / (1 + (FORM_TOLERANCE * s) ** 2)).sum(), len(s)))
+    wider = 1 + (FORM_ERRORS[:, None] * s) ** 2
+    error = float(FORM_ERRORS[np.argmin((u**2 / wider + np.log(wider)).sum(axis=1))])
+    return Coherence(chance, error, error * _share(fitted, number) if error else 0.0)
+
+
+def _share(fitted: Fitted, number: int) -> float:
+    """What an independent error of every part, each of the same share, adds to the size, as a share of it.
+
+    The effect's own parameters are not open beside it: its size is what is asked for, and would leave rounding of it.
+    """
+    others = [column for column, name in enumerate(fitted.parameters) if f" {number + 1}: " not in name]
+    errors = fitted.errors.with_columns(np.hstack([fitted.open, fitted.J[:, others]]))
+    split = errors.whiten(parts(fitted, signature(fitted, number)))
+    # The parts of all operating points together are the whole.
     whole = split[:, : len(fitted.measured.point_rows())].sum(axis=1)
-    share = float(np.linalg.norm(split.T @ whole) / max(float(whole @ whole), 1e-300))
-
-    def disagreement(tolerance: float) -> float:
-        return float((u**2 / (1 + (tolerance * s) ** 2)).sum())
-
-    chance = float(chi2.sf(disagreement(FORM_TOLERANCE), len(s)))
-    if disagreement(0) <= len(s):
-        error = 0.0
-    elif disagreement(10) > len(s):
-        error = 10.0
-    else:
-        error = float(brentq(lambda x: disagreement(x) - len(s), 0, 10))
-    return Coherence(chance, error, error * share)
+    return float(np.linalg.norm(split.T @ whole) / (whole @ whole))

@@ -187,11 +187,10 @@ def fit(
         if repeated or unit.scatter:
             guess = repeats.from_repeats(residual, measured.variance, moves, trends, measured.repeats, known)
         else:
-            J, following = (whole.reshape(residual.size, -1) for whole in (measured.rows(calibrated.J), trends))
-            open_to_all = np.hstack([measured.session_columns(predicted), open_, J, following])
-            common = Covariance(measured.variance.ravel(), open_to_all)
+            J = measured.rows(calibrated.J).reshape(residual.size, -1)
+            common = Covariance(measured.variance.ravel(), np.hstack([measured.session_columns(predicted), open_, J]))
             from_start = residual.ravel() + J @ np.array(list(calibrated.position.values()))
-            guess = repeats.from_all(from_start, common, moves, known)
+            guess = repeats.from_all(from_start, common, moves, trends, known)
         here, begin = calibrated.model, calibrated.position
     errors = scatter.covariance(measured.variance, guess.columns(moves)).with_columns(
         measured.session_columns(predicted)

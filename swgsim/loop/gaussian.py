@@ -30,11 +30,10 @@ class Covariance:
     G: Float[np.ndarray, "row column"]
 
     @cached_property
-    def _scaled(self) -> tuple[Float[np.ndarray, "column rank"], Float[np.ndarray, " rank"]]:
-        """Right singular vectors and values of G in units of the independent errors; the left ones are large."""
-        R = np.linalg.qr(self.G / np.sqrt(self.variance)[:, None], mode="r")
-        _, s, Vt = np.linalg.svd(R, full_matrices=False)
-        return Vt.T, s
+    def _scaled(self) -> tuple[Float[np.ndarray, "row rank"], Float[np.ndarray, " rank"]]:
+        """Left singular vectors and values of G in units of the independent errors."""
+        U, s, _ = np.linalg.svd(self.G / np.sqrt(self.variance)[:, None], full_matrices=False)
+        return U, s
 
     def whiten(self, X: np.ndarray) -> np.ndarray:
         """W X with W covariance W' = 1, for an array (row,) or (row, column)."""
@@ -50,12 +49,9 @@ class Covariance:
 
     def _shrunken(self, X: np.ndarray) -> np.ndarray:
         """X with the directions of the common errors made as small as their variance is large."""
-        V, s = self._scaled
-        root = np.sqrt(1 + s**2)
-        # 1 / root - 1, divided by the squares of the singular values that the left vectors are without.
-        shrink = (-1 / (root * (root + 1))).reshape(-1, *[1] * (X.ndim - 1))
-        deviation = self._deviation(X)
-        return X + (self.G @ (V @ (shrink * (V.T @ (self.G.T @ (X / deviation)))))) / deviation
+        U, s = self._scaled
+        shrink = (1 / np.sqrt(1 + s**2) - 1).reshape(-1, *[1] * (X.ndim - 1))
+        return X + U @ (shrink * (U.T @ X))
 
     def with_columns(self, G: Float[np.ndarray, "row more"]) -> "Covariance":
         """The covariance with further common errors."""

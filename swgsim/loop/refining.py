@@ -1,9 +1,11 @@
 """The inner parameters of a hypothesis, no longer on a grid: zoomed in on by the score, with the real chain."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import product
 
 import numpy as np
+from jaxtyping import Float
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Quantity, Role, quantities
@@ -14,8 +16,9 @@ from swgsim.loop.screening import Score, screen
 
 # Values that are tried beside the best one, and rounds; every round looks at a third of the last one's reach.
 TRIED, ROUNDS = 2, 4
-# Sizes over the range that are tried beside the one found, for effects far from proportional to their size.
-SIZES = 13
+# An estimate holds if the chain keeps so much of the gain that the score promised; else the typical size and so many over
+# the range are tried.
+KEPT, SIZES = 0.5, 13
 # A size at least this share of its range from nothing; a smaller one has no signature above rounding.
 LEAST = 1e-3
 
@@ -36,19 +39,33 @@ def zoom(score: Score, fitted: Fitted, rng: np.random.Generator) -> Effect:
         reach = {name: by / 3 for name, by in reach.items()}
     if not np.isfinite(best.estimate):
         best = score
-    return _likeliest_size(best, declared[score.hypothesis.size], fitted)
+    return _at_its_size(best, declared[score.hypothesis.size], fitted)
 
 
-def _likeliest_size(score: Score, quantity: Quantity, fitted: Fitted) -> Effect:
-    """The effect of a score at the size with which the chain leaves least of the residual."""
+def _at_its_size(score: Score, quantity: Quantity, fitted: Fitted) -> Effect:
+    """The effect of a score: of the estimated size, or of the likeliest one where the chain disproves the estimate."""
+
+    def effect(size: float) -> Effect:
+        return score.hypothesis.effect(size, score.phase if np.isfinite(score.phase) else 0.0)
+
+    r = fitted.whole.whiten(fitted.from_start)
+    estimated = effect(score.estimate)
+    if float(r @ r) - _left(fitted, [estimated])[0] > KEPT * score.gain:
+        return estimated
     spaced = np.geomspace if quantity.low > 0 else np.linspace
-    sizes = [score.estimate, quantity.typical, *spaced(quantity.low, quantity.high, SIZES).tolist()]
-    effects = [score.hypothesis.effect(size, score.phase if np.isfinite(score.phase) else 0.0) for size in sizes]
+    sizes = [quantity.typical, *spaced(quantity.low, quantity.high, SIZES).tolist()]
+    least = LEAST * (quantity.high - quantity.low)
+    effects = [estimated, *(effect(size) for size in sizes if abs(size - quantity.nothing) > least)]
+    return effects[int(_left(fitted, effects).argmin())]
+
+
+def _left(fitted: Fitted, effects: Sequence[Effect]) -> Float[np.ndarray, " effect"]:
+    """Sum of squares of the weighed residual that each effect leaves, by the chain."""
     models = [fitted.model, *(fitted.model.plus(effect) for effect in effects)]
     predicted = predict(models, fitted.measured.situations, fitted.measured.layout)
     changes = fitted.measured.rows(np.moveaxis(predicted[1:] - predicted[0], 0, -1))
-    left = fitted.whole.whiten(fitted.from_start[:, None] - changes)
-    return effects[int((left**2).sum(axis=0).argmin())]
+    left = (fitted.whole.whiten(fitted.from_start[:, None] - changes) ** 2).sum(axis=0)
+    return np.where(np.isfinite(left), left, np.inf)
 
 
 def _spacing(quantity: Quantity) -> float:

@@ -39,8 +39,8 @@ def from_repeats(
 ) -> Scatter:
     """The standard deviations that the repeats within each group are likeliest with, given what was known before.
 
-    What follows the temperature or the time may be what the model lacks, and tells nothing of them (restricted
-    likelihood).
+    What all recordings have in common, or follows temperature or time, may be what the model lacks, and tells nothing
+    of them (restricted likelihood).
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def from_repeats(
         Of the white noise.
     directions : array (recording, feature, kind)
     trends : array (recording, feature, column)
-        What may follow temperature or time, one standard deviation each.
+        Errors that are none of single recordings, one standard deviation each.
     groups : sequence
         Recordings of the same value are repeats of each other.
     known : Scatter
@@ -73,6 +73,7 @@ def from_all(
     residual: Float[np.ndarray, " row"],
     common: Covariance,
     directions: Float[np.ndarray, "recording feature kind"],
+    trends: Float[np.ndarray, "recording feature column"],
     known: Scatter,
 ) -> Scatter:
     """The standard deviations that all recordings are likeliest with, given what was known before.
@@ -86,8 +87,11 @@ def from_all(
     common : Covariance
         All other errors, those of fitted parameters among them (restricted likelihood).
     directions : array (recording, feature, kind)
+    trends : array (recording, feature, column)
+        Errors that are none of single recordings, one standard deviation each.
     known : Scatter
     """
+    common = common.with_columns(trends.reshape(len(residual), -1))
     B = common.whiten(covariance(common.variance.reshape(directions.shape[:2]), directions).G)
     return _likeliest([_told(B, common.whiten(residual)[:, None], np.ones(len(residual)))], known, 0)
 

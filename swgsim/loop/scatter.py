@@ -29,7 +29,7 @@ DOUBT = np.log(3.0)
 # Those found by commissioning hold on another day to this factor.
 CARRIED = np.log(1.5)
 # What is common to all recordings, or follows their temperature or time, is no error of single ones. It may go as far,
-# in standard deviations as stated; the last two are bounds of effects of the library: thermal output, amplifier drift.
+# in standard deviations as stated: as thermal output does within its bounds; the other two are estimates.
 COMMON, PER_KELVIN, PER_HOUR = 20.0, 5.0, 20.0
 # Step of the differences: small against any nonlinearity, large against rounding.
 STEP = 1e-3
@@ -117,7 +117,8 @@ def trends(
 ) -> Float[np.ndarray, "recording feature column"]:
     """How the features move with errors that are no errors of single recordings.
 
-    Those that all recordings have in common, and friction and zeros that follow the temperature, then the time.
+    Those that all recordings have in common, and friction and zeros that follow the temperature, then the time since
+    their session began, alike in all sessions.
     """
     names = kinds(layout)
     moves = directions * np.array([STATED[name] for name in names])

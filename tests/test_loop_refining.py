@@ -1,0 +1,45 @@
+"""Where a fit begins."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from bench_fixtures import good
+from chain_fixtures import GEAR
+
+from swgsim.effects import Effect
+from swgsim.effects.clipping import Clipping
+from swgsim.effects.zero_offset import ZeroOffset
+from swgsim.loop.fitting import Fitted, fit
+from swgsim.loop.hypotheses import hypotheses, signatures
+from swgsim.loop.model import Model
+from swgsim.loop.refining import zoom
+from swgsim.loop.screening import Score, screen
+from swgsim.loop.session import Measured
+from swgsim.loop.unit import Unit
+
+
+@cache
+def asked(*hidden: Effect) -> tuple[Fitted, Score]:
+    """A model without the effects that recordings have, and the best hypothesis of the first of them."""
+    fitted = fit(Measured.of(good(effects=hidden, repeats=1)), Unit(Model(GEAR)))
+    found = list(hypotheses([type(hidden[0])]))
+    return fitted, screen(found, signatures(found, fitted.model, fitted.measured), fitted, np.random.default_rng(1))[0]
+
+
+def test_an_effect_far_from_proportional_begins_near_its_size():
+    level = 0.2
+    fitted, score = asked(Clipping(level))
+    begun = zoom(score, fitted, np.random.default_rng(1))
+    assert isinstance(begun, Clipping)
+    # Sizes are tried in steps of a factor 1.8.
+    assert abs(np.log(begun.level / level)) < np.log(1.8)
+    assert abs(np.log(score.estimate / level)) > np.log(2)
+
+
+def test_a_proportional_effect_begins_at_its_estimate():
+    fitted, score = asked(ZeroOffset(0, 0.08))
+    begun = zoom(score, fitted, np.random.default_rng(1))
+    assert isinstance(begun, ZeroOffset)
+    assert (begun.sensor, begun.offset) == (0, pytest.approx(score.estimate, rel=1e-3))
+    assert score.estimate == pytest.approx(0.08, rel=0.1)
