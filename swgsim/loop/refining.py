@@ -16,8 +16,8 @@ from swgsim.loop.screening import Score, screen
 
 # Values that are tried beside the best one, and rounds; every round looks at a third of the last one's reach.
 TRIED, ROUNDS = 2, 4
-# An estimate holds if the chain keeps so much of the gain that the score promised; else the typical size and so many over
-# the range are tried.
+# An estimate holds if the chain keeps so much of the gain that the score promised; else the typical size is tried, and
+# so many over the range.
 KEPT, SIZES = 0.5, 13
 # A size at least this share of its range from nothing; a smaller one has no signature above rounding.
 LEAST = 1e-3
