@@ -1,7 +1,5 @@
 """Where a fit begins."""
 
-from functools import cache
-
 import numpy as np
 import pytest
 from bench_fixtures import good
@@ -16,19 +14,21 @@ from swgsim.loop.model import Model
 from swgsim.loop.refining import zoom
 from swgsim.loop.screening import Score, screen
 from swgsim.loop.session import Measured
-from swgsim.loop.unit import Unit
+from swgsim.loop.unit import STRUCTURE, Unit
 
 
-@cache
 def asked(*hidden: Effect) -> tuple[Fitted, Score]:
     """A model without the effects that recordings have, and the best hypothesis of the first of them."""
-    fitted = fit(Measured.of(good(effects=hidden, repeats=1)), Unit(Model(GEAR)))
+    measured = Measured.of(good(effects=hidden, repeats=1))
+    # A unit of which only the maps are not known, so that nothing is fitted.
+    maps = Unit(Model(GEAR)).left_open(Model(GEAR), measured.situations, measured.layout).columns.shape[-1]
+    fitted = fit(measured, Unit(Model(GEAR), reach=STRUCTURE * np.eye(maps)))
     found = list(hypotheses([type(hidden[0])]))
     return fitted, screen(found, signatures(found, fitted.model, fitted.measured), fitted, np.random.default_rng(1))[0]
 
 
-def test_an_effect_far_from_proportional_begins_near_its_size():
-    level = 0.2
+@pytest.mark.parametrize("level", [0.12, 0.2])
+def test_an_effect_far_from_proportional_begins_near_its_size(level):
     fitted, score = asked(Clipping(level))
     begun = zoom(score, fitted, np.random.default_rng(1))
     assert isinstance(begun, Clipping)
