@@ -40,7 +40,7 @@ from swgsim.loop.declared import of_unit
 from swgsim.loop.features import ORDERS, Layout, features
 from swgsim.loop.fitting import Fitted, fit
 from swgsim.loop.hypotheses import Hypothesis
-from swgsim.loop.model import Model
+from swgsim.loop.model import Model, predict
 from swgsim.loop.session import Measured
 from swgsim.loop.unit import Unit
 from swgsim.seeds import generator
@@ -206,6 +206,20 @@ def test_a_size_is_found_that_has_the_strength(fitted: Fitted) -> None:
         effect, strength = sized(drawn_inner(kind, generator("sized")), 100.0, fitted)
         assert strength == pytest.approx(100, rel=0.2)
         assert strengths([effect], [kind], fitted)[0] == pytest.approx(strength, rel=1e-6)
+
+
+def test_a_parameter_within_its_spread_is_not_strong_as_its_law_is_curved(fitted: Fitted) -> None:
+    """A drop of k1 by 15 % is 1.5 standard deviations of a unit never seen, whatever its second derivative is."""
+    dropped = LIBRARY["reduced_stiffness"](0.85)
+    assert 0.5 < strengths([dropped], [type(dropped)], fitted)[0] < 1.1 * 1.5**2
+    assert sized(dropped, 1.0, fitted)[1] == pytest.approx(1.0, rel=0.1)
+
+
+def test_beside_a_law_that_is_straight_fitting_is_projecting(fitted: Fitted) -> None:
+    balanced = LIBRARY["zero_offset"](1, 0.01)
+    seen = predict([fitted.model, fitted.model.plus(balanced)], fitted.measured.situations, fitted.measured.layout)
+    white = fitted.whole.whiten(fitted.measured.rows(seen[1] - seen[0]))
+    assert strengths([balanced], [type(balanced)], fitted)[0] == pytest.approx(white @ white, rel=1e-3)
 
 
 def test_the_prediction_where_nothing_was_recorded(fitted: Fitted) -> None:

@@ -52,7 +52,7 @@ def backward(monkeypatch, said: Sequence[Round], *first: Trial) -> tuple[tuple[t
     monkeypatch.setattr(closing, "joined", joined)
     monkeypatch.setattr(closing, "screened", lambda *_: ())
     monkeypatch.setattr(closing, "ask", lambda *_: next(answers))
-    kept = closing._backward(FITTED, tuple(Step(trial, (), ()) for trial in first), (), 0)
+    kept = closing._backward(FITTED, tuple(Step(trial, (), ()) for trial in first), (), (), 0)
     assert next(answers, None) is None
     return kinds(kept), beside
 

@@ -7,12 +7,12 @@ import pytest
 from loop_fixtures import BUMP, Bump, drawn, fitted_to, holding
 
 from swgsim.loop import evidence
-from swgsim.loop.beside import in_company, outdone
+from swgsim.loop.beside import elsewhere, in_company, outdone
 from swgsim.loop.features import Layout
 from swgsim.loop.scatter import Scatter, covariance
 from swgsim.loop.screening import Score
 from swgsim.loop.trial import Trial, gained
-from swgsim.loop.vocabulary import Atom, columns, describe, set_free
+from swgsim.loop.vocabulary import Atom, columns, describe, set_free, strongest
 
 LAYOUT = Layout(("T_in", "s1", "s2", "s3", "s4"))
 STRAY = Atom(5, "in s2 alone", "constant")
@@ -53,7 +53,7 @@ def _signature_of_the_effect(signature, monkeypatch):
 
 
 def named(fitted, atom: Atom):
-    return next(each for each in describe(fitted, np.random.default_rng(0)) if each.atom == atom)
+    return next(each for each in describe(fitted) if each.atom == atom)
 
 
 def test_a_regularity_that_tells_the_same_better_outdoes_an_effect(fitted, stray, signature):
@@ -93,7 +93,8 @@ def test_what_dwarfs_an_effect_makes_it_doubtful(fitted, stray, signature):
 
 def test_a_regularity_that_is_set_free_is_gone(fitted, stray):
     now = holding(fitted, stray + drawn(fitted.whole, np.random.default_rng(6)))
-    found = named(now, STRAY)
+    found = strongest(now, np.random.default_rng(0))
+    assert found.atom == STRAY
     assert found.chance < 0.01
     assert named(set_free(now, found), STRAY).gain < 20
 
@@ -123,6 +124,19 @@ def scattered(fitted, factor: float):
     scatter = Scatter({"load": factor, "speed": 2.0}, 6, 0.1 * np.eye(2))
     errors = covariance(fitted.measured.variance, scatter.columns(moves)).with_columns(fitted.errors.G)
     return replace(fitted, scatter=scatter, errors=errors)
+
+
+def test_what_shows_in_other_channels_too_is_no_part_of_a_disturbance(fitted, stray, signature):
+    rng = np.random.default_rng(3)
+    there = np.tile(LAYOUT.channel == "s2", len(fitted.measured))
+    for share, another in ((1.0, True), (0.05, False)):
+        effect = np.where(there, signature, share * signature)
+        now = holding(fitted, drawn(fitted.whole, rng) + stray + effect)
+        plain = named(now, STRAY)
+        free = set_free(now, plain)
+        found = trial(now, effect)
+        assert found.explained(free) > 50
+        assert elsewhere(found, [plain], free) == another
 
 
 def test_other_errors_of_single_recordings_are_those_it_would_have_been_given(fitted):

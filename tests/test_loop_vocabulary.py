@@ -6,7 +6,7 @@ from loop_fixtures import drawn, fitted_to, holding
 
 from swgsim.effects.frozen import FULL_LOAD
 from swgsim.loop.features import ORDERS, Layout
-from swgsim.loop.vocabulary import Atom, atoms, columns, describe
+from swgsim.loop.vocabulary import Atom, atoms, columns, strongest
 
 LAYOUT = Layout(("s1", "s2", "s3", "s4"))
 AZIMUTH = np.pi / 2 * np.arange(4)
@@ -39,7 +39,7 @@ def travelling(fitted, order: int, waves: int, amplitude: float, theta: float) -
 )
 def test_a_travelling_pattern_of_order_3_in_proportion_to_the_load(fitted, waves, pattern):
     residual = travelling(fitted, 3, waves, 8.0, 0.7) + drawn(fitted.whole, np.random.default_rng(2))
-    best = describe(holding(fitted, residual), np.random.default_rng(3))[0]
+    best = strongest(holding(fitted, residual), np.random.default_rng(3))
     assert best.atom == Atom(3, pattern, "proportional to the load")
     assert best.chance < 1e-6
     assert best.amplitude == pytest.approx(8, abs=2)
@@ -51,7 +51,7 @@ def test_an_offset_in_one_gauge(fitted):
     lines[2, 0] = -6.0
     constant = np.broadcast_to(LAYOUT.vector(lines), (len(fitted.measured.situations), len(LAYOUT)))
     residual = fitted.measured.rows(constant) + drawn(fitted.whole, np.random.default_rng(4))
-    best = describe(holding(fitted, residual), np.random.default_rng(5))[0]
+    best = strongest(holding(fitted, residual), np.random.default_rng(5))
     assert best.atom == Atom(0, "in s3 alone", "constant")
     assert best.amplitude == pytest.approx(6, abs=2)
     assert best.phase == pytest.approx(np.pi)
@@ -60,7 +60,7 @@ def test_an_offset_in_one_gauge(fitted):
 def test_phase_is_that_of_the_cosine(fitted):
     """The convention of the library: size cos(order phi - phase)."""
     residual = travelling(fitted, 3, 0, 50.0, 0.7)
-    best = describe(holding(fitted, residual), np.random.default_rng(6))[0]
+    best = strongest(holding(fitted, residual), np.random.default_rng(6))
     assert np.angle(np.exp(1j * (best.phase - 0.7))) == pytest.approx(0, abs=0.1)
 
 
@@ -75,7 +75,7 @@ def test_columns_of_an_atom_span_its_phases(fitted):
 
 def test_nothing_is_described_in_noise(fitted):
     rng = np.random.default_rng(7)
-    chance = [describe(holding(fitted, drawn(fitted.whole, rng)), rng)[0].chance for _ in range(4)]
+    chance = [strongest(holding(fitted, drawn(fitted.whole, rng)), rng).chance for _ in range(4)]
     assert min(chance) > 0.005
     # Four uniform numbers have a mean of 0.5, give or take 0.14.
     assert 0.1 < np.mean(chance) < 0.9

@@ -48,7 +48,7 @@ def test_its_size_follows_its_law(law, factor):
 @pytest.mark.parametrize("order", [0, 3])
 def test_what_was_described_is_what_is_added(order):
     """A negative mean, and a phase."""
-    described = Described(Atom(order, "in s2 alone", "constant"), 100.0, 2, 1e-9, 2e-3, np.pi if order == 0 else 2.0)
+    described = Described(Atom(order, "in s2 alone", "constant"), 100.0, 2, 2e-3, np.pi if order == 0 else 2.0)
     found = lines(described.effect)[5, order]
     assert found == pytest.approx(-2e-3 if order == 0 else 2e-3 * np.exp(-2j))
 

@@ -25,7 +25,7 @@ from swgsim.blind.table import table
 from swgsim.compute import Engine
 from swgsim.effects.library import SEARCHED, named
 from swgsim.files import sole_maker, write_json, write_text
-from swgsim.loop import asking, beside, closing, commissioning, evidence, lines, screening, sidelines, trial, unit
+from swgsim.loop import asking, beside, commissioning, evidence, lines, screening, sidelines, trial, unit
 from swgsim.version import code_version
 
 THRESHOLDS = {
@@ -37,13 +37,14 @@ THRESHOLDS = {
     "form_tolerance": evidence.FORM_TOLERANCE,
     "contradiction": evidence.CONTRADICTION,
     "visible": screening.VISIBLE,
-    "set_apart": closing.SET_APART,
+    "set_apart": asking.SET_APART,
     "structure": unit.STRUCTURE,
     "misfit": commissioning.MISFIT,
     "tolerance_of_lines": sidelines.TOLERANCE,
     "outdone": [beside.OUTDONE, beside.OUTDONE_SHARE, beside.SAME_THING, beside.DWARFED],
     "outdone_by_lines": [lines.OUTDONE, lines.OUTDONE_SHARE],
     "another_thing": beside.ANOTHER_THING,
+    "elsewhere": beside.ELSEWHERE,
     "detectable": DETECTABLE,
     "look_alike": judged.LOOK_ALIKE,
     "worse": judged.WORSE,

@@ -19,7 +19,7 @@ CYCLE = (
     SINGLE, EASY_NULL, WRITTEN, PAIR, SINGLE, HARD_NULL, TAKEN_OUT, SINGLE, UNTESTABLE, HARD_NULL,
     SINGLE, PAIR, WRITTEN, EASY_NULL, SINGLE, TAKEN_OUT, PAIR, UNTESTABLE, HARD_NULL, SINGLE,
 )  # fmt: skip
-# Non-centrality of an effect's signature once the declared parameters are projected out.
+# Non-centrality of an effect's signature beside the declared parameters.
 STRENGTHS = (60.0, 400.0, 3000.0, 30000.0)
 # An effect of this strength is to be found.
 DETECTABLE = 400.0

@@ -1,13 +1,15 @@
-"""How strong an effect is: non-centrality of its signature once the declared parameters are projected out."""
+"""How strong an effect is: non-centrality of its signature beside the declared parameters, which a fit would move."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.optimize import brentq
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Quantity, quantities, size_of
 from swgsim.loop.between import between
+from swgsim.loop.calibration import calibrate
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.hypotheses import hypotheses, signatures
 from swgsim.loop.model import predict
@@ -15,10 +17,14 @@ from swgsim.loop.sidelines import is_random
 
 # Shares of the way from nothing to the bound at which the strength is tried, and how far at most.
 FARTHEST, COARSE, FINE = 0.9, 13, 5
+# A strength beside fitted parameters is near enough to the planned one within this share; so is a size.
+NEAR = 0.03
 
 
 def strengths(effects: Sequence[Effect], of: Sequence[type[Effect]], fitted: Fitted) -> np.ndarray:
-    """Non-centrality of every effect, without any noise.
+    """Non-centrality of every effect, without any noise, beside declared parameters that are fitted to it.
+
+    Beside their derivatives alone, a drop of k1 within its spread would be strong, as it is no multiple of that by k1.
 
     Parameters
     ----------
@@ -29,6 +35,15 @@ def strengths(effects: Sequence[Effect], of: Sequence[type[Effect]], fitted: Fit
     fitted : Fitted
         The loop's fit to the same recordings without them.
     """
+    found = _linear(effects, of, fitted)
+    for i, kind in enumerate(of):
+        if fitted.parameters and not is_random(kind):
+            found[i] = _calibrated(effects[i], fitted)
+    return found
+
+
+def _linear(effects: Sequence[Effect], of: Sequence[type[Effect]], fitted: Fitted) -> np.ndarray:
+    """Non-centrality of every effect beside the derivatives by the declared parameters."""
     found = np.zeros(len(effects))
     chain = [i for i, kind in enumerate(of) if not is_random(kind)]
     if chain:
@@ -39,6 +54,19 @@ def strengths(effects: Sequence[Effect], of: Sequence[type[Effect]], fitted: Fit
     for i in set(range(len(effects))) - set(chain):
         found[i] = sum((each.pattern(effects[i])[0] ** 2).sum() for each in between(fitted.measured.recordings))
     return found
+
+
+def _calibrated(effect: Effect, fitted: Fitted) -> float:
+    """Sum of squares of an effect beside the likeliest parameters without it, and of what these are off."""
+    measured = fitted.measured
+    changed = predict([fitted.model.plus(effect)], measured.situations, measured.layout)[0]
+    errors = fitted.errors.with_columns(fitted.open)
+    found = calibrate(
+        fitted.model, fitted.parameters, changed[measured.of_recording], errors,
+        measured.situations, measured.of_recording, measured.layout,
+    )  # fmt: skip
+    left = errors.whiten(measured.rows(changed - found.predicted))
+    return float(left @ left + np.square(list(found.position.values())).sum())
 
 
 def sized(
@@ -59,27 +87,39 @@ def sized(
     quantity = quantities(type(effect))[name]
     upward = getattr(effect, name) > quantity.nothing
 
-    def of(shares: np.ndarray) -> tuple[list[Effect], np.ndarray]:
-        sizes = [_on_the_way(quantity, float(share), upward) for share in shares]
-        tried = [replace(effect, **{name: value}) for value in sizes]
-        return tried, strengths([dressed(each) for each in tried], [type(effect)] * len(tried), fitted)
+    def at(share: float) -> Effect:
+        return replace(effect, **{name: _on_the_way(quantity, share, upward)})
 
+    def linear(shares: np.ndarray) -> np.ndarray:
+        return _linear([dressed(at(share)) for share in shares.tolist()], [type(effect)] * len(shares), fitted)
+
+    def strength(share: float) -> float:
+        return float(strengths([dressed(at(share))], [type(effect)], fitted)[0])
+
+    def short_of(log_share: float) -> float:
+        return float(np.log(target / max(strength(np.exp(log_share)), 1e-12)))
+
+    share = _share(linear, target)
+    if share < FARTHEST and strength(share) < (1 - NEAR) * target:
+        far = strength(FARTHEST) > target
+        share = np.exp(brentq(short_of, np.log(share), np.log(FARTHEST), xtol=NEAR / 2)) if far else FARTHEST
+    return at(share), strength(share)
+
+
+def _share(linear: Callable[[np.ndarray], np.ndarray], target: float) -> float:
+    """The share of the way to the bound at which a strength that grows is as planned, or the nearest to it."""
     shares = np.geomspace(1e-5, FARTHEST, COARSE)
-    tried, found = of(shares)
-    above = np.flatnonzero(found >= target)
-    if len(above) and above[0] > 0:
-        first = above[0]
-        shares = np.geomspace(shares[first - 1], shares[first], FINE)
-        tried, found = of(shares)
-        # Between two of them strength goes with some power of the size.
-        ends = np.searchsorted(np.maximum.accumulate(found), target)
-        low, high = max(int(ends) - 1, 0), min(int(ends), FINE - 1)
-        logs = np.log(np.maximum(found, 1e-12))
-        part = 0.5 if logs[high] <= logs[low] else (np.log(target) - logs[low]) / (logs[high] - logs[low])
-        tried, found = of(np.array([shares[low] * (shares[high] / shares[low]) ** float(np.clip(part, 0, 1))]))
-        return tried[0], float(found[0])
-    nearest = 0 if len(above) else len(shares) - 1
-    return tried[nearest], float(found[nearest])
+    above = np.flatnonzero(linear(shares) >= target)
+    if not len(above) or above[0] == 0:
+        return float(shares[0 if len(above) else -1])
+    shares = np.geomspace(shares[above[0] - 1], shares[above[0]], FINE)
+    found = linear(shares)
+    # Between two of them strength goes with some power of the size.
+    ends = np.searchsorted(np.maximum.accumulate(found), target)
+    low, high = max(int(ends) - 1, 0), min(int(ends), FINE - 1)
+    logs = np.log(np.maximum(found, 1e-12))
+    part = 0.5 if logs[high] <= logs[low] else (np.log(target) - logs[low]) / (logs[high] - logs[low])
+    return float(shares[low] * (shares[high] / shares[low]) ** float(np.clip(part, 0, 1)))
 
 
 def _on_the_way(quantity: Quantity, share: float, upward: bool) -> float:

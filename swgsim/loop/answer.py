@@ -17,7 +17,7 @@ from swgsim.loop.sidelines import Sideline
 from swgsim.loop.trial import LEAST_GAIN, Trial, gained
 from swgsim.loop.unit import Unit
 from swgsim.loop.unnamed import Unnamed
-from swgsim.loop.vocabulary import Described, describe, set_free
+from swgsim.loop.vocabulary import Described, set_free, strongest
 from swgsim.recording import Recording
 from swgsim.seeds import generator
 from swgsim.turning import forget
@@ -144,7 +144,7 @@ def _unknown(fitted: Fitted, seed: int) -> tuple[Described, ...]:
     """Regularities that are left, the likeliest first; each is taken out before the next is sought."""
     found: list[Described] = []
     while len(found) < MOST_ATOMS:
-        best = describe(fitted, generator("vocabulary", seed, len(found)))[0]
+        best = strongest(fitted, generator("vocabulary", seed, len(found)))
         if best.chance > ALPHA:
             break
         found.append(best)

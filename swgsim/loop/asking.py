@@ -6,16 +6,18 @@ from typing import NamedTuple
 import numpy as np
 
 from swgsim.effects.base import Effect
-from swgsim.loop.beside import in_company, outdone
+from swgsim.loop.beside import elsewhere, in_company, outdone
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.hypotheses import hypotheses, signatures
 from swgsim.loop.screening import Score, best_of_kind, screen
 from swgsim.loop.trial import Trial, begun, tried
-from swgsim.loop.vocabulary import Described, describe, set_free
+from swgsim.loop.vocabulary import Described, describe, set_free, strongest
 from swgsim.seeds import generator
 
 # Probability of a false effect on recordings in which nothing is missing.
 ALPHA = 0.005
+# Disturbances of single channels that are set apart for an effect behind them, at most.
+SET_APART = 2
 # Leaders that are fitted, and those that are as good but for this share of the gain and may be rivals.
 LEADERS, NEARLY, NEARLY_LEADERS = 4, 0.05, 8
 # Log-likelihood that a pair must gain over its better half; beside the leaders, so many are tried that lead behind it.
@@ -35,35 +37,47 @@ class Round(NamedTuple):
         return tuple(t for t in self.trials if self.accepted is None or t.effects != self.accepted.effects)
 
 
-def ask(now: Fitted, scores: Sequence[Score], kinds: Sequence[type[Effect]], seed: int, number: int) -> Round:
-    """Fit the best hypotheses, and judge the best of them."""
+def ask(
+    now: Fitted,
+    scores: Sequence[Score],
+    kinds: Sequence[type[Effect]],
+    seed: int,
+    apart: Sequence[Described] = (),
+) -> Round:
+    """Fit the best hypotheses, and judge the best of them, behind what was set apart."""
     leaders = _leaders(scores)
     if not leaders:
         return Round((), None, None)
     trials = tuple(sorted((_alone(now, score, seed) for score in leaders), key=lambda trial: -trial.merit))
     best = trials[0]
     accepted = best if best.sound else _pair(now, trials, kinds, seed) or in_company(now, best, ALPHA, seed)
-    if accepted is None:
+    if accepted is None or not elsewhere(accepted, apart, now):
         return Round(trials, None, None)
-    plain = describe(now, generator("vocabulary of a step", seed, number))[0]
+    plain = describe(now)[0]
     return Round(trials, None, plain) if outdone(accepted, plain, now) else Round(trials, accepted, None)
 
 
 def ask_behind(
-    now: Fitted, found: Round, kinds: Sequence[type[Effect]], seed: int, number: int, most: int
+    now: Fitted,
+    found: Round,
+    kinds: Sequence[type[Effect]],
+    seed: int,
+    number: int,
+    apart: tuple[Described, ...],
 ) -> tuple[Round, tuple[Described, ...]]:
-    """What is accepted once disturbances of single channels, which dwarf it, are set apart; else what was found."""
-    apart: tuple[Described, ...] = ()
-    while len(apart) < most:
-        plain = describe(now, generator("set apart", seed, number, len(apart)))[0]
+    """What is accepted once disturbances of single channels that dwarf it are set apart too; else what was found."""
+    before = apart
+    while len(apart) < SET_APART:
+        more = len(apart) - len(before)
+        plain = strongest(now, generator("set apart", seed, number, more))
         if plain.chance > ALPHA or not plain.atom.alone:
             break
         now, apart = set_free(now, plain), (*apart, plain)
-        scores = screened(now, kinds, generator("screen beside", seed, number, len(apart)))
-        behind = ask(now, scores, kinds, seed, number)
+        scores = screened(now, kinds, generator("screen beside", seed, number, more + 1))
+        behind = ask(now, scores, kinds, seed, apart)
         if behind.accepted:
             return behind, apart
-    return found, ()
+    return found, before
 
 
 def screened(fitted: Fitted, kinds: Sequence[type[Effect]], rng: np.random.Generator) -> tuple[Score, ...]:

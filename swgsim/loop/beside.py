@@ -1,13 +1,15 @@
-"""An effect beside bare regularities: they may spoil its form, tell the same better, or dwarf it."""
+"""An effect beside bare regularities: they may spoil its form, tell the same better, dwarf it, or be part of it."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from swgsim.effects.regularity import PATTERNS
 from swgsim.loop.evidence import coherence
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.trial import Trial, gain
-from swgsim.loop.vocabulary import Described, columns, describe, set_free
+from swgsim.loop.vocabulary import Described, columns, set_free, strongest
 from swgsim.seeds import generator
 
 # A regularity explains the same thing better than an effect only if it does so by this much (twice a log-likelihood,
@@ -17,6 +19,8 @@ OUTDONE, OUTDONE_SHARE, SAME_THING, DWARFED = 17.0, 0.05, 0.5, 4.0
 # Regularities that may spoil the agreement of an effect's parts, at most; it keeps so much of its gain if they are
 # another thing.
 COMPANY, ANOTHER_THING = 2, 0.8
+# What is found behind disturbances of single channels is another thing if this share of its strength is in others.
+ELSEWHERE = 0.25
 
 
 def outdone(trial: Trial, plain: Described, now: Fitted) -> bool:
@@ -48,7 +52,7 @@ def in_company(now: Fitted, trial: Trial, level: float, seed: int) -> Trial | No
     before, after, explained = now, trial.fitted, trial.explained(now)
     beside: tuple[Described, ...] = ()
     for number in range(COMPANY):
-        best = describe(after, generator("company", seed, number))[0]
+        best = strongest(after, generator("company", seed, number))
         before, after, beside = set_free(before, best), set_free(after, best), (*beside, best)
         if best.chance > level or trial.explained(before) < max(ANOTHER_THING * explained, best.gain):
             return None
@@ -56,3 +60,20 @@ def in_company(now: Fitted, trial: Trial, level: float, seed: int) -> Trial | No
         if all(each.holds for each in agreement):
             return replace(trial, coherence=agreement, beside=beside)
     return None
+
+
+def elsewhere(trial: Trial, apart: Sequence[Described], now: Fitted) -> bool:
+    """Whether effects found behind disturbances of single channels act on others too; else they are part of them.
+
+    Parameters
+    ----------
+    trial : Trial
+    apart : sequence of Described
+        The disturbances.
+    now : Fitted
+        The model without the effects, in which they are free.
+    """
+    disturbed = [channel for each in apart for channel in PATTERNS[each.atom.pattern]]
+    others = ~np.isin(np.tile(now.measured.layout.channel, len(now.measured)), disturbed)
+    beyond = np.linalg.norm(now.whole.rows(others).whiten(trial.signature[others]), axis=0)
+    return bool((beyond**2 > ELSEWHERE * np.linalg.norm(now.whole.whiten(trial.signature), axis=0) ** 2).all())

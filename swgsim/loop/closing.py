@@ -17,8 +17,8 @@ from swgsim.loop.unit import Unit
 from swgsim.loop.vocabulary import Described, set_free
 from swgsim.seeds import generator
 
-# Effects that are added at most, and disturbances of single channels that are set apart for one behind them at most.
-MOST, SET_APART = 3, 2
+# Effects that are added at most.
+MOST = 3
 # Times that an effect is asked again with all the others in the model, at most.
 MOST_AGAIN = 6
 
@@ -112,7 +112,7 @@ def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed
         base = before
         for each in forward.apart:
             base = set_free(base, each)
-        revised = _backward(base, forward.steps, kinds, seed)
+        revised = _backward(base, forward.steps, forward.apart, kinds, seed)
         if [what([step]) for step in revised] == [what([step]) for step in forward.steps]:
             end = forward._replace(steps=revised)
         elif (together := joined(base, revised)).calibrated.settled:
@@ -134,17 +134,18 @@ def _forward(
     while True:
         number = len(steps)
         scores = (*scores, screened(now, kinds, generator("screen", seed, number)))
-        found = ask(now, scores[-1] if number < MOST else (), kinds, seed, number)
+        found = ask(now, scores[-1] if number < MOST else (), kinds, seed, apart)
         if found.trials and not found.accepted:
-            found, taken = ask_behind(now, found, kinds, seed, number, SET_APART - len(apart))
-            apart += taken
+            found, apart = ask_behind(now, found, kinds, seed, number, apart)
         if found.accepted is None:
             return End(now, steps, apart, scores, found)
         steps = (*steps, Step(found.accepted, (), found.others))
         now = found.accepted.with_open_form
 
 
-def _backward(base: Fitted, steps: Sequence[Step], kinds: Sequence[type[Effect]], seed: int) -> tuple[Step, ...]:
+def _backward(
+    base: Fitted, steps: Sequence[Step], apart: Sequence[Described], kinds: Sequence[type[Effect]], seed: int
+) -> tuple[Step, ...]:
     """Every step asked again with all the others in the model, which hid what it is when it was asked first.
 
     Until each was asked beside all the others that are left. A step in whose place nothing stands out any more is
@@ -159,7 +160,8 @@ def _backward(base: Fitted, steps: Sequence[Step], kinds: Sequence[type[Effect]]
             break
         others = [each for each in kept if each is not stale]
         without = joined(base, others)
-        found = ask(without, screened(without, kinds, generator("screen again", seed, number)), kinds, seed, number)
+        scores = screened(without, kinds, generator("screen again", seed, number))
+        found = ask(without, scores, kinds, seed, apart)
         if not found.trials:
             kept = others  # which stood out even beside it
             continue

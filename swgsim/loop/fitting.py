@@ -1,6 +1,6 @@
 """A model fitted to recordings: its parameters, the errors of single recordings, and what stays unexplained."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -114,8 +114,8 @@ class Fitted:
 
     def null(
         self, bases: Float[np.ndarray, "row direction"], draws: int, rng: np.random.Generator
-    ) -> Float[np.ndarray, "direction draw"]:
-        """What pure noise puts along directions of the weighed residual.
+    ) -> Iterator[Float[np.ndarray, "direction draw"]]:
+        """What pure noise puts along directions of the weighed residual, so many draws at a time, without end.
 
         The errors of single recordings are in each draw as large as their estimate leaves them; all others are as
         declared.
@@ -123,11 +123,12 @@ class Fitted:
         weighed = self.whole.transposed(bases)
         white = np.sqrt(self.whole.variance)[:, None] * weighed
         common = self.whole.G.T @ weighed
-        factors = np.ones((len(common), draws))
         recordings = len(self.measured)
-        factors[: recordings * len(self.scatter.sd)] = np.tile(self.scatter.drawn(rng, draws), (recordings, 1))
-        noise = white.T @ rng.standard_normal((len(white), draws))
-        return noise + common.T @ (factors * rng.standard_normal((len(common), draws)))
+        while True:
+            factors = np.ones((len(common), draws))
+            factors[: recordings * len(self.scatter.sd)] = np.tile(self.scatter.drawn(rng, draws), (recordings, 1))
+            noise = white.T @ rng.standard_normal((len(white), draws))
+            yield noise + common.T @ (factors * rng.standard_normal((len(common), draws)))
 
     @cached_property
     def log_likelihood(self) -> float:

@@ -4,7 +4,7 @@ Atoms are tested as the effects of the library are, after projecting out what th
 they are also the widest question that can be asked of a residual: whether anything regular is left in it at all.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -55,20 +55,20 @@ class Described:
     gain : float
         Fall of the residual's sum of squares.
     freedom : int
-    chance : float
-        Of as much by noise in the whole vocabulary.
     amplitude : float
         At 70 N m, 4000 rpm, 10 K, 1 h where the law has them [unit of the channel].
     phase : float
         [rad].
+    chance : float
+        Of as much by noise in the whole vocabulary; nan where nobody asked.
     """
 
     atom: Atom
     gain: float
     freedom: int
-    chance: float
     amplitude: float
     phase: float
+    chance: float = np.nan
 
     @property
     def rank(self) -> float:
@@ -110,8 +110,20 @@ def columns(atom: Atom, fitted: Fitted) -> Float[np.ndarray, "row column"]:
     return np.stack(found, axis=1)
 
 
-def describe(fitted: Fitted, rng: np.random.Generator) -> list[Described]:
+def describe(fitted: Fitted) -> list[Described]:
     """Atoms by how unlikely they are by luck, the likeliest to be real first."""
+    return [described for described, _ in _described(fitted)]
+
+
+def strongest(fitted: Fitted, rng: np.random.Generator) -> Described:
+    """The first of these, with its chance."""
+    found = _described(fitted)
+    chances = family_wise([U for _, U in found], fitted.whole.whiten(fitted.from_start), fitted, rng)
+    return replace(found[0][0], chance=float(chances[0]))
+
+
+def _described(fitted: Fitted) -> list[tuple[Described, Float[np.ndarray, "row _"]]]:
+    """Atoms in this order, with the directions of the weighed residual that each may take."""
     tried = atoms(fitted.measured.layout)
     blocks = [columns(atom, fitted) for atom in tried]
     stacked = np.hstack(blocks)
@@ -119,23 +131,17 @@ def describe(fitted: Fitted, rng: np.random.Generator) -> list[Described]:
     alone = (fitted.errors.whiten(stacked) ** 2).sum(axis=0)
     weighed = np.split(fitted.whole.whiten(stacked), ends, axis=1)
     r = fitted.whole.whiten(fitted.from_start)
-    bases, fits = [], []
-    for C, free in zip(weighed, np.split(alone, ends), strict=True):
+    found = []
+    for atom, C, free in zip(tried, weighed, np.split(alone, ends), strict=True):
         U, s, Vt = np.linalg.svd(C, full_matrices=False)
         kept = s**2 > VISIBLE * max(float(free.max()), 1e-300)
         U, s, Vt = U[:, kept], s[kept], Vt[kept]
-        bases.append(U)
-        fits.append(Vt.T @ ((U.T @ r) / s))
-    chances = family_wise(bases, r, fitted, rng)
-    found = [
-        Described(
-            atom, float(((U.T @ r) ** 2).sum()), U.shape[1], float(chance),
-            float(np.hypot(*fit) if len(fit) == 2 else abs(fit[0])),
-            float(np.arctan2(-fit[1], fit[0])) if len(fit) == 2 else float(np.pi * (fit[0] < 0)),
-        )
-        for atom, U, fit, chance in zip(tried, bases, fits, chances, strict=True)
-    ]  # fmt: skip
-    return sorted(found, key=lambda each: -each.rank)
+        along = U.T @ r
+        fit = Vt.T @ (along / s)
+        amplitude = float(np.hypot(*fit) if len(fit) == 2 else abs(fit[0]))
+        phase = float(np.arctan2(-fit[1], fit[0])) if len(fit) == 2 else float(np.pi * (fit[0] < 0))
+        found.append((Described(atom, float(along @ along), U.shape[1], amplitude, phase), U))
+    return sorted(found, key=lambda each: -each[0].rank)
 
 
 def set_free(fitted: Fitted, described: Described) -> Fitted:
