@@ -9,6 +9,7 @@ from scipy.stats import binom
 
 from swgsim.conditions import Conditions
 from swgsim.loop.features import Layout
+from swgsim.loop.model import Situation
 from swgsim.loop.repeats import from_repeats
 from swgsim.loop.scatter import STATED, Scatter, covariance, kinds, trends
 from swgsim.loop.screening import screen
@@ -27,7 +28,8 @@ def chances(*, known: bool) -> np.ndarray:
     B = rng.normal(size=(len(POINTS), len(LAYOUT), len(KINDS))) * 10 ** rng.uniform(-0.5, 1, len(KINDS))
     B = (B / stated)[GROUPS]
     # The gear warms while it is recorded.
-    following = trends(B, [Conditions(25 + 0.4 * i, 60.0 * i) for i in range(len(GROUPS))], LAYOUT)
+    situations = [Situation(POINTS[group], Conditions(25 + 0.4 * i, 60.0 * i)) for i, group in enumerate(GROUPS)]
+    following = trends(B, situations, LAYOUT)
     # Effects that act as the errors do, but by another law over the operating points.
     laws = rng.normal(size=(len(POINTS), len(KINDS), 2 * len(KINDS)))[GROUPS]
     laws *= np.tile(np.eye(len(KINDS)), 2)

@@ -4,11 +4,26 @@ import numpy as np
 import pytest
 
 from swgsim.conditions import Conditions
+from swgsim.gear import OperatingPoint
 from swgsim.loop.features import ORDERS, Layout
 from swgsim.loop.gaussian import Covariance
+from swgsim.loop.model import Situation
 from swgsim.loop.repeats import from_all, from_repeats
-from swgsim.loop.scatter import CARRIED, COMMON, DOUBT, PER_HOUR, PER_KELVIN, STATED, Scatter, covariance, kinds, trends
+from swgsim.loop.scatter import (
+    AT_FULL_LOAD,
+    CARRIED,
+    COMMON,
+    DOUBT,
+    PER_HOUR,
+    PER_KELVIN,
+    STATED,
+    Scatter,
+    covariance,
+    kinds,
+    trends,
+)
 
+POINT = OperatingPoint(2000.0, 35.0)
 LAYOUT = Layout(("T_in", "T_out", "s0", "s1"))
 KINDS = kinds(LAYOUT)
 STATEMENT = Scatter.stated(LAYOUT)
@@ -73,11 +88,14 @@ def test_without_repeats_all_recordings_tell_it_beside_what_is_open(seed):
     # Less the offset of every group, which only repeats cancel.
     offset = np.random.default_rng(seed).normal(size=residual.shape)
     residual = (residual - offset).ravel() + open_ @ rng.standard_normal(12)
-    # What all have in common, and a zero that follows the time.
+    # What all have in common, a zero that follows the time, and one that follows the load.
     elapsed = 600.0 * np.arange(len(B))
-    common = trends(B, [Conditions(elapsed=each) for each in elapsed], LAYOUT)
-    later = (elapsed / 3600)[:, None] * B[..., KINDS.index("zero of s0")] * STATED["zero of s0"]
-    residual += (COMMON * B[..., KINDS.index("zero of T_out")] * STATED["zero of T_out"] + PER_HOUR * later).ravel()
+    loads = rng.uniform(7.0, 70.0, len(B))
+    points = [OperatingPoint(2000.0, T) for T in loads]
+    common = trends(B, [Situation(p, Conditions(elapsed=t)) for p, t in zip(points, elapsed, strict=True)], LAYOUT)
+    unit = {name: B[..., KINDS.index(f"zero of {name}")] * STATED[f"zero of {name}"] for name in ("s0", "s1", "T_out")}
+    residual += (COMMON * unit["T_out"] + PER_HOUR * (elapsed / 3600)[:, None] * unit["s0"]).ravel()
+    residual += (AT_FULL_LOAD * (loads / 70)[:, None] * unit["s1"]).ravel()
     found = from_all(residual, Covariance(variance.ravel(), open_), B, common, STATEMENT)
     share = np.array([found.sd[kind] / STATED[kind] / factor.get(kind, 1.0) for kind in KINDS])
     assert found.repeats == 0
@@ -96,7 +114,9 @@ def test_what_follows_the_temperature_is_no_error_of_single_recordings(size):
         conditions = [Conditions(25 + warmer, 60.0 * i) for i, warmer in enumerate(rng.uniform(0, 8, len(groups)))]
         warming = np.array([each.warmer for each in conditions])[:, None] * B[..., KINDS.index("zero of s0")]
         residual += size * PER_KELVIN * STATED["zero of s0"] * warming
-        scatter = from_repeats(residual, variance, B, trends(B, conditions, LAYOUT), groups, STATEMENT)
+        scatter = from_repeats(
+            residual, variance, B, trends(B, [Situation(POINT, each) for each in conditions], LAYOUT), groups, STATEMENT
+        )
         found.append(np.log(scatter.sd["zero of s0"] / STATED["zero of s0"]))
     # Twelve contrasts less one each for temperature and time.
     expected = 1 / np.sqrt(2 * 10)
@@ -105,13 +125,15 @@ def test_what_follows_the_temperature_is_no_error_of_single_recordings(size):
 
 
 def test_what_recordings_have_in_common_is_no_error_of_single_ones():
-    """Every error may be common to all; friction and zeros also follow temperature and time."""
+    """Every error may be common to all; friction and zeros also follow temperature, time and load."""
     B = np.random.default_rng(1).normal(size=(2, len(LAYOUT), len(KINDS)))
     moves = B * np.array([STATED[kind] for kind in KINDS])
     following = moves[..., [i for i, kind in enumerate(KINDS) if kind not in ("load", "speed", "trigger")]]
-    found = trends(B, [Conditions(26.0, 0.0), Conditions(25.0, 3600.0)], LAYOUT)
-    np.testing.assert_allclose(found[0], np.hstack([COMMON * moves[0], PER_KELVIN * following[0], 0 * following[0]]))
-    np.testing.assert_allclose(found[1], np.hstack([COMMON * moves[1], 0 * following[1], PER_HOUR * following[1]]))
+    found = trends(B, [Situation(POINT, Conditions(26.0, 0.0)), Situation(POINT, Conditions(25.0, 3600.0))], LAYOUT)
+    loaded = AT_FULL_LOAD * POINT.T_out / 70 * following
+    none = 0 * following
+    np.testing.assert_allclose(found[0], np.hstack([COMMON * moves[0], PER_KELVIN * following[0], none[0], loaded[0]]))
+    np.testing.assert_allclose(found[1], np.hstack([COMMON * moves[1], none[1], PER_HOUR * following[1], loaded[1]]))
 
 
 def test_an_error_that_cannot_be_seen_stays_as_stated():

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from swgsim.effects.base import Effect
-from swgsim.loop.beside import elsewhere, in_company, outdone
+from swgsim.loop.beside import another_thing, in_company, outdone
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.hypotheses import hypotheses, signatures
 from swgsim.loop.screening import Score, best_of_kind, screen
@@ -51,7 +51,7 @@ def ask(
     trials = tuple(sorted((_alone(now, score, seed) for score in leaders), key=lambda trial: -trial.merit))
     best = trials[0]
     accepted = best if best.sound else _pair(now, trials, kinds, seed) or in_company(now, best, ALPHA, seed)
-    if accepted is None or not elsewhere(accepted, apart, now):
+    if accepted is None or not another_thing(accepted, apart, now):
         return Round(trials, None, None)
     plain = describe(now)[0]
     return Round(trials, None, plain) if outdone(accepted, plain, now) else Round(trials, accepted, None)

@@ -184,7 +184,7 @@ def fit(
             measured.situations, measured.of_recording, measured.layout, begin,
         )  # fmt: skip
         residual = measured.values - offset.reshape(measured.values.shape) - calibrated.predicted[measured.of_recording]
-        trends = scatter.trends(moves, [each.conditions for each in measured.recordings], measured.layout)
+        trends = scatter.trends(moves, [measured.situations[i] for i in measured.of_recording], measured.layout)
         if repeated or unit.scatter:
             guess = repeats.from_repeats(residual, measured.variance, moves, trends, measured.repeats, known)
         else:

@@ -39,8 +39,8 @@ def from_repeats(
 ) -> Scatter:
     """The standard deviations that the repeats within each group are likeliest with, given what was known before.
 
-    What all recordings have in common, or follows temperature or time, may be what the model lacks, and tells nothing
-    of them (restricted likelihood).
+    What all recordings have in common, or follows temperature, time or load, may be what the model lacks, and tells
+    nothing of them (restricted likelihood).
 
     Parameters
     ----------

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.conditions import Conditions
 from swgsim.effects import ParameterScatter
+from swgsim.effects.frozen import FULL_LOAD
 from swgsim.loop.features import ORDERS, Layout
 from swgsim.loop.gaussian import Covariance
 from swgsim.loop.model import Model, Situation, predict
@@ -28,9 +28,10 @@ STATED = {
 DOUBT = np.log(3.0)
 # Those found by commissioning hold on another day to this factor.
 CARRIED = np.log(1.5)
-# What is common to all recordings, or follows their temperature or time, is no error of single ones. It may go as far,
-# in standard deviations as stated: as thermal output does within its bounds; the other two are estimates.
-COMMON, PER_KELVIN, PER_HOUR = 20.0, 5.0, 20.0
+# What is common to all recordings, or follows their temperature, time or load, is no error of single ones. It may go as
+# far, in standard deviations as stated: per kelvin as thermal output, at full load as the gain of a gauge does within
+# its bounds; the other two are estimates.
+COMMON, PER_KELVIN, PER_HOUR, AT_FULL_LOAD = 20.0, 5.0, 20.0, 100.0
 # Step of the differences: small against any nonlinearity, large against rounding.
 STEP = 1e-3
 
@@ -113,20 +114,22 @@ def directions(
 
 
 def trends(
-    directions: Float[np.ndarray, "recording feature kind"], conditions: Sequence[Conditions], layout: Layout
+    directions: Float[np.ndarray, "recording feature kind"], situations: Sequence[Situation], layout: Layout
 ) -> Float[np.ndarray, "recording feature column"]:
     """How the features move with errors that are no errors of single recordings.
 
     Those that all recordings have in common, and friction and zeros that follow the temperature, then the time since
-    their session began, alike in all sessions.
+    their session began, then the load, alike in all sessions.
     """
     names = kinds(layout)
     moves = directions * np.array([STATED[name] for name in names])
     following = moves[..., [number for number, name in enumerate(names) if "friction" in name or "zero" in name]]
-    warmer, later = np.array([(PER_KELVIN * each.warmer, PER_HOUR * each.elapsed / 3600) for each in conditions]).T
-    return np.concatenate(
-        [COMMON * moves, following * warmer[:, None, None], following * later[:, None, None]], axis=-1
-    )
+    laws = [
+        PER_KELVIN * np.array([each.conditions.warmer for each in situations]),
+        PER_HOUR * np.array([each.conditions.elapsed for each in situations]) / 3600,
+        AT_FULL_LOAD * np.array([each.point.T_out for each in situations]) / FULL_LOAD,
+    ]
+    return np.concatenate([COMMON * moves, *(following * law[:, None, None] for law in laws)], axis=-1)
 
 
 def covariance(
