@@ -159,7 +159,7 @@ def test_what_is_set_apart_finds_no_effect_where_there_is_none(unit):
 
 def test_what_is_set_apart_is_no_room_for_an_effect_of_the_same_channel(unit):
     """A gain is no single order; with one of its orders set apart, the others pass for a turned grid."""
-    without = [LIBRARY[name] for name in ("gauge_direction", "filter_mismatch", "channel_crosstalk", "zero_offset")]
+    without = [LIBRARY[name] for name in ("gauge_direction", "zero_offset")]
     closed = close(recorded((LIBRARY["gauge_gain"](0, -0.07),), seed=2), unit, without)
     assert closed.steps == closed.apart == ()
     assert closed.scores[0].chance < ALPHA

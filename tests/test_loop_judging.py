@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from loop_fixtures import BUMP, Bump, drawn, fitted_to, holding
 
-from swgsim.loop import evidence
-from swgsim.loop.beside import another_thing, in_company, outdone
+from swgsim.loop import evidence, vocabulary
+from swgsim.loop.beside import elsewhere, in_company, outdone
 from swgsim.loop.features import Layout
 from swgsim.loop.scatter import Scatter, covariance
 from swgsim.loop.screening import Score
@@ -50,6 +50,8 @@ def trial(fitted, signature) -> Trial:
 @pytest.fixture(autouse=True)
 def _signature_of_the_effect(signature, monkeypatch):
     monkeypatch.setattr(evidence, "signature", lambda fitted, number: signature)
+    # Nothing of a fabricated model can be fitted again.
+    monkeypatch.setattr(vocabulary, "extended", lambda fitted, _: fitted)
 
 
 def named(fitted, atom: Atom):
@@ -136,7 +138,7 @@ def test_what_shows_in_other_channels_too_is_no_part_of_a_disturbance(fitted, st
         free = set_free(now, plain)
         found = trial(now, effect)
         assert found.explained(free) > 50
-        assert another_thing(found, [plain], free) == another
+        assert elsewhere(found, [plain], free) == another
 
 
 def test_other_errors_of_single_recordings_are_those_it_would_have_been_given(fitted):

@@ -44,7 +44,7 @@ THRESHOLDS = {
     "outdone": [beside.OUTDONE, beside.OUTDONE_SHARE, beside.SAME_THING, beside.DWARFED],
     "outdone_by_lines": [lines.OUTDONE, lines.OUTDONE_SHARE],
     "another_thing": beside.ANOTHER_THING,
-    "behind": [beside.ELSEWHERE, beside.LEFT],
+    "elsewhere": beside.ELSEWHERE,
     "detectable": DETECTABLE,
     "look_alike": judged.LOOK_ALIKE,
     "worse": judged.WORSE,

@@ -17,7 +17,7 @@ from swgsim.loop.sidelines import Sideline
 from swgsim.loop.trial import LEAST_GAIN, Trial, gained
 from swgsim.loop.unit import Unit
 from swgsim.loop.unnamed import Unnamed
-from swgsim.loop.vocabulary import Described, set_free, strongest
+from swgsim.loop.vocabulary import Described, freed, strongest
 from swgsim.recording import Recording
 from swgsim.seeds import generator
 from swgsim.turning import forget
@@ -148,7 +148,7 @@ def _unknown(fitted: Fitted, seed: int) -> tuple[Described, ...]:
         if best.chance > ALPHA:
             break
         found.append(best)
-        fitted = set_free(fitted, best)
+        fitted = freed(fitted, best)
     return tuple(found)
 
 

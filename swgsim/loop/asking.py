@@ -6,12 +6,12 @@ from typing import NamedTuple
 import numpy as np
 
 from swgsim.effects.base import Effect
-from swgsim.loop.beside import another_thing, in_company, outdone
+from swgsim.loop.beside import elsewhere, in_company, outdone
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.hypotheses import hypotheses, signatures
 from swgsim.loop.screening import Score, best_of_kind, screen
 from swgsim.loop.trial import Trial, begun, tried
-from swgsim.loop.vocabulary import Described, describe, set_free, strongest
+from swgsim.loop.vocabulary import Described, describe, freed, strongest
 from swgsim.seeds import generator
 
 # Probability of a false effect on recordings in which nothing is missing.
@@ -51,7 +51,7 @@ def ask(
     trials = tuple(sorted((_alone(now, score, seed) for score in leaders), key=lambda trial: -trial.merit))
     best = trials[0]
     accepted = best if best.sound else _pair(now, trials, kinds, seed) or in_company(now, best, ALPHA, seed)
-    if accepted is None or not another_thing(accepted, apart, now):
+    if accepted is None or not elsewhere(accepted, apart, now):
         return Round(trials, None, None)
     plain = describe(now)[0]
     return Round(trials, None, plain) if outdone(accepted, plain, now) else Round(trials, accepted, None)
@@ -72,7 +72,7 @@ def ask_behind(
         plain = strongest(now, generator("set apart", seed, number, more))
         if plain.chance > ALPHA or not plain.atom.alone:
             break
-        now, apart = set_free(now, plain), (*apart, plain)
+        now, apart = freed(now, plain), (*apart, plain)
         scores = screened(now, kinds, generator("screen beside", seed, number, more + 1))
         behind = ask(now, scores, kinds, seed, apart)
         if behind.accepted:

@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from swgsim.effects.regularity import PATTERNS
-from swgsim.loop.evidence import FORM_TOLERANCE, coherence
+from swgsim.loop.evidence import coherence
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.trial import Trial, gain
-from swgsim.loop.vocabulary import Described, columns, set_free, strongest
+from swgsim.loop.vocabulary import Described, columns, freed, set_free, strongest
 from swgsim.seeds import generator
 
 # A regularity explains the same thing better than an effect only if it does so by this much (twice a log-likelihood,
@@ -19,9 +19,8 @@ OUTDONE, OUTDONE_SHARE, SAME_THING, DWARFED = 17.0, 0.05, 0.5, 4.0
 # Regularities that may spoil the agreement of an effect's parts, at most; it keeps so much of its gain if they are
 # another thing.
 COMPANY, ANOTHER_THING = 2, 0.8
-# What is found behind disturbances of single channels is another thing if this share of its strength is in others, and
-# if it explains more than these leave by a form that is not quite theirs.
-ELSEWHERE, LEFT = 0.25, FORM_TOLERANCE**2
+# What is found behind disturbances of single channels is another thing if this share of its strength is in others.
+ELSEWHERE = 0.25
 
 
 def outdone(trial: Trial, plain: Described, now: Fitted) -> bool:
@@ -31,8 +30,7 @@ def outdone(trial: Trial, plain: Described, now: Fitted) -> bool:
     explained = trial.explained(now)
     if plain.gain <= explained * (1 + OUTDONE_SHARE) + OUTDONE:
         return False
-    together = gain(now, np.hstack([trial.signature, columns(plain.atom, now)]))
-    return plain.gain > DWARFED * explained or together - plain.gain < SAME_THING * explained
+    return plain.gain > DWARFED * explained or trial.explained(freed(now, plain)) < SAME_THING * explained
 
 
 def in_company(now: Fitted, trial: Trial, level: float, seed: int) -> Trial | None:
@@ -63,8 +61,8 @@ def in_company(now: Fitted, trial: Trial, level: float, seed: int) -> Trial | No
     return None
 
 
-def another_thing(trial: Trial, apart: Sequence[Described], now: Fitted) -> bool:
-    """Whether effects found behind disturbances of single channels are more than what these left behind.
+def elsewhere(trial: Trial, apart: Sequence[Described], now: Fitted) -> bool:
+    """Whether effects found behind disturbances of single channels act on others too; else they are part of them.
 
     Parameters
     ----------
@@ -77,5 +75,4 @@ def another_thing(trial: Trial, apart: Sequence[Described], now: Fitted) -> bool
     disturbed = [channel for each in apart for channel in PATTERNS[each.atom.pattern]]
     others = ~np.isin(np.tile(now.measured.layout.channel, len(now.measured)), disturbed)
     beyond = np.linalg.norm(now.whole.rows(others).whiten(trial.signature[others]), axis=0)
-    elsewhere = beyond**2 > ELSEWHERE * np.linalg.norm(now.whole.whiten(trial.signature), axis=0) ** 2
-    return bool(elsewhere.all()) and trial.explained(now) > LEFT * max((each.gain for each in apart), default=0.0)
+    return bool((beyond**2 > ELSEWHERE * np.linalg.norm(now.whole.whiten(trial.signature), axis=0) ** 2).all())

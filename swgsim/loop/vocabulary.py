@@ -13,7 +13,7 @@ from jaxtyping import Complex, Float
 from swgsim.effects.quantity import quantities
 from swgsim.effects.regularity import LAWS, PATTERNS, Regularity
 from swgsim.loop.features import ORDERS, Layout
-from swgsim.loop.fitting import Fitted
+from swgsim.loop.fitting import Fitted, extended
 from swgsim.loop.screening import VISIBLE, family_wise
 from swgsim.loop.tail import log_tail
 
@@ -148,3 +148,8 @@ def set_free(fitted: Fitted, described: Described) -> Fitted:
     """A fit in which an atom may be as large as it likes, also when effects are added to it."""
     taken = columns(described.atom, fitted) * max(described.amplitude, 1e-12) * WIDE
     return fitted.allowing(taken)
+
+
+def freed(fitted: Fitted, described: Described) -> Fitted:
+    """The same fitted again, so that parameters that the atom had bent come back."""
+    return extended(set_free(fitted, described), ())
