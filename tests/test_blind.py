@@ -45,6 +45,7 @@ from swgsim.loop.session import Measured
 from swgsim.loop.unit import Unit
 from swgsim.seeds import generator
 
+pytestmark = pytest.mark.end_to_end
 CONF = Path(__file__).parent.parent / "conf"
 FEW = (
     "eccentric_wave_generator", "cam_form", "tilting_moment", "gauge_gain", "channel_skew", "reduced_damping",

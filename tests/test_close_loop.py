@@ -31,6 +31,7 @@ from swgsim.recording import Recording
 from swgsim.settings import gear
 from swgsim.virtual_bench import Instruments, Sessions, record_sessions
 
+pytestmark = pytest.mark.end_to_end
 CONF = Path(__file__).parent.parent / "conf"
 GEAR = yaml.safe_load((CONF / "gear" / "gear1.yaml").read_text())
 SECTORS = 40

@@ -19,6 +19,7 @@ from swgsim import cluster, dataset, storage
 from swgsim import plan as plans
 from swgsim.compute import Engine
 
+pytestmark = pytest.mark.end_to_end
 ROOT = Path(__file__).parents[1]
 NOBODY = "tcp://127.0.0.1:9"
 

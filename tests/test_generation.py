@@ -15,6 +15,7 @@ from swgsim import settings, storage
 from swgsim.files import sole_maker
 from swgsim.generation import run
 
+pytestmark = pytest.mark.end_to_end
 ROOT = Path(__file__).parent.parent
 CONF = ROOT / "conf"
 

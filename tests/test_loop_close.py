@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
-import jaxtyping
 import numpy as np
 import pytest
 from chain_fixtures import GEAR
@@ -25,6 +24,7 @@ from swgsim.loop.session import Measured
 from swgsim.loop.unit import Unit
 from swgsim.virtual_bench import Sessions, record_sessions
 
+pytestmark = pytest.mark.end_to_end
 SECTORS = 40
 POINTS = tuple(OperatingPoint(n, T) for n in (2000.0, 4000.0) for T in (7.0, 70.0))
 PLAN = Sessions(POINTS, repeats=2, revolutions=6, warming=0.0, unsteady=0.0, thermometer=0.0)
@@ -43,8 +43,6 @@ def recorded(effects: tuple[Effect, ...], seed: int, gear: Gear = GEAR) -> Measu
 @pytest.fixture(scope="module", autouse=True)
 def _coarse_mesh() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
-        # The integrator calls small functions a million times; their types are checked in the tests of the chain.
-        patch.setattr(jaxtyping.config, "jaxtyping_disable", True)
         patch.setattr(
             "swgsim.loop.model.simulate_turns",
             lambda runs, revolutions, points, sectors: simulate_turns(runs, revolutions, points, SECTORS),

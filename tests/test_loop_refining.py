@@ -16,6 +16,8 @@ from swgsim.loop.screening import Score, screen
 from swgsim.loop.session import Measured
 from swgsim.loop.unit import STRUCTURE, Unit
 
+pytestmark = pytest.mark.end_to_end
+
 
 def asked(*hidden: Effect) -> tuple[Fitted, Score]:
     """A model without the effects that recordings have, and the best hypothesis of the first of them."""

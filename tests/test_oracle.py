@@ -30,6 +30,7 @@ from swgsim.plan import Plan
 from swgsim.record import record
 from swgsim.recordings import CLASSES, Recordings
 
+pytestmark = pytest.mark.end_to_end
 CONF = str(Path(__file__).parent.parent / "conf")
 POINT = OperatingPoint(4000, 39)
 SECTORS = 40

@@ -25,6 +25,7 @@ from swgsim.generation import run as generate
 from swgsim.recordings import CLASSES
 from swgsim.style import Picture
 
+pytestmark = pytest.mark.end_to_end
 ROOT = Path(__file__).parents[1]
 DATASET = {"recordings": 912, "seconds": 1.5, "recordings_per_second": 608.0, "peak_memory_mib": 500.0, "cores": 2}
 

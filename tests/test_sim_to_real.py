@@ -22,6 +22,7 @@ from swgsim.chain import simulate_turns
 from swgsim.loop import figures, model
 from swgsim.recordings import CLASSES
 
+pytestmark = pytest.mark.end_to_end
 CONF = Path(__file__).parent.parent / "conf"
 SECTORS = 40
 FOREST = {"features": {"name": "selection_1", "statistics": True, "spectrum": "none", "efficiency": "eta_rel"},
