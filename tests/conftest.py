@@ -15,7 +15,7 @@ jaxtyping.install_import_hook(["swgsim", "learn"], "typechecker.typecheck")
 def _end_to_end(request: pytest.FixtureRequest) -> Iterator[None]:
     """Without checks in tests from end to end: the integrator calls small functions a million times.
 
-    Other tests check the same functions on less.
+    The tests of the chain check these.
     """
     with pytest.MonkeyPatch.context() as patch:
         if request.node.get_closest_marker("end_to_end"):

@@ -22,6 +22,7 @@ from swgsim.loop.fitting import fit
 from swgsim.loop.model import Model
 from swgsim.loop.session import Measured
 from swgsim.loop.unit import Unit
+from swgsim.loop.vocabulary import describe, freed
 from swgsim.virtual_bench import Sessions, record_sessions
 
 pytestmark = pytest.mark.end_to_end
@@ -153,6 +154,19 @@ def test_what_is_set_apart_finds_no_effect_where_there_is_none(unit):
     stray = Regularity(7, 3e-3, 0.4, "in s2 alone", "constant")
     closed = close(recorded((stray,), seed=2), unit, SEARCHED)
     assert closed.steps == closed.apart == ()
+
+
+def test_parameters_that_a_disturbance_had_bent_come_back():
+    """A joint that gives way under load looks like a gauge of another gain, in another place and another direction."""
+    gives_way = Regularity(0, 0.05, 0.0, "in s2 alone", "with the root of the load")
+    bent = fit(recorded((gives_way,), seed=2), Unit(Model(GEAR)))
+    best = describe(bent)[0]
+    assert (best.atom.order, best.atom.pattern, best.atom.law) == (0, gives_way.pattern, gives_way.law)
+    straight = freed(bent, best)
+    of_s2 = [name for name in bent.parameters if name.endswith("of s2")]
+    off, left = ([abs(each.calibrated.position[name]) for name in of_s2] for each in (bent, straight))
+    assert max(off) > 2
+    assert max(left) < 1
 
 
 def test_what_is_set_apart_is_no_room_for_an_effect_of_the_same_channel(unit):

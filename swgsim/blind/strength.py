@@ -1,4 +1,4 @@
-"""How strong an effect is: non-centrality of its signature beside the declared parameters, which a fit would move."""
+"""How strong an effect is: non-centrality of its signature beside the declared parameters, fitted where a fit would."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -17,7 +17,7 @@ from swgsim.loop.sidelines import is_random
 
 # Shares of the way from nothing to the bound at which the strength is tried, and how far at most.
 FARTHEST, COARSE, FINE = 0.9, 13, 5
-# A strength beside fitted parameters is near enough to the planned one within this share; so is a size.
+# How far a strength beside fitted parameters may fall short of the planned one.
 NEAR = 0.03
 
 
@@ -100,10 +100,14 @@ def sized(
         return float(np.log(target / max(strength(np.exp(log_share)), 1e-12)))
 
     share = _share(linear, target)
-    if share < FARTHEST and strength(share) < (1 - NEAR) * target:
-        far = strength(FARTHEST) > target
-        share = np.exp(brentq(short_of, np.log(share), np.log(FARTHEST), xtol=NEAR / 2)) if far else FARTHEST
-    return at(share), strength(share)
+    found = strength(share)
+    if share < FARTHEST and found < (1 - NEAR) * target:
+        share, near, found = FARTHEST, share, strength(FARTHEST)
+        if found > target:
+            # Strength goes with the square of a small size.
+            share = np.exp(brentq(short_of, np.log(near), np.log(FARTHEST), xtol=NEAR / 2))
+            found = strength(share)
+    return at(share), found
 
 
 def _share(linear: Callable[[np.ndarray], np.ndarray], target: float) -> float:

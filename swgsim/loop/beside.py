@@ -72,6 +72,8 @@ def elsewhere(trial: Trial, apart: Sequence[Described], now: Fitted) -> bool:
     now : Fitted
         The model without the effects, in which they are free.
     """
+    if not apart:
+        return True
     disturbed = [channel for each in apart for channel in PATTERNS[each.atom.pattern]]
     others = ~np.isin(np.tile(now.measured.layout.channel, len(now.measured)), disturbed)
     beyond = np.linalg.norm(now.whole.rows(others).whiten(trial.signature[others]), axis=0)

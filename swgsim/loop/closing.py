@@ -40,7 +40,8 @@ class Closed:
     left : tuple of Score
         Of the last screening.
     rejected : tuple of Trial
-        Significant, but of the wrong form: they contradict themselves, or a bare regularity explains more.
+        Significant, but of the wrong form: they contradict themselves, a bare regularity explains more, or they act
+        only where one was set apart.
     outdone_by : Described or None
         That regularity.
     apart : tuple of Described

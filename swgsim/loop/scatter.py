@@ -30,7 +30,7 @@ DOUBT = np.log(3.0)
 CARRIED = np.log(1.5)
 # What is common to all recordings, or follows their temperature, time or load, is no error of single ones. It may go as
 # far, in standard deviations as stated: per kelvin as thermal output, at full load as the gain of a gauge does within
-# its bounds; the other two are estimates.
+# its bounds, which for friction and torques is wide; the other two are estimates.
 COMMON, PER_KELVIN, PER_HOUR, AT_FULL_LOAD = 20.0, 5.0, 20.0, 100.0
 # Step of the differences: small against any nonlinearity, large against rounding.
 STEP = 1e-3

@@ -23,8 +23,8 @@ from swgsim.loop.tail import log_tail
 VISIBLE = 1e-8
 # Directions of a signature below this part of its largest one are rounding.
 NEGLIGIBLE = 1e-6
-# Draws of noise, so many at a time, until the best score was beaten so often that it is luck (Besag and Clifford,
-# Biometrika 78 (1991) 301), or all were drawn.
+# Draws of noise, so many at a time, until the best score was beaten so often that it is luck (after Besag and Clifford,
+# Biometrika 78 (1991) 301; no other score can then be better), or all were drawn.
 DRAWS, AT_ONCE, LUCK = 1000, 100, 20
 # A logarithm of a probability this many times that of the most unlikely draw is far beyond them.
 FAR = 2.0

@@ -116,7 +116,7 @@ def describe(fitted: Fitted) -> list[Described]:
 
 
 def strongest(fitted: Fitted, rng: np.random.Generator) -> Described:
-    """The first of these, with its chance."""
+    """The atom that is least likely by luck, with its chance."""
     found = _described(fitted)
     chances = family_wise([U for _, U in found], fitted.whole.whiten(fitted.from_start), fitted, rng)
     return replace(found[0][0], chance=float(chances[0]))

@@ -111,6 +111,8 @@ def why(trial: Trial, answer: Answer, better: Trial | None = None) -> str:
             f"it does not help to predict operating points left out: log-likelihood {trial.gain:+.1f}, "
             f"at least {LEAST_GAIN:g} are asked for"
         )
+    if better is None and trial is answer.closed.nearest and answer.closed.apart:
+        return "it acts only where a disturbance was set apart, and may be part of that"
     if better is None:
         return "another effect explains more, which was not accepted, and the runner-up is never taken instead"
     return (
