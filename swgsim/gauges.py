@@ -20,6 +20,10 @@ from swgsim.silk_hat import Sector
 LAYOUT = tuple(np.pi / 4 + np.pi / 2 * np.arange(4) if s == 0 else np.array([np.pi / 2 * (s - 1)]) for s in range(5))
 
 
+# What may be said of each gauge, in the units below.
+LIMITS = {"gain": (0.0, 10.0), "offset": (-10.0, 10.0), "position": (-0.8, 0.8), "grid_angle": (-0.8, 0.8)}
+
+
 @dataclass(frozen=True)
 class GaugeSet:
     """The five bridges of one gear, with what differs from gear to gear.
@@ -51,11 +55,10 @@ class GaugeSet:
 
     def __post_init__(self) -> None:
         require_positive("the gauges", gauge_factor=self.gauge_factor, radius=self.radius)
-        limits = {"gain": (0, 10), "offset": (-10, 10), "position": (-0.8, 0.8), "grid_angle": (-0.8, 0.8)}
-        for name in ("active_arms", *limits):
+        for name in ("active_arms", *LIMITS):
             if len(getattr(self, name)) != len(SENSORS):
                 raise ValueError(f"{name} has {len(getattr(self, name))} values, expected one for each of {SENSORS}")
-        for name, (low, high) in limits.items():
+        for name, (low, high) in LIMITS.items():
             for sensor, value in zip(SENSORS, getattr(self, name), strict=True):
                 require(sensor, name, value, low, high)
         if not set(self.active_arms) <= {2, 4}:

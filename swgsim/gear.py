@@ -7,6 +7,9 @@ from swgsim.checks import require, require_integer, require_positive
 from swgsim.gauges import GaugeSet
 from swgsim.silk_hat import SilkHat
 
+# Strokes of wave generators of this size [m].
+W0_LIMITS = (1e-5, 1e-3)
+
 
 @dataclass(frozen=True)
 class KinematicError:
@@ -94,7 +97,7 @@ class WaveGenerator:
     w0: float = 0.2159e-3
 
     def __post_init__(self) -> None:
-        require("the wave generator", "w0", self.w0, low=1e-5, high=1e-3)
+        require("the wave generator", "w0", self.w0, *W0_LIMITS)
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from chain_fixtures import GEAR
 from loop_fixtures import POINTS, Bump
 
 from swgsim.conditions import Conditions
+from swgsim.gauges import LIMITS
 from swgsim.loop.calibration import calibrate
 from swgsim.loop.declared import Declared, at, of_unit
 from swgsim.loop.features import Layout
@@ -49,6 +50,21 @@ def A() -> np.ndarray:
     return np.random.default_rng(1).normal(size=(len(SITUATIONS), len(LAYOUT), 2))
 
 
+def test_a_fit_comes_to_rest_where_every_full_step_goes_almost_twice_as_far_as_it_should(monkeypatch):
+    # A curved feature, missed by so much that the curvature of the cost is 1.9 times what the slopes tell of it.
+    shape = np.ones((len(SITUATIONS), 1)) * [1.0, 0.0], np.ones((len(SITUATIONS), 1)) * [0.0, 1.0]
+    predicting(monkeypatch, lambda x, _: x * shape[0] + 0.9 * x**2 / 2 * shape[1])
+    found = fitted({"x": height(0)}, 0.3 * shape[0] - shape[1])
+    assert found.settled
+    least = min(np.linspace(-1, 1, 20001), key=lambda x: (x - 0.3) ** 2 + (0.45 * x**2 + 1) ** 2)
+    assert found.model.effects[0].height == pytest.approx(least, abs=3e-3)  # slopes are differences
+
+
+def test_a_gauge_stays_within_what_may_be_said_of_it():
+    position = of_unit(GEAR)["position of s1"]
+    assert position.value(position.at(Model(GEAR), 5.0)) == LIMITS["position"][1]
+
+
 def test_known_parameters_are_recovered(monkeypatch, A):
     predicting(monkeypatch, lambda x, y: A @ [x + 0.1 * x**2, np.sin(y)])
     noise = 0.01 * np.random.default_rng(2).standard_normal(A.shape[:2])
@@ -80,8 +96,9 @@ def test_a_step_uphill_is_halved(monkeypatch, A, sd):
     """Newton's steps on the arc tangent swing ever further out when they begin beyond 1.4."""
     predicting(monkeypatch, lambda x, y: A[..., 0] * np.arctan(x))
     found = fitted({"x": height(0, sd=sd)}, A[..., 0] * np.arctan(0.3), noise=1e-3, position={"x": 3.0 / sd})
-    # Small steps in units of a wide spread are no rest.
-    assert found.settled == (found.model.effects[0].height == pytest.approx(0.3, abs=1e-2))
+    right = found.model.effects[0].height == pytest.approx(0.3, abs=1e-2)
+    # Small steps in units of a wide spread are no rest; one so wide that slopes are wrong may have none at all.
+    assert right or not found.settled
     assert found.settled or sd > 100
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from loop_fixtures import BUMP, WAVE, Bump, Wave, fitted_to
 
-from swgsim.loop import closing
+from swgsim.loop import asking, closing
 from swgsim.loop.asking import ALPHA, Round
 from swgsim.loop.evidence import FORM_TOLERANCE, Coherence
 from swgsim.loop.features import Layout
@@ -15,6 +15,7 @@ from swgsim.loop.hypotheses import Hypothesis
 from swgsim.loop.screening import Score
 from swgsim.loop.steps import Step, what, with_rivals
 from swgsim.loop.trial import Trial
+from swgsim.loop.vocabulary import Atom, Described
 
 FITTED = fitted_to(Layout(("T_in", "s1")), np.random.default_rng(1))
 
@@ -114,3 +115,23 @@ def test_what_is_in_the_model_is_no_rival():
     after = (replace(B.score, chance=2 * ALPHA),)
     assert with_rivals(step, after, what([step])).rivals == (B,)
     assert with_rivals(step, after, what([step, other])).rivals == ()
+
+
+PAIR = replace(A, effects=(Bump(1.0), Wave(1.0)))
+
+
+@pytest.mark.parametrize(
+    ("outdone", "pair", "accepted"),
+    [((), PAIR, A), ((A,), PAIR, PAIR), ((A, PAIR), PAIR, None), ((A,), None, None)],
+    ids=["not outdone", "two effects", "the two are outdone as well", "no two are sound"],
+)
+def test_what_a_regularity_tells_beyond_an_effect_may_be_a_second_one(monkeypatch, outdone, pair, accepted):
+    plain = Described(Atom(2, "in s1 alone", "constant"), 2000.0, 2, 0.1, 0.0)
+    monkeypatch.setattr(asking, "begun", lambda *_: Bump(1.0))
+    monkeypatch.setattr(asking, "tried", lambda *_: A)
+    monkeypatch.setattr(asking, "_pair", lambda *_: pair)
+    monkeypatch.setattr(asking, "describe", lambda _: (plain,))
+    monkeypatch.setattr(asking, "outdone", lambda trial, *_: any(trial is each for each in outdone))
+    found = asking.ask(FITTED, [A.score], [], 0)
+    assert found.accepted is accepted
+    assert found.outdone_by == (None if accepted else plain)

@@ -1,5 +1,7 @@
 """Where a fit begins."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from bench_fixtures import good
@@ -8,7 +10,7 @@ from chain_fixtures import GEAR
 from swgsim.effects import Effect
 from swgsim.effects.clipping import Clipping
 from swgsim.effects.zero_offset import ZeroOffset
-from swgsim.loop.fitting import Fitted, fit
+from swgsim.loop.fitting import BENT, Fitted, fit, unbent
 from swgsim.loop.hypotheses import hypotheses, signatures
 from swgsim.loop.model import Model
 from swgsim.loop.refining import zoom
@@ -34,9 +36,27 @@ def test_an_effect_far_from_proportional_begins_near_its_size(level):
     fitted, score = asked(Clipping(level))
     begun = zoom(score, fitted, np.random.default_rng(1))
     assert isinstance(begun, Clipping)
-    # Sizes are tried in steps of a factor 1.8.
-    assert abs(np.log(begun.level / level)) < np.log(1.8)
+    # Sizes are tried in steps of a factor 1.8, and then in a dozen between the neighbours of the best.
+    assert begun.level == pytest.approx(level, rel=0.2)
     assert abs(np.log(score.estimate / level)) > np.log(2)
+
+
+def test_effects_of_a_unit_that_was_bent_begin_at_what_is_declared_of_it():
+    measured = Measured.of(good(effects=(Clipping(0.15),), repeats=1))
+    now = fit(measured, Unit(Model(GEAR)))
+    assert max(map(abs, now.position_of_unit.values())) > BENT
+    start = unbent(now)
+    assert set(start.calibrated.position.values()) == {0.0}
+    assert start.model == now.unit.model
+    kept = replace(now, calibrated=replace(now.calibrated, position=dict.fromkeys(now.parameters, 0.9 * BENT)))
+    assert unbent(kept) is kept
+
+
+def test_a_unit_that_is_far_from_what_is_declared_and_fits_is_not_bent():
+    unit = Unit(Model(replace(GEAR, gauges=replace(GEAR.gauges, offset=(0.0, 0.2, 0.0, 0.0, 0.0)))))
+    now = fit(Measured.of(good(repeats=1)), unit)
+    assert now.position_of_unit["zero of s1"] == pytest.approx(-10, rel=0.1)
+    assert unbent(now) is now
 
 
 def test_a_proportional_effect_begins_at_its_estimate():

@@ -12,6 +12,7 @@ from swgsim.loop.closing import MOST
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.hypotheses import Hypothesis, hypotheses, signatures
 from swgsim.loop.tail import log_tail
+from swgsim.singular import svd
 
 
 class Task(NamedTuple):
@@ -97,7 +98,7 @@ def _pays(X: np.ndarray, r: np.ndarray, column: int) -> float:
 
 def _basis(columns: Float[np.ndarray, "row column"]) -> Float[np.ndarray, "row rank"]:
     """Orthonormal directions, without those that are rounding."""
-    U, s, _ = np.linalg.svd(columns, full_matrices=False)
+    U, s, _ = svd(columns)
     return U[:, s > 1e-6 * max(float(s.max()), 1e-3)]
 
 

@@ -10,6 +10,7 @@ from scipy.stats import t
 
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.term import Term
+from swgsim.singular import svd
 
 # Stretch of a recording whose errors are taken to be independent of those of the next one [s].
 STRETCH = 1.0
@@ -110,7 +111,7 @@ class Fit:
     @cached_property
     def basis(self) -> Float[np.ndarray, "row rank"]:
         """Orthonormal directions of all columns."""
-        U, s, _ = np.linalg.svd(self.X / _scale(self.X), full_matrices=False)
+        U, s, _ = svd(self.X / _scale(self.X))
         return U[:, s > 1e-9 * s.max()]
 
     @property

@@ -7,7 +7,7 @@ import numpy as np
 
 from swgsim.effects.base import Effect
 from swgsim.loop.beside import elsewhere, in_company, outdone
-from swgsim.loop.fitting import Fitted
+from swgsim.loop.fitting import Fitted, unbent
 from swgsim.loop.hypotheses import hypotheses, signatures
 from swgsim.loop.screening import Score, best_of_kind, screen
 from swgsim.loop.trial import Trial, begun, tried
@@ -48,13 +48,20 @@ def ask(
     leaders = _leaders(scores)
     if not leaders:
         return Round((), None, None)
-    trials = tuple(sorted((_alone(now, score, seed) for score in leaders), key=lambda trial: -trial.merit))
+    start = unbent(now)
+    alone = (tried(now, score, (begun(start, score, seed),), start) for score in leaders)
+    trials = tuple(sorted(alone, key=lambda trial: -trial.merit))
     best = trials[0]
     accepted = best if best.sound else _pair(now, trials, kinds, seed) or in_company(now, best, ALPHA, seed)
     if accepted is None or not elsewhere(accepted, apart, now):
         return Round(trials, None, None)
     plain = describe(now)[0]
-    return Round(trials, None, plain) if outdone(accepted, plain, now) else Round(trials, accepted, None)
+    if outdone(accepted, plain, now):
+        # What the regularity tells beyond an effect may be a second one.
+        accepted = _pair(now, trials, kinds, seed) if best.sound else None
+        if accepted is None or not elsewhere(accepted, apart, now) or outdone(accepted, plain, now):
+            return Round(trials, None, plain)
+    return Round(trials, accepted, None)
 
 
 def ask_behind(
@@ -82,7 +89,7 @@ def ask_behind(
 
 def screened(fitted: Fitted, kinds: Sequence[type[Effect]], rng: np.random.Generator) -> tuple[Score, ...]:
     """The best hypothesis of every effect."""
-    found = list(hypotheses(kinds))
+    found, fitted = list(hypotheses(kinds)), unbent(fitted)
     return tuple(best_of_kind(screen(found, signatures(found, fitted.model, fitted.measured), fitted, rng)))
 
 
@@ -100,15 +107,11 @@ def _pair(now: Fitted, trials: Sequence[Trial], kinds: Sequence[type[Effect]], s
     others = {type(effect): effect for trial in trials[1:LEADERS] for effect in trial.effects}
     # What leads behind the first shows where it is only beside it.
     others |= {type(effect): effect for effect in (begun(first.fitted, score, seed) for score in behind)}
+    start = unbent(now)
     pairs = [
-        tried(now, first.score, (*first.effects, effect))
+        tried(now, first.score, (*first.effects, effect), start)
         for kind, effect in others.items()
         if kind is not first.score.hypothesis.kind
     ]
     best = max(pairs, key=lambda pair: pair.merit, default=None)
     return best if best and best.sound and best.merit > first.merit + 2 * PAIR_GAIN else None
-
-
-def _alone(now: Fitted, score: Score, seed: int) -> Trial:
-    """The hypothesis of a score, on its own."""
-    return tried(now, score, (begun(now, score, seed),))

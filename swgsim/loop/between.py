@@ -13,6 +13,7 @@ from swgsim.loop.features import FITTED, Layout, basis, remainder
 from swgsim.loop.noise import GUARD, Floor, floors
 from swgsim.recording import CHANNELS, Recording
 from swgsim.recordings import SENSORS
+from swgsim.singular import svd
 
 # Share of a pattern that must lie between the orders, and of its largest direction; less is rounding.
 SEEN = 1e-3
@@ -190,5 +191,5 @@ def _alone(effect: Effect, scene: Scene, gauges: tuple[str, ...]) -> Float[np.nd
 
 def _directions(pattern: Float[np.ndarray, "column number"]) -> Float[np.ndarray, "number rank"]:
     """Orthonormal directions of a pattern."""
-    U, s, _ = np.linalg.svd(pattern.T, full_matrices=False)
+    U, s, _ = svd(pattern.T)
     return U[:, s > SEEN * s[0]] if s[0] > 0 else U[:, :0]

@@ -13,7 +13,10 @@ from swgsim.loop.gaussian import Covariance
 from swgsim.loop.model import Model, Situation, predict
 
 # Gauss-Newton: fall of the cost below which it rests, and at most so many steps, each of at most so many spreads.
-SETTLED, STEPS, LONGEST = 0.05, 12, 5.0
+SETTLED, STEPS, LONGEST = 0.05, 16, 5.0
+# The next steps are half as long where the cost fell by less than the first share of what was expected, as the model is
+# not linear, and twice as long where it fell by more than the second.
+LITTLE, MUCH = 0.25, 0.75
 # Difference for the derivatives, in spreads; small against a nonlinearity, large against rounding.
 DIFFERENCE = 0.01
 
@@ -93,26 +96,30 @@ def calibrate(
     lowest, settled = np.inf, False
     best = (start, here, np.empty((0, 0)), np.empty((0, 0, 0)))
     step, slope, curvature = np.zeros(len(here)), np.zeros(len(here)), np.zeros((len(here), len(here)))
+    length = 1.0
     for _ in range(STEPS):
         model = at(start, parameters, dict(zip(names, here.tolist(), strict=True)))
         predicted, J = linearised(model, parameters, situations, layout)
         r = errors.whiten((measured - predicted[of_recording]).ravel())
         cost = float(r @ r + here @ here)
+        expected = float(step @ (2 * slope - curvature @ step))
         if cost > lowest:
-            # The step led uphill, as the model is not linear: half of it from where it began.
-            step = step / 2
-            here = best[1] + step
-            settled = float(step @ (2 * slope - curvature @ step)) < SETTLED
+            settled = expected < SETTLED
             if settled:
                 break
+            # The step led uphill, as the model is not linear: half of it from where it began.
+            step, length = step / 2, length / 2
+            here = best[1] + step
             continue
-        settled = lowest - cost < SETTLED
+        settled = lowest - cost < SETTLED * length
+        fell = (lowest - cost) / expected if expected else 1.0
+        length *= 0.5 if fell < LITTLE else 2.0 if fell > MUCH and length < 1 else 1.0
         lowest, best = cost, (model, here, predicted, J)
         if settled:
             break
         columns = errors.whiten(J[of_recording].reshape(-1, len(here)))
         curvature, slope = columns.T @ columns + np.eye(len(here)), columns.T @ r - here
-        step = _step(curvature, slope, here, low, high)
+        step = length * _step(curvature, slope, here, low, high)
         step *= min(1.0, LONGEST / max(float(np.abs(step).max()), 1e-12))
         here = here + step
     model, here, predicted, J = best

@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from swgsim.effects.quantity import Role, quantities
-from swgsim.gear import Gear, KinematicError
+from swgsim.gauges import LIMITS
+from swgsim.gear import W0_LIMITS, Gear, KinematicError
 from swgsim.loop.model import Model
 
 # Spread of what belongs to the bench and not to the gear, as a share; an estimate.
@@ -45,9 +46,10 @@ class Declared:
 
 
 def _of_gear(
-    unit: str, sd: float, value: Callable[[Gear], float], moved: Callable[[Gear, float], Gear], low: float = -np.inf
-) -> Declared:
-    return Declared(unit, sd, lambda m: value(m.gear), lambda m, to: replace(m, gear=moved(m.gear, to)), low)
+    unit: str, sd: float, value: Callable[[Gear], float], moved: Callable[[Gear, float], Gear],
+    low: float = -np.inf, high: float = np.inf,
+) -> Declared:  # fmt: skip
+    return Declared(unit, sd, lambda m: value(m.gear), lambda m, to: replace(m, gear=moved(m.gear, to)), low, high)
 
 
 def _of_transmission(name: str, unit: str, nominal: float, spread: float = 0.1) -> Declared:
@@ -66,7 +68,7 @@ def _of_gauge(name: str, sensor: int, unit: str, sd: float) -> Declared:
         values[sensor] = to
         return replace(gear, gauges=replace(gear.gauges, **{name: tuple(values)}))  # type: ignore[arg-type]
 
-    return _of_gear(unit, sd, lambda gear: float(getattr(gear.gauges, name)[sensor]), moved)
+    return _of_gear(unit, sd, lambda gear: float(getattr(gear.gauges, name)[sensor]), moved, *LIMITS[name])
 
 
 def _of_kinematic_error(order: int, part: str, sd: float) -> Declared:
@@ -104,6 +106,7 @@ def of_unit(gear: Gear) -> dict[str, Declared]:
             lambda each: each.wave_generator.w0,
             lambda each, to: replace(each, wave_generator=replace(each.wave_generator, w0=to)),
             LEAST * gear.wave_generator.w0,
+            W0_LIMITS[1],
         ),
     }
     for term in t.kinematic_error:

@@ -8,6 +8,7 @@ from scipy.stats import chi2
 
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.model import predict
+from swgsim.singular import svd
 
 # A real cause never has the library's exact shape: its parts may differ from it by this share (standard deviation).
 FORM_TOLERANCE = 0.2
@@ -94,7 +95,7 @@ def coherence(fitted: Fitted, number: int) -> Coherence:
     split = fitted.whole.whiten(parts(fitted, signature(fitted, number)))
     if not np.any(split):
         return Coherence(0.0, 0.0, 0.0)
-    U, s, _ = np.linalg.svd(split, full_matrices=False)
+    U, s, _ = svd(split)
     seen = s > 1e-3 * max(float(s.max()), 1e-12)
     u, s = (U.T @ fitted.whole.whiten(fitted.from_start))[seen], s[seen]
 

@@ -9,13 +9,17 @@ from jaxtyping import Float
 
 from swgsim.effects.base import Effect
 from swgsim.loop import repeats, scatter
-from swgsim.loop.calibration import Calibrated, calibrate
+from swgsim.loop.calibration import Calibrated, calibrate, linearised
 from swgsim.loop.declared import Declared, at, of_effects, of_unit
 from swgsim.loop.gaussian import Covariance
 from swgsim.loop.model import Model
 from swgsim.loop.scatter import Scatter
 from swgsim.loop.session import Measured
 from swgsim.loop.unit import Unit
+
+# A parameter of a unit that was fitted so many spreads from its declared value was bent by what the model lacks, if a
+# channel is still missed by so many times what is declared of it (mean squares).
+BENT, MISSED = 5.0, 10.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +60,16 @@ class Fitted:
     def model(self) -> Model:
         """The model at its likeliest parameters."""
         return self.calibrated.model
+
+    @property
+    def added(self) -> tuple[Effect, ...]:
+        """The effects that the model has beyond the unit's."""
+        return self.model.effects[len(self.unit.model.effects) :]
+
+    @property
+    def position_of_unit(self) -> dict[str, float]:
+        """Deviation of the unit's parameters from their declared values, in spreads."""
+        return {name: by for name, by in self.calibrated.position.items() if ": " not in name}
 
     @property
     def strict(self) -> "Fitted":
@@ -199,9 +213,23 @@ def fit(
     return Fitted(measured, unit, parameters, calibrated, guess, errors, open_, offset, allowed)
 
 
+def unbent(now: Fitted) -> Fitted:
+    """A fit, for the search of effects: at the declared values of the unit if it was bent beyond belief without them.
+
+    Beside a bent model, an effect that is far from linear, such as clipping, looks quite unlike what it is.
+    """
+    bent = max((abs(by) for by in now.position_of_unit.values()), default=0.0) > BENT
+    if not bent or max(now.misfit.values()) < MISSED:
+        return now
+    start = now.unit.model.plus(*now.added)
+    declared = linearised(start, now.parameters, now.measured.situations, now.measured.layout)
+    return replace(now, calibrated=Calibrated(start, dict.fromkeys(now.parameters, 0.0), *declared, settled=True))
+
+
 def extended(now: Fitted, added: Sequence[Effect]) -> Fitted:
     """A fit with further effects, which are fitted along; those it has begin where they were found."""
-    own = now.model.effects[len(now.unit.model.effects) :]
     # Parameters of effects are counted from where the effects are, so only the unit's keep their position.
-    position = {name: by for name, by in now.calibrated.position.items() if ": " not in name}
-    return fit(now.measured, now.unit, now.unit.model.plus(*own, *added), position=position, allowed=now.allowed)
+    return fit(
+        now.measured, now.unit, now.unit.model.plus(*now.added, *added),
+        position=now.position_of_unit, allowed=now.allowed,
+    )  # fmt: skip

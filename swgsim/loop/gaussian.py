@@ -13,6 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
+from swgsim.singular import svd
+
 
 @dataclass(frozen=True, eq=False)
 class Covariance:
@@ -32,7 +34,7 @@ class Covariance:
     @cached_property
     def _scaled(self) -> tuple[Float[np.ndarray, "row rank"], Float[np.ndarray, " rank"]]:
         """Left singular vectors and values of G in units of the independent errors."""
-        U, s, _ = np.linalg.svd(self.G / np.sqrt(self.variance)[:, None], full_matrices=False)
+        U, s, _ = svd(self.G / np.sqrt(self.variance)[:, None])
         return U, s
 
     def whiten(self, X: np.ndarray) -> np.ndarray:

@@ -14,6 +14,7 @@ from swgsim.loop.sidelines import Sideline, nearby, ranked
 from swgsim.loop.unnamed import Unnamed, unnamed
 from swgsim.recording import Recording
 from swgsim.recordings import SENSORS
+from swgsim.singular import svd
 
 # Lines that are found at most, with a name or without.
 MOST = 4
@@ -106,7 +107,7 @@ def _part(
     """
     Q = np.linalg.qr(orders)[0]
     left, beside = (each - Q @ (Q.T @ each) for each in (signal, seen))
-    U, s, V = np.linalg.svd(beside, full_matrices=False)
+    U, s, V = svd(beside)
     shown = s > ROUNDING * max(float(s[0]), 1e-300)
     U, s, V = U[:, shown], s[shown], V[shown]
     along = U.T @ left

@@ -17,7 +17,7 @@ from swgsim.loop.screening import Score, screen
 # Values that are tried beside the best one, and rounds; every round looks at a third of the last one's reach.
 TRIED, ROUNDS = 2, 4
 # An estimate holds if the chain keeps so much of the gain that the score promised; else the typical size is tried, and
-# so many over the range.
+# so many over the range, and then as many about the best of these.
 KEPT, SIZES = 0.5, 13
 # A size at least this share of its range from nothing; a smaller one has no signature above rounding.
 LEAST = 1e-3
@@ -45,18 +45,23 @@ def zoom(score: Score, fitted: Fitted, rng: np.random.Generator) -> Effect:
 def _at_its_size(score: Score, quantity: Quantity, fitted: Fitted) -> Effect:
     """The effect of a score: of the estimated size, or of the likeliest one where the chain disproves the estimate."""
 
-    def effect(size: float) -> Effect:
-        return score.hypothesis.effect(size, score.phase if np.isfinite(score.phase) else 0.0)
+    def effects(sizes: Sequence[float]) -> list[Effect]:
+        phase = score.phase if np.isfinite(score.phase) else 0.0
+        return [score.hypothesis.effect(size, phase) for size in sizes]
 
     r = fitted.whole.whiten(fitted.from_start)
-    estimated = effect(score.estimate)
-    if float(r @ r) - _left(fitted, [estimated])[0] > KEPT * score.gain:
-        return estimated
+    estimated = effects([score.estimate])
+    if float(r @ r) - _left(fitted, estimated)[0] > KEPT * score.gain:
+        return estimated[0]
     spaced = np.geomspace if quantity.low > 0 else np.linspace
-    sizes = [quantity.typical, *spaced(quantity.low, quantity.high, SIZES).tolist()]
     least = LEAST * (quantity.high - quantity.low)
-    effects = [estimated, *(effect(size) for size in sizes if abs(size - quantity.nothing) > least)]
-    return effects[int(_left(fitted, effects).argmin())]
+    over = [quantity.typical, *spaced(quantity.low, quantity.high, SIZES).tolist()]
+    over = sorted(size for size in over if abs(size - quantity.nothing) > least)
+    best = int(_left(fitted, effects(over)).argmin())
+    about = np.linspace(over[max(best - 1, 0)], over[min(best + 1, len(over) - 1)], SIZES)
+    sizes = [over[best], *(size for size in about.tolist() if abs(size - quantity.nothing) > least)]
+    tried = [*estimated, *effects(sizes)]
+    return tried[int(_left(fitted, tried).argmin())]
 
 
 def _left(fitted: Fitted, effects: Sequence[Effect]) -> Float[np.ndarray, " effect"]:

@@ -16,6 +16,7 @@ from swgsim.effects.quantity import quantities
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.hypotheses import Hypothesis
 from swgsim.loop.tail import log_tail
+from swgsim.singular import svd
 
 # Share of a signature beside the declared parameters below which what is left is rounding, of the chain and of its
 # differences. It says nothing of what can be seen: however far a residual lies beyond the spread of a declared
@@ -130,7 +131,7 @@ class Projected(NamedTuple):
 
 def _projected(C: Float[np.ndarray, "row column"], alone: Float[np.ndarray, "row column"]) -> Projected:
     """Directions of a weighed signature; none if the declared parameters absorb it."""
-    U, s, Vt = np.linalg.svd(C, full_matrices=False)
+    U, s, Vt = svd(C)
     size = float((alone**2).sum())
     visible = float((s**2).sum()) / size if size > 0 else 0.0
     kept = s > NEGLIGIBLE * np.sqrt(size) if visible > VISIBLE else np.zeros(len(s), bool)

@@ -16,6 +16,7 @@ from swgsim.loop.refining import zoom
 from swgsim.loop.screening import Score
 from swgsim.loop.vocabulary import Described
 from swgsim.seeds import generator
+from swgsim.singular import svd
 
 # Log-likelihood of left-out operating points that an effect must gain; and of all recordings if those do not tell.
 LEAST_GAIN, LEAST_EVIDENCE = 3.0, 10.0
@@ -108,19 +109,21 @@ def begun(now: Fitted, score: Score, seed: int) -> Effect:
     return zoom(score, now, generator("zoom", seed, str(score.hypothesis)))
 
 
-def tried(now: Fitted, score: Score, added: tuple[Effect, ...]) -> Trial:
+def tried(now: Fitted, score: Score, added: tuple[Effect, ...], start: Fitted) -> Trial:
     """Effects added to a model and fitted with it.
 
     Parameters
     ----------
     now : Fitted
+        What the gain is counted from.
     score : Score
         Of the first of them.
     added : tuple of Effect
-        Where the fit begins.
+    start : Fitted
+        The same model where the fit begins.
     """
     known = len(now.model.effects)
-    fitted = extended(now, added)
+    fitted = extended(start, added)
     effects = fitted.model.effects[known:]
     found = tuple(coherence(fitted, known + number) for number in range(len(added)))
     gains = gained(now, fitted)
@@ -165,6 +168,6 @@ def widened(
 
 def gain(fitted: Fitted, directions: Float[np.ndarray, "row direction"]) -> float:
     """Fall of a residual's sum of squares by directions of any size."""
-    U, s, _ = np.linalg.svd(fitted.whole.whiten(directions), full_matrices=False)
+    U, s, _ = svd(fitted.whole.whiten(directions))
     along = U[:, s > ROUNDING * max(float(s[0]), ROUNDING)].T @ fitted.whole.whiten(fitted.from_start)
     return float(along @ along)

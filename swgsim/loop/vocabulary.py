@@ -16,6 +16,7 @@ from swgsim.loop.features import ORDERS, Layout
 from swgsim.loop.fitting import Fitted, extended
 from swgsim.loop.screening import VISIBLE, family_wise
 from swgsim.loop.tail import log_tail
+from swgsim.singular import svd
 
 # Prior standard deviation of an atom that is set free, in amplitudes found.
 WIDE = 100.0
@@ -133,7 +134,7 @@ def _described(fitted: Fitted) -> list[tuple[Described, Float[np.ndarray, "row _
     r = fitted.whole.whiten(fitted.from_start)
     found = []
     for atom, C, free in zip(tried, weighed, np.split(alone, ends), strict=True):
-        U, s, Vt = np.linalg.svd(C, full_matrices=False)
+        U, s, Vt = svd(C)
         kept = s**2 > VISIBLE * max(float(free.max()), 1e-300)
         U, s, Vt = U[:, kept], s[kept], Vt[kept]
         along = U.T @ r
