@@ -1,5 +1,7 @@
 """Declared parameters are fitted as likely as their spread allows."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from chain_fixtures import GEAR
@@ -54,7 +56,7 @@ def test_a_fit_comes_to_rest_where_every_full_step_goes_almost_twice_as_far_as_i
     # A curved feature, missed by so much that the curvature of the cost is 1.9 times what the slopes tell of it.
     shape = np.ones((len(SITUATIONS), 1)) * [1.0, 0.0], np.ones((len(SITUATIONS), 1)) * [0.0, 1.0]
     predicting(monkeypatch, lambda x, _: x * shape[0] + 0.9 * x**2 / 2 * shape[1])
-    found = fitted({"x": height(0)}, 0.3 * shape[0] - shape[1])
+    found = fitted({"x": height(0)}, 0.3 * shape[0] - shape[1], noise=0.05)
     assert found.settled
     least = min(np.linspace(-1, 1, 20001), key=lambda x: (x - 0.3) ** 2 + (0.45 * x**2 + 1) ** 2)
     assert found.model.effects[0].height == pytest.approx(least, abs=3e-3)  # slopes are differences
@@ -139,6 +141,14 @@ def test_a_model_without_parameters_is_only_predicted(monkeypatch, A):
     assert found.settled
     assert found.J.shape == (len(SITUATIONS), len(LAYOUT), 0)
     assert not found.predicted.any()
+
+
+@pytest.mark.parametrize("by", [-1e3, 1e3])
+@pytest.mark.parametrize("w0", [2e-5, GEAR.wave_generator.w0])
+def test_a_fit_that_goes_far_astray_still_has_a_gear(w0, by):
+    gear = replace(GEAR, wave_generator=replace(GEAR.wave_generator, w0=w0))
+    parameters = {name: p for name, p in of_unit(gear).items() if not name.startswith("kinematic error")}
+    at(Model(gear), parameters, dict.fromkeys(parameters, by))
 
 
 def test_no_fit_makes_a_parameter_of_the_gear_that_cannot_be():

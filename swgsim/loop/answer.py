@@ -59,7 +59,7 @@ class Answer:
     @property
     def added(self) -> tuple[Effect, ...]:
         """What the model of the order lines has now and lacked before."""
-        return self.closed.after.model.effects[len(self.closed.before.model.effects) :]
+        return self.closed.after.added
 
     @property
     def patches(self) -> tuple[Regularity, ...]:

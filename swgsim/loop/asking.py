@@ -52,13 +52,13 @@ def ask(
     alone = (tried(now, score, (begun(start, score, seed),), start) for score in leaders)
     trials = tuple(sorted(alone, key=lambda trial: -trial.merit))
     best = trials[0]
-    accepted = best if best.sound else _pair(now, trials, kinds, seed) or in_company(now, best, ALPHA, seed)
+    accepted = best if best.sound else _pair(now, start, trials, kinds, seed) or in_company(now, best, ALPHA, seed)
     if accepted is None or not elsewhere(accepted, apart, now):
         return Round(trials, None, None)
     plain = describe(now)[0]
     if outdone(accepted, plain, now):
         # What the regularity tells beyond an effect may be a second one.
-        accepted = _pair(now, trials, kinds, seed) if best.sound else None
+        accepted = _pair(now, start, trials, kinds, seed) if best.sound else None
         if accepted is None or not elsewhere(accepted, apart, now) or outdone(accepted, plain, now):
             return Round(trials, None, plain)
     return Round(trials, accepted, None)
@@ -100,14 +100,16 @@ def _leaders(scores: Sequence[Score]) -> list[Score]:
     return [*real[:LEADERS], *nearly]
 
 
-def _pair(now: Fitted, trials: Sequence[Trial], kinds: Sequence[type[Effect]], seed: int) -> Trial | None:
+def _pair(
+    now: Fitted, start: Fitted, trials: Sequence[Trial], kinds: Sequence[type[Effect]], seed: int
+) -> Trial | None:
     """Two effects that hide one another: the best pair with the best trial, if both members are sound together."""
     first = trials[0]
-    behind = _leaders(screened(first.fitted, kinds, generator("screen behind", seed)))[:BEHIND]
+    beside = unbent(first.fitted)
+    behind = _leaders(screened(beside, kinds, generator("screen behind", seed)))[:BEHIND]
     others = {type(effect): effect for trial in trials[1:LEADERS] for effect in trial.effects}
     # What leads behind the first shows where it is only beside it.
-    others |= {type(effect): effect for effect in (begun(first.fitted, score, seed) for score in behind)}
-    start = unbent(now)
+    others |= {type(effect): effect for effect in (begun(beside, score, seed) for score in behind)}
     pairs = [
         tried(now, first.score, (*first.effects, effect), start)
         for kind, effect in others.items()

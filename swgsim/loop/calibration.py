@@ -104,7 +104,7 @@ def calibrate(
         cost = float(r @ r + here @ here)
         expected = float(step @ (2 * slope - curvature @ step))
         if cost > lowest:
-            settled = expected < SETTLED
+            settled = expected < SETTLED * length
             if settled:
                 break
             # The step led uphill, as the model is not linear: half of it from where it began.
@@ -119,8 +119,8 @@ def calibrate(
             break
         columns = errors.whiten(J[of_recording].reshape(-1, len(here)))
         curvature, slope = columns.T @ columns + np.eye(len(here)), columns.T @ r - here
-        step = length * _step(curvature, slope, here, low, high)
-        step *= min(1.0, LONGEST / max(float(np.abs(step).max()), 1e-12))
+        step = _step(curvature, slope, here, low, high)
+        step *= length * min(1.0, LONGEST / max(float(np.abs(step).max()), 1e-12))
         here = here + step
     model, here, predicted, J = best
     return Calibrated(model, dict(zip(names, here.tolist(), strict=True)), predicted, J, settled)

@@ -105,7 +105,7 @@ def of_unit(gear: Gear) -> dict[str, Declared]:
             0.01 * gear.wave_generator.w0,
             lambda each: each.wave_generator.w0,
             lambda each, to: replace(each, wave_generator=replace(each.wave_generator, w0=to)),
-            LEAST * gear.wave_generator.w0,
+            max(LEAST * gear.wave_generator.w0, W0_LIMITS[0]),
             W0_LIMITS[1],
         ),
     }

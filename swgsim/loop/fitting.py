@@ -216,7 +216,8 @@ def fit(
 def unbent(now: Fitted) -> Fitted:
     """A fit, for the search of effects: at the declared values of the unit if it was bent beyond belief without them.
 
-    Beside a bent model, an effect that is far from linear, such as clipping, looks quite unlike what it is.
+    Beside a bent model, an effect that is far from linear, such as clipping, looks quite unlike what it is. The errors
+    of single recordings stay as they were estimated with it.
     """
     bent = max((abs(by) for by in now.position_of_unit.values()), default=0.0) > BENT
     if not bent or max(now.misfit.values()) < MISSED:

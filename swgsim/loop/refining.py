@@ -55,12 +55,13 @@ def _at_its_size(score: Score, quantity: Quantity, fitted: Fitted) -> Effect:
         return estimated[0]
     spaced = np.geomspace if quantity.low > 0 else np.linspace
     least = LEAST * (quantity.high - quantity.low)
-    over = [quantity.typical, *spaced(quantity.low, quantity.high, SIZES).tolist()]
-    over = sorted(size for size in over if abs(size - quantity.nothing) > least)
-    best = int(_left(fitted, effects(over)).argmin())
-    about = np.linspace(over[max(best - 1, 0)], over[min(best + 1, len(over) - 1)], SIZES)
-    sizes = [over[best], *(size for size in about.tolist() if abs(size - quantity.nothing) > least)]
-    tried = [*estimated, *effects(sizes)]
+    grid = spaced(quantity.low, quantity.high, SIZES)
+    coarse = [size for size in (quantity.typical, *grid.tolist()) if abs(size - quantity.nothing) > least]
+    best = coarse[int(_left(fitted, effects(coarse)).argmin())]
+    below = grid[grid < best - least].max(initial=quantity.low)
+    above = grid[grid > best + least].min(initial=quantity.high)
+    fine = [size for size in np.linspace(below, above, SIZES).tolist() if abs(size - quantity.nothing) > least]
+    tried = [*estimated, *effects([best, *fine])]
     return tried[int(_left(fitted, tried).argmin())]
 
 

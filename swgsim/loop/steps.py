@@ -9,7 +9,7 @@ from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities
 from swgsim.loop.asking import ALPHA
 from swgsim.loop.evidence import FORM_TOLERANCE, open_form
-from swgsim.loop.fitting import Fitted, extended
+from swgsim.loop.fitting import Fitted, extended, unbent
 from swgsim.loop.screening import Score
 from swgsim.loop.trial import LEAST_GAIN, Trial
 
@@ -35,7 +35,7 @@ class Step:
 def joined(base: Fitted, steps: Sequence[Step]) -> Fitted:
     """A model with the effects of steps, their form open within the tolerance."""
     added = [effect for step in steps for effect in step.accepted.effects]
-    return open_form(extended(base, added), len(added)) if added else base
+    return open_form(extended(unbent(base), added), len(added)) if added else base
 
 
 def what(steps: Iterable[Step]) -> frozenset[tuple[object, ...]]:
