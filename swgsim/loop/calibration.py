@@ -13,7 +13,7 @@ from swgsim.loop.gaussian import Covariance
 from swgsim.loop.model import Model, Situation, predict
 
 # Gauss-Newton: fall of the cost below which it rests, and at most so many steps, each of at most so many spreads.
-SETTLED, STEPS, LONGEST = 0.05, 16, 5.0
+SETTLED, STEPS, LONGEST = 0.05, 24, 5.0
 # The next steps are half as long where the cost fell by less than the first share of what was expected, as the model is
 # not linear, and twice as long where it fell by more than the second.
 LITTLE, MUCH = 0.25, 0.75
@@ -104,7 +104,7 @@ def calibrate(
         cost = float(r @ r + here @ here)
         expected = float(step @ (2 * slope - curvature @ step))
         if cost > lowest:
-            settled = expected < SETTLED * length
+            settled = expected < SETTLED
             if settled:
                 break
             # The step led uphill, as the model is not linear: half of it from where it began.
