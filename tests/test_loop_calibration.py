@@ -106,7 +106,7 @@ def test_a_step_uphill_is_halved(monkeypatch, A, sd):
 
 def test_a_fit_that_does_not_come_to_rest_says_so(monkeypatch, A):
     predicting(monkeypatch, lambda x, y: A[..., 0] * x)
-    found = fitted({"x": height(0, sd=0.01)}, 0.9 * A[..., 0], noise=1e-5)
+    found = fitted({"x": height(0, sd=0.01)}, 1.9 * A[..., 0], noise=1e-5)
     assert not found.settled
 
 
