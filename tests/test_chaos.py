@@ -23,6 +23,7 @@ from learn import tracking
 from swgsim import generation, storage
 from swgsim import plan as plans
 
+pytestmark = pytest.mark.end_to_end
 ROOT = Path(__file__).parents[1]
 PARTS = 6
 BLOCK = 9  # recordings in a part: two parts of each gear
@@ -192,7 +193,8 @@ def test_clock_and_locale_do_not_change_a_byte(name: str, tmp_path: Path, undist
 
 def interrupt(command: list[str], sign: Path, pattern: str) -> None:
     """Interrupt a program with all its processes as soon as there are such files; it says so in few lines."""
-    whole = [sys.executable, *command]
+    # The shell ignores Ctrl-C in what it runs in the background, as these tests may be, and so would the program.
+    whole = ["env", "--default-signal=INT", sys.executable, *command]
     with subprocess.Popen(
         whole, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True
     ) as running:

@@ -14,6 +14,7 @@ from learn import job, tracking
 from learn.sweep import named_on_command_line
 from swgsim import storage
 
+pytestmark = pytest.mark.end_to_end
 ROOT = Path(__file__).parents[1]
 # A small form has jobs of the whole one, which are not run twice.
 EXPERIMENTS = sorted(p.stem for p in (ROOT / "conf" / "experiment").glob("*.yaml") if not p.stem.endswith("_small"))
