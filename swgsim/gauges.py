@@ -19,7 +19,6 @@ from swgsim.silk_hat import Sector
 # Angles of the grid pairs of each sensor [rad] and the number of active bridge arms.
 LAYOUT = tuple(np.pi / 4 + np.pi / 2 * np.arange(4) if s == 0 else np.array([np.pi / 2 * (s - 1)]) for s in range(5))
 
-
 # What may be said of each gauge, in the units below.
 LIMITS = {"gain": (0.0, 10.0), "offset": (-10.0, 10.0), "position": (-0.8, 0.8), "grid_angle": (-0.8, 0.8)}
 

@@ -14,6 +14,7 @@ from swgsim import claims
 from swgsim.examples import Subject
 from swgsim.gear import Gear, Transmission
 
+pytestmark = pytest.mark.end_to_end
 SUBJECT = Subject((Gear(),), sectors=40)
 FEATURES = features_of([recordings(variants=12)])
 

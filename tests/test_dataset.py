@@ -26,6 +26,8 @@ from swgsim.population import Population
 from swgsim.record import record
 from swgsim.recordings import Recordings
 
+pytestmark = pytest.mark.end_to_end
+
 
 def nothing(_: int) -> None:
     """No progress bar."""

@@ -21,6 +21,7 @@ from swgsim.recording import Recording
 from swgsim.recordings import SENSORS
 from swgsim.truth import open_truth, truth_of
 
+pytestmark = pytest.mark.end_to_end
 ROOT = Path(__file__).parents[1]
 HIDDEN = [{"zero_offset": {"sensor": 2, "offset": 0.0123456}}]
 

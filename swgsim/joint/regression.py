@@ -138,7 +138,7 @@ class Fit:
     def half_interval(self) -> Float[np.ndarray, " column"]:
         """Half of the 95 % interval of every weight, the errors being alike within a stretch only."""
         scale = _scale(self.X)
-        inverse = np.linalg.pinv((self.X / scale).T @ (self.X / scale))
+        inverse = np.linalg.pinv((self.X / scale).T @ (self.X / scale), hermitian=True)
         stretches = int(self.table.stretch.max()) + 1
         scores = np.zeros((stretches, self.X.shape[1]))
         np.add.at(scores, self.table.stretch, self.X / scale * self.residual[:, None])

@@ -61,7 +61,7 @@ def pictures(answer: Answer, report: Mapping[str, Any]) -> dict[str, tuple[style
             errors(report),
         ),
     }
-    if _declared(answer.closed.after):
+    if answer.closed.after.declared:
         drawn["parameters"] = (
             "Declared parameters",
             "Deviation from the nominal value in units of the spread over a series, with intervals that hold the true "
@@ -221,7 +221,7 @@ def errors(report: Mapping[str, Any]) -> Figure:
 def parameters(answer: Answer, report: Mapping[str, Any]) -> Figure:
     """Declared parameters before and after with their intervals."""
     before, after = answer.closed.before, answer.closed.after
-    names = _declared(after)
+    names = list(after.declared)
     picture = style.figure(9.5, 1.0 + 0.24 * len(names))
     axes = picture.subplots()
     rows = np.arange(len(names))[::-1]
@@ -236,8 +236,3 @@ def parameters(answer: Answer, report: Mapping[str, Any]) -> Figure:
     axes.legend(fontsize=8)
     style.label(axes, "deviation from the nominal value [spread over a series]", "")
     return picture
-
-
-def _declared(fitted: Fitted) -> list[str]:
-    """Parameters of the gear that were fitted; none once it is commissioned."""
-    return [name for name in fitted.parameters if ": " not in name]

@@ -67,9 +67,14 @@ class Fitted:
         return self.model.effects[len(self.unit.model.effects) :]
 
     @property
+    def declared(self) -> dict[str, Declared]:
+        """The fitted parameters that are the unit's own; none once it is commissioned."""
+        return {name: parameter for name, parameter in self.parameters.items() if ": " not in name}
+
+    @property
     def position_of_unit(self) -> dict[str, float]:
         """Deviation of the unit's parameters from their declared values, in spreads."""
-        return {name: by for name, by in self.calibrated.position.items() if ": " not in name}
+        return {name: self.calibrated.position[name] for name in self.declared}
 
     @property
     def strict(self) -> "Fitted":

@@ -71,7 +71,7 @@ def calibrated(fitted: Fitted) -> dict[str, dict[str, Any]]:
     """The declared parameters at which the chain ran, with what is left open of them."""
     unit = fitted.unit
     if unit.reach is None or unit.nominal is None:
-        declared = {name: p for name, p in fitted.parameters.items() if ": " not in name}
+        declared = fitted.declared
         deviations = [fitted.deviation[name] for name in declared]
     else:
         # By whose spread the reach of commissioning is counted.
@@ -90,9 +90,9 @@ def moved(before: Fitted, after: Fitted) -> dict[str, dict[str, Any]]:
     Calibration had bent them to hide what was missing.
     """
     found = {}
-    for name, parameter in before.parameters.items():
+    for name, parameter in before.declared.items():
         was, now = parameter.value(before.model), parameter.value(after.model)
-        if ": " not in name and abs(now - was) > 2 * after.deviation[name]:
+        if abs(now - was) > 2 * after.deviation[name]:
             found[name] = {"before": was, "after": now, "unit": parameter.unit}
     return found
 
