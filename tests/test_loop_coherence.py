@@ -4,11 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from loop_fixtures import drawn, fitted_to, holding
+from chain_fixtures import GEAR
+from loop_fixtures import Bump, drawn, fitted_to, holding
 
 from swgsim.loop import evidence
 from swgsim.loop.declared import Declared
 from swgsim.loop.features import Layout
+from swgsim.loop.fitting import Fitted
+from swgsim.loop.model import Model
 
 LAYOUT = Layout(("T_in", "s0", "s1"))
 STRONG = 10.0  # in units of the noise, feature by feature
@@ -94,6 +97,63 @@ def test_a_weak_effect_is_not_contradicted_by_noise(planted, judged):
     found = [judged(0.01 * planted[1], rng) for _ in range(150)]
     assert all(each.holds for each in found)
     assert 0.03 <= np.mean(np.array([each.chance for each in found]) < 0.1) <= 0.2
+
+
+@pytest.fixture
+def fitted_with(planted, monkeypatch):
+    """The effect fitted to a signal on noise, its size open, and its coherence."""
+    fitted, whole = planted
+    with_effect = replace(fitted.calibrated, model=Model(GEAR, (Bump(1.0),)))
+    free = replace(fitted, calibrated=with_effect, open=np.hstack([fitted.open, 10 * whole[:, None]]))
+    unit = fitted.whole.whiten(whole)
+
+    def found(signal: np.ndarray, rng: np.random.Generator) -> tuple[Fitted, evidence.Coherence]:
+        r = signal + drawn(fitted.whole, rng)
+        size = float(unit @ fitted.whole.whiten(r) / (unit @ unit))
+        monkeypatch.setattr(evidence, "signature", lambda fitted, number: size * whole)
+        held = holding(free, r - size * whole)
+        return held, evidence.coherence(held, 0)
+
+    return found
+
+
+def test_a_form_that_is_off_by_a_fifth_costs_little_at_points_left_out(planted, fitted_with):
+    rng = np.random.default_rng(10)
+    exact = fitted_with(planted[1], rng)[0].predictive.sum()
+    for _ in range(5):
+        fitted, agreement = fitted_with(split_by_form(*planted, 0.2, rng), rng)
+        held, opened = fitted.predictive.sum(), evidence.open_as_found(fitted, [agreement]).predictive.sum()
+        assert opened - held > 0.8 * (exact - held) > 50
+
+
+def test_an_exact_form_gains_next_to_nothing_by_what_is_tolerated(planted, fitted_with):
+    rng = np.random.default_rng(11)
+    for _ in range(5):
+        fitted, agreement = fitted_with(planted[1], rng)
+        opened = evidence.open_as_found(fitted, [agreement])
+        assert opened.predictive.sum() - fitted.predictive.sum() < 10
+
+
+def test_a_mimic_is_no_better_than_the_cause_for_what_is_tolerated(planted, fitted_with):
+    fitted, whole = planted
+    rng = np.random.default_rng(12)
+    cause = fitted_with(whole, rng)[0].log_likelihood
+    mimic, agreement = fitted_with(whole * np.tile(LAYOUT.channel == "s0", len(fitted.measured)), rng)
+    assert agreement.tolerated == evidence.FORM_TOLERANCE < agreement.form_error
+    assert evidence.open_as_found(mimic, [agreement]).log_likelihood < cause - 50
+
+
+def test_what_was_open_before_stays_open_and_each_of_two_effects_has_its_own_form(planted, fitted_with):
+    rng = np.random.default_rng(13)
+    earlier = rng.standard_normal((len(planted[1]), 3))
+    held = fitted_with(planted[1], rng)[0].allowing(earlier)
+    exact, off = (evidence.Coherence(1.0, error, 0.0) for error in (0.0, 0.1))
+    assert evidence.open_as_found(held, [exact]) is held
+    two = replace(held, calibrated=replace(held.calibrated, model=Model(GEAR, (Bump(1.0), Bump(2.0)))))
+    opened = evidence.open_as_found(two, [exact, off])
+    np.testing.assert_array_equal(opened.allowed[:, :3], earlier)
+    np.testing.assert_array_equal(opened.allowed[:, 3:], 0.1 * evidence.parts(two, evidence.signature(two, 1)))
+    np.testing.assert_array_equal(opened.strict.open, held.strict.open)
 
 
 def test_doubt_is_how_far_parts_that_differ_lead_a_size_astray(planted, judged):

@@ -1,5 +1,6 @@
 """Whether an effect is the cause and no mimic: one size must serve all operating points, channels and orders."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,6 +41,11 @@ class Coherence:
     def holds(self) -> bool:
         """Whether the parts agree."""
         return self.chance > CONTRADICTION
+
+    @property
+    def tolerated(self) -> float:
+        """The part of the form error that is within the tolerance."""
+        return min(self.form_error, FORM_TOLERANCE)
 
 
 def signature(fitted: Fitted, number: int) -> Float[np.ndarray, " row"]:
@@ -103,6 +109,21 @@ def coherence(fitted: Fitted, number: int) -> Coherence:
     wider = 1 + (FORM_ERRORS[:, None] * s) ** 2
     error = float(FORM_ERRORS[np.argmin((u**2 / wider + np.log(wider)).sum(axis=1))])
     return Coherence(chance, error, error * _share(fitted, number) if error else 0.0)
+
+
+def open_as_found(fitted: Fitted, coherences: Sequence[Coherence]) -> Fitted:
+    """A fit with the form of the effects that were added last as open as their parts ask for, within the tolerance.
+
+    Held to the library's exact form, a cause that is a little different would be counted as wrong wherever its size is
+    predicted from other operating points, and a mimic that bends to these few numbers would be preferred.
+    """
+    first = len(fitted.model.effects) - len(coherences)
+    columns = [
+        agreement.tolerated * parts(fitted, signature(fitted, number))
+        for number, agreement in enumerate(coherences, first)
+        if agreement.tolerated
+    ]
+    return fitted.allowing(np.hstack(columns)) if columns else fitted
 
 
 def _share(fitted: Fitted, number: int) -> float:

@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities, size_of
-from swgsim.loop.evidence import Coherence, coherence, open_form, signature
+from swgsim.loop.evidence import Coherence, coherence, open_as_found, open_form, signature
 from swgsim.loop.fitting import Fitted, extended
 from swgsim.loop.model import Model
 from swgsim.loop.refining import zoom
@@ -40,7 +40,8 @@ class Trial:
     fitted : Fitted
         The model with it.
     gains : array (point,)
-        Of the log-likelihood of each operating point left out, over a model whose single recordings may err as much.
+        Of the log-likelihood of each operating point left out, over a model whose single recordings may err as much;
+        the form of the effects is as open as their parts ask for, within the tolerance.
     evidence : float
         Of the log-likelihood of all recordings together, over the same, parameters being open within their spreads. It
         also counts what every operating point shows alike, such as a zero beyond its spread, which the others tell
@@ -126,7 +127,7 @@ def tried(now: Fitted, score: Score, added: tuple[Effect, ...], start: Fitted) -
     fitted = extended(start, added)
     effects = fitted.model.effects[known:]
     found = tuple(coherence(fitted, known + number) for number in range(len(added)))
-    gains = gained(now, fitted)
+    gains = gained(now, open_as_found(fitted, found))
     # Many trials are kept, so without what was computed of them on the way.
     return Trial(score, effects, replace(fitted), *gains, found)
 
