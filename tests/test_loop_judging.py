@@ -4,14 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from chain_fixtures import GEAR
 from loop_fixtures import BUMP, Bump, drawn, fitted_to, holding
 
 from swgsim.loop import evidence, vocabulary
+from swgsim.loop import trial as trial_module
 from swgsim.loop.beside import elsewhere, in_company, outdone
 from swgsim.loop.features import Layout
+from swgsim.loop.model import Model
 from swgsim.loop.scatter import Scatter, covariance
 from swgsim.loop.screening import Score
-from swgsim.loop.trial import Trial, gained
+from swgsim.loop.trial import Trial, gained, tried
 from swgsim.loop.vocabulary import Atom, columns, describe, set_free, strongest
 
 LAYOUT = Layout(("T_in", "s1", "s2", "s3", "s4"))
@@ -63,6 +66,24 @@ def test_a_regularity_that_tells_the_same_better_outdoes_an_effect(fitted, stray
     mimic = stray + 0.5 * np.linalg.norm(stray) / np.linalg.norm(signature) * signature
     now = holding(fitted, 2 * stray + drawn(fitted.whole, rng))
     assert outdone(trial(now, mimic), named(now, STRAY), now)
+
+
+def test_a_trial_is_judged_with_the_form_that_its_parts_ask_for(fitted, signature, monkeypatch):
+    """One that is smaller by a third at low load gains what it explains, and its fit is kept as it is."""
+    points = fitted.measured.point_rows()
+    law = np.sum([share * rows for share, rows in zip((0.7, 1.0, 1.1) * 2, points, strict=True)], axis=0)
+    noise = drawn(fitted.whole, np.random.default_rng(10))
+    now, after = (holding(fitted, 20 * (law - held) * signature + noise) for held in (0, 1))
+    with_effect = replace(after.calibrated, model=Model(GEAR, (Bump(1.0),)))
+    after = replace(after, calibrated=with_effect, open=np.hstack([after.open, 100 * signature[:, None]]))
+    monkeypatch.setattr(evidence, "signature", lambda fitted, number: 20 * signature)
+    monkeypatch.setattr(trial_module, "extended", lambda start, added: after)
+    found = tried(now, Score(BUMP, 100.0, 1, 1.0, 0.0, 0.1, 1.0, 1e-6), (Bump(1.0),), now)
+    assert found.coherence[0].holds
+    held = gained(now, after)
+    assert found.gain > held[0].sum() + 100
+    assert found.evidence > held[1] + 100
+    np.testing.assert_array_equal(found.fitted.open, after.open)
 
 
 def test_another_thing_of_like_size_does_not_outdo_an_effect(fitted, stray, signature):
