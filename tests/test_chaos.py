@@ -194,10 +194,10 @@ def test_clock_and_locale_do_not_change_a_byte(name: str, tmp_path: Path, undist
 def interrupt(command: list[str], sign: Path, pattern: str) -> None:
     """Interrupt a program with all its processes as soon as there are such files; it says so in few lines."""
     # The shell ignores Ctrl-C in what it runs in the background, as these tests may be, and so would the program.
-    whole = ["env", "--default-signal=INT", sys.executable, *command]
     with subprocess.Popen(
-        whole, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True
-    ) as running:
+        [sys.executable, *command], cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+        start_new_session=True, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    ) as running:  # fmt: skip
         while not list(sign.glob(pattern)):
             assert running.poll() is None, running.communicate()
             time.sleep(0.01)

@@ -37,19 +37,27 @@ def split_by_form(fitted, whole, error, rng) -> np.ndarray:
 
 
 @pytest.fixture
-def judged(planted, monkeypatch):
-    """Coherence of the effect, fitted in size, with a signal on noise."""
+def fitted_with(planted, monkeypatch):
+    """The effect fitted to a signal on noise, its size open, and its coherence."""
     fitted, whole = planted
+    with_effect = replace(fitted.calibrated, model=Model(GEAR, (Bump(1.0),)))
+    free = replace(fitted, calibrated=with_effect, open=np.hstack([fitted.open, 10 * whole[:, None]]))
+    unit = fitted.whole.whiten(whole)
 
-    def found(signal: np.ndarray, rng: np.random.Generator) -> evidence.Coherence:
+    def found(signal: np.ndarray, rng: np.random.Generator) -> tuple[Fitted, evidence.Coherence]:
         r = signal + drawn(fitted.whole, rng)
-        weighed, unit = fitted.whole.whiten(r), fitted.whole.whiten(whole)
-        size = float(unit @ weighed / (unit @ unit))
+        size = float(unit @ fitted.whole.whiten(r) / (unit @ unit))
         monkeypatch.setattr(evidence, "signature", lambda fitted, number: size * whole)
-        free = replace(fitted, open=np.hstack([fitted.open, 10 * whole[:, None]]))
-        return evidence.coherence(holding(free, r), 0)
+        held = holding(free, r - size * whole)
+        return held, evidence.coherence(held, 0)
 
     return found
+
+
+@pytest.fixture
+def judged(fitted_with):
+    """The coherence alone."""
+    return lambda signal, rng: fitted_with(signal, rng)[1]
 
 
 def test_an_effect_of_exact_form_is_coherent(planted, judged):
@@ -97,24 +105,6 @@ def test_a_weak_effect_is_not_contradicted_by_noise(planted, judged):
     found = [judged(0.01 * planted[1], rng) for _ in range(150)]
     assert all(each.holds for each in found)
     assert 0.03 <= np.mean(np.array([each.chance for each in found]) < 0.1) <= 0.2
-
-
-@pytest.fixture
-def fitted_with(planted, monkeypatch):
-    """The effect fitted to a signal on noise, its size open, and its coherence."""
-    fitted, whole = planted
-    with_effect = replace(fitted.calibrated, model=Model(GEAR, (Bump(1.0),)))
-    free = replace(fitted, calibrated=with_effect, open=np.hstack([fitted.open, 10 * whole[:, None]]))
-    unit = fitted.whole.whiten(whole)
-
-    def found(signal: np.ndarray, rng: np.random.Generator) -> tuple[Fitted, evidence.Coherence]:
-        r = signal + drawn(fitted.whole, rng)
-        size = float(unit @ fitted.whole.whiten(r) / (unit @ unit))
-        monkeypatch.setattr(evidence, "signature", lambda fitted, number: size * whole)
-        held = holding(free, r - size * whole)
-        return held, evidence.coherence(held, 0)
-
-    return found
 
 
 def test_a_form_that_is_off_by_a_fifth_costs_little_at_points_left_out(planted, fitted_with):

@@ -98,7 +98,8 @@ def open_form(fitted: Fitted, added: int) -> Fitted:
 
 def coherence(fitted: Fitted, number: int) -> Coherence:
     """Whether the parts of an effect's signature agree on its size."""
-    split = fitted.whole.whiten(parts(fitted, signature(fitted, number)))
+    signed = signature(fitted, number)
+    split = fitted.whole.whiten(parts(fitted, signed))
     if not np.any(split):
         return Coherence(0.0, 0.0, 0.0)
     U, s, _ = svd(split)
@@ -108,7 +109,7 @@ def coherence(fitted: Fitted, number: int) -> Coherence:
     chance = float(chi2.sf((u**2 / (1 + (FORM_TOLERANCE * s) ** 2)).sum(), len(s)))
     wider = 1 + (FORM_ERRORS[:, None] * s) ** 2
     error = float(FORM_ERRORS[np.argmin((u**2 / wider + np.log(wider)).sum(axis=1))])
-    return Coherence(chance, error, error * _share(fitted, number) if error else 0.0)
+    return Coherence(chance, error, error * _share(fitted, number, signed) if error else 0.0)
 
 
 def open_as_found(fitted: Fitted, coherences: Sequence[Coherence]) -> Fitted:
@@ -126,14 +127,14 @@ def open_as_found(fitted: Fitted, coherences: Sequence[Coherence]) -> Fitted:
     return fitted.allowing(np.hstack(columns)) if columns else fitted
 
 
-def _share(fitted: Fitted, number: int) -> float:
+def _share(fitted: Fitted, number: int, signed: Float[np.ndarray, " row"]) -> float:
     """What an independent error of every part, each of the same share, adds to the size, as a share of it.
 
     The effect's own parameters are not open beside it: its size is what is asked for, and would leave rounding of it.
     """
     others = [column for column, name in enumerate(fitted.parameters) if f" {number + 1}: " not in name]
     errors = fitted.errors.with_columns(np.hstack([fitted.open, fitted.J[:, others]]))
-    split = errors.whiten(parts(fitted, signature(fitted, number)))
+    split = errors.whiten(parts(fitted, signed))
     # The parts of all operating points together are the whole.
     whole = split[:, : len(fitted.measured.point_rows())].sum(axis=1)
     return float(np.linalg.norm(split.T @ whole) / (whole @ whole))
