@@ -12,8 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
-
-from swgsim.singular import svd
+from scipy.linalg import cho_factor, cho_solve, solve_triangular
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,10 +31,20 @@ class Covariance:
     G: Float[np.ndarray, "row column"]
 
     @cached_property
-    def _scaled(self) -> tuple[Float[np.ndarray, "row rank"], Float[np.ndarray, " rank"]]:
-        """Left singular vectors and values of G in units of the independent errors."""
-        U, s, _ = svd(self.G / np.sqrt(self.variance)[:, None])
-        return U, s
+    def _gram(self) -> Float[np.ndarray, "column column"]:
+        """G' G in units of the independent errors."""
+        scaled = self.G / np.sqrt(self.variance)[:, None]
+        return scaled.T @ scaled
+
+    @cached_property
+    def _shrinking(self) -> tuple[Float[np.ndarray, "column column"], Float[np.ndarray, " column"]]:
+        """K and r: in units of the independent errors, covariance^(-1/2) is 1 - G K G', with singular values 1 / r.
+
+        From the Gram matrix, several times smaller than G; what its eigenvalues lose to rounding shrinks nothing.
+        """
+        eigenvalues, V = np.linalg.eigh(self._gram)
+        r = np.sqrt(1 + np.maximum(eigenvalues, 0))
+        return (V / (r * (1 + r))) @ V.T, r
 
     def whiten(self, X: np.ndarray) -> np.ndarray:
         """W X with W covariance W' = 1, for an array (row,) or (row, column)."""
@@ -51,9 +60,8 @@ class Covariance:
 
     def _shrunken(self, X: np.ndarray) -> np.ndarray:
         """X with the directions of the common errors made as small as their variance is large."""
-        U, s = self._scaled
-        shrink = (1 / np.sqrt(1 + s**2) - 1).reshape(-1, *[1] * (X.ndim - 1))
-        return X + U @ (shrink * (U.T @ X))
+        deviation = self._deviation(X)
+        return X - self.G @ (self._shrinking[0] @ (self.G.T @ (X / deviation))) / deviation
 
     def with_columns(self, G: Float[np.ndarray, "row more"]) -> "Covariance":
         """The covariance with further common errors."""
@@ -61,9 +69,8 @@ class Covariance:
 
     def log_likelihood(self, r: Float[np.ndarray, " row"]) -> float:
         """Of a residual, without the constant."""
-        s = self._scaled[1]
         white = self.whiten(r)
-        return -0.5 * float(white @ white + np.log1p(s**2).sum() + np.log(self.variance).sum())
+        return -0.5 * float(white @ white + 2 * np.log(self._shrinking[1]).sum() + np.log(self.variance).sum())
 
     def rows(self, chosen: np.ndarray) -> "Covariance":
         """The covariance of some of the rows."""
@@ -71,15 +78,14 @@ class Covariance:
 
     def left_out(self, r: Float[np.ndarray, " row"], block: np.ndarray) -> "Expected":
         """The rows of a block (a mask) as all the other rows predict them."""
-        others = self.rows(~block)
-        weighted = others.G / others.variance[:, None]
-        precision = np.eye(self.G.shape[1]) + weighted.T @ others.G
-        mean = np.linalg.solve(precision, weighted.T @ r[~block])
-        # Columns that the other rows leave open, one standard deviation each.
-        root = np.linalg.inv(np.linalg.cholesky(precision)).T
-        here = Covariance(self.variance[block], self.G[block] @ root)
-        missed = r[block] - self.G[block] @ mean
-        return Expected(missed, here.log_likelihood(missed), mean)
+        here, others = self.rows(block), self.rows(~block)
+        # Of the columns, as the other rows tell them.
+        precision = cho_factor(np.eye(self.G.shape[1]) + self._gram - here._gram)
+        mean = cho_solve(precision, others.G.T @ (r[~block] / others.variance))
+        missed = r[block] - here.G @ mean
+        spread = np.linalg.cholesky(np.diag(here.variance) + here.G @ cho_solve(precision, here.G.T))
+        white = solve_triangular(spread, missed, lower=True)
+        return Expected(missed, -0.5 * float(white @ white) - float(np.log(np.diag(spread)).sum()), mean)
 
 
 class Expected(NamedTuple):

@@ -17,8 +17,9 @@ from scipy.optimize import least_squares
 from swgsim.loop.features import FITTED, ORDERS, Layout, basis, remainder
 from swgsim.recording import Recording
 
-# Share of a channel's size below which neither a converter nor the chain's own numerics resolve anything.
-RESOLVED = 1e-4
+# Shares of a channel's ripple, and of its mean, below which neither a converter nor the chain's own numerics resolve
+# anything.
+RESOLVED, FINEST = 1e-4, 1e-6
 # Lines this close to an integer order may hold what leaks from it [lines of the spectrum].
 GUARD = 1.5
 # Fewest lines between the orders of one recording that tell a noise.
@@ -74,9 +75,8 @@ def variance(
         spread = np.diag(np.linalg.inv(columns.T @ columns))
         frequency = layout.order[: len(spread)] * recording.point.n_in_rpm / 60
         ripple, mean = _sizes(recording, layout)
-        least = RESOLVED * np.where(
-            layout.order == 0, np.repeat(mean + ripple, len(spread)), np.repeat(ripple, len(spread))
-        )
+        least = np.repeat(RESOLVED * ripple + FINEST * mean, len(spread))
+        least[layout.order == 0] = RESOLVED * (ripple + mean)
         found.append(np.concatenate([floor.at(frequency) * spread for floor in noise]) + least**2)
     return np.array(found)
 
