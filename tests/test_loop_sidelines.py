@@ -72,6 +72,16 @@ def test_the_line_of_a_bearing_cage_is_found():
     assert best.agrees > 0.001
 
 
+def test_the_rounding_of_a_converter_makes_no_line():
+    """Without noise it is not random: it has lines of its own, of less than half a step."""
+    step, rounded = 3e-3, []
+    for each in measured((), 1):
+        signal = step * np.round(0.17 * np.cos(2 * each.channels["phi_in"]) / step)
+        rounded.append(replace(each, channels={**each.channels, **dict.fromkeys(SENSORS, signal)}))
+    found = search(between(rounded), KINDS, 0.005)
+    assert found.named == found.unnamed == ()
+
+
 def test_the_hum_of_the_mains_is_found():
     best = ranked(between(measured((LIBRARY["mains_hum"](amplitude=5e-4, frequency=60.0),), 2)), KINDS)[0]
     assert best.effect.name() == "mains_hum"

@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float
 from swgsim.effects.base import Effect, Scene
 from swgsim.effects.quantity import Role, quantities
 from swgsim.loop.features import FITTED, Layout, basis, remainder
-from swgsim.loop.noise import GUARD, Floor, floors
+from swgsim.loop.noise import GUARD, Floor, floors, step_of
 from swgsim.recording import CHANNELS, Recording
 from swgsim.recordings import SENSORS
 from swgsim.singular import svd
@@ -82,7 +82,10 @@ class Between:
         # The mean, and lines beyond the orders that were fitted, say nothing.
         lines = np.arange(1, int(np.ceil(FITTED * revolutions)))
         frequency = lines * recording.rate / length
-        scale = np.array([np.sqrt(2 * length / np.maximum(floor.at(frequency), 1e-300)) for floor in noise])
+        # Rounding by a converter makes lines of its own, of less than half a step.
+        rounding = [step_of(recording.channels[gauge]) ** 2 / 32 for gauge in gauges]
+        variance = [floor.at(frequency) / (2 * length) + own for floor, own in zip(noise, rounding, strict=True)]
+        scale = 1 / np.sqrt(np.maximum(variance, 1e-300))
         order = lines / revolutions
         bare = cls(
             scene,

@@ -81,6 +81,11 @@ def variance(
     return np.array(found)
 
 
+def step_of(values: Float[np.ndarray, " time"]) -> float:
+    """Step of the converter that a channel went through, at most: the least difference of two values."""
+    return float(np.diff(np.unique(values)).min(initial=np.inf)) if np.ptp(values) else 0.0
+
+
 def _between(
     recording: Recording, layout: Layout
 ) -> tuple[Float[np.ndarray, " line"], Float[np.ndarray, "channel line"]]:

@@ -110,8 +110,8 @@ def _judged(effect: Effect, spectra: Sequence[Between], tried: int) -> Sideline:
     declared = quantities(type(effect))
     name = size_of(type(effect))
     gain, freedom, size, rest, beside = np.array([each.explained(effect) for each in spectra]).T
-    # The floor holds for the whole spectrum; beside the lines it may be somewhat higher or lower.
-    noise = (rest.sum() + ALL_TOGETHER) / (beside.sum() + ALL_TOGETHER)
+    # The floor holds for the whole spectrum; beside the lines it may be higher. Less is no noise but rounding.
+    noise = max(1.0, (rest.sum() + ALL_TOGETHER) / (beside.sum() + ALL_TOGETHER))
     explained = float(gain.sum() - noise * freedom.sum())
     gain, size = gain / noise, size / noise
     # Power of the effect beyond the noise, in units of its typical size squared.

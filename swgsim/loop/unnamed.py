@@ -144,7 +144,7 @@ def _best(spectra: Sequence[Between], kind: str, level: float) -> list[Unnamed]:
     if not len(tried):
         return []
     gain, freedom, rest, beside = (each[tried] for each in (gain, freedom, rest, beside))
-    noise = (rest + ALL_TOGETHER) / (beside + ALL_TOGETHER)
+    noise = np.maximum(1.0, (rest + ALL_TOGETHER) / (beside + ALL_TOGETHER))
     chances = np.minimum(1.0, len(tried) * len(KINDS) * f.sf(gain / noise / freedom, freedom, beside + ALL_TOGETHER))
     explained = np.where(chances <= level, gain - noise * freedom, -np.inf)
     most = int(np.argmax(explained))
