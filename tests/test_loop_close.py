@@ -21,7 +21,7 @@ from swgsim.loop.commissioning import commission
 from swgsim.loop.fitting import fit
 from swgsim.loop.model import Model
 from swgsim.loop.session import Measured
-from swgsim.loop.unit import Unit
+from swgsim.loop.unit import STRUCTURE, Unit
 from swgsim.loop.vocabulary import describe, freed
 from swgsim.virtual_bench import Sessions, record_sessions
 
@@ -35,10 +35,11 @@ NAMES = ("eccentric_wave_generator", "warm_grease", "reduced_damping", "zero_off
 SEARCHED = [LIBRARY[name] for name in NAMES]
 
 
-def recorded(effects: tuple[Effect, ...], seed: int, gear: Gear = GEAR) -> Measured:
-    """Two recordings of each operating point, all at the reference temperature."""
-    recordings = record_sessions(gear, effects, PLAN, Bench(), seed=seed, window=Window(), sectors=SECTORS)
-    return Measured.of([replace(each, conditions=Conditions()) for each in recordings])
+def recorded(effects: tuple[Effect, ...], seed: int, gear: Gear = GEAR, warming: float = 0.0) -> Measured:
+    """Two recordings of each operating point, all at the reference temperature unless the gear warms up [K]."""
+    plan = replace(PLAN, warming=warming)
+    recordings = record_sessions(gear, effects, plan, Bench(), seed=seed, window=Window(), sectors=SECTORS)
+    return Measured.of([each if warming else replace(each, conditions=Conditions()) for each in recordings])
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -66,6 +67,34 @@ def test_commissioning_finds_the_gear_and_narrows_what_is_open(unit):
     assert unit.commissioned
     assert unit.model.gear.transmission.k1 == pytest.approx(GEAR.transmission.k1, rel=0.05)
     assert unit.reach.shape == (len(unit.shift), len(unit.shift))
+
+
+def test_a_gear_of_another_flex_spline_is_commissioned_as_accurately_as_it_can_be(unit):
+    """Its wall and collar are thicker, its sleeve shorter; an eccentricity is found all the same, and nothing else."""
+    hat = replace(GEAR.flex_spline, length=22e-3, collar=0.9e-3, wall=0.47e-3)
+    other = replace(GEAR, flex_spline=hat, gauges=replace(GEAR.gauges, radius=27e-3))
+    own = commission(recorded((), seed=1, gear=other), Unit(Model(GEAR)))
+    assert own.structure > unit.structure == STRUCTURE
+    assert accepted(close(recorded((), seed=2, gear=other), own, SEARCHED)) == []
+    (found,) = accepted(close(recorded((ECCENTRIC,), seed=2, gear=other), own, [*SEARCHED, LIBRARY["tilting_moment"]]))
+    assert type(found) is type(ECCENTRIC)
+
+
+def test_what_the_healthy_gear_did_as_well_is_not_missing():
+    """A filter that lags, a zero and grease that follow the temperature: these are learned, and a fault is new."""
+    habits = (
+        LIBRARY["filter_mismatch"](sensor=2, lag=3e-5),
+        LIBRARY["thermal_output"](sensor=1, slope=3e-4),
+        LIBRARY["grease_temperature"](beta=0.02),
+    )
+    searched = [*SEARCHED, *map(type, habits)]
+    healthy = recorded(habits, seed=1, warming=10.0)
+    own = commission(healthy, Unit(Model(GEAR)))
+    lobes = (healthy.layout.channel == "s2") & (healthy.layout.order == 2)
+    assert own.inflated(healthy.variance)[:, lobes] == pytest.approx(healthy.variance[:, lobes])
+    assert accepted(close(recorded(habits, seed=2, warming=10.0), own, searched)) == []
+    (found,) = accepted(close(recorded((*habits, ECCENTRIC), seed=2, warming=10.0), own, searched))
+    assert found.r == pytest.approx(10e-6, rel=0.2)
 
 
 def test_nothing_is_found_where_nothing_is_missing(unit):

@@ -11,7 +11,9 @@ from swgsim.loop import evidence
 from swgsim.loop.declared import Declared
 from swgsim.loop.features import Layout
 from swgsim.loop.fitting import Fitted
+from swgsim.loop.form import form_columns, largest_lines
 from swgsim.loop.model import Model
+from swgsim.loop.unit import STRUCTURE
 
 LAYOUT = Layout(("T_in", "s0", "s1"))
 STRONG = 10.0  # in units of the noise, feature by feature
@@ -105,6 +107,21 @@ def test_a_weak_effect_is_not_contradicted_by_noise(planted, judged):
     found = [judged(0.01 * planted[1], rng) for _ in range(150)]
     assert all(each.holds for each in found)
     assert 0.03 <= np.mean(np.array([each.chance for each in found]) < 0.1) <= 0.2
+
+
+def test_small_parts_are_as_uncertain_as_commissioning_found_the_structure(planted, monkeypatch):
+    """What lies off by a share of the largest line is a contradiction only where the structure is known better."""
+    fitted, whole = planted
+    gauges = whole * (np.tile(LAYOUT.channel != "T_in", len(fitted.measured)))
+    monkeypatch.setattr(evidence, "signature", lambda fitted, number: gauges)
+    rng = np.random.default_rng(14)
+    largest = largest_lines(gauges.reshape(fitted.measured.values.shape), LAYOUT)
+    columns = fitted.measured.rows(form_columns(largest, fitted.measured.situations, LAYOUT))
+    off = 0.7 * columns @ rng.standard_normal(columns.shape[1])
+    for structure, holds in ((STRUCTURE, False), (0.3, True)):
+        unit = replace(fitted.unit, structure=structure)
+        held = replace(fitted, unit=unit, open=np.hstack([fitted.open, 10 * gauges[:, None]]))
+        assert evidence.coherence(holding(held, off + drawn(fitted.whole, rng)), 0).holds == holds
 
 
 def test_a_form_that_is_off_by_a_fifth_costs_little_at_points_left_out(planted, fitted_with):

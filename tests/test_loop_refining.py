@@ -16,7 +16,7 @@ from swgsim.loop.model import Model
 from swgsim.loop.refining import zoom
 from swgsim.loop.screening import Score, screen
 from swgsim.loop.session import Measured
-from swgsim.loop.unit import STRUCTURE, Unit
+from swgsim.loop.unit import Unit
 
 pytestmark = pytest.mark.end_to_end
 
@@ -26,7 +26,7 @@ def asked(*hidden: Effect) -> tuple[Fitted, Score]:
     measured = Measured.of(good(effects=hidden, repeats=1))
     # A unit of which only the maps are not known, so that nothing is fitted.
     maps = Unit(Model(GEAR)).left_open(Model(GEAR), measured.situations, measured.layout).columns.shape[-1]
-    fitted = fit(measured, Unit(Model(GEAR), reach=STRUCTURE * np.eye(maps)))
+    fitted = fit(measured, Unit(Model(GEAR), reach=np.eye(maps)))
     found = list(hypotheses([type(hidden[0])]))
     return fitted, screen(found, signatures(found, fitted.model, fitted.measured), fitted, np.random.default_rng(1))[0]
 

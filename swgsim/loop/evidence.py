@@ -8,7 +8,9 @@ from jaxtyping import Float
 from scipy.stats import chi2
 
 from swgsim.loop.fitting import Fitted
+from swgsim.loop.form import form_columns, largest_lines
 from swgsim.loop.model import predict
+from swgsim.loop.unit import STRUCTURE
 from swgsim.singular import svd
 
 # A real cause never has the library's exact shape: its parts may differ from it by this share (standard deviation).
@@ -87,7 +89,21 @@ def allowance(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
                 columns.append(layout.vector(one).reshape(-1, 1))
     whole, open_ = signed[:, None], np.hstack(columns)
     weighed = whole / fitted.errors.variance[:, None]
-    return FORM_TOLERANCE * (open_ - whole @ (weighed.T @ open_) / float((weighed * whole).sum()))
+    tolerated = FORM_TOLERANCE * (open_ - whole @ (weighed.T @ open_) / float((weighed * whole).sum()))
+    return np.hstack([tolerated, of_structure(fitted, signed)])
+
+
+def of_structure(fitted: Fitted, signed: Float[np.ndarray, " row"]) -> Float[np.ndarray, "row column"]:
+    """What an inaccurate structural model leaves open of a signature: its lines lie off as those of the maps do.
+
+    A share of each part is no tolerance for parts that are small because others cancel in them; another structure has
+    them quite different. Where the structure is as accurate as declared, this is far below the tolerance of form.
+    """
+    measured = fitted.measured
+    if fitted.unit.structure <= STRUCTURE:
+        return np.zeros((len(signed), 0))
+    largest = largest_lines(signed.reshape(measured.values.shape), measured.layout)
+    return fitted.unit.structure * measured.rows(form_columns(largest, measured.situations, measured.layout))
 
 
 def open_form(fitted: Fitted, added: int) -> Fitted:
@@ -99,12 +115,13 @@ def open_form(fitted: Fitted, added: int) -> Fitted:
 def coherence(fitted: Fitted, number: int) -> Coherence:
     """Whether the parts of an effect's signature agree on its size."""
     signed = signature(fitted, number)
-    split = fitted.whole.whiten(parts(fitted, signed))
+    whole = fitted.whole.with_columns(of_structure(fitted, signed))
+    split = whole.whiten(parts(fitted, signed))
     if not np.any(split):
         return Coherence(0.0, 0.0, 0.0)
     U, s, _ = svd(split)
     seen = s > 1e-3 * max(float(s.max()), 1e-12)
-    u, s = (U.T @ fitted.whole.whiten(fitted.from_start))[seen], s[seen]
+    u, s = (U.T @ whole.whiten(fitted.from_start))[seen], s[seen]
 
     chance = float(chi2.sf((u**2 / (1 + (FORM_TOLERANCE * s) ** 2)).sum(), len(s)))
     wider = 1 + (FORM_ERRORS[:, None] * s) ** 2
@@ -119,11 +136,11 @@ def open_as_found(fitted: Fitted, coherences: Sequence[Coherence]) -> Fitted:
     predicted from other operating points, and a mimic that bends to these few numbers would be preferred.
     """
     first = len(fitted.model.effects) - len(coherences)
-    columns = [
-        agreement.tolerated * parts(fitted, signature(fitted, number))
-        for number, agreement in enumerate(coherences, first)
-        if agreement.tolerated
-    ]
+    columns = []
+    for number, agreement in enumerate(coherences, first):
+        if agreement.tolerated:
+            signed = signature(fitted, number)
+            columns += [agreement.tolerated * parts(fitted, signed), of_structure(fitted, signed)]
     return fitted.allowing(np.hstack(columns)) if columns else fitted
 
 

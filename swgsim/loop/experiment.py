@@ -166,10 +166,10 @@ class _Further:
             )
         ]
         moves = scatter.directions(fitted.model, candidates, measured.layout)
+        noise = np.median(fitted.unit.inflated(measured.variance), axis=0)
         return cls(
             candidates, np.eye(C.shape[1]) + C.T @ C, C.T @ d, (d**2).sum(axis=0), directions[count:],
-            differences[count:], np.median(measured.variance, axis=0), fitted.scatter.columns(moves),
-            np.array(shared),
+            differences[count:], noise, fitted.scatter.columns(moves), np.array(shared),
         )  # fmt: skip
 
     def separations(self, recordings: int) -> Float[np.ndarray, "candidate truth"]:
@@ -220,5 +220,5 @@ def _session(
 ) -> Float[np.ndarray, "feature column"]:
     """Errors of the session in which the new recordings would be made."""
     planned = Recording("planned", "", "planned", situation.point, 1, np.empty(0), {}, situation.conditions)
-    nothing = np.zeros((1, len(measured.layout)))
-    return replace(measured, recordings=(planned,), values=nothing, variance=nothing).session_columns(predicted[None])
+    expected = predicted[None]
+    return replace(measured, recordings=(planned,), values=expected, variance=0 * expected).session_columns(expected)

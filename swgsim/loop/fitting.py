@@ -188,13 +188,14 @@ def fit(
     parameters = of_effects(start) if unit.commissioned else of_unit(unit.model.gear) | of_effects(start)
     known = unit.scatter.carried if unit.scatter else Scatter.stated(measured.layout)
     repeated = len(set(measured.repeats)) < len(measured)
-    guess = known
+    guess, noise = known, unit.inflated(measured.variance)
     here, begin = at(start, parameters, position or {}), position
     for _ in range(1 if unit.scatter and model else 2):
         moves = scatter.directions(here, measured.situations, measured.layout)[measured.of_recording]
+        moves[..., scatter.kinds(measured.layout).index("trigger")] = measured.turning
         unsure = unit.left_open(here, measured.situations, measured.layout)
         predicted, offset = unsure.predicted, measured.rows(unsure.shift)
-        errors = scatter.covariance(measured.variance, guess.columns(moves))
+        errors = scatter.covariance(noise, guess.columns(moves))
         errors = errors.with_columns(measured.session_columns(predicted))
         left = measured.rows(unsure.columns)
         open_ = left if allowed is None else np.hstack([left, allowed])
@@ -205,16 +206,14 @@ def fit(
         residual = measured.values - offset.reshape(measured.values.shape) - calibrated.predicted[measured.of_recording]
         trends = scatter.trends(moves, [measured.situations[i] for i in measured.of_recording], measured.layout)
         if repeated or unit.scatter:
-            guess = repeats.from_repeats(residual, measured.variance, moves, trends, measured.repeats, known)
+            guess = repeats.from_repeats(residual, noise, moves, trends, measured.repeats, known)
         else:
             J = measured.rows(calibrated.J).reshape(residual.size, -1)
-            common = Covariance(measured.variance.ravel(), np.hstack([measured.session_columns(predicted), open_, J]))
+            common = Covariance(noise.ravel(), np.hstack([measured.session_columns(predicted), open_, J]))
             from_start = residual.ravel() + J @ np.array(list(calibrated.position.values()))
             guess = repeats.from_all(from_start, common, moves, trends, known)
         here, begin = calibrated.model, calibrated.position
-    errors = scatter.covariance(measured.variance, guess.columns(moves)).with_columns(
-        measured.session_columns(predicted)
-    )
+    errors = scatter.covariance(noise, guess.columns(moves)).with_columns(measured.session_columns(predicted))
     return Fitted(measured, unit, parameters, calibrated, guess, errors, open_, offset, allowed)
 
 

@@ -22,12 +22,12 @@ def largest_lines(predicted: Float[np.ndarray, "situation feature"], layout: Lay
 
 
 def form_columns(
-    largest: Mapping[str, float], situations: Sequence[Situation], layout: Layout
+    largest: Mapping[str, float], situations: Sequence[Situation], layout: Layout, powers: int = 2
 ) -> Float[np.ndarray, "situation feature column"]:
     """Deviations of the maps A and B of every gauge at every order, each as large as the gauge's largest line.
 
     A column is the cosine or sine part of one order of one gauge, the same at all operating points (A) or growing with
-    the load up to full load (B).
+    the load up to full load (B); with three powers of the load also with its square.
     """
     load = np.array([s.point.T_out for s in situations]) / FULL_LOAD
     columns = []
@@ -35,5 +35,5 @@ def form_columns(
         for feature in np.flatnonzero(layout.channel == channel):
             one = np.zeros((len(situations), len(layout)))
             one[:, feature] = size
-            columns += [one, one * load[:, None]]
+            columns += [one * load[:, None] ** power for power in range(powers)]
     return np.stack(columns, axis=-1) if columns else np.zeros((len(situations), len(layout), 0))

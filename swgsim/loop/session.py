@@ -12,12 +12,18 @@ from swgsim.loop.model import Situation
 from swgsim.loop.noise import floors, variance
 from swgsim.recording import Recording
 
-# Errors of a whole session, as standard deviations: zeros [N m, mV/V], the index of the angle [rad].
+# Errors of a whole session, as standard deviations: zeros [N m, mV/V], gains, drifts of a zero [mV/V per hour], the
+# index of the angle [rad]. Gains as of flanges of class 0.2, and of amplifiers that hold 0.03 % from day to day; drifts
+# are an estimate for one that warms up.
 OF_SESSION = {
     "zero of T_in": 0.003,
     "zero of T_out": 0.2,
+    "gain of T_in": 0.002,
+    "gain of T_out": 0.002,
     "index": 0.02,
     **{f"zero of s{sensor}": 0.002 for sensor in range(5)},
+    **{f"gain of s{sensor}": 0.0003 for sensor in range(5)},
+    **{f"drift of s{sensor}": 0.002 for sensor in range(5)},
 }
 
 
@@ -60,6 +66,11 @@ class Measured:
         """Situation of each recording."""
         return np.array([self.situations.index(Situation(r.point, r.conditions)) for r in self.recordings])
 
+    @cached_property
+    def turning(self) -> Float[np.ndarray, "recording feature"]:
+        """Change of what was recorded by a radian of the angle; a model's lines may lie a little elsewhere."""
+        return self.layout.vector(1j * np.arange(ORDERS + 1) * self.layout.lines(self.values))
+
     @property
     def repeats(self) -> list[object]:
         """Session and operating point of each recording: those with the same ones are repeats of each other."""
@@ -77,15 +88,20 @@ class Measured:
 
     def session_columns(self, predicted: Float[np.ndarray, "situation feature"]) -> Float[np.ndarray, "row column"]:
         """Errors that all recordings of a session share, one standard deviation each."""
-        turned = self.layout.vector(1j * np.arange(ORDERS + 1) * self.layout.lines(predicted))[self.of_recording]
+        hours = np.array([[r.conditions.elapsed / 3600] for r in self.recordings])
         columns = []
         for session in dict.fromkeys(r.session for r in self.recordings):
-            here = np.array([r.session == session for r in self.recordings])[:, None]
+            here = np.array([[r.session == session] for r in self.recordings])
             for name, sd in OF_SESSION.items():
-                channel = name.removeprefix("zero of ")
-                if name == "index":
-                    columns.append((sd * here * turned).ravel())
-                elif channel in self.layout.channels:
-                    mean = (self.layout.channel == channel) & (self.layout.order == 0)
-                    columns.append((sd * here * mean[None, :]).ravel())
+                kind, _, channel = name.partition(" of ")
+                own = self.layout.channel == channel
+                mean = own & (self.layout.order == 0)
+                moved = {
+                    "index": self.turning,
+                    "zero": mean[None, :],
+                    "gain": own * predicted[self.of_recording],
+                    "drift": hours * mean,
+                }[kind]
+                if kind == "index" or own.any():
+                    columns.append((sd * here * moved).ravel())
         return np.stack(columns, axis=1)

@@ -12,6 +12,7 @@ from swgsim.loop.calibration import linearised
 from swgsim.loop.declared import Declared, of_unit
 from swgsim.loop.features import Layout
 from swgsim.loop.form import form_columns, largest_lines
+from swgsim.loop.healthy import FRICTION, of_friction, of_gauges
 from swgsim.loop.model import Model, Situation
 from swgsim.loop.scatter import Scatter
 
@@ -28,32 +29,49 @@ class Unit:
     model : Model
         At its nominal or commissioned parameters.
     reach : array (direction, direction) or None
-        After commissioning, how far the directions (declared parameters, then deviations of the maps) may still lie
-        from where they were found, as columns of one standard deviation; None for a unit never seen.
+        After commissioning, how far the directions (declared parameters, deviations of the maps, what a healthy bench
+        does a little of) may still lie from where they were found, as columns of one standard deviation; None for a
+        unit never seen.
     shift : array (direction,) or None
         Where commissioning found them, in spreads.
     structure : float
-        Declared accuracy of the maps, as a share of a gauge's largest line.
+        Accuracy of the maps, as a share of a gauge's largest line: as declared, or as commissioning found it.
+    seen_healthy : bool
+        Whether recordings of the healthy gear tell more of it, and so more is open, than can be of a gear never seen.
     scatter : Scatter or None
         Errors of single recordings found by commissioning.
     nominal : Gear or None
         After commissioning, the gear by whose spread the declared parameters are counted.
     largest : mapping or None
         After commissioning, the largest line of each gauge, by which deviations of the maps are counted.
+    inflation : array (feature,) or None
+        After commissioning, factor by which the variance of each line is larger than that of noise, by what the model
+        misses of the healthy gear.
     """
 
     model: Model
     reach: Float[np.ndarray, "direction direction"] | None = None
     shift: Float[np.ndarray, " direction"] | None = None
     structure: float = STRUCTURE
+    seen_healthy: bool = False
     scatter: Scatter | None = None
     nominal: Gear | None = None
     largest: Mapping[str, float] | None = None
+    inflation: Float[np.ndarray, " feature"] | None = None
 
     @property
     def commissioned(self) -> bool:
         """Whether the unit was recorded in its healthy state before."""
         return self.reach is not None
+
+    @property
+    def powers(self) -> int:
+        """Powers of the load by which the maps may deviate."""
+        return 3 if self.seen_healthy else 2
+
+    def inflated(self, variance: Float[np.ndarray, "recording feature"]) -> Float[np.ndarray, "recording feature"]:
+        """Variance of independent errors, from that of noise."""
+        return variance if self.inflation is None else variance * self.inflation
 
     def left_open(
         self,
@@ -72,13 +90,17 @@ class Unit:
         parameters : mapping, optional
             Those that are fitted.
         """
-        known = of_unit(self.nominal) if self.nominal else {}
-        predicted, J = linearised(model, known | dict(parameters or {}), situations, layout)
-        maps = form_columns(self.largest or largest_lines(predicted, layout), situations, layout)
-        directions = np.concatenate([J[..., : len(known)], maps], axis=-1)
-        reach = self.structure * np.eye(directions.shape[-1]) if self.reach is None else self.reach
-        shift = np.zeros(predicted.shape) if self.shift is None else directions @ self.shift
-        return LeftOpen(predicted, shift, directions @ reach, J[..., len(known) :])
+        known = of_unit(self.nominal or self.model.gear) if self.seen_healthy else {}
+        own = known if self.nominal else {name: known[name] for name in FRICTION if known}
+        predicted, J = linearised(model, own | dict(parameters or {}), situations, layout)
+        of_own, of_parameters = J[..., : len(own)], J[..., len(own) :]
+        maps = form_columns(self.largest or largest_lines(predicted, layout), situations, layout, self.powers)
+        directions = [of_own if self.nominal else of_own[..., :0], self.structure * maps]
+        if self.seen_healthy:
+            directions += [of_gauges(predicted, situations, layout), of_friction(model, own, of_own, situations)]
+        open_ = np.concatenate(directions, axis=-1)
+        shift = np.zeros(predicted.shape) if self.shift is None else open_ @ self.shift
+        return LeftOpen(predicted, shift, open_ if self.reach is None else open_ @ self.reach, of_parameters)
 
 
 class LeftOpen(NamedTuple):

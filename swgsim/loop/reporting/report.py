@@ -60,11 +60,21 @@ def report(
         "detectable": {each.hypothesis.kind.name(): detectable(each) for each in answer.closed.scores},
         "scores": [scored(each) for each in answer.closed.scores],
         "commissioned": before.unit.commissioned,
+        "structure": before.unit.structure,
+        "less_certain": less_certain(before),
         "channels": {name: CHANNELS[name].unit for name in measured.layout.channels},
         "recordings": _recordings(measured),
         "defects": [str(defect) for defect in defects],
         "seconds": round(seconds, 1),
     }
+
+
+def less_certain(fitted: Fitted) -> dict[str, list[int]]:
+    """Orders of every channel that the model misses of the healthy gear too, and which so count for less."""
+    layout = fitted.measured.layout
+    more = fitted.unit.inflated(np.ones((1, len(layout))))[0] > 1
+    found = {channel: layout.order[more & (layout.channel == channel)] for channel in layout.channels}
+    return {channel: np.unique(orders).tolist() for channel, orders in found.items() if len(orders)}
 
 
 def calibrated(fitted: Fitted) -> dict[str, dict[str, Any]]:

@@ -1,0 +1,85 @@
+"""What every healthy gear does a little of, and how a session may be off."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from chain_fixtures import GEAR
+from loop_fixtures import POINTS, recorded
+
+from swgsim.conditions import Conditions
+from swgsim.loop import healthy
+from swgsim.loop.declared import of_unit
+from swgsim.loop.features import ORDERS, Layout
+from swgsim.loop.model import Model, Situation
+from swgsim.loop.session import OF_SESSION, Measured
+
+LAYOUT = Layout(("T_in", "s0", "s1"))
+SITUATIONS = tuple(Situation(point, Conditions(25.0 + number, 600.0 * number)) for number, point in enumerate(POINTS))
+
+
+@pytest.fixture
+def predicted() -> np.ndarray:
+    """Features of every situation."""
+    return np.random.default_rng(1).normal(size=(len(SITUATIONS), len(LAYOUT)))
+
+
+def of_s1(columns: np.ndarray) -> np.ndarray:
+    """The columns of s1: lag, gain, zero, mean."""
+    found = columns[..., LAYOUT.channel == "s1", 4:]
+    assert not columns[..., LAYOUT.channel != "s1", 4:].any()
+    return found
+
+
+def test_a_lag_turns_every_order_of_one_gauge_by_the_angle_that_passes_meanwhile(predicted):
+    lag = of_s1(healthy.of_gauges(predicted, SITUATIONS, LAYOUT))[..., 0]
+    per_second = np.array([2 * np.pi / 60 * s.point.n_in_rpm for s in SITUATIONS])
+    turn = np.exp(-1j * np.arange(ORDERS + 1) * per_second[:, None, None] * healthy.LAG / 100)
+    late = LAYOUT.vector(LAYOUT.lines(predicted) * turn)[:, LAYOUT.channel == "s1"]
+    np.testing.assert_allclose(lag / 100, late - predicted[:, LAYOUT.channel == "s1"], rtol=0.01, atol=1e-5)
+
+
+def test_gain_and_zero_follow_the_temperature_and_the_mean_the_speed(predicted):
+    _, gain, zero, mean = np.moveaxis(of_s1(healthy.of_gauges(predicted, SITUATIONS, LAYOUT)), -1, 0)
+    warmer, own = np.arange(len(SITUATIONS))[:, None], LAYOUT.channel == "s1"
+    np.testing.assert_allclose(gain, healthy.GAIN_PER_KELVIN * warmer * predicted[:, own])
+    np.testing.assert_allclose(zero[:, 0], healthy.ZERO_PER_KELVIN * warmer[:, 0])
+    assert not zero[:, 1:].any()
+    assert not mean[:, 1:].any()
+    assert mean[:, 0] / healthy.MEAN_AT_FULL_SPEED == pytest.approx([s.point.n_in_rpm / 4000 for s in SITUATIONS])
+
+
+def test_friction_follows_the_temperature_by_as_much_as_declared():
+    parameters, model = {name: of_unit(GEAR)[name] for name in ("mu", "b1", "b0")}, Model(GEAR)
+    J = np.random.default_rng(2).normal(size=(len(SITUATIONS), len(LAYOUT), 3))
+    found = healthy.of_friction(model, parameters, J, SITUATIONS)
+    spreads = 5 * healthy.FRICTION_PER_KELVIN * GEAR.transmission.b1 / parameters["b1"].sd
+    np.testing.assert_allclose(found[5, :, healthy.FRICTION.index("b1")], J[5, :, 1] * spreads)
+
+
+def silent(layout: Layout, values: np.ndarray) -> Measured:
+    """Features of recordings of two sessions without any samples."""
+    recordings = [
+        replace(recorded({"phi_in": np.zeros(2)}, s.point, conditions=s.conditions), session=str(number % 2))
+        for number, s in enumerate(SITUATIONS)
+    ]
+    return Measured(tuple(recordings), layout, values, np.ones(values.shape))
+
+
+def test_an_error_of_the_angle_turns_what_was_recorded(predicted):
+    turn = np.exp(1e-6j * np.arange(ORDERS + 1))
+    turned = LAYOUT.vector(turn * LAYOUT.lines(predicted)) - predicted
+    np.testing.assert_allclose(1e-6 * silent(LAYOUT, predicted).turning, turned, atol=1e-9)
+
+
+def test_a_session_has_gains_and_drifts_of_its_own(predicted):
+    measured = silent(LAYOUT, predicted)
+    columns = measured.session_columns(predicted).reshape(*predicted.shape, 2, -1)
+    names = [name for name in OF_SESSION if name == "index" or name.partition(" of ")[2] in LAYOUT.channels]
+    first = columns[:, :, 0]
+    assert not first[1::2].any()
+    gain, drift = first[::2, :, names.index("gain of T_in")], first[::2, :, names.index("drift of s1")]
+    np.testing.assert_allclose(gain, OF_SESSION["gain of T_in"] * predicted[::2] * (LAYOUT.channel == "T_in"))
+    mean = np.flatnonzero((LAYOUT.channel == "s1") & (LAYOUT.order == 0))
+    assert drift[:, mean[0]] == pytest.approx(OF_SESSION["drift of s1"] * np.array([0, 1 / 3, 2 / 3]))
+    assert np.count_nonzero(drift) == 2
