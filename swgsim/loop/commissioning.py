@@ -33,8 +33,9 @@ def commission(measured: Measured, unit: Unit) -> Unit:
     """
     forget()
     fitted = _as_accurate_as_shown(measured, replace(unit, seen_healthy=True))
-    beyond = _beyond(fitted)
-    _require_own(fitted, beyond)
+    missed = fitted.whole.whiten(fitted.from_start).reshape(measured.values.shape)
+    _require_own(measured, missed)
+    beyond = _beyond(measured, missed)
     if beyond.max() > 1:
         fitted = fit(measured, replace(fitted.unit, inflation=beyond))
     unit = fitted.unit
@@ -69,15 +70,19 @@ def _as_accurate_as_shown(measured: Measured, unit: Unit) -> Fitted:
     return best
 
 
-def _beyond(fitted: Fitted) -> Float[np.ndarray, " feature"]:
+def _beyond(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> Float[np.ndarray, " feature"]:
     """How much larger the variance of every line is than noise and declared spreads make it; 1 where that may be luck.
 
     What the model misses is alike in all repeats of an operating point, and part of it in all recordings, which must
     not pass for as many witnesses; and it misses as much of each of the gauges s1 to s4, which sit alike.
+
+    Parameters
+    ----------
+    measured : Measured
+    missed : array (recording, feature)
+        In standard deviations of what is declared.
     """
-    measured = fitted.measured
     layout = measured.layout
-    missed = fitted.whole.whiten(fitted.from_start).reshape(measured.values.shape)
     single, common = missed**2, len(missed) * missed.mean(axis=0) ** 2
     repeats = len(measured) / len(measured.point_rows())
     beyond = np.ones(len(layout))
@@ -92,21 +97,16 @@ def _beyond(fitted: Fitted) -> Float[np.ndarray, " feature"]:
     return beyond
 
 
-def _require_own(fitted: Fitted, beyond: Float[np.ndarray, " feature"]) -> None:
-    """Refuse a healthy gear that the model does not describe.
-
-    Raises
-    ------
-    ValueError
-        If it leaves more than MISSED of the ripple of a channel.
-    """
-    measured, layout = fitted.measured, fitted.measured.layout
-    left = np.where(beyond > 1, beyond, 0.0) * measured.variance
-    missed = {}
+def _require_own(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> None:
+    """Refuse a healthy gear of which the model leaves more than MISSED of the ripple of a channel."""
+    layout = measured.layout
+    left = np.maximum((missed**2).mean(axis=0) - 1, 0) * measured.variance.mean(axis=0)
+    power = np.maximum((measured.values**2).mean(axis=0), 1e-300)
+    shares = {}
     for channel in layout.channels:
         ripple = (layout.channel == channel) & (layout.order > 0)
-        missed[channel] = float(np.sqrt(left[:, ripple].sum() / max((measured.values[:, ripple] ** 2).sum(), 1e-300)))
-    poor = sorted(((share, name) for name, share in missed.items() if share > MISSED), reverse=True)
+        shares[channel] = float(np.sqrt(left[ripple].sum() / power[ripple].sum()))
+    poor = sorted(((share, name) for name, share in shares.items() if share > MISSED), reverse=True)
     if poor:
         differ = ", ".join(f"{name} ({100 * share:.0f} %)" for share, name in poor)
         raise ValueError(

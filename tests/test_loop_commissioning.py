@@ -1,0 +1,60 @@
+"""What the model misses of a healthy gear counts as that uncertain later."""
+
+import numpy as np
+import pytest
+from loop_fixtures import fitted_to
+
+from swgsim.loop.commissioning import LUCK, MISSED, _beyond, _require_own
+from swgsim.loop.features import Layout
+from swgsim.loop.session import Measured
+
+LAYOUT = Layout(("T_out", "s0", "s1", "s2"))
+REPEATS = 3
+
+
+@pytest.fixture(scope="module")
+def measured() -> Measured:
+    """Three repeats of six operating points, of a ripple of 100 in units of the noise."""
+    fitted = fitted_to(LAYOUT, np.random.default_rng(1), repeats=REPEATS)
+    ripple = 100 * (LAYOUT.order == 2) * np.ones((len(fitted.measured), 1))
+    return Measured(fitted.measured.recordings, LAYOUT, ripple, np.ones(ripple.shape))
+
+
+def line(channel: str, order: int) -> np.ndarray:
+    return (LAYOUT.channel == channel) & (LAYOUT.order == order)
+
+
+def test_noise_is_rarely_taken_for_something_missed(measured):
+    rng = np.random.default_rng(2)
+    found = [_beyond(measured, rng.standard_normal(measured.values.shape)) > 1 for _ in range(40)]
+    assert np.mean(found) < 4 * LUCK
+
+
+@pytest.mark.parametrize("common", [True, False])
+def test_what_is_missed_alike_in_many_recordings_counts_once(measured, common):
+    """A sum over the recordings that it is alike in is then as uncertain as it is large."""
+    rng = np.random.default_rng(3)
+    points = [hash(r.point) for r in measured.recordings]
+    off = {point: 2.0 if common else 2 * rng.choice([-1, 1]) for point in points}
+    missed = rng.standard_normal(measured.values.shape)
+    missed[:, line("T_out", 3)] += np.array([off[point] for point in points])[:, None]
+    beyond = _beyond(measured, missed)[line("T_out", 3)]
+    alike = len(measured) if common else REPEATS
+    assert beyond == pytest.approx(alike * 2.0**2, rel=0.4)
+
+
+def test_gauges_that_sit_alike_are_missed_alike(measured):
+    missed = np.zeros(measured.values.shape)
+    missed[:, line("s1", 4)] = 5.0
+    beyond = _beyond(measured, missed)
+    assert beyond[line("s1", 4)][0] == beyond[line("s2", 4)][0] > 1
+    assert beyond[line("s0", 4)] == pytest.approx(1.0)
+
+
+def test_a_channel_of_which_a_tenth_is_missed_is_refused(measured):
+    missed = np.zeros(measured.values.shape)
+    missed[:, line("s0", 1)] = 100 * 0.9 * MISSED
+    _require_own(measured, missed)
+    missed[:, line("s0", 1)] = 100 * 1.1 * MISSED
+    with pytest.raises(ValueError, match=r"leaves s0 \(11 %\) of the ripple unexplained, at most 10 %"):
+        _require_own(measured, missed)
