@@ -64,16 +64,17 @@ def row(finished: Finished, method: str, day: str, model: str) -> pd.Series:
     return verdicts.row_of(finished.scores, method, day, model)
 
 
-def test_loop_names_the_effect_and_training_again_stops_the_false_alarms(finished):
+def test_loop_names_the_effect_and_training_again_brings_back_what_it_cost(finished):
     grease, skew = finished
     assert [each.name for each in finished] == ["warm_grease", "channel_skew"]
-    assert verdicts.named(grease) == "right"
-    assert verdicts.named(skew) == "right"
     for each, method in ((grease, "random_forest_on_selection_1"), (skew, "extra_trees_on_harmonics")):
+        assert verdicts.named(each) == "right"
         before, after, oracle = (row(each, method, COMMISSIONING, model) for model in MODELS)
         assert before["false_alarms"] > 60
-        assert after["false_alarms"] < before["false_alarms"] - 20
         assert abs(after["accuracy"] - oracle["accuracy"]) < 20
+        # Warm grease passes for a fault where there is none, a skew for one and the same fault everywhere.
+        brought = before["false_alarms"] - after["false_alarms"], after["accuracy"] - before["accuracy"]
+        assert brought[0 if each is grease else 1] > 20
 
 
 def test_references_with_the_effect_take_it_out(finished):
