@@ -13,15 +13,15 @@ from swgsim.loop.noise import floors, variance
 from swgsim.recording import Recording
 
 # Errors of a whole session, as standard deviations: zeros [N m, mV/V], gains, drifts of a zero [mV/V per hour], the
-# index of the angle [rad]. Gains as of flanges of class 0.2, and of amplifiers that hold 0.03 % from day to day; drifts
-# are an estimate for one that warms up.
+# index of the angle [rad]. Zeros of gauges as by 5 K at 1 uV/V per K; gains as of flanges of class 0.2, and of
+# amplifiers that hold 0.03 % from day to day; drifts are an estimate for one that warms up.
 OF_SESSION = {
     "zero of T_in": 0.003,
     "zero of T_out": 0.2,
     "gain of T_in": 0.002,
     "gain of T_out": 0.002,
     "index": 0.02,
-    **{f"zero of s{sensor}": 0.002 for sensor in range(5)},
+    **{f"zero of s{sensor}": 0.005 for sensor in range(5)},
     **{f"gain of s{sensor}": 0.0003 for sensor in range(5)},
     **{f"drift of s{sensor}": 0.002 for sensor in range(5)},
 }
