@@ -2,12 +2,14 @@
 
 import numpy as np
 import pytest
+from chain_fixtures import GEAR
+from loop_fixtures import POINTS, silent
 
 from swgsim.conditions import Conditions
 from swgsim.gear import OperatingPoint
 from swgsim.loop.features import ORDERS, Layout
 from swgsim.loop.gaussian import Covariance
-from swgsim.loop.model import Situation
+from swgsim.loop.model import Model, Situation
 from swgsim.loop.repeats import from_all, from_repeats
 from swgsim.loop.scatter import (
     AT_FULL_LOAD,
@@ -19,9 +21,12 @@ from swgsim.loop.scatter import (
     STATED,
     Scatter,
     covariance,
+    directions,
     kinds,
+    of_recordings,
     trends,
 )
+from swgsim.loop.session import Measured
 
 POINT = OperatingPoint(2000.0, 35.0)
 LAYOUT = Layout(("T_in", "T_out", "s0", "s1"))
@@ -185,3 +190,18 @@ def test_what_commissioning_found_holds_without_repeats_and_yields_to_many():
     few = from_repeats(*fabricated(1, [2] * 3, {}), before.carried)
     shares = np.array([few.sd[kind] / STATED[kind] for kind in KINDS])
     assert ((shares > 1) & (shares < 3.5)).all()
+
+
+def test_the_trigger_turns_what_was_recorded_and_all_else_what_the_model_says():
+    """A line whose phase the model misses is turned by the trigger all the same."""
+    recordings = silent(POINTS[:2], repeats=2)
+    values = np.random.default_rng(6).normal(size=(len(recordings), len(LAYOUT)))
+    measured = Measured(recordings, LAYOUT, values, np.ones(values.shape))
+    moves = of_recordings(Model(GEAR), measured)
+    model = directions(Model(GEAR), measured.situations, LAYOUT)[measured.of_recording]
+    order = np.arange(ORDERS + 1)
+    np.testing.assert_allclose(
+        LAYOUT.lines(moves[..., KINDS.index("trigger")]), 1j * order * LAYOUT.lines(values), rtol=1e-12
+    )
+    others = [number for number, kind in enumerate(KINDS) if kind != "trigger"]
+    np.testing.assert_array_equal(moves[..., others], model[..., others])

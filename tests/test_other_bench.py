@@ -22,8 +22,10 @@ from other_bench.specimen import Crack, Specimen, draw
 from swgsim.effects.base import Effect as Found
 from swgsim.effects.library import LIBRARY
 from swgsim.intake.read import read_recordings
+from swgsim.loop.between import between
 from swgsim.loop.closing import close
 from swgsim.loop.commissioning import commission
+from swgsim.loop.lines import search
 from swgsim.loop.model import Model
 from swgsim.loop.session import Measured
 from swgsim.loop.unit import STRUCTURE, Unit
@@ -76,6 +78,12 @@ def runs_of(**changes: object) -> list[Run]:
 def test_a_healthy_gear_of_other_code_is_commissioned_as_accurately_as_it_can_be(unit, healthy):
     assert unit.structure > STRUCTURE
     assert found(healthy / "recordings", unit) == []
+
+
+def test_what_single_recordings_of_other_code_hold_between_the_orders_is_no_line(healthy):
+    """A channel is quieter between its lines than its converter rounds: no noise, and nothing stands out of it."""
+    found = search(between(read_recordings(healthy / "recordings")[0]), LIBRARY.values(), 0.005)
+    assert found.named == found.unnamed == ()
 
 
 def test_an_eccentric_wave_generator_of_other_code_is_found_alone(unit, tmp_path):

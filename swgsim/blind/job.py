@@ -38,7 +38,7 @@ THRESHOLDS = {
     "contradiction": evidence.CONTRADICTION,
     "visible": screening.VISIBLE,
     "set_apart": asking.SET_APART,
-    "structure": [unit.STRUCTURE, *commissioning.COARSER],
+    "structure": [unit.STRUCTURE, *commissioning.COARSER, commissioning.WELL],
     "missed": commissioning.MISSED,
     "luck": commissioning.LUCK,
     "tolerance_of_lines": sidelines.TOLERANCE,

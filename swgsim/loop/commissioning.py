@@ -33,9 +33,8 @@ def commission(measured: Measured, unit: Unit) -> Unit:
     """
     forget()
     fitted = _as_accurate_as_shown(measured, replace(unit, seen_healthy=True))
-    missed = fitted.whole.whiten(fitted.from_start).reshape(measured.values.shape)
-    _require_own(measured, missed)
-    beyond = _beyond(measured, missed)
+    _require_own(measured, fitted.missed)
+    beyond = _beyond(measured, fitted.missed)
     if beyond.max() > 1:
         fitted = fit(measured, replace(fitted.unit, inflation=beyond))
     unit = fitted.unit

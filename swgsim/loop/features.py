@@ -57,6 +57,10 @@ class Layout:
         parts = np.concatenate([lines.real, -lines.imag[..., 1:]], axis=-1)
         return parts.reshape(*parts.shape[:-2], -1)
 
+    def turning(self, features: Float[np.ndarray, "*batch feature"]) -> Float[np.ndarray, "*batch feature"]:
+        """Change of feature vectors by a radian by which the angle is taken too low."""
+        return self.vector(1j * np.arange(ORDERS + 1) * self.lines(features))
+
 
 def layout_of(recordings: Sequence[Recording]) -> Layout:
     """The channels that all recordings have."""

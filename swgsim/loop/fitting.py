@@ -116,10 +116,15 @@ class Fitted:
         return self.residual + self.J @ np.array(list(self.calibrated.position.values()))
 
     @property
+    def missed(self) -> Float[np.ndarray, "recording feature"]:
+        """Residual weighed by what is declared of it, in standard deviations."""
+        return self.whole.whiten(self.from_start).reshape(self.measured.values.shape)
+
+    @property
     def misfit(self) -> dict[str, float]:
         """Mean square of every channel's residual in units of what is declared of it: 1 where the model is right."""
         layout = self.measured.layout
-        square = (self.whole.whiten(self.from_start) ** 2).reshape(-1, len(layout)).mean(axis=0)
+        square = (self.missed**2).mean(axis=0)
         return {channel: float(square[layout.channel == channel].mean()) for channel in layout.channels}
 
     @cached_property
@@ -191,8 +196,7 @@ def fit(
     guess, noise = known, unit.inflated(measured.variance)
     here, begin = at(start, parameters, position or {}), position
     for _ in range(1 if unit.scatter and model else 2):
-        moves = scatter.directions(here, measured.situations, measured.layout)[measured.of_recording]
-        moves[..., scatter.kinds(measured.layout).index("trigger")] = measured.turning
+        moves = scatter.of_recordings(here, measured)
         unsure = unit.left_open(here, measured.situations, measured.layout)
         predicted, offset = unsure.predicted, measured.rows(unsure.shift)
         errors = scatter.covariance(noise, guess.columns(moves))

@@ -65,7 +65,7 @@ class Covariance:
 
     def with_columns(self, G: Float[np.ndarray, "row more"]) -> "Covariance":
         """The covariance with further common errors."""
-        return Covariance(self.variance, np.hstack([self.G, G]))
+        return Covariance(self.variance, np.hstack([self.G, G])) if G.shape[1] else self
 
     def log_likelihood(self, r: Float[np.ndarray, " row"]) -> float:
         """Of a residual, without the constant."""

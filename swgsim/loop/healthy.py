@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.loop.declared import Declared
-from swgsim.loop.features import ORDERS, Layout
+from swgsim.loop.features import Layout
 from swgsim.loop.model import Model, Situation
 
 # Standard deviations, all estimates. Of a lag behind the angle [s]: a filter of 10 kHz has 16 us, one of 3 kHz 50.
@@ -27,10 +27,10 @@ def of_gauges(
 ) -> Float[np.ndarray, "situation feature column"]:
     """Lag, gain and zero with the temperature, and mean with the speed of every gauge, one standard deviation each."""
     speed = np.array([s.point.n_in_rpm for s in situations])[:, None]
-    turned = layout.vector(-1j * np.arange(ORDERS + 1) * layout.lines(predicted)) * (2 * np.pi / 60 * speed)
+    late = -layout.turning(predicted) * (2 * np.pi / 60 * speed)
     mean = (layout.order == 0)[None, :]
     moved = [
-        LAG * turned,
+        LAG * late,
         GAIN_PER_KELVIN * _warmer(situations) * predicted,
         ZERO_PER_KELVIN * _warmer(situations) * mean,
         MEAN_AT_FULL_SPEED * speed / FULL_SPEED * mean,

@@ -8,9 +8,10 @@ from jaxtyping import Float
 
 from swgsim.effects import ParameterScatter
 from swgsim.effects.frozen import FULL_LOAD
-from swgsim.loop.features import ORDERS, Layout
+from swgsim.loop.features import Layout
 from swgsim.loop.gaussian import Covariance
 from swgsim.loop.model import Model, Situation, predict
+from swgsim.loop.session import Measured
 
 # Standard deviations that a test bench would state (conf/condition/bench.yaml); repeats correct them.
 STATED = {
@@ -106,11 +107,18 @@ def directions(
         if kind in moved:
             found.append((moved[kind] - base) / STEP)
         elif kind == "trigger":
-            found.append(layout.vector(1j * np.arange(ORDERS + 1) * layout.lines(base)))
+            found.append(layout.turning(base))
         else:
             channel = kind.removeprefix("zero of ")
             found.append(np.broadcast_to((layout.channel == channel) & (layout.order == 0), base.shape).astype(float))
     return np.stack(found, axis=-1)
+
+
+def of_recordings(model: Model, measured: Measured) -> Float[np.ndarray, "recording feature kind"]:
+    """How each recording moves with a unit of every error; the trigger turns what was recorded, not the model."""
+    moves = directions(model, measured.situations, measured.layout)[measured.of_recording]
+    moves[..., kinds(measured.layout).index("trigger")] = measured.turning
+    return moves
 
 
 def trends(

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.loop.features import ORDERS, Layout, features, layout_of
+from swgsim.loop.features import Layout, features, layout_of
 from swgsim.loop.model import Situation
 from swgsim.loop.noise import floors, variance
 from swgsim.recording import Recording
@@ -69,7 +69,7 @@ class Measured:
     @cached_property
     def turning(self) -> Float[np.ndarray, "recording feature"]:
         """Change of what was recorded by a radian of the angle; a model's lines may lie a little elsewhere."""
-        return self.layout.vector(1j * np.arange(ORDERS + 1) * self.layout.lines(self.values))
+        return self.layout.turning(self.values)
 
     @property
     def repeats(self) -> list[object]:

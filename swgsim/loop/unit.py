@@ -90,8 +90,10 @@ class Unit:
         parameters : mapping, optional
             Those that are fitted.
         """
-        known = of_unit(self.nominal or self.model.gear) if self.seen_healthy else {}
-        own = known if self.nominal else {name: known[name] for name in FRICTION if known}
+        declared = of_unit(self.nominal or self.model.gear)
+        # During commissioning these are fitted; only friction is needed here, which follows the temperature.
+        needed = () if not self.seen_healthy else declared if self.nominal else FRICTION
+        own = {name: declared[name] for name in needed}
         predicted, J = linearised(model, own | dict(parameters or {}), situations, layout)
         of_own, of_parameters = J[..., : len(own)], J[..., len(own) :]
         maps = form_columns(self.largest or largest_lines(predicted, layout), situations, layout, self.powers)
