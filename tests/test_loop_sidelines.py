@@ -82,6 +82,16 @@ def test_the_rounding_of_a_converter_makes_no_line():
     assert found.named == found.unnamed == ()
 
 
+def test_a_converter_that_noise_dithers_makes_no_lines_that_a_weak_one_could_hide_in():
+    recordings = measured((LIBRARY["mains_hum"](amplitude=3e-4, frequency=60.0),), 2)
+    step = NOISE / 2
+    rounded = [
+        replace(each, channels={**each.channels, **{s: step * np.round(each.channels[s] / step) for s in SENSORS}})
+        for each in recordings
+    ]
+    assert ranked(between(rounded), KINDS)[0].rank > 0.9 * ranked(between(recordings), KINDS)[0].rank
+
+
 def test_the_hum_of_the_mains_is_found():
     best = ranked(between(measured((LIBRARY["mains_hum"](amplitude=5e-4, frequency=60.0),), 2)), KINDS)[0]
     assert best.effect.name() == "mains_hum"
@@ -155,6 +165,15 @@ def test_slow_noise_has_no_lines():
     chance = np.array([min(line.chance for line in ranked(between(each), kinds)) for each in recordings])
     assert (chance <= 0.01).sum() <= 1
     assert not any(unnamed(between(each), 0.001) for each in recordings)
+
+
+def test_the_ends_of_slow_noise_explain_no_line_better_than_noise_does():
+    """A spectrum rings with the step from a recording's end to its start; it had the gain of 14 times the noise."""
+    cage = LIBRARY["bearing_cage"](amplitude=1e-3, order=0.455)
+    said = [each.explained(cage) for seed in range(8) for each in between(measured((), seed, slow=0.02))]
+    gain, freedom = sum(each.gain for each in said), sum(each.freedom for each in said)
+    # The mean of 96 numbers is good to 14 %.
+    assert gain / freedom == pytest.approx(1, abs=0.4)
 
 
 def test_two_lines_are_found_one_after_the_other():

@@ -48,7 +48,7 @@ class Between:
     scene : Scene
     gauges : tuple of str
     scale : array (gauge, line)
-        What turns a line of the spectrum into units of the noise.
+        What turns a line of the spectrum into units of the noise; 0 where an integer order leaks into it.
     orders : array (time, column)
         Orthonormal basis of the orders that were fitted, with a drift.
     revolutions : float
@@ -58,7 +58,7 @@ class Between:
     left : array (number,)
         Real and imaginary parts of all lines of what the orders leave.
     taken : array (number, direction)
-        Orthonormal directions of what was found already and taken out.
+        Orthonormal directions of what was taken out: the ends of slow noise, and what was found already.
     """
 
     scene: Scene
@@ -82,23 +82,25 @@ class Between:
         # The mean, and lines beyond the orders that were fitted, say nothing.
         lines = np.arange(1, int(np.ceil(FITTED * revolutions)))
         frequency = lines * recording.rate / length
-        # Rounding by a converter makes lines of its own, of less than half a step.
-        rounding = [step_of(recording.channels[gauge]) ** 2 / 32 for gauge in gauges]
+        rounding = [_rounding(recording.channels[gauge], floor) for gauge, floor in zip(gauges, noise, strict=True)]
         variance = [floor.at(frequency) / (2 * length) + own for floor, own in zip(noise, rounding, strict=True)]
-        scale = 1 / np.sqrt(np.maximum(variance, 1e-300))
         order = lines / revolutions
+        clear = np.abs(order - np.round(order)) * revolutions > GUARD
+        # Beside an order lies what its own unsteadiness leaks.
+        scale = np.where(clear, 1 / np.sqrt(np.maximum(variance, 1e-300)), 0.0)
         bare = cls(
             scene,
             gauges,
             scale,
             np.linalg.qr(ordinary(scene))[0],
             revolutions,
-            np.abs(order - np.round(order)) * revolutions > GUARD,
+            clear,
             np.zeros(2 * scale.size),
             np.empty((2 * scale.size, 0)),
         )
         fitted = ordinary(scene_of(recording))
-        return replace(bare, left=bare._numbers(remainder(recording, Layout(gauges), fitted)[:, :length]))
+        whole = replace(bare, left=bare._numbers(remainder(recording, Layout(gauges), fitted)[:, :length]))
+        return whole._taking(_directions(bare._beside_orders(_ends(scene, noise))))
 
     @property
     def step(self) -> float:
@@ -114,7 +116,7 @@ class Between:
     def pattern(self, effect: Effect) -> Float[np.ndarray, "column number"]:
         """What an effect can look like, whatever its random phases; a direction that the orders took is left out."""
         seen = shapes(effect, self.scene, self.gauges)
-        between = self._numbers(seen - (seen @ self.orders) @ self.orders.T)
+        between = self._beside_orders(seen)
         between = between - (between @ self.taken) @ self.taken.T
         whole = np.linalg.norm(self._numbers(seen), axis=-1).max()
         return between if np.linalg.norm(between, axis=-1).max() > SEEN * whole else np.zeros_like(between)
@@ -139,11 +141,16 @@ class Between:
 
     def without(self, effects: Sequence[Effect]) -> "Between":
         """The spectrum without anything that these effects may have put there."""
-        U = self._span(effects)
-        return replace(self, left=self.left - U @ (U.T @ self.left), taken=np.hstack([self.taken, U]))
+        return self._taking(self._span(effects))
 
     def _span(self, effects: Sequence[Effect]) -> Float[np.ndarray, "number rank"]:
         return _directions(np.concatenate([self.pattern(effect) for effect in effects]))
+
+    def _taking(self, U: Float[np.ndarray, "number direction"]) -> "Between":
+        return replace(self, left=self.left - U @ (U.T @ self.left), taken=np.hstack([self.taken, U]))
+
+    def _beside_orders(self, signals: Float[np.ndarray, "column gauge time"]) -> Float[np.ndarray, "column number"]:
+        return self._numbers(signals - (signals @ self.orders) @ self.orders.T)
 
     def _numbers(self, signals: np.ndarray) -> np.ndarray:
         """Lines of the spectrum in units of the noise, real parts before imaginary ones."""
@@ -190,6 +197,22 @@ def _alone(effect: Effect, scene: Scene, gauges: tuple[str, ...]) -> Float[np.nd
     others = dict.fromkeys(CHANNELS, np.zeros(len(scene.time)))
     channels = effect.acquisition(others | dict(zip(SENSORS, signals, strict=True)), scene)
     return np.array([channels[gauge] for gauge in gauges])
+
+
+def _ends(scene: Scene, noise: Sequence[Floor]) -> Float[np.ndarray, "gauge gauge time"]:
+    """What the ends of a recording make of slow noise, gauge by gauge.
+
+    A spectrum goes on at the end where it began, so the step from the one to the other rings in all its lines, alike,
+    and would pass for a line between them. It dies away as the noise forgets; without it the lines are independent.
+    """
+    fading = [np.exp(-2 * np.pi * floor.corner * scene.time) for floor in noise]
+    return np.eye(len(noise))[:, :, None] * np.array(fading)[:, None]
+
+
+def _rounding(values: Float[np.ndarray, " time"], noise: Floor) -> float:
+    """Variance of the lines that rounding by a converter makes, of half a step at most; noise makes it noise too."""
+    step = step_of(values)
+    return step**2 / 32 if np.sqrt(noise.white) < step / 2 else 0.0
 
 
 def _directions(pattern: Float[np.ndarray, "column number"]) -> Float[np.ndarray, "number rank"]:
