@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from loop_fixtures import POINTS, recorded, turning
 
+from swgsim.loop.between import between
 from swgsim.loop.features import FITTED, ORDERS, Layout, features, layout_of, remainder
 
 LAYOUT = Layout(("T_in", "s1"))
@@ -80,3 +81,19 @@ def test_a_channel_that_one_recording_lacks_is_not_compared():
     full = recorded(signals(lines_of(4), phi))
     short = recorded({"phi_in": phi, "s1": full.channels["s1"]})
     assert layout_of([full, short]).channels == ("s1",)
+
+
+def test_a_recording_with_too_few_samples_per_revolution_is_refused():
+    rate = 33 * POINTS[0].n_in_rpm / 60
+    phi = turning(POINTS[0], 12.0, rate)
+    said = r"recording a: 3[23]\.\d samples per revolution .* at least 34 .*: sample at 1\d{3} Hz or more"
+    with pytest.raises(ValueError, match=said):
+        features(recorded(signals(lines_of(5), phi), POINTS[0], rate), LAYOUT)
+
+
+def test_a_recording_with_just_enough_samples_per_revolution_tells_noise_and_lines_between():
+    rate = 35 * POINTS[0].n_in_rpm / 60
+    phi = turning(POINTS[0], 12.2, rate)
+    noisy = np.cos(2 * phi) + 1e-3 * np.random.default_rng(6).standard_normal(len(phi))
+    (seen,) = between([recorded({"phi_in": phi, "s1": noisy}, POINTS[0], rate)])
+    assert 0.5 < seen.power[:, seen.clear].mean() / 2 < 2

@@ -16,6 +16,8 @@ from swgsim.recording import Recording
 # Highest order that is compared, and highest that is fitted beside it so that it does not leak.
 ORDERS = 12
 FITTED = 16
+# Fewest samples per revolution that tell all these orders from each other.
+DENSE = 2 * FITTED + 2
 # The angle itself is what all other channels are plotted against.
 COMPARED = ("n_in", "T_in", "T_out", "s0", "s1", "s2", "s3", "s4")
 
@@ -74,7 +76,14 @@ def basis(phi: Float[np.ndarray, " time"], orders: int) -> Float[np.ndarray, "ti
 
 
 def features(recording: Recording, layout: Layout) -> Float[np.ndarray, " feature"]:
-    """The feature vector of a recording."""
+    """The feature vector of a recording.
+
+    Raises
+    ------
+    ValueError
+        If a revolution has too few samples for the orders that are fitted.
+    """
+    _require_dense(recording)
     columns, values = basis(recording.channels["phi_in"], FITTED), _values(recording, layout)
     kept = np.concatenate([np.arange(ORDERS + 1), FITTED + 1 + np.arange(ORDERS)])
     return _coefficients(columns, values)[kept].T.ravel()
@@ -87,6 +96,17 @@ def remainder(
     columns = basis(recording.channels["phi_in"], FITTED) if columns is None else columns
     values = _values(recording, layout)
     return (values - columns @ _coefficients(columns, values)).T
+
+
+def _require_dense(recording: Recording) -> None:
+    angle = recording.channels["phi_in"]
+    dense = 2 * np.pi * (len(angle) - 1) / abs(float(angle[-1] - angle[0]))
+    if dense < DENSE:
+        raise ValueError(
+            f"recording {recording.name}: {dense:.1f} samples per revolution of the wave generator, at least {DENSE} "
+            f"are needed to see the orders up to {FITTED}: sample at {recording.rate * DENSE / dense:.0f} Hz or more, "
+            "or leave this speed out"
+        )
 
 
 def _values(recording: Recording, layout: Layout) -> Float[np.ndarray, "time channel"]:
