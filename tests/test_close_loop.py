@@ -25,8 +25,10 @@ from swgsim.intake.folder import write_folder
 from swgsim.loop import job, model
 from swgsim.loop.answer import NOTHING, answer
 from swgsim.loop.experiment import RECORDINGS, SEPARATED, next_experiments
+from swgsim.loop.reporting.remaining import next_experiment
 from swgsim.loop.session import Measured
 from swgsim.loop.unit import Unit
+from swgsim.loop.unnamed import Unnamed
 from swgsim.recording import Recording
 from swgsim.settings import gear
 from swgsim.virtual_bench import Instruments, Sessions, record_sessions
@@ -172,6 +174,10 @@ def test_next_experiment_is_named_where_one_helps():
     assert helpless.recordings is None
     assert "no recording on the bench tells reduced damping" in str(helpless)
     assert next_experiments(replace(found, absorbed=())) == ()
+    # What is unknown in a gear never commissioned may be what it has always had.
+    hum = Unnamed("frequency", 50.0, 1e-3, "s0", chance=1e-9, explained=100.0, reach=0.1)
+    assert next_experiment((), found) is None
+    assert "commissioning=FOLDER" in next_experiment((), replace(found, unnamed=(hum,)))["words"]
 
 
 def test_recordings_that_do_not_belong_together_are_refused(folders, tmp_path):

@@ -109,19 +109,47 @@ def test_a_weak_effect_is_not_contradicted_by_noise(planted, judged):
     assert 0.03 <= np.mean(np.array([each.chance for each in found]) < 0.1) <= 0.2
 
 
-def test_small_parts_are_as_uncertain_as_commissioning_found_the_structure(planted, monkeypatch):
-    """What lies off by a share of the largest line is a contradiction only where the structure is known better."""
+@pytest.fixture
+def of_gauges(planted, monkeypatch):
+    """A model with an effect that gauges show, its signature, and what another structure makes of that: columns."""
     fitted, whole = planted
     gauges = whole * (np.tile(LAYOUT.channel != "T_in", len(fitted.measured)))
     monkeypatch.setattr(evidence, "signature", lambda fitted, number: gauges)
-    rng = np.random.default_rng(14)
     largest = largest_lines(gauges.reshape(fitted.measured.values.shape), LAYOUT)
-    columns = fitted.measured.rows(form_columns(largest, fitted.measured.situations, LAYOUT))
+    columns = fitted.measured.rows(form_columns(largest, fitted.measured.situations, LAYOUT, fitted.unit.powers))
+    return replace(fitted, calibrated=replace(fitted.calibrated, model=Model(GEAR, (Bump(1.0),)))), gauges, columns
+
+
+def test_small_parts_are_as_uncertain_as_commissioning_found_the_structure(of_gauges):
+    """What lies off by a share of the largest line is a contradiction only where the structure is known better."""
+    fitted, gauges, columns = of_gauges
+    rng = np.random.default_rng(14)
     off = 0.7 * columns @ rng.standard_normal(columns.shape[1])
     for structure, holds in ((STRUCTURE, False), (0.3, True)):
         unit = replace(fitted.unit, structure=structure)
         held = replace(fitted, unit=unit, open=np.hstack([fitted.open, 10 * gauges[:, None]]))
         assert evidence.coherence(holding(held, off + drawn(fitted.whole, rng)), 0).holds == holds
+
+
+def test_a_size_is_as_doubtful_as_another_structure_would_make_it(of_gauges):
+    fitted, gauges, columns = of_gauges
+    rng = np.random.default_rng(15)
+    weights = fitted.whole.whiten(gauges)
+    drawn_columns = 0.3 * columns @ rng.standard_normal((columns.shape[1], 300))
+    moved = weights @ fitted.whole.whiten(drawn_columns) / (weights @ weights)
+    held = replace(fitted, unit=replace(fitted.unit, structure=0.3))
+    agreement = evidence.coherence(holding(held, drawn(fitted.whole, rng)), 0)
+    assert agreement.form_error < 0.05
+    assert agreement.doubt == pytest.approx(moved.std(), rel=0.2)
+
+
+def test_another_structure_costs_little_at_points_left_out(of_gauges):
+    fitted, _, columns = of_gauges
+    rng = np.random.default_rng(16)
+    residual = 0.3 * columns @ rng.standard_normal(columns.shape[1]) + drawn(fitted.whole, rng)
+    held = holding(replace(fitted, unit=replace(fitted.unit, structure=0.3)), residual)
+    opened = evidence.open_as_found(held, [evidence.Coherence(1.0, form_error=0.0, doubt=0.0)])
+    assert opened.predictive.sum() - held.predictive.sum() > 50
 
 
 def test_a_form_that_is_off_by_a_fifth_costs_little_at_points_left_out(planted, fitted_with):

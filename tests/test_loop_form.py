@@ -21,7 +21,7 @@ def predicted() -> np.ndarray:
 
 
 def test_only_gauges_deviate_and_by_a_share_of_their_largest_line(predicted):
-    found = form_columns(largest_lines(predicted, LAYOUT), SITUATIONS, LAYOUT)
+    found = form_columns(largest_lines(predicted, LAYOUT), SITUATIONS, LAYOUT, 2)
     assert found.shape == (*predicted.shape, 2 * 2 * 25)
     assert not found[:, LAYOUT.channel == "T_in"].any()
     largest = np.abs(LAYOUT.lines(predicted))[:, 1, 1:].max()
@@ -29,7 +29,7 @@ def test_only_gauges_deviate_and_by_a_share_of_their_largest_line(predicted):
 
 
 def test_every_second_deviation_grows_with_the_load(predicted):
-    found = form_columns(largest_lines(predicted, LAYOUT), SITUATIONS, LAYOUT)
+    found = form_columns(largest_lines(predicted, LAYOUT), SITUATIONS, LAYOUT, 2)
     load = np.array([point.T_out for point in POINTS]) / FULL_LOAD
     np.testing.assert_allclose(found[..., 1::2], found[..., ::2] * load[:, None, None])
 
@@ -37,5 +37,5 @@ def test_every_second_deviation_grows_with_the_load(predicted):
 def test_a_deviation_is_the_same_whatever_else_is_asked(predicted):
     """What commissioning found at six operating points holds for a question about one of them."""
     largest = largest_lines(predicted, LAYOUT)
-    whole, part = (form_columns(largest, situations, LAYOUT) for situations in (SITUATIONS, SITUATIONS[:1]))
+    whole, part = (form_columns(largest, situations, LAYOUT, 2) for situations in (SITUATIONS, SITUATIONS[:1]))
     np.testing.assert_allclose(part, whole[:1])

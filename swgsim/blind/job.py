@@ -39,7 +39,7 @@ THRESHOLDS = {
     "visible": screening.VISIBLE,
     "set_apart": asking.SET_APART,
     "structure": [unit.STRUCTURE, *commissioning.COARSER, commissioning.WELL],
-    "missed": commissioning.MISSED,
+    "unexplained": commissioning.UNEXPLAINED,
     "luck": commissioning.LUCK,
     "tolerance_of_lines": sidelines.TOLERANCE,
     "outdone": [beside.OUTDONE, beside.OUTDONE_SHARE, beside.SAME_THING, beside.DWARFED],

@@ -4,23 +4,24 @@ from dataclasses import replace
 
 import numpy as np
 from jaxtyping import Float
-from scipy.stats import chi2
+from scipy.stats import chi2, false_discovery_control
 
 from swgsim.loop.declared import of_unit
-from swgsim.loop.fitting import Fitted, fit
+from swgsim.loop.fitting import MISFIT, Fitted, fit
 from swgsim.loop.form import largest_lines
 from swgsim.loop.session import Measured
 from swgsim.loop.unit import Unit
 from swgsim.recordings import SENSORS
 from swgsim.turning import forget
 
-# Share of a channel's ripple that the model may leave unexplained of a healthy gear; with more it is not its own.
-MISSED = 0.1
+# Share of a channel's ripple that the model may leave unexplained of a healthy gear; with more it is not its own, if it
+# is also missed by more than MISFIT: a ripple that is hardly more than noise may well be.
+UNEXPLAINED = 0.1
 # Accuracies of the structural model that are tried beyond the declared one, as shares of a gauge's largest line, while
 # a channel is missed by more than so many times what is declared of it (mean squares).
 COARSER, WELL = (0.03, 0.1, 0.3), 1.3
-# Probability below which it is no luck that a line of a channel is missed.
-LUCK = 0.01
+# Of the lines that are said to be missed, the share that may be luck.
+LUCK = 0.05
 
 
 def commission(measured: Measured, unit: Unit) -> Unit:
@@ -57,7 +58,9 @@ def commission(measured: Measured, unit: Unit) -> Unit:
 
 
 def _as_accurate_as_shown(measured: Measured, unit: Unit) -> Fitted:
-    """The fit at the accuracy of the structural model, the declared one or a coarser one, that is likeliest."""
+    """The fit at the accuracy of the structural model that is shown: the declared one, or a coarser one while a channel
+    is missed and that makes the recordings likelier.
+    """
     best = fit(measured, unit)
     for structure in COARSER:
         if max(best.misfit.values()) < WELL:
@@ -70,7 +73,7 @@ def _as_accurate_as_shown(measured: Measured, unit: Unit) -> Fitted:
 
 
 def _beyond(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> Float[np.ndarray, " feature"]:
-    """How much larger the variance of every line is than noise and declared spreads make it; 1 where that may be luck.
+    """How much larger the variance of every line is than noise and declared spreads make it; 1 where that is luck.
 
     What the model misses is alike in all repeats of an operating point, and part of it in all recordings, which must
     not pass for as many witnesses; and it misses as much of each of the gauges s1 to s4, which sit alike.
@@ -84,32 +87,36 @@ def _beyond(measured: Measured, missed: Float[np.ndarray, "recording feature"]) 
     layout = measured.layout
     single, common = missed**2, len(missed) * missed.mean(axis=0) ** 2
     repeats = len(measured) / len(measured.point_rows())
-    beyond = np.ones(len(layout))
     alike = np.array(["s1 to s4" if name in SENSORS[1:] else name for name in layout.channel])
-    for channel in dict.fromkeys(alike):
-        for order in np.unique(layout.order):
-            line = (alike == channel) & (layout.order == order)
-            if chi2.sf(single[:, line].sum(), single[:, line].size) < LUCK:
-                beyond[line] = 1 + repeats * (single[:, line].mean() - 1)
-            if chi2.sf(common[line].sum(), line.sum()) < LUCK:
-                beyond[line] = np.maximum(beyond[line], common[line].mean())
+    every = dict.fromkeys(zip(alike, layout.order, strict=True))
+    lines = [(alike == channel) & (layout.order == order) for channel, order in every]
+    by_single = false_discovery_control([chi2.sf(single[:, line].sum(), single[:, line].size) for line in lines])
+    in_common = false_discovery_control([chi2.sf(common[line].sum(), line.sum()) for line in lines])
+    beyond = np.ones(len(layout))
+    for line, by_one, by_all in zip(lines, by_single < LUCK, in_common < LUCK, strict=True):
+        if by_one:
+            beyond[line] = 1 + repeats * (single[:, line].mean() - 1)
+        if by_all:
+            beyond[line] = np.maximum(beyond[line], common[line].mean())
     return beyond
 
 
 def _require_own(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> None:
-    """Refuse a healthy gear of which the model leaves more than MISSED of the ripple of a channel."""
+    """Refuse a healthy gear of which the model leaves more than UNEXPLAINED of the ripple of a channel."""
     layout = measured.layout
-    left = np.maximum((missed**2).mean(axis=0) - 1, 0) * measured.variance.mean(axis=0)
-    power = np.maximum((measured.values**2).mean(axis=0), 1e-300)
+    square = (missed**2).mean(axis=0)
+    left = np.maximum(square - 1, 0) * measured.variance.mean(axis=0)
+    power = (measured.values**2).mean(axis=0)
     shares = {}
     for channel in layout.channels:
         ripple = (layout.channel == channel) & (layout.order > 0)
-        shares[channel] = float(np.sqrt(left[ripple].sum() / power[ripple].sum()))
-    poor = sorted(((share, name) for name, share in shares.items() if share > MISSED), reverse=True)
+        if square[ripple].mean() > MISFIT:
+            shares[channel] = float(np.sqrt(left[ripple].sum() / power[ripple].sum()))
+    poor = sorted(((share, name) for name, share in shares.items() if share > UNEXPLAINED), reverse=True)
     if poor:
         differ = ", ".join(f"{name} ({100 * share:.0f} %)" for share, name in poor)
         raise ValueError(
             f"the model cannot be commissioned on these recordings: it leaves {differ} of the ripple unexplained, at "
-            f"most {100 * MISSED:.0f} % may be. Correct the gear file (load inertia J_out, "
+            f"most {100 * UNEXPLAINED:.0f} % may be. Correct the gear file (load inertia J_out, "
             "speed control), the zero of the angle or a channel that is none of this gear, or leave that channel out"
         )

@@ -8,9 +8,7 @@ from jaxtyping import Float
 from scipy.stats import chi2
 
 from swgsim.loop.fitting import Fitted
-from swgsim.loop.form import form_columns, largest_lines
 from swgsim.loop.model import predict
-from swgsim.loop.unit import STRUCTURE
 from swgsim.singular import svd
 
 # A real cause never has the library's exact shape: its parts may differ from it by this share (standard deviation).
@@ -32,7 +30,8 @@ class Coherence:
     form_error : float
         Share by which the parts likeliest differ from the library's shape.
     doubt : float
-        Share by which such parts make the size uncertain, which is a mean over them (standard deviation).
+        Share by which such parts make the size uncertain, which is a mean over them, and so does an inaccurate
+        structural model (standard deviation).
     """
 
     chance: float
@@ -90,20 +89,14 @@ def allowance(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
     whole, open_ = signed[:, None], np.hstack(columns)
     weighed = whole / fitted.errors.variance[:, None]
     tolerated = FORM_TOLERANCE * (open_ - whole @ (weighed.T @ open_) / float((weighed * whole).sum()))
-    return np.hstack([tolerated, of_structure(fitted, signed)])
+    return np.hstack([tolerated, _of_structure(fitted, signed)])
 
 
-def of_structure(fitted: Fitted, signed: Float[np.ndarray, " row"]) -> Float[np.ndarray, "row column"]:
-    """What an inaccurate structural model leaves open of a signature: its lines lie off as those of the maps do.
-
-    A share of each part is no tolerance for parts that are small because others cancel in them; another structure has
-    them quite different. Where the structure is as accurate as declared, this is far below the tolerance of form.
-    """
+def _of_structure(fitted: Fitted, signed: Float[np.ndarray, " row"]) -> Float[np.ndarray, "row column"]:
+    """What an inaccurate structural model leaves open of a signature."""
     measured = fitted.measured
-    if fitted.unit.structure <= STRUCTURE:
-        return np.zeros((len(signed), 0))
-    largest = largest_lines(signed.reshape(measured.values.shape), measured.layout)
-    return fitted.unit.structure * measured.rows(form_columns(largest, measured.situations, measured.layout))
+    by_recording = signed.reshape(measured.values.shape)
+    return measured.rows(fitted.unit.open_of(by_recording, measured.situations, measured.layout))
 
 
 def open_form(fitted: Fitted, added: int) -> Fitted:
@@ -115,7 +108,8 @@ def open_form(fitted: Fitted, added: int) -> Fitted:
 def coherence(fitted: Fitted, number: int) -> Coherence:
     """Whether the parts of an effect's signature agree on its size."""
     signed = signature(fitted, number)
-    whole = fitted.whole.with_columns(of_structure(fitted, signed))
+    structure = _of_structure(fitted, signed)
+    whole = fitted.whole.with_columns(structure)
     split = whole.whiten(parts(fitted, signed))
     if not np.any(split):
         return Coherence(0.0, 0.0, 0.0)
@@ -126,7 +120,8 @@ def coherence(fitted: Fitted, number: int) -> Coherence:
     chance = float(chi2.sf((u**2 / (1 + (FORM_TOLERANCE * s) ** 2)).sum(), len(s)))
     wider = 1 + (FORM_ERRORS[:, None] * s) ** 2
     error = float(FORM_ERRORS[np.argmin((u**2 / wider + np.log(wider)).sum(axis=1))])
-    return Coherence(chance, error, error * _share(fitted, number, signed) if error else 0.0)
+    off = np.hstack([error * parts(fitted, signed), structure])
+    return Coherence(chance, error, _share(fitted, number, signed, off) if off.any() else 0.0)
 
 
 def open_as_found(fitted: Fitted, coherences: Sequence[Coherence]) -> Fitted:
@@ -138,20 +133,21 @@ def open_as_found(fitted: Fitted, coherences: Sequence[Coherence]) -> Fitted:
     first = len(fitted.model.effects) - len(coherences)
     columns = []
     for number, agreement in enumerate(coherences, first):
+        signed = signature(fitted, number)
+        columns.append(_of_structure(fitted, signed))
         if agreement.tolerated:
-            signed = signature(fitted, number)
-            columns += [agreement.tolerated * parts(fitted, signed), of_structure(fitted, signed)]
-    return fitted.allowing(np.hstack(columns)) if columns else fitted
+            columns.append(agreement.tolerated * parts(fitted, signed))
+    return fitted.allowing(np.hstack(columns))
 
 
-def _share(fitted: Fitted, number: int, signed: Float[np.ndarray, " row"]) -> float:
-    """What an independent error of every part, each of the same share, adds to the size, as a share of it.
+def _share(
+    fitted: Fitted, number: int, signed: Float[np.ndarray, " row"], off: Float[np.ndarray, "row column"]
+) -> float:
+    """What independent errors of a signature, one standard deviation each, add to the size, as a share of it.
 
     The effect's own parameters are not open beside it: its size is what is asked for, and would leave rounding of it.
     """
     others = [column for column, name in enumerate(fitted.parameters) if f" {number + 1}: " not in name]
     errors = fitted.errors.with_columns(np.hstack([fitted.open, fitted.J[:, others]]))
-    split = errors.whiten(parts(fitted, signed))
-    # The parts of all operating points together are the whole.
-    whole = split[:, : len(fitted.measured.point_rows())].sum(axis=1)
-    return float(np.linalg.norm(split.T @ whole) / (whole @ whole))
+    whole = errors.whiten(signed)
+    return float(np.linalg.norm(errors.whiten(off).T @ whole) / (whole @ whole))

@@ -202,7 +202,9 @@ def _added(fitted: Fitted) -> range:
 def _tolerance(
     fitted: Fitted, candidates: Sequence[Situation], predicted: Float[np.ndarray, "candidate feature"]
 ) -> Float[np.ndarray, "candidate feature column"]:
-    """What an imperfect form of the fitted effects leaves open at a new operating point, channel and order by each."""
+    """What an imperfect form of the fitted effects leaves open at a new operating point: of each channel and order a
+    share, and what an inaccurate structural model does.
+    """
     layout = fitted.measured.layout
     effects = _added(fitted)
     if not effects:
@@ -211,8 +213,9 @@ def _tolerance(
     masks = [np.ones(len(layout), bool)]
     masks += [layout.channel == channel for channel in layout.channels]
     masks += [layout.order == order for order in np.unique(layout.order)]
-    columns = [(predicted - each) * mask for each in without for mask in masks]
-    return FORM_TOLERANCE * np.stack(columns, axis=-1)
+    shares = np.stack([FORM_TOLERANCE * (predicted - each) * mask for each in without for mask in masks], axis=-1)
+    structure = [fitted.unit.open_of(predicted - each, candidates, layout) for each in without]
+    return np.concatenate([shares, *structure], axis=-1)
 
 
 def _session(

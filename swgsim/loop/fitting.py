@@ -19,7 +19,7 @@ from swgsim.loop.unit import Unit
 
 # A parameter of a unit that was fitted so many spreads from its declared value was bent by what the model lacks, if a
 # channel is still missed by so many times what is declared of it (mean squares).
-BENT, MISSED = 5.0, 10.0
+BENT, MISFIT = 5.0, 10.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,10 +37,9 @@ class Fitted:
     errors : Covariance
         Noise, errors of single recordings and of sessions; rows (recording, feature).
     open : array (row, direction)
-        What the unit leaves open beside the fitted parameters: deviations of the maps, and after commissioning also
-        the declared parameters; one standard deviation each.
+        What the unit leaves open beside the fitted parameters (:meth:`Unit.left_open`), one standard deviation each.
     offset : array (row,)
-        Deviation of the maps found by commissioning.
+        Where commissioning found the recordings beside the model, by all that it leaves open.
     allowed : array (row, column) or None
         The part of ``open`` that the form of effects found earlier leaves open, and regularities that were set free; it
         comes last.
@@ -85,6 +84,8 @@ class Fitted:
 
     def allowing(self, columns: Float[np.ndarray, "row column"]) -> "Fitted":
         """The same with more left open, one standard deviation each, also when effects are added to it."""
+        if not columns.shape[1]:
+            return self
         kept = [] if self.allowed is None else [self.allowed]
         return replace(self, open=np.hstack([self.open, columns]), allowed=np.hstack([*kept, columns]))
 
@@ -228,7 +229,7 @@ def unbent(now: Fitted) -> Fitted:
     of single recordings stay as they were estimated with it.
     """
     bent = max((abs(by) for by in now.position_of_unit.values()), default=0.0) > BENT
-    if not bent or max(now.misfit.values()) < MISSED:
+    if not bent or max(now.misfit.values()) < MISFIT:
         return now
     start = now.unit.model.plus(*now.added)
     declared = linearised(start, now.parameters, now.measured.situations, now.measured.layout)

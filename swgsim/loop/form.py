@@ -22,7 +22,7 @@ def largest_lines(predicted: Float[np.ndarray, "situation feature"], layout: Lay
 
 
 def form_columns(
-    largest: Mapping[str, float], situations: Sequence[Situation], layout: Layout, powers: int = 2
+    largest: Mapping[str, float], situations: Sequence[Situation], layout: Layout, powers: int
 ) -> Float[np.ndarray, "situation feature column"]:
     """Deviations of the maps A and B of every gauge at every order, each as large as the gauge's largest line.
 

@@ -46,7 +46,7 @@ class Unit:
         After commissioning, the largest line of each gauge, by which deviations of the maps are counted.
     inflation : array (feature,) or None
         After commissioning, factor by which the variance of each line is larger than that of noise, by what the model
-        misses of the healthy gear.
+        misses of the healthy gear; for as many repeats as commissioning had.
     """
 
     model: Model
@@ -104,9 +104,22 @@ class Unit:
         shift = np.zeros(predicted.shape) if self.shift is None else open_ @ self.shift
         return LeftOpen(predicted, shift, open_ if self.reach is None else open_ @ self.reach, of_parameters)
 
+    def open_of(
+        self, signature: Float[np.ndarray, "any feature"], situations: Sequence[Situation], layout: Layout
+    ) -> Float[np.ndarray, "situation feature column"]:
+        """What an inaccurate structural model leaves open of an effect: its lines lie off as those of the maps do.
+
+        A share of each part is no tolerance for parts that are small because others cancel in them; another structure
+        has them quite different. Where the structure is as accurate as declared, this is far below the tolerance of
+        form.
+        """
+        if self.structure <= STRUCTURE:
+            return np.zeros((len(situations), len(layout), 0))
+        return self.structure * form_columns(largest_lines(signature, layout), situations, layout, self.powers)
+
 
 class LeftOpen(NamedTuple):
-    """Prediction of a model, the shift of its maps that commissioning found, what the unit leaves open (one standard
+    """Prediction of a model, the shift from it that commissioning found, what the unit leaves open (one standard
     deviation each), and the change by one spread of each fitted parameter.
     """
 

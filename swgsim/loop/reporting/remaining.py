@@ -49,17 +49,19 @@ def _described(each: Described) -> dict[str, Any]:
     }
 
 
-def next_experiment(experiments: Sequence[Experiment], commissioned: bool) -> dict[str, Any] | None:
+def next_experiment(experiments: Sequence[Experiment], answer: Answer) -> dict[str, Any] | None:
     """What to record next, the question that needs the fewest recordings first; None if nothing is open."""
-    if not experiments:
-        return None
     helpful = sorted((e for e in experiments if e.recordings), key=lambda e: (e.recordings or 0, -e.separation))
     helpless = [e for e in experiments if not e.recordings]
     words = [str(e) for e in (*helpful, *helpless)]
-    if helpless and not commissioned:
-        words.append("commissioning=FOLDER with recordings of the healthy gear would take such doubt away")
+    commission = bool(helpless or answer.left) and not answer.closed.before.unit.commissioned
+    if commission:
+        words.append("recordings of the healthy gear, given as commissioning=FOLDER, tell what it has always had")
+    if not words:
+        return None
     return {
         "words": "; ".join(words),
+        "commission": commission,
         "questions": [
             {
                 "between": list(e.between),

@@ -54,7 +54,7 @@ def report(
         "rejected": rejected(answer, sizes),
         "error": error(before, after, floor, sizes),
         "unknown": unknown(answer),
-        "next_experiment": next_experiment(experiments, before.unit.commissioned),
+        "next_experiment": next_experiment(experiments, answer),
         "moved": moved(before, after),
         "absorbed": [absorbed(each) for each in answer.absorbed] + untried(answer, kinds),
         "detectable": {each.hypothesis.kind.name(): detectable(each) for each in answer.closed.scores},
