@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, Float
+from scipy.stats import f
 
 from swgsim.effects.base import Effect, Scene
 from swgsim.effects.quantity import Role, quantities
@@ -21,8 +22,13 @@ SEEN = 1e-3
 SAMPLES = 48
 # The noise beside a line is that of so many lines of the spectrum to either side.
 BESIDE = 6
+# The noise beside a line is what was estimated of all lines together, as so many numbers would say it.
+ALL_TOGETHER = 20
 # Part of a direction that a line must hold to be one of its lines.
 HELD = 0.05
+
+# Of one line, or of many.
+Sums = float | Float[np.ndarray, " line"]
 
 
 class Explained(NamedTuple):
@@ -164,6 +170,16 @@ def between(recordings: Sequence[Recording]) -> list[Between]:
     gauges = tuple(sensor for sensor in SENSORS if all(sensor in r.channels for r in recordings))
     noise = floors(recordings, Layout(gauges)) if gauges else []
     return [Between.of(recording, gauges, noise) for recording in recordings] if gauges else []
+
+
+def by_luck(gain: Sums, freedom: Sums, rest: Sums, beside: Sums) -> tuple[Sums, Sums]:
+    """The noise at a line, in units of the floor, and the probability that it explains as much as the line does.
+
+    The floor holds for the whole spectrum; beside a line the noise may be higher. Less is no noise but rounding. Given
+    are sums over recordings of what :class:`Explained` holds.
+    """
+    noise = np.maximum(1.0, (rest + ALL_TOGETHER) / (beside + ALL_TOGETHER))
+    return noise, f.sf(gain / noise / freedom, freedom, beside + ALL_TOGETHER)
 
 
 def scene_of(recording: Recording, samples: slice = slice(None)) -> Scene:

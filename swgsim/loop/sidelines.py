@@ -7,19 +7,17 @@ from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
-from scipy.stats import chi2, f
+from scipy.stats import chi2
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Quantity, Role, quantities, size_of
-from swgsim.loop.between import Between
+from swgsim.loop.between import Between, by_luck
 from swgsim.loop.tail import log_tail
 
 # A line's size may differ from its law over load and speed by this share.
 TOLERANCE = 0.3
 CONTRADICTION = 1e-4
 ZOOMS = 3
-# The noise beside a line is what was estimated of all lines together, as so many numbers would say it.
-ALL_TOGETHER = 20
 # Values of a parameter that are tried at most.
 MOST_TRIED = 400
 
@@ -110,8 +108,8 @@ def _judged(effect: Effect, spectra: Sequence[Between], tried: int) -> Sideline:
     declared = quantities(type(effect))
     name = size_of(type(effect))
     gain, freedom, size, rest, beside = np.array([each.explained(effect) for each in spectra]).T
-    # The floor holds for the whole spectrum; beside the lines it may be higher. Less is no noise but rounding.
-    noise = max(1.0, (rest.sum() + ALL_TOGETHER) / (beside.sum() + ALL_TOGETHER))
+    numbers = max(freedom.sum(), 1.0)
+    noise, luck = by_luck(gain.sum(), numbers, rest.sum(), beside.sum())
     explained = float(gain.sum() - noise * freedom.sum())
     gain, size = gain / noise, size / noise
     # Power of the effect beyond the noise, in units of its typical size squared.
@@ -120,8 +118,7 @@ def _judged(effect: Effect, spectra: Sequence[Between], tried: int) -> Sideline:
     spread = 2 * freedom + 4 * share * size + (2 * TOLERANCE * share * size) ** 2
     used = freedom > 0
     agrees = float(chi2.sf((((gain - expected) ** 2) / np.maximum(spread, 1e-12))[used].sum(), max(used.sum() - 1, 1)))
-    numbers = max(freedom.sum(), 1)
-    chance = float(min(1.0, tried * f.sf(gain.sum() / numbers, numbers, beside.sum() + ALL_TOGETHER)))
+    chance = float(min(1.0, tried * luck))
     estimate = float(np.clip(getattr(effect, name) * np.sqrt(share), declared[name].low, declared[name].high))
     deviation = float(abs(getattr(effect, name)) / np.sqrt(max(size.sum(), 1e-300)))
     # The law may be off in every recording, and then so is the mean.

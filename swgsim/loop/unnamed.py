@@ -5,13 +5,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
-from scipy.stats import f
 
 from swgsim.effects.base import Effect, Scene
 from swgsim.effects.quantity import random_phase, size
-from swgsim.loop.between import BESIDE, Between
+from swgsim.loop.between import BESIDE, Between, by_luck
 from swgsim.loop.features import FITTED
-from swgsim.loop.sidelines import ALL_TOGETHER
 from swgsim.recordings import SENSORS
 
 KINDS = ("order", "frequency")
@@ -134,7 +132,7 @@ def _best(spectra: Sequence[Between], kind: str, level: float) -> list[Unnamed]:
         line = np.round(grid / step).astype(int) - 1
         there = (line >= 0) & (line < len(each.clear))
         there[there] = each.clear[line[there]]
-        power, numbers = each.power.sum(axis=0) * each.clear, 2.0 * len(each.gauges) * each.clear
+        power, numbers = each.power.sum(axis=0), 2.0 * len(each.gauges) * each.clear
         gain[there] += power[line[there]]
         freedom[there] += numbers[line[there]]
         rest[there] += _beside(power)[line[there]]
@@ -144,8 +142,8 @@ def _best(spectra: Sequence[Between], kind: str, level: float) -> list[Unnamed]:
     if not len(tried):
         return []
     gain, freedom, rest, beside = (each[tried] for each in (gain, freedom, rest, beside))
-    noise = np.maximum(1.0, (rest + ALL_TOGETHER) / (beside + ALL_TOGETHER))
-    chances = np.minimum(1.0, len(tried) * len(KINDS) * f.sf(gain / noise / freedom, freedom, beside + ALL_TOGETHER))
+    noise, luck = by_luck(gain, freedom, rest, beside)
+    chances = np.minimum(1.0, len(tried) * len(KINDS) * luck)
     explained = np.where(chances <= level, gain - noise * freedom, -np.inf)
     most = int(np.argmax(explained))
     if chances[most] > level:
