@@ -235,8 +235,6 @@ REFUSED: dict[str, tuple[Spoil, str, str]] = {
     "gauge stuck for a while": (stuck_from("s3", 300, 60), "stuck", "s3"),
     "gauge stuck throughout": (stuck_from("s0", 0, 10**6), "stuck", "s0"),
     "angle stuck": (stuck_from("phi_in", 0, 10**6), "stuck", "phi_in"),
-    "torque that is not connected": (scaled("T_in", 0), "stuck", "T_in"),
-    "speed that is not connected": (scaled("n_in", 0), "stuck", "n_in"),
     "inverted gauge": (scaled("s2", -1), "gauge_inverted", "s2"),
     "inverted torque bridge": (scaled("s0", -1), "gauge_inverted", "s0"),
     "two opposite gauges inverted": (at_once(scaled("s1", -1), scaled("s3", -1)), "gauge_inverted", "s3"),
@@ -288,9 +286,7 @@ WARNED: dict[str, tuple[Spoil, str, str]] = {
     "speed a little off": (scaled("n_in", 1.05), "speed_against_set_speed", "n_in"),
     "angle a little off": (scaled("phi_in", 1.05), "angle_against_set_speed", "phi_in"),
     "torque a little off": (at_once(one_load, scaled("T_out", 1.1)), "torque_against_set_load", "T_out"),
-    "speed that is only set": (
-        of_all(lambda each: with_channel(each, "n_in", each.point.n_in_rpm + 0 * each.time)), "constant", "n_in",
-    ),
+    "speed that is only set": (scaled("n_in", 0), "constant", "n_in"),
     "gain": (scaled("s1", 2.5), "gauge_gain", "s1"),
     "gauge off its place": (
         of_all(lambda each: with_channel(each, "s1", np.roll(each.channels["s1"], 12))), "gauge_position", "s1",

@@ -11,7 +11,7 @@ from swgsim.loop import evidence
 from swgsim.loop.declared import Declared
 from swgsim.loop.features import Layout
 from swgsim.loop.fitting import Fitted
-from swgsim.loop.form import form_columns, largest_lines
+from swgsim.loop.form import lines_anywhere
 from swgsim.loop.model import Model
 from swgsim.loop.unit import STRUCTURE
 
@@ -115,8 +115,7 @@ def of_gauges(planted, monkeypatch):
     fitted, whole = planted
     gauges = whole * (np.tile(LAYOUT.channel != "T_in", len(fitted.measured)))
     monkeypatch.setattr(evidence, "signature", lambda fitted, number: gauges)
-    largest = largest_lines(gauges.reshape(fitted.measured.values.shape), LAYOUT)
-    columns = fitted.measured.rows(form_columns(largest, fitted.measured.situations, LAYOUT, fitted.unit.powers))
+    columns = lines_anywhere(gauges.reshape(fitted.measured.values.shape), LAYOUT).reshape(len(gauges), -1)
     return replace(fitted, calibrated=replace(fitted.calibrated, model=Model(GEAR, (Bump(1.0),)))), gauges, columns
 
 
@@ -129,6 +128,22 @@ def test_small_parts_are_as_uncertain_as_commissioning_found_the_structure(of_ga
         unit = replace(fitted.unit, structure=structure)
         held = replace(fitted, unit=unit, open=np.hstack([fitted.open, 10 * gauges[:, None]]))
         assert evidence.coherence(holding(held, off + drawn(fitted.whole, rng)), 0).holds == holds
+
+
+def test_another_structure_does_not_excuse_another_law(of_gauges, monkeypatch):
+    """An effect that grows with the third power of the load, where what there is does not follow the load at all."""
+    fitted, gauges, _ = of_gauges
+    measured = fitted.measured
+    load = np.array([situation.point.T_out for situation in measured.situations])[measured.of_recording] / 70
+    constant = np.tile(gauges[: len(LAYOUT)], len(measured))
+    cubic = np.repeat(load**3, len(LAYOUT)) * constant
+    monkeypatch.setattr(evidence, "signature", lambda fitted, number: cubic)
+    rng = np.random.default_rng(17)
+    for truth, holds in ((constant, False), (cubic, True)):
+        unit = replace(fitted.unit, structure=0.3)
+        held = replace(fitted, unit=unit, open=np.hstack([fitted.open, 10 * cubic[:, None]]))
+        residual = truth - cubic * (cubic @ truth) / (cubic @ cubic) + drawn(fitted.whole, rng)
+        assert evidence.coherence(holding(held, residual), 0).holds == holds
 
 
 def test_a_size_is_as_doubtful_as_another_structure_would_make_it(of_gauges):

@@ -84,15 +84,18 @@ def test_a_channel_that_one_recording_lacks_is_not_compared():
 
 
 def test_a_recording_with_too_few_samples_per_revolution_is_refused():
-    rate = 33 * POINTS[0].n_in_rpm / 60
+    rate = 32.5 * POINTS[0].n_in_rpm / 60
     phi = turning(POINTS[0], 12.0, rate)
-    said = r"recording a: 3[23]\.\d samples per revolution .* at least 34 .*: sample at 1\d{3} Hz or more"
+    coarse = recorded(signals(lines_of(5), phi), POINTS[0], rate)
+    said = r"recording a: 32\.\d samples per revolution .* at least 33 .*: sample at 11\d\d Hz or more"
     with pytest.raises(ValueError, match=said):
-        features(recorded(signals(lines_of(5), phi), POINTS[0], rate), LAYOUT)
+        features(coarse, LAYOUT)
+    with pytest.raises(ValueError, match=said):
+        between([coarse])
 
 
 def test_a_recording_with_just_enough_samples_per_revolution_tells_noise_and_lines_between():
-    rate = 35 * POINTS[0].n_in_rpm / 60
+    rate = 34 * POINTS[0].n_in_rpm / 60
     phi = turning(POINTS[0], 12.2, rate)
     noisy = np.cos(2 * phi) + 1e-3 * np.random.default_rng(6).standard_normal(len(phi))
     (seen,) = between([recorded({"phi_in": phi, "s1": noisy}, POINTS[0], rate)])

@@ -25,7 +25,7 @@ from swgsim.blind.table import table
 from swgsim.compute import Engine
 from swgsim.effects.library import SEARCHED, named
 from swgsim.files import sole_maker, write_json, write_text
-from swgsim.loop import asking, beside, commissioning, evidence, lines, screening, sidelines, trial, unit
+from swgsim.loop import asking, beside, commissioning, evidence, fitting, lines, screening, sidelines, trial, unit
 from swgsim.version import code_version
 
 THRESHOLDS = {
@@ -40,6 +40,7 @@ THRESHOLDS = {
     "set_apart": asking.SET_APART,
     "structure": [unit.STRUCTURE, *commissioning.COARSER, commissioning.WELL],
     "unexplained": commissioning.UNEXPLAINED,
+    "bent": [fitting.BENT, fitting.MISFIT],
     "luck": commissioning.LUCK,
     "tolerance_of_lines": sidelines.TOLERANCE,
     "outdone": [beside.OUTDONE, beside.OUTDONE_SHARE, beside.SAME_THING, beside.DWARFED],

@@ -41,8 +41,8 @@ def channel_defects(recording: Recording) -> Iterator[Defect]:
 
 
 def _constant(recording: Recording, name: str, value: float) -> Defect:
-    """A gauge or an angle that never changes is broken; a torque or speed may be the set value, which is not 0."""
-    if name in (*SENSORS, "phi_in") or value == 0:
+    """A gauge or an angle that never changes is broken; a torque or speed may be the set value."""
+    if name in (*SENSORS, "phi_in"):
         return Defect(
             "stuck", "refuse", recording.name, name, f"{value:.5g} throughout", "a signal that changes",
             "check the connection, or leave the channel out", FIRST_ROW,

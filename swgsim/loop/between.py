@@ -5,12 +5,12 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Complex, Float
 from scipy.stats import f
 
 from swgsim.effects.base import Effect, Scene
 from swgsim.effects.quantity import Role, quantities
-from swgsim.loop.features import FITTED, Layout, basis, remainder
+from swgsim.loop.features import FITTED, Layout, basis
 from swgsim.loop.noise import GUARD, Floor, floors, step_of
 from swgsim.recording import CHANNELS, Recording
 from swgsim.recordings import SENSORS
@@ -54,7 +54,7 @@ class Between:
     scene : Scene
     gauges : tuple of str
     scale : array (gauge, line)
-        What turns a line of the spectrum into units of the noise; 0 where an integer order leaks into it.
+        What turns a line of the spectrum into units of the noise.
     orders : array (time, column)
         Orthonormal basis of the orders that were fitted, with a drift.
     revolutions : float
@@ -62,7 +62,7 @@ class Between:
     clear : array (line,)
         Lines that no integer order leaks into.
     left : array (number,)
-        Real and imaginary parts of all lines of what the orders leave.
+        Real and imaginary parts of all lines of what the orders leave; 0 where they leak.
     taken : array (number, direction)
         Orthonormal directions of what was taken out: the ends of slow noise, and what was found already.
     """
@@ -92,8 +92,7 @@ class Between:
         variance = [floor.at(frequency) / (2 * length) + own for floor, own in zip(noise, rounding, strict=True)]
         order = lines / revolutions
         clear = np.abs(order - np.round(order)) * revolutions > GUARD
-        # Beside an order lies what its own unsteadiness leaks.
-        scale = np.where(clear, 1 / np.sqrt(np.maximum(variance, 1e-300)), 0.0)
+        scale = 1 / np.sqrt(np.maximum(variance, 1e-300))
         bare = cls(
             scene,
             gauges,
@@ -104,9 +103,12 @@ class Between:
             np.zeros(2 * scale.size),
             np.empty((2 * scale.size, 0)),
         )
-        fitted = ordinary(scene_of(recording))
-        whole = replace(bare, left=bare._numbers(remainder(recording, Layout(gauges), fitted)[:, :length]))
-        return whole._taking(_directions(bare._beside_orders(_ends(scene, noise))))
+        whole = scene_of(recording)
+        signals = [np.array([recording.channels[gauge] for gauge in gauges]), *_ends(whole, noise)]
+        beside = _without(np.array(signals), np.linalg.qr(ordinary(whole))[0])
+        left, *ends = bare._numbers(beside[..., :length])
+        # Each is of another gauge, in units of its own noise.
+        return replace(bare, left=left)._taking(np.transpose([end / np.linalg.norm(end) for end in ends]))
 
     @property
     def step(self) -> float:
@@ -116,15 +118,15 @@ class Between:
 
     @property
     def power(self) -> Float[np.ndarray, "gauge line"]:
-        """Sum of squares of every line; of noise, 2 on average."""
+        """Sum of squares of every line; of noise, 2 on average where it is clear."""
         return (self.left**2).reshape(2, *self.scale.shape).sum(axis=0)
 
     def pattern(self, effect: Effect) -> Float[np.ndarray, "column number"]:
         """What an effect can look like, whatever its random phases; a direction that the orders took is left out."""
         seen = shapes(effect, self.scene, self.gauges)
-        between = self._beside_orders(seen)
+        between = self._numbers(_without(seen, self.orders))
         between = between - (between @ self.taken) @ self.taken.T
-        whole = np.linalg.norm(self._numbers(seen), axis=-1).max()
+        whole = np.linalg.norm(self._lines(seen), axis=(-2, -1)).max()
         return between if np.linalg.norm(between, axis=-1).max() > SEEN * whole else np.zeros_like(between)
 
     def explained(self, effect: Effect) -> Explained:
@@ -155,14 +157,14 @@ class Between:
     def _taking(self, U: Float[np.ndarray, "number direction"]) -> "Between":
         return replace(self, left=self.left - U @ (U.T @ self.left), taken=np.hstack([self.taken, U]))
 
-    def _beside_orders(self, signals: Float[np.ndarray, "column gauge time"]) -> Float[np.ndarray, "column number"]:
-        return self._numbers(signals - (signals @ self.orders) @ self.orders.T)
-
-    def _numbers(self, signals: np.ndarray) -> np.ndarray:
-        """Lines of the spectrum in units of the noise, real parts before imaginary ones."""
-        lines = np.fft.rfft(signals, axis=-1)[..., 1 : self.scale.shape[1] + 1] / signals.shape[-1] * self.scale
-        flat = lines.reshape(*lines.shape[:-2], -1)
+    def _numbers(self, signals: Float[np.ndarray, "column gauge time"]) -> Float[np.ndarray, "column number"]:
+        """Clear lines of the spectrum in units of the noise, real parts before imaginary ones."""
+        lines = self._lines(signals) * self.clear
+        flat = lines.reshape(len(lines), -1)
         return np.concatenate([flat.real, flat.imag], axis=-1)
+
+    def _lines(self, signals: Float[np.ndarray, "column gauge time"]) -> Complex[np.ndarray, "column gauge line"]:
+        return np.fft.rfft(signals, axis=-1)[..., 1 : self.scale.shape[1] + 1] / signals.shape[-1] * self.scale
 
 
 def between(recordings: Sequence[Recording]) -> list[Between]:
@@ -175,7 +177,7 @@ def between(recordings: Sequence[Recording]) -> list[Between]:
 def by_luck(gain: Sums, freedom: Sums, rest: Sums, beside: Sums) -> tuple[Sums, Sums]:
     """The noise at a line, in units of the floor, and the probability that it explains as much as the line does.
 
-    The floor holds for the whole spectrum; beside a line the noise may be higher. Less is no noise but rounding. Given
+    The floor holds for the whole spectrum; beside a line the noise may be higher, and is never taken for lower. Given
     are sums over recordings of what :class:`Explained` holds.
     """
     noise = np.maximum(1.0, (rest + ALL_TOGETHER) / (beside + ALL_TOGETHER))
@@ -223,6 +225,11 @@ def _ends(scene: Scene, noise: Sequence[Floor]) -> Float[np.ndarray, "gauge gaug
     """
     fading = [np.exp(-2 * np.pi * floor.corner * scene.time) for floor in noise]
     return np.eye(len(noise))[:, :, None] * np.array(fading)[:, None]
+
+
+def _without(signals: Float[np.ndarray, "*any time"], Q: Float[np.ndarray, "time column"]) -> np.ndarray:
+    """Signals without their part along orthonormal columns."""
+    return signals - (signals @ Q) @ Q.T
 
 
 def _rounding(values: Float[np.ndarray, " time"], noise: Floor) -> float:

@@ -14,8 +14,8 @@ from swgsim.loop.unit import Unit
 from swgsim.recordings import SENSORS
 from swgsim.turning import forget
 
-# Share of a channel's ripple that the model may leave unexplained of a healthy gear; with more it is not its own, if it
-# is also missed by more than MISFIT: a ripple that is hardly more than noise may well be.
+# Share of a channel's ripple that the model may leave unexplained of a healthy gear; with more it is not its own, if a
+# line of it is also missed by more than MISFIT: a ripple that is hardly more than noise may well be.
 UNEXPLAINED = 0.1
 # Accuracies of the structural model that are tried beyond the declared one, as shares of a gauge's largest line, while
 # a channel is missed by more than so many times what is declared of it (mean squares).
@@ -90,10 +90,11 @@ def _beyond(measured: Measured, missed: Float[np.ndarray, "recording feature"]) 
     alike = np.array(["s1 to s4" if name in SENSORS[1:] else name for name in layout.channel])
     every = dict.fromkeys(zip(alike, layout.order, strict=True))
     lines = [(alike == channel) & (layout.order == order) for channel, order in every]
-    by_single = false_discovery_control([chi2.sf(single[:, line].sum(), single[:, line].size) for line in lines])
-    in_common = false_discovery_control([chi2.sf(common[line].sum(), line.sum()) for line in lines])
+    by_single = [chi2.sf(single[:, line].sum(), single[:, line].size) for line in lines]
+    in_common = [chi2.sf(common[line].sum(), line.sum()) for line in lines]
+    missed_by = false_discovery_control([*by_single, *in_common]).reshape(2, -1) < LUCK
     beyond = np.ones(len(layout))
-    for line, by_one, by_all in zip(lines, by_single < LUCK, in_common < LUCK, strict=True):
+    for line, by_one, by_all in zip(lines, *missed_by, strict=True):
         if by_one:
             beyond[line] = 1 + repeats * (single[:, line].mean() - 1)
         if by_all:
@@ -102,7 +103,7 @@ def _beyond(measured: Measured, missed: Float[np.ndarray, "recording feature"]) 
 
 
 def _require_own(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> None:
-    """Refuse a healthy gear of which the model leaves more than UNEXPLAINED of the ripple of a channel."""
+    """Refuse a healthy gear of which the model leaves more than UNEXPLAINED of a channel's ripple, beyond noise."""
     layout = measured.layout
     square = (missed**2).mean(axis=0)
     left = np.maximum(square - 1, 0) * measured.variance.mean(axis=0)
@@ -110,7 +111,7 @@ def _require_own(measured: Measured, missed: Float[np.ndarray, "recording featur
     shares = {}
     for channel in layout.channels:
         ripple = (layout.channel == channel) & (layout.order > 0)
-        if square[ripple].mean() > MISFIT:
+        if square[ripple].max() > MISFIT:
             shares[channel] = float(np.sqrt(left[ripple].sum() / power[ripple].sum()))
     poor = sorted(((share, name) for name, share in shares.items() if share > UNEXPLAINED), reverse=True)
     if poor:

@@ -95,8 +95,8 @@ def allowance(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
 def _of_structure(fitted: Fitted, signed: Float[np.ndarray, " row"]) -> Float[np.ndarray, "row column"]:
     """What an inaccurate structural model leaves open of a signature."""
     measured = fitted.measured
-    by_recording = signed.reshape(measured.values.shape)
-    return measured.rows(fitted.unit.open_of(by_recording, measured.situations, measured.layout))
+    columns = fitted.unit.open_of(signed.reshape(measured.values.shape), measured.layout)
+    return columns.reshape(len(signed), -1)
 
 
 def open_form(fitted: Fitted, added: int) -> Fitted:

@@ -17,7 +17,7 @@ from swgsim.recording import Recording
 ORDERS = 12
 FITTED = 16
 # Fewest samples per revolution that tell all these orders from each other.
-DENSE = 2 * FITTED + 2
+DENSE = 2 * FITTED + 1
 # The angle itself is what all other channels are plotted against.
 COMPARED = ("n_in", "T_in", "T_out", "s0", "s1", "s2", "s3", "s4")
 
@@ -83,17 +83,14 @@ def features(recording: Recording, layout: Layout) -> Float[np.ndarray, " featur
     ValueError
         If a revolution has too few samples for the orders that are fitted.
     """
-    _require_dense(recording)
     columns, values = basis(recording.channels["phi_in"], FITTED), _values(recording, layout)
     kept = np.concatenate([np.arange(ORDERS + 1), FITTED + 1 + np.arange(ORDERS)])
     return _coefficients(columns, values)[kept].T.ravel()
 
 
-def remainder(
-    recording: Recording, layout: Layout, columns: Float[np.ndarray, "time column"] | None = None
-) -> Float[np.ndarray, "channel time"]:
-    """What the integer orders up to FITTED, or other columns, leave of every channel."""
-    columns = basis(recording.channels["phi_in"], FITTED) if columns is None else columns
+def remainder(recording: Recording, layout: Layout) -> Float[np.ndarray, "channel time"]:
+    """What the integer orders up to FITTED leave of every channel; raises like :func:`features`."""
+    columns = basis(recording.channels["phi_in"], FITTED)
     values = _values(recording, layout)
     return (values - columns @ _coefficients(columns, values)).T
 
@@ -102,14 +99,15 @@ def _require_dense(recording: Recording) -> None:
     angle = recording.channels["phi_in"]
     dense = 2 * np.pi * (len(angle) - 1) / abs(float(angle[-1] - angle[0]))
     if dense < DENSE:
+        enough = np.ceil(recording.rate * (DENSE + 1) / dense)
         raise ValueError(
             f"recording {recording.name}: {dense:.1f} samples per revolution of the wave generator, at least {DENSE} "
-            f"are needed to see the orders up to {FITTED}: sample at {recording.rate * DENSE / dense:.0f} Hz or more, "
-            "or leave this speed out"
+            f"are needed to see the orders up to {FITTED}: sample at {enough:.0f} Hz or more, or leave this speed out"
         )
 
 
 def _values(recording: Recording, layout: Layout) -> Float[np.ndarray, "time channel"]:
+    _require_dense(recording)
     return np.stack([recording.channels[name] for name in layout.channels], axis=1)
 
 

@@ -18,7 +18,7 @@ from swgsim.loop.session import Measured
 from swgsim.loop.unit import Unit
 
 # A parameter of a unit that was fitted so many spreads from its declared value was bent by what the model lacks, if a
-# channel is still missed by so many times what is declared of it (mean squares).
+# channel is still missed by so many times what is declared of it (mean squares), which is no matter of noise.
 BENT, MISFIT = 5.0, 10.0
 
 

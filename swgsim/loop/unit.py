@@ -11,7 +11,7 @@ from swgsim.gear import Gear
 from swgsim.loop.calibration import linearised
 from swgsim.loop.declared import Declared, of_unit
 from swgsim.loop.features import Layout
-from swgsim.loop.form import form_columns, largest_lines
+from swgsim.loop.form import form_columns, largest_lines, lines_anywhere
 from swgsim.loop.healthy import FRICTION, of_friction, of_gauges
 from swgsim.loop.model import Model, Situation
 from swgsim.loop.scatter import Scatter
@@ -105,7 +105,7 @@ class Unit:
         return LeftOpen(predicted, shift, open_ if self.reach is None else open_ @ self.reach, of_parameters)
 
     def open_of(
-        self, signature: Float[np.ndarray, "any feature"], situations: Sequence[Situation], layout: Layout
+        self, signature: Float[np.ndarray, "situation feature"], layout: Layout
     ) -> Float[np.ndarray, "situation feature column"]:
         """What an inaccurate structural model leaves open of an effect: its lines lie off as those of the maps do.
 
@@ -114,8 +114,8 @@ class Unit:
         form.
         """
         if self.structure <= STRUCTURE:
-            return np.zeros((len(situations), len(layout), 0))
-        return self.structure * form_columns(largest_lines(signature, layout), situations, layout, self.powers)
+            return np.zeros((*signature.shape, 0))
+        return self.structure * lines_anywhere(signature, layout)
 
 
 class LeftOpen(NamedTuple):
