@@ -4,11 +4,8 @@ Every job hands out its tasks here, and keeps what they give as files, so that a
 """
 
 import re
-import signal
-import threading
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -82,25 +79,6 @@ class Engine:
             # A worker that has grown by 300 MiB is replaced, and says so as if it were an error.
             warnings.filterwarnings("ignore", "A worker stopped while some jobs were given", UserWarning)
             pool = joblib.Parallel(min(self.workers or joblib.cpu_count(), max(count, 1)), return_as="generator")
-            with _deaf_to_interrupts():
-                results = pool(joblib.delayed(function)(*task) for task in tasks)
-            yield from results
+            yield from pool(joblib.delayed(function)(*task) for task in tasks)
             return
         yield from cluster.results(self.scheduler, function, tasks, beside)
-
-
-@contextmanager
-def _deaf_to_interrupts() -> Iterator[None]:
-    """Processes that are started meanwhile ignore Ctrl-C for good.
-
-    It reaches all processes at once, and the one that hands out tasks ends the others, which have nothing to say of it.
-    Only the main thread can set this, and only it is interrupted.
-    """
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
