@@ -4,6 +4,7 @@ import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import interrupts
 from hydra import compose, initialize_config_dir
 from hydra.core.global_hydra import GlobalHydra
 from hydra.core.override_parser.overrides_parser import OverridesParser
@@ -15,6 +16,7 @@ CONF = Path(__file__).parent.parent / "conf"
 
 def answered(main: Callable[[], object], config_name: str) -> None:
     """Run a Hydra main; where it fails, name the choices of every key that does not exist; stop quietly at Ctrl-C."""
+    interrupts.kept()
     try:
         main()
     except KeyboardInterrupt:

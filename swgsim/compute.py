@@ -4,9 +4,12 @@ Every job hands out its tasks here, and keeps what they give as files, so that a
 """
 
 import re
+import signal
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
+from multiprocessing import resource_tracker
 from typing import Any
 
 import joblib
@@ -79,6 +82,22 @@ class Engine:
             # A worker that has grown by 300 MiB is replaced, and says so as if it were an error.
             warnings.filterwarnings("ignore", "A worker stopped while some jobs were given", UserWarning)
             pool = joblib.Parallel(min(self.workers or joblib.cpu_count(), max(count, 1)), return_as="generator")
-            yield from pool(joblib.delayed(function)(*task) for task in tasks)
+            with _workers_deaf_to_interrupts():
+                results = pool(joblib.delayed(function)(*task) for task in tasks)
+            yield from results
             return
         yield from cluster.results(self.scheduler, function, tasks, beside)
+
+
+@contextmanager
+def _workers_deaf_to_interrupts() -> Iterator[None]:
+    """Workers started meanwhile do not hear Ctrl-C: this process, which does, ends them.
+
+    Heard at any place of theirs, it would be lost in a destructor, or be reported as an error while they start.
+    """
+    resource_tracker.ensure_running()  # in Python 3.11 its start lets Ctrl-C through again
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)

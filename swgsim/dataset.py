@@ -8,7 +8,8 @@ import os
 import resource
 import shutil
 import socket
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -80,7 +81,7 @@ def generate(plan: Plan, path: Path, engine: Engine, progress: Callable[[int], o
     tasks = ((plan, cases, file) for cases, file in zip(plan.blocks(), files, strict=True))
     peak: dict[str, float] = {}
 
-    def made() -> Iterator[Recordings]:
+    def made() -> Generator[Recordings, None, None]:
         """The parts in their order: they are joined while the workers make the next ones."""
         for part, file in zip(engine.results(_part, tasks, len(files)), files, strict=True):
             if part.flaw:
@@ -89,7 +90,13 @@ def generate(plan: Plan, path: Path, engine: Engine, progress: Callable[[int], o
             progress(part.rows)
             yield _read(plan, file)
 
-    storage.write(path, made(), len(plan))
+    try:
+        with closing(made()) as blocks:
+            storage.write(path, blocks, len(plan))
+    except BaseException:
+        for left in parts.glob(".*.tmp"):  # of workers that were ended while they wrote
+            left.unlink(missing_ok=True)
+        raise
     shutil.rmtree(parts, ignore_errors=True)  # where a worker of a killed run may be at its last part
     own = usage()
     peak[own.process] = own.peak_memory_mib
