@@ -5,6 +5,8 @@ import pytest
 from loop_fixtures import drawn, fitted_to, holding
 
 from swgsim.effects.frozen import FULL_LOAD
+from swgsim.effects.regularity import LAWS
+from swgsim.gear import OperatingPoint
 from swgsim.loop.features import ORDERS, Layout
 from swgsim.loop.vocabulary import Atom, atoms, columns, strongest
 
@@ -55,6 +57,17 @@ def test_an_offset_in_one_gauge(fitted):
     assert best.atom == Atom(0, "in s3 alone", "constant")
     assert best.amplitude == pytest.approx(6, abs=2)
     assert best.phase == pytest.approx(np.pi)
+
+
+def test_laws_that_the_operating_points_do_not_tell_apart_are_rivals(fitted):
+    """At one load all laws of the load are one; at three they are told apart."""
+    one_load = fitted_to(LAYOUT, np.random.default_rng(1), points=[OperatingPoint(n, 39.0) for n in (2000.0, 4000.0)])
+    of_load = {"constant", *(law for law in LAWS if law.endswith("of the load") or law.endswith("to the load"))}
+    for now, laws in ((fitted, {"proportional to the load"}), (one_load, of_load)):
+        residual = travelling(now, 3, 0, 50.0, 0.7) + drawn(now.whole, np.random.default_rng(8))
+        best = strongest(holding(now, residual), np.random.default_rng(9))
+        assert {best.atom.law, *best.rivals} == laws
+        assert all(law in str(best) for law in best.rivals)
 
 
 def test_phase_is_that_of_the_cosine(fitted):

@@ -25,12 +25,24 @@ from swgsim.blind.table import table
 from swgsim.compute import Engine
 from swgsim.effects.library import SEARCHED, named
 from swgsim.files import sole_maker, write_json, write_text
-from swgsim.loop import asking, beside, commissioning, evidence, fitting, lines, screening, sidelines, trial, unit
+from swgsim.loop import (
+    asking,
+    beside,
+    commissioning,
+    evidence,
+    fitting,
+    lines,
+    patching,
+    screening,
+    sidelines,
+    trial,
+    unit,
+)
 from swgsim.version import code_version
 
 THRESHOLDS = {
     "alpha": asking.ALPHA,
-    "least_gain": trial.LEAST_GAIN,
+    "least_gain": evidence.LEAST_GAIN,
     "least_evidence": trial.LEAST_EVIDENCE,
     "exact": trial.EXACT,
     "pair_gain": asking.PAIR_GAIN,
@@ -47,6 +59,7 @@ THRESHOLDS = {
     "outdone_by_lines": [lines.OUTDONE, lines.OUTDONE_SHARE],
     "another_thing": beside.ANOTHER_THING,
     "elsewhere": beside.ELSEWHERE,
+    "worse_as_a_patch": patching.WORSE,
     "detectable": DETECTABLE,
     "look_alike": judged.LOOK_ALIKE,
     "worse": judged.WORSE,

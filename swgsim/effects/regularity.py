@@ -24,6 +24,11 @@ PATTERNS: Mapping[str, Mapping[str, complex]] = {
     "opposite in s2 and s4": {"s2": 1, "s4": -1},
     **{f"in {name} alone": {name: 1} for name in ("s0", "s1", "s2", "s3", "s4", "T_in", "T_out", "n_in")},
 }
+# Laws of what rises during a session, all together, and not so in another.
+OF_TEMPERATURE, OF_TIME = (
+    "proportional to the temperature above 25 degC",
+    "proportional to the time since the session began",
+)
 FULL_SPEED, KELVIN, HOUR = 4000.0, 10.0, 3600.0
 LAWS: Mapping[str, Callable[[OperatingPoint, Conditions], float]] = {
     "constant": lambda point, _: 1.0,
@@ -33,8 +38,8 @@ LAWS: Mapping[str, Callable[[OperatingPoint, Conditions], float]] = {
     "proportional to the speed": lambda point, _: point.n_in_rpm / FULL_SPEED,
     "with the square of the speed": lambda point, _: (point.n_in_rpm / FULL_SPEED) ** 2,
     "proportional to load and speed": lambda point, _: point.T_out / FULL_LOAD * point.n_in_rpm / FULL_SPEED,
-    "proportional to the temperature above 25 degC": lambda _, conditions: conditions.warmer / KELVIN,
-    "proportional to the time since the session began": lambda _, conditions: conditions.elapsed / HOUR,
+    OF_TEMPERATURE: lambda _, conditions: conditions.warmer / KELVIN,
+    OF_TIME: lambda _, conditions: conditions.elapsed / HOUR,
 }
 
 

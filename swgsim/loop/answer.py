@@ -1,7 +1,7 @@
 """The answer of the loop: what is missing in the model, in one sentence and in numbers."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from swgsim.effects.base import Effect
 from swgsim.effects.regularity import Regularity
@@ -9,12 +9,13 @@ from swgsim.effects.text import in_words
 from swgsim.loop.asking import ALPHA
 from swgsim.loop.between import between
 from swgsim.loop.closing import Closed, close
-from swgsim.loop.fitting import Fitted, extended
+from swgsim.loop.fitting import Fitted
 from swgsim.loop.lines import cleaned, search
+from swgsim.loop.patching import patched
 from swgsim.loop.screening import Score
 from swgsim.loop.session import Measured
 from swgsim.loop.sidelines import Sideline
-from swgsim.loop.trial import LEAST_GAIN, Trial, gained
+from swgsim.loop.trial import Trial
 from swgsim.loop.unit import Unit
 from swgsim.loop.unnamed import Unnamed
 from swgsim.loop.vocabulary import Described, freed, strongest
@@ -137,7 +138,7 @@ def answer(
     absorbed = tuple(score for score in closed.scores if score.absorbed)
     found = closed.steps or lines.named
     verdict = FOUND if found else UNKNOWN if closed.rejected or unknown or lines.unnamed else NOTHING
-    return Answer(verdict, _patched(closed, unknown), tuple(known), lines.named, unknown, lines.unnamed, absorbed)
+    return Answer(verdict, patched(closed, unknown), tuple(known), lines.named, unknown, lines.unnamed, absorbed)
 
 
 def _unknown(fitted: Fitted, seed: int) -> tuple[Described, ...]:
@@ -150,12 +151,3 @@ def _unknown(fitted: Fitted, seed: int) -> tuple[Described, ...]:
         found.append(best)
         fitted = freed(fitted, best)
     return tuple(found)
-
-
-def _patched(closed: Closed, unknown: Sequence[Described]) -> Closed:
-    """With those regularities in the model too that pay on operating points they were not fitted to."""
-    for each in unknown if len(closed.after.predictive) > 1 else ():
-        fitted = extended(closed.after, [each.effect])
-        if fitted.calibrated.settled and gained(closed.after, fitted)[0].sum() > LEAST_GAIN:
-            closed = replace(closed, after=fitted)
-    return closed

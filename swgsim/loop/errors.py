@@ -26,13 +26,24 @@ class Errors:
 
 def errors(fitted: Fitted) -> Errors:
     """Errors of a model on the recordings it was fitted to."""
+    return Errors(per_channel(fitted.measured, fitted.residual), per_channel(fitted.measured, _left_out(fitted)))
+
+
+def of_points_left_out(fitted: Fitted) -> Float[np.ndarray, " point"]:
+    """Root mean square error of every operating point, by the model fitted to the others, in units of the floor."""
+    weighed = _left_out(fitted) ** 2 / fitted.errors.variance
+    return np.array([np.sqrt(weighed[block].mean()) for block in fitted.measured.point_rows()])
+
+
+def _left_out(fitted: Fitted) -> Float[np.ndarray, " row"]:
+    """Errors of every operating point by the model fitted to the others; NaN where there is one only."""
     blocks = fitted.measured.point_rows()
     missed = np.full(len(fitted.residual), np.nan)
     parameters = fitted.J.shape[1]
     for block in blocks if len(blocks) > 1 else []:
         told = fitted.whole.left_out(fitted.from_start, block).common[-parameters:] if parameters else np.zeros(0)
         missed[block] = fitted.from_start[block] - fitted.J[block] @ told
-    return Errors(per_channel(fitted.measured, fitted.residual), per_channel(fitted.measured, missed))
+    return missed
 
 
 def noise_floor(measured: Measured) -> Float[np.ndarray, " channel"]:

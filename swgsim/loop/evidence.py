@@ -11,12 +11,14 @@ from swgsim.loop.fitting import Fitted
 from swgsim.loop.model import predict
 from swgsim.singular import svd
 
+# Log-likelihood of left-out operating points by which one explanation is told from another, or from none.
+LEAST_GAIN = 3.0
 # A real cause never has the library's exact shape: its parts may differ from it by this share (standard deviation).
 FORM_TOLERANCE = 0.2
 # Shares of which the likeliest is sought.
 FORM_ERRORS = np.append(0.0, np.geomspace(1e-3, 10, 200))
 # Probability below which the parts contradict one another even so.
-CONTRADICTION = 1e-4
+CONTRADICTION = 1e-3
 
 
 @dataclass(frozen=True)

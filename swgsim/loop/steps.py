@@ -8,10 +8,10 @@ import numpy as np
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities
 from swgsim.loop.asking import ALPHA
-from swgsim.loop.evidence import FORM_TOLERANCE, open_form
+from swgsim.loop.evidence import FORM_TOLERANCE, LEAST_GAIN, open_form
 from swgsim.loop.fitting import Fitted, extended, unbent
 from swgsim.loop.screening import Score
-from swgsim.loop.trial import LEAST_GAIN, Trial
+from swgsim.loop.trial import Trial
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities, size_of
-from swgsim.loop.evidence import Coherence, coherence, open_as_found, open_form, signature
+from swgsim.loop.evidence import LEAST_GAIN, Coherence, coherence, open_as_found, open_form, signature
 from swgsim.loop.fitting import Fitted, extended
 from swgsim.loop.model import Model
 from swgsim.loop.refining import zoom
@@ -18,8 +18,8 @@ from swgsim.loop.vocabulary import Described
 from swgsim.seeds import generator
 from swgsim.singular import svd
 
-# Log-likelihood of left-out operating points that an effect must gain; and of all recordings if those do not tell.
-LEAST_GAIN, LEAST_EVIDENCE = 3.0, 10.0
+# Log-likelihood of all recordings that an effect must gain where left-out operating points do not tell.
+LEAST_EVIDENCE = 10.0
 # Share to which the chain has the size of an effect right at all: an estimate, of what its mesh makes.
 EXACT = 0.01
 # An effect of which no more than this is left, in standard deviations, is none.

@@ -12,6 +12,7 @@ from jaxtyping import Complex, Float
 
 from swgsim.effects.quantity import quantities
 from swgsim.effects.regularity import LAWS, PATTERNS, Regularity
+from swgsim.loop.evidence import LEAST_GAIN
 from swgsim.loop.features import ORDERS, Layout
 from swgsim.loop.fitting import Fitted, extended
 from swgsim.loop.screening import VISIBLE, family_wise
@@ -62,6 +63,8 @@ class Described:
         [rad].
     chance : float
         Of as much by noise in the whole vocabulary; nan where nobody asked.
+    rivals : tuple of str
+        Other laws that explain the same order and pattern as well.
     """
 
     atom: Atom
@@ -70,6 +73,7 @@ class Described:
     amplitude: float
     phase: float
     chance: float = np.nan
+    rivals: tuple[str, ...] = ()
 
     @property
     def rank(self) -> float:
@@ -88,7 +92,8 @@ class Described:
     def __str__(self) -> str:
         what = "the mean" if self.atom.order == 0 else f"order {self.atom.order}"
         unit = {"T": "N m", "n": "rpm"}.get(self.atom.pattern.removeprefix("in ")[:1], "mV/V")
-        return f"{what}, {self.atom.pattern}, {self.atom.law}, amplitude {self.amplitude:.3g} {unit}"
+        law = self.atom.law + (f" (or {', or '.join(self.rivals)})" if self.rivals else "")
+        return f"{what}, {self.atom.pattern}, {law}, amplitude {self.amplitude:.3g} {unit}"
 
 
 def atoms(layout: Layout) -> list[Atom]:
@@ -117,10 +122,16 @@ def describe(fitted: Fitted) -> list[Described]:
 
 
 def strongest(fitted: Fitted, rng: np.random.Generator) -> Described:
-    """The atom that is least likely by luck, with its chance."""
+    """The atom that is least likely by luck, with its chance and its rivals."""
     found = _described(fitted)
     chances = family_wise([U for _, U in found], fitted.whole.whiten(fitted.from_start), fitted, rng)
-    return replace(found[0][0], chance=float(chances[0]))
+    best, *others = (described for described, _ in found)
+    rivals = tuple(
+        other.atom.law
+        for other in others
+        if replace(other.atom, law=best.atom.law) == best.atom and best.gain - other.gain < 2 * LEAST_GAIN
+    )
+    return replace(best, chance=float(chances[0]), rivals=rivals)
 
 
 def _described(fitted: Fitted) -> list[tuple[Described, Float[np.ndarray, "row _"]]]:

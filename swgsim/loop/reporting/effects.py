@@ -8,11 +8,12 @@ from swgsim.effects.quantity import Role, quantities
 from swgsim.effects.text import path_of
 from swgsim.loop.answer import Answer
 from swgsim.loop.errors import errors
+from swgsim.loop.evidence import LEAST_GAIN
 from swgsim.loop.reporting.numbers import estimate, number, probability
 from swgsim.loop.reporting.sizes import Sizes
 from swgsim.loop.sidelines import Sideline
 from swgsim.loop.steps import Step
-from swgsim.loop.trial import LEAST_EVIDENCE, LEAST_GAIN, Trial
+from swgsim.loop.trial import LEAST_EVIDENCE, Trial
 
 
 def names(trial: Trial) -> str:

@@ -43,6 +43,7 @@ def _described(each: Described) -> dict[str, Any]:
         "order": int(each.atom.order),
         "pattern": each.atom.pattern,
         "law": each.atom.law,
+        "rivals": list(each.rivals),
         "amplitude": number(each.amplitude),
         "phase": number(each.phase),
         "chance": number(each.chance),

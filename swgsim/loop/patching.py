@@ -1,0 +1,38 @@
+"""Patches: regularities without a cause, in the model where they hold wherever the recordings can try them."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from swgsim.effects.regularity import OF_TEMPERATURE, OF_TIME
+from swgsim.loop.closing import Closed
+from swgsim.loop.errors import of_points_left_out
+from swgsim.loop.evidence import LEAST_GAIN
+from swgsim.loop.fitting import Fitted, extended
+from swgsim.loop.trial import gained
+from swgsim.loop.vocabulary import Described
+
+# Times what it was that the error at an operating point left out may become: much of it is that of zeros, and luck.
+WORSE = 2.0
+
+
+def patched(closed: Closed, unknown: Sequence[Described]) -> Closed:
+    """With those regularities in the model too that hold at operating points which they were not fitted to.
+
+    One that may follow the temperature, or the time, or another law as well is none of them: what rises together in one
+    session parts in the next.
+    """
+    for each in unknown:
+        if each.rivals and {each.atom.law, *each.rivals} & {OF_TEMPERATURE, OF_TIME}:
+            continue
+        fitted = extended(closed.after, [each.effect])
+        if fitted.calibrated.settled and _holds(closed.after, fitted):
+            closed = replace(closed, after=fitted)
+    return closed
+
+
+def _holds(before: Fitted, after: Fitted) -> bool:
+    """Whether it pays on operating points left out, and spoils none of them."""
+    gains, _ = gained(before, after)
+    if len(gains) < 2 or gains.sum() < LEAST_GAIN or gains.min() < -LEAST_GAIN:
+        return False
+    return bool((of_points_left_out(after) < WORSE * of_points_left_out(before)).all())

@@ -1,0 +1,79 @@
+"""A regularity joins the model where it holds at every operating point, and not by a law of its session."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from loop_fixtures import drawn, fitted_to, holding
+
+from swgsim.effects.regularity import OF_TIME
+from swgsim.loop import patching
+from swgsim.loop.closing import Closed
+from swgsim.loop.declared import Declared
+from swgsim.loop.errors import of_points_left_out
+from swgsim.loop.features import Layout
+from swgsim.loop.fitting import Fitted
+from swgsim.loop.vocabulary import Atom, Described, columns
+
+LAYOUT = Layout(("s1", "s2", "s3", "s4"))
+ATOM = Atom(5, "in s2 alone", "constant")
+
+
+@pytest.fixture
+def fitted() -> Fitted:
+    """Six operating points."""
+    return fitted_to(LAYOUT, np.random.default_rng(1), open_=0)
+
+
+@pytest.fixture(autouse=True)
+def _fit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A fit of the cosine and sine of the atom, which needs no chain."""
+
+    def extended(now: Fitted, _: object) -> Fitted:
+        J = 100 * columns(ATOM, now)
+        weighed = J / now.errors.variance[:, None]
+        told = np.linalg.solve(np.eye(J.shape[1]) + weighed.T @ J, weighed.T @ now.residual)
+        shape = now.calibrated.predicted.shape
+        position = dict(zip(("cosine", "sine"), told.tolist(), strict=True))
+        predicted = now.calibrated.predicted + (J @ told).reshape(shape)
+        calibrated = replace(now.calibrated, position=position, predicted=predicted, J=J.reshape(*shape, -1))
+        amplitude = Declared("mV/V", 100.0, lambda _: 0.0, lambda model, _: model)
+        return replace(now, parameters=dict.fromkeys(position, amplitude), calibrated=calibrated)
+
+    monkeypatch.setattr(patching, "extended", extended)
+
+
+def is_added(fitted: Fitted, shares: np.ndarray, rivals: tuple[str, ...] = ()) -> bool:
+    """Whether the atom is, where every operating point has such a share of it in its noise."""
+    held = np.sum([s * rows for s, rows in zip(shares, fitted.measured.point_rows(), strict=True)], axis=0)
+    now = holding(fitted, 20 * held * columns(ATOM, fitted)[:, 0] + drawn(fitted.errors, np.random.default_rng(2)))
+    described = Described(ATOM, 1000.0, 2, 20.0, 0.0, 0.001, rivals)
+    closed = Closed(now, now, now, (), (), (), (), None)
+    return patching.patched(closed, [described]).after is not now
+
+
+def test_one_that_holds_everywhere_is_added(fitted: Fitted) -> None:
+    assert is_added(fitted, np.ones(6))
+
+
+def test_one_that_does_not_hold_at_one_operating_point_is_not(fitted: Fitted) -> None:
+    assert not is_added(fitted, np.array([1.0, 1, 1, 0, 1, 1]))
+
+
+def test_one_that_may_as_well_follow_the_time_is_not(fitted: Fitted) -> None:
+    assert not is_added(fitted, np.ones(6), rivals=(OF_TIME,))
+
+
+def test_one_whose_laws_differ_between_the_operating_points_only_is_added(fitted: Fitted) -> None:
+    assert is_added(fitted, np.ones(6), rivals=("proportional to the load",))
+
+
+def test_noise_is_not(fitted: Fitted) -> None:
+    assert not is_added(fitted, np.zeros(6))
+
+
+def test_error_of_a_point_left_out_is_that_of_what_the_others_tell(fitted: Fitted) -> None:
+    """What one point alone shows is predicted as nothing there, and the more wrongly elsewhere."""
+    rows = fitted.measured.point_rows()
+    alone = holding(fitted, 50 * rows[2] * np.sqrt(fitted.errors.variance))
+    np.testing.assert_allclose(of_points_left_out(alone), [0, 0, 50, 0, 0, 0])
