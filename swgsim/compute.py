@@ -7,7 +7,7 @@ import re
 import signal
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from multiprocessing import resource_tracker
 from typing import Any
@@ -81,10 +81,14 @@ class Engine:
         if self.scheduler is None:
             # A worker that has grown by 300 MiB is replaced, and says so as if it were an error.
             warnings.filterwarnings("ignore", "A worker stopped while some jobs were given", UserWarning)
+            # So does whoever breaks off.
+            warnings.filterwarnings("ignore", ".*You could benefit from adjusting the input task iterator", UserWarning)
             pool = joblib.Parallel(min(self.workers or joblib.cpu_count(), max(count, 1)), return_as="generator")
-            with _workers_deaf_to_interrupts():
-                results = pool(joblib.delayed(function)(*task) for task in tasks)
-            yield from results
+            with ExitStack() as stack:
+                with _workers_deaf_to_interrupts():
+                    results = pool(joblib.delayed(function)(*task) for task in tasks)
+                    stack.callback(results.close)
+                yield from results
             return
         yield from cluster.results(self.scheduler, function, tasks, beside)
 

@@ -94,7 +94,8 @@ def generate(plan: Plan, path: Path, engine: Engine, progress: Callable[[int], o
         with closing(made()) as blocks:
             storage.write(path, blocks, len(plan))
     except BaseException:
-        for left in parts.glob(".*.tmp"):  # of workers that were ended while they wrote
+        # Workers of this machine were ended while they wrote; those of a cluster finish their parts.
+        for left in parts.glob(".*.tmp") if engine.scheduler is None else ():
             left.unlink(missing_ok=True)
         raise
     shutil.rmtree(parts, ignore_errors=True)  # where a worker of a killed run may be at its last part

@@ -56,8 +56,18 @@ def test_one_that_holds_everywhere_is_added(fitted: Fitted) -> None:
     assert is_added(fitted, np.ones(6))
 
 
-def test_one_that_does_not_hold_at_one_operating_point_is_not(fitted: Fitted) -> None:
+def test_one_that_does_not_hold_at_one_operating_point_is_not(fitted: Fitted, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(patching, "of_points_left_out", lambda _: np.ones(6))  # which would refuse it too
     assert not is_added(fitted, np.array([1.0, 1, 1, 0, 1, 1]))
+
+
+def test_one_that_doubles_the_error_at_an_operating_point_is_not(
+    fitted: Fitted, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for times, added in ((1.5, True), (2.5, False)):
+        errors = {True: np.array([1.0, 1, times, 1, 1, 1]), False: np.ones(6)}
+        monkeypatch.setattr(patching, "of_points_left_out", lambda now, errors=errors: errors[bool(now.parameters)])
+        assert is_added(fitted, np.ones(6)) == added
 
 
 def test_one_that_may_as_well_follow_the_time_is_not(fitted: Fitted) -> None:
@@ -73,7 +83,10 @@ def test_noise_is_not(fitted: Fitted) -> None:
 
 
 def test_error_of_a_point_left_out_is_that_of_what_the_others_tell(fitted: Fitted) -> None:
-    """What one point alone shows is predicted as nothing there, and the more wrongly elsewhere."""
-    rows = fitted.measured.point_rows()
-    alone = holding(fitted, 50 * rows[2] * np.sqrt(fitted.errors.variance))
-    np.testing.assert_allclose(of_points_left_out(alone), [0, 0, 50, 0, 0, 0])
+    """What one point alone shows is predicted as nothing there, and as something where it is not."""
+    shown = 50 * fitted.measured.point_rows()[2] * columns(ATOM, fitted)[:, 0]
+    before = holding(fitted, shown)
+    errors = of_points_left_out(patching.extended(before, ()))
+    assert errors[2] == pytest.approx(of_points_left_out(before)[2])
+    assert np.delete(errors, 2).min() > 0.1 * errors[2]
+    np.testing.assert_array_equal(np.delete(of_points_left_out(before), 2), 0)

@@ -55,6 +55,7 @@ THRESHOLDS = {
     "bent": [fitting.BENT, fitting.MISFIT],
     "luck": commissioning.LUCK,
     "tolerance_of_lines": sidelines.TOLERANCE,
+    "contradiction_of_lines": sidelines.CONTRADICTION,
     "outdone": [beside.OUTDONE, beside.OUTDONE_SHARE, beside.SAME_THING, beside.DWARFED],
     "outdone_by_lines": [lines.OUTDONE, lines.OUTDONE_SHARE],
     "another_thing": beside.ANOTHER_THING,

@@ -30,7 +30,7 @@ def errors(fitted: Fitted) -> Errors:
 
 
 def of_points_left_out(fitted: Fitted) -> Float[np.ndarray, " point"]:
-    """Root mean square error of every operating point, by the model fitted to the others, in units of the floor."""
+    """Root mean square error of every operating point, by the model fitted to the others, in units of the noise."""
     weighed = _left_out(fitted) ** 2 / fitted.errors.variance
     return np.array([np.sqrt(weighed[block].mean()) for block in fitted.measured.point_rows()])
 

@@ -11,7 +11,7 @@ from swgsim.loop.fitting import Fitted
 from swgsim.loop.model import predict
 from swgsim.singular import svd
 
-# Log-likelihood of left-out operating points by which one explanation is told from another, or from none.
+# Log-likelihood by which one explanation is told from another, or from none.
 LEAST_GAIN = 3.0
 # A real cause never has the library's exact shape: its parts may differ from it by this share (standard deviation).
 FORM_TOLERANCE = 0.2

@@ -21,6 +21,8 @@ def patched(closed: Closed, unknown: Sequence[Described]) -> Closed:
     One that may follow the temperature, or the time, or another law as well is none of them: what rises together in one
     session parts in the next.
     """
+    if len(closed.after.predictive) < 2:
+        return closed  # no operating point can be left out
     for each in unknown:
         if each.rivals and {each.atom.law, *each.rivals} & {OF_TEMPERATURE, OF_TIME}:
             continue
@@ -31,8 +33,7 @@ def patched(closed: Closed, unknown: Sequence[Described]) -> Closed:
 
 
 def _holds(before: Fitted, after: Fitted) -> bool:
-    """Whether it pays on operating points left out, and spoils none of them."""
+    """Whether it pays on operating points left out, and makes none of them clearly worse."""
     gains, _ = gained(before, after)
-    if len(gains) < 2 or gains.sum() < LEAST_GAIN or gains.min() < -LEAST_GAIN:
-        return False
-    return bool((of_points_left_out(after) < WORSE * of_points_left_out(before)).all())
+    pays = gains.sum() > LEAST_GAIN and gains.min() > -LEAST_GAIN
+    return bool(pays and (of_points_left_out(after) < WORSE * of_points_left_out(before)).all())

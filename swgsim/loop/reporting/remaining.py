@@ -15,14 +15,15 @@ from swgsim.loop.reporting.effects import names, why
 from swgsim.loop.reporting.numbers import number
 from swgsim.loop.screening import Score
 from swgsim.loop.sidelines import acts_on_signals, is_random
-from swgsim.loop.vocabulary import Described
+from swgsim.loop.vocabulary import Atom, Described
 
 
 def unknown(answer: Answer) -> dict[str, Any] | None:
     """What no effect of the library explains, in words and numbers, and as effects that can be added."""
     if not answer.left:
         return None
-    atoms = [_described(each) for each in answer.unknown]
+    patches = {Atom(patch.order, patch.pattern, patch.law) for patch in answer.patches}
+    atoms = [_described(each) | {"added": each.atom in patches} for each in answer.unknown]
     nearest = answer.nearest
     return {
         "words": answer.left,
