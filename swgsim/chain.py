@@ -226,7 +226,7 @@ def _significant(coefficients: np.ndarray, T_out: float) -> np.ndarray:
 
 def _structure(gear: Gear, effects: Sequence[Effect]) -> tuple:
     """All that an influence map depends on, but for the mesh."""
-    touching = tuple(effect for effect in effects if overrides(effect, "wave_generator", "mesh", "cracks"))
+    touching = tuple(effect for effect in effects if overrides(effect, "wave_generator", "mesh", "carried", "cracks"))
     return gear.flex_spline, gear.transmission.alpha_tooth, gear.wave_generator, gear.gauges, touching
 
 

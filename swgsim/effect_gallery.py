@@ -31,8 +31,8 @@ LEAST = 1e-6
 def typical(kind: type[Effect]) -> Effect:
     """An effect of typical size; choices and positions are their first or default values."""
     values = {name: quantity.typical for name, quantity in quantities(kind).items()}
-    values |= {name: int(q.low) for name, q in quantities(kind).items() if q.role is Role.CHOICE}
-    if "sensor" in values:
+    values |= {name: int(q.typical) for name, q in quantities(kind).items() if q.role is Role.CHOICE}
+    if values.get("sensor") == 0:
         values["sensor"] = 1
     return kind(**values)
 

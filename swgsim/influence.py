@@ -109,9 +109,12 @@ def boundary_conditions(
     share = np.maximum(displacement, 0)
     for effect in effects:
         share = effect.mesh(share, psi, theta)
-    share = share.reshape(len(psi), flex.sector.count, SUBDIVISION).sum(axis=2)
+    whole = share.sum(axis=1, keepdims=True)
+    for effect in effects:
+        share = effect.carried(share, psi, theta)
+    of_sectors = share.reshape(len(psi), flex.sector.count, SUBDIVISION).sum(axis=2)
     at_nodes = displacement[:, SUBDIVISION // 2 :: SUBDIVISION]
-    return at_nodes, share / (share.sum(axis=1, keepdims=True) * flex.tooth_radius)
+    return at_nodes, of_sectors / (whole * flex.tooth_radius)
 
 
 def influence_map(

@@ -42,8 +42,8 @@ SEARCHED = ["eccentric_wave_generator", "cam_form", "reduced_damping", "gauge_ga
 HIDDEN = EccentricWaveGenerator(3e-5, 1.0)
 KEYS = {
     "verdict", "sentence", "noise_floor", "calibrated", "effects", "rejected", "error", "unknown", "next_experiment",
-    "moved", "absorbed", "detectable", "scores", "commissioned", "structure", "less_certain", "channels", "recordings",
-    "defects", "seconds",
+    "moved", "absorbed", "detectable", "scores", "commissioned", "structure", "learned", "less_certain", "channels",
+    "recordings", "defects", "seconds",
 }  # fmt: skip
 
 

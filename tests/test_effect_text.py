@@ -13,8 +13,10 @@ from omegaconf import OmegaConf
 from swgsim import settings
 from swgsim.effects import EccentricWaveGenerator, Effect, ReducedDamping
 from swgsim.effects.library import LIBRARY, SEARCHED, named
+from swgsim.effects.one_gauge import ALL
 from swgsim.effects.quantity import Role, quantities
 from swgsim.effects.text import as_text, from_text, in_words, path_of
+from swgsim.effects.thermal_output import ThermalOutput
 from swgsim.record import record
 
 ROOT = Path(__file__).parents[1]
@@ -153,3 +155,8 @@ def test_every_run_of_every_gear_has_the_effects(mine: str) -> None:
     random = small_plan(effects=(LIBRARY["mains_hum"](0.001),))
     hum = record(random, next(random.blocks())).signals - before.signals
     assert np.abs(np.corrcoef(hum[:, 1])[0, 1:]).min() < 0.9  # a phase of its own in every recording
+
+
+def test_a_sentence_names_the_gauge() -> None:
+    assert in_words(ThermalOutput(3, 2e-4)) == "thermal output of s3 (slope 0.0002 mV/V per K)"
+    assert in_words(ThermalOutput(ALL, 2e-4)).startswith("thermal output of all gauges (")

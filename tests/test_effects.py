@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from chain_fixtures import GEAR
+from chain_fixtures import GEAR, SECTORS
 
 from swgsim.effects import (
     CamForm,
@@ -16,6 +16,8 @@ from swgsim.effects import (
     WarmGrease,
 )
 from swgsim.faults import FAULTS, Variants
+from swgsim.flexspline import solve_flex_spline
+from swgsim.influence import boundary_conditions, fine_angles
 
 EFFECTS = [
     ReducedDamping(0.7),
@@ -70,6 +72,19 @@ def test_tip_crack_takes_the_width_of_its_teeth() -> None:
     theta = 2 * np.pi / 1000 * np.arange(1000)
     share = TipToothCrack(1.0, 1.0, width=4 * 2 * np.pi / 200).mesh(np.ones((1, 1000)), np.zeros(1), theta)
     assert 1000 - share.sum() == pytest.approx(1000 * 4 / 200)
+
+
+def test_the_force_of_a_cracked_tip_is_taken_over_or_lost() -> None:
+    """By four teeth of 200 at the middle of a lobe: cos 2 theta over +-45 degrees of each of two."""
+    flex = solve_flex_spline(GEAR.flex_spline, GEAR.transmission.alpha_tooth, SECTORS)
+    psi = np.zeros(1)
+    depth = np.cos(2 * fine_angles(SECTORS))[None]
+    sums = [
+        boundary_conditions(flex, depth, [TipToothCrack(1.0, 0.0, taken_over=taken_over)], psi)[1].sum()
+        for taken_over in (1, 0)
+    ]
+    assert sums[0] * flex.tooth_radius == pytest.approx(1)
+    assert sums[1] / sums[0] == pytest.approx(1 - 4 * 2 * np.pi / 200 / 2, rel=1e-3)
 
 
 SEVERITIES = {label: (0.7, 0.9) for label in FAULTS} | {"eccentric_wave_generator": (1e-5, 1e-4)}

@@ -15,6 +15,7 @@ from swgsim.effects.churning_loss import ChurningLoss
 from swgsim.effects.cubic_friction import CubicFriction
 from swgsim.effects.elastic_hysteresis import ElasticHysteresis
 from swgsim.effects.flank_friction import FlankFriction
+from swgsim.effects.grease_settling import GreaseSettling
 from swgsim.effects.grease_temperature import GreaseTemperature
 from swgsim.effects.input_unbalance import InputUnbalance
 from swgsim.effects.kinematic_error_order import KinematicErrorOrder
@@ -25,6 +26,7 @@ from swgsim.effects.motor_torque_ripple import MotorTorqueRipple
 from swgsim.effects.position_friction import PositionFriction
 from swgsim.effects.quantity import Role, quantities
 from swgsim.effects.seal_friction import SealFriction
+from swgsim.effects.speed_ripple import SpeedRipple
 from swgsim.effects.stiffening_spring import StiffeningSpring
 from swgsim.effects.stiffness_ripple import StiffnessRipple
 from swgsim.effects.stribeck_friction import StribeckFriction
@@ -53,6 +55,8 @@ EFFECTS = {
         LoadTorqueRipple(3, 0.02, 0.7),
         GreaseTemperature(0.025),
         AgedGrease(0.3),
+        SpeedRipple(3, 2e-3, 0.7),
+        GreaseSettling(0.3, 600.0),
     )
 }
 NAMES = sorted(EFFECTS)
@@ -235,6 +239,15 @@ def test_motor_torque_ripple_is_felt_in_full_and_moves_the_input_inertia(change)
         assert abs(change("MotorTorqueRipple", "n_in", 3, point)) == pytest.approx(ripple, rel=0.08)
 
 
+def test_speed_ripple_is_a_share_of_the_speed_and_takes_its_square_in_torque(change):
+    for point in POINTS:
+        ripple = change("SpeedRipple", "n_in", 3, point) / point.n_in_rpm
+        assert ripple == pytest.approx(2e-3 * np.exp(0.7j), rel=0.25)
+        assert abs(ripple) == pytest.approx(2e-3, rel=0.08)
+    slow, _, fast, _ = ripples(change, "SpeedRipple", 3, "T_in")
+    assert fast / slow == pytest.approx(4, rel=0.05)
+
+
 def test_unbalance_is_a_ripple_of_the_motor_that_the_flange_does_not_feel(recordings, change):
     behind_the_flange = ("n_in", "T_out", *SENSORS)
     assert same(recordings, "InputUnbalance", "against unbalance", SLOW_HEAVY, behind_the_flange)
@@ -357,6 +370,14 @@ def test_grease_follows_the_temperature_of_the_recording(recordings, change):
     assert slow_light == pytest.approx(slow_heavy, rel=0.01)
     assert fast_light / slow_light == pytest.approx(2, rel=0.01)
     assert EFFECTS["GreaseTemperature"].at(RATED, Conditions()).gear(GEAR) == GEAR
+
+
+def test_grease_settles_with_the_time_of_the_session(change):
+    slow_light, slow_heavy, fast_light, _ = mean_torques(change, "GreaseSettling")
+    assert slow_light == pytest.approx(slow_heavy, rel=0.01)
+    assert fast_light / slow_light == pytest.approx(2, rel=0.01)
+    b1 = [EFFECTS["GreaseSettling"].at(RATED, Conditions(elapsed=t)).gear(GEAR).transmission.b1 for t in (0, 600, 1e6)]
+    np.testing.assert_allclose(np.array(b1) / GEAR.transmission.b1, 1 + 0.3 * np.exp([0, -1, -np.inf]))
 
 
 def test_aged_grease_costs_under_load_and_saves_at_speed(change):

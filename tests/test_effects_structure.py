@@ -54,6 +54,7 @@ EFFECTS: Mapping[str, Effect] = {
     "mesh shift": MeshShift(0.05),
     "cage": BearingCage(1e-3, phase=0.7),
     "ball pass": BallPass(1e-3, order=10.3, waves=3, phase=0.7),
+    "breathing": BallPass(1e-3, order=10.3, waves=0, phase=0.7),
 }
 NOTHING: tuple[Effect, ...] = (
     RotatingEccentricity(0.0, 0.3),
@@ -264,7 +265,9 @@ def test_uneven_teeth_differ_by_parity_in_the_orders(change: Change) -> None:
     assert three[4] > 10 * three[6]
 
 
-@pytest.mark.parametrize(("name", "order", "waves"), [("cage", 0.455, 1), ("ball pass", 10.3, 3)])
+@pytest.mark.parametrize(
+    ("name", "order", "waves"), [("cage", 0.455, 1), ("ball pass", 10.3, 3), ("breathing", 10.3, 0)]
+)
 def test_bearing_order_travels_over_the_gauges(
     recordings: dict[tuple[object, Setting], Recording], name: str, order: float, waves: int
 ) -> None:
@@ -276,7 +279,7 @@ def test_bearing_order_travels_over_the_gauges(
         return wave[0] - 1j * wave[1]
 
     base, loaded, fast = line(BASE), line(LOADED), line(FAST)
-    assert np.abs(base[0]) == np.abs(loaded[0]) == 0
+    assert np.abs(loaded[0]) == pytest.approx(1e-3 if waves == 0 else 0, rel=0.01)
     np.testing.assert_allclose(np.abs(loaded[1:]), 1e-3, rtol=0.01)
     np.testing.assert_allclose(np.abs(base[1:]), (0.3 + 0.7 * 0.1) * 1e-3, rtol=0.03)
     np.testing.assert_allclose(np.abs(fast[1:]), np.abs(base[1:]), rtol=0.03)
@@ -337,7 +340,7 @@ def test_laws_hold_at_the_limits_of_load_speed_and_temperature(effect: Effect) -
         (lambda: BearingOrder(1e-3, order=0.1), "order of bearing order is 0.1, .* from 0.4 to 13"),
         (lambda: BearingCage(1e-3, order=0.5), "order of bearing cage is 0.5, .* from 0.44 to 0.47"),
         (lambda: BallPass(1e-3, order=8.0), "order of ball pass is 8.0, .* from 9 to 13"),
-        (lambda: BallPass(1e-3, waves=4), "waves of ball pass is 4, must be an integer from 1 to 3"),
+        (lambda: BallPass(1e-3, waves=4), "waves of ball pass is 4, must be an integer from 0 to 3"),
     ],
 )
 def test_beyond_physical_limits_the_error_names_the_limit(make: Callable[[], Effect], message: str) -> None:

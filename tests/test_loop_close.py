@@ -97,6 +97,20 @@ def test_what_the_healthy_gear_did_as_well_is_not_missing():
     assert found.r == pytest.approx(10e-6, rel=0.2)
 
 
+def test_a_line_that_the_truss_has_quite_different_is_learned():
+    """In s0 the arms of four pairs cancel; what is left of them says nothing of how accurate it is."""
+    own_line = Regularity(4, 3e-3, 0.4, "in s0 alone", "constant")
+    own = commission(recorded((own_line,), seed=1), Unit(Model(GEAR)))
+    layout = recorded((), seed=1).layout
+    here = (layout.channel == "s0") & (layout.order == 4)
+    assert (own.looseness[here] > 3).all()
+    assert own.structure == STRUCTURE
+    again = fit(recorded((own_line,), seed=2), own)
+    assert np.abs(again.missed[:, here].mean(axis=0)).max() * np.sqrt(len(again.measured)) < 4
+    assert again.misfit["s0"] < 1.5
+    assert accepted(close(recorded((own_line, ECCENTRIC), seed=3), own, SEARCHED))[0].r == pytest.approx(10e-6, rel=0.2)
+
+
 def test_nothing_is_found_where_nothing_is_missing(unit):
     closed = close(recorded((), seed=2), unit, SEARCHED)
     assert closed.steps == closed.rejected == ()

@@ -22,4 +22,4 @@ class BallPass(BearingOrder):
     """
 
     order: float = shape(10.0, unit="-", low=9, high=13, points=49)
-    waves: int = choice(2, low=1, high=3)
+    waves: int = choice(2, low=0, high=3)

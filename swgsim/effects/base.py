@@ -141,6 +141,15 @@ class Effect:
         """Share of the tangential force that is carried at each angle; the chain scales the shares to sum to one."""
         return share
 
+    def carried(
+        self,
+        share: Float[np.ndarray, "psi theta"],
+        psi: Float[np.ndarray, " psi"],
+        theta: Float[np.ndarray, " theta"],
+    ) -> Float[np.ndarray, "psi theta"]:
+        """Of these shares, what each angle passes on; no other angle takes over what is lost."""
+        return share
+
     def cracks(self) -> tuple[Crack, ...]:
         """Places where the rim lost stiffness."""
         return ()

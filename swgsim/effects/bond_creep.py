@@ -24,12 +24,12 @@ class BondCreep(Effect):
     share : float
         Up to 0.05 (beyond, the bond has failed) both ways.
     time_constant : float
-        [s], from 60 to 36 000.
+        [s], from 60 to 7200; what is slower is a straight line within a session.
     """
 
     place = "gauge"
     share: float = size(unit="-", low=-0.05, high=0.05, typical=0.001)
-    time_constant: float = shape(900.0, unit="s", low=60, high=36_000)
+    time_constant: float = shape(900.0, unit="s", low=60, high=7200, points=7)
 
     def gauge(self, signals: Float[np.ndarray, "5 time"], scene: Scene) -> Float[np.ndarray, "5 time"]:
         """The signals with more of their means."""

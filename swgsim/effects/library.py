@@ -33,6 +33,7 @@ from swgsim.effects.gauge_direction import GaugeDirection
 from swgsim.effects.gauge_factor_temperature import GaugeFactorTemperature
 from swgsim.effects.gauge_gain import GaugeGain
 from swgsim.effects.gauge_position import GaugePosition
+from swgsim.effects.grease_settling import GreaseSettling
 from swgsim.effects.grease_temperature import GreaseTemperature
 from swgsim.effects.input_unbalance import InputUnbalance
 from swgsim.effects.kinematic_error_order import KinematicErrorOrder
@@ -59,6 +60,7 @@ from swgsim.effects.seal_friction import SealFriction
 from swgsim.effects.self_heating import SelfHeating
 from swgsim.effects.signal_hysteresis import SignalHysteresis
 from swgsim.effects.speed_deformation import SpeedDeformation
+from swgsim.effects.speed_ripple import SpeedRipple
 from swgsim.effects.stiffening_spring import StiffeningSpring
 from swgsim.effects.stiffness_ripple import StiffnessRipple
 from swgsim.effects.stribeck_friction import StribeckFriction
@@ -84,6 +86,7 @@ SEARCHED: tuple[type[Effect], ...] = (
     GaugeDirection,
     GaugeGain,
     GaugePosition,
+    GreaseSettling,
     GreaseTemperature,
     KinematicErrorOrder,
     LoadDependentFriction,
@@ -102,6 +105,7 @@ SEARCHED: tuple[type[Effect], ...] = (
     MotorTorqueRipple,
     PositionFriction,
     SealFriction,
+    SpeedRipple,
     StiffnessRipple,
     StribeckFriction,
     # wave generator

@@ -7,35 +7,40 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.effects.base import Effect, Scene
-from swgsim.effects.quantity import random_phase, shape, size
+from swgsim.effects.one_gauge import ALL, weights
+from swgsim.effects.quantity import choice, random_phase, shape, size
 from swgsim.effects.turns import on_gauges
 
 
 @dataclass(frozen=True)
 class MainsHum(Effect):
-    """The mains or one of its harmonics couples into all bridges alike (physics.md SE20).
+    """The mains or one of its harmonics couples into all bridges alike, or into the cable of one (physics.md SE20).
 
-    Signature: a line at a fixed frequency, so at another order at every speed, alike in all gauges, with another phase
-    in every recording, whatever the load. Typical: 0.1 to 1 % of order 2, 0.0002 to 0.002 mV/V.
+    Signature: a line at a fixed frequency, so at another order at every speed, alike in all gauges or in one, with
+    another phase in every recording, whatever the load. Typical: 0.1 to 1 % of order 2, 0.0002 to 0.002 mV/V.
 
     Attributes
     ----------
     amplitude : float
         [mV/V], from 0 to 0.05 (a quarter of order 2; beyond, a cable is broken).
     frequency : float
-        [Hz], from 40 to 150: mains of 50 and 60 Hz and their harmonics.
+        [Hz], from 40 to 310: mains of 50 and 60 Hz and their harmonics up to the fifth or sixth.
     phase : float
         At the trigger [rad].
+    sensor : int
+        From 0 to 4; 5: all of them.
     """
 
     place = "acquisition"
     amplitude: float = size(unit="mV/V", low=0, high=0.05, typical=5e-4)
-    frequency: float = shape(50.0, unit="Hz", low=40, high=150, points=12)
+    frequency: float = shape(50.0, unit="Hz", low=40, high=310, points=28)
     phase: float = random_phase()
+    sensor: int = choice(ALL, low=0, high=ALL)
 
     def acquisition(
         self, channels: Mapping[str, Float[np.ndarray, " time"]], scene: Scene
     ) -> Mapping[str, Float[np.ndarray, " time"]]:
         """The channels with hum on the gauges."""
         hum = self.amplitude * np.cos(2 * np.pi * self.frequency * scene.time + self.phase)
-        return on_gauges(channels, lambda _, signal: signal + hum)
+        felt = weights(self.sensor)[:, 0]
+        return on_gauges(channels, lambda s, signal: signal + felt[s] * hum)

@@ -1,9 +1,20 @@
-"""One bridge of a gear's gauge set, changed."""
+"""One bridge of a gear's gauge set, or all of them alike."""
 
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+from jaxtyping import Float
+
 from swgsim.gear import Gear
+
+# In place of the number of a gauge: all of them.
+ALL = 5
+
+
+def weights(sensor: int) -> Float[np.ndarray, "5 1"]:
+    """1 for the gauge, or for all of them, 0 for the others."""
+    return np.array([[float(sensor in (s, ALL))] for s in range(5)])
 
 
 def with_gauge(gear: Gear, sensor: int, **changes: float) -> Gear:

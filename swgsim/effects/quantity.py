@@ -32,7 +32,7 @@ class Quantity:
     low, high : float
         Beyond, the model does not hold or the gear would be broken otherwise.
     typical : float
-        The size that the literature names, or the middle of what is plausible.
+        The size that the literature names, or the middle of what is plausible; of a choice, its default or lowest.
     nothing : float
         Of a size: the value at which the effect changes nothing.
     points : int
@@ -95,7 +95,7 @@ def shape(default: float, *, unit: str, low: float, high: float, points: int = 1
 
 def choice(default: Any = MISSING, *, low: int, high: int) -> Any:
     """An integer such as an order, or the number of a gauge."""
-    return _parameter(Quantity(Role.CHOICE, "-", low, high, low), default)
+    return _parameter(Quantity(Role.CHOICE, "-", low, high, low if default is MISSING else default), default)
 
 
 def quantities(kind: type) -> dict[str, Quantity]:

@@ -28,7 +28,7 @@ class SelfHeating(Effect):
 
     place = "gauge"
     drift: float = size(unit="mV/V", low=-0.1, high=0.1, typical=0.01)
-    time_constant: float = shape(30.0, unit="s", low=5, high=600)
+    time_constant: float = shape(30.0, unit="s", low=5, high=600, points=7)
 
     def gauge(self, signals: Float[np.ndarray, "5 time"], scene: Scene) -> Float[np.ndarray, "5 time"]:
         """The signals with their zeros moved."""

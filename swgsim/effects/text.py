@@ -18,6 +18,7 @@ import yaml
 
 from swgsim.effects.base import Effect
 from swgsim.effects.library import LIBRARY, named
+from swgsim.effects.one_gauge import ALL
 from swgsim.effects.quantity import Role, quantities, size_of
 from swgsim.plain_yaml import PlainLoader, plain
 
@@ -105,10 +106,12 @@ def path_of(kind: type[Effect]) -> str:
 
 
 def in_words(effect: Effect) -> str:
-    """An effect for a sentence, with its size."""
+    """An effect for a sentence, with its size, and the gauge if it is one of a gauge."""
     name = size_of(type(effect))
     unit = quantities(type(effect))[name].unit
-    return f"{effect.title()} ({sized(name, format(getattr(effect, name), '.3g'), unit)})"
+    sensor = getattr(effect, "sensor", None)
+    of = "" if sensor is None else " of all gauges" if sensor == ALL else f" of s{sensor}"
+    return f"{effect.title()}{of} ({sized(name, format(getattr(effect, name), '.3g'), unit)})"
 
 
 def sized(name: str, value: str, unit: str) -> str:

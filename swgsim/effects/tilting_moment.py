@@ -6,31 +6,38 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.effects.base import Effect, Scene
-from swgsim.effects.quantity import phase, size
+from swgsim.effects.frozen import FULL_LOAD
+from swgsim.effects.quantity import choice, phase, size
 from swgsim.gauges import LAYOUT
 
 
 @dataclass(frozen=True)
 class TiltingMoment(Effect):
     """A tilting moment or radial load on the housing bends the collar, o_i + strain cos(beta_i - theta) (physics.md
-    SE16). A static field of three waves, as of three bolts, is the same at gauges 90 degrees apart (SE18).
+    SE16); as a weight does, or in proportion to the torque, as a belt or a lever does. A static field of three waves,
+    as of three bolts, is the same at gauges 90 degrees apart (SE18).
 
-    Signature: opposite means of opposite gauges, at all loads and speeds; s0 and the orders stay. It mimics an
-    eccentric wave generator, which also changes even orders under load. Typical: 0.5 to 1 % of full scale, 0.001 mV/V,
-    per rated moment, up to 5 % on a thin collar.
+    Signature: opposite means of opposite gauges, at all loads or in proportion to them; s0 and the orders stay. It
+    mimics an eccentric wave generator, which also changes even orders under load. Typical: 0.5 to 1 % of full scale,
+    0.001 mV/V, per rated moment, up to 5 % on a thin collar.
 
     Attributes
     ----------
     strain : float
-        [mV/V], from 0 to 0.1 (nearly all of the signal by 70 N m; beyond, the output bearing is overloaded).
+        [mV/V], at 70 N m if it follows the load, from 0 to 0.1 (nearly all of the signal by 70 N m; beyond, the output
+        bearing is overloaded).
     theta : float
         Direction of the moment [rad].
+    with_load : int
+        1 if it is in proportion to the load, 0 if it is constant.
     """
 
     place = "gauge"
     strain: float = size(unit="mV/V", low=0, high=0.1, typical=0.002)
     theta: float = phase()
+    with_load: int = choice(0, low=0, high=1)
 
     def gauge(self, signals: Float[np.ndarray, "5 time"], scene: Scene) -> Float[np.ndarray, "5 time"]:
         """The signals with the offsets of one wave around the collar."""
-        return signals + self.strain * np.array([[np.cos(angles - self.theta).mean()] for angles in LAYOUT])
+        strain = self.strain * (scene.T_out / FULL_LOAD) ** self.with_load
+        return signals + strain * np.array([[np.cos(angles - self.theta).mean()] for angles in LAYOUT])

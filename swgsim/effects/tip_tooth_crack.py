@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.effects.base import Effect
-from swgsim.effects.quantity import angle, shape, size
+from swgsim.effects.quantity import angle, choice, shape, size
 
 # Pitch of one tooth of 200 [rad].
 TOOTH = 2 * np.pi / 200
@@ -14,9 +14,11 @@ TOOTH = 2 * np.pi / 200
 
 @dataclass(frozen=True)
 class TipToothCrack(Effect):
-    """The tip of a tooth is cracked or gone: its force is strongly reduced (section II-B), the others take it over.
+    """The tip of a tooth is cracked or gone: its force is strongly reduced (section II-B). The other teeth take it
+    over, or, where something else holds the output as well, nobody does; the paper does not say which.
 
-    Signature: short, small deviations twice per revolution, when a lobe passes the tooth; they grow with load.
+    Signature: short, small deviations twice per revolution, when a lobe passes the tooth; they grow with load. If
+    nobody takes the force over, all gauges, s0 above all, show less torque meanwhile, several times as much.
 
     Attributes
     ----------
@@ -27,12 +29,15 @@ class TipToothCrack(Effect):
     width : float
         Angle of the affected teeth [rad], from one to ten teeth of 200, as in FE studies. The paper loads a node of its
         truss, which stands for several teeth; the default is four of 200.
+    taken_over : int
+        1 if the other teeth take the force over, 0 if nobody does.
     """
 
     place = "mesh"
     force_loss: float = size(unit="-", low=0, high=1, typical=0.5)
     theta: float = angle(points=40)
     width: float = shape(4 * TOOTH, unit="rad", low=TOOTH, high=10 * TOOTH)
+    taken_over: int = choice(1, low=0, high=1)
 
     def mesh(
         self,
@@ -40,7 +45,22 @@ class TipToothCrack(Effect):
         psi: Float[np.ndarray, " psi"],
         theta: Float[np.ndarray, " theta"],
     ) -> Float[np.ndarray, "psi theta"]:
-        """The shares with less force on the cracked teeth; a sampled angle loses what it holds of their width."""
+        """The shares with less force on the cracked teeth, if the others take it over."""
+        return self._reduced(share, theta) if self.taken_over else share
+
+    def carried(
+        self,
+        share: Float[np.ndarray, "psi theta"],
+        psi: Float[np.ndarray, " psi"],
+        theta: Float[np.ndarray, " theta"],
+    ) -> Float[np.ndarray, "psi theta"]:
+        """The shares with less force on the cracked teeth, if nobody takes it over."""
+        return share if self.taken_over else self._reduced(share, theta)
+
+    def _reduced(
+        self, share: Float[np.ndarray, "psi theta"], theta: Float[np.ndarray, " theta"]
+    ) -> Float[np.ndarray, "psi theta"]:
+        """A sampled angle loses what it holds of the width of the cracked teeth."""
         pitch = theta[1] - theta[0]
         distance = np.abs((theta - self.theta + np.pi) % (2 * np.pi) - np.pi)
         covered = np.clip((self.width + pitch) / 2 - distance, 0, min(self.width, pitch)) / pitch

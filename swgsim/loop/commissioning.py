@@ -22,6 +22,9 @@ UNEXPLAINED = 0.1
 COARSER, WELL = (0.03, 0.1, 0.3), 1.3
 # Of the lines that are said to be missed, the share that may be luck.
 LUCK = 0.05
+# A line of a gauge may deviate by this share of the largest line of all gauges, at most: in a bridge of many arms lines
+# cancel that are large in each of them, and what is left is no measure of their accuracy.
+LOOSEST = COARSER[-1]
 
 
 def commission(measured: Measured, unit: Unit) -> Unit:
@@ -33,7 +36,7 @@ def commission(measured: Measured, unit: Unit) -> Unit:
         If the model does not describe the healthy gear.
     """
     forget()
-    fitted = _as_accurate_as_shown(measured, replace(unit, seen_healthy=True))
+    fitted = _loosened(_as_accurate_as_shown(measured, replace(unit, seen_healthy=True)))
     _require_own(measured, fitted.missed)
     beyond = _beyond(measured, fitted.missed)
     if beyond.max() > 1:
@@ -70,6 +73,19 @@ def _as_accurate_as_shown(measured: Measured, unit: Unit) -> Fitted:
             break
         best = coarser
     return best
+
+
+def _loosened(fitted: Fitted) -> Fitted:
+    """The fit with the maps as loose as it takes in lines of gauges that are missed, so that they are learned too."""
+    measured = fitted.measured
+    largest = largest_lines(fitted.calibrated.predicted, measured.layout)
+    beyond = np.sqrt(_beyond(measured, fitted.missed))
+    most = LOOSEST * max(largest.values(), default=0.0) / fitted.unit.structure
+    limits = [max(most / largest[name], 1.0) if name in largest else 1.0 for name in measured.layout.channel]
+    looseness = np.minimum(beyond, limits)
+    if looseness.max() == 1:
+        return fitted
+    return fit(measured, replace(fitted.unit, looseness=looseness))
 
 
 def _beyond(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> Float[np.ndarray, " feature"]:

@@ -44,6 +44,8 @@ class Unit:
         After commissioning, the gear by whose spread the declared parameters are counted.
     largest : mapping or None
         After commissioning, the largest line of each gauge, by which deviations of the maps are counted.
+    looseness : array (feature,) or None
+        After commissioning, factor by which the maps may deviate further than ``structure`` says, line by line.
     inflation : array (feature,) or None
         After commissioning, factor by which the variance of each line is larger than that of noise, by what the model
         misses of the healthy gear; for as many repeats as commissioning had.
@@ -57,6 +59,7 @@ class Unit:
     scatter: Scatter | None = None
     nominal: Gear | None = None
     largest: Mapping[str, float] | None = None
+    looseness: Float[np.ndarray, " feature"] | None = None
     inflation: Float[np.ndarray, " feature"] | None = None
 
     @property
@@ -96,8 +99,9 @@ class Unit:
         own = {name: declared[name] for name in needed}
         predicted, J = linearised(model, own | dict(parameters or {}), situations, layout)
         of_own, of_parameters = J[..., : len(own)], J[..., len(own) :]
+        accuracy = self.structure * (np.ones(len(layout)) if self.looseness is None else self.looseness)
         maps = form_columns(self.largest or largest_lines(predicted, layout), situations, layout, self.powers)
-        directions = [of_own if self.nominal else of_own[..., :0], self.structure * maps]
+        directions = [of_own if self.nominal else of_own[..., :0], accuracy[:, None] * maps]
         if self.seen_healthy:
             directions += [of_gauges(predicted, situations, layout), of_friction(model, own, of_own, situations)]
         open_ = np.concatenate(directions, axis=-1)

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from jaxtyping import Float
 
 from swgsim.defects.defect import Defect
 from swgsim.effects.base import Effect
@@ -61,7 +62,8 @@ def report(
         "scores": [scored(each) for each in answer.closed.scores],
         "commissioned": before.unit.commissioned,
         "structure": before.unit.structure,
-        "less_certain": less_certain(before),
+        "learned": _orders(before, before.unit.looseness),
+        "less_certain": _orders(before, before.unit.inflation),
         "channels": {name: CHANNELS[name].unit for name in measured.layout.channels},
         "recordings": _recordings(measured),
         "defects": [str(defect) for defect in defects],
@@ -69,10 +71,11 @@ def report(
     }
 
 
-def less_certain(fitted: Fitted) -> dict[str, list[int]]:
-    """Orders of every channel that the model misses of the healthy gear too, and which so count for less."""
-    layout = fitted.measured.layout
-    more = fitted.unit.inflated(np.ones((1, len(layout))))[0] > 1
+def _orders(fitted: Fitted, factors: Float[np.ndarray, " feature"] | None) -> dict[str, list[int]]:
+    """Orders of every channel at which a factor is more than one."""
+    if factors is None:
+        return {}
+    layout, more = fitted.measured.layout, factors > 1
     found = {channel: layout.order[more & (layout.channel == channel)] for channel in layout.channels}
     return {channel: np.unique(orders).tolist() for channel, orders in found.items() if len(orders)}
 

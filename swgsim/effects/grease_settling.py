@@ -1,0 +1,38 @@
+"""Effect: grease that is pushed aside after a rest."""
+
+from dataclasses import dataclass
+from math import exp, log1p
+
+from swgsim.conditions import Conditions
+from swgsim.effects.base import Effect
+from swgsim.effects.quantity import shape, size
+from swgsim.effects.warm_grease import WarmGrease
+from swgsim.gear import OperatingPoint
+
+
+@dataclass(frozen=True)
+class GreaseSettling(Effect):
+    """After a rest or a regreasing the wave generator churns grease until it is pushed aside: viscous friction
+    b1 (1 + share exp(-t / time_constant)) at time t after the session began (physics.md DY15).
+
+    Signature: input torque that falls with the time of the session towards what it was, more at high speed, whatever
+    the load; gauges all but untouched. A gear that warms up steadily does so by another law in time. Typical: 5 to 30 %
+    of the torque without load, minutes to hours.
+
+    Attributes
+    ----------
+    share : float
+        Of b1 at the start, from 0 to 2.
+    time_constant : float
+        [s], from 60 to 7200.
+    """
+
+    place = "gear"
+    share: float = size(unit="-", low=0, high=2, typical=0.2)
+    time_constant: float = shape(600.0, unit="s", low=60, high=7200, points=7)
+
+    def at(self, point: OperatingPoint, conditions: Conditions) -> Effect:
+        """The friction at the time of the recording, as that of colder grease."""
+        beta = 0.025
+        more = self.share * exp(-conditions.elapsed / self.time_constant)
+        return WarmGrease(-log1p(more) / beta, beta)
