@@ -177,7 +177,7 @@ def test_other_parameters_are_bounded() -> None:
         SubOrders(5, 0.001)
     with pytest.raises(ValueError, match=r"time_constant of bond creep is 1, .* from 60 to 7200"):
         BondCreep(0.001, 1)
-    with pytest.raises(ValueError, match=r"frequency of mains hum is 400, .* from 40 to 310"):
+    with pytest.raises(ValueError, match=r"frequency of mains hum is 400, .* from 40 to 150"):
         MainsHum(0.001, 400)
 
 

@@ -24,7 +24,7 @@ class MainsHum(Effect):
     amplitude : float
         [mV/V], from 0 to 0.05 (a quarter of order 2; beyond, a cable is broken).
     frequency : float
-        [Hz], from 40 to 310: mains of 50 and 60 Hz and their harmonics up to the fifth or sixth.
+        [Hz], from 40 to 150: mains of 50 and 60 Hz and their second harmonics; 150 Hz is a third.
     phase : float
         At the trigger [rad].
     sensor : int
@@ -33,7 +33,7 @@ class MainsHum(Effect):
 
     place = "acquisition"
     amplitude: float = size(unit="mV/V", low=0, high=0.05, typical=5e-4)
-    frequency: float = shape(50.0, unit="Hz", low=40, high=310, points=28)
+    frequency: float = shape(50.0, unit="Hz", low=40, high=150, points=12)
     phase: float = random_phase()
     sensor: int = choice(ALL, low=0, high=ALL)
 
