@@ -103,7 +103,7 @@ def test_a_line_that_the_truss_has_quite_different_is_learned():
     own = commission(recorded((own_line,), seed=1), Unit(Model(GEAR)))
     layout = recorded((), seed=1).layout
     here = (layout.channel == "s0") & (layout.order == 4)
-    assert (own.looseness[here] > 3).all()
+    assert own.learned[here].max() > 1e-3
     assert own.structure == STRUCTURE
     again = fit(recorded((own_line,), seed=2), own)
     assert np.abs(again.missed[:, here].mean(axis=0)).max() * np.sqrt(len(again.measured)) < 4

@@ -22,9 +22,10 @@ UNEXPLAINED = 0.1
 COARSER, WELL = (0.03, 0.1, 0.3), 1.3
 # Of the lines that are said to be missed, the share that may be luck.
 LUCK = 0.05
-# A line of a gauge may deviate by this share of the largest line of all gauges, at most: in a bridge of many arms lines
-# cancel that are large in each of them, and what is left is no measure of their accuracy.
-LOOSEST = COARSER[-1]
+# Lines that are missed are learned. A gauge's may lie off by this share of the largest line of all gauges: in a bridge
+# of many arms lines cancel that are large in each. Those of speed and torques, of which the equations of motion make
+# the most, are learned while no more than this share of their channel's ripple is missed; else it is none of this gear.
+LOOSEST, ALIEN = COARSER[-1], 0.5
 
 
 def commission(measured: Measured, unit: Unit) -> Unit:
@@ -36,7 +37,7 @@ def commission(measured: Measured, unit: Unit) -> Unit:
         If the model does not describe the healthy gear.
     """
     forget()
-    fitted = _loosened(_as_accurate_as_shown(measured, replace(unit, seen_healthy=True)))
+    fitted = _learning(_as_accurate_as_shown(measured, replace(unit, seen_healthy=True)))
     _require_own(measured, fitted.missed)
     beyond = _beyond(measured, fitted.missed)
     if beyond.max() > 1:
@@ -75,17 +76,20 @@ def _as_accurate_as_shown(measured: Measured, unit: Unit) -> Fitted:
     return best
 
 
-def _loosened(fitted: Fitted) -> Fitted:
-    """The fit with the maps as loose as it takes in lines of gauges that are missed, so that they are learned too."""
-    measured = fitted.measured
-    largest = largest_lines(fitted.calibrated.predicted, measured.layout)
-    beyond = np.sqrt(_beyond(measured, fitted.missed))
-    most = LOOSEST * max(largest.values(), default=0.0) / fitted.unit.structure
-    limits = [max(most / largest[name], 1.0) if name in largest else 1.0 for name in measured.layout.channel]
-    looseness = np.minimum(beyond, limits)
-    if looseness.max() == 1:
-        return fitted
-    return fit(measured, replace(fitted.unit, looseness=looseness))
+def _learning(fitted: Fitted) -> Fitted:
+    """The fit in which lines that are missed may lie as far off as they do, so that they are learned."""
+    measured, layout = fitted.measured, fitted.measured.layout
+    beyond = _beyond(measured, fitted.missed)
+    off = np.sqrt((fitted.residual.reshape(measured.values.shape) ** 2).mean(axis=0)) * (beyond > 1)
+    largest = largest_lines(fitted.calibrated.predicted, layout)
+    missed = _unexplained(measured, fitted.missed)
+    for channel in layout.channels:
+        own = layout.channel == channel
+        if channel in largest:
+            off[own] = np.minimum(off[own], LOOSEST * max(largest.values()))
+        elif missed[channel] > ALIEN:
+            off[own] = 0.0
+    return fit(measured, replace(fitted.unit, learned=off)) if off.any() else fitted
 
 
 def _beyond(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> Float[np.ndarray, " feature"]:
@@ -118,8 +122,8 @@ def _beyond(measured: Measured, missed: Float[np.ndarray, "recording feature"]) 
     return beyond
 
 
-def _require_own(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> None:
-    """Refuse a healthy gear of which the model leaves more than UNEXPLAINED of a channel's ripple, beyond noise."""
+def _unexplained(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> dict[str, float]:
+    """Share of every channel's ripple that the model leaves unexplained, beyond noise; 0 where that is hardly more."""
     layout = measured.layout
     square = (missed**2).mean(axis=0)
     left = np.maximum(square - 1, 0) * measured.variance.mean(axis=0)
@@ -127,8 +131,14 @@ def _require_own(measured: Measured, missed: Float[np.ndarray, "recording featur
     shares = {}
     for channel in layout.channels:
         ripple = (layout.channel == channel) & (layout.order > 0)
-        if square[ripple].max() > MISFIT:
-            shares[channel] = float(np.sqrt(left[ripple].sum() / power[ripple].sum()))
+        more = square[ripple].max() > MISFIT
+        shares[channel] = float(np.sqrt(left[ripple].sum() / power[ripple].sum())) if more else 0.0
+    return shares
+
+
+def _require_own(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> None:
+    """Refuse a healthy gear of which the model leaves more than UNEXPLAINED of a channel's ripple, beyond noise."""
+    shares = _unexplained(measured, missed)
     poor = sorted(((share, name) for name, share in shares.items() if share > UNEXPLAINED), reverse=True)
     if poor:
         differ = ", ".join(f"{name} ({100 * share:.0f} %)" for share, name in poor)

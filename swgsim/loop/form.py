@@ -11,6 +11,7 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.effects.frozen import FULL_LOAD
+from swgsim.effects.regularity import FULL_SPEED
 from swgsim.loop.features import Layout
 from swgsim.loop.model import Situation
 
@@ -50,3 +51,16 @@ def form_columns(
             one[:, feature] = size
             columns += [one * load[:, None] ** power for power in range(powers)]
     return np.stack(columns, axis=-1) if columns else np.zeros((len(situations), len(layout), 0))
+
+
+def learned_columns(
+    learned: Float[np.ndarray, " feature"], situations: Sequence[Situation], layout: Layout
+) -> Float[np.ndarray, "situation feature column"]:
+    """Deviations of lines that the model has quite different, each by laws of load and speed that together pass nearly
+    everywhere; none where ``learned``, one standard deviation, is 0.
+    """
+    load = np.array([s.point.T_out for s in situations]) / FULL_LOAD
+    speed = np.array([s.point.n_in_rpm for s in situations]) / FULL_SPEED
+    laws = np.stack([np.ones(len(load)), load, load**2, speed, load * speed], axis=1)
+    lines = learned[:, None] * np.eye(len(layout))[:, np.flatnonzero(learned)]
+    return (lines[:, :, None] * laws[:, None, None, :]).reshape(len(situations), len(layout), -1)

@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+from swgsim.effects.base import Effect
+from swgsim.effects.quantity import quantities, size_of
 from swgsim.effects.regularity import OF_TEMPERATURE, OF_TIME
 from swgsim.loop.closing import Closed
 from swgsim.loop.errors import of_points_left_out
@@ -11,6 +13,8 @@ from swgsim.loop.fitting import Fitted, extended
 from swgsim.loop.trial import gained
 from swgsim.loop.vocabulary import Described
 
+# Share of its size that an effect found must keep beside a patch; one that takes it away says the same once more.
+KEPT = 0.5
 # Times what it was that the error at an operating point left out may become: much of it is that of zeros, and luck.
 WORSE = 2.0
 
@@ -27,9 +31,20 @@ def patched(closed: Closed, unknown: Sequence[Described]) -> Closed:
         if each.rivals and {each.atom.law, *each.rivals} & {OF_TEMPERATURE, OF_TIME}:
             continue
         fitted = extended(closed.after, [each.effect])
-        if fitted.calibrated.settled and _holds(closed.after, fitted):
+        if fitted.calibrated.settled and _spares(closed.after, fitted) and _holds(closed.after, fitted):
             closed = replace(closed, after=fitted)
     return closed
+
+
+def _spares(before: Fitted, after: Fitted) -> bool:
+    """Whether every effect that was found keeps most of its size."""
+    return all(abs(_size(now)) >= KEPT * abs(_size(was)) for was, now in zip(before.added, after.added, strict=False))
+
+
+def _size(effect: Effect) -> float:
+    """How far the size of an effect is from nothing."""
+    name = size_of(type(effect))
+    return float(getattr(effect, name) - quantities(type(effect))[name].nothing)
 
 
 def _holds(before: Fitted, after: Fitted) -> bool:

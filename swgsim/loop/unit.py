@@ -11,7 +11,7 @@ from swgsim.gear import Gear
 from swgsim.loop.calibration import linearised
 from swgsim.loop.declared import Declared, of_unit
 from swgsim.loop.features import Layout
-from swgsim.loop.form import form_columns, largest_lines, lines_anywhere
+from swgsim.loop.form import form_columns, largest_lines, learned_columns, lines_anywhere
 from swgsim.loop.healthy import FRICTION, of_friction, of_gauges
 from swgsim.loop.model import Model, Situation
 from swgsim.loop.scatter import Scatter
@@ -44,8 +44,9 @@ class Unit:
         After commissioning, the gear by whose spread the declared parameters are counted.
     largest : mapping or None
         After commissioning, the largest line of each gauge, by which deviations of the maps are counted.
-    looseness : array (feature,) or None
-        After commissioning, factor by which the maps may deviate further than ``structure`` says, line by line.
+    learned : array (feature,) or None
+        After commissioning, how far the lines lie from the model's that this has quite different (standard deviation, 0
+        for all others): so far that recordings of the healthy gear have to tell.
     inflation : array (feature,) or None
         After commissioning, factor by which the variance of each line is larger than that of noise, by what the model
         misses of the healthy gear; for as many repeats as commissioning had.
@@ -59,7 +60,7 @@ class Unit:
     scatter: Scatter | None = None
     nominal: Gear | None = None
     largest: Mapping[str, float] | None = None
-    looseness: Float[np.ndarray, " feature"] | None = None
+    learned: Float[np.ndarray, " feature"] | None = None
     inflation: Float[np.ndarray, " feature"] | None = None
 
     @property
@@ -99,11 +100,12 @@ class Unit:
         own = {name: declared[name] for name in needed}
         predicted, J = linearised(model, own | dict(parameters or {}), situations, layout)
         of_own, of_parameters = J[..., : len(own)], J[..., len(own) :]
-        accuracy = self.structure * (np.ones(len(layout)) if self.looseness is None else self.looseness)
         maps = form_columns(self.largest or largest_lines(predicted, layout), situations, layout, self.powers)
-        directions = [of_own if self.nominal else of_own[..., :0], accuracy[:, None] * maps]
+        directions = [of_own if self.nominal else of_own[..., :0], self.structure * maps]
         if self.seen_healthy:
             directions += [of_gauges(predicted, situations, layout), of_friction(model, own, of_own, situations)]
+        if self.learned is not None:
+            directions.append(learned_columns(self.learned, situations, layout))
         open_ = np.concatenate(directions, axis=-1)
         shift = np.zeros(predicted.shape) if self.shift is None else open_ @ self.shift
         return LeftOpen(predicted, shift, open_ if self.reach is None else open_ @ self.reach, of_parameters)

@@ -62,8 +62,8 @@ def report(
         "scores": [scored(each) for each in answer.closed.scores],
         "commissioned": before.unit.commissioned,
         "structure": before.unit.structure,
-        "learned": _orders(before, before.unit.looseness),
-        "less_certain": _orders(before, before.unit.inflation),
+        "learned": _orders(before, before.unit.learned, 0.0),
+        "less_certain": _orders(before, before.unit.inflation, 1.0),
         "channels": {name: CHANNELS[name].unit for name in measured.layout.channels},
         "recordings": _recordings(measured),
         "defects": [str(defect) for defect in defects],
@@ -71,11 +71,11 @@ def report(
     }
 
 
-def _orders(fitted: Fitted, factors: Float[np.ndarray, " feature"] | None) -> dict[str, list[int]]:
-    """Orders of every channel at which a factor is more than one."""
-    if factors is None:
+def _orders(fitted: Fitted, values: Float[np.ndarray, " feature"] | None, least: float) -> dict[str, list[int]]:
+    """Orders of every channel at which a value is more than the least one."""
+    if values is None:
         return {}
-    layout, more = fitted.measured.layout, factors > 1
+    layout, more = fitted.measured.layout, values > least
     found = {channel: layout.order[more & (layout.channel == channel)] for channel in layout.channels}
     return {channel: np.unique(orders).tolist() for channel, orders in found.items() if len(orders)}
 
