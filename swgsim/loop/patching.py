@@ -23,7 +23,7 @@ def patched(closed: Closed, unknown: Sequence[Described]) -> Closed:
     """With those regularities in the model too that hold at operating points which they were not fitted to.
 
     One that may follow the temperature, or the time, or another law as well is none of them: what rises together in one
-    session parts in the next.
+    session parts in the next. Nor is one that takes away what an effect was found for.
     """
     if len(closed.after.predictive) < 2:
         return closed  # no operating point can be left out
