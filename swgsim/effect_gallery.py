@@ -17,6 +17,7 @@ from swgsim.effects.library import SEARCHED
 from swgsim.effects.quantity import Role, quantities, size_of
 from swgsim.files import write_text
 from swgsim.gear import Gear, OperatingPoint
+from swgsim.loop.sidelines import has_sidelines, is_random
 from swgsim.recording import Recording
 
 POINTS = (OperatingPoint(2000.0, 70.0), OperatingPoint(2000.0, 7.0), OperatingPoint(4000.0, 70.0))
@@ -120,13 +121,16 @@ def page(folder: Path) -> None:
     write_text(folder / "effects.md", "\n\n".join(text) + "\n")
 
 
+# Another phase in every recording, and no line between the orders to tell it by.
+UNTESTED = [kind.name() for kind in SEARCHED if is_random(kind) and not has_sidelines(kind)]
 HEAD = f"""# The library of effects
 
-Made by `make docs` from the code: {len(SEARCHED)} effects that a loop searches, by the place of the chain at which they
-act. The pictures show what an effect of typical size changes at 2000 rpm and 70 N m (the gear at 35 degC, an hour into
-the session), by channel and order, as a share of the channel's largest line. Choices (an order, a gauge) are at their
-first value. Load and speed say by what factor the largest change grows from 7 to 70 N m and from 2000 to 4000 rpm; the
-share is of a line that may itself grow. The full physics, signature and source of every effect are in its docstring in
+Made by `make docs` from the code: {len(SEARCHED)} effects, by the place of the chain at which they act. A loop
+searches all of them but {", ".join(UNTESTED)}, whose phase is another one in every recording. The pictures show what
+an effect of typical size changes at 2000 rpm and 70 N m (the gear at 35 degC, an hour into the session), by channel
+and order, as a share of the channel's largest line. Choices (an order, a gauge) are at their default or first value.
+Load and speed say by what factor the largest change grows from 7 to 70 N m and from 2000 to 4000 rpm; the share is of
+a line that may itself grow. The full physics, signature and source of every effect are in its docstring in
 `swgsim/effects/`; rows such as SE20 are those of [physics.md](physics.md)."""
 HEADER = (
     "| effect | physics | size | inner parameters | largest change | share | 70 / 7 N m | 4000 / 2000 rpm |\n"

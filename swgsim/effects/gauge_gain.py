@@ -13,9 +13,9 @@ class GaugeGain(Effect):
     """The strain of one bridge, or of all, counts 1 + share (physics.md SE3); zeros stay.
 
     Signature: mean and all orders of this gauge alike, at all loads and speeds. All gauges: another excitation, or an
-    amplifier that was set anew between sessions (AC9). One gauge also stands for a bond that comes
-    off, which is a loss up to all of the signal (SE15), for a radius that is off (SE2), for lead wires (SE13) and for
-    transverse sensitivity (SE12). Typical: 0.3 to 1 %, the tolerance of gauge factors.
+    amplifier that was set anew between sessions (AC9). One gauge also stands for a bond that comes off, which is a loss
+    up to all of the signal (SE15), for a radius that is off (SE2), for lead wires (SE13) and for transverse sensitivity
+    (SE12). Typical: 0.3 to 1 %, the tolerance of gauge factors.
 
     Attributes
     ----------
