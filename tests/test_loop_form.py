@@ -2,13 +2,15 @@
 
 import numpy as np
 import pytest
-from loop_fixtures import POINTS
+from loop_fixtures import GEAR, POINTS
 
 from swgsim.conditions import Conditions
+from swgsim.effects import Effect
 from swgsim.effects.frozen import FULL_LOAD
-from swgsim.loop.features import Layout
-from swgsim.loop.form import form_columns, largest_lines, learned_columns
-from swgsim.loop.model import Situation
+from swgsim.effects.library import LIBRARY
+from swgsim.loop.features import ORDERS, Layout
+from swgsim.loop.form import deviation, form_columns
+from swgsim.loop.model import Model, Situation, predict
 
 LAYOUT = Layout(("T_in", "s0", "s1"))
 SITUATIONS = tuple(Situation(point, Conditions()) for point in POINTS)
@@ -20,34 +22,69 @@ def predicted() -> np.ndarray:
     return np.random.default_rng(1).normal(size=(len(SITUATIONS), len(LAYOUT)))
 
 
-def test_only_gauges_deviate_and_by_a_share_of_their_largest_line(predicted):
-    found = form_columns(largest_lines(predicted, LAYOUT), SITUATIONS, LAYOUT, 2)
-    assert found.shape == (*predicted.shape, 2 * 2 * 25)
+MAPS = 0.01 * (LAYOUT.channel != "T_in")
+LEARNED = np.where((LAYOUT.channel == "T_in") & (LAYOUT.order == 3), 2.0, 0.0)
+
+
+def test_every_second_deviation_of_a_map_grows_with_the_load():
+    found = form_columns((MAPS, 0 * MAPS), SITUATIONS, 2)
+    assert found.shape == (len(SITUATIONS), len(LAYOUT), 2 * 2 * 25)
     assert not found[:, LAYOUT.channel == "T_in"].any()
-    largest = np.abs(LAYOUT.lines(predicted))[:, 1, 1:].max()
-    assert found[:, LAYOUT.channel == "s0"].max() == pytest.approx(largest)
-
-
-def test_every_second_deviation_grows_with_the_load(predicted):
-    found = form_columns(largest_lines(predicted, LAYOUT), SITUATIONS, LAYOUT, 2)
+    assert found[:, LAYOUT.channel == "s0", ::2].max() == pytest.approx(0.01)
     load = np.array([point.T_out for point in POINTS]) / FULL_LOAD
     np.testing.assert_allclose(found[..., 1::2], found[..., ::2] * load[:, None, None])
 
 
-def test_a_deviation_is_the_same_whatever_else_is_asked(predicted):
+def test_a_deviation_is_the_same_whatever_else_is_asked():
     """What commissioning found at six operating points holds for a question about one of them."""
-    largest = largest_lines(predicted, LAYOUT)
-    whole, part = (form_columns(largest, situations, LAYOUT, 2) for situations in (SITUATIONS, SITUATIONS[:1]))
+    whole, part = (form_columns((MAPS, LEARNED), situations, 2) for situations in (SITUATIONS, SITUATIONS[:1]))
     np.testing.assert_allclose(part, whole[:1])
 
 
 def test_a_line_that_is_learned_follows_load_and_speed_alone():
     """Others stay as they are; a law of load and speed within those that are open is passed exactly."""
-    learned = np.where((LAYOUT.channel == LAYOUT.channels[0]) & (LAYOUT.order == 3), 2.0, 0.0)
-    found = learned_columns(learned, SITUATIONS, LAYOUT)
-    assert not found[:, learned == 0].any()
-    own = found[:, np.flatnonzero(learned)[0]]
+    found = form_columns((0 * MAPS, LEARNED), SITUATIONS, 2)
+    assert not found[:, LEARNED == 0].any()
+    own = found[:, np.flatnonzero(LEARNED)[0]]
     load, speed = (np.array([getattr(s.point, name) for s in SITUATIONS]) for name in ("T_out", "n_in_rpm"))
     for law in (1 + 0 * load, 0.3 * load - 1e-3 * speed, load**2 + 1e-3 * load * speed):
         np.testing.assert_allclose(own @ np.linalg.lstsq(own, law)[0], law, atol=1e-8 * np.abs(law).max())
-    assert learned_columns(0 * learned, SITUATIONS, LAYOUT).shape == (*found.shape[:2], 0)
+    assert form_columns((0 * MAPS, 0 * MAPS), SITUATIONS, 2).shape == (*found.shape[:2], 0)
+
+
+@pytest.fixture(scope="module")
+def of_form() -> tuple[np.ndarray, Model]:
+    """Features that columns make together, and a model that has them as its deviation."""
+    columns = form_columns((MAPS, LEARNED), SITUATIONS, 3)
+    found = np.random.default_rng(1).normal(size=columns.shape[-1])
+    return columns @ found, Model(GEAR, (), deviation((MAPS, LEARNED), found, 3, LAYOUT))
+
+
+def test_a_model_has_the_deviation_that_its_columns_make(of_form):
+    features, deviating = of_form
+    without, beside = predict([Model(GEAR), deviating], SITUATIONS, LAYOUT, sectors=40)
+    np.testing.assert_allclose(beside - without, features, atol=1e-9)
+
+
+def with_and_without(deviating: Model, effect: Effect) -> np.ndarray:
+    """Lines of what a deviation adds to a model that has an effect."""
+    without, beside = predict([Model(GEAR, (effect,)), deviating.plus(effect)], SITUATIONS, LAYOUT, sectors=40)
+    return LAYOUT.lines(beside - without)
+
+
+def test_a_gain_scales_the_deviation_of_its_gauge_too(of_form):
+    features, deviating = of_form
+    expected = LAYOUT.lines(features) * np.array([1, 0.6, 1])[:, None]
+    np.testing.assert_allclose(
+        with_and_without(deviating, LIBRARY["gauge_gain"](sensor=0, share=-0.4)), expected, atol=1e-9
+    )
+
+
+def test_a_filter_delays_the_deviation_of_its_gauge_too(of_form):
+    features, deviating = of_form
+    lag = 1e-4
+    turned = np.outer([s.point.omega_in * lag for s in SITUATIONS], np.arange(ORDERS + 1))
+    expected = LAYOUT.lines(features)
+    expected[:, 2] /= 1 + 1j * turned
+    found = with_and_without(deviating, LIBRARY["filter_mismatch"](sensor=1, lag=lag))
+    np.testing.assert_allclose(found, expected, atol=1e-3 * np.abs(expected).max())

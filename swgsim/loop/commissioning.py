@@ -8,7 +8,7 @@ from scipy.stats import chi2, false_discovery_control
 
 from swgsim.loop.declared import of_unit
 from swgsim.loop.fitting import MISFIT, Fitted, fit
-from swgsim.loop.form import largest_lines
+from swgsim.loop.form import deviation, form_columns, largest_lines
 from swgsim.loop.session import Measured
 from swgsim.loop.unit import Unit
 from swgsim.recordings import SENSORS
@@ -54,11 +54,15 @@ def commission(measured: Measured, unit: Unit) -> Unit:
     # Declared effects stay as they were found: later fits have parameters of their own for them.
     own = [name in of_unit(nominal) for name in fitted.parameters]
     kept = np.flatnonzero([*own, *[True] * fitted.open.shape[1]])
-    reach = np.linalg.cholesky(covariance[np.ix_(kept, kept)])
+    reach, shift = np.linalg.cholesky(covariance[np.ix_(kept, kept)]), mean[kept]
+    # Deviations of lines go into the model, so that effects on the signals act on them too.
+    sizes = unit.form(fitted.calibrated.predicted, measured.layout)
+    form = len(shift) - form_columns(sizes, measured.situations, unit.powers).shape[-1]
+    model = replace(fitted.model, deviation=deviation(sizes, shift[form:], unit.powers, measured.layout))
+    shift[form:] = 0.0
     return replace(
-        unit, model=fitted.model, reach=reach, shift=mean[kept], scatter=fitted.scatter, nominal=nominal,
-        largest=largest,
-    )  # fmt: skip
+        unit, model=model, reach=reach, shift=shift, scatter=fitted.scatter, nominal=nominal, largest=largest
+    )
 
 
 def _as_accurate_as_shown(measured: Measured, unit: Unit) -> Fitted:

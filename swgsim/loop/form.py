@@ -5,13 +5,12 @@ gear is declared as a share of the gauge's largest line, order by order; recordi
 far they do, and what is asked later is asked of the corrected maps.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.effects.frozen import FULL_LOAD
-from swgsim.effects.regularity import FULL_SPEED
+from swgsim.loop.deviation import LAWS, Deviation, Lines, laws
 from swgsim.loop.features import Layout
 from swgsim.loop.model import Situation
 
@@ -36,31 +35,43 @@ def lines_anywhere(
 
 
 def form_columns(
-    largest: Mapping[str, float], situations: Sequence[Situation], layout: Layout, powers: int
+    sizes: Sequence[Float[np.ndarray, " feature"]], situations: Sequence[Situation], powers: int
 ) -> Float[np.ndarray, "situation feature column"]:
-    """Deviations of the maps A and B of every gauge at every order, each as large as the gauge's largest line.
+    """Deviations of lines, one standard deviation each.
 
-    A column is the cosine or sine part of one order of one gauge, the same at all operating points (A) or growing with
-    the load up to full load (B); with three powers of the load also with its square.
+    Parameters
+    ----------
+    sizes : pair of array (feature,)
+        Of the maps, whose lines are the same at all operating points (A) or grow with the load up to full load (B),
+        with three powers of the load also with its square; and of lines that the model has quite different, each by
+        laws of load and speed that together pass nearly everywhere. There is no column where a size is 0.
+    situations : sequence of Situation
+    powers : int
+        Of the load, by which the maps may deviate.
     """
-    load = np.array([s.point.T_out for s in situations]) / FULL_LOAD
-    columns = []
-    for channel, size in largest.items():
-        for feature in np.flatnonzero(layout.channel == channel):
-            one = np.zeros((len(situations), len(layout)))
-            one[:, feature] = size
-            columns += [one * load[:, None] ** power for power in range(powers)]
-    return np.stack(columns, axis=-1) if columns else np.zeros((len(situations), len(layout), 0))
+    followed = np.array([laws(s.point) for s in situations])
+    of_maps, of_learned = sizes
+    parts = [_columns(of_maps, followed[:, :powers]), _columns(of_learned, followed)]
+    return np.concatenate(parts, axis=-1)
 
 
-def learned_columns(
-    learned: Float[np.ndarray, " feature"], situations: Sequence[Situation], layout: Layout
+def _columns(
+    size: Float[np.ndarray, " feature"], followed: Float[np.ndarray, "situation law"]
 ) -> Float[np.ndarray, "situation feature column"]:
-    """Deviations of lines that the model has quite different, each by laws of load and speed that together pass nearly
-    everywhere; none where ``learned``, one standard deviation, is 0.
-    """
-    load = np.array([s.point.T_out for s in situations]) / FULL_LOAD
-    speed = np.array([s.point.n_in_rpm for s in situations]) / FULL_SPEED
-    laws = np.stack([np.ones(len(load)), load, load**2, speed, load * speed], axis=1)
-    lines = learned[:, None] * np.eye(len(layout))[:, np.flatnonzero(learned)]
-    return (lines[:, :, None] * laws[:, None, None, :]).reshape(len(situations), len(layout), -1)
+    """Every feature that has a size, by each law."""
+    features = size[:, None] * np.eye(len(size))[:, np.flatnonzero(size)]
+    return (features[:, :, None] * followed[:, None, None, :]).reshape(len(followed), len(size), -1)
+
+
+def deviation(
+    sizes: Sequence[Float[np.ndarray, " feature"]], found: Float[np.ndarray, " column"], powers: int, layout: Layout
+) -> Deviation:
+    """What the columns of :func:`form_columns` make together, each as large as it was found."""
+    by_law = np.zeros((LAWS, len(layout)))
+    of_maps, of_learned = np.split(found, [powers * np.count_nonzero(sizes[0])])
+    for size, share, followed in zip(sizes, (of_maps, of_learned), (powers, LAWS), strict=True):
+        own = np.flatnonzero(size)
+        by_law[:followed, own] += share.reshape(len(own), followed).T * size[own]
+    lines = layout.lines(by_law)
+    there = np.flatnonzero(lines.any(axis=(0, 2)))
+    return Deviation(Lines(tuple(layout.channels[i] for i in there), lines[:, there]))

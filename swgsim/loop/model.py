@@ -10,6 +10,7 @@ from swgsim.chain import SECTORS, Run, simulate_turns
 from swgsim.conditions import Conditions
 from swgsim.effects.base import Effect, overrides
 from swgsim.gear import Gear, OperatingPoint
+from swgsim.loop.deviation import Deviation
 from swgsim.loop.features import Layout, features
 
 # Samples per revolution; the highest order that is fitted needs more than twice its number.
@@ -32,10 +33,20 @@ class Model:
     ----------
     gear : Gear
     effects : tuple of Effect
+    deviation : Deviation or None
+        Where the lines of this gear lie off the chain's, as commissioning found them.
     """
 
     gear: Gear
     effects: tuple[Effect, ...] = ()
+    deviation: Deviation | None = None
+
+    def run(self, situation: Situation) -> Run:
+        """The run of the chain in a situation."""
+        run = Run(self.gear, situation.point, self.effects, conditions=situation.conditions)
+        if self.deviation is None:
+            return run
+        return replace(run, effects=(self.deviation.gained(self.gear, run.affected_gear), *self.effects))
 
     def plus(self, *effects: Effect) -> "Model":
         """The model with more effects."""
@@ -50,7 +61,7 @@ def predict(
     models: Sequence[Model], situations: Sequence[Situation], layout: Layout, sectors: int = SECTORS
 ) -> Float[np.ndarray, "model situation feature"]:
     """Features of every situation by every model, all in one go: what runs have in common is computed once."""
-    runs = [Run(m.gear, s.point, m.effects, conditions=s.conditions) for m in models for s in situations]
+    runs = [m.run(s) for m in models for s in situations]
     keys = [_key(run) for run in runs]
     distinct = dict(zip(reversed(keys), reversed(runs), strict=True))
     recordings = simulate_turns(list(distinct.values()), revolutions=1, points=POINTS, sectors=sectors)
@@ -60,5 +71,6 @@ def predict(
 
 def _key(run: Run) -> tuple:
     """All that a run of the chain depends on; the conditions only where an effect looks at them while recording."""
-    seeing = any(overrides(effect, "gauge", "acquisition") for effect in run.acting)
-    return run.gear, run.acting, run.point, run.conditions if seeing else None
+    acting = run.acting
+    seeing = any(overrides(e, "gauge", "acquisition") for e in acting if not isinstance(e, Deviation))
+    return run.gear, acting, run.point, run.conditions if seeing else None

@@ -11,7 +11,7 @@ from swgsim.gear import Gear
 from swgsim.loop.calibration import linearised
 from swgsim.loop.declared import Declared, of_unit
 from swgsim.loop.features import Layout
-from swgsim.loop.form import form_columns, largest_lines, learned_columns, lines_anywhere
+from swgsim.loop.form import form_columns, largest_lines, lines_anywhere
 from swgsim.loop.healthy import FRICTION, of_friction, of_gauges
 from swgsim.loop.model import Model, Situation
 from swgsim.loop.scatter import Scatter
@@ -29,11 +29,11 @@ class Unit:
     model : Model
         At its nominal or commissioned parameters.
     reach : array (direction, direction) or None
-        After commissioning, how far the directions (declared parameters, deviations of the maps, what a healthy bench
-        does a little of) may still lie from where they were found, as columns of one standard deviation; None for a
-        unit never seen.
+        After commissioning, how far the directions (declared parameters, what a healthy bench does a little of,
+        deviations of lines) may still lie from where they were found, as columns of one standard deviation; None for
+        a unit never seen.
     shift : array (direction,) or None
-        Where commissioning found them, in spreads.
+        Where commissioning found them beside the model, in spreads.
     structure : float
         Accuracy of the maps, as a share of a gauge's largest line: as declared, or as commissioning found it.
     seen_healthy : bool
@@ -100,15 +100,21 @@ class Unit:
         own = {name: declared[name] for name in needed}
         predicted, J = linearised(model, own | dict(parameters or {}), situations, layout)
         of_own, of_parameters = J[..., : len(own)], J[..., len(own) :]
-        maps = form_columns(self.largest or largest_lines(predicted, layout), situations, layout, self.powers)
-        directions = [of_own if self.nominal else of_own[..., :0], self.structure * maps]
+        directions = [of_own if self.nominal else of_own[..., :0]]
         if self.seen_healthy:
             directions += [of_gauges(predicted, situations, layout), of_friction(model, own, of_own, situations)]
-        if self.learned is not None:
-            directions.append(learned_columns(self.learned, situations, layout))
+        directions.append(form_columns(self.form(predicted, layout), situations, self.powers))
         open_ = np.concatenate(directions, axis=-1)
         shift = np.zeros(predicted.shape) if self.shift is None else open_ @ self.shift
         return LeftOpen(predicted, shift, open_ if self.reach is None else open_ @ self.reach, of_parameters)
+
+    def form(
+        self, predicted: Float[np.ndarray, "situation feature"], layout: Layout
+    ) -> tuple[Float[np.ndarray, " feature"], Float[np.ndarray, " feature"]]:
+        """How far lines may deviate by the maps, and by what of them is learned: the last of the directions."""
+        largest = self.largest or largest_lines(predicted, layout)
+        of_maps = self.structure * np.array([largest.get(channel, 0.0) for channel in layout.channel])
+        return of_maps, np.zeros(len(layout)) if self.learned is None else self.learned
 
     def open_of(
         self, signature: Float[np.ndarray, "situation feature"], layout: Layout
