@@ -34,6 +34,7 @@ from swgsim.recordings import SENSORS
 REVOLUTIONS = 12
 EFFECTS: Mapping[str, Effect] = {
     "rotating eccentricity": RotatingEccentricity(20e-6, 0.3),
+    "rotating eccentricity, equal lobes": RotatingEccentricity(20e-6, 0.3, unequal=0),
     "tilt": TiltedWaveGenerator(1e-3, 0.3),
     "tilt about the middle": TiltedWaveGenerator(1e-3, 0.3, lever=0.0),
     "coning": Coning(0.1),
@@ -192,6 +193,15 @@ def test_rotating_eccentricity_goes_around_at_order_one(change: Change) -> None:
     np.testing.assert_allclose(lines[2:, 1] / lines[1:4, 1], -1j, atol=0.01)
     assert np.abs(np.delete(lines[1:], 1, axis=1)).max() < 0.005 * np.abs(lines[1:, 1]).min()
     assert np.abs(change("rotating eccentricity", LOADED)[1:, 3]).min() > 4 * np.abs(lines[1:, 3]).max()
+
+
+def test_rotating_eccentricity_of_equal_lobes_is_the_same_at_all_loads(change: Change) -> None:
+    """And without load it is that of unequal ones."""
+    name = "rotating eccentricity, equal lobes"
+    lines, loaded = change(name, BASE), change(name, LOADED)
+    assert np.abs(loaded - lines).max() < 0.01 * np.abs(lines).max()
+    unequal = change("rotating eccentricity", BASE)
+    np.testing.assert_allclose(lines[1:, 1], unequal[1:, 1], rtol=0.02)
 
 
 @pytest.mark.parametrize("name", ["tilt", "teeth 3", "runout 1", "sleeve 1", "sleeve 2", "out of round 3"])

@@ -62,6 +62,14 @@ def test_rows_left_out_have_the_conditional_distribution(rows, columns, seed):
     assert found.log_likelihood == pytest.approx(expected, rel=1e-5, abs=1e-4)
 
 
+@settings(deadline=None, max_examples=60)
+@given(**SHAPES)
+def test_common_errors_are_told_as_their_conditional_mean(rows, columns, seed):
+    covariance, dense, rng = random_covariance(rows, columns, seed)
+    r = rng.normal(size=rows)
+    np.testing.assert_allclose(covariance.told(r), covariance.G.T @ np.linalg.solve(dense, r), rtol=1e-5, atol=1e-5)
+
+
 def test_further_columns_add_their_covariance():
     covariance, dense, rng = random_covariance(6, 2, 1)
     more = rng.normal(size=(6, 3))

@@ -10,7 +10,7 @@ from swgsim.effects.regularity import OF_TIME
 from swgsim.loop import patching
 from swgsim.loop.closing import Closed
 from swgsim.loop.declared import Declared
-from swgsim.loop.errors import of_points_left_out
+from swgsim.loop.errors import errors, of_points_left_out
 from swgsim.loop.features import Layout
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.vocabulary import Atom, Described, columns
@@ -97,8 +97,19 @@ def test_noise_is_not(fitted: Fitted) -> None:
 def test_error_of_a_point_left_out_is_that_of_what_the_others_tell(fitted: Fitted) -> None:
     """What one point alone shows is predicted as nothing there, and as something where it is not."""
     shown = 50 * fitted.measured.point_rows()[2] * columns(ATOM, fitted)[:, 0]
-    before = holding(fitted, shown)
-    errors = of_points_left_out(patching.extended(before, ()))
-    assert errors[2] == pytest.approx(of_points_left_out(before)[2])
-    assert np.delete(errors, 2).min() > 0.1 * errors[2]
+    before = holding(replace(fitted, errors=replace(fitted.errors, G=fitted.errors.G[:, :0])), shown)
+    missed = of_points_left_out(patching.extended(before, ()))
+    assert missed[2] == pytest.approx(of_points_left_out(before)[2])
+    assert np.delete(missed, 2).min() > 0.1 * missed[2]
     np.testing.assert_array_equal(np.delete(of_points_left_out(before), 2), 0)
+
+
+def test_what_a_whole_session_has_off_is_no_error_of_the_model(fitted: Fitted) -> None:
+    """It is told by the other operating points of the session; noise stays."""
+    zero = np.tile(LAYOUT.order == 0, len(fitted.measured)).astype(float)[:, None]
+    noise = np.sqrt(fitted.errors.variance) * np.random.default_rng(3).standard_normal(len(zero))
+    off = replace(fitted, errors=replace(fitted.errors, G=100 * zero))
+    found, quiet = errors(holding(off, noise + 150 * zero[:, 0])), errors(holding(off, noise))
+    np.testing.assert_allclose(found.fit, quiet.fit, rtol=1e-2)
+    np.testing.assert_allclose(found.heldout, quiet.heldout, rtol=1e-2)
+    np.testing.assert_array_less(found.heldout, 10)

@@ -32,11 +32,9 @@ def expected(fitted: Fitted) -> Float[np.ndarray, "situation feature"]:
     situations = (*measured.situations, *UNSEEN)
     unsure = fitted.unit.left_open(fitted.model, situations, measured.layout, fitted.parameters)
     predicted, shift, left_open, J = (part[-len(UNSEEN) :] for part in unsure)
-    G = fitted.whole.G
-    weighted = G / fitted.whole.variance[:, None]
-    mean = np.linalg.solve(np.eye(G.shape[1]) + weighted.T @ G, weighted.T @ fitted.from_start)
+    mean = fitted.whole.told(fitted.from_start)
     first = fitted.errors.G.shape[1]
     found = mean[first : first + left_open.shape[-1]]
     # The model stands where its parameters were found to be; what they are counted from lies further back.
-    beyond = mean[G.shape[1] - J.shape[-1] :] - np.array(list(fitted.calibrated.position.values()))
+    beyond = mean[len(mean) - J.shape[-1] :] - np.array(list(fitted.calibrated.position.values()))
     return predicted + shift + left_open @ found + J @ beyond

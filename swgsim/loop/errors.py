@@ -1,4 +1,8 @@
-"""Error of a model per channel: on what it was fitted to, on operating points left out, and the floor of repeats."""
+"""Error of a model per channel: on what it was fitted to, on operating points left out, and the floor of repeats.
+
+Zeros, gains and the index of the angle that a whole session has off are the bench's, and no error of the model: they
+are taken out as its recordings tell them.
+"""
 
 from dataclasses import dataclass
 
@@ -26,7 +30,8 @@ class Errors:
 
 def errors(fitted: Fitted) -> Errors:
     """Errors of a model on the recordings it was fitted to."""
-    return Errors(per_channel(fitted.measured, fitted.residual), per_channel(fitted.measured, _left_out(fitted)))
+    fit = fitted.residual - _of_sessions(fitted) @ fitted.whole.told(fitted.from_start)[_sessions(fitted)]
+    return Errors(per_channel(fitted.measured, fit), per_channel(fitted.measured, _left_out(fitted)))
 
 
 def of_points_left_out(fitted: Fitted) -> Float[np.ndarray, " point"]:
@@ -39,11 +44,22 @@ def _left_out(fitted: Fitted) -> Float[np.ndarray, " row"]:
     """Errors of every operating point by the model fitted to the others; NaN where there is one only."""
     blocks = fitted.measured.point_rows()
     missed = np.full(len(fitted.residual), np.nan)
-    parameters = fitted.J.shape[1]
+    columns, of_sessions = len(fitted.whole.G.T), _of_sessions(fitted)
     for block in blocks if len(blocks) > 1 else []:
-        told = fitted.whole.left_out(fitted.from_start, block).common[-parameters:] if parameters else np.zeros(0)
-        missed[block] = fitted.from_start[block] - fitted.J[block] @ told
+        told = fitted.whole.left_out(fitted.from_start, block).common
+        parameters = told[columns - fitted.J.shape[1] :]
+        missed[block] = fitted.from_start[block] - fitted.J[block] @ parameters
+        missed[block] -= of_sessions[block] @ told[_sessions(fitted)]
     return missed
+
+
+def _sessions(fitted: Fitted) -> slice:
+    """Which of the common errors are those of sessions: those of single recordings come first."""
+    return slice(len(fitted.measured) * len(fitted.scatter.sd), fitted.errors.G.shape[1])
+
+
+def _of_sessions(fitted: Fitted) -> Float[np.ndarray, "row column"]:
+    return fitted.errors.G[:, _sessions(fitted)]
 
 
 def noise_floor(measured: Measured) -> Float[np.ndarray, " channel"]:

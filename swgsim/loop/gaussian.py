@@ -72,6 +72,10 @@ class Covariance:
         white = self.whiten(r)
         return -0.5 * float(white @ white + 2 * np.log(self._shrinking[1]).sum() + np.log(self.variance).sum())
 
+    def told(self, r: Float[np.ndarray, " row"]) -> Float[np.ndarray, " column"]:
+        """The common errors that a residual tells, in standard deviations."""
+        return cho_solve(cho_factor(np.eye(self.G.shape[1]) + self._gram), self.G.T @ (r / self.variance))
+
     def rows(self, chosen: np.ndarray) -> "Covariance":
         """The covariance of some of the rows."""
         return Covariance(self.variance[chosen], self.G[chosen])
