@@ -1,7 +1,7 @@
 """Error of a model per channel: on what it was fitted to, on operating points left out, and the floor of repeats.
 
-Zeros, gains and the index of the angle that a whole session has off are the bench's, and no error of the model: they
-are taken out as its recordings tell them.
+The model is the chain with all that is declared not to be known of it: parameters, zeros and gains of a session, what
+is left open of the gear. Where these lie is what the recordings tell; errors of single recordings they cannot.
 """
 
 from dataclasses import dataclass
@@ -30,7 +30,9 @@ class Errors:
 
 def errors(fitted: Fitted) -> Errors:
     """Errors of a model on the recordings it was fitted to."""
-    fit = fitted.residual - _of_sessions(fitted) @ fitted.whole.told(fitted.from_start)[_sessions(fitted)]
+    own = _single(fitted)
+    told = fitted.whole.told(fitted.from_start)
+    fit = fitted.from_start - fitted.whole.G[:, own:] @ told[own:]
     return Errors(per_channel(fitted.measured, fit), per_channel(fitted.measured, _left_out(fitted)))
 
 
@@ -44,22 +46,16 @@ def _left_out(fitted: Fitted) -> Float[np.ndarray, " row"]:
     """Errors of every operating point by the model fitted to the others; NaN where there is one only."""
     blocks = fitted.measured.point_rows()
     missed = np.full(len(fitted.residual), np.nan)
-    columns, of_sessions = len(fitted.whole.G.T), _of_sessions(fitted)
+    own = _single(fitted)
     for block in blocks if len(blocks) > 1 else []:
         told = fitted.whole.left_out(fitted.from_start, block).common
-        parameters = told[columns - fitted.J.shape[1] :]
-        missed[block] = fitted.from_start[block] - fitted.J[block] @ parameters
-        missed[block] -= of_sessions[block] @ told[_sessions(fitted)]
+        missed[block] = fitted.from_start[block] - fitted.whole.G[block, own:] @ told[own:]
     return missed
 
 
-def _sessions(fitted: Fitted) -> slice:
-    """Which of the common errors are those of sessions: those of single recordings come first."""
-    return slice(len(fitted.measured) * len(fitted.scatter.sd), fitted.errors.G.shape[1])
-
-
-def _of_sessions(fitted: Fitted) -> Float[np.ndarray, "row column"]:
-    return fitted.errors.G[:, _sessions(fitted)]
+def _single(fitted: Fitted) -> int:
+    """How many of the common errors are those of single recordings; they come first."""
+    return len(fitted.measured) * len(fitted.scatter.sd)
 
 
 def noise_floor(measured: Measured) -> Float[np.ndarray, " channel"]:
