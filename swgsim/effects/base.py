@@ -93,8 +93,9 @@ class Effect:
     place: ClassVar[str] = ""
 
     def __post_init__(self) -> None:
+        title = self.title()
         for name, quantity in quantities(type(self)).items():
-            quantity.check(self.title(), name, getattr(self, name))
+            quantity.check(title, name, getattr(self, name))
 
     @classmethod
     def name(cls) -> str:

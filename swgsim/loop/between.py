@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -106,7 +107,7 @@ class Between:
         whole = scene_of(recording)
         signals = [np.array([recording.channels[gauge] for gauge in gauges]), *_ends(whole, noise)]
         beside = _without(np.array(signals), np.linalg.qr(ordinary(whole))[0])
-        left, *ends = bare._numbers(beside[..., :length])
+        left, *ends = bare._numbers(bare._lines(beside[..., :length]))
         # Each is of another gauge, in units of its own noise.
         return replace(bare, left=left)._taking(np.transpose([end / np.linalg.norm(end) for end in ends]))
 
@@ -124,9 +125,10 @@ class Between:
     def pattern(self, effect: Effect) -> Float[np.ndarray, "column number"]:
         """What an effect can look like, whatever its random phases; a direction that the orders took is left out."""
         seen = shapes(effect, self.scene, self.gauges)
-        between = self._numbers(_without(seen, self.orders))
+        lines = self._lines(seen)
+        between = self._numbers(lines - (seen @ self.orders) @ self._of_orders * self.scale)
         between = between - (between @ self.taken) @ self.taken.T
-        whole = np.linalg.norm(self._lines(seen), axis=(-2, -1)).max()
+        whole = np.linalg.norm(lines, axis=(-2, -1)).max()
         return between if np.linalg.norm(between, axis=-1).max() > SEEN * whole else np.zeros_like(between)
 
     def explained(self, effect: Effect) -> Explained:
@@ -157,14 +159,22 @@ class Between:
     def _taking(self, U: Float[np.ndarray, "number direction"]) -> "Between":
         return replace(self, left=self.left - U @ (U.T @ self.left), taken=np.hstack([self.taken, U]))
 
-    def _numbers(self, signals: Float[np.ndarray, "column gauge time"]) -> Float[np.ndarray, "column number"]:
-        """Clear lines of the spectrum in units of the noise, real parts before imaginary ones."""
-        lines = self._lines(signals) * self.clear
-        flat = lines.reshape(len(lines), -1)
+    @cached_property
+    def _of_orders(self) -> Complex[np.ndarray, "column line"]:
+        """Spectrum of the basis of the orders: to take them out of a spectrum costs less than another transform."""
+        return _spectrum(self.orders.T)[:, : self.scale.shape[1]]
+
+    def _numbers(self, lines: Complex[np.ndarray, "column gauge line"]) -> Float[np.ndarray, "column number"]:
+        """Clear lines of a spectrum in units of the noise, real parts before imaginary ones."""
+        flat = (lines * self.clear).reshape(len(lines), -1)
         return np.concatenate([flat.real, flat.imag], axis=-1)
 
     def _lines(self, signals: Float[np.ndarray, "column gauge time"]) -> Complex[np.ndarray, "column gauge line"]:
-        return np.fft.rfft(signals, axis=-1)[..., 1 : self.scale.shape[1] + 1] / signals.shape[-1] * self.scale
+        """The spectrum of signals in units of the noise; a gauge that is silent costs nothing."""
+        lines = np.zeros((*signals.shape[:2], self.scale.shape[1]), complex)
+        loud = signals.any(axis=(0, 2))
+        lines[:, loud] = _spectrum(signals[:, loud])[..., : lines.shape[2]] * self.scale[loud]
+        return lines
 
 
 def between(recordings: Sequence[Recording]) -> list[Between]:
@@ -225,6 +235,11 @@ def _ends(scene: Scene, noise: Sequence[Floor]) -> Float[np.ndarray, "gauge gaug
     """
     fading = [np.exp(-2 * np.pi * floor.corner * scene.time) for floor in noise]
     return np.eye(len(noise))[:, :, None] * np.array(fading)[:, None]
+
+
+def _spectrum(signals: Float[np.ndarray, "*any time"]) -> Complex[np.ndarray, "*any line"]:
+    """Lines from the first one on."""
+    return np.fft.rfft(signals, axis=-1)[..., 1:] / signals.shape[-1]
 
 
 def _without(signals: Float[np.ndarray, "*any time"], Q: Float[np.ndarray, "time column"]) -> np.ndarray:

@@ -1,7 +1,7 @@
 """Error of a model per channel: on what it was fitted to, on operating points left out, and the floor of repeats.
 
-The model is the chain with all that is declared not to be known of it: parameters, zeros and gains of a session, what
-is left open of the gear. Where these lie is what the recordings tell; errors of single recordings they cannot.
+Zeros and gains of sessions, and what is left open of the gear, are no error of a model: they are taken out, where the
+best model that there is has them, of this one and of that before, which would hide in them what it lacks.
 """
 
 from dataclasses import dataclass
@@ -28,34 +28,28 @@ class Errors:
     heldout: Float[np.ndarray, " channel"]
 
 
-def errors(fitted: Fitted) -> Errors:
-    """Errors of a model on the recordings it was fitted to."""
-    own = _single(fitted)
-    told = fitted.whole.told(fitted.from_start)
-    fit = fitted.from_start - fitted.whole.G[:, own:] @ told[own:]
-    return Errors(per_channel(fitted.measured, fit), per_channel(fitted.measured, _left_out(fitted)))
+def errors(fitted: Fitted, best: Fitted) -> Errors:
+    """Errors of a model on the recordings it was fitted to, where the best one has what is no error of it."""
+    fit = per_channel(fitted.measured, fitted.residual - best.beside)
+    return Errors(fit, per_channel(fitted.measured, _left_out(fitted, best)))
 
 
-def of_points_left_out(fitted: Fitted) -> Float[np.ndarray, " point"]:
+def of_points_left_out(fitted: Fitted, best: Fitted) -> Float[np.ndarray, " point"]:
     """Root mean square error of every operating point, by the model fitted to the others, in units of the noise."""
-    weighed = _left_out(fitted) ** 2 / fitted.errors.variance
+    weighed = _left_out(fitted, best) ** 2 / fitted.errors.variance
     return np.array([np.sqrt(weighed[block].mean()) for block in fitted.measured.point_rows()])
 
 
-def _left_out(fitted: Fitted) -> Float[np.ndarray, " row"]:
+def _left_out(fitted: Fitted, best: Fitted) -> Float[np.ndarray, " row"]:
     """Errors of every operating point by the model fitted to the others; NaN where there is one only."""
     blocks = fitted.measured.point_rows()
     missed = np.full(len(fitted.residual), np.nan)
-    own = _single(fitted)
     for block in blocks if len(blocks) > 1 else []:
-        told = fitted.whole.left_out(fitted.from_start, block).common
-        missed[block] = fitted.from_start[block] - fitted.whole.G[block, own:] @ told[own:]
+        parameters = fitted.whole.left_out(fitted.from_start, block).common[fitted.besides.stop :]
+        beside = best.whole.left_out(best.from_start, block).common[best.besides]
+        explained = fitted.J[block] @ parameters + best.whole.G[block, best.besides] @ beside
+        missed[block] = fitted.from_start[block] - explained
     return missed
-
-
-def _single(fitted: Fitted) -> int:
-    """How many of the common errors are those of single recordings; they come first."""
-    return len(fitted.measured) * len(fitted.scatter.sd)
 
 
 def noise_floor(measured: Measured) -> Float[np.ndarray, " channel"]:

@@ -11,7 +11,6 @@ from jaxtyping import Float
 from matplotlib.figure import Figure
 
 from swgsim import style
-from swgsim.loop import scatter
 from swgsim.loop.answer import Answer
 from swgsim.loop.asking import ALPHA
 from swgsim.loop.features import ORDERS, basis
@@ -90,7 +89,7 @@ def over_angle(answer: Answer) -> Figure:
         band = 2 * np.linalg.norm(basis(psi, ORDERS) @ _of_channel(noise, i), axis=1)
         axes.fill_between(np.rad2deg(psi), -band, band, color="#dddddd", label="noise")
         for fitted, colour, name in ((before, BEFORE, "before"), (after, AFTER, "after")):
-            mean = fitted.residual.reshape(measured.values.shape)[rows].mean(axis=0)
+            mean = (fitted.residual - after.beside).reshape(measured.values.shape)[rows].mean(axis=0)
             axes.plot(np.rad2deg(psi), basis(psi, ORDERS) @ _of_channel(mean, i), color=colour, label=name)
         style.label(axes, "", f"{channels[i]} [{CHANNELS[channels[i]].unit}]")
     point = measured.recordings[rows[0]].point
@@ -115,7 +114,7 @@ def worst(fitted: Fitted) -> list[int]:
 def _of_mean(fitted: Fitted, rows: Sequence[int]) -> Float[np.ndarray, "feature column"]:
     """Errors of the mean of some recordings that are theirs alone, one standard deviation each."""
     measured = fitted.measured
-    own = len(measured) * len(scatter.kinds(measured.layout))
+    own = fitted.singles
     white = np.diag(np.sqrt(measured.variance[rows].mean(axis=0) / len(rows)))
     common = fitted.errors.G[:, :own].reshape(*measured.values.shape, own)[rows].mean(axis=0)
     return np.hstack([white, common])
@@ -138,7 +137,7 @@ def spectrum(answer: Answer) -> Figure:
     floor = repeat_lines(measured)
     for i, (axes, name) in enumerate(zip(panels, channels, strict=False)):
         for fitted, colour, label, side in ((before, BEFORE, "before", -0.2), (after, AFTER, "after", 0.2)):
-            residual = fitted.residual.reshape(measured.values.shape)
+            residual = (fitted.residual - after.beside).reshape(measured.values.shape)
             axes.bar(orders + side, lines(measured, residual)[i], 0.4, color=colour, label=label)
         if floor is not None:
             axes.step(orders, floor[i], where="mid", color=FLOOR, linewidth=1.6, label="noise floor by repeats")

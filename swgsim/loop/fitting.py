@@ -93,12 +93,17 @@ class Fitted:
         """The same with other errors of single recordings, which are the first columns of all errors."""
         ratio = np.array(list(scatter.sd.values())) / np.array(list(self.scatter.sd.values()))
         scale = np.ones(self.errors.G.shape[1])
-        scale[: len(self.measured) * len(ratio)] = np.tile(ratio, len(self.measured))
+        scale[: self.singles] = np.tile(ratio, len(self.measured))
         return replace(self, scatter=scatter, errors=Covariance(self.errors.variance, self.errors.G * scale))
+
+    @property
+    def singles(self) -> int:
+        """How many of the common errors are those of single recordings; they come first."""
+        return len(self.measured) * len(self.scatter.sd)
 
     @cached_property
     def residual(self) -> Float[np.ndarray, " row"]:
-        """Measured less predicted."""
+        """Measured less predicted at the likeliest parameters."""
         return self.measured.values.ravel() - self.offset - self.measured.rows(self.calibrated.predicted)
 
     @cached_property
@@ -115,6 +120,18 @@ class Fitted:
     def from_start(self) -> Float[np.ndarray, " row"]:
         """Residual of the linearised model at the values where the spreads begin: what :attr:`whole` describes."""
         return self.residual + self.J @ np.array(list(self.calibrated.position.values()))
+
+    @property
+    def besides(self) -> slice:
+        """Which columns of :attr:`whole` are neither errors of single recordings nor fitted parameters: zeros and gains
+        of sessions, and what is left open of the gear.
+        """
+        return slice(self.singles, self.whole.G.shape[1] - len(self.parameters))
+
+    @cached_property
+    def beside(self) -> Float[np.ndarray, " row"]:
+        """What the recordings say these make."""
+        return self.whole.G[:, self.besides] @ self.whole.told(self.from_start)[self.besides]
 
     @property
     def missed(self) -> Float[np.ndarray, "recording feature"]:
@@ -148,10 +165,9 @@ class Fitted:
         weighed = self.whole.transposed(bases)
         white = np.sqrt(self.whole.variance)[:, None] * weighed
         common = self.whole.G.T @ weighed
-        recordings = len(self.measured)
         while True:
             factors = np.ones((len(common), draws))
-            factors[: recordings * len(self.scatter.sd)] = np.tile(self.scatter.drawn(rng, draws), (recordings, 1))
+            factors[: self.singles] = np.tile(self.scatter.drawn(rng, draws), (len(self.measured), 1))
             noise = white.T @ rng.standard_normal((len(white), draws))
             yield noise + common.T @ (factors * rng.standard_normal((len(common), draws)))
 

@@ -51,4 +51,4 @@ def _holds(before: Fitted, after: Fitted) -> bool:
     """Whether it pays on operating points left out, and makes none of them clearly worse."""
     gains, _ = gained(before, after)
     pays = gains.sum() > LEAST_GAIN and gains.min() > -LEAST_GAIN
-    return bool(pays and (of_points_left_out(after) < WORSE * of_points_left_out(before)).all())
+    return bool(pays and (of_points_left_out(after, after) < WORSE * of_points_left_out(before, after)).all())

@@ -45,7 +45,7 @@ class Sizes:
 
 def error(before: Fitted, after: Fitted, floor: Float[np.ndarray, " channel"], sizes: Sizes) -> dict[str, Any]:
     """Errors before and after, of what was fitted and of operating points left out."""
-    found = {"before": errors(before), "after": errors(after)}
+    found = {"before": errors(before, after), "after": errors(after, after)}
     return {
         **{
             name: {"fit": sizes.overall(each.fit), "heldout": sizes.overall(each.heldout)}
