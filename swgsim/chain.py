@@ -226,7 +226,8 @@ def _significant(coefficients: np.ndarray, T_out: float) -> np.ndarray:
 
 def _structure(gear: Gear, effects: Sequence[Effect]) -> tuple:
     """All that an influence map depends on, but for the mesh."""
-    touching = tuple(effect for effect in effects if overrides(effect, "wave_generator", "mesh", "carried", "cracks"))
+    places = ("wave_generator", "engaged", "mesh", "carried", "cracks")
+    touching = tuple(effect for effect in effects if overrides(effect, *places))
     return gear.flex_spline, gear.transmission.alpha_tooth, gear.wave_generator, gear.gauges, touching
 
 

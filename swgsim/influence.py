@@ -106,7 +106,10 @@ def boundary_conditions(
     theta = fine_angles(flex.sector.count)
     for effect in effects:
         displacement = effect.wave_generator(displacement, psi, theta)
-    share = np.maximum(displacement, 0)
+    depth = displacement
+    for effect in effects:
+        depth = effect.engaged(depth, psi, theta)
+    share = np.maximum(depth, 0)
     for effect in effects:
         share = effect.mesh(share, psi, theta)
     whole = share.sum(axis=1, keepdims=True)

@@ -1,4 +1,6 @@
-"""Deviations of the gauges' maps, order by order."""
+"""Lines of a gear that lie elsewhere than the chain's: of the gauges' maps, and those that are learned."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -6,20 +8,17 @@ from loop_fixtures import GEAR, POINTS
 
 from swgsim.conditions import Conditions
 from swgsim.effects import Effect
+from swgsim.effects.base import Scene
 from swgsim.effects.frozen import FULL_LOAD
 from swgsim.effects.library import LIBRARY
 from swgsim.loop.features import ORDERS, Layout
-from swgsim.loop.form import deviation, form_columns
+from swgsim.loop.form import form_columns, largest_lines, lines_of
 from swgsim.loop.model import Model, Situation, predict
+from swgsim.loop.own_lines import OwnLines
+from swgsim.loop.unit import Unit
 
 LAYOUT = Layout(("T_in", "s0", "s1"))
 SITUATIONS = tuple(Situation(point, Conditions()) for point in POINTS)
-
-
-@pytest.fixture
-def predicted() -> np.ndarray:
-    """Features of every situation."""
-    return np.random.default_rng(1).normal(size=(len(SITUATIONS), len(LAYOUT)))
 
 
 MAPS = 0.01 * (LAYOUT.channel != "T_in")
@@ -33,6 +32,16 @@ def test_every_second_deviation_of_a_map_grows_with_the_load():
     assert found[:, LAYOUT.channel == "s0", ::2].max() == pytest.approx(0.01)
     load = np.array([point.T_out for point in POINTS]) / FULL_LOAD
     np.testing.assert_allclose(found[..., 1::2], found[..., ::2] * load[:, None, None])
+
+
+def test_only_maps_of_gauges_deviate_and_by_a_share_of_their_largest_line():
+    predicted = np.random.default_rng(1).normal(size=(len(SITUATIONS), len(LAYOUT)))
+    of_maps, of_learned = Unit(Model(GEAR), structure=0.03).form(predicted, LAYOUT)
+    largest = largest_lines(predicted, LAYOUT)
+    assert largest["s0"] == np.abs(LAYOUT.lines(predicted))[:, 1, 1:].max()
+    expected = {"T_in": 0.0, "s0": 0.03 * largest["s0"], "s1": 0.03 * largest["s1"]}
+    np.testing.assert_allclose(of_maps, [expected[name] for name in LAYOUT.channel])
+    assert not of_learned.any()
 
 
 def test_a_deviation_is_the_same_whatever_else_is_asked():
@@ -57,7 +66,7 @@ def of_form() -> tuple[np.ndarray, Model]:
     """Features that columns make together, and a model that has them as its deviation."""
     columns = form_columns((MAPS, LEARNED), SITUATIONS, 3)
     found = np.random.default_rng(1).normal(size=columns.shape[-1])
-    return columns @ found, Model(GEAR, (), deviation((MAPS, LEARNED), found, 3, LAYOUT))
+    return columns @ found, Model(GEAR, (), lines_of((MAPS, LEARNED), found, 3, LAYOUT, GEAR.gauges.gain))
 
 
 def test_a_model_has_the_deviation_that_its_columns_make(of_form):
@@ -78,6 +87,15 @@ def test_a_gain_scales_the_deviation_of_its_gauge_too(of_form):
     np.testing.assert_allclose(
         with_and_without(deviating, LIBRARY["gauge_gain"](sensor=0, share=-0.4)), expected, atol=1e-9
     )
+
+
+def test_lines_of_a_gauge_that_was_dead_stay(of_form):
+    _, deviating = of_form
+    dead = OwnLines(replace(deviating.own_lines, gain=(0.0, 1, 1, 1, 1)), (2.0,) * 5)
+    time = np.linspace(0, 0.1, 50)
+    scene = Scene(time, 100 * time, 0 * time, POINTS[0], Conditions())
+    found, one = dead.gauge(np.zeros((5, 50)), scene), replace(dead, gain=(1.0,) * 5).gauge(np.zeros((5, 50)), scene)
+    np.testing.assert_allclose(found, [[1.0], [2], [2], [2], [2]] * one)
 
 
 def test_a_filter_delays_the_deviation_of_its_gauge_too(of_form):

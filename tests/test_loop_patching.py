@@ -57,7 +57,7 @@ def test_one_that_holds_everywhere_is_added(fitted: Fitted) -> None:
 
 
 def test_one_that_does_not_hold_at_one_operating_point_is_not(fitted: Fitted, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(patching, "of_points_left_out", lambda *_: np.ones(6))  # which would refuse it too
+    monkeypatch.setattr(patching, "of_points_left_out", lambda _: np.ones(6))  # which would refuse it too
     assert not is_added(fitted, np.array([1.0, 1, 1, 0, 1, 1]))
 
 
@@ -66,7 +66,7 @@ def test_one_that_doubles_the_error_at_an_operating_point_is_not(
 ) -> None:
     for times, added in ((1.5, True), (2.5, False)):
         errors = {True: np.array([1.0, 1, times, 1, 1, 1]), False: np.ones(6)}
-        monkeypatch.setattr(patching, "of_points_left_out", lambda now, _, errors=errors: errors[bool(now.parameters)])
+        monkeypatch.setattr(patching, "of_points_left_out", lambda now, errors=errors: errors[bool(now.parameters)])
         assert is_added(fitted, np.ones(6)) == added
 
 
@@ -99,7 +99,7 @@ def test_error_of_a_point_left_out_is_that_of_what_the_others_tell(fitted: Fitte
     shown = 50 * fitted.measured.point_rows()[2] * columns(ATOM, fitted)[:, 0]
     before = holding(replace(fitted, errors=replace(fitted.errors, G=fitted.errors.G[:, :0])), shown)
     after = patching.extended(before, ())
-    missed, before_it = of_points_left_out(after, after), of_points_left_out(before, before)
+    missed, before_it = of_points_left_out(after), of_points_left_out(before)
     assert missed[2] == pytest.approx(before_it[2])
     assert np.delete(missed, 2).min() > 0.1 * missed[2]
     np.testing.assert_array_equal(np.delete(before_it, 2), 0)
@@ -114,3 +114,14 @@ def test_what_a_whole_session_has_off_is_no_error_of_the_model(fitted: Fitted) -
     np.testing.assert_allclose(found.fit, quiet.fit, rtol=1e-2)
     np.testing.assert_allclose(found.heldout, quiet.heldout, rtol=1e-2)
     np.testing.assert_array_less(found.heldout, 10)
+
+
+def test_what_a_model_lacks_is_an_error_though_a_nuisance_could_hide_it(fitted: Fitted) -> None:
+    """The best model says how much of it is nuisance; by itself, the model before would call it nothing else."""
+    line = columns(ATOM, fitted)[:, :1]
+    before = holding(replace(fitted, errors=replace(fitted.errors, G=30 * line)), 50 * line[:, 0])
+    best = patching.extended(before, ())
+    s2, shown = LAYOUT.channels.index("s2"), errors(holding(before, 50 * line[:, 0]), holding(best, 0 * line[:, 0]))
+    assert errors(before, before).heldout[s2] < 0.05 * shown.fit[s2]
+    assert errors(before, best).heldout[s2] == pytest.approx(shown.fit[s2], rel=0.15)
+    assert errors(best, best).heldout[s2] < 0.05 * shown.fit[s2]

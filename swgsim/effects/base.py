@@ -133,6 +133,15 @@ class Effect:
         """Radial displacement [m] that the wave generator imposes on the sleeve."""
         return displacement
 
+    def engaged(
+        self,
+        depth: Float[np.ndarray, "psi theta"],
+        psi: Float[np.ndarray, " psi"],
+        theta: Float[np.ndarray, " theta"],
+    ) -> Float[np.ndarray, "psi theta"]:
+        """Depth [m] to which teeth engage, by which they share the force: the imposed displacement if nothing else."""
+        return depth
+
     def mesh(
         self,
         share: Float[np.ndarray, "psi theta"],

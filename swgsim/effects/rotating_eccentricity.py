@@ -42,14 +42,14 @@ class RotatingEccentricity(Effect):
         """The displacement plus the radial part of the shift."""
         return displacement + self._shift(psi, theta)
 
-    def mesh(
+    def engaged(
         self,
-        share: Float[np.ndarray, "psi theta"],
+        depth: Float[np.ndarray, "psi theta"],
         psi: Float[np.ndarray, " psi"],
         theta: Float[np.ndarray, " theta"],
     ) -> Float[np.ndarray, "psi theta"]:
-        """The shares, which follow the displacement, or what they are without the shift."""
-        return share if self.unequal else np.where(share > 0, np.maximum(share - self._shift(psi, theta), 0), 0)
+        """The depth, with the shift or without."""
+        return depth if self.unequal else depth - self._shift(psi, theta)
 
     def _shift(
         self, psi: Float[np.ndarray, " psi"], theta: Float[np.ndarray, " theta"]

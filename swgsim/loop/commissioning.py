@@ -8,7 +8,7 @@ from scipy.stats import chi2, false_discovery_control
 
 from swgsim.loop.declared import of_unit
 from swgsim.loop.fitting import MISFIT, Fitted, fit
-from swgsim.loop.form import deviation, form_columns, largest_lines
+from swgsim.loop.form import form_columns, largest_lines, lines_of
 from swgsim.loop.session import Measured
 from swgsim.loop.unit import Unit
 from swgsim.recordings import SENSORS
@@ -42,8 +42,8 @@ def commission(measured: Measured, unit: Unit) -> Unit:
     beyond = _beyond(measured, fitted.missed)
     if beyond.max() > 1:
         fitted = fit(measured, replace(fitted.unit, inflation=beyond))
-    unit = fitted.unit
-    largest = largest_lines(fitted.calibrated.predicted, measured.layout)
+    predicted = fitted.calibrated.predicted
+    unit = replace(fitted.unit, largest=largest_lines(predicted, measured.layout))
     columns = np.hstack([fitted.J, fitted.open])
     white = fitted.errors.whiten(columns)
     covariance = np.linalg.inv(white.T @ white + np.eye(columns.shape[1]))
@@ -55,14 +55,14 @@ def commission(measured: Measured, unit: Unit) -> Unit:
     own = [name in of_unit(nominal) for name in fitted.parameters]
     kept = np.flatnonzero([*own, *[True] * fitted.open.shape[1]])
     reach, shift = np.linalg.cholesky(covariance[np.ix_(kept, kept)]), mean[kept]
-    # Deviations of lines go into the model, so that effects on the signals act on them too.
-    sizes = unit.form(fitted.calibrated.predicted, measured.layout)
+    # Lines go into the model, so that effects on the signals act on them too.
+    sizes = unit.form(predicted, measured.layout)
     form = len(shift) - form_columns(sizes, measured.situations, unit.powers).shape[-1]
-    model = replace(fitted.model, deviation=deviation(sizes, shift[form:], unit.powers, measured.layout))
+    gain = fitted.model.run(measured.situations[0]).affected_gear.gauges.gain
+    lines = lines_of(sizes, shift[form:], unit.powers, measured.layout, gain)
     shift[form:] = 0.0
-    return replace(
-        unit, model=model, reach=reach, shift=shift, scatter=fitted.scatter, nominal=nominal, largest=largest
-    )
+    model = replace(fitted.model, own_lines=lines)
+    return replace(unit, model=model, reach=reach, shift=shift, scatter=fitted.scatter, nominal=nominal)
 
 
 def _as_accurate_as_shown(measured: Measured, unit: Unit) -> Fitted:

@@ -1,7 +1,8 @@
 """Error of a model per channel: on what it was fitted to, on operating points left out, and the floor of repeats.
 
-Zeros and gains of sessions, and what is left open of the gear, are no error of a model: they are taken out, where the
-best model that there is has them, of this one and of that before, which would hide in them what it lacks.
+Zeros and gains of sessions, and what is left open of the gear, are no error of a model. They are taken out, where the
+other operating points tell that the best model has them, of this model and of that before it, which would hide in them
+what it lacks.
 """
 
 from dataclasses import dataclass
@@ -29,26 +30,23 @@ class Errors:
 
 
 def errors(fitted: Fitted, best: Fitted) -> Errors:
-    """Errors of a model on the recordings it was fitted to, where the best one has what is no error of it."""
-    fit = per_channel(fitted.measured, fitted.residual - best.beside)
+    """Errors of a model on the recordings it was fitted to, without the nuisance that the best one finds."""
+    fit = per_channel(fitted.measured, fitted.residual - best.nuisance)
     return Errors(fit, per_channel(fitted.measured, _left_out(fitted, best)))
 
 
-def of_points_left_out(fitted: Fitted, best: Fitted) -> Float[np.ndarray, " point"]:
+def of_points_left_out(fitted: Fitted) -> Float[np.ndarray, " point"]:
     """Root mean square error of every operating point, by the model fitted to the others, in units of the noise."""
-    weighed = _left_out(fitted, best) ** 2 / fitted.errors.variance
+    weighed = _left_out(fitted, fitted) ** 2 / fitted.errors.variance
     return np.array([np.sqrt(weighed[block].mean()) for block in fitted.measured.point_rows()])
 
 
 def _left_out(fitted: Fitted, best: Fitted) -> Float[np.ndarray, " row"]:
     """Errors of every operating point by the model fitted to the others; NaN where there is one only."""
-    blocks = fitted.measured.point_rows()
     missed = np.full(len(fitted.residual), np.nan)
-    for block in blocks if len(blocks) > 1 else []:
-        parameters = fitted.whole.left_out(fitted.from_start, block).common[fitted.besides.stop :]
-        beside = best.whole.left_out(best.from_start, block).common[best.besides]
-        explained = fitted.J[block] @ parameters + best.whole.G[block, best.besides] @ beside
-        missed[block] = fitted.from_start[block] - explained
+    for block, expected in fitted.by_others:
+        parameters = expected.common[fitted.nuisances.stop :]
+        missed[block] = fitted.from_start[block] - fitted.J[block] @ parameters - best.nuisance[block]
     return missed
 
 

@@ -1,6 +1,7 @@
 """Pictures of the answer: the residual before and after, the scores, the errors, the parameters.
 
-All curves are of the chain at the printed parameters; a commissioned gear's include the maps that commissioning found.
+All curves are of the chain at the printed parameters; a commissioned gear's include the lines that commissioning found.
+What the recordings say of zeros and gains of a session, and of what is left open of the gear, is taken out.
 """
 
 from collections.abc import Mapping, Sequence
@@ -35,8 +36,9 @@ def pictures(answer: Answer, report: Mapping[str, Any]) -> dict[str, tuple[style
         "residual_over_angle": (
             "Residual over one revolution of the wave generator",
             "Measured less predicted, the mean of the repeats at the operating point where the model without the found "
-            "effects is wrong most. Look at orange turning into blue: what is left should lie within the grey band, "
-            "two standard deviations of what noise and the errors of single recordings do to it.",
+            "effects is wrong most; zeros of the session and what is left open of the gear are taken out. Look at "
+            "orange turning into blue: what is left should lie within the grey band, two standard deviations of what "
+            "noise and the errors of single recordings do to it.",
             over_angle(answer),
         ),
         "residual_spectrum": (
@@ -56,7 +58,7 @@ def pictures(answer: Answer, report: Mapping[str, Any]) -> dict[str, tuple[style
         "errors": (
             "Error before and after",
             "Of what was fitted and of operating points left out, channel by channel, as a share of the channel's root "
-            "mean square. The black lines are the noise floor: no model can be better than that.",
+            "mean square. The black lines are the noise floor by repeats, below which no model comes but by luck.",
             errors(report),
         ),
     }
@@ -80,7 +82,7 @@ def over_angle(answer: Answer) -> Figure:
     measured = before.measured
     channels = measured.layout.channels
     shown = [i for i, name in enumerate(channels) if name.startswith("s")] or list(range(len(channels)))
-    rows = worst(before)
+    rows = worst(before, after)
     psi = np.linspace(0, 2 * np.pi, POINTS)
     noise = _of_mean(before, rows)
     picture = style.figure(11, 2.1 * len(shown))
@@ -89,7 +91,7 @@ def over_angle(answer: Answer) -> Figure:
         band = 2 * np.linalg.norm(basis(psi, ORDERS) @ _of_channel(noise, i), axis=1)
         axes.fill_between(np.rad2deg(psi), -band, band, color="#dddddd", label="noise")
         for fitted, colour, name in ((before, BEFORE, "before"), (after, AFTER, "after")):
-            mean = (fitted.residual - after.beside).reshape(measured.values.shape)[rows].mean(axis=0)
+            mean = (fitted.residual - after.nuisance).reshape(measured.values.shape)[rows].mean(axis=0)
             axes.plot(np.rad2deg(psi), basis(psi, ORDERS) @ _of_channel(mean, i), color=colour, label=name)
         style.label(axes, "", f"{channels[i]} [{CHANNELS[channels[i]].unit}]")
     point = measured.recordings[rows[0]].point
@@ -100,10 +102,10 @@ def over_angle(answer: Answer) -> Figure:
     return picture
 
 
-def worst(fitted: Fitted) -> list[int]:
+def worst(fitted: Fitted, after: Fitted) -> list[int]:
     """The recordings of the operating point at which a model is wrong most, in units of the noise."""
     measured = fitted.measured
-    white = (fitted.residual / np.sqrt(fitted.errors.variance)).reshape(measured.values.shape)
+    white = ((fitted.residual - after.nuisance) / np.sqrt(fitted.errors.variance)).reshape(measured.values.shape)
     gauges = np.char.startswith(measured.layout.channel, "s")
     size = (white[:, gauges if gauges.any() else slice(None)] ** 2).sum(axis=1)
     points = [recording.point for recording in measured.recordings]
@@ -137,7 +139,7 @@ def spectrum(answer: Answer) -> Figure:
     floor = repeat_lines(measured)
     for i, (axes, name) in enumerate(zip(panels, channels, strict=False)):
         for fitted, colour, label, side in ((before, BEFORE, "before", -0.2), (after, AFTER, "after", 0.2)):
-            residual = (fitted.residual - after.beside).reshape(measured.values.shape)
+            residual = (fitted.residual - after.nuisance).reshape(measured.values.shape)
             axes.bar(orders + side, lines(measured, residual)[i], 0.4, color=colour, label=label)
         if floor is not None:
             axes.step(orders, floor[i], where="mid", color=FLOOR, linewidth=1.6, label="noise floor by repeats")

@@ -11,7 +11,7 @@ from swgsim.effects.base import Effect
 from swgsim.loop import repeats, scatter
 from swgsim.loop.calibration import Calibrated, calibrate, linearised
 from swgsim.loop.declared import Declared, at, of_effects, of_unit
-from swgsim.loop.gaussian import Covariance
+from swgsim.loop.gaussian import Covariance, Expected
 from swgsim.loop.model import Model
 from swgsim.loop.scatter import Scatter
 from swgsim.loop.session import Measured
@@ -39,7 +39,7 @@ class Fitted:
     open : array (row, direction)
         What the unit leaves open beside the fitted parameters (:meth:`Unit.left_open`), one standard deviation each.
     offset : array (row,)
-        Where commissioning found the recordings beside the model, by all that it leaves open.
+        Where commissioning found the recordings beside the model, by what is not in it: frictions, lags, zeros.
     allowed : array (row, column) or None
         The part of ``open`` that the form of effects found earlier leaves open, and regularities that were set free; it
         comes last.
@@ -122,16 +122,25 @@ class Fitted:
         return self.residual + self.J @ np.array(list(self.calibrated.position.values()))
 
     @property
-    def besides(self) -> slice:
+    def nuisances(self) -> slice:
         """Which columns of :attr:`whole` are neither errors of single recordings nor fitted parameters: zeros and gains
-        of sessions, and what is left open of the gear.
+        of sessions, and what is left open of the gear and of effects found earlier.
         """
         return slice(self.singles, self.whole.G.shape[1] - len(self.parameters))
 
     @cached_property
-    def beside(self) -> Float[np.ndarray, " row"]:
-        """What the recordings say these make."""
-        return self.whole.G[:, self.besides] @ self.whole.told(self.from_start)[self.besides]
+    def by_others(self) -> list[tuple[np.ndarray, Expected]]:
+        """The rows of every operating point (a mask) and what all the others say of them; none if there is one only."""
+        blocks = self.measured.point_rows()
+        return [(rows, self.whole.left_out(self.from_start, rows)) for rows in blocks] if len(blocks) > 1 else []
+
+    @cached_property
+    def nuisance(self) -> Float[np.ndarray, " row"]:
+        """What the nuisances make of every operating point, as all the others tell it; nothing if there is one only."""
+        made = np.zeros(len(self.residual))
+        for block, expected in self.by_others:
+            made[block] = self.whole.G[block, self.nuisances] @ expected.common[self.nuisances]
+        return made
 
     @property
     def missed(self) -> Float[np.ndarray, "recording feature"]:
@@ -179,10 +188,8 @@ class Fitted:
     @cached_property
     def predictive(self) -> Float[np.ndarray, " point"]:
         """Log-likelihood of every operating point as predicted from all the others; of all if there is one only."""
-        blocks = self.measured.point_rows()
-        if len(blocks) < 2:
-            return np.array([self.whole.log_likelihood(self.from_start)])
-        return np.array([self.whole.left_out(self.from_start, block).log_likelihood for block in blocks])
+        expected = [expected.log_likelihood for _, expected in self.by_others]
+        return np.array(expected or [self.log_likelihood])
 
 
 def fit(

@@ -10,9 +10,12 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.loop.deviation import LAWS, Deviation, Lines, laws
 from swgsim.loop.features import Layout
 from swgsim.loop.model import Situation
+from swgsim.loop.own_lines import LAWS, Lines, laws
+
+# How far lines may deviate, of maps and of lines that are learned, each an array (feature,).
+Sizes = tuple[Float[np.ndarray, " feature"], Float[np.ndarray, " feature"]]
 
 
 def largest_lines(predicted: Float[np.ndarray, "situation feature"], layout: Layout) -> dict[str, float]:
@@ -35,7 +38,7 @@ def lines_anywhere(
 
 
 def form_columns(
-    sizes: Sequence[Float[np.ndarray, " feature"]], situations: Sequence[Situation], powers: int
+    sizes: Sizes, situations: Sequence[Situation], powers: int
 ) -> Float[np.ndarray, "situation feature column"]:
     """Deviations of lines, one standard deviation each.
 
@@ -63,10 +66,10 @@ def _columns(
     return (features[:, :, None] * followed[:, None, None, :]).reshape(len(followed), len(size), -1)
 
 
-def deviation(
-    sizes: Sequence[Float[np.ndarray, " feature"]], found: Float[np.ndarray, " column"], powers: int, layout: Layout
-) -> Deviation:
-    """What the columns of :func:`form_columns` make together, each as large as it was found."""
+def lines_of(
+    sizes: Sizes, found: Float[np.ndarray, " column"], powers: int, layout: Layout, gain: tuple[float, ...]
+) -> Lines:
+    """What the columns of :func:`form_columns` make together, each as large as it was found by gauges of this gain."""
     by_law = np.zeros((LAWS, len(layout)))
     of_maps, of_learned = np.split(found, [powers * np.count_nonzero(sizes[0])])
     for size, share, followed in zip(sizes, (of_maps, of_learned), (powers, LAWS), strict=True):
@@ -74,4 +77,4 @@ def deviation(
         by_law[:followed, own] += share.reshape(len(own), followed).T * size[own]
     lines = layout.lines(by_law)
     there = np.flatnonzero(lines.any(axis=(0, 2)))
-    return Deviation(Lines(tuple(layout.channels[i] for i in there), lines[:, there]))
+    return Lines(tuple(layout.channels[i] for i in there), lines[:, there], gain)

@@ -10,8 +10,8 @@ from swgsim.chain import SECTORS, Run, simulate_turns
 from swgsim.conditions import Conditions
 from swgsim.effects.base import Effect, overrides
 from swgsim.gear import Gear, OperatingPoint
-from swgsim.loop.deviation import Deviation
 from swgsim.loop.features import Layout, features
+from swgsim.loop.own_lines import Lines, OwnLines
 
 # Samples per revolution; the highest order that is fitted needs more than twice its number.
 POINTS = 64
@@ -33,20 +33,20 @@ class Model:
     ----------
     gear : Gear
     effects : tuple of Effect
-    deviation : Deviation or None
+    own_lines : Lines or None
         Where the lines of this gear lie off the chain's, as commissioning found them.
     """
 
     gear: Gear
     effects: tuple[Effect, ...] = ()
-    deviation: Deviation | None = None
+    own_lines: Lines | None = None
 
     def run(self, situation: Situation) -> Run:
         """The run of the chain in a situation."""
         run = Run(self.gear, situation.point, self.effects, conditions=situation.conditions)
-        if self.deviation is None:
+        if self.own_lines is None:
             return run
-        return replace(run, effects=(self.deviation.gained(self.gear, run.affected_gear), *self.effects))
+        return replace(run, effects=(OwnLines(self.own_lines, run.affected_gear.gauges.gain), *self.effects))
 
     def plus(self, *effects: Effect) -> "Model":
         """The model with more effects."""
@@ -72,5 +72,5 @@ def predict(
 def _key(run: Run) -> tuple:
     """All that a run of the chain depends on; the conditions only where an effect looks at them while recording."""
     acting = run.acting
-    seeing = any(overrides(e, "gauge", "acquisition") for e in acting if not isinstance(e, Deviation))
+    seeing = any(overrides(e, "gauge", "acquisition") for e in acting if not isinstance(e, OwnLines))
     return run.gear, acting, run.point, run.conditions if seeing else None

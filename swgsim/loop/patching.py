@@ -15,7 +15,7 @@ from swgsim.loop.vocabulary import Described
 
 # Share of its size that an effect found must keep beside a patch; one that takes it away says the same once more.
 KEPT = 0.5
-# Times what it was that the error at an operating point left out may become: much of it is that of zeros, and luck.
+# Times what it was that the error at an operating point left out may become: much of it is luck.
 WORSE = 2.0
 
 
@@ -51,4 +51,4 @@ def _holds(before: Fitted, after: Fitted) -> bool:
     """Whether it pays on operating points left out, and makes none of them clearly worse."""
     gains, _ = gained(before, after)
     pays = gains.sum() > LEAST_GAIN and gains.min() > -LEAST_GAIN
-    return bool(pays and (of_points_left_out(after, after) < WORSE * of_points_left_out(before, after)).all())
+    return bool(pays and (of_points_left_out(after) < WORSE * of_points_left_out(before)).all())

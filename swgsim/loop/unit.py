@@ -11,7 +11,7 @@ from swgsim.gear import Gear
 from swgsim.loop.calibration import linearised
 from swgsim.loop.declared import Declared, of_unit
 from swgsim.loop.features import Layout
-from swgsim.loop.form import form_columns, largest_lines, lines_anywhere
+from swgsim.loop.form import Sizes, form_columns, largest_lines, lines_anywhere
 from swgsim.loop.healthy import FRICTION, of_friction, of_gauges
 from swgsim.loop.model import Model, Situation
 from swgsim.loop.scatter import Scatter
@@ -27,7 +27,7 @@ class Unit:
     Attributes
     ----------
     model : Model
-        At its nominal or commissioned parameters.
+        At its nominal or commissioned parameters, then with the lines that are its own.
     reach : array (direction, direction) or None
         After commissioning, how far the directions (declared parameters, what a healthy bench does a little of,
         deviations of lines) may still lie from where they were found, as columns of one standard deviation; None for
@@ -108,9 +108,7 @@ class Unit:
         shift = np.zeros(predicted.shape) if self.shift is None else open_ @ self.shift
         return LeftOpen(predicted, shift, open_ if self.reach is None else open_ @ self.reach, of_parameters)
 
-    def form(
-        self, predicted: Float[np.ndarray, "situation feature"], layout: Layout
-    ) -> tuple[Float[np.ndarray, " feature"], Float[np.ndarray, " feature"]]:
+    def form(self, predicted: Float[np.ndarray, "situation feature"], layout: Layout) -> Sizes:
         """How far lines may deviate by the maps, and by what of them is learned: the last of the directions."""
         largest = self.largest or largest_lines(predicted, layout)
         of_maps = self.structure * np.array([largest.get(channel, 0.0) for channel in layout.channel])

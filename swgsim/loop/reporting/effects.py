@@ -81,7 +81,7 @@ def rejected(answer: Answer, sizes: Sizes) -> list[dict[str, Any]]:
     return [
         {
             "name": name,
-            "heldout_error": sizes.overall(errors(trial.fitted, answer.closed.after).heldout),
+            "heldout_error": sizes.overall(errors(trial.fitted.strict, trial.fitted.strict).heldout),
             "why": why(trial, answer, better),
         }
         for name, (trial, better) in tried.items()

@@ -1,7 +1,7 @@
-"""Where the lines of a gear lie off the model's, as recordings of its healthy state show them."""
+"""Lines of a gear where the chain has them elsewhere, as recordings of its healthy state show them."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Complex, Float
@@ -9,7 +9,7 @@ from jaxtyping import Complex, Float
 from swgsim.effects.base import Effect, Scene
 from swgsim.effects.frozen import FULL_LOAD
 from swgsim.effects.regularity import FULL_SPEED
-from swgsim.gear import Gear, OperatingPoint
+from swgsim.gear import OperatingPoint
 from swgsim.recordings import SENSORS
 
 # How many laws there are of load and speed.
@@ -31,46 +31,49 @@ class Lines:
     channels : tuple of str
     values : array (law, channel, order)
         In the unit of each channel.
+    gain : tuple of float
+        Of every gauge, at which they were found.
     """
 
     channels: tuple[str, ...]
     values: Complex[np.ndarray, "law channel order"]
+    gain: tuple[float, ...]
 
 
 @dataclass(frozen=True)
-class Deviation(Effect):
-    """Lines on gauges and drive that a structure or a drive other than the model's makes.
+class OwnLines(Effect):
+    """What a structure or a drive other than the model's adds to the lines of gauges and drive.
 
-    It comes before all effects, so that whatever delays, scales, filters or clips a signal does so to the whole of it.
+    It comes before all other effects, so that whatever delays, filters or clips a signal does so to the whole of it.
 
     Attributes
     ----------
     lines : Lines
     gain : tuple of float
-        Of every gauge, in units of that at which its lines were found.
+        Of every gauge that sees them.
     """
 
     place = "structure"
     lines: Lines
-    gain: tuple[float, ...] = (1.0,) * len(SENSORS)
-
-    def gained(self, gear: Gear, affected: Gear) -> "Deviation":
-        """The deviation seen by gauges whose gains effects have changed."""
-        gain = np.divide(affected.gauges.gain, gear.gauges.gain)
-        return replace(self, gain=tuple(gain.tolist()))
+    gain: tuple[float, ...]
 
     def gauge(self, signals: Float[np.ndarray, "5 time"], scene: Scene) -> Float[np.ndarray, "5 time"]:
         """The bridge signals with their lines."""
         waves = self._waves(scene)
-        own = [waves.get(sensor, 0.0) * gain for sensor, gain in zip(SENSORS, self.gain, strict=True)]
-        return np.array([signal + wave for signal, wave in zip(signals, own, strict=True)])
+        was = np.array(self.lines.gain)
+        share = np.divide(self.gain, was, out=np.ones(len(was)), where=was != 0)
+        own = [waves.get(sensor, np.zeros(signals.shape[1])) for sensor in SENSORS]
+        return signals + share[:, None] * np.array(own)
 
     def acquisition(
         self, channels: Mapping[str, Float[np.ndarray, " time"]], scene: Scene
     ) -> Mapping[str, Float[np.ndarray, " time"]]:
         """The channels of the drive with their lines."""
+        drive = [name for name in self.lines.channels if name not in SENSORS]
+        if not drive:
+            return channels
         waves = self._waves(scene)
-        return {**channels, **{name: channels[name] + waves[name] for name in waves if name not in SENSORS}}
+        return {**channels, **{name: channels[name] + waves[name] for name in drive}}
 
     def _waves(self, scene: Scene) -> dict[str, Float[np.ndarray, " time"]]:
         lines = np.tensordot(laws(scene.point), self.lines.values, 1)
