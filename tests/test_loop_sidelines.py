@@ -10,7 +10,7 @@ from scipy.signal import lfilter
 from swgsim.effects.base import Effect, Scene
 from swgsim.effects.library import LIBRARY
 from swgsim.effects.quantity import random_phase, shape, size
-from swgsim.loop.between import between
+from swgsim.loop.between import between, ordinary, shapes
 from swgsim.loop.features import Layout, features
 from swgsim.loop.lines import cleaned, search
 from swgsim.loop.sidelines import ranked
@@ -176,6 +176,18 @@ def test_a_line_at_an_integer_order_says_nothing():
     """Over whole revolutions nothing of it but rounding lies between the orders."""
     said = [each.explained(LIBRARY["ball_pass"](amplitude=1e-3, order=12.0)) for each in between(measured((), 12))]
     assert [(each.freedom, each.gain, each.size) for each in said] == [(0, 0.0, 0.0)] * len(said)
+
+
+@pytest.mark.parametrize("name", ["mains_hum", "bearing_cage"])
+def test_a_pattern_is_what_the_orders_leave_of_the_signals(name):
+    """The orders are taken out of its spectrum, which is that of the signals without them; one hum has silent gauges."""
+    (seen, *_), effect = between(measured((), 12)), LIBRARY[name](amplitude=1e-3)
+    signals, Q = shapes(effect, seen.scene, seen.gauges), np.linalg.qr(ordinary(seen.scene))[0]
+    lines = np.fft.rfft(signals - (signals @ Q) @ Q.T)[..., 1 : seen.scale.shape[1] + 1] / signals.shape[-1]
+    flat = (lines * seen.scale * seen.clear).reshape(len(signals), -1)
+    expected = np.concatenate([flat.real, flat.imag], axis=-1)
+    expected = expected - (expected @ seen.taken) @ seen.taken.T
+    np.testing.assert_allclose(seen.pattern(effect), expected, atol=1e-9 * np.abs(expected).max())
 
 
 @pytest.mark.parametrize("heard", [list, lambda recordings: quieter(recordings, "s0")])
