@@ -180,7 +180,7 @@ def test_a_line_at_an_integer_order_says_nothing():
 
 @pytest.mark.parametrize("name", ["mains_hum", "bearing_cage"])
 def test_a_pattern_is_what_the_orders_leave_of_the_signals(name):
-    """The orders are taken out of its spectrum, which is that of the signals without them; one hum has silent gauges."""
+    """Taking the orders out of its spectrum is the same; a hum leaves gauges silent."""
     (seen, *_), effect = between(measured((), 12)), LIBRARY[name](amplitude=1e-3)
     signals, Q = shapes(effect, seen.scene, seen.gauges), np.linalg.qr(ordinary(seen.scene))[0]
     lines = np.fft.rfft(signals - (signals @ Q) @ Q.T)[..., 1 : seen.scale.shape[1] + 1] / signals.shape[-1]
