@@ -32,21 +32,21 @@ class Errors:
 def errors(fitted: Fitted, best: Fitted) -> Errors:
     """Errors of a model on the recordings it was fitted to, without the nuisance that the best one finds."""
     fit = per_channel(fitted.measured, fitted.residual - best.nuisance)
-    return Errors(fit, per_channel(fitted.measured, _left_out(fitted, best)))
+    return Errors(fit, per_channel(fitted.measured, _left_out(fitted) - best.nuisance))
 
 
 def of_points_left_out(fitted: Fitted) -> Float[np.ndarray, " point"]:
     """Root mean square error of every operating point, by the model fitted to the others, in units of the noise."""
-    weighed = _left_out(fitted, fitted) ** 2 / fitted.errors.variance
+    weighed = _left_out(fitted) ** 2 / fitted.errors.variance
     return np.array([np.sqrt(weighed[block].mean()) for block in fitted.measured.point_rows()])
 
 
-def _left_out(fitted: Fitted, best: Fitted) -> Float[np.ndarray, " row"]:
+def _left_out(fitted: Fitted) -> Float[np.ndarray, " row"]:
     """Errors of every operating point by the model fitted to the others; NaN where there is one only."""
     missed = np.full(len(fitted.residual), np.nan)
     for block, expected in fitted.by_others:
         parameters = expected.common[fitted.nuisances.stop :]
-        missed[block] = fitted.from_start[block] - fitted.J[block] @ parameters - best.nuisance[block]
+        missed[block] = fitted.from_start[block] - fitted.J[block] @ parameters
     return missed
 
 

@@ -15,7 +15,7 @@ from swgsim.loop.vocabulary import Described
 
 # Share of its size that an effect found must keep beside a patch; one that takes it away says the same once more.
 KEPT = 0.5
-# Times what it was that the error at an operating point left out may become: much of it is luck.
+# Times what it was that the error at an operating point left out may become: much of it is that of zeros, and luck.
 WORSE = 2.0
 
 
