@@ -8,7 +8,7 @@ from scipy.stats import chi2, false_discovery_control
 
 from swgsim.loop.declared import of_unit
 from swgsim.loop.fitting import MISFIT, Fitted, fit
-from swgsim.loop.form import form_columns, largest_lines, lines_of
+from swgsim.loop.form import column_counts, largest_lines, lines_of
 from swgsim.loop.session import Measured
 from swgsim.loop.unit import Unit
 from swgsim.recordings import SENSORS
@@ -57,7 +57,7 @@ def commission(measured: Measured, unit: Unit) -> Unit:
     reach, shift = np.linalg.cholesky(covariance[np.ix_(kept, kept)]), mean[kept]
     # Lines go into the model, so that effects on the signals act on them too.
     sizes = unit.form(predicted, measured.layout)
-    form = len(shift) - form_columns(sizes, measured.situations, unit.powers).shape[-1]
+    form = len(shift) - sum(column_counts(sizes, unit.powers))
     gain = fitted.model.run(measured.situations[0]).affected_gear.gauges.gain
     lines = lines_of(sizes, shift[form:], unit.powers, measured.layout, gain)
     shift[form:] = 0.0

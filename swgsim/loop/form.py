@@ -66,13 +66,19 @@ def _columns(
     return (features[:, :, None] * followed[:, None, None, :]).reshape(len(followed), len(size), -1)
 
 
+def column_counts(sizes: Sizes, powers: int) -> tuple[int, int]:
+    """How many columns of :func:`form_columns` deviations of the maps have, and of lines that are learned."""
+    of_maps, of_learned = sizes
+    return powers * int(np.count_nonzero(of_maps)), len(LAWS) * int(np.count_nonzero(of_learned))
+
+
 def lines_of(
     sizes: Sizes, found: Float[np.ndarray, " column"], powers: int, layout: Layout, gain: tuple[float, ...]
 ) -> Lines:
     """What the columns of :func:`form_columns` make together, each as large as it was found by gauges of this gain."""
-    by_law = np.zeros((LAWS, len(layout)))
-    of_maps, of_learned = np.split(found, [powers * np.count_nonzero(sizes[0])])
-    for size, share, followed in zip(sizes, (of_maps, of_learned), (powers, LAWS), strict=True):
+    by_law = np.zeros((len(LAWS), len(layout)))
+    of_maps, _ = column_counts(sizes, powers)
+    for size, share, followed in zip(sizes, np.split(found, [of_maps]), (powers, len(LAWS)), strict=True):
         own = np.flatnonzero(size)
         by_law[:followed, own] += share.reshape(len(own), followed).T * size[own]
     lines = layout.lines(by_law)

@@ -1,6 +1,6 @@
 """Lines of a gear where the chain has them elsewhere, as recordings of its healthy state show them."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,14 +12,19 @@ from swgsim.effects.regularity import FULL_SPEED
 from swgsim.gear import OperatingPoint
 from swgsim.recordings import SENSORS
 
-# How many laws there are of load and speed.
-LAWS = 5
+# What lines may follow over operating points, of load and speed in units of full ones.
+LAWS: tuple[Callable[[float, float], float], ...] = (
+    lambda load, speed: 1.0,
+    lambda load, speed: load,
+    lambda load, speed: load**2,
+    lambda load, speed: speed,
+    lambda load, speed: load * speed,
+)
 
 
 def laws(point: OperatingPoint) -> Float[np.ndarray, " law"]:
-    """What lines may follow over operating points: 1, the load, its square, the speed, and both together."""
-    load, speed = point.T_out / FULL_LOAD, point.n_in_rpm / FULL_SPEED
-    return np.array([1.0, load, load**2, speed, load * speed])
+    """All laws at an operating point."""
+    return np.array([law(point.T_out / FULL_LOAD, point.n_in_rpm / FULL_SPEED) for law in LAWS])
 
 
 @dataclass(frozen=True, eq=False)
