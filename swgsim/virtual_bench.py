@@ -151,7 +151,7 @@ def record_sessions(
     """
     found: list[Recording] = []
     for session in plan.names:
-        biases = bench.session(generator("virtual bench session", seed, session))
+        biases = biases_of(bench, seed, session)
         planned = _planned(gear, effects, plan, bench, seed, session)
         for first in range(0, len(planned), BLOCK):
             these = planned[first : first + BLOCK]
@@ -171,6 +171,11 @@ def record_sessions(
                 found.append(Recording(each.name, whose, session, each.point, each.repeat, time, channels, shown))
             progress(len(these))
     return tuple(found)
+
+
+def biases_of(bench: Bench, seed: int, session: str) -> Session:
+    """What all recordings of a session have in common, as :func:`record_sessions` draws it."""
+    return bench.session(generator("virtual bench session", seed, session))
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from swgsim.loop.model import POINTS, Model, Situation
 from swgsim.population import Population
 from swgsim.recording import Recording
 from swgsim.seeds import generator
-from swgsim.virtual_bench import Instruments, Sessions, record_sessions
+from swgsim.virtual_bench import Instruments, Sessions, biases_of, record_sessions
 
 # Spread of the units: somewhat inside of what the loop declares for a series (swgsim.loop.declared).
 SERIES = Population(
@@ -30,6 +30,8 @@ SERIES = Population(
 )  # fmt: skip
 # Kinematic error of a unit about the nominal one, in spreads that the loop declares.
 KINEMATIC = 0.7
+# Session of the recordings in question.
+QUESTION = "question"
 # Where nothing was recorded: speed and load between those that were, warm and late in the session.
 UNSEEN = tuple(Situation(OperatingPoint(3000.0, T), Conditions(28.0, 1800.0)) for T in (20.0, 55.0))
 
@@ -90,7 +92,7 @@ def in_question(case: Sealed, setting: Setting, effects: Sequence[Effect]) -> tu
     """Recordings of the unit with some effects."""
     rng = generator("conditions of a case", case.seed)
     plan = Sessions(
-        case.points, case.repeats, revolutions=setting.revolutions, name="question", warming=rng.uniform(3, 9)
+        case.points, case.repeats, revolutions=setting.revolutions, name=QUESTION, warming=rng.uniform(3, 9)
     )
     bench, instruments = setting.bench, Instruments()
     if case.hard:
@@ -110,13 +112,17 @@ def in_question(case: Sealed, setting: Setting, effects: Sequence[Effect]) -> tu
 
 
 def unseen(case: Sealed, setting: Setting, layout: Layout) -> Float[np.ndarray, "situation feature"]:
-    """What a bench without any noise would record where nothing was recorded, over all positions of the output."""
+    """What the bench would record where nothing was recorded, in the session in question and without any noise, over
+    all positions of the output.
+    """
     gear = _run_in(unit_of(case, setting), case)
     positions = (OutputPosition(0.0), OutputPosition(np.pi))
     runs = [Run(gear, s.point, (*case.acting, p), conditions=s.conditions) for s in UNSEEN for p in positions]
     recordings = simulate_turns(runs, 1, POINTS, case.sectors)
     found = np.array([features(recording, layout) for recording in recordings])
-    return found.reshape(len(UNSEEN), len(positions), -1).mean(axis=1)
+    biases, mean = biases_of(setting.bench, case.seed + 1, QUESTION), layout.order == 0
+    zeros = biases.T_in * (mean & (layout.channel == "T_in")) + biases.T_out * (mean & (layout.channel == "T_out"))
+    return found.reshape(len(UNSEEN), len(positions), -1).mean(axis=1) + zeros
 
 
 def _run_in(gear: Gear, case: Sealed) -> Gear:

@@ -1,4 +1,8 @@
-"""Error of a fitted model where nothing was recorded."""
+"""Error of a fitted model where nothing was recorded, in the session in which the recordings were made.
+
+What the instruments show there has the zeros of that session, as all its recordings have. They are no matter of the
+gear, and the model that is judged expects them as the recordings tell them.
+"""
 
 import numpy as np
 from jaxtyping import Float
@@ -27,8 +31,11 @@ def unseen_error(fitted: Fitted, truth: Float[np.ndarray, "situation feature"]) 
 
 
 def expected(fitted: Fitted) -> Float[np.ndarray, "situation feature"]:
-    """What a fitted model expects at the unseen points, with all that the recordings say about what it left open."""
+    """What a fitted model expects at the unseen points, with all that the recordings say about what it left open, of
+    the gear and of their session, of which there is one.
+    """
     measured = fitted.measured
+    (session,) = {recording.session for recording in measured.recordings}
     situations = (*measured.situations, *UNSEEN)
     unsure = fitted.unit.left_open(fitted.model, situations, measured.layout, fitted.parameters)
     predicted, shift, left_open, J = (part[-len(UNSEEN) :] for part in unsure)
@@ -37,4 +44,6 @@ def expected(fitted: Fitted) -> Float[np.ndarray, "situation feature"]:
     found = mean[first : first + left_open.shape[-1]]
     # The model stands where its parameters were found to be; what they are counted from lies further back.
     beyond = mean[len(mean) - J.shape[-1] :] - np.array(list(fitted.calibrated.position.values()))
-    return predicted + shift + left_open @ found + J @ beyond
+    instruments = measured.further(session, UNSEEN, predicted).session_columns(predicted)
+    shown = (instruments @ mean[fitted.singles : first]).reshape(predicted.shape)
+    return predicted + shift + left_open @ found + J @ beyond + shown

@@ -6,7 +6,7 @@ noise, is the separation (T-optimality).
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
@@ -20,7 +20,6 @@ from swgsim.loop.fitting import Fitted
 from swgsim.loop.gaussian import Covariance
 from swgsim.loop.model import Model, Situation, predict
 from swgsim.loop.session import Measured
-from swgsim.recording import Recording
 
 # What a test bench can run, and that it can do as it stands, with a warm gear, or after an hour.
 FEASIBLE = tuple(OperatingPoint(n, T) for n in (300.0, 1000.0, 2000.0, 3000.0, 4000.0) for T in (3.0, 20.0, 45.0, 70.0))
@@ -223,6 +222,4 @@ def _session(
     measured: Measured, situation: Situation, predicted: Float[np.ndarray, " feature"]
 ) -> Float[np.ndarray, "feature column"]:
     """Errors of the session in which the new recordings would be made."""
-    planned = Recording("planned", "", "planned", situation.point, 1, np.empty(0), {}, situation.conditions)
-    expected = predicted[None]
-    return replace(measured, recordings=(planned,), values=expected, variance=0 * expected).session_columns(expected)
+    return measured.further("planned", (situation,), predicted[None]).session_columns(predicted[None])

@@ -56,6 +56,16 @@ class Measured:
     def __len__(self) -> int:
         return len(self.recordings)
 
+    def further(
+        self, session: str, situations: Sequence[Situation], predicted: Float[np.ndarray, "situation feature"]
+    ) -> "Measured":
+        """What recordings yet to be made in a session are predicted to be, without noise."""
+        recordings = tuple(
+            Recording(f"planned {i}", "", session, each.point, 1, np.empty(0), {}, each.conditions)
+            for i, each in enumerate(situations)
+        )
+        return Measured(recordings, self.layout, predicted, 0 * predicted)
+
     @cached_property
     def situations(self) -> tuple[Situation, ...]:
         """Distinct operating points and conditions."""
