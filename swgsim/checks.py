@@ -1,6 +1,6 @@
 """Checks of values and their physical limits; every message names the value, the limit and so the remedy."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from math import isfinite
 from numbers import Integral, Real
 from reprlib import Repr
@@ -28,6 +28,13 @@ def require_integer(owner: str, name: str, value: Any, low: int, high: int) -> N
     """Raise a ValueError unless ``value`` is an integer within [low, high]."""
     if not (isinstance(value, Integral) and not isinstance(value, bool) and low <= int(value) <= high):
         raise ValueError(f"{name} of {owner} is {_SHORT.repr(value)}, must be an integer from {low} to {high}")
+
+
+def require_one_of(owner: str, name: str, value: Any, among: Sequence[float]) -> None:
+    """Raise a ValueError unless ``value`` is one of a list of numbers."""
+    if not (_is_number(value) and value in among):
+        listed = ", ".join(f"{each:g}" for each in among)
+        raise ValueError(f"{name} of {owner} is {_SHORT.repr(value)}, must be one of {listed}")
 
 
 def require_range(owner: str, name: str, value: Any, low: float, high: float) -> None:

@@ -85,7 +85,7 @@ def drawn_inner(kind: type[Effect], rng: np.random.Generator) -> Effect:
     values: dict[str, float] = {}
     for name, q in quantities(kind).items():
         if q.role is Role.CHOICE:
-            values[name] = int(rng.integers(int(q.low), int(q.high) + 1))
+            values[name] = q.tried[int(rng.integers(len(q.tried)))]
         elif q.role in (Role.PHASE, Role.ANGLE, Role.RANDOM):
             values[name] = float(rng.uniform(0, 2 * np.pi))
         elif q.role is Role.SHAPE and q.points > 1:

@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from swgsim.effects.base import Effect, Scene
 from swgsim.effects.one_gauge import ALL, weights
-from swgsim.effects.quantity import choice, random_phase, shape, size
+from swgsim.effects.quantity import choice, choice_among, random_phase, size
 from swgsim.effects.turns import on_gauges
 
 
@@ -17,14 +17,15 @@ class MainsHum(Effect):
     """The mains or one of its harmonics couples into all bridges alike, or into the cable of one (physics.md SE20).
 
     Signature: a line at a fixed frequency, so at another order at every speed, alike in all gauges or in one, with
-    another phase in every recording, whatever the load. Typical: 0.1 to 1 % of order 2, 0.0002 to 0.002 mV/V.
+    another phase in every recording, whatever the load. A grid keeps its frequency to 0.4 %; a line elsewhere is
+    something else. Typical: 0.1 to 1 % of order 2, 0.0002 to 0.002 mV/V.
 
     Attributes
     ----------
     amplitude : float
         [mV/V], from 0 to 0.05 (a quarter of order 2; beyond, a cable is broken).
     frequency : float
-        [Hz], from 40 to 150: mains of 50 and 60 Hz and their second harmonics; 150 Hz is a third.
+        [Hz], one of the first three multiples of 50 and of 60 Hz.
     phase : float
         At the trigger [rad].
     sensor : int
@@ -33,7 +34,7 @@ class MainsHum(Effect):
 
     place = "acquisition"
     amplitude: float = size(unit="mV/V", low=0, high=0.05, typical=5e-4)
-    frequency: float = shape(50.0, unit="Hz", low=40, high=150, points=12)
+    frequency: float = choice_among(50, 60, 100, 120, 150, 180, unit="Hz")
     phase: float = random_phase()
     sensor: int = choice(ALL, low=0, high=ALL)
 

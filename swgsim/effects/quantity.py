@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from swgsim.checks import require, require_integer
+from swgsim.checks import require, require_integer, require_one_of
 
 
 class Role(Enum):
@@ -17,7 +17,7 @@ class Role(Enum):
     ANGLE = "angle"  # a position around the circumference, to be searched
     RANDOM = "random"  # a phase that is another one in every recording
     SHAPE = "shape"  # a number that shapes the effect, to be searched
-    CHOICE = "choice"  # an integer, such as an order or a gauge
+    CHOICE = "choice"  # an integer, such as an order or a gauge, or one of a list
 
 
 @dataclass(frozen=True)
@@ -37,6 +37,8 @@ class Quantity:
         Of a size: the value at which the effect changes nothing.
     points : int
         Values that a search tries, evenly from low to high; a choice tries all.
+    among : tuple of float
+        Of a choice: all values that there are; if empty, every integer from low to high.
     """
 
     role: Role
@@ -46,10 +48,13 @@ class Quantity:
     typical: float
     nothing: float = 0.0
     points: int = 1
+    among: tuple[float, ...] = ()
 
     def check(self, owner: str, name: str, value: Any) -> None:
-        """Raise a ValueError unless the value is a number within the bounds."""
-        if self.role is Role.CHOICE:
+        """Raise a ValueError unless the value is a number within the bounds, or one of those that there are."""
+        if self.among:
+            require_one_of(owner, name, value, self.among)
+        elif self.role is Role.CHOICE:
             require_integer(owner, name, value, int(self.low), int(self.high))
         elif self.role in (Role.PHASE, Role.ANGLE, Role.RANDOM):
             require(owner, name, value)
@@ -60,7 +65,7 @@ class Quantity:
     def tried(self) -> tuple[float, ...]:
         """The values that a search tries."""
         if self.role is Role.CHOICE:
-            return tuple(range(int(self.low), int(self.high) + 1))
+            return self.among or tuple(range(int(self.low), int(self.high) + 1))
         if self.role is Role.ANGLE:
             return tuple((2 * np.pi * np.arange(self.points) / self.points).tolist())
         if self.role is Role.SHAPE and self.points > 1:
@@ -96,6 +101,11 @@ def shape(default: float, *, unit: str, low: float, high: float, points: int = 1
 def choice(default: Any = MISSING, *, low: int, high: int) -> Any:
     """An integer such as an order, or the number of a gauge."""
     return _parameter(Quantity(Role.CHOICE, "-", low, high, low if default is MISSING else default), default)
+
+
+def choice_among(*among: float, unit: str) -> Any:
+    """One of a list of values, by default the first."""
+    return _parameter(Quantity(Role.CHOICE, unit, min(among), max(among), among[0], among=among), among[0])
 
 
 def quantities(kind: type) -> dict[str, Quantity]:

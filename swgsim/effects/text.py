@@ -146,6 +146,8 @@ def _choice(parameter: Field) -> str:
     if quantity is None:
         return parameter.name
     if quantity.role is Role.CHOICE:
+        if quantity.among:
+            return f"{parameter.name} [{quantity.unit}], one of {', '.join(f'{each:g}' for each in quantity.among)}"
         return f"{parameter.name}, an integer from {quantity.low:g} to {quantity.high:g}"
     if quantity.role in (Role.PHASE, Role.ANGLE, Role.RANDOM):
         return f"{parameter.name} [rad]"
