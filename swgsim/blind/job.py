@@ -35,6 +35,7 @@ from swgsim.loop import (
     patching,
     screening,
     sidelines,
+    steps,
     trial,
     unit,
 )
@@ -48,6 +49,8 @@ THRESHOLDS = {
     "pair_gain": asking.PAIR_GAIN,
     "form_tolerance": evidence.FORM_TOLERANCE,
     "contradiction": evidence.CONTRADICTION,
+    "no_size": evidence.NO_SIZE,
+    "cancelled": steps.CANCELLED,
     "visible": screening.VISIBLE,
     "set_apart": asking.SET_APART,
     "structure": [unit.STRUCTURE, *commissioning.COARSER, commissioning.WELL],

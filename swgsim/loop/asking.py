@@ -52,16 +52,18 @@ def ask(
     alone = (tried(now, score, (begun(start, score, seed),), start) for score in leaders)
     trials = tuple(sorted(alone, key=lambda trial: -trial.merit))
     best = trials[0]
-    accepted = best if best.sound else _pair(now, start, trials, kinds, seed) or in_company(now, best, ALPHA, seed)
+    pairs = () if best.sound else _pairs(now, start, trials, kinds, seed)
+    accepted = best if best.sound else _worth_it(pairs, best) or in_company(now, best, ALPHA, seed)
     if accepted is None or not elsewhere(accepted, apart, now):
         return Round(trials, None, None)
     plain = describe(now)[0]
     if outdone(accepted, plain, now):
         # What the regularity tells beyond an effect may be a second one.
-        accepted = _pair(now, start, trials, kinds, seed) if best.sound else None
+        pairs = _pairs(now, start, trials, kinds, seed) if best.sound else ()
+        accepted = _worth_it(pairs, best)
         if accepted is None or not elsewhere(accepted, apart, now) or outdone(accepted, plain, now):
             return Round(trials, None, plain)
-    return Round(trials, accepted, None)
+    return Round((*trials, *pairs) if accepted in pairs else trials, accepted, None)
 
 
 def ask_behind(
@@ -88,8 +90,9 @@ def ask_behind(
 
 
 def screened(fitted: Fitted, kinds: Sequence[type[Effect]], rng: np.random.Generator) -> tuple[Score, ...]:
-    """The best hypothesis of every effect."""
-    found, fitted = list(hypotheses(kinds)), unbent(fitted)
+    """The best hypothesis of every effect that is not in the model."""
+    found = [each for each in hypotheses(kinds) if not any(map(each.repeats, fitted.added))]
+    fitted = unbent(fitted)
     return tuple(best_of_kind(screen(found, signatures(found, fitted.model, fitted.measured), fitted, rng)))
 
 
@@ -100,20 +103,25 @@ def _leaders(scores: Sequence[Score]) -> list[Score]:
     return [*real[:LEADERS], *nearly]
 
 
-def _pair(
+def _pairs(
     now: Fitted, start: Fitted, trials: Sequence[Trial], kinds: Sequence[type[Effect]], seed: int
-) -> Trial | None:
-    """Two effects that hide one another: the best pair with the best trial, if both members are sound together."""
+) -> tuple[Trial, ...]:
+    """Two effects that may hide one another: pairs with the best trial, the best one first."""
     first = trials[0]
     beside = unbent(first.fitted)
     behind = _leaders(screened(beside, kinds, generator("screen behind", seed)))[:BEHIND]
     others = {type(effect): effect for trial in trials[1:LEADERS] for effect in trial.effects}
     # What leads behind the first shows where it is only beside it.
     others |= {type(effect): effect for effect in (begun(beside, score, seed) for score in behind)}
-    pairs = [
+    pairs = (
         tried(now, first.score, (*first.effects, effect), start)
         for kind, effect in others.items()
         if kind is not first.score.hypothesis.kind
-    ]
-    best = max(pairs, key=lambda pair: pair.merit, default=None)
-    return best if best and best.sound and best.merit > first.merit + 2 * PAIR_GAIN else None
+    )
+    return tuple(sorted(pairs, key=lambda pair: -pair.merit))
+
+
+def _worth_it(pairs: Sequence[Trial], better_half: Trial) -> Trial | None:
+    """The best pair, if both of its members are sound together and it gains more than one of them alone."""
+    best = pairs[0] if pairs else None
+    return best if best and best.sound and best.merit > better_half.merit + 2 * PAIR_GAIN else None

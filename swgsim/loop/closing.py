@@ -11,7 +11,7 @@ from swgsim.loop.asking import Round, ask, ask_behind, screened
 from swgsim.loop.fitting import Fitted, fit
 from swgsim.loop.screening import Score
 from swgsim.loop.session import Measured
-from swgsim.loop.steps import Step, joined, what, with_rivals
+from swgsim.loop.steps import Step, cancelling, joined, what, with_rivals
 from swgsim.loop.trial import Trial, widened
 from swgsim.loop.unit import Unit
 from swgsim.loop.vocabulary import Described, set_free
@@ -48,6 +48,8 @@ class Closed:
         Disturbances of single channels that were set apart before an effect was found behind them.
     withdrawn : tuple of Trial
         Accepted at first, and another one, or nothing, in its place once the others were in the model.
+    cancelling : tuple of Trial
+        Accepted, until they were seen to cancel one another; they are among the rejected.
     """
 
     before: Fitted
@@ -60,6 +62,7 @@ class Closed:
     outdone_by: Described | None
     apart: tuple[Described, ...] = ()
     withdrawn: tuple[Trial, ...] = ()
+    cancelling: tuple[Trial, ...] = ()
 
     @property
     def nearest(self) -> Trial | None:
@@ -109,21 +112,23 @@ def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed
     """
     before = fit(measured, unit)
     end = forward = _forward(before, (), (), kinds, seed)
+    base = before
+    for each in forward.apart:
+        base = set_free(base, each)
     if len(forward.steps) > 1:
-        base = before
-        for each in forward.apart:
-            base = set_free(base, each)
         revised = _backward(base, forward.steps, forward.apart, kinds, seed)
         if [what([step]) for step in revised] == [what([step]) for step in forward.steps]:
             end = forward._replace(steps=revised)
         elif (together := joined(base, revised)).calibrated.settled:
             end = _forward(together, revised, forward.apart, kinds, seed)
+    if cancelled := cancelling(end.steps, end.now):
+        end = _without(cancelled, end, base, kinds, seed)
     found, left = what(end.steps), end.scores[-1]
     steps = tuple(with_rivals(step, left, found) for step in end.steps)
     withdrawn = tuple(step.accepted for step in forward.steps if not what([step]) <= found)
     return Closed(
         before, end.now.strict, end.now, steps, forward.scores[0], left, end.last.trials, end.last.outdone_by,
-        end.apart, withdrawn,
+        end.apart, withdrawn, tuple(step.accepted for step in cancelled),
     )  # fmt: skip
 
 
@@ -142,6 +147,15 @@ def _forward(
             return End(now, steps, apart, scores, found)
         steps = (*steps, Step(found.accepted, (), found.others))
         now = found.accepted.with_open_form
+
+
+def _without(steps: Sequence[Step], end: End, base: Fitted, kinds: Sequence[type[Effect]], seed: int) -> End:
+    """The end without steps of which none is the cause; what leads then is not taken instead."""
+    kept = tuple(step for step in end.steps if step not in steps)
+    now = joined(base, kept)
+    scores = screened(now, kinds, generator("screen without", seed))
+    put_off = Round(tuple(step.accepted for step in steps), None, None)
+    return End(now, kept, end.apart, (*end.scores, scores), put_off)
 
 
 def _backward(

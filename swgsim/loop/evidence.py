@@ -19,6 +19,8 @@ FORM_TOLERANCE = 0.2
 FORM_ERRORS = np.append(0.0, np.geomspace(1e-3, 10, 200))
 # Probability below which the parts contradict one another even so.
 CONTRADICTION = 1e-3
+# Parts that leave so large a share of the size in doubt have none in common: it lies within two deviations of nothing.
+NO_SIZE = 0.5
 
 
 @dataclass(frozen=True)
@@ -42,8 +44,8 @@ class Coherence:
 
     @property
     def holds(self) -> bool:
-        """Whether the parts agree."""
-        return self.chance > CONTRADICTION
+        """Whether the parts agree, and so well that there is a size."""
+        return self.chance > CONTRADICTION and self.doubt < NO_SIZE
 
     @property
     def tolerated(self) -> float:

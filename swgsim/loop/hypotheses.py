@@ -60,6 +60,16 @@ class Hypothesis:
         """Effects whose signatures span those of any phase."""
         return (self.effect(), self.effect(phase=np.pi / 2)) if self.phase else (self.effect(),)
 
+    def repeats(self, effect: Effect) -> bool:
+        """Whether an effect is the same thing: of its kind and choices, without a place or shape that may be another
+        one, so that two of them are one of another size.
+        """
+        declared = quantities(self.kind)
+        return type(effect) is self.kind and all(
+            (declared[name].role is Role.CHOICE or len(declared[name].tried) == 1) and getattr(effect, name) == value
+            for name, value in self.inner
+        )
+
     def __str__(self) -> str:
         inner = ", ".join(f"{name} {value:.3g}" for name, value in self.inner)
         return self.kind.title() + (f" ({inner})" if inner else "")

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.effects.base import Effect
-from swgsim.effects.quantity import Quantity, Role, quantities
+from swgsim.effects.quantity import Quantity, Role, quantities, size_of
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.hypotheses import Hypothesis, signatures
 from swgsim.loop.model import predict
@@ -19,6 +19,8 @@ TRIED, ROUNDS = 2, 4
 # An estimate holds if the chain keeps so much of the gain that the score promised; else the typical size is tried, and
 # so many over the range, and then as many about the best of these.
 KEPT, SIZES = 0.5, 13
+# Places around one that are tried, in spacings of the screening, each with so many times the size; and moves at most.
+STEPS, FACTORS, MOVES = (0.0, -0.5, -0.25, 0.25, 0.5), (0.7, 1.0, 1.4), 6
 # A size at least this share of its range from nothing; a smaller one has no signature above rounding.
 LEAST = 1e-3
 
@@ -39,7 +41,7 @@ def zoom(score: Score, fitted: Fitted, rng: np.random.Generator) -> Effect:
         reach = {name: by / 3 for name, by in reach.items()}
     if not np.isfinite(best.estimate):
         best = score
-    return _at_its_size(best, declared[score.hypothesis.size], fitted)
+    return _at_its_place(_at_its_size(best, declared[score.hypothesis.size], fitted), fitted)
 
 
 def _at_its_size(score: Score, quantity: Quantity, fitted: Fitted) -> Effect:
@@ -63,6 +65,29 @@ def _at_its_size(score: Score, quantity: Quantity, fitted: Fitted) -> Effect:
     fine = [size for size in np.linspace(below, above, SIZES).tolist() if abs(size - quantity.nothing) > least]
     tried = [*estimated, *effects([best, *fine])]
     return tried[int(_left(fitted, tried).argmin())]
+
+
+def _at_its_place(effect: Effect, fitted: Fitted) -> Effect:
+    """The effect at the likeliest place around, by the chain.
+
+    Where a place acts in steps, as that of a crack does from gap to gap of the mesh, no fit can move it; and another
+    size, which the signature of a curved effect may take, makes the wrong place look as good.
+    """
+    declared = quantities(type(effect))
+    places, size = [name for name, q in declared.items() if q.role is Role.ANGLE], size_of(type(effect))
+    q = declared[size]
+    for _ in range(MOVES if places else 0):
+        here = getattr(effect, size) - q.nothing
+        around = [
+            replace(effect, **{size: float(np.clip(q.nothing + factor * here, q.low, q.high)), name: place})
+            for name in places
+            for place in getattr(effect, name) + np.array(STEPS) * _spacing(declared[name])
+            for factor in FACTORS
+        ]
+        before, effect = effect, around[int(_left(fitted, around).argmin())]
+        if all(getattr(effect, name) == getattr(before, name) for name in places):
+            break
+    return effect
 
 
 def _left(fitted: Fitted, effects: Sequence[Effect]) -> Float[np.ndarray, " effect"]:

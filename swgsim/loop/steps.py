@@ -8,10 +8,13 @@ import numpy as np
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities
 from swgsim.loop.asking import ALPHA
-from swgsim.loop.evidence import FORM_TOLERANCE, LEAST_GAIN, open_form
+from swgsim.loop.evidence import FORM_TOLERANCE, LEAST_GAIN, open_form, signature
 from swgsim.loop.fitting import Fitted, extended, unbent
 from swgsim.loop.screening import Score
 from swgsim.loop.trial import Trial
+
+# Two effects cancel if the cosine between what they do is below the negative of this.
+CANCELLED = 0.9
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,15 +52,31 @@ def chosen(effect: Effect) -> tuple[object, ...]:
     return type(effect), *(getattr(effect, name) for name, q in declared.items() if q.role is Role.CHOICE)
 
 
+def cancelling(steps: Sequence[Step], now: Fitted) -> tuple[Step, ...]:
+    """Steps whose effects all but cancel those of another one, in a model with all of them.
+
+    Where the cause is missing in the library, two laws that are alike, one less the other, bend into nearly any law
+    between them; of two causes each adds something of its own.
+    """
+    effects = [step for step in steps for _ in step.accepted.effects]
+    if len(effects) < 2:
+        return ()
+    first = len(now.model.effects) - len(effects)
+    seen = now.errors.whiten(np.stack([signature(now, first + i) for i in range(len(effects))], axis=1))
+    seen /= np.maximum(np.linalg.norm(seen, axis=0), np.finfo(float).tiny)
+    opposed = (seen.T @ seen < -CANCELLED).any(axis=0)
+    return tuple(step for step in steps if any(o for o, of in zip(opposed, effects, strict=True) if of is step))
+
+
 def with_rivals(step: Step, after: Sequence[Score], found: frozenset[tuple[object, ...]]) -> Step:
     """Of the other trials, those as good as the accepted one that say nothing more once it is in the model."""
-    silent = {score.hypothesis.kind for score in after if score.chance > ALPHA}
+    silent = {score.hypothesis.kind for score in after if score.chance > ALPHA} | {kind for kind, *_ in found}
     rivals = tuple(
         trial
         for trial in step.others
         if trial.sound
         and _as_good(trial, step.accepted)
-        and trial.score.hypothesis.kind in silent
+        and silent.issuperset(map(type, trial.effects))
         and not found.issuperset(map(chosen, trial.effects))
     )
     return Step(step.accepted, rivals, tuple(trial for trial in step.others if trial not in rivals))

@@ -8,7 +8,7 @@ from swgsim.effects.quantity import Role, quantities
 from swgsim.effects.text import path_of
 from swgsim.loop.answer import Answer
 from swgsim.loop.errors import errors
-from swgsim.loop.evidence import LEAST_GAIN
+from swgsim.loop.evidence import LEAST_GAIN, NO_SIZE
 from swgsim.loop.reporting.numbers import estimate, number, probability
 from swgsim.loop.reporting.sizes import Sizes
 from swgsim.loop.sidelines import Sideline
@@ -96,10 +96,15 @@ def why(trial: Trial, answer: Answer, better: Trial | None = None) -> str:
             f"a bare regularity explains the same thing better, or far more beside it: {outdone_by} (fall of the sum "
             f"of squares {outdone_by.gain:.0f} against {trial.explained(answer.closed.asked):.0f})"
         )
+    if trial in answer.closed.cancelling:
+        return "it and another one all but cancel: together they imitate something else"
     if trial in answer.closed.withdrawn:
         return "accepted at first; once the others were in the model, another one, or nothing, stood in its place"
     if not trial.fitted.calibrated.settled:
         return "its fit did not come to rest"
+    vague = max(trial.coherence, key=lambda each: each.doubt)
+    if vague.doubt >= NO_SIZE:
+        return f"operating points, channels and orders leave its size in doubt by {100 * vague.doubt:.0f} %"
     poorest = min(trial.coherence, key=lambda each: each.chance)
     if not poorest.holds:
         form = f"; its form differs by {100 * poorest.form_error:.0f} %" if poorest.form_error else ""
