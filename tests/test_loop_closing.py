@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from loop_fixtures import BUMP, WAVE, Bump, Wave, fitted_to
 
-from swgsim.loop import asking, closing
+from swgsim.loop import asking, closing, steps
 from swgsim.loop.asking import ALPHA, Round
 from swgsim.loop.evidence import FORM_TOLERANCE, Coherence
 from swgsim.loop.features import Layout
@@ -131,9 +131,34 @@ def test_what_a_regularity_tells_beyond_an_effect_may_be_a_second_one(monkeypatc
     monkeypatch.setattr(asking, "unbent", lambda now: declared if now is FITTED else now)
     monkeypatch.setattr(asking, "begun", lambda start, *_: Bump(1.0) if start is declared else None)
     monkeypatch.setattr(asking, "tried", lambda now, _, added, start: {FITTED: A}[now] if start is declared else None)
-    monkeypatch.setattr(asking, "_pair", lambda *_: pair)
+    monkeypatch.setattr(asking, "_pairs", lambda *_: (pair,) if pair else ())
+    monkeypatch.setattr(asking, "_worth_it", lambda pairs, _: next(iter(pairs), None))
     monkeypatch.setattr(asking, "describe", lambda _: (plain,))
     monkeypatch.setattr(asking, "outdone", lambda trial, *_: any(trial is each for each in outdone))
     found = asking.ask(FITTED, [A.score], [], 0)
     assert found.accepted is accepted
     assert found.outdone_by == (None if accepted else plain)
+
+
+@pytest.mark.parametrize(("other", "both"), [(-1.0, True), (1.0, False), (0.0, False)])
+def test_effects_that_cancel_are_no_causes(monkeypatch, other, both):
+    """A signature and one that is nearly the opposite, nearly the same, or another thing."""
+    rng = np.random.default_rng(3)
+    rows, model = len(FITTED.errors.variance), FITTED.model
+    one, another = rng.standard_normal((2, rows))
+    seen = [one, other * one + (0.2 if other else 1.0) * another]
+    now = replace(FITTED, calibrated=replace(FITTED.calibrated, model=model.plus(Bump(1.0), Wave(1.0))))
+    monkeypatch.setattr(steps, "signature", lambda _, number: seen[number - len(model.effects)])
+    found = Step(A, (), ()), Step(B, (), ())
+    assert steps.cancelling(found, now) == (found if both else ())
+    pair = (Step(replace(A, effects=(*A.effects, *B.effects)), (), ()),)
+    assert steps.cancelling(pair, now) == (pair if both else ())
+    assert steps.cancelling(found[:1], now) == ()
+
+
+def test_another_pair_is_a_rival_if_what_only_it_has_says_nothing_more():
+    one, other = PAIR, replace(PAIR, effects=(Bump(1.0), Dip(1.0)))
+    found = what([Step(one, (), ())])
+    for chance, rival in ((2 * ALPHA, (other,)), (ALPHA / 2, ())):
+        after = (replace(C.score, chance=chance),)
+        assert with_rivals(Step(one, (), (other,)), after, found).rivals == rival

@@ -9,6 +9,7 @@ from loop_fixtures import Bump, drawn, fitted_to, holding
 
 from swgsim.loop import evidence
 from swgsim.loop.declared import Declared
+from swgsim.loop.evidence import NO_SIZE
 from swgsim.loop.features import Layout
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.form import lines_anywhere
@@ -107,6 +108,16 @@ def test_a_weak_effect_is_not_contradicted_by_noise(planted, judged):
     found = [judged(0.01 * planted[1], rng) for _ in range(150)]
     assert all(each.holds for each in found)
     assert 0.03 <= np.mean(np.array([each.chance for each in found]) < 0.1) <= 0.2
+
+
+def test_parts_that_leave_no_size_do_not_agree(planted, judged):
+    """Even where the tolerance of form lets it pass for luck: some of the parts say that there is the opposite."""
+    fitted, whole = planted
+    opposed = np.tile(np.isin(LAYOUT.channel, ["s0", "s1"]), len(fitted.measured))
+    found = judged(np.where(opposed, -0.5, 1.0) * whole, np.random.default_rng(8))
+    assert found.split >= NO_SIZE
+    assert not replace(found, chance=1.0).holds
+    assert replace(found, chance=1.0, split=0.9 * NO_SIZE).holds
 
 
 @pytest.fixture

@@ -9,7 +9,9 @@ from chain_fixtures import GEAR
 
 from swgsim.effects import Effect
 from swgsim.effects.clipping import Clipping
+from swgsim.effects.root_tooth_crack import RootToothCrack
 from swgsim.effects.zero_offset import ZeroOffset
+from swgsim.loop import refining
 from swgsim.loop.fitting import BENT, Fitted, fit, unbent
 from swgsim.loop.hypotheses import hypotheses, signatures
 from swgsim.loop.model import Model
@@ -65,3 +67,18 @@ def test_a_proportional_effect_begins_at_its_estimate():
     assert isinstance(begun, ZeroOffset)
     assert (begun.sensor, begun.offset) == (0, pytest.approx(score.estimate, rel=1e-3))
     assert score.estimate == pytest.approx(0.08, rel=0.1)
+
+
+def test_a_place_that_acts_in_steps_is_found_where_the_chain_has_it(monkeypatch):
+    """Gaps of 0.0628 rad, of which the right one is two away, at another size than the one to begin with."""
+
+    def left(_, effects):
+        gaps = [int(effect.theta / (0.02 * np.pi)) for effect in effects]
+        return np.array([abs(gap - 25) + abs(e.stiffness_ratio - 0.5) for gap, e in zip(gaps, effects, strict=True)])
+
+    monkeypatch.setattr(refining, "_left", left)
+    found = refining._at_its_place(RootToothCrack(0.2, 1.72), None)
+    assert int(found.theta / (0.02 * np.pi)) == 25
+    assert found.stiffness_ratio == pytest.approx(0.5, abs=0.1)
+    straight = Clipping(0.2)
+    assert refining._at_its_place(straight, None) is straight

@@ -8,9 +8,10 @@ from loop_fixtures import BUMP, WAVE, drawn, fitted_to, holding
 from scipy.stats import binom, kstest
 
 from swgsim.effects import Effect
+from swgsim.effects.library import LIBRARY
 from swgsim.effects.quantity import size
 from swgsim.loop.features import Layout
-from swgsim.loop.hypotheses import Hypothesis
+from swgsim.loop.hypotheses import Hypothesis, hypotheses
 from swgsim.loop.reporting.remaining import detectable
 from swgsim.loop.screening import Score, best_of_kind, screen
 
@@ -190,3 +191,22 @@ def test_no_size_beyond_its_bounds_is_called_the_smallest_that_is_seen():
     blurred = replace(clear, deviation=100.0)
     assert detectable(blurred)["value"] is None
     assert not detectable(blurred)["typical_would_be_seen"]
+
+
+@pytest.mark.parametrize(
+    ("name", "chosen", "left"),
+    [
+        ("thermal_growth", {}, 0),  # two of them are one of another size
+        ("gauge_gain", {"sensor": 2}, 5),
+        ("kinematic_error_order", {"order": 2}, None),  # a wave: of any phase
+        ("self_heating", {}, 7),  # with another time constant
+        ("root_tooth_crack", {"theta": 0.0}, 24),  # at another place
+    ],
+)
+def test_what_is_in_the_model_is_not_asked_again(name, chosen, left):
+    kind = LIBRARY[name]
+    found = list(hypotheses([kind]))
+    there = replace(found[0].effect(), **chosen)
+    rest = [each for each in found if not each.repeats(there)]
+    assert len(rest) == (len(found) - 1 if left is None else left)
+    assert not any(each.repeats(LIBRARY["seal_friction"](0.1)) for each in found)

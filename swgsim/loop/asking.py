@@ -92,6 +92,8 @@ def ask_behind(
 def screened(fitted: Fitted, kinds: Sequence[type[Effect]], rng: np.random.Generator) -> tuple[Score, ...]:
     """The best hypothesis of every effect that is not in the model."""
     found = [each for each in hypotheses(kinds) if not any(map(each.repeats, fitted.added))]
+    if not found:
+        return ()
     fitted = unbent(fitted)
     return tuple(best_of_kind(screen(found, signatures(found, fitted.model, fitted.measured), fitted, rng)))
 

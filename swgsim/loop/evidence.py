@@ -19,7 +19,7 @@ FORM_TOLERANCE = 0.2
 FORM_ERRORS = np.append(0.0, np.geomspace(1e-3, 10, 200))
 # Probability below which the parts contradict one another even so.
 CONTRADICTION = 1e-3
-# Parts that leave so large a share of the size in doubt have none in common: it lies within two deviations of nothing.
+# Parts that leave so large a share of the size in doubt have none in common: two deviations from it lies nothing.
 NO_SIZE = 0.5
 
 
@@ -36,16 +36,19 @@ class Coherence:
     doubt : float
         Share by which such parts make the size uncertain, which is a mean over them, and so does an inaccurate
         structural model (standard deviation).
+    split : float
+        The part of that by which the parts differ beyond noise; 0 where noise may be all of it.
     """
 
     chance: float
     form_error: float
     doubt: float
+    split: float = 0.0
 
     @property
     def holds(self) -> bool:
         """Whether the parts agree, and so well that there is a size."""
-        return self.chance > CONTRADICTION and self.doubt < NO_SIZE
+        return self.chance > CONTRADICTION and self.split < NO_SIZE
 
     @property
     def tolerated(self) -> float:
@@ -123,9 +126,12 @@ def coherence(fitted: Fitted, number: int) -> Coherence:
 
     chance = float(chi2.sf((u**2 / (1 + (FORM_TOLERANCE * s) ** 2)).sum(), len(s)))
     wider = 1 + (FORM_ERRORS[:, None] * s) ** 2
-    error = float(FORM_ERRORS[np.argmin((u**2 / wider + np.log(wider)).sum(axis=1))])
-    off = np.hstack([error * parts(fitted, signed), structure])
-    return Coherence(chance, error, _share(fitted, number, signed, off) if off.any() else 0.0)
+    unlikely = (u**2 / wider + np.log(wider)).sum(axis=1)
+    error = float(FORM_ERRORS[np.argmin(unlikely)])
+    apart = error * parts(fitted, signed)
+    doubt = _share(fitted, number, signed, np.hstack([apart, structure]))
+    beyond_noise = unlikely[0] - unlikely.min() > 2 * LEAST_GAIN
+    return Coherence(chance, error, doubt, _share(fitted, number, signed, apart) if beyond_noise else 0.0)
 
 
 def open_as_found(fitted: Fitted, coherences: Sequence[Coherence]) -> Fitted:
@@ -151,6 +157,8 @@ def _share(
 
     The effect's own parameters are not open beside it: its size is what is asked for, and would leave rounding of it.
     """
+    if not off.any():
+        return 0.0
     others = [column for column, name in enumerate(fitted.parameters) if f" {number + 1}: " not in name]
     errors = fitted.errors.with_columns(np.hstack([fitted.open, fitted.J[:, others]]))
     whole = errors.whiten(signed)

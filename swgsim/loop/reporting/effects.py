@@ -102,9 +102,9 @@ def why(trial: Trial, answer: Answer, better: Trial | None = None) -> str:
         return "accepted at first; once the others were in the model, another one, or nothing, stood in its place"
     if not trial.fitted.calibrated.settled:
         return "its fit did not come to rest"
-    vague = max(trial.coherence, key=lambda each: each.doubt)
-    if vague.doubt >= NO_SIZE:
-        return f"operating points, channels and orders leave its size in doubt by {100 * vague.doubt:.0f} %"
+    split = max(each.split for each in trial.coherence)
+    if split >= NO_SIZE:
+        return f"operating points, channels and orders leave its size in doubt by {100 * split:.0f} %"
     poorest = min(trial.coherence, key=lambda each: each.chance)
     if not poorest.holds:
         form = f"; its form differs by {100 * poorest.form_error:.0f} %" if poorest.form_error else ""
