@@ -14,7 +14,7 @@ from swgsim.chain import Run, simulate_turns
 from swgsim.conditions import Conditions
 from swgsim.effects.base import PLACES, Effect
 from swgsim.effects.library import SEARCHED
-from swgsim.effects.quantity import Role, quantities, size_of
+from swgsim.effects.quantity import quantities, size_of
 from swgsim.files import write_text
 from swgsim.gear import Gear, OperatingPoint
 from swgsim.loop.sidelines import has_sidelines, is_random
@@ -32,7 +32,6 @@ LEAST = 1e-6
 def typical(kind: type[Effect]) -> Effect:
     """An effect of typical size; choices and positions are their first or default values."""
     values = {name: quantity.typical for name, quantity in quantities(kind).items()}
-    values |= {name: int(q.typical) for name, q in quantities(kind).items() if q.role is Role.CHOICE}
     if values.get("sensor") == 0:
         values["sensor"] = 1
     return kind(**values)

@@ -230,6 +230,27 @@ def test_the_prediction_where_nothing_was_recorded(fitted: Fitted) -> None:
     assert unseen_error(fitted, truth) < 0.5 * unseen_error(fitted, wrong)
 
 
+def test_the_zero_of_a_session_is_expected_where_nothing_was_recorded(fitted: Fitted) -> None:
+    layout = fitted.measured.layout
+    off = 0.3 * ((layout.channel == "T_out") & (layout.order == 0))
+    moved = replace(fitted, measured=replace(fitted.measured, values=fitted.measured.values + off))
+    change = expected(moved) - expected(fitted)
+    assert change[:, off > 0] == pytest.approx(0.3, rel=0.2)
+    assert np.abs(change[:, layout.channel == "s1"]).max() < 1e-3
+
+
+def test_what_is_unseen_has_the_flanges_of_the_session_in_question() -> None:
+    sure = replace(SETTING, bench=replace(SETTING.bench, flange_in_bias=0.0, flange_out_bias=0.0))
+    layout = Layout(("T_in", "T_out", "s1"))
+    recorded = [Measured.of(in_question(SHORT, each, ())) for each in (SETTING, sure)]
+    off = recorded[0].values - recorded[1].values
+    seen = unseen(SHORT, SETTING, layout) - unseen(SHORT, sure, layout)
+    for channel in layout.channels:
+        mean, all_of_it = ((each.channel == channel) & (each.order == 0) for each in (recorded[0].layout, layout))
+        np.testing.assert_allclose(seen[:, all_of_it], off[:, mean], atol=1e-9)
+    assert np.abs(seen[:, layout.order > 0]).max() < 1e-12
+
+
 def _task(residual_of: int | None, projected_away: bool = False) -> Task:
     """Twelve signatures, of which one is in the residual, or none."""
     rng = generator("baselines")

@@ -110,6 +110,8 @@ def test_every_file_of_effects_is_a_choice_and_a_file(path: Path) -> None:
             r"unknown parameter 'm' of cam_form; its parameters are n, an integer from 3 to 8; "
             r"amplitude \[m\] from 0 to 2e-05; phase \[rad\]",
         ),
+        ("effects: [{mains_hum: {hertz: 3}}]", r"its parameters are .* frequency \[Hz\], one of 50, 60, 100, 120"),
+        ("effects: [{mains_hum: {amplitude: 0.001, frequency: 51}}]", "mains hum is 51, must be one of 50, 60"),
         ("effects: [{cam_form: {n: 3}}]", r"cam_form has no amplitude; its parameters are .* amplitude \[m\]"),
         ("effects: [{cam_form: }]", "cam_form has no n, amplitude; its parameters are"),
         (

@@ -163,6 +163,17 @@ def test_a_declared_effect_stays_where_commissioning_found_it():
     assert found.model.effects[0].r == pytest.approx(ECCENTRIC.r, rel=0.1)
 
 
+def test_what_is_declared_is_not_missing_beside_lines_that_were_learned():
+    """A declared gain acts on them as well, in the commissioning as in what is asked later."""
+    declared, own_line = LIBRARY["gauge_gain"](0, 0.03), Regularity(4, 3e-3, 0.4, "in s0 alone", "constant")
+    own = commission(recorded((own_line, declared), seed=1), Unit(Model(GEAR, (declared,))))
+    assert own.model.own_lines is not None
+    closed = close(recorded((own_line, declared), seed=2), own, [*SEARCHED, type(declared)])
+    assert closed.steps == closed.rejected == ()
+    # The gauge may have a gain of its own of a hundredth.
+    assert closed.after.model.effects[0].share == pytest.approx(0.03, abs=0.01)
+
+
 def test_load_and_speed_control_of_the_bench_are_found_by_commissioning():
     """They are nobody's fault, and make half of the ripple of speed and torque."""
     t = GEAR.transmission

@@ -162,3 +162,18 @@ def test_another_pair_is_a_rival_if_what_only_it_has_says_nothing_more():
     for chance, rival in ((2 * ALPHA, (other,)), (ALPHA / 2, ())):
         after = (replace(C.score, chance=chance),)
         assert with_rivals(Step(one, (), (other,)), after, found).rivals == rival
+
+
+@pytest.mark.parametrize("settled", [True, False])
+def test_without_effects_that_cancel_the_others_stay_if_they_come_to_rest(monkeypatch, settled):
+    still = replace(FITTED, calibrated=replace(FITTED.calibrated, settled=settled))
+    monkeypatch.setattr(Trial, "merit", property(lambda trial: trial.evidence))
+    monkeypatch.setattr(closing, "joined", lambda base, kept: still)
+    monkeypatch.setattr(closing, "screened", lambda *_: ())
+    found, better = [Step(each, (), (MIMIC,)) for each in (A, B, C)], replace(B, evidence=2000.0)
+    found[1] = Step(better, (), ())
+    before = closing.End(FITTED, tuple(found), (), (), Round((), None, None))
+    end = closing._without(found[:2], before, FITTED, (), 0)
+    assert end.steps == (tuple(found[2:]) if settled else ())
+    assert end.now is (still if settled else FITTED)
+    assert end.last == Round((better, A, MIMIC), None, None)

@@ -115,9 +115,9 @@ def test_parts_that_leave_no_size_do_not_agree(planted, judged):
     fitted, whole = planted
     opposed = np.tile(np.isin(LAYOUT.channel, ["s0", "s1"]), len(fitted.measured))
     found = judged(np.where(opposed, -0.5, 1.0) * whole, np.random.default_rng(8))
-    assert found.split >= NO_SIZE
+    assert found.disagreement >= NO_SIZE
     assert not replace(found, chance=1.0).holds
-    assert replace(found, chance=1.0, split=0.9 * NO_SIZE).holds
+    assert replace(found, chance=1.0, disagreement=0.9 * NO_SIZE).holds
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from swgsim.effects.base import Effect, Scene
 from swgsim.effects.one_gauge import ALL, weights
-from swgsim.effects.quantity import choice, choice_among, random_phase, size
+from swgsim.effects.quantity import choice, choice_among, random_phase, shape, size
 from swgsim.effects.turns import on_gauges
 
 
@@ -17,8 +17,8 @@ class MainsHum(Effect):
     """The mains or one of its harmonics couples into all bridges alike, or into the cable of one (physics.md SE20).
 
     Signature: a line at a fixed frequency, so at another order at every speed, alike in all gauges or in one, with
-    another phase in every recording, whatever the load. A grid keeps its frequency to 0.4 %; a line elsewhere is
-    something else. Typical: 0.1 to 1 % of order 2, 0.0002 to 0.002 mV/V.
+    another phase in every recording, whatever the load. A line elsewhere is something else. Typical: 0.1 to 1 % of
+    order 2, 0.0002 to 0.002 mV/V.
 
     Attributes
     ----------
@@ -30,6 +30,8 @@ class MainsHum(Effect):
         At the trigger [rad].
     sensor : int
         From 0 to 4; 5: all of them.
+    deviation : float
+        Share by which the grid is faster, up to 0.004 both ways, what large grids allow themselves.
     """
 
     place = "acquisition"
@@ -37,11 +39,13 @@ class MainsHum(Effect):
     frequency: float = choice_among(50, 60, 100, 120, 150, 180, unit="Hz")
     phase: float = random_phase()
     sensor: int = choice(ALL, low=0, high=ALL)
+    deviation: float = shape(0.0, unit="-", low=-0.004, high=0.004, points=3)
 
     def acquisition(
         self, channels: Mapping[str, Float[np.ndarray, " time"]], scene: Scene
     ) -> Mapping[str, Float[np.ndarray, " time"]]:
         """The channels with hum on the gauges."""
-        hum = self.amplitude * np.cos(2 * np.pi * self.frequency * scene.time + self.phase)
+        frequency = self.frequency * (1 + self.deviation)
+        hum = self.amplitude * np.cos(2 * np.pi * frequency * scene.time + self.phase)
         felt = weights(self.sensor)[:, 0]
         return on_gauges(channels, lambda s, signal: signal + felt[s] * hum)

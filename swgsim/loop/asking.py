@@ -25,7 +25,9 @@ PAIR_GAIN, BEHIND = 15.0, 2
 
 
 class Round(NamedTuple):
-    """What asking once gave: fits, the best first; what of them is accepted; the regularity that outdoes it."""
+    """What asking once gave: fits, single effects first and the best of them leading; what of them is accepted; the
+    regularity that outdoes it.
+    """
 
     trials: tuple[Trial, ...]
     accepted: Trial | None
@@ -90,7 +92,7 @@ def ask_behind(
 
 
 def screened(fitted: Fitted, kinds: Sequence[type[Effect]], rng: np.random.Generator) -> tuple[Score, ...]:
-    """The best hypothesis of every effect that is not in the model."""
+    """The best hypothesis of every effect that was not added yet."""
     found = [each for each in hypotheses(kinds) if not any(map(each.repeats, fitted.added))]
     if not found:
         return ()

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import reduce
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +15,7 @@ from swgsim.loop.session import Measured
 from swgsim.loop.steps import Step, cancelling, joined, what, with_rivals
 from swgsim.loop.trial import Trial, widened
 from swgsim.loop.unit import Unit
-from swgsim.loop.vocabulary import Described, set_free
+from swgsim.loop.vocabulary import Described, freed, set_free
 from swgsim.seeds import generator
 
 # Effects that are added at most.
@@ -40,8 +41,8 @@ class Closed:
     left : tuple of Score
         Of the last screening.
     rejected : tuple of Trial
-        Significant, but of the wrong form: they contradict themselves, a bare regularity explains more, or they act
-        only where one was set apart.
+        Significant, but of the wrong form: they contradict themselves, cancel one another, a bare regularity explains
+        more, or they act only where one was set apart.
     outdone_by : Described or None
         That regularity.
     apart : tuple of Described
@@ -89,7 +90,7 @@ class End(NamedTuple):
     scores : tuple of tuple of Score
         Of each screening.
     last : Round
-        What the last asking gave.
+        What the last asking gave; what was put off, where that came after it.
     """
 
     now: Fitted
@@ -112,20 +113,18 @@ def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed
     """
     before = fit(measured, unit)
     end = forward = _forward(before, (), (), kinds, seed)
-    base = before
-    for each in forward.apart:
-        base = set_free(base, each)
     if len(forward.steps) > 1:
+        base = reduce(set_free, forward.apart, before)
         revised = _backward(base, forward.steps, forward.apart, kinds, seed)
         if [what([step]) for step in revised] == [what([step]) for step in forward.steps]:
             end = forward._replace(steps=revised)
         elif (together := joined(base, revised)).calibrated.settled:
             end = _forward(together, revised, forward.apart, kinds, seed)
     if cancelled := cancelling(end.steps, end.now):
-        end = _without(cancelled, end, base, kinds, seed)
+        end = _without(cancelled, end, before, kinds, seed)
     found, left = what(end.steps), end.scores[-1]
     steps = tuple(with_rivals(step, left, found) for step in end.steps)
-    withdrawn = tuple(step.accepted for step in forward.steps if not what([step]) <= found)
+    withdrawn = tuple(step.accepted for step in forward.steps if not what([step]) <= found | what(cancelled))
     return Closed(
         before, end.now.strict, end.now, steps, forward.scores[0], left, end.last.trials, end.last.outdone_by,
         end.apart, withdrawn, tuple(step.accepted for step in cancelled),
@@ -149,13 +148,19 @@ def _forward(
         now = found.accepted.with_open_form
 
 
-def _without(steps: Sequence[Step], end: End, base: Fitted, kinds: Sequence[type[Effect]], seed: int) -> End:
-    """The end without steps of which none is the cause; what leads then is not taken instead."""
-    kept = tuple(step for step in end.steps if step not in steps)
-    now = joined(base, kept)
+def _without(cancelled: Sequence[Step], end: End, before: Fitted, kinds: Sequence[type[Effect]], seed: int) -> End:
+    """The end without steps that cancel one another, of which none is the cause; the runner-up is not taken instead.
+
+    A pair goes as a whole, as its members were only sound together. Where the rest does not come to rest, it goes too.
+    """
+    kept = tuple(step for step in end.steps if step not in cancelled)
+    now = joined(reduce(set_free, end.apart, before), kept)
+    if not kept or not now.calibrated.settled:
+        kept, now = (), reduce(freed, end.apart, before)
     scores = screened(now, kinds, generator("screen without", seed))
-    put_off = Round(tuple(step.accepted for step in steps), None, None)
-    return End(now, kept, end.apart, (*end.scores, scores), put_off)
+    accepted = sorted((step.accepted for step in cancelled), key=lambda trial: -trial.merit)
+    others = (trial for step in cancelled for trial in step.others)
+    return End(now, kept, end.apart, (*end.scores, scores), Round((*accepted, *others, *end.last.trials), None, None))
 
 
 def _backward(

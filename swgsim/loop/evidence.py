@@ -36,19 +36,19 @@ class Coherence:
     doubt : float
         Share by which such parts make the size uncertain, which is a mean over them, and so does an inaccurate
         structural model (standard deviation).
-    split : float
-        The part of that by which the parts differ beyond noise; 0 where noise may be all of it.
+    disagreement : float
+        That by the parts alone, where they differ beyond noise; 0 where noise may be all of it.
     """
 
     chance: float
     form_error: float
     doubt: float
-    split: float = 0.0
+    disagreement: float = 0.0
 
     @property
     def holds(self) -> bool:
         """Whether the parts agree, and so well that there is a size."""
-        return self.chance > CONTRADICTION and self.split < NO_SIZE
+        return self.chance > CONTRADICTION and self.disagreement < NO_SIZE
 
     @property
     def tolerated(self) -> float:

@@ -24,7 +24,8 @@ LAWS: tuple[Callable[[float, float], float], ...] = (
 
 def laws(point: OperatingPoint) -> Float[np.ndarray, " law"]:
     """All laws at an operating point."""
-    return np.array([law(point.T_out / FULL_LOAD, point.n_in_rpm / FULL_SPEED) for law in LAWS])
+    load, speed = point.T_out / FULL_LOAD, point.n_in_rpm / FULL_SPEED
+    return np.array([law(load, speed) for law in LAWS])
 
 
 @dataclass(frozen=True, eq=False)

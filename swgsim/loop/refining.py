@@ -20,7 +20,7 @@ TRIED, ROUNDS = 2, 4
 # so many over the range, and then as many about the best of these.
 KEPT, SIZES = 0.5, 13
 # Places around one that are tried, in spacings of the screening, each with so many times the size; and moves at most.
-STEPS, FACTORS, MOVES = (0.0, -0.5, -0.25, 0.25, 0.5), (0.7, 1.0, 1.4), 6
+STEPS, FACTORS, MOVES = (-0.5, -0.25, 0.25, 0.5), (0.7, 1.0, 1.4), 6
 # A size at least this share of its range from nothing; a smaller one has no signature above rounding.
 LEAST = 1e-3
 
@@ -78,14 +78,15 @@ def _at_its_place(effect: Effect, fitted: Fitted) -> Effect:
     q = declared[size]
     for _ in range(MOVES if places else 0):
         here = getattr(effect, size) - q.nothing
-        around = [
-            replace(effect, **{size: float(np.clip(q.nothing + factor * here, q.low, q.high)), name: place})
+        sizes = [float(np.clip(q.nothing + factor * here, q.low, q.high)) for factor in FACTORS]
+        moved = [
+            replace(effect, **{name: float((getattr(effect, name) + step * _spacing(declared[name])) % (2 * np.pi))})
             for name in places
-            for place in getattr(effect, name) + np.array(STEPS) * _spacing(declared[name])
-            for factor in FACTORS
+            for step in STEPS
         ]
+        around = [effect, *(replace(each, **{size: to}) for each in (effect, *moved) for to in sizes)]
         before, effect = effect, around[int(_left(fitted, around).argmin())]
-        if all(getattr(effect, name) == getattr(before, name) for name in places):
+        if effect is before:
             break
     return effect
 

@@ -58,25 +58,26 @@ def cancelling(steps: Sequence[Step], now: Fitted) -> tuple[Step, ...]:
     Where the cause is missing in the library, two laws that are alike, one less the other, bend into nearly any law
     between them; of two causes each adds something of its own.
     """
-    effects = [step for step in steps for _ in step.accepted.effects]
-    if len(effects) < 2:
+    owners = [step for step in steps for _ in step.accepted.effects]
+    if len(owners) < 2:
         return ()
-    first = len(now.model.effects) - len(effects)
-    seen = now.errors.whiten(np.stack([signature(now, first + i) for i in range(len(effects))], axis=1))
+    first = len(now.model.effects) - len(owners)
+    seen = now.errors.whiten(np.stack([signature(now, first + i) for i in range(len(owners))], axis=1))
     seen /= np.maximum(np.linalg.norm(seen, axis=0), np.finfo(float).tiny)
     opposed = (seen.T @ seen < -CANCELLED).any(axis=0)
-    return tuple(step for step in steps if any(o for o, of in zip(opposed, effects, strict=True) if of is step))
+    opposing = [step for step, each in zip(owners, opposed, strict=True) if each]
+    return tuple(step for step in steps if step in opposing)
 
 
 def with_rivals(step: Step, after: Sequence[Score], found: frozenset[tuple[object, ...]]) -> Step:
     """Of the other trials, those as good as the accepted one that say nothing more once it is in the model."""
-    silent = {score.hypothesis.kind for score in after if score.chance > ALPHA} | {kind for kind, *_ in found}
+    silent = {score.hypothesis.kind for score in after if score.chance > ALPHA}
     rivals = tuple(
         trial
         for trial in step.others
         if trial.sound
         and _as_good(trial, step.accepted)
-        and silent.issuperset(map(type, trial.effects))
+        and all(type(effect) in silent or chosen(effect) in found for effect in trial.effects)
         and not found.issuperset(map(chosen, trial.effects))
     )
     return Step(step.accepted, rivals, tuple(trial for trial in step.others if trial not in rivals))

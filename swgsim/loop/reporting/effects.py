@@ -12,7 +12,7 @@ from swgsim.loop.evidence import LEAST_GAIN, NO_SIZE
 from swgsim.loop.reporting.numbers import estimate, number, probability
 from swgsim.loop.reporting.sizes import Sizes
 from swgsim.loop.sidelines import Sideline
-from swgsim.loop.steps import Step
+from swgsim.loop.steps import Step, chosen
 from swgsim.loop.trial import LEAST_EVIDENCE, Trial
 
 
@@ -28,13 +28,15 @@ def accepted(answer: Answer) -> list[dict[str, Any]]:
     for step in answer.closed.steps:
         for which in range(len(step.accepted.effects)):
             effect = after.model.effects[at]
+            # A rival of a pair that has this effect as well is another explanation of the other one.
+            rivals = [r for r in step.rivals if chosen(step.accepted.effects[which]) not in map(chosen, r.effects)]
             found.append({
                 "name": path_of(type(effect)),
                 "place": effect.place,
                 "parameters": _parameters(effect, answer.closed.deviation, at),
                 "evidence": _evidence(step, which),
-                "indistinguishable_from": [names(rival) for rival in step.rivals],
-                "rivals": [_rival(rival) for rival in step.rivals],
+                "indistinguishable_from": [names(rival) for rival in rivals],
+                "rivals": [_rival(rival) for rival in rivals],
             })  # fmt: skip
             at += 1
     return found
@@ -73,10 +75,14 @@ def rejected(answer: Answer, sizes: Sizes) -> list[dict[str, Any]]:
     steps = answer.closed.steps
     # What was put off in one step may be found, or be a rival, in a later one.
     held = {path_of(type(e)) for step in steps for trial in (step.accepted, *step.rivals) for e in trial.effects}
+
+    def elsewhere(trial: Trial) -> bool:
+        return held.issuperset(path_of(type(effect)) for effect in trial.effects)
+
     tried: dict[str, tuple[Trial, Trial | None]] = {
-        names(trial): (trial, step.accepted) for step in steps for trial in step.others if names(trial) not in held
+        names(trial): (trial, step.accepted) for step in steps for trial in step.others if not elsewhere(trial)
     }
-    put_off = (*answer.closed.rejected, *(t for t in answer.closed.withdrawn if names(t) not in held))
+    put_off = (*answer.closed.rejected, *(trial for trial in answer.closed.withdrawn if not elsewhere(trial)))
     tried |= {names(trial): (trial, None) for trial in put_off}
     return [
         {
@@ -97,14 +103,16 @@ def why(trial: Trial, answer: Answer, better: Trial | None = None) -> str:
             f"of squares {outdone_by.gain:.0f} against {trial.explained(answer.closed.asked):.0f})"
         )
     if trial in answer.closed.cancelling:
-        return "it and another one all but cancel: together they imitate something else"
+        which = "its effects" if len(trial.effects) > 1 else "it and another one"
+        return f"{which} all but cancel: together they imitate something else"
     if trial in answer.closed.withdrawn:
         return "accepted at first; once the others were in the model, another one, or nothing, stood in its place"
     if not trial.fitted.calibrated.settled:
         return "its fit did not come to rest"
-    split = max(each.split for each in trial.coherence)
-    if split >= NO_SIZE:
-        return f"operating points, channels and orders leave its size in doubt by {100 * split:.0f} %"
+    split, effect = max(zip(trial.coherence, trial.effects, strict=True), key=lambda each: each[0].disagreement)
+    if split.disagreement >= NO_SIZE:
+        size = f"the size of {effect.title()}" if len(trial.effects) > 1 else "its size"
+        return f"operating points, channels and orders leave {size} in doubt by {100 * split.disagreement:.0f} %"
     poorest = min(trial.coherence, key=lambda each: each.chance)
     if not poorest.holds:
         form = f"; its form differs by {100 * poorest.form_error:.0f} %" if poorest.form_error else ""
