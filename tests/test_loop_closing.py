@@ -8,10 +8,13 @@ import pytest
 from loop_fixtures import BUMP, WAVE, Bump, Wave, fitted_to
 
 from swgsim.loop import asking, closing, steps
-from swgsim.loop.asking import ALPHA, Round
+from swgsim.loop.answer import UNKNOWN, Answer
+from swgsim.loop.asking import ALPHA, PAIR_GAIN, Round
+from swgsim.loop.closing import Closed
 from swgsim.loop.evidence import FORM_TOLERANCE, Coherence
 from swgsim.loop.features import Layout
 from swgsim.loop.hypotheses import Hypothesis
+from swgsim.loop.reporting.effects import why
 from swgsim.loop.screening import Score
 from swgsim.loop.steps import Step, what, with_rivals
 from swgsim.loop.trial import Trial
@@ -177,3 +180,46 @@ def test_without_effects_that_cancel_the_others_stay_if_they_come_to_rest(monkey
     assert end.steps == (tuple(found[2:]) if settled else ())
     assert end.now is (still if settled else FITTED)
     assert end.last == Round((better, A, MIMIC), None, None)
+
+
+def test_what_was_added_is_not_screened_again():
+    added = replace(FITTED, calibrated=replace(FITTED.calibrated, model=FITTED.model.plus(Bump(1.0))))
+    assert asking.screened(added, [Bump], np.random.default_rng(1)) == ()
+
+
+@pytest.mark.parametrize(("gain", "agrees", "worth"), [(0.9, 1.0, False), (1.1, 1.0, True), (1.1, 0.0, False)])
+def test_a_pair_must_gain_more_than_its_better_half_and_be_sound(monkeypatch, gain, agrees, worth):
+    monkeypatch.setattr(Trial, "merit", property(lambda trial: trial.evidence))
+    both = (Coherence(1.0, 0.0, 0.0), Coherence(agrees, 0.0, 0.0))
+    pair = replace(PAIR, evidence=A.evidence + gain * 2 * PAIR_GAIN, coherence=both)
+    assert asking._worth_it((pair,), A) is (pair if worth else None)
+    assert asking._worth_it((), A) is None
+
+
+@pytest.mark.parametrize(("accepted", "listed"), [("pair", True), ("single", False)])
+def test_other_pairs_may_be_rivals_of_a_pair_alone(monkeypatch, accepted, listed):
+    best = A if accepted == "single" else tried(BUMP, agrees=0.0)
+    other = replace(PAIR, effects=(Bump(1.0), Dip(1.0)))
+    monkeypatch.setattr(asking, "unbent", lambda now: now)
+    monkeypatch.setattr(asking, "begun", lambda *_: Bump(1.0))
+    monkeypatch.setattr(asking, "tried", lambda *_: best)
+    monkeypatch.setattr(asking, "_pairs", lambda *_: (PAIR, other))
+    monkeypatch.setattr(asking, "_worth_it", lambda pairs, _: pairs[0])
+    monkeypatch.setattr(
+        asking, "describe", lambda _: (Described(Atom(2, "in s1 alone", "constant"), 1.0, 2, 0.1, 1.0),)
+    )
+    monkeypatch.setattr(asking, "outdone", lambda *_: False)
+    found = asking.ask(FITTED, [A.score], [], 0)
+    assert found.accepted is (PAIR if listed else A)
+    assert found.trials == ((best, PAIR, other) if listed else (best,))
+
+
+def test_it_is_said_why_an_effect_is_no_cause():
+    vague = replace(A, coherence=(Coherence(0.5, 0.3, 0.7, 0.66),))
+    pair = replace(PAIR, coherence=(Coherence(0.5, 0.0, 0.0), Coherence(0.5, 0.3, 0.7, 0.66)))
+    closed = Closed(FITTED, FITTED, FITTED, (), (), (), (B, C, vague, pair), None, (), (C,), (B,))
+    answer = Answer(UNKNOWN, closed, (), (), (), (), ())
+    assert why(B, answer) == "it and another one all but cancel: together they imitate something else"
+    assert why(C, answer).startswith("accepted at first")
+    assert why(vague, answer) == "operating points, channels and orders leave its size in doubt by 66 %"
+    assert "leave the size of wave in doubt by 66 %" in why(pair, answer)

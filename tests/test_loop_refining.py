@@ -82,3 +82,9 @@ def test_a_place_that_acts_in_steps_is_found_where_the_chain_has_it(monkeypatch)
     assert found.stiffness_ratio == pytest.approx(0.5, abs=0.1)
     straight = Clipping(0.2)
     assert refining._at_its_place(straight, None) is straight
+
+
+def test_a_crack_begins_in_the_gap_that_is_nearest():
+    """The bench's coarser mesh has it at 0.864 rad, in the gap from 0.817 to 0.880 of the model."""
+    fitted, score = asked(RootToothCrack(0.5, 0.9))
+    assert 0.817 < zoom(score, fitted, np.random.default_rng(1)).theta < 0.880

@@ -120,6 +120,7 @@ def unseen(case: Sealed, setting: Setting, layout: Layout) -> Float[np.ndarray, 
     runs = [Run(gear, s.point, (*case.acting, p), conditions=s.conditions) for s in UNSEEN for p in positions]
     recordings = simulate_turns(runs, 1, POINTS, case.sectors)
     found = np.array([features(recording, layout) for recording in recordings])
+    # Of the session that in_question records; hard cases have the same flanges.
     biases, mean = biases_of(setting.bench, case.seed + 1, QUESTION), layout.order == 0
     zeros = biases.T_in * (mean & (layout.channel == "T_in")) + biases.T_out * (mean & (layout.channel == "T_out"))
     return found.reshape(len(UNSEEN), len(positions), -1).mean(axis=1) + zeros

@@ -129,9 +129,10 @@ def coherence(fitted: Fitted, number: int) -> Coherence:
     unlikely = (u**2 / wider + np.log(wider)).sum(axis=1)
     error = float(FORM_ERRORS[np.argmin(unlikely)])
     apart = error * parts(fitted, signed)
-    doubt = _share(fitted, number, signed, np.hstack([apart, structure]))
+    shares = _shares(fitted, number, signed, np.hstack([apart, structure]))
     beyond_noise = unlikely[0] - unlikely.min() > 2 * LEAST_GAIN
-    return Coherence(chance, error, doubt, _share(fitted, number, signed, apart) if beyond_noise else 0.0)
+    disagreement = float(np.linalg.norm(shares[: apart.shape[1]])) if beyond_noise else 0.0
+    return Coherence(chance, error, float(np.linalg.norm(shares)), disagreement)
 
 
 def open_as_found(fitted: Fitted, coherences: Sequence[Coherence]) -> Fitted:
@@ -150,16 +151,16 @@ def open_as_found(fitted: Fitted, coherences: Sequence[Coherence]) -> Fitted:
     return fitted.allowing(np.hstack(columns))
 
 
-def _share(
+def _shares(
     fitted: Fitted, number: int, signed: Float[np.ndarray, " row"], off: Float[np.ndarray, "row column"]
-) -> float:
-    """What independent errors of a signature, one standard deviation each, add to the size, as a share of it.
+) -> Float[np.ndarray, " column"]:
+    """What errors of a signature, one standard deviation each, add to the size, as shares of it.
 
     The effect's own parameters are not open beside it: its size is what is asked for, and would leave rounding of it.
     """
     if not off.any():
-        return 0.0
+        return np.zeros(off.shape[1])
     others = [column for column, name in enumerate(fitted.parameters) if f" {number + 1}: " not in name]
     errors = fitted.errors.with_columns(np.hstack([fitted.open, fitted.J[:, others]]))
     whole = errors.whiten(signed)
-    return float(np.linalg.norm(errors.whiten(off).T @ whole) / (whole @ whole))
+    return errors.whiten(off).T @ whole / (whole @ whole)

@@ -19,7 +19,6 @@ from swgsim.loop.evidence import FORM_TOLERANCE, allowance
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.gaussian import Covariance
 from swgsim.loop.model import Model, Situation, predict
-from swgsim.loop.session import Measured
 
 # What a test bench can run, and that it can do as it stands, with a warm gear, or after an hour.
 FEASIBLE = tuple(OperatingPoint(n, T) for n in (300.0, 1000.0, 2000.0, 3000.0, 4000.0) for T in (3.0, 20.0, 45.0, 70.0))
@@ -158,17 +157,14 @@ class _Further:
             errors = errors.with_columns(allowance(fitted, number))
         C = errors.whiten(measured.rows(directions[:count]))
         d = errors.whiten(measured.rows(differences[:count]))
-        shared = [
-            np.hstack([_session(measured, situation, line), form])
-            for situation, line, form in zip(
-                candidates, predicted[count:], _tolerance(fitted, candidates, predicted[count:]), strict=True
-            )
-        ]
+        there = predicted[count:]
+        of_session = measured.further("planned", candidates, there).session_columns(there)
+        shared = [of_session.reshape(*there.shape, -1), _tolerance(fitted, candidates, there)]
         moves = scatter.directions(fitted.model, candidates, measured.layout)
         noise = np.median(fitted.unit.inflated(measured.variance), axis=0)
         return cls(
             candidates, np.eye(C.shape[1]) + C.T @ C, C.T @ d, (d**2).sum(axis=0), directions[count:],
-            differences[count:], noise, fitted.scatter.columns(moves), np.array(shared),
+            differences[count:], noise, fitted.scatter.columns(moves), np.concatenate(shared, axis=-1),
         )  # fmt: skip
 
     def separations(self, recordings: int) -> Float[np.ndarray, "candidate truth"]:
@@ -216,10 +212,3 @@ def _tolerance(
     # At one operating point the same line of several effects is off together by the root of their squares.
     structure = np.sqrt(sum(fitted.unit.open_of(predicted - each, layout) ** 2 for each in without))
     return np.concatenate([shares, structure], axis=-1)
-
-
-def _session(
-    measured: Measured, situation: Situation, predicted: Float[np.ndarray, " feature"]
-) -> Float[np.ndarray, "feature column"]:
-    """Errors of the session in which the new recordings would be made."""
-    return measured.further("planned", (situation,), predicted[None]).session_columns(predicted[None])
