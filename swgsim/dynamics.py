@@ -81,7 +81,7 @@ class Drive:
         self.effects = tuple(effects) or ((),) * len(self)
         acting = [(i, effect) for i, own in enumerate(self.effects) for effect in own if overrides(effect, "drive")]
         distinct = dict.fromkeys(effect for _, effect in acting)
-        self.acting = [(effect, np.array([i for i, each in acting if each == effect])) for effect in distinct]
+        self.acting = [(effect, _together([i for i, each in acting if each == effect])) for effect in distinct]
 
     def _error_amplitudes(self) -> dict[int, Complex[np.ndarray, " run"]]:
         """Amplitude and phase of the kinematic error per order, in the unit of the twist."""
@@ -101,8 +101,10 @@ class Drive:
         return 2 * np.pi / self.omega
 
     def repeated(self, times: int) -> "Drive":
-        """The same runs several times over."""
-        return Drive(self.transmissions * times, self.points * times, self.effects * times)
+        """Every run so many times, one after another."""
+        several = [run for run in range(len(self)) for _ in range(times)]
+        transmissions, points = [self.transmissions[run] for run in several], [self.points[run] for run in several]
+        return Drive(transmissions, points, [self.effects[run] for run in several])
 
     def phi_err(self, phi_in: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Kinematic error [rad] in the unit of the twist, where e at the output is e / tan(alpha), and its slope."""
@@ -141,11 +143,12 @@ class Drive:
         """What all effects together add."""
         if not self.acting:
             return Extra()
-        total = np.zeros((len(Extra._fields), len(self)))
+        instants, total = np.stack(now), np.zeros((len(Extra._fields), len(self)))
         for effect, runs in self.acting:
-            added = effect.drive(Instant(*(row[runs] for row in now)))
+            added = effect.drive(Instant(*instants[:, runs]))
             for row, torque in zip(total, added, strict=True):
-                row[runs] += torque
+                if isinstance(torque, np.ndarray) or torque:
+                    row[runs] += torque
         return Extra(*total)
 
     def derivative(self, state: State, torques: Torques) -> State:
@@ -197,3 +200,9 @@ def _power(known: dict[int, np.ndarray], order: int) -> np.ndarray:
     if order not in known:
         known[order] = _power(known, order // 2) * _power(known, order - order // 2)
     return known[order]
+
+
+def _together(runs: list[int]) -> slice | np.ndarray:
+    """Runs of a batch; as a slice, which copies nothing, where no other run lies between them."""
+    first, last = runs[0], runs[-1]
+    return slice(first, last + 1) if last - first == len(runs) - 1 else np.array(runs)
