@@ -11,13 +11,17 @@ import pytest
 jaxtyping.install_import_hook(["swgsim", "learn"], "typechecker.typecheck")
 
 
-@pytest.fixture(scope="module", autouse=True)
-def _end_to_end(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Without checks in tests from end to end: the integrator calls small functions a million times.
+def _unchecked(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Without checks in tests from end to end: they call small functions a million times.
 
-    The tests of the chain check these.
+    Other tests check these.
     """
     with pytest.MonkeyPatch.context() as patch:
         if request.node.get_closest_marker("end_to_end"):
             patch.setattr(jaxtyping.config, "jaxtyping_disable", True)
         yield
+
+
+# The fixtures of a module that is marked are made before the fixtures of its tests.
+_module = pytest.fixture(_unchecked, scope="module", autouse=True)
+_test = pytest.fixture(_unchecked, autouse=True)

@@ -107,6 +107,7 @@ def test_speed_is_controlled_to_the_set_point() -> None:
     np.testing.assert_allclose(motion.T_out[:, :600].mean(axis=1), [p.T_out for p in POINTS], rtol=1e-2)
 
 
+@pytest.mark.end_to_end
 @pytest.mark.parametrize("n_in_rpm", [20, 60, 2000])
 def test_steady_state_repeats_at_any_speed(n_in_rpm: float) -> None:
     """One revolution on, with steps five times as fine, the state is the same."""

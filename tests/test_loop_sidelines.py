@@ -140,6 +140,7 @@ def test_a_line_of_the_wrong_law_does_not_agree():
     assert best.agrees < 1e-4
 
 
+@pytest.mark.end_to_end
 def test_size_is_covered_by_its_deviation():
     missed = []
     for seed in range(20):
@@ -149,6 +150,7 @@ def test_size_is_covered_by_its_deviation():
     assert 0.8 <= np.mean(np.abs(missed) < 1.96) <= 1.0
 
 
+@pytest.mark.end_to_end
 def test_noise_has_no_lines():
     chance = np.array(
         [min(s.chance for s in ranked(between(measured((), 200 + i, POINTS[:2])), KINDS)) for i in range(20)]
@@ -158,6 +160,7 @@ def test_noise_has_no_lines():
     assert (chance <= 0.1).sum() <= 7
 
 
+@pytest.mark.end_to_end
 def test_slow_noise_has_no_lines():
     """It rises just where the sub-harmonics lie."""
     kinds = [*KINDS, LIBRARY["sub_orders"]]
