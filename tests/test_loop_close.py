@@ -15,10 +15,10 @@ from swgsim.effects import Effect
 from swgsim.effects.library import LIBRARY
 from swgsim.effects.regularity import Regularity
 from swgsim.gear import Gear, OperatingPoint
-from swgsim.loop.asking import ALPHA
 from swgsim.loop.closing import Closed, close
 from swgsim.loop.commissioning import commission
 from swgsim.loop.fitting import fit
+from swgsim.loop.leading import ALPHA
 from swgsim.loop.model import Model
 from swgsim.loop.session import Measured
 from swgsim.loop.unit import STRUCTURE, Unit

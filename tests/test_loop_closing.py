@@ -1,44 +1,23 @@
 """What closing the loop makes of what asking says: effects asked again with all the others, and rivals."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from loop_fixtures import BUMP, WAVE, Bump, Wave, fitted_to
+from fabricated_trials import FITTED, MIMIC, PAIR, A, B, C, Dip, Mimic, tried
+from loop_fixtures import BUMP, Bump, Wave
 
 from swgsim.loop import asking, closing, steps
 from swgsim.loop.answer import UNKNOWN, Answer
-from swgsim.loop.asking import ALPHA, PAIR_GAIN, Round
+from swgsim.loop.asking import Round
 from swgsim.loop.closing import Closed
 from swgsim.loop.evidence import FORM_TOLERANCE, Coherence
-from swgsim.loop.features import Layout
-from swgsim.loop.hypotheses import Hypothesis
+from swgsim.loop.leading import ALPHA, screened
 from swgsim.loop.reporting.effects import why
-from swgsim.loop.screening import Score
-from swgsim.loop.steps import Step, what, with_rivals
+from swgsim.loop.steps import Step, contradicted, what, with_rivals
 from swgsim.loop.trial import Trial
 from swgsim.loop.vocabulary import Atom, Described
-
-FITTED = fitted_to(Layout(("T_in", "s1")), np.random.default_rng(1))
-
-
-@dataclass(frozen=True)
-class Dip(Bump):
-    """Another effect."""
-
-
-@dataclass(frozen=True)
-class Mimic(Bump):
-    """An effect that looks like a bump."""
-
-
-def tried(hypothesis: Hypothesis, evidence: float = 1000.0, agrees: float = 1.0) -> Trial:
-    score = Score(hypothesis, 100.0, 1, 1.0, 0.0, 0.1, 1.0, 1e-6)
-    return Trial(score, (hypothesis.kind(1.0),), FITTED, np.full(6, 50.0), evidence, (Coherence(agrees, 0.0, 0.0),))
-
-
-A, B, C, MIMIC = (tried(each) for each in (BUMP, WAVE, Hypothesis(Dip, (), 1), Hypothesis(Mimic, (), 1)))
 
 
 def kinds(steps: tuple[Step, ...]) -> tuple[type, ...]:
@@ -113,14 +92,27 @@ def test_what_says_more_or_contradicts_itself_is_no_rival(chance, agrees):
     assert rivals(tried(MIMIC.score.hypothesis, agrees=agrees), chance) == ()
 
 
+@pytest.mark.parametrize(("beside", "rival"), [(1.0, True), (0.0, False)], ids=["agrees beside it", "does not"])
+def test_what_is_unknown_does_not_speak_against_rivals_alone(monkeypatch, beside, rival):
+    """An effect that is as good contradicts itself only by what the accepted one leaves unknown too."""
+    other, unknown = (
+        tried(MIMIC.score.hypothesis, agrees=0.0),
+        Described(Atom(2, "in s1 alone", "constant"), 1.0, 2, 0.1, 0.0),
+    )
+    monkeypatch.setattr(steps, "set_free", lambda fitted, plain: replace(fitted) if plain is unknown else fitted)
+    monkeypatch.setattr(steps, "coherence", lambda fitted, _: Coherence(0.0 if fitted is FITTED else beside, 0.0, 0.0))
+    step, after = Step(A, (), (other,)), (replace(other.score, chance=2 * ALPHA),)
+    assert contradicted(step)
+    assert not contradicted(Step(A, (), (MIMIC,)))
+    assert with_rivals(step, after, what([step])).rivals == ()
+    assert with_rivals(step, after, what([step]), unknown).rivals == ((other,) if rival else ())
+
+
 def test_what_is_in_the_model_is_no_rival():
     step, other = Step(A, (), (B,)), Step(B, (), ())
     after = (replace(B.score, chance=2 * ALPHA),)
     assert with_rivals(step, after, what([step])).rivals == (B,)
     assert with_rivals(step, after, what([step, other])).rivals == ()
-
-
-PAIR = replace(A, effects=(Bump(1.0), Wave(1.0)))
 
 
 @pytest.mark.parametrize(
@@ -134,13 +126,30 @@ def test_what_a_regularity_tells_beyond_an_effect_may_be_a_second_one(monkeypatc
     monkeypatch.setattr(asking, "unbent", lambda now: declared if now is FITTED else now)
     monkeypatch.setattr(asking, "begun", lambda start, *_: Bump(1.0) if start is declared else None)
     monkeypatch.setattr(asking, "tried", lambda now, _, added, start: {FITTED: A}[now] if start is declared else None)
-    monkeypatch.setattr(asking, "_pairs", lambda *_: (pair,) if pair else ())
-    monkeypatch.setattr(asking, "_worth_it", lambda pairs, _: next(iter(pairs), None))
+    monkeypatch.setattr(asking, "paired", lambda *_: (pair,) if pair else ())
+    monkeypatch.setattr(asking, "worth_it", lambda pairs, _: next(iter(pairs), None))
     monkeypatch.setattr(asking, "describe", lambda _: (plain,))
     monkeypatch.setattr(asking, "outdone", lambda trial, *_: any(trial is each for each in outdone))
     found = asking.ask(FITTED, [A.score], [], 0)
     assert found.accepted is accepted
     assert found.outdone_by == (None if accepted else plain)
+
+
+@pytest.mark.parametrize("pays", [True, False])
+def test_a_runner_up_is_taken_where_the_best_contradicts_itself(monkeypatch, pays):
+    """And nothing else explains it, neither a pair nor a regularity beside it."""
+    best = tried(BUMP, agrees=0.0)
+    second = replace(B, evidence=0.99 * A.evidence, gains=B.gains if pays else -B.gains)
+    monkeypatch.setattr(asking, "unbent", lambda now: now)
+    monkeypatch.setattr(asking, "begun", lambda start, score, _: score)
+    monkeypatch.setattr(asking, "tried", lambda now, score, *_: best if score is A.score else second)
+    monkeypatch.setattr(Trial, "merit", property(lambda trial: trial.evidence))
+    monkeypatch.setattr(asking, "paired", lambda *_: ())
+    monkeypatch.setattr(asking, "in_company", lambda *_: None)
+    monkeypatch.setattr(asking, "outdone", lambda *_: False)
+    found = asking.ask(FITTED, [A.score, B.score], [], 0)
+    assert found.trials == (best, second)
+    assert found.accepted is (second if pays else None)
 
 
 @pytest.mark.parametrize(("other", "both"), [(-1.0, True), (1.0, False), (0.0, False)])
@@ -184,16 +193,7 @@ def test_without_effects_that_cancel_the_others_stay_if_they_come_to_rest(monkey
 
 def test_what_was_added_is_not_screened_again():
     added = replace(FITTED, calibrated=replace(FITTED.calibrated, model=FITTED.model.plus(Bump(1.0))))
-    assert asking.screened(added, [Bump], np.random.default_rng(1)) == ()
-
-
-@pytest.mark.parametrize(("gain", "agrees", "worth"), [(0.9, 1.0, False), (1.1, 1.0, True), (1.1, 0.0, False)])
-def test_a_pair_must_gain_more_than_its_better_half_and_be_sound(monkeypatch, gain, agrees, worth):
-    monkeypatch.setattr(Trial, "merit", property(lambda trial: trial.evidence))
-    both = (Coherence(1.0, 0.0, 0.0), Coherence(agrees, 0.0, 0.0))
-    pair = replace(PAIR, evidence=A.evidence + gain * 2 * PAIR_GAIN, coherence=both)
-    assert asking._worth_it((pair,), A) is (pair if worth else None)
-    assert asking._worth_it((), A) is None
+    assert screened(added, [Bump], np.random.default_rng(1)) == ()
 
 
 @pytest.mark.parametrize(("accepted", "listed"), [("pair", True), ("single", False)])
@@ -203,8 +203,8 @@ def test_other_pairs_may_be_rivals_of_a_pair_alone(monkeypatch, accepted, listed
     monkeypatch.setattr(asking, "unbent", lambda now: now)
     monkeypatch.setattr(asking, "begun", lambda *_: Bump(1.0))
     monkeypatch.setattr(asking, "tried", lambda *_: best)
-    monkeypatch.setattr(asking, "_pairs", lambda *_: (PAIR, other))
-    monkeypatch.setattr(asking, "_worth_it", lambda pairs, _: pairs[0])
+    monkeypatch.setattr(asking, "paired", lambda *_: (PAIR, other))
+    monkeypatch.setattr(asking, "worth_it", lambda pairs, _: pairs[0])
     monkeypatch.setattr(
         asking, "describe", lambda _: (Described(Atom(2, "in s1 alone", "constant"), 1.0, 2, 0.1, 1.0),)
     )

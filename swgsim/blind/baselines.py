@@ -7,10 +7,10 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.effects.base import Effect
-from swgsim.loop.asking import ALPHA
 from swgsim.loop.closing import MOST
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.hypotheses import Hypothesis, hypotheses, signatures
+from swgsim.loop.leading import ALPHA
 from swgsim.loop.tail import log_tail
 from swgsim.singular import svd
 

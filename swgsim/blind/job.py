@@ -31,7 +31,9 @@ from swgsim.loop import (
     commissioning,
     evidence,
     fitting,
+    leading,
     lines,
+    pairs,
     patching,
     screening,
     sidelines,
@@ -42,11 +44,11 @@ from swgsim.loop import (
 from swgsim.version import code_version
 
 THRESHOLDS = {
-    "alpha": asking.ALPHA,
+    "alpha": leading.ALPHA,
     "least_gain": evidence.LEAST_GAIN,
     "least_evidence": trial.LEAST_EVIDENCE,
     "exact": trial.EXACT,
-    "pair_gain": asking.PAIR_GAIN,
+    "pair_gain": pairs.PAIR_GAIN,
     "form_tolerance": evidence.FORM_TOLERANCE,
     "contradiction": evidence.CONTRADICTION,
     "no_size": evidence.NO_SIZE,

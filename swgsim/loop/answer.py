@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from swgsim.effects.base import Effect
 from swgsim.effects.regularity import Regularity
 from swgsim.effects.text import in_words
-from swgsim.loop.asking import ALPHA
 from swgsim.loop.between import between
 from swgsim.loop.closing import Closed, close
 from swgsim.loop.fitting import Fitted
+from swgsim.loop.leading import ALPHA
 from swgsim.loop.lines import cleaned, search
 from swgsim.loop.patching import patched
 from swgsim.loop.screening import Score

@@ -8,14 +8,15 @@ from typing import NamedTuple
 import numpy as np
 
 from swgsim.effects.base import Effect
-from swgsim.loop.asking import Round, ask, ask_behind, screened
+from swgsim.loop.asking import Round, ask, ask_behind
 from swgsim.loop.fitting import Fitted, fit
+from swgsim.loop.leading import ALPHA, screened
 from swgsim.loop.screening import Score
 from swgsim.loop.session import Measured
-from swgsim.loop.steps import Step, cancelling, joined, what, with_rivals
+from swgsim.loop.steps import Step, cancelling, contradicted, joined, what, with_rivals
 from swgsim.loop.trial import Trial, widened
 from swgsim.loop.unit import Unit
-from swgsim.loop.vocabulary import Described, freed, set_free
+from swgsim.loop.vocabulary import Described, freed, set_free, strongest
 from swgsim.seeds import generator
 
 # Effects that are added at most.
@@ -123,7 +124,8 @@ def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed
     if cancelled := cancelling(end.steps, end.now):
         end = _without(cancelled, end, before, kinds, seed)
     found, left = what(end.steps), end.scores[-1]
-    steps = tuple(with_rivals(step, left, found) for step in end.steps)
+    unknown = _unknown(end.now, seed) if any(map(contradicted, end.steps)) else None
+    steps = tuple(with_rivals(step, left, found, unknown) for step in end.steps)
     withdrawn = tuple(step.accepted for step in forward.steps if not what([step]) <= found | what(cancelled))
     return Closed(
         before, end.now.strict, end.now, steps, forward.scores[0], left, end.last.trials, end.last.outdone_by,
@@ -146,6 +148,12 @@ def _forward(
             return End(now, steps, apart, scores, found)
         steps = (*steps, Step(found.accepted, (), found.others))
         now = found.accepted.with_open_form
+
+
+def _unknown(now: Fitted, seed: int) -> Described | None:
+    """The strongest regularity that is left, if it is no luck."""
+    best = strongest(now, generator("left to rivals", seed))
+    return best if best.chance <= ALPHA else None
 
 
 def _without(cancelled: Sequence[Step], end: End, before: Fitted, kinds: Sequence[type[Effect]], seed: int) -> End:

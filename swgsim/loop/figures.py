@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 
 from swgsim import style
 from swgsim.loop.answer import Answer
-from swgsim.loop.asking import ALPHA
 from swgsim.loop.features import ORDERS, basis
 from swgsim.loop.fitting import Fitted
+from swgsim.loop.leading import ALPHA
 from swgsim.loop.session import Measured
 from swgsim.recording import CHANNELS
 

@@ -7,11 +7,12 @@ import numpy as np
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities
-from swgsim.loop.asking import ALPHA
-from swgsim.loop.evidence import FORM_TOLERANCE, LEAST_GAIN, open_form, signature
+from swgsim.loop.evidence import FORM_TOLERANCE, LEAST_GAIN, coherence, open_form, signature
 from swgsim.loop.fitting import Fitted, extended, unbent
+from swgsim.loop.leading import ALPHA
 from swgsim.loop.screening import Score
 from swgsim.loop.trial import Trial
+from swgsim.loop.vocabulary import Described, set_free
 
 # Two effects cancel if the cosine between what they do is below the negative of this.
 CANCELLED = 0.9
@@ -69,18 +70,45 @@ def cancelling(steps: Sequence[Step], now: Fitted) -> tuple[Step, ...]:
     return tuple(step for step in steps if step in opposing)
 
 
-def with_rivals(step: Step, after: Sequence[Score], found: frozenset[tuple[object, ...]]) -> Step:
-    """Of the other trials, those as good as the accepted one that say nothing more once it is in the model."""
+def with_rivals(
+    step: Step, after: Sequence[Score], found: frozenset[tuple[object, ...]], unknown: Described | None = None
+) -> Step:
+    """Of the other trials, those as good as the accepted one that say nothing more once it is in the model.
+
+    Parameters
+    ----------
+    step : Step
+    after : sequence of Score
+        Of a screening behind all that was found.
+    found : frozenset
+        What was found.
+    unknown : Described, optional
+        What nothing that was found explains either; it must not speak against the others alone.
+    """
     silent = {score.hypothesis.kind for score in after if score.chance > ALPHA}
     rivals = tuple(
         trial
         for trial in step.others
-        if trial.sound
-        and _as_good(trial, step.accepted)
+        if _as_good(trial, step.accepted)
         and all(type(effect) in silent or chosen(effect) in found for effect in trial.effects)
         and not found.issuperset(map(chosen, trial.effects))
+        and (trial.sound or (unknown and sound_beside(trial, unknown)))
     )
     return Step(step.accepted, rivals, tuple(trial for trial in step.others if trial not in rivals))
+
+
+def contradicted(step: Step) -> bool:
+    """Whether some of the other trials is as good as the accepted one and no rival, as it contradicts itself."""
+    return any(trial.pays and not trial.sound and _as_good(trial, step.accepted) for trial in step.others)
+
+
+def sound_beside(trial: Trial, unknown: Described) -> bool:
+    """Whether a trial pays and does not contradict itself once something unknown is taken out."""
+    if not trial.pays:
+        return False
+    fitted = set_free(trial.fitted, unknown)
+    known = len(fitted.model.effects) - len(trial.effects)
+    return all(coherence(fitted, known + i).holds for i in range(len(trial.effects)))
 
 
 def _as_good(trial: Trial, best: Trial) -> bool:

@@ -1,0 +1,31 @@
+"""What of a screening is worth a fit."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from swgsim.effects.base import Effect
+from swgsim.loop.fitting import Fitted, unbent
+from swgsim.loop.hypotheses import hypotheses, signatures
+from swgsim.loop.screening import Score, best_of_kind, screen
+
+# Probability of a false effect on recordings in which nothing is missing.
+ALPHA = 0.005
+# Leaders that are fitted, and those that are as good but for this share of the gain and may be rivals.
+LEADERS, NEARLY, NEARLY_LEADERS = 4, 0.05, 8
+
+
+def screened(fitted: Fitted, kinds: Sequence[type[Effect]], rng: np.random.Generator) -> tuple[Score, ...]:
+    """The best hypothesis of every effect that was not added yet."""
+    found = [each for each in hypotheses(kinds) if not any(map(each.repeats, fitted.added))]
+    if not found:
+        return ()
+    fitted = unbent(fitted)
+    return tuple(best_of_kind(screen(found, signatures(found, fitted.model, fitted.measured), fitted, rng)))
+
+
+def leaders(scores: Sequence[Score]) -> list[Score]:
+    """What is fitted: the best scores that are no luck, and those hardly worse than the very best."""
+    real = [score for score in scores if score.chance <= ALPHA]
+    nearly = [s for s in real[LEADERS:NEARLY_LEADERS] if s.gain > (1 - NEARLY) * real[0].gain]
+    return [*real[:LEADERS], *nearly]

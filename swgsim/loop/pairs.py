@@ -1,0 +1,97 @@
+"""Two effects that hide one another, or together look like a third."""
+
+from collections.abc import Sequence
+
+from swgsim.effects.base import Effect
+from swgsim.loop.fitting import Fitted, unbent
+from swgsim.loop.leading import LEADERS, NEARLY, leaders, screened
+from swgsim.loop.trial import Trial, begun, tried
+from swgsim.seeds import generator
+
+# Log-likelihood that a pair must gain over its better half; beside the leaders, so many are tried that lead behind it.
+PAIR_GAIN, BEHIND = 15.0, 2
+
+
+def paired(
+    now: Fitted, start: Fitted, trials: Sequence[Trial], kinds: Sequence[type[Effect]], seed: int
+) -> tuple[Trial, ...]:
+    """Pairs with the best trial, the best pair first.
+
+    Where the best trial contradicts itself and no pair with it is worth it, pairs with one that does not and is hardly
+    worse: two effects at once may look like a third one.
+
+    Parameters
+    ----------
+    now : Fitted
+        The model without them.
+    start : Fitted
+        The same where fits begin.
+    trials : sequence of Trial
+        Single effects, the best one first.
+    kinds : sequence of effect classes
+        The library.
+    seed : int
+    """
+    best = trials[0]
+    pairs = _with(best, now, start, trials, kinds, seed)
+    if best.sound or worth_it(pairs, best):
+        return pairs
+    half = runner_up(trials)
+    return _with(half, now, start, trials[1:], kinds, seed) if half else pairs
+
+
+def runner_up(trials: Sequence[Trial]) -> Trial | None:
+    """The best trial that does not contradict itself, if it is hardly worse than the very best, which does."""
+    return next((t for t in trials[1:] if t.sound and t.merit > (1 - NEARLY) * trials[0].merit), None)
+
+
+def _with(
+    first: Trial, now: Fitted, start: Fitted, trials: Sequence[Trial], kinds: Sequence[type[Effect]], seed: int
+) -> tuple[Trial, ...]:
+    """Pairs of one trial with the leading ones, and with what leads behind it."""
+    beside = unbent(first.fitted)
+    behind = leaders(screened(beside, kinds, generator("screen behind", seed)))[:BEHIND]
+    leading = [trial for trial in trials if trial is not first][: LEADERS - 1]
+    others = {type(effect): effect for trial in leading for effect in trial.effects}
+    # What leads behind the first shows where it is only beside it.
+    others |= {type(effect): effect for effect in (begun(beside, score, seed) for score in behind)}
+    pairs = (
+        tried(now, first.score, (*first.effects, effect), start)
+        for kind, effect in others.items()
+        if kind is not first.score.hypothesis.kind
+    )
+    return tuple(sorted(pairs, key=lambda pair: -pair.merit))
+
+
+def worth_it(pairs: Sequence[Trial], better_half: Trial) -> Trial | None:
+    """The best pair, if both of its members are sound together and it gains more than one of them alone."""
+    best = pairs[0] if pairs else None
+    return best if best and best.sound and best.merit > better_half.merit + 2 * PAIR_GAIN else None
+
+
+def of_doubles(
+    accepted: Trial, now: Fitted, start: Fitted, trials: Sequence[Trial], pairs: Sequence[Trial]
+) -> tuple[Trial, ...]:
+    """Pairs of what alone is as good as the first of an accepted pair with what beside that is as good as the second.
+
+    Parameters
+    ----------
+    accepted : Trial
+        One of the pairs.
+    now : Fitted
+    start : Fitted
+    trials : sequence of Trial
+        Single effects.
+    pairs : sequence of Trial
+        All with the same first effect.
+    """
+    one, other = map(type, accepted.effects)
+    first = next(trial for trial in trials if type(trial.effects[0]) is one)
+    firsts = [t for t in trials if t is not first and t.pays and abs(t.merit - first.merit) < NEARLY * first.merit]
+    seconds = [t.effects[1] for t in pairs if t.sound and accepted.merit - t.merit < NEARLY * accepted.merit]
+    return tuple(
+        tried(now, double.score, (*double.effects, second), start)
+        for double in firsts
+        for second in seconds
+        if type(double.effects[0]) not in (type(second), other)
+    )
