@@ -113,7 +113,7 @@ def steady_state(drive: Drive, tolerance: float = 1e-8) -> State:
     """The state at phi_in = 0 that repeats after one revolution of the wave generator (shooting).
 
     The friction that varies over an output revolution (b3) changes so slowly that it counts as constant here. The last
-    correction is below the tolerance, relatively; each leaves about a hundredth of itself.
+    correction is below the tolerance, relatively; where the drive is nearly linear, each leaves a hundredth of itself.
 
     Raises
     ------

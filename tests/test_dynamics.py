@@ -8,6 +8,7 @@ from scipy.integrate import solve_ivp
 
 from swgsim.benchmark import integrator_vs_solve_ivp
 from swgsim.dynamics import OMEGA_IN, OMEGA_OUT, PHI_IN, PHI_OUT, SPEED_ERROR, Drive
+from swgsim.effects.input_unbalance import InputUnbalance
 from swgsim.gear import KinematicError, OperatingPoint, Transmission
 from swgsim.motion import advance, run, steady_state, steps_per_revolution
 
@@ -105,6 +106,15 @@ def test_speed_is_controlled_to_the_set_point() -> None:
     motion = run(drive, steady_state(drive), 1e-4, 600)
     np.testing.assert_allclose(motion.omega_in[:, :600].mean(axis=1), [p.omega_in for p in POINTS], rtol=1e-4)
     np.testing.assert_allclose(motion.T_out[:, :600].mean(axis=1), [p.T_out for p in POINTS], rtol=1e-2)
+
+
+@pytest.mark.parametrize("own", [(0, 1), (0, 2), (0, 0, 2)], ids=["together", "apart", "twice in one"])
+def test_an_effect_acts_on_its_own_runs_alone(own: tuple[int, ...]) -> None:
+    effects = [(InputUnbalance(1e-3),) * own.count(i) for i in range(3)]
+    without, acted = (Drive([NOMINAL] * 3, POINTS[:3], each) for each in ((), effects))
+    state = steady_state(without)
+    apart = advance(acted, state, np.full(3, 1.0)) - advance(without, state, np.full(3, 1.0))
+    assert tuple(np.flatnonzero(apart.any(axis=0))) == tuple(dict.fromkeys(own))
 
 
 @pytest.mark.end_to_end

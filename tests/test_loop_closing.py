@@ -92,20 +92,40 @@ def test_what_says_more_or_contradicts_itself_is_no_rival(chance, agrees):
     assert rivals(tried(MIMIC.score.hypothesis, agrees=agrees), chance) == ()
 
 
-@pytest.mark.parametrize(("beside", "rival"), [(1.0, True), (0.0, False)], ids=["agrees beside it", "does not"])
-def test_what_is_unknown_does_not_speak_against_rivals_alone(monkeypatch, beside, rival):
+@pytest.mark.parametrize("agrees", [True, False])
+def test_what_is_unknown_does_not_speak_against_rivals_alone(monkeypatch, agrees):
     """An effect that is as good contradicts itself only by what the accepted one leaves unknown too."""
-    other, unknown = (
-        tried(MIMIC.score.hypothesis, agrees=0.0),
-        Described(Atom(2, "in s1 alone", "constant"), 1.0, 2, 0.1, 0.0),
-    )
-    monkeypatch.setattr(steps, "set_free", lambda fitted, plain: replace(fitted) if plain is unknown else fitted)
-    monkeypatch.setattr(steps, "coherence", lambda fitted, _: Coherence(0.0 if fitted is FITTED else beside, 0.0, 0.0))
+    other = tried(MIMIC.score.hypothesis, agrees=0.0)
+    unknown = (Described(Atom(2, "in s1 alone", "constant"), 1.0, 2, 0.1, 0.0),)
+    agreeing = replace(other, coherence=MIMIC.coherence, beside=unknown)
+    monkeypatch.setattr(steps, "beside_unknown", lambda trial, left: agreeing if agrees and left == unknown else None)
     step, after = Step(A, (), (other,)), (replace(other.score, chance=2 * ALPHA),)
     assert contradicted(step)
     assert not contradicted(Step(A, (), (MIMIC,)))
-    assert with_rivals(step, after, what([step])).rivals == ()
-    assert with_rivals(step, after, what([step]), unknown).rivals == ((other,) if rival else ())
+    found = with_rivals(step, after, what([step]), unknown)
+    assert (found.rivals, found.others) == (((agreeing,), ()) if agrees else ((), (other,)))
+
+
+def test_what_does_not_pay_is_no_rival():
+    other = replace(MIMIC, gains=-MIMIC.gains)
+    best = replace(A, gains=other.gains)
+    assert with_rivals(Step(best, (), (other,)), (replace(other.score, chance=1.0),), frozenset()).rivals == ()
+    assert not contradicted(Step(best, (), (replace(other, coherence=(Coherence(0.0, 0.0, 0.0),)),)))
+
+
+@pytest.mark.parametrize("contradiction", [True, False])
+def test_what_is_left_unknown_is_asked_for_where_it_may_speak_against_a_rival(monkeypatch, contradiction):
+    """And rivals are sought beside it."""
+    step = Step(A, (), (tried(MIMIC.score.hypothesis, agrees=0.0 if contradiction else 1.0),))
+    given = []
+    monkeypatch.setattr(closing, "fit", lambda *_: FITTED)
+    monkeypatch.setattr(
+        closing, "_forward", lambda *_: closing.End(FITTED, (step,), (), ((), ()), Round((), None, None))
+    )
+    monkeypatch.setattr(closing, "left", lambda now, seed, most: (now, seed, most))
+    monkeypatch.setattr(closing, "with_rivals", lambda step, after, found, unknown: given.append(unknown) or step)
+    closing.close(FITTED.measured, FITTED.unit, (), seed=7)
+    assert given == ([(FITTED, 7, 1)] if contradiction else [()])
 
 
 def test_what_is_in_the_model_is_no_rival():
@@ -133,23 +153,6 @@ def test_what_a_regularity_tells_beyond_an_effect_may_be_a_second_one(monkeypatc
     found = asking.ask(FITTED, [A.score], [], 0)
     assert found.accepted is accepted
     assert found.outdone_by == (None if accepted else plain)
-
-
-@pytest.mark.parametrize("pays", [True, False])
-def test_a_runner_up_is_taken_where_the_best_contradicts_itself(monkeypatch, pays):
-    """And nothing else explains it, neither a pair nor a regularity beside it."""
-    best = tried(BUMP, agrees=0.0)
-    second = replace(B, evidence=0.99 * A.evidence, gains=B.gains if pays else -B.gains)
-    monkeypatch.setattr(asking, "unbent", lambda now: now)
-    monkeypatch.setattr(asking, "begun", lambda start, score, _: score)
-    monkeypatch.setattr(asking, "tried", lambda now, score, *_: best if score is A.score else second)
-    monkeypatch.setattr(Trial, "merit", property(lambda trial: trial.evidence))
-    monkeypatch.setattr(asking, "paired", lambda *_: ())
-    monkeypatch.setattr(asking, "in_company", lambda *_: None)
-    monkeypatch.setattr(asking, "outdone", lambda *_: False)
-    found = asking.ask(FITTED, [A.score, B.score], [], 0)
-    assert found.trials == (best, second)
-    assert found.accepted is (second if pays else None)
 
 
 @pytest.mark.parametrize(("other", "both"), [(-1.0, True), (1.0, False), (0.0, False)])
@@ -199,19 +202,20 @@ def test_what_was_added_is_not_screened_again():
 @pytest.mark.parametrize(("accepted", "listed"), [("pair", True), ("single", False)])
 def test_other_pairs_may_be_rivals_of_a_pair_alone(monkeypatch, accepted, listed):
     best = A if accepted == "single" else tried(BUMP, agrees=0.0)
-    other = replace(PAIR, effects=(Bump(1.0), Dip(1.0)))
+    other, doubles = (replace(PAIR, effects=(first(1.0), Dip(1.0))) for first in (Bump, Mimic))
     monkeypatch.setattr(asking, "unbent", lambda now: now)
     monkeypatch.setattr(asking, "begun", lambda *_: Bump(1.0))
     monkeypatch.setattr(asking, "tried", lambda *_: best)
     monkeypatch.setattr(asking, "paired", lambda *_: (PAIR, other))
     monkeypatch.setattr(asking, "worth_it", lambda pairs, _: pairs[0])
+    monkeypatch.setattr(asking, "of_doubles", lambda accepted, *_: (doubles,) if accepted is PAIR else ())
     monkeypatch.setattr(
         asking, "describe", lambda _: (Described(Atom(2, "in s1 alone", "constant"), 1.0, 2, 0.1, 1.0),)
     )
     monkeypatch.setattr(asking, "outdone", lambda *_: False)
     found = asking.ask(FITTED, [A.score], [], 0)
     assert found.accepted is (PAIR if listed else A)
-    assert found.trials == ((best, PAIR, other) if listed else (best,))
+    assert found.trials == ((best, PAIR, other, doubles) if listed else (best,))
 
 
 def test_it_is_said_why_an_effect_is_no_cause():

@@ -9,7 +9,7 @@ from loop_fixtures import BUMP, Bump, drawn, fitted_to, holding
 
 from swgsim.loop import evidence, vocabulary
 from swgsim.loop import trial as trial_module
-from swgsim.loop.beside import elsewhere, in_company, outdone
+from swgsim.loop.beside import beside_unknown, elsewhere, in_company, outdone
 from swgsim.loop.features import Layout
 from swgsim.loop.model import Model
 from swgsim.loop.scatter import Scatter, covariance
@@ -139,6 +139,21 @@ def test_an_effect_that_lives_off_a_regularity_is_not(fitted, stray, signature):
     mimic = stray + 0.1 * np.linalg.norm(stray) / np.linalg.norm(signature) * signature
     after = holding(fitted, 2 * stray - mimic + noise)
     assert in_company(now, trial(after, mimic), 0.005, 0) is None
+
+
+@pytest.mark.parametrize(("share", "rival"), [(0.0, True), (0.7, False)], ids=["another thing", "half the same"])
+def test_an_effect_that_only_what_is_unknown_contradicts_may_be_a_rival(fitted, stray, signature, share, rival):
+    noise = drawn(fitted.whole, np.random.default_rng(7))
+    after = holding(fitted, stray + noise)
+    taken = stray * np.linalg.norm(fitted.errors.whiten(signature)) / np.linalg.norm(fitted.errors.whiten(stray))
+    alone, unknown = trial(after, np.sqrt(1 - share) * signature + np.sqrt(share) * taken), named(after, STRAY)
+    assert not alone.sound
+    found = beside_unknown(alone, (unknown,))
+    assert (found is not None) == rival
+    if rival:
+        assert found.sound
+        assert found.beside == (unknown,)
+    assert beside_unknown(alone, ()) is None
 
 
 def scattered(fitted, factor: float):

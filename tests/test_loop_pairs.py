@@ -9,7 +9,7 @@ from loop_fixtures import Bump, Wave
 from swgsim.loop import pairs
 from swgsim.loop.evidence import Coherence
 from swgsim.loop.leading import NEARLY
-from swgsim.loop.pairs import PAIR_GAIN, of_doubles, paired, runner_up, worth_it
+from swgsim.loop.pairs import PAIR_GAIN, of_doubles, paired, worth_it
 from swgsim.loop.trial import Trial
 
 UNSOUND = (Coherence(0.0, 0.0, 0.0),)
@@ -46,36 +46,55 @@ def test_pairs_are_tried_with_the_best():
         (0.9 * NEARLY, B, [(Wave, Dip)]),
         (1.1 * NEARLY, B, [(Bump, Wave), (Bump, Dip)]),
         (0.9 * NEARLY, replace(B, coherence=UNSOUND), [(Bump, Wave), (Bump, Dip)]),
+        (0.9 * NEARLY, replace(B, gains=-B.gains), [(Bump, Wave), (Bump, Dip)]),
     ],
-    ids=["hardly worse", "worse", "contradicts itself too"],
+    ids=["hardly worse", "worse", "contradicts itself too", "does not pay"],
 )
 def test_two_effects_may_look_like_a_third_that_contradicts_itself(less, runner, expected):
     best, runner = replace(A, coherence=UNSOUND), replace(runner, evidence=A.evidence * (1 - less))
-    far = replace(C, evidence=0.0)
-    assert kinds(paired(FITTED, FITTED, (best, runner, far), (), 0)) == expected
-    assert runner_up((best, runner, far)) is (runner if len(expected) == 1 else None)
+    assert kinds(paired(FITTED, FITTED, (best, runner, replace(C, evidence=0.0)), (), 0)) == expected
 
 
 def test_where_a_pair_with_the_best_is_worth_it_no_others_are_tried(monkeypatch):
-    gains = PAIR.evidence + 3 * PAIR_GAIN
-    monkeypatch.setattr(
-        pairs, "tried", lambda now, score, added, start: replace(PAIR, effects=added, evidence=gains, coherence=both)
+    asked = []
+
+    def tried(now, score, added, start):
+        asked.append(tuple(map(type, added)))
+        return replace(PAIR, effects=added, evidence=A.evidence + 3 * PAIR_GAIN, coherence=2 * A.coherence)
+
+    monkeypatch.setattr(pairs, "tried", tried)
+    paired(FITTED, FITTED, (replace(A, coherence=UNSOUND), B, C), (), 0)
+    assert asked == [(Bump, Wave), (Bump, Dip)]
+
+
+def doubles(alone: Trial, beside: Trial) -> list[tuple[type, ...]]:
+    """Pairs that are tried with Mimic in the place of Bump, where Bump and Wave are 100 better than Bump."""
+    accepted = replace(PAIR, evidence=A.evidence + 100)
+    return kinds(of_doubles(accepted, FITTED, FITTED, (A, alone, replace(B, evidence=0.0)), (accepted, beside)))
+
+
+@pytest.mark.parametrize(("less", "expected"), [(0.9, [(Mimic, Wave)]), (1.1, [])])
+def test_a_double_of_the_first_stands_in_its_place(less, expected):
+    double, beside = (
+        replace(MIMIC, evidence=A.evidence * (1 - less * NEARLY)),
+        replace(PAIR, effects=(Bump(1.0), Dip(1.0))),
     )
-    both = 2 * (Coherence(1.0, 0.0, 0.0),)
-    best = replace(A, coherence=UNSOUND)
-    assert kinds(paired(FITTED, FITTED, (best, B, C), (), 0)) == [(Bump, Wave), (Bump, Dip)]
+    assert doubles(double, beside) == expected
+    assert doubles(replace(double, gains=-double.gains), beside) == []
 
 
-@pytest.mark.parametrize("nearly", [True, False])
-def test_doubles_of_both_members_make_a_pair(nearly):
-    """Mimic is as good as Bump alone, and Dip is as good as Wave beside it."""
-    less = 0.9 * NEARLY if nearly else 1.1 * NEARLY
-    double = replace(MIMIC, evidence=A.evidence * (1 - less))
-    beside = replace(PAIR, effects=(Bump(1.0), Dip(1.0)))
-    found = of_doubles(PAIR, FITTED, FITTED, (A, double, replace(B, evidence=0.0)), (PAIR, beside))
-    assert kinds(found) == ([(Mimic, Wave), (Mimic, Dip)] if nearly else [])
+@pytest.mark.parametrize(
+    ("less", "beside", "double"),
+    [(0.9, PAIR, True), (1.1, PAIR, False), (0.9, replace(PAIR, coherence=UNSOUND), False)],
+    ids=["adds as much", "adds less", "contradicts itself"],
+)
+def test_a_double_of_the_second_adds_as_much_as_it_does(less, beside, double):
+    """However little that is beside the first."""
+    beside = replace(beside, effects=(Bump(1.0), Dip(1.0)), evidence=A.evidence + 100 * (1 - less * NEARLY))
+    assert doubles(MIMIC, beside) == [(Mimic, Wave), *([(Mimic, Dip)] if double else [])]
 
 
 def test_doubles_make_no_pair_with_themselves():
-    beside = replace(PAIR, effects=(Bump(1.0), Mimic(1.0)))
-    assert kinds(of_doubles(PAIR, FITTED, FITTED, (A, MIMIC, B), (PAIR, beside))) == [(Mimic, Wave)]
+    """Nor the same pair twice."""
+    beside = replace(PAIR, effects=(Bump(1.0), Mimic(1.0)), evidence=A.evidence + 100)
+    assert doubles(MIMIC, beside) == [(Mimic, Wave)]

@@ -49,6 +49,7 @@ THRESHOLDS = {
     "least_evidence": trial.LEAST_EVIDENCE,
     "exact": trial.EXACT,
     "pair_gain": pairs.PAIR_GAIN,
+    "nearly": leading.NEARLY,
     "form_tolerance": evidence.FORM_TOLERANCE,
     "contradiction": evidence.CONTRADICTION,
     "no_size": evidence.NO_SIZE,

@@ -8,7 +8,6 @@ from swgsim.effects.regularity import Regularity
 from swgsim.effects.text import in_words
 from swgsim.loop.between import between
 from swgsim.loop.closing import Closed, close
-from swgsim.loop.fitting import Fitted
 from swgsim.loop.leading import ALPHA
 from swgsim.loop.lines import cleaned, search
 from swgsim.loop.patching import patched
@@ -18,9 +17,8 @@ from swgsim.loop.sidelines import Sideline
 from swgsim.loop.trial import Trial
 from swgsim.loop.unit import Unit
 from swgsim.loop.unnamed import Unnamed
-from swgsim.loop.vocabulary import Described, freed, strongest
+from swgsim.loop.vocabulary import Described, left
 from swgsim.recording import Recording
-from swgsim.seeds import generator
 from swgsim.turning import forget
 
 NOTHING, FOUND, UNKNOWN = "nothing_missing", "effect_found", "unknown_effect"
@@ -134,20 +132,8 @@ def answer(
     lines = search(between(recordings), kinds, ALPHA, known)
     clean = [cleaned(recording, lines.effects) for recording in recordings] if lines.effects else recordings
     closed = close(Measured.of(clean), unit, kinds, seed=seed)
-    unknown = (*closed.apart, *_unknown(closed.asked, seed))
+    unknown = (*closed.apart, *left(closed.asked, seed, MOST_ATOMS))
     absorbed = tuple(score for score in closed.scores if score.absorbed)
     found = closed.steps or lines.named
     verdict = FOUND if found else UNKNOWN if closed.rejected or unknown or lines.unnamed else NOTHING
     return Answer(verdict, patched(closed, unknown), tuple(known), lines.named, unknown, lines.unnamed, absorbed)
-
-
-def _unknown(fitted: Fitted, seed: int) -> tuple[Described, ...]:
-    """Regularities that are left, the likeliest first; each is taken out before the next is sought."""
-    found: list[Described] = []
-    while len(found) < MOST_ATOMS:
-        best = strongest(fitted, generator("vocabulary", seed, len(found)))
-        if best.chance > ALPHA:
-            break
-        found.append(best)
-        fitted = freed(fitted, best)
-    return tuple(found)

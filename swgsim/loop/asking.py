@@ -7,7 +7,7 @@ from swgsim.effects.base import Effect
 from swgsim.loop.beside import elsewhere, in_company, outdone
 from swgsim.loop.fitting import Fitted, unbent
 from swgsim.loop.leading import ALPHA, leaders, screened
-from swgsim.loop.pairs import of_doubles, paired, runner_up, worth_it
+from swgsim.loop.pairs import of_doubles, paired, worth_it
 from swgsim.loop.screening import Score
 from swgsim.loop.trial import Trial, begun, tried
 from swgsim.loop.vocabulary import Described, describe, freed, strongest
@@ -48,7 +48,7 @@ def ask(
     trials = tuple(sorted(alone, key=lambda trial: -trial.merit))
     best = trials[0]
     pairs = () if best.sound else paired(now, start, trials, kinds, seed)
-    accepted = best if best.sound else worth_it(pairs, best) or in_company(now, best, ALPHA, seed) or runner_up(trials)
+    accepted = best if best.sound else worth_it(pairs, best) or in_company(now, best, ALPHA, seed)
     if accepted is None or not elsewhere(accepted, apart, now):
         return Round(trials, None, None)
     plain = describe(now)[0]

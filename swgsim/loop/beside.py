@@ -2,11 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import reduce
 
 import numpy as np
 
 from swgsim.effects.regularity import PATTERNS
-from swgsim.loop.evidence import coherence
+from swgsim.loop.evidence import Coherence, coherence
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.trial import Trial, gain
 from swgsim.loop.vocabulary import Described, columns, freed, set_free, strongest
@@ -47,7 +48,6 @@ def in_company(now: Fitted, trial: Trial, level: float, seed: int) -> Trial | No
     """
     if not trial.pays:
         return None
-    known = len(trial.fitted.model.effects) - len(trial.effects)
     before, after, explained = now, trial.fitted, trial.explained(now)
     beside: tuple[Described, ...] = ()
     for number in range(COMPANY):
@@ -55,10 +55,36 @@ def in_company(now: Fitted, trial: Trial, level: float, seed: int) -> Trial | No
         before, after, beside = set_free(before, best), set_free(after, best), (*beside, best)
         if best.chance > level or trial.explained(before) < max(ANOTHER_THING * explained, best.gain):
             return None
-        agreement = tuple(coherence(after, known + i) for i in range(len(trial.effects)))
+        agreement = _agreement(trial, after)
         if all(each.holds for each in agreement):
             return replace(trial, coherence=agreement, beside=beside)
     return None
+
+
+def beside_unknown(trial: Trial, unknown: Sequence[Described]) -> Trial | None:
+    """A trial that pays, if it is another thing than what nothing explains and its parts agree once that is taken out.
+
+    Parameters
+    ----------
+    trial : Trial
+    unknown : sequence of Described
+    """
+    if not unknown or not trial.pays:
+        return None
+    whiten = trial.fitted.errors.whiten
+    taken, _ = np.linalg.qr(whiten(np.hstack([columns(each.atom, trial.fitted) for each in unknown])))
+    seen = whiten(trial.signature)
+    beyond = seen - taken @ (taken.T @ seen)
+    if (np.linalg.norm(beyond, axis=0) ** 2 < ANOTHER_THING * np.linalg.norm(seen, axis=0) ** 2).any():
+        return None
+    agreement = _agreement(trial, reduce(set_free, unknown, trial.fitted))
+    return replace(trial, coherence=agreement, beside=tuple(unknown)) if all(a.holds for a in agreement) else None
+
+
+def _agreement(trial: Trial, fitted: Fitted) -> tuple[Coherence, ...]:
+    """Whether the parts of its effects agree in this fit."""
+    known = len(trial.fitted.model.effects) - len(trial.effects)
+    return tuple(coherence(fitted, known + i) for i in range(len(trial.effects)))
 
 
 def elsewhere(trial: Trial, apart: Sequence[Described], now: Fitted) -> bool:

@@ -10,13 +10,13 @@ import numpy as np
 from swgsim.effects.base import Effect
 from swgsim.loop.asking import Round, ask, ask_behind
 from swgsim.loop.fitting import Fitted, fit
-from swgsim.loop.leading import ALPHA, screened
+from swgsim.loop.leading import screened
 from swgsim.loop.screening import Score
 from swgsim.loop.session import Measured
 from swgsim.loop.steps import Step, cancelling, contradicted, joined, what, with_rivals
 from swgsim.loop.trial import Trial, widened
 from swgsim.loop.unit import Unit
-from swgsim.loop.vocabulary import Described, freed, set_free, strongest
+from swgsim.loop.vocabulary import Described, freed, left, set_free
 from swgsim.seeds import generator
 
 # Effects that are added at most.
@@ -123,12 +123,12 @@ def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed
             end = _forward(together, revised, forward.apart, kinds, seed)
     if cancelled := cancelling(end.steps, end.now):
         end = _without(cancelled, end, before, kinds, seed)
-    found, left = what(end.steps), end.scores[-1]
-    unknown = _unknown(end.now, seed) if any(map(contradicted, end.steps)) else None
-    steps = tuple(with_rivals(step, left, found, unknown) for step in end.steps)
+    found, after = what(end.steps), end.scores[-1]
+    unknown = left(end.now, seed, 1) if any(map(contradicted, end.steps)) else ()
+    steps = tuple(with_rivals(step, after, found, unknown) for step in end.steps)
     withdrawn = tuple(step.accepted for step in forward.steps if not what([step]) <= found | what(cancelled))
     return Closed(
-        before, end.now.strict, end.now, steps, forward.scores[0], left, end.last.trials, end.last.outdone_by,
+        before, end.now.strict, end.now, steps, forward.scores[0], after, end.last.trials, end.last.outdone_by,
         end.apart, withdrawn, tuple(step.accepted for step in cancelled),
     )  # fmt: skip
 
@@ -148,12 +148,6 @@ def _forward(
             return End(now, steps, apart, scores, found)
         steps = (*steps, Step(found.accepted, (), found.others))
         now = found.accepted.with_open_form
-
-
-def _unknown(now: Fitted, seed: int) -> Described | None:
-    """The strongest regularity that is left, if it is no luck."""
-    best = strongest(now, generator("left to rivals", seed))
-    return best if best.chance <= ALPHA else None
 
 
 def _without(cancelled: Sequence[Step], end: End, before: Fitted, kinds: Sequence[type[Effect]], seed: int) -> End:

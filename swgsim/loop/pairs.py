@@ -15,10 +15,10 @@ PAIR_GAIN, BEHIND = 15.0, 2
 def paired(
     now: Fitted, start: Fitted, trials: Sequence[Trial], kinds: Sequence[type[Effect]], seed: int
 ) -> tuple[Trial, ...]:
-    """Pairs with the best trial, the best pair first.
+    """Pairs with the best trial, or with the runner-up; the best pair first.
 
-    Where the best trial contradicts itself and no pair with it is worth it, pairs with one that does not and is hardly
-    worse: two effects at once may look like a third one.
+    With the runner-up where the best trial is not sound, and no pair with it is worth it: two effects at once may look
+    like a third one.
 
     Parameters
     ----------
@@ -36,12 +36,12 @@ def paired(
     pairs = _with(best, now, start, trials, kinds, seed)
     if best.sound or worth_it(pairs, best):
         return pairs
-    half = runner_up(trials)
-    return _with(half, now, start, trials[1:], kinds, seed) if half else pairs
+    second = _runner_up(trials)
+    return _with(second, now, start, trials[1:], kinds, seed) if second else pairs
 
 
-def runner_up(trials: Sequence[Trial]) -> Trial | None:
-    """The best trial that does not contradict itself, if it is hardly worse than the very best, which does."""
+def _runner_up(trials: Sequence[Trial]) -> Trial | None:
+    """The best of the others that are sound, if it is hardly worse than the very best."""
     return next((t for t in trials[1:] if t.sound and t.merit > (1 - NEARLY) * trials[0].merit), None)
 
 
@@ -63,16 +63,16 @@ def _with(
     return tuple(sorted(pairs, key=lambda pair: -pair.merit))
 
 
-def worth_it(pairs: Sequence[Trial], better_half: Trial) -> Trial | None:
-    """The best pair, if both of its members are sound together and it gains more than one of them alone."""
+def worth_it(pairs: Sequence[Trial], alone: Trial) -> Trial | None:
+    """The best pair, if both of its members are sound together and it gains more than the best effect alone."""
     best = pairs[0] if pairs else None
-    return best if best and best.sound and best.merit > better_half.merit + 2 * PAIR_GAIN else None
+    return best if best and best.sound and best.merit > alone.merit + 2 * PAIR_GAIN else None
 
 
 def of_doubles(
     accepted: Trial, now: Fitted, start: Fitted, trials: Sequence[Trial], pairs: Sequence[Trial]
 ) -> tuple[Trial, ...]:
-    """Pairs of what alone is as good as the first of an accepted pair with what beside that is as good as the second.
+    """Pairs that were not tried: of what is as good as the first of one, with what adds as much as its second.
 
     Parameters
     ----------
@@ -87,11 +87,13 @@ def of_doubles(
     """
     one, other = map(type, accepted.effects)
     first = next(trial for trial in trials if type(trial.effects[0]) is one)
-    firsts = [t for t in trials if t is not first and t.pays and abs(t.merit - first.merit) < NEARLY * first.merit]
-    seconds = [t.effects[1] for t in pairs if t.sound and accepted.merit - t.merit < NEARLY * accepted.merit]
-    return tuple(
-        tried(now, double.score, (*double.effects, second), start)
-        for double in firsts
+    doubles = (t for t in trials if t.pays and abs(t.merit - first.merit) < NEARLY * first.merit)
+    near = NEARLY * (accepted.merit - first.merit)
+    seconds = [pair.effects[1] for pair in pairs if pair.sound and accepted.merit - pair.merit < near]
+    left = {
+        frozenset((type(double.effects[0]), type(second))): (double, second)
+        for double in doubles
         for second in seconds
-        if type(double.effects[0]) not in (type(second), other)
-    )
+        if type(double.effects[0]) not in (one, other, type(second))
+    }
+    return tuple(tried(now, double.score, (*double.effects, second), start) for double, second in left.values())

@@ -7,12 +7,13 @@ import numpy as np
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities
-from swgsim.loop.evidence import FORM_TOLERANCE, LEAST_GAIN, coherence, open_form, signature
+from swgsim.loop.beside import beside_unknown
+from swgsim.loop.evidence import FORM_TOLERANCE, LEAST_GAIN, open_form, signature
 from swgsim.loop.fitting import Fitted, extended, unbent
 from swgsim.loop.leading import ALPHA
 from swgsim.loop.screening import Score
 from swgsim.loop.trial import Trial
-from swgsim.loop.vocabulary import Described, set_free
+from swgsim.loop.vocabulary import Described
 
 # Two effects cancel if the cosine between what they do is below the negative of this.
 CANCELLED = 0.9
@@ -71,7 +72,7 @@ def cancelling(steps: Sequence[Step], now: Fitted) -> tuple[Step, ...]:
 
 
 def with_rivals(
-    step: Step, after: Sequence[Score], found: frozenset[tuple[object, ...]], unknown: Described | None = None
+    step: Step, after: Sequence[Score], found: frozenset[tuple[object, ...]], unknown: Sequence[Described] = ()
 ) -> Step:
     """Of the other trials, those as good as the accepted one that say nothing more once it is in the model.
 
@@ -82,37 +83,32 @@ def with_rivals(
         Of a screening behind all that was found.
     found : frozenset
         What was found.
-    unknown : Described, optional
+    unknown : sequence of Described
         What nothing that was found explains either; it must not speak against the others alone.
     """
     silent = {score.hypothesis.kind for score in after if score.chance > ALPHA}
-    rivals = tuple(
-        trial
-        for trial in step.others
-        if _as_good(trial, step.accepted)
-        and all(type(effect) in silent or chosen(effect) in found for effect in trial.effects)
-        and not found.issuperset(map(chosen, trial.effects))
-        and (trial.sound or (unknown and sound_beside(trial, unknown)))
-    )
-    return Step(step.accepted, rivals, tuple(trial for trial in step.others if trial not in rivals))
+    rivals: list[Trial] = []
+    others: list[Trial] = []
+    for trial in step.others:
+        possible = (
+            _as_good(trial, step.accepted)
+            and all(type(effect) in silent or chosen(effect) in found for effect in trial.effects)
+            and not found.issuperset(map(chosen, trial.effects))
+        )
+        rival = (trial if trial.sound else beside_unknown(trial, unknown)) if possible else None
+        (rivals if rival else others).append(rival or trial)
+    return Step(step.accepted, tuple(rivals), tuple(others))
 
 
 def contradicted(step: Step) -> bool:
     """Whether some of the other trials is as good as the accepted one and no rival, as it contradicts itself."""
-    return any(trial.pays and not trial.sound and _as_good(trial, step.accepted) for trial in step.others)
-
-
-def sound_beside(trial: Trial, unknown: Described) -> bool:
-    """Whether a trial pays and does not contradict itself once something unknown is taken out."""
-    if not trial.pays:
-        return False
-    fitted = set_free(trial.fitted, unknown)
-    known = len(fitted.model.effects) - len(trial.effects)
-    return all(coherence(fitted, known + i).holds for i in range(len(trial.effects)))
+    return any(not trial.sound and _as_good(trial, step.accepted) for trial in step.others)
 
 
 def _as_good(trial: Trial, best: Trial) -> bool:
-    """Whether left-out operating points do not tell a trial from the best one, or an imperfect form might."""
+    """Whether left-out operating points do not tell a trial that pays from the best one, or an imperfect form might."""
+    if not trial.pays:
+        return False
     difference = best.gains - trial.gains
     doubt = 2 * float(difference.std(ddof=1)) * np.sqrt(len(difference)) if len(difference) > 1 else 0.0
     # A form that is wrong by a share costs an effect the square of that share of its likelihood.

@@ -15,8 +15,10 @@ from swgsim.effects.regularity import LAWS, PATTERNS, Regularity
 from swgsim.loop.evidence import LEAST_GAIN
 from swgsim.loop.features import ORDERS, Layout
 from swgsim.loop.fitting import Fitted, extended
+from swgsim.loop.leading import ALPHA
 from swgsim.loop.screening import VISIBLE, family_wise
 from swgsim.loop.tail import log_tail
+from swgsim.seeds import generator
 from swgsim.singular import svd
 
 # Prior standard deviation of an atom that is set free, in amplitudes found.
@@ -132,6 +134,18 @@ def strongest(fitted: Fitted, rng: np.random.Generator) -> Described:
         if replace(other.atom, law=best.atom.law) == best.atom and best.gain - other.gain < 2 * LEAST_GAIN
     )
     return replace(best, chance=float(chances[0]), rivals=rivals)
+
+
+def left(fitted: Fitted, seed: int, most: int) -> tuple[Described, ...]:
+    """Atoms that are no luck, the likeliest first; each is taken out before the next is sought."""
+    found: list[Described] = []
+    while len(found) < most:
+        best = strongest(fitted, generator("vocabulary", seed, len(found)))
+        if best.chance > ALPHA:
+            break
+        found.append(best)
+        fitted = freed(fitted, best)
+    return tuple(found)
 
 
 def _described(fitted: Fitted) -> list[tuple[Described, Float[np.ndarray, "row _"]]]:

@@ -160,6 +160,7 @@ def _rival(trial: Trial) -> dict[str, Any]:
             for i, e in enumerate(trial.effects)
         ],
         "heldout_gain": number(trial.gain),
+        "beside": [str(each) for each in trial.beside],
     }  # fmt: skip
 
 
