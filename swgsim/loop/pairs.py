@@ -8,7 +8,8 @@ from swgsim.loop.leading import LEADERS, NEARLY, leaders, screened
 from swgsim.loop.trial import Trial, begun, tried
 from swgsim.seeds import generator
 
-# Log-likelihood that a pair must gain over the best effect alone; beside the leaders, so many that lead behind are tried.
+# Log-likelihood that a pair must gain over the best effect alone; effects that are tried beside the leaders as they
+# lead behind the first.
 PAIR_GAIN, BEHIND = 15.0, 2
 
 
