@@ -81,8 +81,7 @@ class Drive:
         self.effects = tuple(effects) or ((),) * len(self)
         acting = [(i, effect) for i, own in enumerate(self.effects) for effect in own if overrides(effect, "drive")]
         distinct = dict.fromkeys(effect for _, effect in acting)
-        runs = ({i: None for i, each in acting if each == effect} for effect in distinct)
-        self.acting = [(effect, _together(list(own))) for effect, own in zip(distinct, runs, strict=True)]
+        self.acting = [(effect, _together(sorted({i for i, each in acting if each == effect}))) for effect in distinct]
 
     def _error_amplitudes(self) -> dict[int, Complex[np.ndarray, " run"]]:
         """Amplitude and phase of the kinematic error per order, in the unit of the twist."""

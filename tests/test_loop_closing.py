@@ -14,6 +14,7 @@ from swgsim.loop.asking import Round
 from swgsim.loop.closing import Closed
 from swgsim.loop.evidence import FORM_TOLERANCE, Coherence
 from swgsim.loop.leading import ALPHA, screened
+from swgsim.loop.reporting import effects
 from swgsim.loop.reporting.effects import why
 from swgsim.loop.steps import Step, contradicted, what, with_rivals
 from swgsim.loop.trial import Trial
@@ -104,6 +105,13 @@ def test_what_is_unknown_does_not_speak_against_rivals_alone(monkeypatch, agrees
     assert not contradicted(Step(A, (), (MIMIC,)))
     found = with_rivals(step, after, what([step]), unknown)
     assert (found.rivals, found.others) == (((agreeing,), ()) if agrees else ((), (other,)))
+
+
+def test_the_report_says_beside_what_a_rival_agrees(monkeypatch):
+    monkeypatch.setattr(Trial, "deviation", {})
+    unknown = Described(Atom(2, "in s1 alone", "constant"), 1.0, 2, 0.1, 0.0)
+    assert effects._rival(replace(MIMIC, beside=(unknown,)))["beside"] == [str(unknown)]
+    assert effects._rival(MIMIC)["beside"] == []
 
 
 def test_what_does_not_pay_is_no_rival():

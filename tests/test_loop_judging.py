@@ -141,7 +141,7 @@ def test_an_effect_that_lives_off_a_regularity_is_not(fitted, stray, signature):
     assert in_company(now, trial(after, mimic), 0.005, 0) is None
 
 
-@pytest.mark.parametrize(("share", "rival"), [(0.0, True), (0.7, False)], ids=["another thing", "half the same"])
+@pytest.mark.parametrize(("share", "rival"), [(0.0, True), (0.7, False)], ids=["another thing", "mostly the same"])
 def test_an_effect_that_only_what_is_unknown_contradicts_may_be_a_rival(fitted, stray, signature, share, rival):
     noise = drawn(fitted.whole, np.random.default_rng(7))
     after = holding(fitted, stray + noise)

@@ -29,7 +29,7 @@ def kinds(found: tuple[Trial, ...]) -> list[tuple[type, ...]]:
 
 
 @pytest.mark.parametrize(("gain", "agrees", "worth"), [(0.9, 1.0, False), (1.1, 1.0, True), (1.1, 0.0, False)])
-def test_a_pair_must_gain_more_than_its_better_half_and_be_sound(gain, agrees, worth):
+def test_a_pair_must_gain_more_than_the_best_effect_alone_and_be_sound(gain, agrees, worth):
     both = (Coherence(1.0, 0.0, 0.0), Coherence(agrees, 0.0, 0.0))
     pair = replace(PAIR, evidence=A.evidence + gain * 2 * PAIR_GAIN, coherence=both)
     assert worth_it((pair,), A) is (pair if worth else None)
@@ -94,7 +94,9 @@ def test_a_double_of_the_second_adds_as_much_as_it_does(less, beside, double):
     assert doubles(MIMIC, beside) == [(Mimic, Wave), *([(Mimic, Dip)] if double else [])]
 
 
-def test_doubles_make_no_pair_with_themselves():
-    """Nor the same pair twice."""
-    beside = replace(PAIR, effects=(Bump(1.0), Mimic(1.0)), evidence=A.evidence + 100)
-    assert doubles(MIMIC, beside) == [(Mimic, Wave)]
+def test_a_pair_of_doubles_is_tried_once_and_none_with_itself():
+    """Mimic and Dip are as good as Bump, and as Wave beside it; Wave, which is in the pair, is no double of Bump."""
+    accepted = replace(PAIR, evidence=A.evidence + 100)
+    pairs = (accepted, *(replace(accepted, effects=(Bump(1.0), other(1.0))) for other in (Mimic, Dip)))
+    found = kinds(of_doubles(accepted, FITTED, FITTED, (A, MIMIC, C, B), pairs))
+    assert sorted(map(set, found), key=str) == sorted([{Mimic, Wave}, {Mimic, Dip}, {Dip, Wave}], key=str)
