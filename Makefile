@@ -19,7 +19,7 @@ QUICK := $(if $(SMALL),shots=[1$(comma)2] draws=1 protocol.folds=2 protocol.deve
 # The small forms of the loop's studies: effects of every place to hide and to search; undeclared effects that are left out.
 FEW_EFFECTS := reduced_damping,warm_grease,flank_friction,input_unbalance,eccentric_wave_generator,cam_form,load_sharing,$(strip \
                )root_tooth_crack,tilting_moment,gauge_gain,channel_skew,mains_hum
-LEFT_OUT := tilting_moment channel_skew coning load_sharing stiffening_spring axial_thrust bridge_nonlinearity
+LEFT_OUT := tilting_moment strong_tilting_moment channel_skew coning load_sharing stiffening_spring axial_thrust bridge_nonlinearity
 # Methods on microcontrollers that the small form leaves out.
 LARGER := paper_forest paper_forest_selection_3 forest_20 extra_trees_10 extra_trees_30 paper_mlp mlp_32 mlp_128 cnn_16
 # Recordings of real joints, where they are; no file of theirs may be in the project.

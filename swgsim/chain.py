@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache, reduce
+from functools import cached_property, lru_cache, reduce
 
 import numpy as np
 from jaxtyping import Float
@@ -47,17 +47,17 @@ class Run:
     start_angle: float = 0.0
     conditions: Conditions = field(default_factory=Conditions)
 
-    @property
+    @cached_property
     def acting(self) -> tuple[Effect, ...]:
         """The effects as they are at the operating point and under the conditions of the run."""
         return tuple(effect.at(self.point, self.conditions) for effect in self.effects)
 
-    @property
+    @cached_property
     def driving(self) -> tuple[Effect, ...]:
         """Those of them that add torques."""
         return tuple(effect for effect in self.acting if overrides(effect, "drive"))
 
-    @property
+    @cached_property
     def affected_gear(self) -> Gear:
         """The gear with the parameters that the effects change."""
         return reduce(lambda gear, effect: effect.gear(gear), self.acting, self.gear)

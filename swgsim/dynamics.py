@@ -5,7 +5,7 @@ the gauges see) and phi_out that of the circular spline, the output. Eqs. (3) an
 the circular spline, phi_in - phi_out and -phi_out. The equations of motion follow by virtual work of T_stiff on
 Delta phi_k and of T_fric on phi_b; as phi_err is a function of phi_in, its slope is part of the input's lever:
 
-    J_in  phi_in''  = T_in - (tan(alpha_in) + dphi_err/dphi_in) T_stiff
+    J_in  phi_in''  = T_motor - (tan(alpha_in) + dphi_err/dphi_in) T_stiff
     J_out phi_out'' = T_out - T_load,   T_out = T_stiff / tan(alpha_tooth) - T_fric / sin(alpha_tooth)
 
 Effects may add to T_stiff, T_fric and T_load, brake the input, or drive it beside the speed control.
@@ -31,10 +31,11 @@ State = Float[np.ndarray, "5 run"]
 class Torques:
     """Torques [N m] and sliding speed [rad/s] at one instant, each an array (run,).
 
-    ``T_in`` is what a torque flange at the input feels, ``T_wedge`` what brakes the input: the wave generator and
-    losses beside it.
+    ``T_motor`` drives the input, ``T_wedge`` brakes it: the wave generator and losses beside it. ``T_in`` is what a
+    torque flange between rotor and wave generator feels.
     """
 
+    T_motor: Float[np.ndarray, " run"]
     T_in: Float[np.ndarray, " run"]
     T_wedge: Float[np.ndarray, " run"]
     T_stiff: Float[np.ndarray, " run"]
@@ -135,9 +136,10 @@ class Drive:
         F_n = np.abs(T_stiff - friction * self.cos_t) / (self.sin_t + p["mu"] * sense * self.cos_t)
         T_fric = friction + p["mu"] * sense * F_n
         T_out = T_stiff / self.tan_t - T_fric / self.sin_t
-        T_in = self.gain_p * (self.omega - omega_in) + self.gain_i * speed_error + extra.T_motor
-        T_wedge = (self.tan_in + slope) * T_stiff + extra.T_loss
-        return Torques(T_in, T_wedge, T_stiff, T_fric, T_out, self.T_load + extra.T_load, sliding)
+        T_motor = self.gain_p * (self.omega - omega_in) + self.gain_i * speed_error + extra.T_motor
+        T_wedge = (self.tan_in + p["error_lever"] * slope) * T_stiff + extra.T_loss
+        T_in = T_motor - p["rotor_share"] * (T_motor - T_wedge)
+        return Torques(T_motor, T_in, T_wedge, T_stiff, T_fric, T_out, self.T_load + extra.T_load, sliding)
 
     def extra(self, now: Instant) -> Extra:
         """What all effects together add."""
@@ -155,7 +157,7 @@ class Drive:
         """Eq. (1)."""
         rate = np.empty_like(state)
         rate[PHI_IN] = state[OMEGA_IN]
-        rate[OMEGA_IN] = (torques.T_in - torques.T_wedge) / self.p["J_in"]
+        rate[OMEGA_IN] = (torques.T_motor - torques.T_wedge) / self.p["J_in"]
         rate[PHI_OUT] = state[OMEGA_OUT]
         rate[OMEGA_OUT] = (torques.T_out - torques.T_load) / self.p["J_out"]
         rate[SPEED_ERROR] = self.omega - state[OMEGA_IN]

@@ -47,7 +47,13 @@ class Transmission:
         Friction, eq. (5) [N m], [N m s/rad], [N m s^3/rad^3], [N m], [rad], [-].
     J_in, J_out : float
         Inertia of rotor and wave generator, of output and load [kg m^2].
+    rotor_share : float
+        Share of J_in on the motor's side of the torque flange at the input, from 0 (the flange feels what the motor
+        does) to 1 (what brakes the wave generator); depends on the test bench.
     kinematic_error : tuple of KinematicError
+    error_lever : float
+        Share of the kinematic error's slope that is part of the input's lever: 1 by virtual work, 0 where the error is
+        one of position alone, as in equations that are found in print (physics.md section 1.1).
     control_frequency, control_damping : float
         Speed control of the input: natural frequency [Hz] and damping ratio of the loop on J_in; estimates.
     """
@@ -64,11 +70,13 @@ class Transmission:
     mu: float = 0.0562
     J_in: float = 1.2e-4
     J_out: float = 1.0
+    rotor_share: float = 0.0
     kinematic_error: tuple[KinematicError, ...] = (
         KinematicError(1, 0.4e-4, 0.3),
         KinematicError(2, 0.7e-4, 1.1),
         KinematicError(4, 0.3e-4, 2.0),
     )
+    error_lever: float = 1.0
     control_frequency: float = 10.0
     control_damping: float = 1.0
 
@@ -81,6 +89,8 @@ class Transmission:
             require(owner, name, getattr(self, name), low=0)
         require(owner, "b2", self.b2)
         require(owner, "theta_b", self.theta_b)
+        for name in ("rotor_share", "error_lever"):
+            require(owner, name, getattr(self, name), low=0, high=1)
         require(owner, "alpha_tooth", self.alpha_tooth, low=0.05, high=1.5)
 
 

@@ -127,7 +127,7 @@ def test_an_effect_is_accepted_in_the_company_of_a_regularity(fitted, stray, sig
     now, after = holding(fitted, signature + stray + noise), holding(fitted, stray + noise)
     alone = trial(after, signature)
     assert not alone.sound
-    found = in_company(now, alone, 0.005, 0)
+    found = in_company(now, alone, 0)
     assert found.sound
     assert found.effects == alone.effects
 
@@ -138,7 +138,7 @@ def test_an_effect_that_lives_off_a_regularity_is_not(fitted, stray, signature):
     now = holding(fitted, 2 * stray + noise)
     mimic = stray + 0.1 * np.linalg.norm(stray) / np.linalg.norm(signature) * signature
     after = holding(fitted, 2 * stray - mimic + noise)
-    assert in_company(now, trial(after, mimic), 0.005, 0) is None
+    assert in_company(now, trial(after, mimic), 0) is None
 
 
 @pytest.mark.parametrize(("share", "rival"), [(0.0, True), (0.7, False)], ids=["another thing", "mostly the same"])

@@ -1,19 +1,26 @@
-"""Whether the recorded angle is zero where the model has it: the major axis of the wave generator at gauge s1."""
+"""Whether the recorded angle is zero where the model has it: the major axis of the wave generator at gauge s1.
+
+An encoder's zero is wherever it was mounted, so that of the healthy gear is told and taken out of all recordings. One
+that moved since then is refused: it would pass for something that the gear has.
+"""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
 from swgsim.defects.defect import Defect
 from swgsim.defects.thresholds import ANGLE_ZERO
+from swgsim.intake.read import require_usable
 from swgsim.loop.features import Layout, features
 from swgsim.loop.model import Model, Situation, predict
 from swgsim.recording import Recording
 from swgsim.recordings import SENSORS
 
 
-def zero_defects(recordings: Sequence[Recording], model: Model) -> Iterator[Defect]:
-    """The angle by which all recordings are ahead of a gear, if no unit of the gear explains it.
+def zero_of(recordings: Sequence[Recording], model: Model) -> float:
+    """The angle by which all recordings are ahead of a gear [rad], up to half a turn; 0 if a unit may explain it.
 
     From order 2 of s1 to s4, each weighed by its amplitude, so that errors of single gauges average out. Two lobes tell
     it up to half a turn, and no odd order helps: those of a unit have phases of their own.
@@ -27,7 +34,7 @@ def zero_defects(recordings: Sequence[Recording], model: Model) -> Iterator[Defe
     """
     layout = Layout(tuple(sensor for sensor in SENSORS[1:] if sensor in recordings[0].channels))
     if not layout.channels:
-        return
+        return 0.0
     situations = [Situation(each.point, each.conditions) for each in recordings]
     predicted = layout.lines(predict([model], situations, layout)[0])[..., 2]
     measured = layout.lines(np.array([features(each, layout) for each in recordings]))[..., 2]
@@ -36,11 +43,36 @@ def zero_defects(recordings: Sequence[Recording], model: Model) -> Iterator[Defe
     # Lobes turn with load, scanned channels lag with speed and one after another; a zero is off in every recording and
     # at every gauge alike: the least one counts.
     least = min(np.abs(np.angle(turned.sum(axis=axis))).min() for axis in (0, 1)) / 2
-    if min(abs(ahead), least) > ANGLE_ZERO:
+    return ahead if min(abs(ahead), least) > ANGLE_ZERO else 0.0
+
+
+def from_zero(recordings: Sequence[Recording], zero: float) -> tuple[Recording, ...]:
+    """Recordings with their angle counted from another zero [rad]."""
+    return tuple(
+        replace(each, channels={**each.channels, "phi_in": each.channels["phi_in"] - zero}) for each in recordings
+    )
+
+
+def zero_defects(recordings: Sequence[Recording], zero: float) -> Iterator[Defect]:
+    """A warning that another zero was taken out, unless it is 0."""
+    if zero:
         yield Defect(
-            "angle_zero", "refuse", recordings[0].name, "phi_in",
-            f"an angle that is {ahead:.3f} rad ahead of the gear's in all recordings, known up to half a turn",
+            "angle_zero", "warn", recordings[0].name, "phi_in",
+            f"an angle that is {zero:.3f} rad ahead of the gear's in all recordings, known up to half a turn",
             f"at most {ANGLE_ZERO:g} rad: zero where the major axis of the wave generator is at s1",
-            f"subtract {ahead:.3f} rad, in the files or by 'zero_rad: {ahead:.3f}' in a column map, from recordings "
-            "and commissioning alike; by a quarter of a turn, the gauges may be inverted or numbered from another one",
+            f"{zero:.3f} rad were subtracted, from commissioning too; if it is the encoder's zero, say 'zero_rad: "
+            f"{zero:.3f}' in a column map; by a quarter of a turn, the gauges may be inverted or numbered from another "
+            "one",
         )  # fmt: skip
+
+
+def require_same_zero(path: Path, recordings: Sequence[Recording], model: Model) -> None:
+    """Raise a ValueError, with the angle, if recordings are ahead of a gear of which the zero is known."""
+    if moved := zero_of(recordings, model):
+        defect = Defect(
+            "angle_zero", "refuse", recordings[0].name, "phi_in",
+            f"an angle that is {moved:.3f} rad ahead of that of the commissioning, known up to half a turn",
+            f"at most {ANGLE_ZERO:g} rad: the same zero",
+            f"subtract {moved:.3f} rad, in the files or by 'zero_rad' in a column map of these recordings alone",
+        )  # fmt: skip
+        require_usable(path, [defect])

@@ -129,8 +129,9 @@ def answer(
     seed : int
     """
     forget()
-    lines = search(between(recordings), kinds, ALPHA, known)
-    clean = [cleaned(recording, lines.effects) for recording in recordings] if lines.effects else recordings
+    N = unit.model.gear.transmission.N
+    lines = search(between(recordings, N), kinds, ALPHA, known)
+    clean = [cleaned(recording, lines.effects, N) for recording in recordings] if lines.effects else recordings
     closed = close(Measured.of(clean), unit, kinds, seed=seed)
     unknown = (*closed.apart, *left(closed.asked, seed, MOST_ATOMS))
     absorbed = tuple(score for score in closed.scores if score.absorbed)

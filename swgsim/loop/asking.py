@@ -48,7 +48,7 @@ def ask(
     trials = tuple(sorted(alone, key=lambda trial: -trial.merit))
     best = trials[0]
     pairs = () if best.sound else paired(now, start, trials, kinds, seed)
-    accepted = best if best.sound else worth_it(pairs, best) or in_company(now, best, ALPHA, seed)
+    accepted = best if best.sound else worth_it(pairs, best) or in_company(now, best, seed)
     if accepted is None or not elsewhere(accepted, apart, now):
         return Round(trials, None, None)
     plain = describe(now)[0]

@@ -9,6 +9,7 @@ import numpy as np
 from swgsim.effects.regularity import PATTERNS
 from swgsim.loop.evidence import Coherence, coherence
 from swgsim.loop.fitting import Fitted
+from swgsim.loop.leading import ALPHA
 from swgsim.loop.trial import Trial, gain
 from swgsim.loop.vocabulary import Described, columns, freed, set_free, strongest
 from swgsim.seeds import generator
@@ -34,7 +35,7 @@ def outdone(trial: Trial, plain: Described, now: Fitted) -> bool:
     return plain.gain > DWARFED * explained or trial.explained(freed(now, plain)) < SAME_THING * explained
 
 
-def in_company(now: Fitted, trial: Trial, level: float, seed: int) -> Trial | None:
+def in_company(now: Fitted, trial: Trial, seed: int) -> Trial | None:
     """A trial that pays, if its parts agree once regularities that have nothing to do with it are taken out.
 
     Parameters
@@ -42,8 +43,6 @@ def in_company(now: Fitted, trial: Trial, level: float, seed: int) -> Trial | No
     now : Fitted
         The model without it.
     trial : Trial
-    level : float
-        Probability of a regularity by luck.
     seed : int
     """
     if not trial.pays:
@@ -53,7 +52,7 @@ def in_company(now: Fitted, trial: Trial, level: float, seed: int) -> Trial | No
     for number in range(COMPANY):
         best = strongest(after, generator("company", seed, number))
         before, after, beside = set_free(before, best), set_free(after, best), (*beside, best)
-        if best.chance > level or trial.explained(before) < max(ANOTHER_THING * explained, best.gain):
+        if best.chance > ALPHA or trial.explained(before) < max(ANOTHER_THING * explained, best.gain):
             return None
         agreement = _agreement(trial, after)
         if all(each.holds for each in agreement):

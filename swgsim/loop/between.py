@@ -57,7 +57,7 @@ class Between:
     scale : array (gauge, line)
         What turns a line of the spectrum into units of the noise.
     orders : array (time, column)
-        Orthonormal basis of the orders that were fitted, with a drift.
+        Orthonormal basis of the orders that were fitted, with a drift and beats.
     revolutions : float
         Of the wave generator, as measured: line k lies at the order k / revolutions.
     clear : array (line,)
@@ -78,8 +78,8 @@ class Between:
     taken: Float[np.ndarray, "number direction"]
 
     @classmethod
-    def of(cls, recording: Recording, gauges: tuple[str, ...], noise: Sequence[Floor]) -> "Between":
-        """Of a recording whose gauges have these floors."""
+    def of(cls, recording: Recording, gauges: tuple[str, ...], noise: Sequence[Floor], N: int | None) -> "Between":
+        """Of a recording whose gauges have these floors, of a gear of this ratio."""
         step = max(1, int(recording.rate * 60 / recording.point.n_in_rpm / SAMPLES))
         length = len(recording.time) // step * step
         # Patterns are narrow-band: fewer samples hold them as well.
@@ -98,7 +98,7 @@ class Between:
             scene,
             gauges,
             scale,
-            np.linalg.qr(ordinary(scene))[0],
+            np.linalg.qr(ordinary(scene, N))[0],
             revolutions,
             clear,
             np.zeros(2 * scale.size),
@@ -106,7 +106,7 @@ class Between:
         )
         whole = scene_of(recording)
         signals = [np.array([recording.channels[gauge] for gauge in gauges]), *_ends(whole, noise)]
-        beside = _without(np.array(signals), np.linalg.qr(ordinary(whole))[0])
+        beside = _without(np.array(signals), np.linalg.qr(ordinary(whole, N))[0])
         left, *ends = bare._numbers(bare._lines(beside[..., :length]))
         # Each is of another gauge, in units of its own noise.
         return replace(bare, left=left)._taking(np.transpose([end / np.linalg.norm(end) for end in ends]))
@@ -177,11 +177,18 @@ class Between:
         return lines
 
 
-def between(recordings: Sequence[Recording]) -> list[Between]:
-    """What lies between the orders of every recording; nothing if they have no gauge in common."""
+def between(recordings: Sequence[Recording], N: int | None = None) -> list[Between]:
+    """What lies between the orders of every recording; nothing if they have no gauge in common.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+    N : int, optional
+        Ratio of their gear, whose circular spline beats with its flex spline; None: nothing does.
+    """
     gauges = tuple(sensor for sensor in SENSORS if all(sensor in r.channels for r in recordings))
     noise = floors(recordings, Layout(gauges)) if gauges else []
-    return [Between.of(recording, gauges, noise) for recording in recordings] if gauges else []
+    return [Between.of(recording, gauges, noise, N) for recording in recordings] if gauges else []
 
 
 def by_luck(gain: Sums, freedom: Sums, rest: Sums, beside: Sums) -> tuple[Sums, Sums]:
@@ -203,10 +210,14 @@ def scene_of(recording: Recording, samples: slice = slice(None)) -> Scene:
     return Scene(time, angle, held, recording.point, recording.conditions)
 
 
-def ordinary(scene: Scene) -> Float[np.ndarray, "time column"]:
-    """The orders that are fitted, and a straight line over time, whose ends would leak into the whole spectrum."""
-    time = scene.time
-    return np.column_stack([basis(scene.phi_in, FITTED), (time - time.mean()) / float(np.ptp(time))])
+def ordinary(scene: Scene, N: int | None = None) -> Float[np.ndarray, "time column"]:
+    """The orders that are fitted; a straight line over time, whose ends would leak into the whole spectrum; and, of a
+    gear of ratio N, what turns with its circular spline, close to the orders 0, 2 and 4.
+    """
+    time, phi = scene.time, scene.phi_in
+    beats = [] if N is None else [phi * abs(order - 2 / (N + 1)) for order in (0, 2, 4)]
+    waves = [wave(angle) for angle in beats for wave in (np.cos, np.sin)]
+    return np.column_stack([basis(phi, FITTED), (time - time.mean()) / float(np.ptp(time)), *waves])
 
 
 def shapes(effect: Effect, scene: Scene, gauges: tuple[str, ...]) -> Float[np.ndarray, "variant gauge time"]:

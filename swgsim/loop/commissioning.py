@@ -6,7 +6,6 @@ import numpy as np
 from jaxtyping import Float
 from scipy.stats import chi2, false_discovery_control
 
-from swgsim.loop.declared import of_unit
 from swgsim.loop.fitting import MISFIT, Fitted, fit
 from swgsim.loop.form import column_counts, largest_lines, lines_of
 from swgsim.loop.session import Measured
@@ -52,7 +51,7 @@ def commission(measured: Measured, unit: Unit) -> Unit:
     mean[: fitted.J.shape[1]] -= np.array(list(fitted.calibrated.position.values()))
     nominal = unit.model.gear
     # Declared effects stay as they were found: later fits have parameters of their own for them.
-    own = [name in of_unit(nominal) for name in fitted.parameters]
+    own = [name in unit.declared for name in fitted.parameters]
     kept = np.flatnonzero([*own, *[True] * fitted.open.shape[1]])
     reach, shift = np.linalg.cholesky(covariance[np.ix_(kept, kept)]), mean[kept]
     # Lines go into the model, so that effects on the signals act on them too.

@@ -10,8 +10,13 @@ from swgsim.gauges import LIMITS
 from swgsim.gear import W0_LIMITS, Gear, KinematicError
 from swgsim.loop.model import Model
 
-# Spread of what belongs to the bench and not to the gear, as a share; an estimate.
-BENCH = 0.3
+# Spread of what belongs to the bench and not to the gear, as a share: of inertias, and of the speed control, of which
+# each drive has its own; estimates.
+BENCH, CONTROL = 0.3, 1.0
+# Spread of what may be anything from 0 to 1.
+SHARE = 0.5
+# Of a gauge's gain and of the wave generator's stroke in a series, as a share; an estimate.
+STRAINED = 0.01
 # Below this share of its nominal value, a stiffness, a friction or the stroke of the wave generator is that of no gear.
 LEAST = 0.05
 
@@ -62,6 +67,17 @@ def _of_transmission(name: str, unit: str, nominal: float, spread: float = 0.1) 
     )
 
 
+def _of_share(name: str) -> Declared:
+    return _of_gear(
+        "-",
+        SHARE,
+        lambda gear: float(getattr(gear.transmission, name)),
+        lambda gear, to: replace(gear, transmission=replace(gear.transmission, **{name: to})),  # type: ignore[arg-type]
+        0.0,
+        1.0,
+    )
+
+
 def _of_gauge(name: str, sensor: int, unit: str, sd: float) -> Declared:
     def moved(gear: Gear, to: float) -> Gear:
         values = list(getattr(gear.gauges, name))
@@ -88,21 +104,34 @@ def _of_kinematic_error(order: int, part: str, sd: float) -> Declared:
     return _of_gear("rad", sd, lambda gear: phasor(gear).real if part == "cosine" else phasor(gear).imag, moved)
 
 
-def of_unit(gear: Gear) -> dict[str, Declared]:
-    """The parameters that differ from unit to unit, with their spread in a series."""
+def of_unit(gear: Gear, structure: float = 0.0) -> dict[str, Declared]:
+    """The parameters that differ from unit to unit, with their spread in a series.
+
+    Parameters
+    ----------
+    gear : Gear
+        The nominal one.
+    structure : float
+        Accuracy of the structural model, as a share: what the wave generator and the torque strain at a gauge is known
+        no better.
+    """
+    strained = max(STRAINED, structure)
     t = gear.transmission
     found = {
         "k1": _of_transmission("k1", "N m/rad", t.k1),
         "b0": _of_transmission("b0", "N m", t.b0),
         "b1": _of_transmission("b1", "N m s/rad", t.b1),
         "mu": _of_transmission("mu", "-", t.mu),
-        # Load and speed control belong to the test bench, of which a gear file says little.
+        # Inertias, flange and speed control belong to the test bench, of which a gear file says little.
+        "J_in": _of_transmission("J_in", "kg m^2", t.J_in, BENCH),
         "J_out": _of_transmission("J_out", "kg m^2", t.J_out, BENCH),
-        "control frequency": _of_transmission("control_frequency", "Hz", t.control_frequency, BENCH),
-        "control damping": _of_transmission("control_damping", "-", t.control_damping, BENCH),
+        "rotor share": _of_share("rotor_share"),
+        "error lever": _of_share("error_lever"),
+        "control frequency": _of_transmission("control_frequency", "Hz", t.control_frequency, CONTROL),
+        "control damping": _of_transmission("control_damping", "-", t.control_damping, CONTROL),
         "w0": _of_gear(
             "m",
-            0.01 * gear.wave_generator.w0,
+            strained * gear.wave_generator.w0,
             lambda each: each.wave_generator.w0,
             lambda each, to: replace(each, wave_generator=replace(each.wave_generator, w0=to)),
             max(LEAST * gear.wave_generator.w0, W0_LIMITS[0]),
@@ -113,7 +142,7 @@ def of_unit(gear: Gear) -> dict[str, Declared]:
         for part in ("cosine", "sine"):
             found[f"kinematic error {term.order} {part}"] = _of_kinematic_error(term.order, part, 0.3e-4)
     for sensor in range(5):
-        found[f"gain of s{sensor}"] = _of_gauge("gain", sensor, "-", 0.01)
+        found[f"gain of s{sensor}"] = _of_gauge("gain", sensor, "-", strained)
         found[f"zero of s{sensor}"] = _of_gauge("offset", sensor, "mV/V", 0.02)
         found[f"position of s{sensor}"] = _of_gauge("position", sensor, "rad", 0.01)
         found[f"grid angle of s{sensor}"] = _of_gauge("grid_angle", sensor, "rad", 0.01)

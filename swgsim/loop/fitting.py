@@ -10,7 +10,7 @@ from jaxtyping import Float
 from swgsim.effects.base import Effect
 from swgsim.loop import repeats, scatter
 from swgsim.loop.calibration import Calibrated, calibrate, linearised
-from swgsim.loop.declared import Declared, at, of_effects, of_unit
+from swgsim.loop.declared import Declared, at, of_effects
 from swgsim.loop.gaussian import Covariance, Expected
 from swgsim.loop.model import Model
 from swgsim.loop.scatter import Scatter
@@ -214,7 +214,7 @@ def fit(
         What effects and regularities found earlier leave open, one standard deviation each.
     """
     start = model or unit.model
-    parameters = of_effects(start) if unit.commissioned else of_unit(unit.model.gear) | of_effects(start)
+    parameters = of_effects(start) if unit.commissioned else unit.declared | of_effects(start)
     known = unit.scatter.carried if unit.scatter else Scatter.stated(measured.layout)
     repeated = len(set(measured.repeats)) < len(measured)
     guess, noise = known, unit.inflated(measured.variance)

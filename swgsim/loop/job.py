@@ -13,8 +13,8 @@ from swgsim.effects.base import Effect
 from swgsim.effects.library import SEARCHED, named
 from swgsim.effects.text import as_text, sized
 from swgsim.files import write_json, write_text
-from swgsim.intake.read import read_recordings, require_usable
-from swgsim.loop.angle_zero import zero_defects
+from swgsim.intake.read import read_recordings
+from swgsim.loop.angle_zero import from_zero, require_same_zero, zero_defects, zero_of
 from swgsim.loop.answer import Answer, answer
 from swgsim.loop.commissioning import commission
 from swgsim.loop.experiment import next_experiments
@@ -68,14 +68,19 @@ def run(config: Mapping[str, Any]) -> Outcome:
     declared = settings.effects(config["effects"])
     between = tuple(effect for effect in declared if has_sidelines(type(effect)))
     unit = Unit(Model(settings.gear(config["gear"]), tuple(e for e in declared if e not in between)))
-    require_usable(Path(config["recordings"]), zero_defects(recordings, unit.model))
-    if config["commissioning"] is not None:
+    if config["commissioning"] is None:
+        zero = zero_of(recordings, unit.model)
+        recordings = from_zero(recordings, zero)
+    else:
         mapping = config["commissioning_mapping"] or config["mapping"]
         healthy, more = _read(config["commissioning"], "commissioning", mapping)
         recordings, healthy = _alike(recordings, healthy)
-        require_usable(Path(config["commissioning"]), zero_defects(healthy, unit.model))
+        zero = zero_of(healthy, unit.model)
+        recordings, healthy = from_zero(recordings, zero), from_zero(healthy, zero)
+        require_same_zero(Path(config["recordings"]), recordings, unit.model)
         defects = (*defects, *more)
         unit = commission(Measured.of(healthy), unit)
+    defects = (*defects, *zero_defects(recordings, zero))
     found = answer(recordings, unit, kinds, known=between, seed=config["seed"])
     said = report(found, kinds, next_experiments(found), defects, time.perf_counter() - start)
     if hidden is not None:

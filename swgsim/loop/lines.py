@@ -80,7 +80,7 @@ def search(
     return found
 
 
-def cleaned(recording: Recording, effects: Sequence[Effect]) -> Recording:
+def cleaned(recording: Recording, effects: Sequence[Effect], N: int | None = None) -> Recording:
     """A recording without what effects between the orders may have put on its gauges.
 
     Parameters
@@ -88,11 +88,13 @@ def cleaned(recording: Recording, effects: Sequence[Effect]) -> Recording:
     recording : Recording
     effects : sequence of Effect
         Their sizes and random phases mean nothing.
+    N : int, optional
+        Ratio of the gear, as :func:`~swgsim.loop.between.between` was given it.
     """
     scene, channels = scene_of(recording), recording.channels
     gauges = tuple(sensor for sensor in SENSORS if sensor in channels)
     seen = np.concatenate([shapes(effect, scene, gauges) for effect in effects])
-    orders = ordinary(scene)
+    orders = ordinary(scene, N)
     clean = {name: channels[name] - _part(channels[name], seen[:, i].T, orders) for i, name in enumerate(gauges)}
     return replace(recording, channels={**channels, **clean})
 

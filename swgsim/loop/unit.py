@@ -73,6 +73,11 @@ class Unit:
         """Powers of the load by which the maps may deviate."""
         return 3 if self.seen_healthy else 2
 
+    @property
+    def declared(self) -> dict[str, Declared]:
+        """Parameters of the gear that are not known exactly, with their spread before commissioning."""
+        return of_unit(self.nominal or self.model.gear, self.structure)
+
     def inflated(self, variance: Float[np.ndarray, "recording feature"]) -> Float[np.ndarray, "recording feature"]:
         """Variance of independent errors, from that of noise."""
         return variance if self.inflation is None else variance * self.inflation
@@ -94,7 +99,7 @@ class Unit:
         parameters : mapping, optional
             Those that are fitted.
         """
-        declared = of_unit(self.nominal or self.model.gear)
+        declared = self.declared
         # During commissioning these are fitted; only friction is needed here, which follows the temperature.
         needed = () if not self.seen_healthy else declared if self.nominal else FRICTION
         own = {name: declared[name] for name in needed}

@@ -9,7 +9,6 @@ from jaxtyping import Float
 from swgsim.defects.defect import Defect
 from swgsim.effects.base import Effect
 from swgsim.loop.answer import Answer
-from swgsim.loop.declared import of_unit
 from swgsim.loop.errors import noise_floor
 from swgsim.loop.experiment import Experiment
 from swgsim.loop.fitting import Fitted
@@ -88,7 +87,7 @@ def calibrated(fitted: Fitted) -> dict[str, dict[str, Any]]:
         deviations = [fitted.deviation[name] for name in declared]
     else:
         # By whose spread the reach of commissioning is counted.
-        declared = of_unit(unit.nominal)
+        declared = unit.declared
         spread = np.sqrt((unit.reach**2).sum(axis=1))[: len(declared)].tolist()
         deviations = [s * p.sd for s, p in zip(spread, declared.values(), strict=True)]
     return {
