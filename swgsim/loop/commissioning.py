@@ -1,6 +1,7 @@
 """A unit as recordings of its healthy state show it."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
@@ -40,7 +41,7 @@ def commission(measured: Measured, unit: Unit) -> Unit:
     _require_own(measured, fitted.missed)
     beyond = _beyond(measured, fitted.missed)
     if beyond.max() > 1:
-        fitted = fit(measured, replace(fitted.unit, inflation=beyond))
+        fitted = _again(fitted, inflation=beyond)
     predicted = fitted.calibrated.predicted
     unit = replace(fitted.unit, largest=largest_lines(predicted, measured.layout))
     columns = np.hstack([fitted.J, fitted.open])
@@ -72,11 +73,19 @@ def _as_accurate_as_shown(measured: Measured, unit: Unit) -> Fitted:
     for structure in COARSER:
         if max(best.misfit.values()) < WELL:
             break
-        coarser = fit(measured, replace(unit, structure=structure))
+        coarser = _again(best, structure=structure)
         if coarser.log_likelihood <= best.log_likelihood:
             break
         best = coarser
     return best
+
+
+def _again(fitted: Fitted, **changes: Any) -> Fitted:
+    """A fit to a unit of which other things are declared, from where the parameters were found."""
+    unit = replace(fitted.unit, **changes)
+    was, now = fitted.parameters, {**fitted.parameters, **unit.declared}
+    position = {name: by * was[name].sd / now[name].sd for name, by in fitted.calibrated.position.items()}
+    return fit(fitted.measured, unit, position=position)
 
 
 def _learning(fitted: Fitted) -> Fitted:
@@ -92,7 +101,7 @@ def _learning(fitted: Fitted) -> Fitted:
             off[own] = np.minimum(off[own], LOOSEST * max(largest.values()))
         elif missed[channel] > ALIEN:
             off[own] = 0.0
-    return fit(measured, replace(fitted.unit, learned=off)) if off.any() else fitted
+    return _again(fitted, learned=off) if off.any() else fitted
 
 
 def _beyond(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> Float[np.ndarray, " feature"]:
