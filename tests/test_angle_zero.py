@@ -1,6 +1,5 @@
-"""The zero of the angle: what no unit and no effect explains is refused with its value, all else is not."""
+"""The zero of the angle: what no unit and no effect explains is told and taken out, all else is not."""
 
-import re
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -25,7 +24,7 @@ from swgsim.gear import Gear
 from swgsim.intake.folder import write_folder
 from swgsim.intake.read import read_recordings
 from swgsim.loop import angle_zero, job
-from swgsim.loop.angle_zero import zero_defects
+from swgsim.loop.angle_zero import from_zero, zero_defects, zero_of
 from swgsim.loop.model import Model, predict
 from swgsim.population import Population
 from swgsim.recording import Recording
@@ -63,34 +62,35 @@ def turning(*units: tuple[Gear, tuple[Effect, ...]]) -> list[Recordings]:
     return [tuple(found[i : i + len(CORNERS)]) for i in range(0, len(found), len(CORNERS))]
 
 
-def value(found: str) -> float:
-    return float(re.findall(r"(\S+) rad ahead", found)[0])
-
-
-def refused(recordings: Recordings) -> list[str]:
-    return [defect.found for defect in zero_defects(recordings, Model(GEAR))]
+def zero(recordings: Recordings) -> float:
+    return zero_of(recordings, Model(GEAR))
 
 
 @pytest.mark.parametrize(("angle", "said"), [(0.6, 0.6), (-0.4, -0.4), (0.15, 0.15), (0.6 + np.pi, 0.6)])
-def test_another_zero_is_refused_with_its_value(angle: float, said: float) -> None:
-    (found,) = refused(ahead(good(), angle))
-    assert value(found) == pytest.approx(said, abs=0.02)
-    assert "known up to half a turn" in found
+def test_another_zero_is_told_and_taken_out(angle: float, said: float) -> None:
+    recordings = ahead(good(), angle)
+    found = zero(recordings)
+    assert found == pytest.approx(said, abs=0.02)
+    assert zero(from_zero(recordings, found)) == 0
+    (warning,) = zero_defects(recordings, found)
+    assert warning.severity == "warn"
+    assert f"{found:.3f} rad ahead" in warning.found
+    assert "known up to half a turn" in warning.found
+    assert not list(zero_defects(recordings, 0.0))
 
 
 def test_it_is_found_by_one_gauge_and_through_an_eccentricity() -> None:
     eccentric = ahead(good(effects=(EXAMPLES["eccentric_wave_generator"],)), 0.6)
     one = tuple(replace(r, channels={name: r.channels[name] for name in ("phi_in", "s3")}) for r in good())
     for recordings in (eccentric, ahead(one, 0.6)):
-        (found,) = refused(recordings)
-        assert value(found) == pytest.approx(0.6, abs=0.02)
+        assert zero(recordings) == pytest.approx(0.6, abs=0.02)
     bare = tuple(replace(r, channels={name: r.channels[name] for name in ("phi_in", "s0")}) for r in good())
-    assert not refused(ahead(bare, 0.6))
+    assert zero(ahead(bare, 0.6)) == 0
 
 
 @pytest.mark.parametrize("angle", [0.03, -0.03, np.pi])
 def test_an_index_set_as_usual_is_taken_and_half_a_turn_is_not_seen(angle: float) -> None:
-    assert not refused(ahead(good(), angle))
+    assert zero(ahead(good(), angle)) == 0
 
 
 def test_units_faults_and_strong_effects_are_taken() -> None:
@@ -98,7 +98,7 @@ def test_units_faults_and_strong_effects_are_taken() -> None:
     effects = (*(EXAMPLES[label] for label in FAULTS), *EFFECTS)
     for recordings in turning(*((unit, ()) for unit in units), *((GEAR, (effect,)) for effect in effects)):
         for index in (-0.04, 0.04):
-            assert not refused(ahead(recordings, index))
+            assert zero(ahead(recordings, index)) == 0
 
 
 def test_a_zero_in_a_column_map_mends_it(tmp_path: Path) -> None:
@@ -116,21 +116,22 @@ def test_a_zero_in_a_column_map_mends_it(tmp_path: Path) -> None:
     angle = {"column": "angle", "unit": "deg", "inverted": True}
     channels = {"t": {"column": "t", "unit": "s"}, "s1": {"column": "s1", "unit": "mV/V"}, "phi_in": angle}
     source = {"channels": channels, "facts": {"gear": "A", "session": "1"}, "files": files}
-    for zero, count in ((0.0, 1), (0.6, 0)):
-        path.write_text(yaml.safe_dump(source | {"channels": {**channels, "phi_in": {**angle, "zero_rad": zero}}}))
-        assert len(refused(read_recordings(folder, path).recordings)) == count
+    for mended in (0.0, 0.6):
+        path.write_text(yaml.safe_dump(source | {"channels": {**channels, "phi_in": {**angle, "zero_rad": mended}}}))
+        assert zero(read_recordings(folder, path).recordings) == pytest.approx(0.6 - mended, abs=0.02)
 
 
-@pytest.mark.parametrize("spoiled", ["recordings", "commissioning"])
-def test_closing_the_loop_refuses_either_folder_by_its_name(tmp_path: Path, spoiled: str) -> None:
-    for name in ("recordings", "commissioning"):
-        write_folder(tmp_path / name, ahead(good(points=CORNERS), 0.6 * (name == spoiled)))
+@pytest.mark.parametrize("moved", [0.0, 0.4])
+def test_recordings_of_another_zero_than_their_commissioning_are_refused(tmp_path: Path, moved: float) -> None:
+    for name, angle in (("commissioning", moved), ("recordings", 0.6 + moved)):
+        write_folder(tmp_path / name, ahead(good(points=CORNERS), angle))
     config = {
         "recordings": str(tmp_path / "recordings"), "commissioning": str(tmp_path / "commissioning"), "mapping": None,
         "commissioning_mapping": None, "gear": yaml.safe_load(GEAR_1.read_text()), "effects": [], "searched": None,
         "library": [], "truth": None,
     }  # fmt: skip
     with pytest.raises(
-        ValueError, match=rf"(?s){spoiled}: these .* at most {ANGLE_ZERO} rad.*zero_rad.*\[angle_zero\]"
+        ValueError,
+        match=rf"(?s)recordings: these .* (0.59|0.60)\d rad ahead .*{ANGLE_ZERO} rad.*zero_rad.*\[angle_zero\]",
     ):
         job.run(config)

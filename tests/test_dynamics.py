@@ -56,6 +56,27 @@ def test_energy_balance_closes() -> None:
     assert np.ptp(energy) > 1e-3
 
 
+def test_a_flange_feels_no_more_of_the_rotor_than_lies_before_it() -> None:
+    """It changes neither the motion nor the mean torque; all of the inertia before it, and it feels what brakes."""
+    drives = [Drive([replace(NOMINAL, rotor_share=share)], [POINTS[1]]) for share in (0.0, 0.4, 1.0)]
+    state = steady_state(drives[0])
+    torques = [drive.torques(state) for drive in drives]
+    assert torques[0].T_in == torques[0].T_motor
+    assert torques[2].T_in == pytest.approx(torques[2].T_wedge)
+    assert torques[1].T_in == pytest.approx(0.6 * torques[0].T_in + 0.4 * torques[2].T_in)
+    rates = [drive.derivative(state, each) for drive, each in zip(drives, torques, strict=True)]
+    np.testing.assert_array_equal(rates[0], rates[2])
+    turns = [run(drive, state, drive.period[0] / 200, 200).T_in[0, :-1] for drive in drives]
+    assert turns[2].mean() == pytest.approx(turns[0].mean(), rel=1e-3)
+    assert np.ptp(turns[2]) != pytest.approx(np.ptp(turns[0]), rel=0.01)
+
+
+def test_an_error_without_a_lever_brakes_as_a_gear_without_one_does() -> None:
+    drive = Drive([replace(NOMINAL, error_lever=0.0)], [POINTS[1]])
+    torques = drive.torques(steady_state(drive))
+    assert torques.T_wedge == pytest.approx(drive.tan_in * torques.T_stiff)
+
+
 def test_steady_state_is_where_a_long_transient_ends() -> None:
     point = POINTS[4]
     # b3 varies over an output revolution: there is a strictly periodic state only without it.

@@ -80,6 +80,21 @@ def test_a_gear_of_another_flex_spline_is_commissioned_as_accurately_as_it_can_b
     assert type(found) is type(ECCENTRIC)
 
 
+def test_a_bench_with_another_drive_and_stronger_gauges_is_commissioned():
+    """Its speed control, flange and equation of the input are others; what is found is what there is."""
+    drive = {"J_in": 1.4e-4, "rotor_share": 0.8, "error_lever": 0.0, "control_frequency": 25.0, "control_damping": 1.7}
+    gauges = replace(GEAR.gauges, gain=tuple(1.25 * gain for gain in GEAR.gauges.gain))
+    other = replace(GEAR, transmission=replace(GEAR.transmission, **drive), gauges=gauges)
+    own = commission(recorded((), seed=1, gear=other), Unit(Model(GEAR)))
+    found = own.model.gear.transmission
+    assert {name: getattr(found, name) for name in drive} == pytest.approx(drive, rel=0.1, abs=0.1)
+    assert np.array(own.model.gear.gauges.gain) == pytest.approx(gauges.gain, rel=0.05)
+    damped = LIBRARY["reduced_damping"](0.8)
+    assert accepted(close(recorded((), seed=2, gear=other), own, SEARCHED)) == []
+    (damping,) = accepted(close(recorded((damped,), seed=2, gear=other), own, SEARCHED))
+    assert damping.b1_ratio == pytest.approx(0.8, abs=0.06)
+
+
 def test_what_the_healthy_gear_did_as_well_is_not_missing():
     """A filter that lags, a zero and grease that follow the temperature: these are learned, and a fault is new."""
     habits = (

@@ -34,9 +34,11 @@ def test_whitening_makes_the_covariance_the_identity(rows, columns, seed):
 @settings(deadline=None, max_examples=60)
 @given(**SHAPES)
 def test_whitening_is_symmetric_in_units_of_the_noise(rows, columns, seed):
-    covariance, _, _ = random_covariance(rows, columns, seed)
-    scaled = covariance.whiten(np.diag(np.sqrt(covariance.variance)))
+    covariance, dense, _ = random_covariance(rows, columns, seed)
+    scaled = np.array([covariance.whiten_in_place(each) for each in np.diag(np.sqrt(covariance.variance))])
     np.testing.assert_allclose(scaled, scaled.T, atol=1e-9)
+    W = scaled.T / np.sqrt(covariance.variance)
+    np.testing.assert_allclose(W @ dense @ W.T, np.eye(rows), atol=1e-7)
 
 
 @settings(deadline=None, max_examples=60)

@@ -133,7 +133,7 @@ def test_what_recordings_have_in_common_is_no_error_of_single_ones():
     """Every error may be common to all; friction and zeros also follow temperature, time and load."""
     B = np.random.default_rng(1).normal(size=(2, len(LAYOUT), len(KINDS)))
     moves = B * np.array([STATED[kind] for kind in KINDS])
-    following = moves[..., [i for i, kind in enumerate(KINDS) if kind not in ("load", "speed", "trigger")]]
+    following = moves[..., [i for i, kind in enumerate(KINDS) if "friction" in kind or "zero" in kind]]
     found = trends(B, [Situation(POINT, Conditions(26.0, 0.0)), Situation(POINT, Conditions(25.0, 3600.0))], LAYOUT)
     loaded = AT_FULL_LOAD * POINT.T_out / 70 * following
     none = 0 * following
@@ -190,6 +190,18 @@ def test_what_commissioning_found_holds_without_repeats_and_yields_to_many():
     few = from_repeats(*fabricated(1, [2] * 3, {}), before.carried)
     shares = np.array([few.sd[kind] / STATED[kind] for kind in KINDS])
     assert ((shares > 1) & (shares < 3.5)).all()
+
+
+def test_the_beat_is_order_2_of_the_kinematic_error_in_any_phase():
+    """Two such waves, a quarter of a wave apart, have the lines of order 2 in the torque; all else is little."""
+    layout = Layout(("T_in", "T_out"))
+    moves = directions(Model(GEAR), [Situation(POINT, Conditions())], layout)[0]
+    cosine, sine = (layout.lines(moves[:, kinds(layout).index(kind)])[1] for kind in ("beat, cosine", "beat, sine"))
+    assert sine[2] / cosine[2] == pytest.approx(-1j, abs=0.02)
+    assert np.abs(np.delete(cosine, 2)).max() < 0.1 * np.abs(cosine[2])
+    # Above the resonance the output stands still: stiffness times error.
+    t = GEAR.transmission
+    assert np.abs(cosine[2]) == pytest.approx(t.k1 / np.tan(t.alpha_tooth) ** 2, rel=0.5)
 
 
 def test_the_trigger_turns_what_was_recorded_and_all_else_what_the_model_says():

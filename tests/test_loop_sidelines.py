@@ -242,6 +242,19 @@ def test_a_line_without_a_name_is_described():
     assert "order 5.3" in str(line) or "order 5.4" in str(line)
 
 
+def test_what_turns_with_the_circular_spline_is_no_line():
+    """Twelve revolutions hardly tell it from order 2, beside which it leaks."""
+    beating = (Whistle(0.02, 2 - 2 / 101), Whistle(0.01, 4 - 2 / 101), Whistle(0.01, 2 / 101))
+    recordings = measured(beating, 9)
+    found = search(between(recordings), KINDS, 0.005)
+    assert any(line.at == pytest.approx(2, abs=0.2) for line in found.unnamed)
+    found = search(between(recordings, 100), KINDS, 0.005)
+    assert not found.named
+    assert not found.unnamed
+    (cage,) = search(between(measured((*beating, LIBRARY["bearing_cage"](2e-3, 0.451)), 9), 100), KINDS, 0.005).named
+    assert cage.effect.order == pytest.approx(0.451, abs=0.01)
+
+
 def test_a_line_that_is_declared_is_not_found_again():
     cage = LIBRARY["bearing_cage"](amplitude=5e-3, order=0.4437)
     spectra = between(measured((cage,), 3))

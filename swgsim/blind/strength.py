@@ -51,8 +51,9 @@ def _linear(effects: Sequence[Effect], of: Sequence[type[Effect]], fitted: Fitte
         seen = predict(models, fitted.measured.situations, fitted.measured.layout)
         for i, changed in zip(chain, seen[1:], strict=True):
             found[i] = (fitted.whole.whiten(fitted.measured.rows(changed - seen[0])) ** 2).sum()
+    spectra = between(fitted.measured.recordings, fitted.model.gear.transmission.N)
     for i in set(range(len(effects))) - set(chain):
-        found[i] = sum((each.pattern(effects[i])[0] ** 2).sum() for each in between(fitted.measured.recordings, fitted.unit.model.gear.transmission.N))
+        found[i] = sum((each.pattern(effects[i])[0] ** 2).sum() for each in spectra)
     return found
 
 

@@ -145,7 +145,7 @@ class Fitted:
     @property
     def missed(self) -> Float[np.ndarray, "recording feature"]:
         """Residual weighed by what is declared of it, in standard deviations."""
-        return self.whole.whiten(self.from_start).reshape(self.measured.values.shape)
+        return self.whole.whiten_in_place(self.from_start).reshape(self.measured.values.shape)
 
     @property
     def misfit(self) -> dict[str, float]:
