@@ -112,10 +112,9 @@ def of_unit(gear: Gear, structure: float = 0.0) -> dict[str, Declared]:
     gear : Gear
         The nominal one.
     structure : float
-        Accuracy of the structural model, as a share: what the wave generator and the torque strain at a gauge is known
-        no better.
+        Accuracy of the structural model, as a share: what is strained at a gauge is known no better. The stroke of the
+        wave generator is, or gains would be told from it by shapes alone.
     """
-    strained = max(STRAINED, structure)
     t = gear.transmission
     found = {
         "k1": _of_transmission("k1", "N m/rad", t.k1),
@@ -131,7 +130,7 @@ def of_unit(gear: Gear, structure: float = 0.0) -> dict[str, Declared]:
         "control damping": _of_transmission("control_damping", "-", t.control_damping, CONTROL),
         "w0": _of_gear(
             "m",
-            strained * gear.wave_generator.w0,
+            STRAINED * gear.wave_generator.w0,
             lambda each: each.wave_generator.w0,
             lambda each, to: replace(each, wave_generator=replace(each.wave_generator, w0=to)),
             max(LEAST * gear.wave_generator.w0, W0_LIMITS[0]),
@@ -142,7 +141,7 @@ def of_unit(gear: Gear, structure: float = 0.0) -> dict[str, Declared]:
         for part in ("cosine", "sine"):
             found[f"kinematic error {term.order} {part}"] = _of_kinematic_error(term.order, part, 0.3e-4)
     for sensor in range(5):
-        found[f"gain of s{sensor}"] = _of_gauge("gain", sensor, "-", strained)
+        found[f"gain of s{sensor}"] = _of_gauge("gain", sensor, "-", max(STRAINED, structure))
         found[f"zero of s{sensor}"] = _of_gauge("offset", sensor, "mV/V", 0.02)
         found[f"position of s{sensor}"] = _of_gauge("position", sensor, "rad", 0.01)
         found[f"grid angle of s{sensor}"] = _of_gauge("grid_angle", sensor, "rad", 0.01)
