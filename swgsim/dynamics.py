@@ -3,9 +3,10 @@
 Frame. The flex spline is clamped, so phi_in is the angle of the wave generator relative to the flex spline (the angle
 the gauges see) and phi_out that of the circular spline, the output. Eqs. (3) and (6) are written for angles relative to
 the circular spline, phi_in - phi_out and -phi_out. The equations of motion follow by virtual work of T_stiff on
-Delta phi_k and of T_fric on phi_b; as phi_err is a function of phi_in, its slope is part of the input's lever:
+Delta phi_k and of T_fric on phi_b; as phi_err is a function of phi_in, its slope is part of the input's lever, unless a
+gear's error_lever is not 1 but 0, as in equations that are found in print:
 
-    J_in  phi_in''  = T_motor - (tan(alpha_in) + dphi_err/dphi_in) T_stiff
+    J_in  phi_in''  = T_motor - (tan(alpha_in) + error_lever dphi_err/dphi_in) T_stiff
     J_out phi_out'' = T_out - T_load,   T_out = T_stiff / tan(alpha_tooth) - T_fric / sin(alpha_tooth)
 
 Effects may add to T_stiff, T_fric and T_load, brake the input, or drive it beside the speed control.
@@ -32,7 +33,7 @@ class Torques:
     """Torques [N m] and sliding speed [rad/s] at one instant, each an array (run,).
 
     ``T_motor`` drives the input, ``T_wedge`` brakes it: the wave generator and losses beside it. ``T_in`` is what a
-    torque flange between rotor and wave generator feels.
+    torque flange feels that has a share of J_in, the rotor's, before it.
     """
 
     T_motor: Float[np.ndarray, " run"]

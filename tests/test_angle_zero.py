@@ -121,17 +121,41 @@ def test_a_zero_in_a_column_map_mends_it(tmp_path: Path) -> None:
         assert zero(read_recordings(folder, path).recordings) == pytest.approx(0.6 - mended, abs=0.02)
 
 
+def job_of(folder: Path) -> dict[str, object]:
+    """Of close_loop.py, on two folders."""
+    return {
+        "recordings": str(folder / "recordings"), "commissioning": str(folder / "commissioning"), "mapping": None,
+        "commissioning_mapping": None, "gear": yaml.safe_load(GEAR_1.read_text()), "effects": [], "searched": None,
+        "library": [], "truth": None, "seed": 0, "out": "",
+    }  # fmt: skip
+
+
+def test_recordings_and_commissioning_are_counted_from_the_zero_of_the_gear(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("commissioning", "recordings"):
+        write_folder(tmp_path / name, ahead(good(points=CORNERS), 0.6))
+    seen, told = [], []
+    monkeypatch.setattr(job, "commission", lambda measured, unit: seen.append(measured.recordings) or unit)
+    monkeypatch.setattr(job, "answer", lambda recordings, *_, **__: seen.append(recordings))
+    monkeypatch.setattr(job, "next_experiments", lambda found: None)
+    monkeypatch.setattr(job, "report", lambda found, kinds, more, defects, seconds: told.extend(defects) or {})
+    monkeypatch.setattr(job, "write", lambda *_: {})
+    monkeypatch.setattr(job, "lines", lambda said: [])
+    job.run(job_of(tmp_path))
+    for recordings in seen:
+        for each, right in zip(recordings, good(points=CORNERS), strict=True):
+            np.testing.assert_allclose(each.channels["phi_in"], right.channels["phi_in"], atol=0.02)
+    assert len(seen) == 2
+    assert [defect.severity for defect in told if defect.kind == "angle_zero"] == ["warn"]
+
+
 @pytest.mark.parametrize("moved", [0.0, 0.4])
 def test_recordings_of_another_zero_than_their_commissioning_are_refused(tmp_path: Path, moved: float) -> None:
     for name, angle in (("commissioning", moved), ("recordings", 0.6 + moved)):
         write_folder(tmp_path / name, ahead(good(points=CORNERS), angle))
-    config = {
-        "recordings": str(tmp_path / "recordings"), "commissioning": str(tmp_path / "commissioning"), "mapping": None,
-        "commissioning_mapping": None, "gear": yaml.safe_load(GEAR_1.read_text()), "effects": [], "searched": None,
-        "library": [], "truth": None,
-    }  # fmt: skip
     with pytest.raises(
         ValueError,
         match=rf"(?s)recordings: these .* (0.59|0.60)\d rad ahead .*{ANGLE_ZERO} rad.*zero_rad.*\[angle_zero\]",
     ):
-        job.run(config)
+        job.run(job_of(tmp_path))

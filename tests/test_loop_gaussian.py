@@ -43,6 +43,14 @@ def test_whitening_is_symmetric_in_units_of_the_noise(rows, columns, seed):
 
 @settings(deadline=None, max_examples=60)
 @given(**SHAPES)
+def test_the_transposed_is_that_of_whitening(rows, columns, seed):
+    covariance, _, _ = random_covariance(rows, columns, seed)
+    W = covariance.whiten(np.eye(rows))
+    np.testing.assert_allclose(covariance.transposed(np.eye(rows)), W.T, atol=1e-7)
+
+
+@settings(deadline=None, max_examples=60)
+@given(**SHAPES)
 def test_log_likelihood_is_the_normal_one_without_its_constant(rows, columns, seed):
     covariance, dense, rng = random_covariance(rows, columns, seed)
     r = rng.normal(size=rows)

@@ -25,6 +25,8 @@ SAMPLES = 48
 BESIDE = 6
 # The noise beside a line is what was estimated of all lines together, as so many numbers would say it.
 ALL_TOGETHER = 20
+# Orders close to which circular spline and flex spline beat: 2 in the torque, which lobes make 0 and 4 in gauges.
+BEATING = (0, 2, 4)
 # Part of a direction that a line must hold to be one of its lines.
 HELD = 0.05
 
@@ -212,10 +214,10 @@ def scene_of(recording: Recording, samples: slice = slice(None)) -> Scene:
 
 def ordinary(scene: Scene, N: int | None = None) -> Float[np.ndarray, "time column"]:
     """The orders that are fitted; a straight line over time, whose ends would leak into the whole spectrum; and, of a
-    gear of ratio N, what turns with its circular spline, close to the orders 0, 2 and 4.
+    gear of ratio N, what turns with its circular spline, close to some of them.
     """
     time, phi = scene.time, scene.phi_in
-    beats = [] if N is None else [phi * abs(order - 2 / (N + 1)) for order in (0, 2, 4)]
+    beats = [] if N is None else [phi * abs(order - 2 / (N + 1)) for order in BEATING]
     waves = [wave(angle) for angle in beats for wave in (np.cos, np.sin)]
     return np.column_stack([basis(phi, FITTED), (time - time.mean()) / float(np.ptp(time)), *waves])
 

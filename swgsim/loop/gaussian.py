@@ -51,7 +51,9 @@ class Covariance:
 
         In units of the independent errors W = 1 - G K G' with K = (L (1 + L'))^-1, as W' W = (1 + G G')^-1 then.
         """
-        return self._shrunken(X / self._deviation(X), transposed=False)
+        scaled = X / self._deviation(X)
+        along = solve_triangular(self._L, self._along(scaled), lower=True)
+        return self._less(scaled, solve_triangular(self._raised, along))
 
     def whiten_in_place(self, r: Float[np.ndarray, " row"]) -> Float[np.ndarray, " row"]:
         """W r with W covariance W' = 1, where W is symmetric in units of the independent errors: as near to them as can
@@ -59,26 +61,25 @@ class Covariance:
         """
         eigenvalues, V = np.linalg.eigh(self._gram)
         root = np.sqrt(1 + np.maximum(eigenvalues, 0))  # what rounding makes of them shrinks nothing
-        deviation = np.sqrt(self.variance)
-        along = V.T @ (self.G.T @ (r / self.variance)) / (root * (1 + root))
-        return (r - self.G @ (V @ along)) / deviation
+        scaled = r / self._deviation(r)
+        return self._less(scaled, V @ (V.T @ self._along(scaled) / (root * (1 + root))))
 
     def transposed(self, X: np.ndarray) -> np.ndarray:
         """W' X, where W is what :meth:`whiten` multiplies by; it is not symmetric."""
-        return self._shrunken(X, transposed=True) / self._deviation(X)
+        along = solve_triangular(self._raised, self._along(X), trans=1)
+        return self._less(X, solve_triangular(self._L, along, lower=True, trans=1)) / self._deviation(X)
 
     def _deviation(self, X: np.ndarray) -> np.ndarray:
         """Standard deviation of the independent errors, to be combined with X."""
         return np.sqrt(self.variance).reshape(-1, *[1] * (X.ndim - 1))
 
-    def _shrunken(self, X: np.ndarray, *, transposed: bool) -> np.ndarray:
-        """X with the directions of the common errors made as small as their variance is large."""
-        deviation, L = self._deviation(X), self._L
-        factors = [(L, True), (self._raised, False)]
-        along = self.G.T @ (X / deviation)
-        for factor, lower in reversed(factors) if transposed else factors:
-            along = solve_triangular(factor, along, lower=lower, trans=int(transposed), check_finite=False)
-        return X - self.G @ along / deviation
+    def _along(self, X: np.ndarray) -> np.ndarray:
+        """G' X, in units of the independent errors."""
+        return self.G.T @ (X / self._deviation(X))
+
+    def _less(self, X: np.ndarray, along: np.ndarray) -> np.ndarray:
+        """X less G times so much, in units of the independent errors."""
+        return X - self.G @ along / self._deviation(X)
 
     def with_columns(self, G: Float[np.ndarray, "row more"]) -> "Covariance":
         """The covariance with further common errors."""
