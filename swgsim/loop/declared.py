@@ -57,25 +57,20 @@ def _of_gear(
     return Declared(unit, sd, lambda m: value(m.gear), lambda m, to: replace(m, gear=moved(m.gear, to)), low, high)
 
 
-def _of_transmission(name: str, unit: str, nominal: float, spread: float = 0.1) -> Declared:
+def _of_transmission(name: str, unit: str, sd: float, low: float = -np.inf, high: float = np.inf) -> Declared:
     return _of_gear(
         unit,
-        spread * nominal,
+        sd,
         lambda gear: float(getattr(gear.transmission, name)),
         lambda gear, to: replace(gear, transmission=replace(gear.transmission, **{name: to})),  # type: ignore[arg-type]
-        LEAST * nominal,
+        low,
+        high,
     )
 
 
-def _of_share(name: str) -> Declared:
-    return _of_gear(
-        "-",
-        SHARE,
-        lambda gear: float(getattr(gear.transmission, name)),
-        lambda gear, to: replace(gear, transmission=replace(gear.transmission, **{name: to})),  # type: ignore[arg-type]
-        0.0,
-        1.0,
-    )
+def _of_size(name: str, unit: str, nominal: float, spread: float = 0.1) -> Declared:
+    """A stiffness, friction or the like, whose spread is a share of it."""
+    return _of_transmission(name, unit, spread * nominal, LEAST * nominal)
 
 
 def _of_gauge(name: str, sensor: int, unit: str, sd: float) -> Declared:
@@ -117,17 +112,17 @@ def of_unit(gear: Gear, structure: float = 0.0) -> dict[str, Declared]:
     """
     t = gear.transmission
     found = {
-        "k1": _of_transmission("k1", "N m/rad", t.k1),
-        "b0": _of_transmission("b0", "N m", t.b0),
-        "b1": _of_transmission("b1", "N m s/rad", t.b1),
-        "mu": _of_transmission("mu", "-", t.mu),
+        "k1": _of_size("k1", "N m/rad", t.k1),
+        "b0": _of_size("b0", "N m", t.b0),
+        "b1": _of_size("b1", "N m s/rad", t.b1),
+        "mu": _of_size("mu", "-", t.mu),
         # Inertias, flange and speed control belong to the test bench, of which a gear file says little.
-        "J_in": _of_transmission("J_in", "kg m^2", t.J_in, BENCH),
-        "J_out": _of_transmission("J_out", "kg m^2", t.J_out, BENCH),
-        "rotor share": _of_share("rotor_share"),
-        "error lever": _of_share("error_lever"),
-        "control frequency": _of_transmission("control_frequency", "Hz", t.control_frequency, CONTROL),
-        "control damping": _of_transmission("control_damping", "-", t.control_damping, CONTROL),
+        "J_in": _of_size("J_in", "kg m^2", t.J_in, BENCH),
+        "J_out": _of_size("J_out", "kg m^2", t.J_out, BENCH),
+        "rotor share": _of_transmission("rotor_share", "-", SHARE, 0.0, 1.0),
+        "error lever": _of_transmission("error_lever", "-", SHARE, 0.0, 1.0),
+        "control frequency": _of_size("control_frequency", "Hz", t.control_frequency, CONTROL),
+        "control damping": _of_size("control_damping", "-", t.control_damping, CONTROL),
         "w0": _of_gear(
             "m",
             STRAINED * gear.wave_generator.w0,
