@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
+from scipy.linalg import solve_triangular
 
 from swgsim.conditions import Conditions
 from swgsim.gear import OperatingPoint
@@ -17,7 +18,6 @@ from swgsim.loop import scatter
 from swgsim.loop.answer import Answer
 from swgsim.loop.evidence import FORM_TOLERANCE, allowance
 from swgsim.loop.fitting import Fitted
-from swgsim.loop.gaussian import Covariance
 from swgsim.loop.model import Model, Situation, predict
 
 # What a test bench can run, and that it can do as it stands, with a warm gear, or after an hour.
@@ -117,29 +117,24 @@ class _Further:
     Attributes
     ----------
     candidates : tuple of Situation
-    precision : array (direction, direction)
-        Of all that the model may adjust, after the recordings there are.
-    pull : array (direction, truth)
-        By which these recordings pull at it.
-    missed : array (truth,)
-        Sum of squares of the difference at them.
-    directions : array (candidate, feature, direction)
+    known : array (truth,)
+        Separation by the recordings there are, to which all that the model may adjust is adjusted.
     differences : array (candidate, feature, truth)
+        What is left of the difference when it is.
+    spread : array (candidate, feature, feature)
+        Covariance of the features as it may still adjust, with errors that further recordings share.
     variance : array (feature,)
         White noise of one recording.
-    single, shared : array (candidate, feature, column)
-        Errors of single recordings, and those that all of them share.
+    single : array (candidate, feature, kind)
+        Errors of single recordings.
     """
 
     candidates: tuple[Situation, ...]
-    precision: Float[np.ndarray, "direction direction"]
-    pull: Float[np.ndarray, "direction truth"]
-    missed: Float[np.ndarray, " truth"]
-    directions: Float[np.ndarray, "candidate feature direction"]
+    known: Float[np.ndarray, " truth"]
     differences: Float[np.ndarray, "candidate feature truth"]
+    spread: Float[np.ndarray, "candidate feature feature"]
     variance: Float[np.ndarray, " feature"]
     single: Float[np.ndarray, "candidate feature kind"]
-    shared: Float[np.ndarray, "candidate feature column"]
 
     @classmethod
     def of(cls, fitted: Fitted, truths: Sequence[Model]) -> "_Further":
@@ -157,28 +152,28 @@ class _Further:
             errors = errors.with_columns(allowance(fitted, number))
         C = errors.whiten(measured.rows(directions[:count]))
         d = errors.whiten(measured.rows(differences[:count]))
+        L = np.linalg.cholesky(np.eye(C.shape[1]) + C.T @ C)
+        pull = solve_triangular(L, C.T @ d, lower=True)
+        adjusted = solve_triangular(L, np.concatenate(directions[count:]).T, lower=True)
+        left = np.concatenate(differences[count:]) - adjusted.T @ pull
         there = predicted[count:]
         of_session = measured.further("planned", candidates, there).session_columns(there)
         shared = [of_session.reshape(*there.shape, -1), _tolerance(fitted, candidates, there)]
+        shared.append(adjusted.T.reshape(*there.shape, -1))
+        spread = [columns @ columns.T for columns in np.concatenate(shared, axis=-1)]
         moves = scatter.directions(fitted.model, candidates, measured.layout)
         noise = np.median(fitted.unit.inflated(measured.variance), axis=0)
         return cls(
-            candidates, np.eye(C.shape[1]) + C.T @ C, C.T @ d, (d**2).sum(axis=0), directions[count:],
-            differences[count:], noise, fitted.scatter.columns(moves), np.concatenate(shared, axis=-1),
+            candidates, (d**2).sum(axis=0) - (pull**2).sum(axis=0), left.reshape(differences[count:].shape),
+            np.array(spread), noise, fitted.scatter.columns(moves),
         )  # fmt: skip
 
     def separations(self, recordings: int) -> Float[np.ndarray, "candidate truth"]:
         """Separation of all truths by so many recordings at each candidate."""
-        return np.array([self._separation(i, recordings) for i in range(len(self.candidates))])
-
-    def _separation(self, i: int, recordings: int) -> Float[np.ndarray, " truth"]:
         # The mean of the recordings says all; what is theirs alone averages out, what they share does not.
-        columns = np.hstack([self.single[i] / np.sqrt(recordings), self.shared[i]])
-        errors = Covariance(self.variance / recordings, columns)
-        C, d = errors.whiten(self.directions[i]), errors.whiten(self.differences[i])
-        pull = self.pull + C.T @ d
-        adjusted = (pull * np.linalg.solve(self.precision + C.T @ C, pull)).sum(axis=0)
-        return self.missed + (d**2).sum(axis=0) - adjusted
+        alone = self.single @ self.single.transpose(0, 2, 1) + np.diag(self.variance)
+        further = np.linalg.solve(self.spread + alone / recordings, self.differences)
+        return self.known + (self.differences * further).sum(axis=1)
 
 
 def _directions(

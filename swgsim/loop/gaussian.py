@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
-from scipy.linalg import cho_factor, cho_solve, cholesky, solve_triangular
+from scipy.linalg import cho_solve, cholesky, solve_triangular
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,15 +99,22 @@ class Covariance:
         return Covariance(self.variance[chosen], self.G[chosen])
 
     def left_out(self, r: Float[np.ndarray, " row"], block: np.ndarray) -> "Expected":
-        """The rows of a block (a mask) as all the other rows predict them."""
-        here, others = self.rows(block), self.rows(~block)
-        # Of the columns, as the other rows tell them.
-        precision = cho_factor(np.eye(self.G.shape[1]) + self._gram - here._gram)
-        mean = cho_solve(precision, others.G.T @ (r[~block] / others.variance))
-        missed = r[block] - here.G @ mean
-        spread = np.linalg.cholesky(np.diag(here.variance) + here.G @ cho_solve(precision, here.G.T))
-        white = solve_triangular(spread, missed, lower=True)
-        return Expected(missed, -0.5 * float(white @ white) - float(np.log(np.diag(spread)).sum()), mean)
+        """The rows of a block (a mask) as all the other rows predict them.
+
+        With P = (diag(variance) + G G')^-1 these miss r by (P_bb)^-1 (P r)_b with the covariance (P_bb)^-1, so nothing
+        is factored anew but that.
+        """
+        deviation = np.sqrt(self.variance[block])
+        # All in units of the independent errors.
+        common = solve_triangular(self._L, (self.G[block] / deviation[:, None]).T, lower=True)
+        precision = cholesky(np.eye(len(deviation)) - common.T @ common, lower=True)
+        pulled = (r[block] - self.G[block] @ self.told(r)) / deviation
+        white = solve_triangular(precision, pulled, lower=True)
+        missed = deviation * solve_triangular(precision, white, lower=True, trans=1)
+        told = np.array(r, copy=True)
+        told[block] -= missed  # which says no more than the others do
+        log_spread = np.log(deviation).sum() - np.log(np.diag(precision)).sum()
+        return Expected(missed, -0.5 * float(white @ white) - float(log_spread), self.told(told))
 
 
 class Expected(NamedTuple):
