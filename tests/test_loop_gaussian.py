@@ -43,10 +43,12 @@ def test_whitening_is_symmetric_in_units_of_the_noise(rows, columns, seed):
 
 @settings(deadline=None, max_examples=60)
 @given(**SHAPES)
-def test_the_transposed_is_that_of_whitening(rows, columns, seed):
-    covariance, _, _ = random_covariance(rows, columns, seed)
-    W = covariance.whiten(np.eye(rows))
-    np.testing.assert_allclose(covariance.transposed(np.eye(rows)), W.T, atol=1e-7)
+def test_weighing_multiplies_by_the_inverse_of_the_covariance(rows, columns, seed):
+    covariance, dense, rng = random_covariance(rows, columns, seed)
+    inverse = np.linalg.inv(dense)
+    np.testing.assert_allclose(covariance.weigh(np.eye(rows)), inverse, atol=1e-7)
+    block = rng.random(rows) < 0.5
+    np.testing.assert_allclose(covariance.precision(block), inverse[np.ix_(block, block)], atol=1e-7)
 
 
 @settings(deadline=None, max_examples=60)

@@ -163,22 +163,24 @@ class Fitted:
         spread = np.sqrt(np.diag(covariance)).tolist()
         return {name: s * p.sd for (name, p), s in zip(self.parameters.items(), spread, strict=True)}
 
-    def null(
-        self, bases: Float[np.ndarray, "row direction"], draws: int, rng: np.random.Generator
-    ) -> Iterator[Float[np.ndarray, "direction draw"]]:
-        """What pure noise puts along directions of the weighed residual, so many draws at a time, without end.
+    @cached_property
+    def weighed(self) -> Float[np.ndarray, " row"]:
+        """Residual of the linearised model, weighed by the inverse of its covariance."""
+        return self.whole.weigh(self.from_start)
+
+    def null(self, draws: int, rng: np.random.Generator) -> Iterator[Float[np.ndarray, "row draw"]]:
+        """What pure noise makes of :attr:`weighed`, so many draws at a time, without end.
 
         The errors of single recordings are in each draw as large as their estimate leaves them; all others are as
         declared.
         """
-        weighed = self.whole.transposed(bases)
-        white = np.sqrt(self.whole.variance)[:, None] * weighed
-        common = self.whole.G.T @ weighed
+        rows, columns = self.whole.G.shape
+        deviation = np.sqrt(self.whole.variance)[:, None]
         while True:
-            factors = np.ones((len(common), draws))
+            factors = np.ones((columns, draws))
             factors[: self.singles] = np.tile(self.scatter.drawn(rng, draws), (len(self.measured), 1))
-            noise = white.T @ rng.standard_normal((len(white), draws))
-            yield noise + common.T @ (factors * rng.standard_normal((len(common), draws)))
+            noise = deviation * rng.standard_normal((rows, draws))
+            yield self.whole.weigh(noise + self.whole.G @ (factors * rng.standard_normal((columns, draws))))
 
     @cached_property
     def log_likelihood(self) -> float:

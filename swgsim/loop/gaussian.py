@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 from scipy.linalg import cho_solve, cholesky, solve_triangular
 
 
@@ -64,10 +64,15 @@ class Covariance:
         scaled = r / self._deviation(r)
         return self._less(scaled, V @ (V.T @ self._along(scaled) / (root * (1 + root))))
 
-    def transposed(self, X: np.ndarray) -> np.ndarray:
-        """W' X, where W is what :meth:`whiten` multiplies by; it is not symmetric."""
-        along = solve_triangular(self._raised, self._along(X), trans=1)
-        return self._less(X, solve_triangular(self._L, along, lower=True, trans=1)) / self._deviation(X)
+    def weigh(self, X: np.ndarray) -> np.ndarray:
+        """P X with P the inverse of the covariance, for an array (row,) or (row, column)."""
+        return self._less(X / self._deviation(X), self.told(X)) / self._deviation(X)
+
+    def precision(self, block: Bool[np.ndarray, " row"]) -> Float[np.ndarray, "block block"]:
+        """The block of P of some of the rows: of their distribution where all the others are known."""
+        deviation = np.sqrt(self.variance[block])
+        common = solve_triangular(self._L, (self.G[block] / deviation[:, None]).T, lower=True)
+        return (np.eye(len(deviation)) - common.T @ common) / np.outer(deviation, deviation)
 
     def _deviation(self, X: np.ndarray) -> np.ndarray:
         """Standard deviation of the independent errors, to be combined with X."""
@@ -90,31 +95,25 @@ class Covariance:
         white = self.whiten(r)
         return -0.5 * float(white @ white + 2 * np.log(np.diag(self._L)).sum() + np.log(self.variance).sum())
 
-    def told(self, r: Float[np.ndarray, " row"]) -> Float[np.ndarray, " column"]:
-        """The common errors that a residual tells, in standard deviations."""
-        return cho_solve((self._L, True), self.G.T @ (r / self.variance))
+    def told(self, X: np.ndarray) -> np.ndarray:
+        """The common errors (column,) that a residual (row,) tells, or each of several, in standard deviations."""
+        return cho_solve((self._L, True), self._along(X / self._deviation(X)))
 
     def rows(self, chosen: np.ndarray) -> "Covariance":
         """The covariance of some of the rows."""
         return Covariance(self.variance[chosen], self.G[chosen])
 
-    def left_out(self, r: Float[np.ndarray, " row"], block: np.ndarray) -> "Expected":
-        """The rows of a block (a mask) as all the other rows predict them.
+    def left_out(self, r: Float[np.ndarray, " row"], block: Bool[np.ndarray, " row"]) -> "Expected":
+        """The rows of a block as all the other rows predict them.
 
-        With P = (diag(variance) + G G')^-1 these miss r by (P_bb)^-1 (P r)_b with the covariance (P_bb)^-1, so nothing
-        is factored anew but that.
+        With the precision P of all rows these miss r by (P_bb)^-1 (P r)_b, with the covariance (P_bb)^-1.
         """
-        deviation = np.sqrt(self.variance[block])
-        # All in units of the independent errors.
-        common = solve_triangular(self._L, (self.G[block] / deviation[:, None]).T, lower=True)
-        precision = cholesky(np.eye(len(deviation)) - common.T @ common, lower=True)
-        pulled = (r[block] - self.G[block] @ self.told(r)) / deviation
-        white = solve_triangular(precision, pulled, lower=True)
-        missed = deviation * solve_triangular(precision, white, lower=True, trans=1)
-        told = np.array(r, copy=True)
-        told[block] -= missed  # which says no more than the others do
-        log_spread = np.log(deviation).sum() - np.log(np.diag(precision)).sum()
-        return Expected(missed, -0.5 * float(white @ white) - float(log_spread), self.told(told))
+        L = cholesky(self.precision(block), lower=True)
+        white = solve_triangular(L, self.weigh(r)[block], lower=True)
+        missed = solve_triangular(L, white, lower=True, trans=1)
+        expected = np.array(r, copy=True)
+        expected[block] -= missed  # which tells no more than the others do
+        return Expected(missed, float(np.log(np.diag(L)).sum() - 0.5 * white @ white), self.told(expected))
 
 
 class Expected(NamedTuple):

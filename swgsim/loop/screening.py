@@ -5,12 +5,12 @@ both weighed by the covariance of noise, single recordings and declared paramete
 absorb of a signature is gone by then, and only the rest counts.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from swgsim.effects.quantity import quantities
 from swgsim.loop.fitting import Fitted
@@ -101,14 +101,14 @@ def screen(
     """
     stacked = np.hstack(list(signatures))
     ends = np.cumsum([s.shape[1] for s in signatures])[:-1]
-    free = np.split(fitted.errors.whiten(stacked), ends, axis=1)
-    projected = [
-        _projected(C, alone)
-        for C, alone in zip(np.split(fitted.whole.whiten(stacked), ends, axis=1), free, strict=True)
-    ]
-    r = fitted.whole.whiten(fitted.from_start)
-    chances = family_wise([p.U for p in projected], r, fitted, rng)
-    scores = [_score(h, p, p.U.T @ r, chance) for h, p, chance in zip(found, projected, chances, strict=True)]
+    weighed, alone = (np.split(errors.whiten(stacked), ends, axis=1) for errors in (fitted.whole, fitted.errors))
+    projected = [_projected(*each) for each in zip(signatures, weighed, alone, strict=True)]
+    directions = np.hstack([p.directions for p in projected])
+    freedom = np.array([p.directions.shape[1] for p in projected])
+    along = directions.T @ fitted.weighed
+    chances = family_wise(along, freedom, (directions.T @ noise for noise in fitted.null(AT_ONCE, rng)))
+    parts = np.split(along, np.cumsum(freedom)[:-1])
+    scores = [_score(*each) for each in zip(found, projected, parts, chances, strict=True)]
     return sorted(scores, key=lambda score: (-score.rank, -score.visible))
 
 
@@ -121,21 +121,27 @@ def best_of_kind(scores: Sequence[Score]) -> list[Score]:
 
 
 class Projected(NamedTuple):
-    """What is left of a signature: orthonormal directions, their sizes, how columns make them, visible share."""
+    """What is left of a signature: directions, along each of which a weighed residual has a standard deviation of 1,
+    their sizes, how columns make them, visible share.
+    """
 
-    U: Float[np.ndarray, "row rank"]
+    directions: Float[np.ndarray, "row rank"]
     s: Float[np.ndarray, " rank"]
     Vt: Float[np.ndarray, "rank column"]
     visible: float
 
 
-def _projected(C: Float[np.ndarray, "row column"], alone: Float[np.ndarray, "row column"]) -> Projected:
-    """Directions of a weighed signature; none if the declared parameters absorb it."""
-    U, s, Vt = svd(C)
+def _projected(
+    signature: Float[np.ndarray, "row column"],
+    weighed: Float[np.ndarray, "row column"],
+    alone: Float[np.ndarray, "row column"],
+) -> Projected:
+    """Directions of a signature, from it whitened by all errors and without declared ones; none if these absorb it."""
+    _, s, Vt = svd(weighed)
     size = float((alone**2).sum())
     visible = float((s**2).sum()) / size if size > 0 else 0.0
     kept = s > NEGLIGIBLE * np.sqrt(size) if visible > VISIBLE else np.zeros(len(s), bool)
-    return Projected(U[:, kept], s[kept], Vt[kept], visible)
+    return Projected(signature @ (Vt[kept].T / s[kept]), s[kept], Vt[kept], visible)
 
 
 def _score(hypothesis: Hypothesis, projected: Projected, u: Float[np.ndarray, " rank"], chance: float) -> Score:
@@ -158,28 +164,34 @@ def _score(hypothesis: Hypothesis, projected: Projected, u: Float[np.ndarray, " 
 
 
 def family_wise(
-    bases: Sequence[Float[np.ndarray, "row _"]],
-    r: Float[np.ndarray, " row"],
-    fitted: Fitted,
-    rng: np.random.Generator,
+    along: Float[np.ndarray, " direction"],
+    freedom: Int[np.ndarray, " hypothesis"],
+    noise: Iterable[Float[np.ndarray, "direction draw"]],
 ) -> Float[np.ndarray, " hypothesis"]:
     """Of every hypothesis, how often pure noise gives any of them a score as unlikely.
 
     Hypotheses overlap, so their scores are taken of the same draws of noise. The errors of single recordings are known
     from few recordings only: each draw has them as large as these may be.
+
+    Parameters
+    ----------
+    along : array (direction,)
+        What the residual has along the directions of all hypotheses, one after the other.
+    freedom : array (hypothesis,)
+        How many directions each has.
+    noise : iterable of array (direction, draw)
+        What pure noise has along them, without end.
     """
-    freedom = np.array([basis.shape[1] for basis in bases])
     used = np.flatnonzero(freedom)
-    chances = np.ones(len(bases))
+    chances = np.ones(len(freedom))
     if not len(used):
         return chances
-    stacked = np.hstack([bases[i] for i in used])
     starts = np.concatenate([[0], np.cumsum(freedom[used])[:-1]])
-    own = log_tail(np.add.reduceat((stacked.T @ r) ** 2, starts), freedom[used])
+    own = log_tail(np.add.reduceat(along**2, starts), freedom[used])
     lowest = np.zeros(0)
-    for noise in fitted.null(stacked, AT_ONCE, rng):
-        drawn = np.add.reduceat(noise**2, starts, axis=0)
-        lowest = np.append(lowest, log_tail(drawn, freedom[used, None]).min(axis=0))
+    for drawn in noise:
+        gains = np.add.reduceat(drawn**2, starts, axis=0)
+        lowest = np.append(lowest, log_tail(gains, freedom[used, None]).min(axis=0))
         if len(lowest) >= DRAWS or (lowest <= own.min()).sum() >= LUCK:
             break
     beaten, none = (lowest[:, None] <= own).sum(axis=0), 1 / (len(lowest) + 1)

@@ -5,10 +5,10 @@ they are also the widest question that can be asked of a residual: whether anyth
 """
 
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import groupby, product
 
 import numpy as np
-from jaxtyping import Complex, Float
+from jaxtyping import Bool, Complex, Float
 
 from swgsim.effects.quantity import quantities
 from swgsim.effects.regularity import LAWS, PATTERNS, Regularity
@@ -16,10 +16,9 @@ from swgsim.loop.evidence import LEAST_GAIN
 from swgsim.loop.features import ORDERS, Layout
 from swgsim.loop.fitting import Fitted, extended
 from swgsim.loop.leading import ALPHA
-from swgsim.loop.screening import VISIBLE, family_wise
+from swgsim.loop.screening import AT_ONCE, VISIBLE, family_wise
 from swgsim.loop.tail import log_tail
 from swgsim.seeds import generator
-from swgsim.singular import svd
 
 # Prior standard deviation of an atom that is set free, in amplitudes found.
 WIDE = 100.0
@@ -120,20 +119,22 @@ def columns(atom: Atom, fitted: Fitted) -> Float[np.ndarray, "row column"]:
 
 def describe(fitted: Fitted) -> list[Described]:
     """Atoms by how unlikely they are by luck, the likeliest to be real first."""
-    return [described for described, _ in _described(fitted)]
+    return _Projected.of(fitted).ranked
 
 
 def strongest(fitted: Fitted, rng: np.random.Generator) -> Described:
     """The atom that is least likely by luck, with its chance and its rivals."""
-    found = _described(fitted)
-    chances = family_wise([U for _, U in found], fitted.whole.whiten(fitted.from_start), fitted, rng)
-    best, *others = (described for described, _ in found)
+    projected = _Projected.of(fitted)
+    freedom = np.array([each.freedom for each in projected.described])
+    noise = (projected.along(each) for each in fitted.null(AT_ONCE, rng))
+    chances = family_wise(projected.along(fitted.weighed), freedom, noise)
+    best, *others = projected.ranked
     rivals = tuple(
         other.atom.law
         for other in others
         if replace(other.atom, law=best.atom.law) == best.atom and best.gain - other.gain < 2 * LEAST_GAIN
     )
-    return replace(best, chance=float(chances[0]), rivals=rivals)
+    return replace(best, chance=float(chances[projected.described.index(best)]), rivals=rivals)
 
 
 def left(fitted: Fitted, seed: int, most: int) -> tuple[Described, ...]:
@@ -148,26 +149,59 @@ def left(fitted: Fitted, seed: int, most: int) -> tuple[Described, ...]:
     return tuple(found)
 
 
-def _described(fitted: Fitted) -> list[tuple[Described, Float[np.ndarray, "row _"]]]:
-    """Atoms in this order, with the directions of the weighed residual that each may take."""
-    tried = atoms(fitted.measured.layout)
-    blocks = [columns(atom, fitted) for atom in tried]
-    stacked = np.hstack(blocks)
-    ends = np.cumsum([block.shape[1] for block in blocks])[:-1]
-    alone = (fitted.errors.whiten(stacked) ** 2).sum(axis=0)
-    weighed = np.split(fitted.whole.whiten(stacked), ends, axis=1)
-    r = fitted.whole.whiten(fitted.from_start)
-    found = []
-    for atom, C, free in zip(tried, weighed, np.split(alone, ends), strict=True):
-        U, s, Vt = svd(C)
-        kept = s**2 > VISIBLE * max(float(free.max()), 1e-300)
-        U, s, Vt = U[:, kept], s[kept], Vt[kept]
-        along = U.T @ r
-        fit = Vt.T @ (along / s)
-        amplitude = float(np.hypot(*fit) if len(fit) == 2 else abs(fit[0]))
-        phase = float(np.arctan2(-fit[1], fit[0])) if len(fit) == 2 else float(np.pi * (fit[0] < 0))
-        found.append((Described(atom, float(along @ along), U.shape[1], amplitude, phase), U))
-    return sorted(found, key=lambda each: -each[0].rank)
+@dataclass(frozen=True, eq=False)
+class _Projected:
+    """All atoms, without what is declared absorbs of them.
+
+    Attributes
+    ----------
+    described : tuple of Described
+        In the order of their directions, an order of the revolution after the other.
+    blocks : tuple of (array (row,), array (row of the order, direction))
+        Of every order: its rows (a mask), and directions, along each of which a weighed residual has a standard
+        deviation of 1.
+    """
+
+    described: tuple[Described, ...]
+    blocks: tuple[tuple[Bool[np.ndarray, " row"], Float[np.ndarray, "_ _"]], ...]
+
+    @classmethod
+    def of(cls, fitted: Fitted) -> "_Projected":
+        """As a fit leaves them."""
+        measured = fitted.measured
+        described, blocks = [], []
+        for order, group in groupby(atoms(measured.layout), key=lambda atom: atom.order):
+            rows = np.tile(measured.layout.order == order, len(measured))
+            weighed, alone = (errors.precision(rows) for errors in (fitted.whole, fitted.errors))
+            directions = []
+            for atom in group:
+                C = columns(atom, fitted)[rows]
+                s2, V = np.linalg.eigh(C.T @ weighed @ C)
+                kept = s2 > VISIBLE * max(float((C * (alone @ C)).sum(axis=0).max()), 1e-300)
+                weights = V[:, kept] / np.sqrt(s2[kept])
+                directions.append(C @ weights)
+                described.append(_described(atom, weights, directions[-1].T @ fitted.weighed[rows]))
+            blocks.append((rows, np.hstack(directions)))
+        return cls(tuple(described), tuple(blocks))
+
+    @property
+    def ranked(self) -> list[Described]:
+        """The least likely by luck first."""
+        return sorted(self.described, key=lambda each: -each.rank)
+
+    def along(self, weighed: np.ndarray) -> np.ndarray:
+        """What a weighed residual (row,) has along all directions, or each of several."""
+        return np.concatenate([directions.T @ weighed[rows] for rows, directions in self.blocks])
+
+
+def _described(
+    atom: Atom, weights: Float[np.ndarray, "column direction"], along: Float[np.ndarray, " direction"]
+) -> Described:
+    """An atom, from how its columns make its directions and what the residual has along these."""
+    fit = weights @ along
+    amplitude = float(np.hypot(*fit) if len(fit) == 2 else abs(fit[0]))
+    phase = float(np.arctan2(-fit[1], fit[0])) if len(fit) == 2 else float(np.pi * (fit[0] < 0))
+    return Described(atom, float(along @ along), len(along), amplitude, phase)
 
 
 def set_free(fitted: Fitted, described: Described) -> Fitted:
