@@ -66,7 +66,7 @@ def of_form() -> tuple[np.ndarray, Model]:
     """Features that columns make together, and a model that has them as its deviation."""
     columns = form_columns((MAPS, LEARNED), SITUATIONS, 3)
     found = np.random.default_rng(1).normal(size=columns.shape[-1])
-    return columns @ found, Model(GEAR, (), lines_of((MAPS, LEARNED), found, 3, LAYOUT, GEAR.gauges.gain))
+    return columns @ found, Model(GEAR, (), lines_of((MAPS, LEARNED), found, 3, LAYOUT, GEAR.gauges))
 
 
 def test_a_model_has_the_deviation_that_its_columns_make(of_form):
@@ -89,12 +89,32 @@ def test_a_gain_scales_the_deviation_of_its_gauge_too(of_form):
     )
 
 
+def test_a_gauge_that_has_moved_sees_its_deviation_later(of_form):
+    features, deviating = of_form
+    turned = np.ones((3, ORDERS + 1), complex)
+    turned[1] = np.exp(-0.05j * np.arange(ORDERS + 1))
+    np.testing.assert_allclose(
+        with_and_without(deviating, LIBRARY["gauge_position"](sensor=0, shift=0.05)),
+        LAYOUT.lines(features) * turned, atol=1e-9,
+    )  # fmt: skip
+
+
+def test_the_chain_has_a_gauge_that_has_moved_see_the_same_later():
+    """But for what comes of the torque's ripple, which is felt at all angles at once."""
+    moved = Model(GEAR, (LIBRARY["gauge_position"](sensor=1, shift=0.05),))
+    here, later = LAYOUT.lines(predict([Model(GEAR), moved], SITUATIONS, LAYOUT, sectors=40))[:, :, 2, 2]
+    np.testing.assert_allclose(later, here * np.exp(-0.1j), rtol=1e-2)
+
+
 def test_lines_of_a_gauge_that_was_dead_stay(of_form):
     _, deviating = of_form
-    dead = OwnLines(replace(deviating.own_lines, gain=(0.0, 1, 1, 1, 1)), (2.0,) * 5)
+    was, now = (replace(GEAR.gauges, gain=gain) for gain in ((0.0, 1, 1, 1, 1), (2.0,) * 5))
+    dead = OwnLines(replace(deviating.own_lines, gauges=was), now)
     time = np.linspace(0, 0.1, 50)
     scene = Scene(time, 100 * time, 0 * time, POINTS[0], Conditions())
-    found, one = dead.gauge(np.zeros((5, 50)), scene), replace(dead, gain=(1.0,) * 5).gauge(np.zeros((5, 50)), scene)
+    found, one = dead.gauge(np.zeros((5, 50)), scene), replace(dead, gauges=was).gauge(np.zeros((5, 50)), scene)
+    twice = replace(dead, gauges=replace(was, gain=(0.0, 2, 2, 2, 2)))
+    np.testing.assert_allclose(found, twice.gauge(np.zeros((5, 50)), scene))
     np.testing.assert_allclose(found, [[1.0], [2], [2], [2], [2]] * one)
 
 

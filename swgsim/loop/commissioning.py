@@ -58,8 +58,8 @@ def commission(measured: Measured, unit: Unit) -> Unit:
     # Lines go into the model, so that effects on the signals act on them too.
     sizes = unit.form(predicted, measured.layout)
     form = len(shift) - sum(column_counts(sizes, unit.powers))
-    gain = fitted.model.run(measured.situations[0]).affected_gear.gauges.gain
-    lines = lines_of(sizes, shift[form:], unit.powers, measured.layout, gain)
+    gauges = fitted.model.run(measured.situations[0]).affected_gear.gauges
+    lines = lines_of(sizes, shift[form:], unit.powers, measured.layout, gauges)
     shift[form:] = 0.0
     model = replace(fitted.model, own_lines=lines)
     return replace(unit, model=model, reach=reach, shift=shift, scatter=fitted.scatter, nominal=nominal)

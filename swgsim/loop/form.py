@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float
 
+from swgsim.gauges import GaugeSet
 from swgsim.loop.features import Layout
 from swgsim.loop.model import Situation
 from swgsim.loop.own_lines import LAWS, Lines, laws
@@ -72,10 +73,8 @@ def column_counts(sizes: Sizes, powers: int) -> tuple[int, int]:
     return powers * int(np.count_nonzero(of_maps)), len(LAWS) * int(np.count_nonzero(of_learned))
 
 
-def lines_of(
-    sizes: Sizes, found: Float[np.ndarray, " column"], powers: int, layout: Layout, gain: tuple[float, ...]
-) -> Lines:
-    """What the columns of :func:`form_columns` make together, each as large as it was found by gauges of this gain."""
+def lines_of(sizes: Sizes, found: Float[np.ndarray, " column"], powers: int, layout: Layout, gauges: GaugeSet) -> Lines:
+    """What the columns of :func:`form_columns` make together, each as large as it was found by these gauges."""
     by_law = np.zeros((len(LAWS), len(layout)))
     of_maps, _ = column_counts(sizes, powers)
     for size, share, followed in zip(sizes, np.split(found, [of_maps]), (powers, len(LAWS)), strict=True):
@@ -83,4 +82,4 @@ def lines_of(
         by_law[:followed, own] += share.reshape(len(own), followed).T * size[own]
     lines = layout.lines(by_law)
     there = np.flatnonzero(lines.any(axis=(0, 2)))
-    return Lines(tuple(layout.channels[i] for i in there), lines[:, there], gain)
+    return Lines(tuple(layout.channels[i] for i in there), lines[:, there], gauges)

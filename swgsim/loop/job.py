@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from threadpoolctl import threadpool_limits
+
 from swgsim import settings, truth
 from swgsim.defects.defect import Defect
 from swgsim.effects.base import Effect
@@ -51,6 +53,7 @@ class Outcome:
     digest: str
 
 
+@threadpool_limits.wrap(limits=1)  # so that bytes do not depend on the cores, nor seconds on who else uses them
 def run(config: Mapping[str, Any]) -> Outcome:
     """Write ``report.json``, ``effects.yaml`` and ``page.html`` into the folder ``out``, and print the answer.
 

@@ -46,7 +46,7 @@ class Model:
         run = Run(self.gear, situation.point, self.effects, conditions=situation.conditions)
         if self.own_lines is None:
             return run
-        return replace(run, effects=(OwnLines(self.own_lines, run.affected_gear.gauges.gain), *self.effects))
+        return replace(run, effects=(OwnLines(self.own_lines, run.affected_gear.gauges), *self.effects))
 
     def plus(self, *effects: Effect) -> "Model":
         """The model with more effects."""

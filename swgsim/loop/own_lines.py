@@ -1,14 +1,15 @@
 """Lines of a gear where the chain has them elsewhere, as recordings of its healthy state show them."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Complex, Float
+from jaxtyping import Complex, Float, Int
 
 from swgsim.effects.base import Effect, Scene
 from swgsim.effects.frozen import FULL_LOAD
 from swgsim.effects.regularity import FULL_SPEED
+from swgsim.gauges import GaugeSet
 from swgsim.gear import OperatingPoint
 from swgsim.recordings import SENSORS
 
@@ -37,51 +38,60 @@ class Lines:
     channels : tuple of str
     values : array (law, channel, order)
         In the unit of each channel.
-    gain : tuple of float
-        Of every gauge, at which they were found.
+    gauges : GaugeSet
+        At which they were found.
     """
 
     channels: tuple[str, ...]
     values: Complex[np.ndarray, "law channel order"]
-    gain: tuple[float, ...]
+    gauges: GaugeSet
 
 
 @dataclass(frozen=True)
 class OwnLines(Effect):
     """What a structure or a drive other than the model's adds to the lines of gauges and drive.
 
-    It comes before all other effects, so that whatever delays, filters or clips a signal does so to the whole of it.
+    It comes before all other effects, so that whatever delays, filters or clips a signal does so to the whole of it. A
+    gauge that has moved since sees them later, and one of another gain as much larger.
 
     Attributes
     ----------
     lines : Lines
-    gain : tuple of float
-        Of every gauge that sees them.
+    gauges : GaugeSet
+        That see them.
     """
 
     place = "structure"
     lines: Lines
-    gain: tuple[float, ...]
+    gauges: GaugeSet
 
     def gauge(self, signals: Float[np.ndarray, "5 time"], scene: Scene) -> Float[np.ndarray, "5 time"]:
         """The bridge signals with their lines."""
-        waves = self._waves(scene)
-        was = np.array(self.lines.gain)
-        share = np.divide(self.gain, was, out=np.ones(len(was)), where=was != 0)
-        own = [waves.get(sensor, np.zeros(signals.shape[1])) for sensor in SENSORS]
-        return signals + share[:, None] * np.array(own)
+        own = [name for name in self.lines.channels if name in SENSORS]
+        which = [SENSORS.index(name) for name in own]
+        was, now = (np.array(each.gain)[which] for each in (self.lines.gauges, self.gauges))
+        moved = np.array(self.gauges.position)[which] - np.array(self.lines.gauges.position)[which]
+        share = np.divide(now, was, out=np.ones(len(was)), where=was != 0)
+        seen = signals.copy()
+        seen[which] += self._waves(own, scene, share[:, None] * np.exp(-1j * np.outer(moved, self._orders)))
+        return seen
 
     def acquisition(
         self, channels: Mapping[str, Float[np.ndarray, " time"]], scene: Scene
     ) -> Mapping[str, Float[np.ndarray, " time"]]:
         """The channels of the drive with their lines."""
         drive = [name for name in self.lines.channels if name not in SENSORS]
-        if not drive:
-            return channels
-        waves = self._waves(scene)
-        return {**channels, **{name: channels[name] + waves[name] for name in drive}}
+        waves = self._waves(drive, scene)
+        return {**channels, **{name: channels[name] + wave for name, wave in zip(drive, waves, strict=True)}}
 
-    def _waves(self, scene: Scene) -> dict[str, Float[np.ndarray, " time"]]:
-        lines = np.tensordot(laws(scene.point), self.lines.values, 1)
-        turns = np.exp(1j * np.outer(np.arange(lines.shape[1]), scene.phi_in))
-        return dict(zip(self.lines.channels, (lines @ turns).real, strict=True))
+    @property
+    def _orders(self) -> Int[np.ndarray, " order"]:
+        return np.arange(self.lines.values.shape[-1])
+
+    def _waves(
+        self, names: Sequence[str], scene: Scene, changed: Complex[np.ndarray, "channel order"] | complex = 1.0
+    ) -> Float[np.ndarray, "channel time"]:
+        """The lines of some channels over time, changed by so many times."""
+        which = [self.lines.channels.index(name) for name in names]
+        lines = changed * np.tensordot(laws(scene.point), self.lines.values[:, which], 1)
+        return (lines @ np.exp(1j * np.outer(self._orders, scene.phi_in))).real
