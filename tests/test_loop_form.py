@@ -14,24 +14,28 @@ from swgsim.effects.library import LIBRARY
 from swgsim.loop.features import ORDERS, Layout
 from swgsim.loop.form import form_columns, largest_lines, lines_of
 from swgsim.loop.model import Model, Situation, predict
-from swgsim.loop.own_lines import OwnLines
+from swgsim.loop.own_lines import Lines, OwnLines
 from swgsim.loop.unit import Unit
 
 LAYOUT = Layout(("T_in", "s0", "s1"))
 SITUATIONS = tuple(Situation(point, Conditions()) for point in POINTS)
 
 
+TORQUE = predict([Model(GEAR)], SITUATIONS, Layout(("T_out",)))[0]
+EVEN = TORQUE * (np.arange(TORQUE.shape[1]) == 0)
+# What orders beyond those compared make, and angles that are not passed evenly [mV/V].
+MISSED = 1e-5
 MAPS = 0.01 * (LAYOUT.channel != "T_in")
 LEARNED = np.where((LAYOUT.channel == "T_in") & (LAYOUT.order == 3), 2.0, 0.0)
 
 
 def test_every_second_deviation_of_a_map_grows_with_the_load():
-    found = form_columns((MAPS, 0 * MAPS), SITUATIONS, 2)
+    found = form_columns((MAPS, 0 * MAPS), SITUATIONS, 2, LAYOUT, EVEN)
     assert found.shape == (len(SITUATIONS), len(LAYOUT), 2 * 2 * 25)
     assert not found[:, LAYOUT.channel == "T_in"].any()
     assert found[:, LAYOUT.channel == "s0", ::2].max() == pytest.approx(0.01)
     load = np.array([point.T_out for point in POINTS]) / FULL_LOAD
-    np.testing.assert_allclose(found[..., 1::2], found[..., ::2] * load[:, None, None])
+    np.testing.assert_allclose(found[..., 1::2], found[..., ::2] * load[:, None, None], atol=1e-12)
 
 
 def test_only_maps_of_gauges_deviate_and_by_a_share_of_their_largest_line():
@@ -46,33 +50,34 @@ def test_only_maps_of_gauges_deviate_and_by_a_share_of_their_largest_line():
 
 def test_a_deviation_is_the_same_whatever_else_is_asked():
     """What commissioning found at six operating points holds for a question about one of them."""
-    whole, part = (form_columns((MAPS, LEARNED), situations, 2) for situations in (SITUATIONS, SITUATIONS[:1]))
+    whole, part = (form_columns((MAPS, LEARNED), SITUATIONS[:n], 2, LAYOUT, TORQUE[:n]) for n in (len(SITUATIONS), 1))
     np.testing.assert_allclose(part, whole[:1])
 
 
 def test_a_line_that_is_learned_follows_load_and_speed_alone():
     """Others stay as they are; a law of load and speed within those that are open is passed exactly."""
-    found = form_columns((0 * MAPS, LEARNED), SITUATIONS, 2)
+    found = form_columns((0 * MAPS, LEARNED), SITUATIONS, 2, LAYOUT, TORQUE)
     assert not found[:, LEARNED == 0].any()
     own = found[:, np.flatnonzero(LEARNED)[0]]
     load, speed = (np.array([getattr(s.point, name) for s in SITUATIONS]) for name in ("T_out", "n_in_rpm"))
     for law in (1 + 0 * load, 0.3 * load - 1e-3 * speed, load**2 + 1e-3 * load * speed):
         np.testing.assert_allclose(own @ np.linalg.lstsq(own, law)[0], law, atol=1e-8 * np.abs(law).max())
-    assert form_columns((0 * MAPS, 0 * MAPS), SITUATIONS, 2).shape == (*found.shape[:2], 0)
+    assert form_columns((0 * MAPS, 0 * MAPS), SITUATIONS, 2, LAYOUT, TORQUE).shape == (*found.shape[:2], 0)
 
 
 @pytest.fixture(scope="module")
 def of_form() -> tuple[np.ndarray, Model]:
     """Features that columns make together, and a model that has them as its deviation."""
-    columns = form_columns((MAPS, LEARNED), SITUATIONS, 3)
+    columns = form_columns((MAPS, LEARNED), SITUATIONS, 3, LAYOUT, TORQUE)
     found = np.random.default_rng(1).normal(size=columns.shape[-1])
     return columns @ found, Model(GEAR, (), lines_of((MAPS, LEARNED), found, 3, LAYOUT, GEAR.gauges))
 
 
 def test_a_model_has_the_deviation_that_its_columns_make(of_form):
+    """With what the ripple of the torque makes of it, which alone is a hundred times as much as may be missed."""
     features, deviating = of_form
     without, beside = predict([Model(GEAR), deviating], SITUATIONS, LAYOUT, sectors=40)
-    np.testing.assert_allclose(beside - without, features, atol=1e-9)
+    np.testing.assert_allclose(beside - without, features, atol=MISSED)
 
 
 def with_and_without(deviating: Model, effect: Effect) -> np.ndarray:
@@ -84,19 +89,18 @@ def with_and_without(deviating: Model, effect: Effect) -> np.ndarray:
 def test_a_gain_scales_the_deviation_of_its_gauge_too(of_form):
     features, deviating = of_form
     expected = LAYOUT.lines(features) * np.array([1, 0.6, 1])[:, None]
-    np.testing.assert_allclose(
-        with_and_without(deviating, LIBRARY["gauge_gain"](sensor=0, share=-0.4)), expected, atol=1e-9
-    )
+    found = with_and_without(deviating, LIBRARY["gauge_gain"](sensor=0, share=-0.4))
+    np.testing.assert_allclose(found, expected, atol=MISSED)
 
 
-def test_a_gauge_that_has_moved_sees_its_deviation_later(of_form):
-    features, deviating = of_form
-    turned = np.ones((3, ORDERS + 1), complex)
-    turned[1] = np.exp(-0.05j * np.arange(ORDERS + 1))
-    np.testing.assert_allclose(
-        with_and_without(deviating, LIBRARY["gauge_position"](sensor=0, shift=0.05)),
-        LAYOUT.lines(features) * turned, atol=1e-9,
-    )  # fmt: skip
+def test_a_gauge_that_has_moved_sees_its_deviation_later():
+    """Where the load is even; the ripple of the torque is felt at all angles at once."""
+    lines = np.zeros((5, 1, ORDERS + 1), complex)
+    lines[0, 0, [1, 2, 5]] = 0.01, 0.02j, 0.03
+    deviating = Model(GEAR, (), Lines(("s0",), lines, GEAR.gauges))
+    found = with_and_without(deviating, LIBRARY["gauge_position"](sensor=0, shift=0.05))
+    expected = lines[0, 0] * np.exp(-0.05j * np.arange(ORDERS + 1))
+    np.testing.assert_allclose(found[:, 1], np.tile(expected, (len(SITUATIONS), 1)), atol=1e-9)
 
 
 def test_the_chain_has_a_gauge_that_has_moved_see_the_same_later():

@@ -9,10 +9,11 @@ from collections.abc import Sequence
 
 import numpy as np
 from jaxtyping import Float
+from scipy.linalg import block_diag
 
 from swgsim.gauges import GaugeSet
-from swgsim.loop.features import Layout
-from swgsim.loop.model import Situation
+from swgsim.loop.features import ORDERS, Layout, basis
+from swgsim.loop.model import POINTS, Situation
 from swgsim.loop.own_lines import LAWS, Lines, laws
 
 # How far lines may deviate, of maps and of lines that are learned, each an array (feature,).
@@ -39,7 +40,11 @@ def lines_anywhere(
 
 
 def form_columns(
-    sizes: Sizes, situations: Sequence[Situation], powers: int
+    sizes: Sizes,
+    situations: Sequence[Situation],
+    powers: int,
+    layout: Layout,
+    torque: Float[np.ndarray, "situation feature_of_one"],
 ) -> Float[np.ndarray, "situation feature column"]:
     """Deviations of lines, one standard deviation each.
 
@@ -52,19 +57,37 @@ def form_columns(
     situations : sequence of Situation
     powers : int
         Of the load, by which the maps may deviate.
+    layout : Layout
+    torque : array (situation, feature of one channel)
+        Of the output, whose ripple the gauges feel as they do its mean.
     """
-    followed = np.array([laws(s.point) for s in situations])
+    followed = np.array([_followed(s, each, layout) for s, each in zip(situations, torque, strict=True)])
     of_maps, of_learned = sizes
     parts = [_columns(of_maps, followed[:, :powers]), _columns(of_learned, followed)]
     return np.concatenate(parts, axis=-1)
 
 
+def _followed(
+    situation: Situation, torque: Float[np.ndarray, " feature_of_one"], layout: Layout
+) -> Float[np.ndarray, "law feature feature"]:
+    """What becomes of every feature by each law: of a gauge's by the torque over the revolution, else by its mean."""
+    turn = basis(2 * np.pi * np.arange(POINTS) / POINTS, ORDERS)
+    mean = np.array(situation.point.T_out)
+    over_turn = mean + turn[:, 1:] @ torque[1:]
+    analysed = np.linalg.pinv(turn)
+    by_ripple = np.array([analysed @ (law[:, None] * turn) for law in laws(over_turn, situation.point.n_in_rpm)])
+    by_mean = laws(mean, situation.point.n_in_rpm)[:, None, None] * np.eye(turn.shape[1])
+    of_channel = [by_ripple if name.startswith("s") else by_mean for name in layout.channels]
+    return np.array([block_diag(*(each[law] for each in of_channel)) for law in range(len(LAWS))])
+
+
 def _columns(
-    size: Float[np.ndarray, " feature"], followed: Float[np.ndarray, "situation law"]
+    size: Float[np.ndarray, " feature"], followed: Float[np.ndarray, "situation law feature feature"]
 ) -> Float[np.ndarray, "situation feature column"]:
     """Every feature that has a size, by each law."""
-    features = size[:, None] * np.eye(len(size))[:, np.flatnonzero(size)]
-    return (features[:, :, None] * followed[:, None, None, :]).reshape(len(followed), len(size), -1)
+    own = np.flatnonzero(size)
+    columns = followed[..., own] * size[own]
+    return np.moveaxis(columns, 1, -1).reshape(len(followed), len(size), -1)
 
 
 def column_counts(sizes: Sizes, powers: int) -> tuple[int, int]:

@@ -10,11 +10,10 @@ from swgsim.effects.base import Effect, Scene
 from swgsim.effects.frozen import FULL_LOAD
 from swgsim.effects.regularity import FULL_SPEED
 from swgsim.gauges import GaugeSet
-from swgsim.gear import OperatingPoint
 from swgsim.recordings import SENSORS
 
 # What lines may follow over operating points, of load and speed in units of full ones.
-LAWS: tuple[Callable[[float, float], float], ...] = (
+LAWS: tuple[Callable[[np.ndarray, float], np.ndarray | float], ...] = (
     lambda load, speed: 1.0,
     lambda load, speed: load,
     lambda load, speed: load**2,
@@ -23,10 +22,10 @@ LAWS: tuple[Callable[[float, float], float], ...] = (
 )
 
 
-def laws(point: OperatingPoint) -> Float[np.ndarray, " law"]:
-    """All laws at an operating point."""
-    load, speed = point.T_out / FULL_LOAD, point.n_in_rpm / FULL_SPEED
-    return np.array([law(load, speed) for law in LAWS])
+def laws(T_out: Float[np.ndarray, "*time"], n_in_rpm: float) -> Float[np.ndarray, "law *time"]:  # noqa: F821
+    """All laws at a torque [N m] and a speed [rpm]."""
+    load, speed = T_out / FULL_LOAD, n_in_rpm / FULL_SPEED
+    return np.array([law(load, speed) + 0 * load for law in LAWS])
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +72,9 @@ class OwnLines(Effect):
         moved = np.array(self.gauges.position)[which] - np.array(self.lines.gauges.position)[which]
         share = np.divide(now, was, out=np.ones(len(was)), where=was != 0)
         seen = signals.copy()
-        seen[which] += self._waves(own, scene, share[:, None] * np.exp(-1j * np.outer(moved, self._orders)))
+        # The structure follows the torque at once, and so its ripple.
+        waves = self._waves(own, scene, share[:, None] * np.exp(-1j * np.outer(moved, self._orders)))
+        seen[which] += (waves * laws(scene.T_out, scene.point.n_in_rpm)[:, None]).sum(axis=0)
         return seen
 
     def acquisition(
@@ -81,7 +82,7 @@ class OwnLines(Effect):
     ) -> Mapping[str, Float[np.ndarray, " time"]]:
         """The channels of the drive with their lines."""
         drive = [name for name in self.lines.channels if name not in SENSORS]
-        waves = self._waves(drive, scene)
+        waves = np.tensordot(laws(np.array(scene.point.T_out), scene.point.n_in_rpm), self._waves(drive, scene), 1)
         return {**channels, **{name: channels[name] + wave for name, wave in zip(drive, waves, strict=True)}}
 
     @property
@@ -90,8 +91,8 @@ class OwnLines(Effect):
 
     def _waves(
         self, names: Sequence[str], scene: Scene, changed: Complex[np.ndarray, "channel order"] | complex = 1.0
-    ) -> Float[np.ndarray, "channel time"]:
-        """The lines of some channels over time, changed by so many times."""
+    ) -> Float[np.ndarray, "law channel time"]:
+        """The lines of some channels over time by law, changed by so many times."""
         which = [self.lines.channels.index(name) for name in names]
-        lines = changed * np.tensordot(laws(scene.point), self.lines.values[:, which], 1)
-        return (lines @ np.exp(1j * np.outer(self._orders, scene.phi_in))).real
+        turns = np.exp(1j * np.outer(self._orders, scene.phi_in))
+        return (changed * self.lines.values[:, which] @ turns).real

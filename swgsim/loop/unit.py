@@ -13,7 +13,7 @@ from swgsim.loop.declared import Declared, of_unit
 from swgsim.loop.features import Layout
 from swgsim.loop.form import Sizes, form_columns, largest_lines, lines_anywhere
 from swgsim.loop.healthy import FRICTION, of_friction, of_gauges
-from swgsim.loop.model import Model, Situation
+from swgsim.loop.model import Model, Situation, predict
 from swgsim.loop.scatter import Scatter
 
 # Declared accuracy of the structural model before the gear itself has been recorded: the mesh alone makes up to 2 %.
@@ -108,7 +108,8 @@ class Unit:
         directions = [of_own if self.nominal else of_own[..., :0]]
         if self.seen_healthy:
             directions += [of_gauges(predicted, situations, layout), of_friction(model, own, of_own, situations)]
-        directions.append(form_columns(self.form(predicted, layout), situations, self.powers))
+        torque = predict([model], situations, Layout(("T_out",)))[0]
+        directions.append(form_columns(self.form(predicted, layout), situations, self.powers, layout, torque))
         open_ = np.concatenate(directions, axis=-1)
         shift = np.zeros(predicted.shape) if self.shift is None else open_ @ self.shift
         return LeftOpen(predicted, shift, open_ if self.reach is None else open_ @ self.reach, of_parameters)
