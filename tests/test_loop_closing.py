@@ -136,6 +136,38 @@ def test_what_is_left_unknown_is_asked_for_where_it_may_speak_against_a_rival(mo
     assert given == ([(FITTED, 7, 1)] if contradiction else [()])
 
 
+@pytest.mark.parametrize("settled", [True, False])
+def test_all_that_was_found_is_fitted_once_more_in_its_own_form(monkeypatch, settled):
+    """Beside what was set apart; one effect alone was fitted like that."""
+    rows = len(FITTED.errors.variance)
+    opened = FITTED.allowing(np.ones((rows, 3)))
+    disturbance = Described(Atom(2, "in s1 alone", "constant"), 1.0, 2, 0.1, 0.0)
+    given = []
+
+    def extended(now, added):
+        given.append((now.allowed.shape[1], added))
+        return replace(now, calibrated=replace(now.calibrated, settled=settled))
+
+    monkeypatch.setattr(closing, "extended", extended)
+    end = closing.End(opened, (Step(A, (), ()), Step(B, (), ())), (disturbance,), (), Round((), None, None))
+    found = closing._together(end)
+    assert given == [(2, ())]
+    assert found.calibrated.settled
+    assert found.allowed is None
+    assert found.open.shape == FITTED.open.shape
+    closing._together(end._replace(steps=end.steps[:1]))
+    assert len(given) == 1
+
+
+def test_how_well_parts_agree_is_asked_with_all_effects_in_the_model(monkeypatch):
+    """An imperfect form of one leaves the size of the other in doubt."""
+    found = {0: Coherence(1.0, 0.1, 0.3), 1: Coherence(1.0, 0.2, 0.0)}
+    monkeypatch.setattr(closing, "coherence", lambda now, number: found[number] if now is FITTED else None)
+    monkeypatch.setattr(closing, "doubt_by_others", lambda now, number, others: 4 * others[1 - number].form_error / 2)
+    closed = Closed(FITTED, FITTED, FITTED, (Step(A, (), ()), Step(B, (), ())), (), (), (), None)
+    assert [each.doubt for each in closed.coherence] == pytest.approx([0.5, 0.2])
+
+
 def test_what_is_in_the_model_is_no_rival():
     step, other = Step(A, (), (B,)), Step(B, (), ())
     after = (replace(B.score, chance=2 * ALPHA),)

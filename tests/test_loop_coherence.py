@@ -169,6 +169,20 @@ def test_a_size_is_as_doubtful_as_another_structure_would_make_it(of_gauges):
     assert agreement.doubt == pytest.approx(moved.std(), rel=0.2)
 
 
+def test_a_size_is_as_doubtful_as_imperfect_forms_of_other_effects_would_make_it(planted, monkeypatch):
+    fitted, whole = planted
+    rng = np.random.default_rng(18)
+    other = fitted.measured.rows(STRONG * rng.standard_normal((len(fitted.measured.situations), len(LAYOUT))))
+    held = replace(fitted, open=np.hstack([fitted.open, 10 * other[:, None]]))
+    monkeypatch.setattr(evidence, "signature", lambda fitted, number: (whole, other)[number])
+    split = evidence.parts(held, other)
+    weights = held.whole.whiten(whole)
+    moved = weights @ held.whole.whiten(0.3 * split @ rng.standard_normal((split.shape[1], 300))) / (weights @ weights)
+    found = evidence.doubt_by_others(held, 0, {1: evidence.Coherence(1.0, form_error=0.3, doubt=0.0)})
+    assert found == pytest.approx(moved.std(), rel=0.2)
+    assert evidence.doubt_by_others(held, 0, {}) == 0.0
+
+
 def test_another_structure_costs_little_at_points_left_out(of_gauges):
     fitted, _, columns = of_gauges
     rng = np.random.default_rng(16)

@@ -1,15 +1,16 @@
 """Closing the loop: ask, add, and ask again; then ask for each effect once more with all the others in the model."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import reduce
+from dataclasses import dataclass, replace
+from functools import cached_property, reduce
 from typing import NamedTuple
 
 import numpy as np
 
 from swgsim.effects.base import Effect
 from swgsim.loop.asking import Round, ask, ask_behind
-from swgsim.loop.fitting import Fitted, fit
+from swgsim.loop.evidence import Coherence, coherence, doubt_by_others
+from swgsim.loop.fitting import Fitted, extended, fit
 from swgsim.loop.leading import screened
 from swgsim.loop.screening import Score
 from swgsim.loop.session import Measured
@@ -32,10 +33,10 @@ class Closed:
     Attributes
     ----------
     before, after : Fitted
-        The model without and with what was found.
+        The model without and with what was found, all of it fitted together.
     asked : Fitted
-        The latter with the form of what was found open within the tolerance: of what this leaves it is asked what more
-        is missing.
+        The model of the last asking, with the form of what was found open within the tolerance: of what this leaves it
+        is asked what more is missing.
     steps : tuple of Step
     scores : tuple of Score
         Of the first screening, best hypothesis of each effect.
@@ -71,11 +72,26 @@ class Closed:
         """Of what was rejected: the trial that came nearest."""
         return self.rejected[0] if self.rejected and np.isfinite(self.rejected[0].merit) else None
 
-    @property
+    @cached_property
+    def coherence(self) -> tuple[Coherence, ...]:
+        """How well the parts of each effect agree once all that was found is in the model.
+
+        When one was accepted, those that were found later still passed for an imperfect form of it. An imperfect form
+        of one leaves the sizes of the others in doubt too.
+        """
+        beside = [step.accepted.beside for step in self.steps for _ in step.accepted.effects]
+        fits = (reduce(set_free, (*self.apart, *each), self.after) for each in beside)
+        found = {n: coherence(fitted, n) for n, fitted in enumerate(fits, len(self.before.model.effects))}
+        by_others = (doubt_by_others(self.after, n, {m: c for m, c in found.items() if m != n}) for n in found)
+        return tuple(
+            replace(each, doubt=float(np.hypot(each.doubt, more)))
+            for each, more in zip(found.values(), by_others, strict=True)
+        )
+
+    @cached_property
     def deviation(self) -> dict[str, float]:
         """Standard deviation of each fitted parameter, by noise and by an imperfect form."""
-        found = [each for step in self.steps for each in step.accepted.coherence]
-        return widened(self.after.deviation, self.after.model, len(self.before.model.effects), found)
+        return widened(self.after.deviation, self.after.model, len(self.before.model.effects), self.coherence)
 
 
 class End(NamedTuple):
@@ -128,9 +144,21 @@ def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed
     steps = tuple(with_rivals(step, after, found, unknown) for step in end.steps)
     withdrawn = tuple(step.accepted for step in forward.steps if not what([step]) <= found | what(cancelled))
     return Closed(
-        before, end.now.strict, end.now, steps, forward.scores[0], after, end.last.trials, end.last.outdone_by,
+        before, _together(end), end.now, steps, forward.scores[0], after, end.last.trials, end.last.outdone_by,
         end.apart, withdrawn, tuple(step.accepted for step in cancelled),
     )  # fmt: skip
+
+
+def _together(end: End) -> Fitted:
+    """The model with all that was found, fitted once more with nothing of its form open.
+
+    The size of an effect whose form was open when the next one was added is that of the parts that this leaves alone;
+    the interval of a size is of a fit to all of them.
+    """
+    if len(end.steps) < 2:
+        return end.now.strict  # fitted like that
+    fitted = extended(reduce(set_free, end.apart, end.now.strict), ())
+    return (fitted if fitted.calibrated.settled else end.now).strict
 
 
 def _forward(

@@ -1,6 +1,6 @@
 """Whether an effect is the cause and no mimic: one size must serve all operating points, channels and orders."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -129,10 +129,10 @@ def coherence(fitted: Fitted, number: int) -> Coherence:
     unlikely = (u**2 / wider + np.log(wider)).sum(axis=1)
     error = float(FORM_ERRORS[np.argmin(unlikely)])
     apart = error * parts(fitted, signed)
-    shares = _shares(fitted, number, signed, np.hstack([apart, structure]))
+    by = _shares(fitted, number, signed, np.hstack([apart, structure]))
     beyond_noise = unlikely[0] - unlikely.min() > 2 * LEAST_GAIN
-    disagreement = float(np.linalg.norm(shares[: apart.shape[1]])) if beyond_noise else 0.0
-    return Coherence(chance, error, float(np.linalg.norm(shares)), disagreement)
+    disagreement = float(np.linalg.norm(by[: apart.shape[1]])) if beyond_noise else 0.0
+    return Coherence(chance, error, float(np.linalg.norm(by)), disagreement)
 
 
 def open_as_found(fitted: Fitted, coherences: Sequence[Coherence]) -> Fitted:
@@ -149,6 +149,20 @@ def open_as_found(fitted: Fitted, coherences: Sequence[Coherence]) -> Fitted:
         if agreement.tolerated:
             columns.append(agreement.tolerated * parts(fitted, signed))
     return fitted.allowing(np.hstack(columns))
+
+
+def doubt_by_others(fitted: Fitted, number: int, others: Mapping[int, Coherence]) -> float:
+    """Share by which the size of an effect is uncertain, as other effects differ from the library's shape.
+
+    Parameters
+    ----------
+    fitted : Fitted
+    number : int
+    others : mapping
+        Coherence of each of them by its number.
+    """
+    off = [each.form_error * parts(fitted, signature(fitted, other)) for other, each in others.items()]
+    return float(np.linalg.norm(_shares(fitted, number, signature(fitted, number), np.hstack(off)))) if off else 0.0
 
 
 def _shares(
