@@ -15,7 +15,7 @@ from omegaconf import OmegaConf
 
 from swgsim.acquisition import Window
 from swgsim.bench import Bench
-from swgsim.blind import baselines, job
+from swgsim.blind import attempt, baselines, job
 from swgsim.blind.altered import STRAY_CHANNELS, Alteration, Altered, StrayOrder, resized
 from swgsim.blind.baselines import Task
 from swgsim.blind.bench import Setting, in_question, unit_of, unseen
@@ -327,6 +327,24 @@ def test_what_went_wrong_is_said(case: Sealed, changes: dict, cause: str) -> Non
     judged = Judged(case, {**SAID, **changes})
     assert judged.cause == cause
     assert judged.why.startswith(case.stratum)
+
+
+@pytest.mark.parametrize(("orders", "which"), [((10, 3), 1), ((3, 10), 0), ((10,), 0), ((), None)])
+def test_another_order_of_a_kind_is_another_effect(orders: tuple[int, ...], which: int | None) -> None:
+    """Unless nothing else was found for it."""
+    pickup = LIBRARY["motor_pickup"]
+    assert attempt._found_as(pickup(3, 0.01), [pickup(p, 0.002) for p in orders]) == which
+
+
+@pytest.mark.parametrize("law", [None, Alteration(exponent=0.2)])
+def test_the_true_size_is_the_one_that_there_was(monkeypatch: pytest.MonkeyPatch, law: Alteration | None) -> None:
+    """An effect that is seen at one operating point only, which has another size at each."""
+    after = fitted_to(Layout(("T_in", "s1")), np.random.default_rng(1))
+    case, true = replace(HIDDEN, alteration=law), HIDDEN.effects[0]
+    for seen, point in zip(after.measured.point_rows(), after.measured.situations, strict=True):
+        monkeypatch.setattr(attempt, "signature", lambda _, number, seen=seen: {0: 2.0 * seen}[number])
+        there = resized(true, law.factor(point.point)).amplitude if law else true.amplitude
+        assert attempt._acted(true, case, after, 0) == pytest.approx(there, rel=1e-9)
 
 
 def test_a_mean_has_the_real_part_of_a_pattern_only() -> None:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from swgsim.blind.altered import resized
 from swgsim.blind.baselines import named_by_baselines
 from swgsim.blind.bench import Setting, in_question, unseen
 from swgsim.blind.drawing import unit_known
@@ -16,8 +17,10 @@ from swgsim.effects import text
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import size_of
 from swgsim.loop.answer import Answer, answer
+from swgsim.loop.evidence import signature
 from swgsim.loop.fitting import Fitted, fit
 from swgsim.loop.sidelines import is_random
+from swgsim.loop.steps import chosen
 from swgsim.loop.trial import Trial
 from swgsim.loop.unit import Unit
 from swgsim.recording import Recording
@@ -82,16 +85,38 @@ def _oracle(before: Fitted, unit: Unit, case: Sealed) -> Fitted:
 
 def _intervals(said: Answer, case: Sealed) -> list[dict[str, Any]]:
     """Sizes of the effects that were rightly found: true, found, and the standard deviation that was given."""
-    found = []
-    deviations = said.closed.deviation
-    for number, effect in enumerate(said.closed.after.model.effects):
-        for true in case.effects:
-            if type(true) is type(effect):
-                name = size_of(type(true))
-                deviation = deviations.get(f"{type(effect).title()} {number + 1}: {name}", np.nan)
-                values = {"true": getattr(true, name), "found": getattr(effect, name), "deviation": deviation}
-                found.append({"name": true.name(), **{key: float(value) for key, value in values.items()}})
+    found, after = [], said.closed.after
+    for true in case.effects:
+        number = _found_as(true, after.model.effects)
+        if number is not None:
+            effect, name = after.model.effects[number], size_of(type(true))
+            deviation = said.closed.deviation.get(f"{type(effect).title()} {number + 1}: {name}", np.nan)
+            values = {"true": _acted(true, case, after, number), "found": getattr(effect, name), "deviation": deviation}
+            found.append({"name": true.name(), **{key: float(value) for key, value in values.items()}})
     return found
+
+
+def _found_as(true: Effect, effects: Sequence[Effect]) -> int | None:
+    """Which of the effects of a model is a hidden one: of its kind, and the one that was chosen alike if one was.
+
+    A second one of the kind, such as another order, is a false effect and no other size of this one.
+    """
+    alike = [number for number, effect in enumerate(effects) if type(effect) is type(true)]
+    return next((number for number in alike if chosen(effects[number]) == chosen(true)), alike[0] if alike else None)
+
+
+def _acted(true: Effect, case: Sealed, after: Fitted, number: int) -> float:
+    """The size that a hidden effect had in the recordings: where it was another one at every operating point, the mean
+    of these, weighed by how much is seen of it there.
+
+    What these were made from by an altered law need not be among them.
+    """
+    name, measured = size_of(type(true)), after.measured
+    if case.alteration is None:
+        return getattr(true, name)
+    sizes = np.array([getattr(resized(true, case.alteration.factor(s.point)), name) for s in measured.situations])
+    seen = (signature(after, number) ** 2 / after.errors.variance).reshape(measured.values.shape).sum(axis=1)
+    return float(np.average(sizes[measured.of_recording], weights=seen))
 
 
 def _names(trial: Trial) -> list[str]:
