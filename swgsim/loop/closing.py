@@ -91,7 +91,7 @@ class Closed:
     @cached_property
     def deviation(self) -> dict[str, float]:
         """Standard deviation of each fitted parameter, by noise and by an imperfect form."""
-        return widened(self.after.deviation, self.after.model, len(self.before.model.effects), self.coherence)
+        return widened(self.after, len(self.before.model.effects), self.coherence)
 
 
 class End(NamedTuple):

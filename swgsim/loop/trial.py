@@ -1,6 +1,6 @@
 """A hypothesis fitted with everything else, and what speaks for it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -11,9 +11,9 @@ from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities, size_of
 from swgsim.loop.evidence import LEAST_GAIN, Coherence, coherence, open_as_found, open_form, signature
 from swgsim.loop.fitting import Fitted, extended
-from swgsim.loop.model import Model
 from swgsim.loop.refining import zoom
 from swgsim.loop.screening import Score
+from swgsim.loop.shapes import over_shapes
 from swgsim.loop.vocabulary import Described
 from swgsim.seeds import generator
 from swgsim.singular import svd
@@ -95,7 +95,7 @@ class Trial:
     def deviation(self) -> dict[str, float]:
         """Standard deviation of each fitted parameter, by noise and by an imperfect form."""
         first = len(self.fitted.model.effects) - len(self.effects)
-        return widened(self.fitted.deviation, self.fitted.model, first, self.coherence)
+        return widened(self.fitted, first, self.coherence)
 
     @property
     def merit(self) -> float:
@@ -143,23 +143,21 @@ def gained(now: Fitted, fitted: Fitted) -> tuple[Float[np.ndarray, " point"], fl
     return fitted.predictive - without.predictive, fitted.log_likelihood - without.log_likelihood
 
 
-def widened(
-    deviation: Mapping[str, float], model: Model, first: int, coherences: Sequence[Coherence]
-) -> dict[str, float]:
-    """Standard deviations of parameters, those of sizes also by what an imperfect form leaves in doubt.
+def widened(fitted: Fitted, first: int, coherences: Sequence[Coherence]) -> dict[str, float]:
+    """Standard deviation of each fitted parameter, over all shapes of an effect, and of sizes also by what an imperfect
+    form leaves in doubt.
 
     Parameters
     ----------
-    deviation : mapping
-        By noise, of every fitted parameter.
-    model : Model
+    fitted : Fitted
     first : int
         Number of the effect to which the first coherence belongs.
     coherences : sequence of Coherence
     """
-    found = dict(deviation)
+    found = dict(fitted.deviation)
     for number, agreement in enumerate(coherences, first):
-        effect = model.effects[number]
+        found |= over_shapes(fitted, number)
+        effect = fitted.model.effects[number]
         size = size_of(type(effect))
         by = getattr(effect, size) - quantities(type(effect))[size].nothing
         name = f"{effect.title()} {number + 1}: {size}"
