@@ -74,7 +74,7 @@ def _followed(
     turn = basis(2 * np.pi * np.arange(POINTS) / POINTS, ORDERS)
     mean = np.array(situation.point.T_out)
     over_turn = mean + turn[:, 1:] @ torque[1:]
-    analysed = np.linalg.pinv(turn)
+    analysed = (turn / (turn**2).sum(axis=0)).T  # of angles that are passed evenly
     by_ripple = np.array([analysed @ (law[:, None] * turn) for law in laws(over_turn, situation.point.n_in_rpm)])
     by_mean = laws(mean, situation.point.n_in_rpm)[:, None, None] * np.eye(turn.shape[1])
     of_channel = [by_ripple if name.startswith("s") else by_mean for name in layout.channels]
