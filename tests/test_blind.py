@@ -347,6 +347,17 @@ def test_the_true_size_is_the_one_that_there_was(monkeypatch: pytest.MonkeyPatch
         assert attempt._acted(true, case, after, 0) == pytest.approx(there, rel=1e-9)
 
 
+def test_the_true_size_is_weighed_by_how_much_is_seen_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By its square over the variance of the noise."""
+    after, case = fitted_to(Layout(("T_in",)), np.random.default_rng(1)), replace(HIDDEN, alteration=Alteration(0.2))
+    (first, second), points = after.measured.point_rows()[:2], [s.point for s in after.measured.situations]
+    deviation = np.sqrt(after.errors.variance)
+    monkeypatch.setattr(attempt, "signature", lambda *_: (first + 2.0 * second) * deviation)
+    sizes = [resized(HIDDEN.effects[0], case.alteration.factor(point)).amplitude for point in points[:2]]
+    expected = np.average(sizes, weights=[1, 4])
+    assert attempt._acted(HIDDEN.effects[0], case, after, 0) == pytest.approx(expected, rel=1e-9)
+
+
 def test_a_mean_has_the_real_part_of_a_pattern_only() -> None:
     turning = OUTSIDE[2].described.pattern
     unknown = {**SAID, "accepted": [], "rivals": [], "verdict": "unknown_effect"}

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from chain_fixtures import GEAR
 from fabricated_trials import FITTED, MIMIC, PAIR, A, B, C, Dip, Mimic, tried
 from loop_fixtures import BUMP, Bump, Wave
 
@@ -14,6 +15,7 @@ from swgsim.loop.asking import Round
 from swgsim.loop.closing import Closed
 from swgsim.loop.evidence import FORM_TOLERANCE, Coherence
 from swgsim.loop.leading import ALPHA, screened
+from swgsim.loop.model import Model
 from swgsim.loop.reporting import effects
 from swgsim.loop.reporting.effects import why
 from swgsim.loop.steps import Step, contradicted, what, with_rivals
@@ -136,9 +138,9 @@ def test_what_is_left_unknown_is_asked_for_where_it_may_speak_against_a_rival(mo
     assert given == ([(FITTED, 7, 1)] if contradiction else [()])
 
 
-@pytest.mark.parametrize("settled", [True, False])
-def test_all_that_was_found_is_fitted_once_more_in_its_own_form(monkeypatch, settled):
-    """Beside what was set apart; one effect alone was fitted like that."""
+@pytest.mark.parametrize(("settled", "left"), [(True, True), (False, True), (True, False)])
+def test_all_that_was_found_is_fitted_once_more_in_its_own_form(monkeypatch, settled, left):
+    """Beside what was set apart, unless that comes to no rest or leaves nothing of one; a lone effect was so before."""
     rows = len(FITTED.errors.variance)
     opened = FITTED.allowing(np.ones((rows, 3)))
     disturbance = Described(Atom(2, "in s1 alone", "constant"), 1.0, 2, 0.1, 0.0)
@@ -146,13 +148,16 @@ def test_all_that_was_found_is_fitted_once_more_in_its_own_form(monkeypatch, set
 
     def extended(now, added):
         given.append((now.allowed.shape[1], added))
-        return replace(now, calibrated=replace(now.calibrated, settled=settled))
+        model = replace(now.model, effects=(*now.model.effects, Bump(1.0)))
+        return replace(now, calibrated=replace(now.calibrated, model=model, settled=settled))
 
     monkeypatch.setattr(closing, "extended", extended)
+    monkeypatch.setattr(closing, "signature", lambda now, number: np.zeros(rows))
+    monkeypatch.setattr(closing, "seen", lambda now, signatures: left)
     end = closing.End(opened, (Step(A, (), ()), Step(B, (), ())), (disturbance,), (), Round((), None, None))
     found = closing._together(end)
     assert given == [(2, ())]
-    assert found.calibrated.settled
+    assert (found.calibrated is FITTED.calibrated) == (not (settled and left))
     assert found.allowed is None
     assert found.open.shape == FITTED.open.shape
     closing._together(end._replace(steps=end.steps[:1]))
@@ -161,11 +166,26 @@ def test_all_that_was_found_is_fitted_once_more_in_its_own_form(monkeypatch, set
 
 def test_how_well_parts_agree_is_asked_with_all_effects_in_the_model(monkeypatch):
     """An imperfect form of one leaves the size of the other in doubt."""
-    found = {0: Coherence(1.0, 0.1, 0.3), 1: Coherence(1.0, 0.2, 0.0)}
-    monkeypatch.setattr(closing, "coherence", lambda now, number: found[number] if now is FITTED else None)
-    monkeypatch.setattr(closing, "doubt_by_others", lambda now, number, others: 4 * others[1 - number].form_error / 2)
-    closed = Closed(FITTED, FITTED, FITTED, (Step(A, (), ()), Step(B, (), ())), (), (), (), None)
+    declared = replace(FITTED, calibrated=replace(FITTED.calibrated, model=Model(GEAR, (Wave(1.0),))))
+    disturbance = Described(Atom(2, "in s1 alone", "constant"), 1.0, 2, 0.1, 0.0)
+    found, free = {1: Coherence(1.0, 0.1, 0.3), 2: Coherence(1.0, 0.2, 0.0)}, []
+
+    def coherence(now, number):
+        free.append(now.allowed.shape[1])
+        return found[number]
+
+    def doubt(now, number, others):
+        free.append(now.allowed.shape[1])
+        (other,) = others
+        assert {number, other} == {1, 2}
+        return 2 * others[other].form_error
+
+    monkeypatch.setattr(closing, "coherence", coherence)
+    monkeypatch.setattr(closing, "doubt_by_others", doubt)
+    first, second = Step(replace(A, beside=(disturbance,)), (), ()), Step(B, (), ())
+    closed = Closed(declared, declared, declared, (first, second), (), (), (), None, (disturbance,))
     assert [each.doubt for each in closed.coherence] == pytest.approx([0.5, 0.2])
+    assert free == [4, 2, 2, 2]
 
 
 def test_what_is_in_the_model_is_no_rival():
@@ -184,7 +204,7 @@ def test_what_a_regularity_tells_beyond_an_effect_may_be_a_second_one(monkeypatc
     plain = Described(Atom(2, "in s1 alone", "constant"), 2000.0, 2, 0.1, 0.0)
     declared = replace(FITTED)
     monkeypatch.setattr(asking, "unbent", lambda now: declared if now is FITTED else now)
-    monkeypatch.setattr(asking, "begun", lambda start, *_: Bump(1.0) if start is declared else None)
+    monkeypatch.setattr(asking, "zoom", lambda _, start: Bump(1.0) if start is declared else None)
     monkeypatch.setattr(asking, "tried", lambda now, _, added, start: {FITTED: A}[now] if start is declared else None)
     monkeypatch.setattr(asking, "paired", lambda *_: (pair,) if pair else ())
     monkeypatch.setattr(asking, "worth_it", lambda pairs, _: next(iter(pairs), None))
@@ -244,7 +264,7 @@ def test_other_pairs_may_be_rivals_of_a_pair_alone(monkeypatch, accepted, listed
     best = A if accepted == "single" else tried(BUMP, agrees=0.0)
     other, doubles = (replace(PAIR, effects=(first(1.0), Dip(1.0))) for first in (Bump, Mimic))
     monkeypatch.setattr(asking, "unbent", lambda now: now)
-    monkeypatch.setattr(asking, "begun", lambda *_: Bump(1.0))
+    monkeypatch.setattr(asking, "zoom", lambda *_: Bump(1.0))
     monkeypatch.setattr(asking, "tried", lambda *_: best)
     monkeypatch.setattr(asking, "paired", lambda *_: (PAIR, other))
     monkeypatch.setattr(asking, "worth_it", lambda pairs, _: pairs[0])

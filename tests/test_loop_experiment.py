@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from chain_fixtures import GEAR
 from loop_fixtures import Bump, fitted_to
+from scipy.linalg import block_diag
 
 from swgsim.loop import experiment
 from swgsim.loop.experiment import FEASIBLE, SEPARATED, easiest
@@ -45,3 +46,30 @@ def test_another_structure_makes_two_effects_uncertain_by_the_root_of_their_squa
     )
     added = (unknown[0] ** 2).sum(axis=-1) - (known[0] ** 2).sum(axis=-1)
     np.testing.assert_allclose(added, np.where(layout.channel == "s0", 0.3**2 * (5.0**2 + 10.0**2), 0.0))
+
+
+@pytest.mark.parametrize("recordings", [1, 6])
+def test_separation_is_what_all_recordings_together_leave_of_the_difference(monkeypatch, recordings):
+    """By dense matrices of the rows there are and the mean of those to come."""
+    layout, rng = Layout(("T_in", "s0")), np.random.default_rng(2)
+    fitted = fitted_to(layout, rng)
+    measured, many = fitted.measured, len(fitted.measured.situations) + len(FEASIBLE) * len(experiment.CONDITIONS)
+    directions, moved = rng.standard_normal((many, len(layout), 3)), rng.standard_normal((many, len(layout)))
+    single = rng.standard_normal((many, len(layout), 2))
+    monkeypatch.setattr(experiment, "_directions", lambda _, situations: (0 * moved, directions))
+    monkeypatch.setattr(experiment, "predict", lambda models, *_: np.array([moved]))
+    monkeypatch.setattr(experiment.scatter, "directions", lambda _, situations, __: single[-len(situations) :])
+    scatter = replace(fitted.scatter, sd={"one": 0.5, "other": 2.0})
+    further = experiment._Further.of(replace(fitted, scatter=scatter), [Model(GEAR)])
+    found = further.separations(recordings)[4, 0]
+
+    new = len(measured.situations) + 4
+    of_session = measured.further("planned", further.candidates, 0 * moved[-60:]).session_columns(0 * moved[-60:])
+    alone = single[new] * [0.5, 2.0]
+    shared = of_session.reshape(60, len(layout), -1)[4]
+    to_come = shared @ shared.T + (alone @ alone.T + np.diag(np.median(measured.variance, axis=0))) / recordings
+    errors = fitted.errors
+    dense = block_diag(np.diag(errors.variance) + errors.G @ errors.G.T, to_come)
+    C = np.vstack([measured.rows(directions[: len(measured.situations)]), directions[new]])
+    d = np.concatenate([measured.rows(moved[: len(measured.situations)]), moved[new]])
+    assert found == pytest.approx(d @ np.linalg.solve(dense + C @ C.T, d), rel=1e-8)

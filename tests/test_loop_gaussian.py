@@ -68,7 +68,7 @@ def test_rows_left_out_have_the_conditional_distribution(rows, columns, seed):
     block = rng.permutation(np.arange(rows) < max(1, rows // 3))
     gain = dense[np.ix_(block, ~block)] @ np.linalg.inv(dense[np.ix_(~block, ~block)])
     mean, spread = gain @ r[~block], dense[np.ix_(block, block)] - gain @ dense[np.ix_(~block, block)]
-    found = covariance.left_out(r, block)
+    (found,) = covariance.left_out(r, [block])
     np.testing.assert_allclose(found.missed, r[block] - mean, rtol=1e-5, atol=1e-5)
     expected = multivariate_normal(mean, spread).logpdf(r[block]) + 0.5 * block.sum() * np.log(2 * np.pi)
     assert found.log_likelihood == pytest.approx(expected, rel=1e-5, abs=1e-4)

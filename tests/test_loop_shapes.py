@@ -47,7 +47,8 @@ def fitted_at(monkeypatch):
 
         def predicted(models, situations, layout):
             grown = [
-                sum((e.share * settled(time, e.constant)[0] for e in m.effects), np.zeros_like(time)) for m in models
+                sum((e.share * settled(time, e.constant)[0] for e in m.effects if isinstance(e, Settling)), 0 * time)
+                for m in models
             ]
             return np.stack([np.outer(each, law) for each in grown])
 
@@ -97,11 +98,26 @@ def test_size_and_shape_are_as_uncertain_as_all_shapes_leave_them(fitted_at, lon
     assert (found[SHARE], found[CONSTANT]) == pytest.approx(by_hand(fitted, time, law), rel=0.1)
 
 
-def test_where_a_shape_is_seen_the_derivatives_tell_the_same(fitted_at):
-    fitted, _ = fitted_at(200.0, 0.3, TRUTH)
+@pytest.mark.parametrize("noise", [0.3, 1e-4])
+def test_where_a_shape_is_seen_the_derivatives_tell_the_same(fitted_at, noise):
+    fitted, _ = fitted_at(200.0, noise, TRUTH)
     exact = holding(fitted, np.zeros(len(fitted.residual)))
     found, told = over_shapes(exact, 0), exact.deviation
     assert [found[name] for name in (SHARE, CONSTANT)] == pytest.approx([told[n] for n in (SHARE, CONSTANT)], rel=0.05)
+
+
+def test_neither_other_effects_nor_what_was_set_free_change_that(fitted_at):
+    fitted, _ = fitted_at(20.0, 1.0, Settling(6.0, 20.0))
+    column = np.random.default_rng(2).standard_normal((len(fitted.residual), 1))
+    free = fitted.allowing(1e4 * column)
+    before = replace(fitted.model, effects=(Bump(1.0), *fitted.model.effects))
+    parameters = of_effects(before)
+    J = np.concatenate([np.zeros((*fitted.calibrated.J.shape[:2], 1)), fitted.calibrated.J], axis=-1)
+    calibrated = replace(fitted.calibrated, model=before, position=dict.fromkeys(parameters, 0.0), J=J)
+    second = replace(free, parameters=parameters, calibrated=calibrated)
+    found = over_shapes(holding(second, fitted.residual + 1e3 * column[:, 0]), 1)
+    assert list(found) == ["settling 2: share", "settling 2: constant"]
+    assert list(found.values()) == pytest.approx(list(over_shapes(free, 0).values()), rel=1e-3)
 
 
 def test_an_effect_without_such_a_shape_is_left_alone():

@@ -8,7 +8,7 @@ from swgsim.effects.frozen import FULL_LOAD
 from swgsim.effects.regularity import LAWS
 from swgsim.gear import OperatingPoint
 from swgsim.loop.features import ORDERS, Layout
-from swgsim.loop.vocabulary import Atom, atoms, columns, strongest
+from swgsim.loop.vocabulary import Atom, atoms, columns, describe, strongest
 
 LAYOUT = Layout(("s1", "s2", "s3", "s4"))
 AZIMUTH = np.pi / 2 * np.arange(4)
@@ -98,3 +98,25 @@ def test_only_what_the_channels_can_show_is_tried():
     patterns = {atom.pattern for atom in atoms(LAYOUT)}
     assert "in s1 alone" in patterns
     assert not patterns & {"in s0 alone", "in T_in alone", "the same in all gauges"}
+
+
+def test_what_an_atom_explains_is_a_fit_to_all_rows(fitted):
+    """Which asks order by order, by the precision of their rows."""
+    residual = drawn(fitted.whole, np.random.default_rng(7))
+    asked = holding(fitted, residual)
+    white = fitted.whole.whiten(residual)
+    for described in describe(asked)[::50]:
+        C = fitted.whole.whiten(columns(described.atom, fitted))
+        explained = C @ np.linalg.lstsq(C, white)[0]
+        assert described.gain == pytest.approx(explained @ explained, rel=1e-6, abs=1e-8)
+
+
+def test_noise_is_drawn_as_it_is_declared(fitted):
+    """Weighed by the inverse of its covariance it has that inverse as its covariance."""
+    rows = np.arange(len(fitted.residual)) < 30
+    drawn_ = next(fitted.null(20_000, np.random.default_rng(8)))[rows]
+    expected = fitted.whole.precision(rows)
+    scale = np.sqrt(np.diag(expected))
+    np.testing.assert_allclose(
+        drawn_ @ drawn_.T / 20_000 / np.outer(scale, scale), expected / np.outer(scale, scale), atol=0.05
+    )

@@ -87,8 +87,9 @@ def _intervals(said: Answer, case: Sealed) -> list[dict[str, Any]]:
     """Sizes of the effects that were rightly found: true, found, and the standard deviation that was given."""
     found, after = [], said.closed.after
     for true in case.effects:
-        number = _found_as(true, after.model.effects)
-        if number is not None:
+        alike = _found_as(true, after.added)
+        if alike is not None:
+            number = len(after.unit.model.effects) + alike
             effect, name = after.model.effects[number], size_of(type(true))
             deviation = said.closed.deviation.get(f"{type(effect).title()} {number + 1}: {name}", np.nan)
             values = {"true": _acted(true, case, after, number), "found": getattr(effect, name), "deviation": deviation}
@@ -97,7 +98,7 @@ def _intervals(said: Answer, case: Sealed) -> list[dict[str, Any]]:
 
 
 def _found_as(true: Effect, effects: Sequence[Effect]) -> int | None:
-    """Which of the effects of a model is a hidden one: of its kind, and the one that was chosen alike if one was.
+    """Which of the effects found is a hidden one: of its kind, and the one that was chosen alike if one was.
 
     A second one of the kind, such as another order, is a false effect and no other size of this one.
     """

@@ -8,8 +8,9 @@ from swgsim.loop.beside import elsewhere, in_company, outdone
 from swgsim.loop.fitting import Fitted, unbent
 from swgsim.loop.leading import ALPHA, leaders, screened
 from swgsim.loop.pairs import of_doubles, paired, worth_it
+from swgsim.loop.refining import zoom
 from swgsim.loop.screening import Score
-from swgsim.loop.trial import Trial, begun, tried
+from swgsim.loop.trial import Trial, tried
 from swgsim.loop.vocabulary import Described, describe, freed, strongest
 from swgsim.seeds import generator
 
@@ -44,7 +45,7 @@ def ask(
     if not leading:
         return Round((), None, None)
     start = unbent(now)
-    alone = (tried(now, score, (begun(start, score, seed),), start) for score in leading)
+    alone = (tried(now, score, (zoom(score, start),), start) for score in leading)
     trials = tuple(sorted(alone, key=lambda trial: -trial.merit))
     best = trials[0]
     pairs = () if best.sound else paired(now, start, trials, kinds, seed)

@@ -9,13 +9,13 @@ import numpy as np
 
 from swgsim.effects.base import Effect
 from swgsim.loop.asking import Round, ask, ask_behind
-from swgsim.loop.evidence import Coherence, coherence, doubt_by_others
+from swgsim.loop.evidence import Coherence, coherence, doubt_by_others, signature
 from swgsim.loop.fitting import Fitted, extended, fit
 from swgsim.loop.leading import screened
 from swgsim.loop.screening import Score
 from swgsim.loop.session import Measured
 from swgsim.loop.steps import Step, cancelling, contradicted, joined, what, with_rivals
-from swgsim.loop.trial import Trial, widened
+from swgsim.loop.trial import Trial, seen, widened
 from swgsim.loop.unit import Unit
 from swgsim.loop.vocabulary import Described, freed, left, set_free
 from swgsim.seeds import generator
@@ -33,7 +33,7 @@ class Closed:
     Attributes
     ----------
     before, after : Fitted
-        The model without and with what was found, all of it fitted together.
+        The model without and with what was found; all effects were fitted together, if that came to rest.
     asked : Fitted
         The model of the last asking, with the form of what was found open within the tolerance: of what this leaves it
         is asked what more is missing.
@@ -79,10 +79,10 @@ class Closed:
         When one was accepted, those that were found later still passed for an imperfect form of it. An imperfect form
         of one leaves the sizes of the others in doubt too.
         """
+        first, after = len(self.before.model.effects), self._beside_what_is_apart
         beside = [step.accepted.beside for step in self.steps for _ in step.accepted.effects]
-        fits = (reduce(set_free, (*self.apart, *each), self.after) for each in beside)
-        found = {n: coherence(fitted, n) for n, fitted in enumerate(fits, len(self.before.model.effects))}
-        by_others = (doubt_by_others(self.after, n, {m: c for m, c in found.items() if m != n}) for n in found)
+        found = {n: coherence(reduce(set_free, each, after), n) for n, each in enumerate(beside, first)}
+        by_others = (doubt_by_others(after, n, {m: c for m, c in found.items() if m != n}) for n in found)
         return tuple(
             replace(each, doubt=float(np.hypot(each.doubt, more)))
             for each, more in zip(found.values(), by_others, strict=True)
@@ -90,8 +90,13 @@ class Closed:
 
     @cached_property
     def deviation(self) -> dict[str, float]:
-        """Standard deviation of each fitted parameter, by noise and by an imperfect form."""
-        return widened(self.after, len(self.before.model.effects), self.coherence)
+        """Standard deviation of each fitted parameter, by noise, all shapes and the imperfect form of all effects."""
+        return widened(self._beside_what_is_apart, len(self.before.model.effects), self.coherence)
+
+    @property
+    def _beside_what_is_apart(self) -> Fitted:
+        """The model with what was found, what was set apart being free as when that was fitted."""
+        return reduce(set_free, self.apart, self.after)
 
 
 class End(NamedTuple):
@@ -158,7 +163,9 @@ def _together(end: End) -> Fitted:
     if len(end.steps) < 2:
         return end.now.strict  # fitted like that
     fitted = extended(reduce(set_free, end.apart, end.now.strict), ())
-    return (fitted if fitted.calibrated.settled else end.now).strict
+    numbers = range(len(fitted.unit.model.effects), len(fitted.model.effects))
+    stayed = all(seen(fitted, signature(fitted, number)[:, None]) for number in numbers)
+    return (fitted if fitted.calibrated.settled and stayed else end.now).strict
 
 
 def _forward(

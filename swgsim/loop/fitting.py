@@ -132,7 +132,9 @@ class Fitted:
     def by_others(self) -> list[tuple[np.ndarray, Expected]]:
         """The rows of every operating point (a mask) and what all the others say of them; none if there is one only."""
         blocks = self.measured.point_rows()
-        return [(rows, self.whole.left_out(self.from_start, rows)) for rows in blocks] if len(blocks) > 1 else []
+        if len(blocks) == 1:
+            return []
+        return list(zip(blocks, self.whole.left_out(self.from_start, blocks), strict=True))
 
     @cached_property
     def nuisance(self) -> Float[np.ndarray, " row"]:

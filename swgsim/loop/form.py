@@ -9,7 +9,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from jaxtyping import Float
-from scipy.linalg import block_diag
 
 from swgsim.gauges import GaugeSet
 from swgsim.loop.features import ORDERS, Layout, basis
@@ -44,7 +43,7 @@ def form_columns(
     situations: Sequence[Situation],
     powers: int,
     layout: Layout,
-    torque: Float[np.ndarray, "situation feature_of_one"],
+    torque: Float[np.ndarray, "situation one"],
 ) -> Float[np.ndarray, "situation feature column"]:
     """Deviations of lines, one standard deviation each.
 
@@ -58,36 +57,38 @@ def form_columns(
     powers : int
         Of the load, by which the maps may deviate.
     layout : Layout
-    torque : array (situation, feature of one channel)
-        Of the output, whose ripple the gauges feel as they do its mean.
+    torque : array (situation, one)
+        Features of the output's torque, whose ripple the gauges feel as they do its mean.
     """
-    followed = np.array([_followed(s, each, layout) for s, each in zip(situations, torque, strict=True)])
     of_maps, of_learned = sizes
-    parts = [_columns(of_maps, followed[:, :powers]), _columns(of_learned, followed)]
+    followed = np.array([_followed(s, each, layout) for s, each in zip(situations, torque, strict=True)])
+    parts = [_columns(of_maps, followed[:, :, :powers]), _columns(of_learned, followed)]
     return np.concatenate(parts, axis=-1)
 
 
 def _followed(
-    situation: Situation, torque: Float[np.ndarray, " feature_of_one"], layout: Layout
-) -> Float[np.ndarray, "law feature feature"]:
-    """What becomes of every feature by each law: of a gauge's by the torque over the revolution, else by its mean."""
+    situation: Situation, torque: Float[np.ndarray, " one"], layout: Layout
+) -> Float[np.ndarray, "channel law one one"]:
+    """What becomes of every line of a channel by each law: of a gauge by the torque over the turn, else by its mean."""
     turn = basis(2 * np.pi * np.arange(POINTS) / POINTS, ORDERS)
     mean = np.array(situation.point.T_out)
-    over_turn = mean + turn[:, 1:] @ torque[1:]
-    analysed = (turn / (turn**2).sum(axis=0)).T  # of angles that are passed evenly
-    by_ripple = np.array([analysed @ (law[:, None] * turn) for law in laws(over_turn, situation.point.n_in_rpm)])
+    over_turn = laws(mean + turn[:, 1:] @ torque[1:], situation.point.n_in_rpm)
+    by_ripple = (turn / (turn**2).sum(axis=0)).T @ (over_turn[:, :, None] * turn)  # angles are passed evenly
     by_mean = laws(mean, situation.point.n_in_rpm)[:, None, None] * np.eye(turn.shape[1])
-    of_channel = [by_ripple if name.startswith("s") else by_mean for name in layout.channels]
-    return np.array([block_diag(*(each[law] for each in of_channel)) for law in range(len(LAWS))])
+    return np.array([by_ripple if name.startswith("s") else by_mean for name in layout.channels])
 
 
 def _columns(
-    size: Float[np.ndarray, " feature"], followed: Float[np.ndarray, "situation law feature feature"]
+    size: Float[np.ndarray, " feature"], followed: Float[np.ndarray, "situation channel law one one"]
 ) -> Float[np.ndarray, "situation feature column"]:
     """Every feature that has a size, by each law."""
+    situations, channels, laws_, one, _ = followed.shape
     own = np.flatnonzero(size)
-    columns = followed[..., own] * size[own]
-    return np.moveaxis(columns, 1, -1).reshape(len(followed), len(size), -1)
+    columns = np.zeros((situations, channels, one, len(own), laws_))
+    for column, feature in enumerate(own):
+        channel, line = divmod(int(feature), one)
+        columns[:, channel, :, column] = size[feature] * followed[:, channel, :, :, line].swapaxes(1, 2)
+    return columns.reshape(situations, len(size), -1)
 
 
 def column_counts(sizes: Sizes, powers: int) -> tuple[int, int]:

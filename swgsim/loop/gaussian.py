@@ -6,6 +6,7 @@ standard deviation. A residual, a signature and a prediction are all weighed wit
 a declared parameter can absorb costs nothing and counts for nothing.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -103,13 +104,19 @@ class Covariance:
         """The covariance of some of the rows."""
         return Covariance(self.variance[chosen], self.G[chosen])
 
-    def left_out(self, r: Float[np.ndarray, " row"], block: Bool[np.ndarray, " row"]) -> "Expected":
-        """The rows of a block as all the other rows predict them.
+    def left_out(self, r: Float[np.ndarray, " row"], blocks: Sequence[Bool[np.ndarray, " row"]]) -> list["Expected"]:
+        """The rows of each block as all the other rows predict them.
 
         With the precision P of all rows these miss r by (P_bb)^-1 (P r)_b, with the covariance (P_bb)^-1.
         """
+        weighed = self.weigh(r)
+        return [self._left_out(r, weighed[block], block) for block in blocks]
+
+    def _left_out(
+        self, r: Float[np.ndarray, " row"], weighed: Float[np.ndarray, " block"], block: Bool[np.ndarray, " row"]
+    ) -> "Expected":
         L = cholesky(self.precision(block), lower=True)
-        white = solve_triangular(L, self.weigh(r)[block], lower=True)
+        white = solve_triangular(L, weighed, lower=True)
         missed = solve_triangular(L, white, lower=True, trans=1)
         expected = np.array(r, copy=True)
         expected[block] -= missed  # which tells no more than the others do

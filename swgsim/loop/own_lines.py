@@ -51,7 +51,8 @@ class OwnLines(Effect):
     """What a structure or a drive other than the model's adds to the lines of gauges and drive.
 
     It comes before all other effects, so that whatever delays, filters or clips a signal does so to the whole of it. A
-    gauge that has moved since sees them later, and one of another gain as much larger.
+    gauge that has moved since sees them later, and one of another gain as much larger; the torque that they follow is
+    felt at all angles at once.
 
     Attributes
     ----------

@@ -5,7 +5,8 @@ from collections.abc import Sequence
 from swgsim.effects.base import Effect
 from swgsim.loop.fitting import Fitted, unbent
 from swgsim.loop.leading import LEADERS, NEARLY, leaders, screened
-from swgsim.loop.trial import Trial, begun, tried
+from swgsim.loop.refining import zoom
+from swgsim.loop.trial import Trial, tried
 from swgsim.seeds import generator
 
 # Log-likelihood that a pair must gain over the best effect alone; effects that are tried beside the leaders as they
@@ -55,7 +56,7 @@ def _with(
     leading = [trial for trial in trials if trial is not first][: LEADERS - 1]
     others = {type(effect): effect for trial in leading for effect in trial.effects}
     # What leads behind the first shows where it is only beside it.
-    others |= {type(effect): effect for effect in (begun(beside, score, seed) for score in behind)}
+    others |= {type(effect): effect for effect in (zoom(score, beside) for score in behind)}
     pairs = (
         tried(now, first.score, (*first.effects, effect), start)
         for kind, effect in others.items()

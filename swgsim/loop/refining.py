@@ -12,7 +12,7 @@ from swgsim.effects.quantity import Quantity, Role, quantities, size_of
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.hypotheses import Hypothesis, signatures
 from swgsim.loop.model import predict
-from swgsim.loop.screening import Score, screen
+from swgsim.loop.screening import Score, rank
 
 # Values that are tried beside the best one, and rounds; every round looks at a third of the last one's reach.
 TRIED, ROUNDS = 2, 4
@@ -25,7 +25,7 @@ STEPS, FACTORS, MOVES = (-0.5, -0.25, 0.25, 0.5), (0.7, 1.0, 1.4), 6
 LEAST = 1e-3
 
 
-def zoom(score: Score, fitted: Fitted, rng: np.random.Generator) -> Effect:
+def zoom(score: Score, fitted: Fitted) -> Effect:
     """The effect of a score at its likeliest inner parameters and size, for a fit to begin with.
 
     The signature is taken at the size that was found last, as that of a crack is far from proportional to its size.
@@ -37,7 +37,7 @@ def zoom(score: Score, fitted: Fitted, rng: np.random.Generator) -> Effect:
     for _ in range(ROUNDS if searched else 1):
         offsets = product(*[np.linspace(-1, 1, 2 * TRIED + 1) * reach[name] for name in searched])
         around = [_moved(best, dict(zip(searched, offset, strict=True)), declared) for offset in offsets]
-        best = screen(around, signatures(around, fitted.model, fitted.measured), fitted, rng)[0]
+        best = rank(around, signatures(around, fitted.model, fitted.measured), fitted)[0]
         reach = {name: by / 3 for name, by in reach.items()}
     if not np.isfinite(best.estimate):
         best = score

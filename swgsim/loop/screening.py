@@ -99,16 +99,26 @@ def screen(
         The model that is asked what it lacks.
     rng : Generator
     """
-    stacked = np.hstack(list(signatures))
-    ends = np.cumsum([s.shape[1] for s in signatures])[:-1]
-    weighed, alone = (np.split(errors.whiten(stacked), ends, axis=1) for errors in (fitted.whole, fitted.errors))
-    projected = [_projected(*each) for each in zip(signatures, weighed, alone, strict=True)]
+    projected = _all_projected(signatures, fitted)
     directions = np.hstack([p.directions for p in projected])
     freedom = np.array([p.directions.shape[1] for p in projected])
-    along = directions.T @ fitted.weighed
-    chances = family_wise(along, freedom, (directions.T @ noise for noise in fitted.null(AT_ONCE, rng)))
-    parts = np.split(along, np.cumsum(freedom)[:-1])
-    scores = [_score(*each) for each in zip(found, projected, parts, chances, strict=True)]
+    noise = (directions.T @ each for each in fitted.null(AT_ONCE, rng))
+    return _ranked(found, projected, fitted, family_wise(directions.T @ fitted.weighed, freedom, noise))
+
+
+def rank(found: Sequence[Hypothesis], signatures: Sequence[Float[np.ndarray, "row _"]], fitted: Fitted) -> list[Score]:
+    """The same where nobody asks for chances, which are nan: most of the time goes into drawing noise for them."""
+    return _ranked(found, _all_projected(signatures, fitted), fitted, np.full(len(found), np.nan))
+
+
+def _ranked(
+    found: Sequence[Hypothesis],
+    projected: Sequence["Projected"],
+    fitted: Fitted,
+    chances: Float[np.ndarray, " hypothesis"],
+) -> list[Score]:
+    along = [p.directions.T @ fitted.weighed for p in projected]
+    scores = [_score(*each) for each in zip(found, projected, along, chances, strict=True)]
     return sorted(scores, key=lambda score: (-score.rank, -score.visible))
 
 
@@ -131,13 +141,21 @@ class Projected(NamedTuple):
     visible: float
 
 
+def _all_projected(signatures: Sequence[Float[np.ndarray, "row _"]], fitted: Fitted) -> list[Projected]:
+    """All signatures without what is declared absorbs of them."""
+    stacked = np.hstack(list(signatures))
+    ends = np.cumsum([s.shape[1] for s in signatures])[:-1]
+    white, alone = (np.split(errors.whiten(stacked), ends, axis=1) for errors in (fitted.whole, fitted.errors))
+    return [_projected(*each) for each in zip(signatures, white, alone, strict=True)]
+
+
 def _projected(
     signature: Float[np.ndarray, "row column"],
-    weighed: Float[np.ndarray, "row column"],
+    white: Float[np.ndarray, "row column"],
     alone: Float[np.ndarray, "row column"],
 ) -> Projected:
     """Directions of a signature, from it whitened by all errors and without declared ones; none if these absorb it."""
-    _, s, Vt = svd(weighed)
+    _, s, Vt = svd(white)
     size = float((alone**2).sum())
     visible = float((s**2).sum()) / size if size > 0 else 0.0
     kept = s > NEGLIGIBLE * np.sqrt(size) if visible > VISIBLE else np.zeros(len(s), bool)

@@ -1,7 +1,5 @@
 """How uncertain an effect is whose shape the recordings hardly tell: averaged over its shapes, as likely as each is."""
 
-from dataclasses import replace
-
 import numpy as np
 from jaxtyping import Float
 
@@ -10,7 +8,7 @@ from swgsim.loop.fitting import Fitted
 from swgsim.loop.model import predict
 
 # Shapes over all of the range, and about the one that was found out to so many of its standard deviations.
-EVERYWHERE, NEAR, REACH = 25, 17, 4.0
+EVERYWHERE, NEAR, REACH = 25, 25, 6.0
 
 
 def over_shapes(fitted: Fitted, number: int) -> dict[str, float]:
@@ -36,7 +34,7 @@ def over_shapes(fitted: Fitted, number: int) -> dict[str, float]:
     here, near, q = getattr(effect, shape), REACH * fitted.deviation[of_shape], declared[shape]
     close = np.clip(here + np.linspace(-near, near, NEAR), q.low, q.high)
     tried = np.unique([*np.linspace(q.low, q.high, EVERYWHERE), *close])
-    found, unsure, likely = _sizes(fitted, number, shape, tried, (of_size, of_shape))
+    found, unsure, likely = _sizes(fitted, number, tried, (of_size, of_shape))
     between = np.diff(tried)
     weight = (np.append(between, 0) + np.append(0, between)) * np.exp(likely - likely.max())
     weight /= weight.sum()
@@ -45,16 +43,17 @@ def over_shapes(fitted: Fitted, number: int) -> dict[str, float]:
 
 
 def _sizes(
-    fitted: Fitted, number: int, shape: str, tried: Float[np.ndarray, " shape"], own: tuple[str, str]
+    fitted: Fitted, number: int, tried: Float[np.ndarray, " shape"], own: tuple[str, str]
 ) -> tuple[Float[np.ndarray, " shape"], Float[np.ndarray, " shape"], Float[np.ndarray, " shape"]]:
     """The likeliest size with each shape, its standard deviation, and how likely all is, everything else being open."""
     effect = fitted.model.effects[number]
     name = size_of(type(effect))
     q = quantities(type(effect))[name]
     others = [column for column, each in enumerate(fitted.parameters) if each not in own]
-    errors = fitted.errors.with_columns(np.hstack([fitted.strict.open, fitted.J[:, others]]))
+    # What else the fit left open is still in its residual.
+    errors = fitted.errors.with_columns(np.hstack([fitted.open, fitted.J[:, others]]))
     without = fitted.model.without(number)
-    with_shapes = [without.plus(replace(effect, **{shape: value})) for value in tried.tolist()]
+    with_shapes = [fitted.parameters[own[1]].at(fitted.model, value) for value in tried.tolist()]
     predicted = predict([without, fitted.model, *with_shapes], fitted.measured.situations, fitted.measured.layout)
     changes = fitted.measured.rows(np.moveaxis(predicted[1:] - predicted[0], 0, -1))
     position = np.array(list(fitted.calibrated.position.values()))

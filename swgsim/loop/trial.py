@@ -11,11 +11,9 @@ from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities, size_of
 from swgsim.loop.evidence import LEAST_GAIN, Coherence, coherence, open_as_found, open_form, signature
 from swgsim.loop.fitting import Fitted, extended
-from swgsim.loop.refining import zoom
 from swgsim.loop.screening import Score
 from swgsim.loop.shapes import over_shapes
 from swgsim.loop.vocabulary import Described
-from swgsim.seeds import generator
 from swgsim.singular import svd
 
 # Log-likelihood of all recordings that an effect must gain where left-out operating points do not tell.
@@ -93,21 +91,20 @@ class Trial:
 
     @property
     def deviation(self) -> dict[str, float]:
-        """Standard deviation of each fitted parameter, by noise and by an imperfect form."""
+        """Standard deviation of each fitted parameter, by noise, all shapes and an imperfect form."""
         first = len(self.fitted.model.effects) - len(self.effects)
         return widened(self.fitted, first, self.coherence)
 
     @property
     def merit(self) -> float:
         """What trials are ordered by; one that was fitted down to nothing is none."""
-        # Beside the errors alone: its own size is open too, and against that a small share of its spread is nothing.
-        seen = np.linalg.norm(self.fitted.errors.whiten(self.signature), axis=0)
-        return self.gain + self.evidence if (seen > NOTHING).all() else -np.inf
+        return self.gain + self.evidence if seen(self.fitted, self.signature) else -np.inf
 
 
-def begun(now: Fitted, score: Score, seed: int) -> Effect:
-    """The effect of a score, for a fit to begin with."""
-    return zoom(score, now, generator("zoom", seed, str(score.hypothesis)))
+def seen(fitted: Fitted, signatures: Float[np.ndarray, "row effect"]) -> bool:
+    """Whether more than nothing is left of all effects in a fit."""
+    # Beside the errors alone: their own sizes are open too, and against that a small share of a spread is nothing.
+    return bool((np.linalg.norm(fitted.errors.whiten(signatures), axis=0) > NOTHING).all())
 
 
 def tried(now: Fitted, score: Score, added: tuple[Effect, ...], start: Fitted) -> Trial:

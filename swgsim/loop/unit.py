@@ -1,12 +1,13 @@
 """What is known of a unit before its recordings are asked, and how far it may still lie elsewhere."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
 
+from swgsim.effects.base import overrides
 from swgsim.gear import Gear
 from swgsim.loop.calibration import linearised
 from swgsim.loop.declared import Declared, of_unit
@@ -108,7 +109,7 @@ class Unit:
         directions = [of_own if self.nominal else of_own[..., :0]]
         if self.seen_healthy:
             directions += [of_gauges(predicted, situations, layout), of_friction(model, own, of_own, situations)]
-        torque = predict([model], situations, Layout(("T_out",)))[0]
+        torque = predict([_driving(model)], situations, Layout(("T_out",)))[0]
         directions.append(form_columns(self.form(predicted, layout), situations, self.powers, layout, torque))
         open_ = np.concatenate(directions, axis=-1)
         shift = np.zeros(predicted.shape) if self.shift is None else open_ @ self.shift
@@ -132,6 +133,11 @@ class Unit:
         if self.structure <= STRUCTURE:
             return np.zeros((*signature.shape, 0))
         return self.structure * lines_anywhere(signature, layout)
+
+
+def _driving(model: Model) -> Model:
+    """The model whose torques are those that the structure feels, and not what a flange makes of them."""
+    return replace(model, own_lines=None, effects=tuple(e for e in model.effects if not overrides(e, "acquisition")))
 
 
 class LeftOpen(NamedTuple):

@@ -172,11 +172,11 @@ class _Projected:
         described, blocks = [], []
         for order, group in groupby(atoms(measured.layout), key=lambda atom: atom.order):
             rows = np.tile(measured.layout.order == order, len(measured))
-            weighed, alone = (errors.precision(rows) for errors in (fitted.whole, fitted.errors))
+            whole, alone = (errors.precision(rows) for errors in (fitted.whole, fitted.errors))
             directions = []
             for atom in group:
                 C = columns(atom, fitted)[rows]
-                s2, V = np.linalg.eigh(C.T @ weighed @ C)
+                s2, V = np.linalg.eigh(C.T @ whole @ C)
                 kept = s2 > VISIBLE * max(float((C * (alone @ C)).sum(axis=0).max()), 1e-300)
                 weights = V[:, kept] / np.sqrt(s2[kept])
                 directions.append(C @ weights)
