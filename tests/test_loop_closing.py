@@ -186,6 +186,10 @@ def test_how_well_parts_agree_is_asked_with_all_effects_in_the_model(monkeypatch
     closed = Closed(declared, declared, declared, (first, second), (), (), (), None, (disturbance,))
     assert [each.doubt for each in closed.coherence] == pytest.approx([0.5, 0.2])
     assert free == [4, 2, 2, 2]
+    monkeypatch.setattr(
+        closing, "widened", lambda now, first, each: {"free": now.allowed.shape[1], "first": first, "of": len(each)}
+    )
+    assert closed.deviation == {"free": 2, "first": 1, "of": 2}
 
 
 def test_what_is_in_the_model_is_no_rival():

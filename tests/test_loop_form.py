@@ -130,3 +130,14 @@ def test_a_filter_delays_the_deviation_of_its_gauge_too(of_form):
     expected[:, 2] /= 1 + 1j * turned
     found = with_and_without(deviating, LIBRARY["filter_mismatch"](sensor=1, lag=lag))
     np.testing.assert_allclose(found, expected, atol=1e-3 * np.abs(expected).max())
+
+
+def test_a_flange_changes_nothing_of_what_the_structure_feels():
+    """Only what a torque sensor shows: deviations of the maps follow the torque itself."""
+    unit = Unit(Model(GEAR))
+    alone, beside = (
+        unit.left_open(Model(GEAR, effects), SITUATIONS, LAYOUT).columns
+        for effects in ((), (LIBRARY["flange_gain"](share=0.05),))
+    )
+    assert alone.any()
+    np.testing.assert_array_equal(beside, alone)

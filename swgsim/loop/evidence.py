@@ -129,10 +129,10 @@ def coherence(fitted: Fitted, number: int) -> Coherence:
     unlikely = (u**2 / wider + np.log(wider)).sum(axis=1)
     error = float(FORM_ERRORS[np.argmin(unlikely)])
     apart = error * parts(fitted, signed)
-    by = _shares(fitted, number, signed, np.hstack([apart, structure]))
+    shares = _shares(fitted, number, signed, np.hstack([apart, structure]))
     beyond_noise = unlikely[0] - unlikely.min() > 2 * LEAST_GAIN
-    disagreement = float(np.linalg.norm(by[: apart.shape[1]])) if beyond_noise else 0.0
-    return Coherence(chance, error, float(np.linalg.norm(by)), disagreement)
+    disagreement = float(np.linalg.norm(shares[: apart.shape[1]])) if beyond_noise else 0.0
+    return Coherence(chance, error, float(np.linalg.norm(shares)), disagreement)
 
 
 def open_as_found(fitted: Fitted, coherences: Sequence[Coherence]) -> Fitted:

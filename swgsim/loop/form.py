@@ -82,9 +82,9 @@ def _columns(
     size: Float[np.ndarray, " feature"], followed: Float[np.ndarray, "situation channel law one one"]
 ) -> Float[np.ndarray, "situation feature column"]:
     """Every feature that has a size, by each law."""
-    situations, channels, laws_, one, _ = followed.shape
+    situations, channels, followable, one, _ = followed.shape
     own = np.flatnonzero(size)
-    columns = np.zeros((situations, channels, one, len(own), laws_))
+    columns = np.zeros((situations, channels, one, len(own), followable))
     for column, feature in enumerate(own):
         channel, line = divmod(int(feature), one)
         columns[:, channel, :, column] = size[feature] * followed[:, channel, :, :, line].swapaxes(1, 2)

@@ -22,7 +22,7 @@ LAWS: tuple[Callable[[np.ndarray, float], np.ndarray | float], ...] = (
 )
 
 
-def laws(T_out: Float[np.ndarray, "*time"], n_in_rpm: float) -> Float[np.ndarray, "law *time"]:  # noqa: F821
+def laws(T_out: Float[np.ndarray, "..."], n_in_rpm: float) -> Float[np.ndarray, "law ..."]:
     """All laws at a torque [N m] and a speed [rpm]."""
     load, speed = T_out / FULL_LOAD, n_in_rpm / FULL_SPEED
     return np.array([law(load, speed) + 0 * load for law in LAWS])

@@ -2,6 +2,7 @@
 
 import numpy as np
 from jaxtyping import Float
+from scipy.integrate import trapezoid
 
 from swgsim.effects.quantity import Role, quantities, size_of
 from swgsim.loop.fitting import Fitted
@@ -35,11 +36,10 @@ def over_shapes(fitted: Fitted, number: int) -> dict[str, float]:
     close = np.clip(here + np.linspace(-near, near, NEAR), q.low, q.high)
     tried = np.unique([*np.linspace(q.low, q.high, EVERYWHERE), *close])
     found, unsure, likely = _sizes(fitted, number, tried, (of_size, of_shape))
-    between = np.diff(tried)
-    weight = (np.append(between, 0) + np.append(0, between)) * np.exp(likely - likely.max())
-    weight /= weight.sum()
-    by_size = unsure**2 + (found - getattr(effect, size)) ** 2
-    return {of_size: float(np.sqrt(weight @ by_size)), of_shape: float(np.sqrt(weight @ (tried - here) ** 2))}
+    weight = np.exp(likely - likely.max())
+    squares = {of_size: unsure**2 + (found - getattr(effect, size)) ** 2, of_shape: (tried - here) ** 2}
+    total = trapezoid(weight, tried)
+    return {name: float(np.sqrt(trapezoid(weight * each, tried) / total)) for name, each in squares.items()}
 
 
 def _sizes(
