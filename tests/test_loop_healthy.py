@@ -12,7 +12,7 @@ from swgsim.loop import healthy
 from swgsim.loop.declared import of_unit
 from swgsim.loop.features import ORDERS, Layout
 from swgsim.loop.model import Model, Situation
-from swgsim.loop.session import OF_SESSION, Measured
+from swgsim.loop.session import KEPT, OF_SESSION, WANDER, Measured
 
 LAYOUT = Layout(("T_in", "s0", "s1"))
 SITUATIONS = tuple(Situation(point, Conditions(25.0 + number, 600.0 * number)) for number, point in enumerate(POINTS))
@@ -72,11 +72,27 @@ def test_an_error_of_the_angle_turns_what_was_recorded(predicted):
     np.testing.assert_allclose(1e-6 * silent(LAYOUT, predicted).turning, turned, atol=1e-9)
 
 
+def test_zeros_of_a_session_wander_as_a_random_walk_of_that_session(predicted):
+    measured = silent(LAYOUT, predicted)
+    mean = np.flatnonzero((LAYOUT.channel == "s1") & (LAYOUT.order == 0))[0]
+    columns = measured.session_columns(predicted).reshape(*predicted.shape, -1)[:, mean]
+    hours = np.array([r.conditions.elapsed / 3600 for r in measured.recordings])
+    same = np.equal.outer(*2 * [[r.session for r in measured.recordings]])
+    zero, drift = OF_SESSION["zero of s1"] ** 2, OF_SESSION["drift of s1"] ** 2 * np.outer(hours, hours)
+    walk = WANDER**2 * np.minimum.outer(hours, hours)
+    index = np.outer(measured.turning[:, mean], measured.turning[:, mean]) * OF_SESSION["index"] ** 2
+    gain = np.outer(predicted[:, mean], predicted[:, mean]) * OF_SESSION["gain of s1"] ** 2
+    found = columns @ columns.T - same * (zero + drift + gain + index)
+    assert not found[~same].any()
+    np.testing.assert_allclose(found, same * walk, atol=(1 - KEPT) * WANDER**2 * hours.sum())
+    assert (np.diag(found)[hours > 0] > 0).all()
+
+
 def test_a_session_has_gains_and_drifts_of_its_own(predicted):
     measured = silent(LAYOUT, predicted)
-    columns = measured.session_columns(predicted).reshape(*predicted.shape, 2, -1)
+    columns = measured.session_columns(predicted).reshape(*predicted.shape, -1)
     names = [name for name in OF_SESSION if name == "index" or name.partition(" of ")[2] in LAYOUT.channels]
-    first = columns[:, :, 0]
+    first = columns[..., : len(names)]
     assert not first[1::2].any()
     gain, drift = first[::2, :, names.index("gain of T_in")], first[::2, :, names.index("drift of s1")]
     np.testing.assert_allclose(gain, OF_SESSION["gain of T_in"] * predicted[::2] * (LAYOUT.channel == "T_in"))

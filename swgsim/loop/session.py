@@ -11,6 +11,7 @@ from swgsim.loop.features import Layout, features, layout_of
 from swgsim.loop.model import Situation
 from swgsim.loop.noise import floors, variance
 from swgsim.recording import Recording
+from swgsim.recordings import SENSORS
 
 # Errors of a whole session, as standard deviations: zeros [N m, mV/V], gains, drifts of a zero [mV/V per hour], the
 # index of the angle [rad]. Zeros of gauges as by 5 K at 1 uV/V per K; gains as of flanges of class 0.2, and of
@@ -25,6 +26,9 @@ OF_SESSION = {
     **{f"gain of s{sensor}": 0.0003 for sensor in range(5)},
     **{f"drift of s{sensor}": 0.002 for sensor in range(5)},
 }
+# Beside its drift the zero of a gauge wanders at random, as in a room that is not quite steady [mV/V per square root of
+# an hour, an estimate]. What so large a part of the variance is made of is kept; the rest is as of single recordings.
+WANDER, KEPT = 0.001, 0.95
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,4 +118,22 @@ class Measured:
                 }[kind]
                 if kind == "index" or own.any():
                     columns.append((sd * here * moved).ravel())
+            for path in _walks(hours[:, 0], here[:, 0]):
+                columns += [
+                    np.outer(WANDER * path, (self.layout.channel == gauge) & (self.layout.order == 0)).ravel()
+                    for gauge in SENSORS
+                    if gauge in self.layout.channels
+                ]
         return np.stack(columns, axis=1)
+
+
+def _walks(hours: Float[np.ndarray, " recording"], here: np.ndarray) -> Float[np.ndarray, "path recording"]:
+    """The paths that make up a random walk since the session began (Karhunen-Loeve), where its recordings are."""
+    since = hours[here]
+    values, vectors = np.linalg.eigh(np.minimum.outer(since, since))
+    largest = np.argsort(-values)
+    beyond = np.cumsum(values[largest]) - values[largest] > KEPT * values.sum()
+    kept = largest[~beyond & (values[largest] > 0)]
+    paths = np.zeros((len(kept), len(hours)))
+    paths[:, here] = (vectors * np.sqrt(np.maximum(values, 0)))[:, kept].T
+    return paths
