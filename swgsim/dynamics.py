@@ -25,25 +25,26 @@ from swgsim.gear import OperatingPoint, Transmission
 SLIDING_SPEED = 1e-3
 
 PHI_IN, OMEGA_IN, PHI_OUT, OMEGA_OUT, SPEED_ERROR = range(5)
-State = Float[np.ndarray, "5 run"]
+# Of runs at one instant, or at several times (time, run).
+State = Float[np.ndarray, "5 *any run"]
 
 
 @dataclass(frozen=True)
 class Torques:
-    """Torques [N m] and sliding speed [rad/s] at one instant, each an array (run,).
+    """Torques [N m] and sliding speed [rad/s], each an array (run,), or (time, run); a steady load is (run,) always.
 
     ``T_motor`` drives the input, ``T_wedge`` brakes it: the wave generator and losses beside it. ``T_in`` is what a
     torque flange feels that has a share of J_in, the rotor's, before it.
     """
 
-    T_motor: Float[np.ndarray, " run"]
-    T_in: Float[np.ndarray, " run"]
-    T_wedge: Float[np.ndarray, " run"]
-    T_stiff: Float[np.ndarray, " run"]
-    T_fric: Float[np.ndarray, " run"]
-    T_out: Float[np.ndarray, " run"]
-    T_load: Float[np.ndarray, " run"]
-    sliding: Float[np.ndarray, " run"]
+    T_motor: Float[np.ndarray, "*any run"]
+    T_in: Float[np.ndarray, "*any run"]
+    T_wedge: Float[np.ndarray, "*any run"]
+    T_stiff: Float[np.ndarray, "*any run"]
+    T_fric: Float[np.ndarray, "*any run"]
+    T_out: Float[np.ndarray, "*any run"]
+    T_load: Float[np.ndarray, "*constant run"]
+    sliding: Float[np.ndarray, "*any run"]
 
 
 class Drive:
@@ -146,12 +147,12 @@ class Drive:
         """What all effects together add."""
         if not self.acting:
             return Extra()
-        instants, total = np.stack(now), np.zeros((len(Extra._fields), len(self)))
+        instants, total = np.stack(now), np.zeros((len(Extra._fields), *now.phi_in.shape))
         for effect, runs in self.acting:
-            added = effect.drive(Instant(*instants[:, runs]))
+            added = effect.drive(Instant(*instants[..., runs]))
             for row, torque in zip(total, added, strict=True):
                 if isinstance(torque, np.ndarray) or torque:
-                    row[runs] += torque
+                    row[..., runs] += torque
         return Extra(*total)
 
     def derivative(self, state: State, torques: Torques) -> State:

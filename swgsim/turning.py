@@ -8,6 +8,7 @@ import numpy as np
 from swgsim.dynamics import Drive, State
 from swgsim.effects.base import Effect
 from swgsim.gear import OperatingPoint, Transmission
+from swgsim.harmonic_balance import one_revolution
 from swgsim.motion import Motion, advance, revolve, steady_state
 
 # Motions that are remembered at most, 3 kB each.
@@ -29,17 +30,16 @@ _remembered: dict[tuple[Driven, int], tuple[np.ndarray, ...]] = {}
 def forget() -> None:
     """Begin anew, so that what follows depends in no digit on what was asked before.
 
-    The steps of the integrator suit the stiffest motion of those that are computed together.
+    Motions that are computed together are corrected until the last of them has settled.
     """
     _remembered.clear()
 
 
 def settled(driven: Sequence[Driven]) -> tuple[Drive, State]:
     """The drive of some motions, and their state where they begin."""
-    transmissions, points, effects, start = zip(*driven, strict=True)
-    drive = Drive(transmissions, points, effects)
+    drive, start = _drive(driven)
     state = steady_state(drive)
-    return drive, advance(drive, state, np.array(start)) if any(start) else state
+    return drive, advance(drive, state, start) if start.any() else state
 
 
 def one_turn(driven: Sequence[Driven], points: int) -> Motion:
@@ -55,8 +55,22 @@ def one_turn(driven: Sequence[Driven], points: int) -> Motion:
         forget()
         new = list(driven)
     if new:
-        found = revolve(*settled(new), points)
-        dt = np.broadcast_to(found.dt, len(new))
-        rows = zip(found.phi_in, found.omega_in, found.omega_out, found.T_in, found.T_out, dt, strict=True)
-        _remembered.update(zip([(each, points) for each in new], rows, strict=True))
+        found, there = one_revolution(*_drive(new), points)
+        _remember(new, found)
+        if not there.all():  # too far from linear, as close to a resonance that is hardly damped
+            left = [each for each, settled_at in zip(new, there, strict=True) if not settled_at]
+            _remember(left, revolve(*settled(left), points))
     return Motion(*(np.stack(part) for part in zip(*(_remembered[each, points] for each in driven), strict=True)))
+
+
+def _drive(driven: Sequence[Driven]) -> tuple[Drive, np.ndarray]:
+    """The drive of some motions, and the angles where they begin."""
+    transmissions, points, effects, start = zip(*driven, strict=True)
+    return Drive(transmissions, points, effects), np.array(start)
+
+
+def _remember(driven: Sequence[Driven], found: Motion) -> None:
+    dt = np.broadcast_to(found.dt, len(driven))
+    rows = zip(found.phi_in, found.omega_in, found.omega_out, found.T_in, found.T_out, dt, strict=True)
+    points = found.phi_in.shape[1] - 1
+    _remembered.update(zip([(each, points) for each in driven], rows, strict=True))

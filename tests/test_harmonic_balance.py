@@ -1,0 +1,90 @@
+"""Harmonic balance finds the motion that integrating settles at."""
+
+import numpy as np
+import pytest
+
+from swgsim import harmonic_balance, turning
+from swgsim.dynamics import Drive
+from swgsim.effects.base import Effect
+from swgsim.effects.library import LIBRARY
+from swgsim.effects.quantity import quantities, size_of
+from swgsim.gear import OperatingPoint, Transmission
+from swgsim.harmonic_balance import one_revolution
+from swgsim.motion import Motion, revolve, steady_state
+from swgsim.turning import Driven, forget, one_turn
+
+POINTS = 64
+OPERATING = [OperatingPoint(n, T) for n in (800.0, 4000.0) for T in (7.0, 70.0)]
+KINDS = [
+    "churning_loss", "elastic_hysteresis", "input_unbalance", "load_torque_ripple", "lost_motion",
+    "motor_torque_ripple", "position_friction", "seal_friction", "speed_ripple", "stiffness_ripple",
+    "stribeck_friction",
+]  # fmt: skip
+
+
+def strong(name: str) -> tuple[Effect, ...]:
+    """An effect of half the largest size that it may have."""
+    kind = LIBRARY[name]
+    size, declared = size_of(kind), quantities(kind)
+    order = {"order": 4} if "order" in declared else {}
+    return (kind(**{size: 0.5 * declared[size].high}, **order),)
+
+
+def drive(b3: float, *effects: tuple[Effect, ...]) -> Drive:
+    own = effects or ((),)
+    runs = [(Transmission(b3=b3, rotor_share=0.3), point, effect) for effect in own for point in OPERATING]
+    return Drive(*zip(*runs, strict=True))
+
+
+def both(of: Drive) -> tuple[Motion, Motion]:
+    """By harmonic balance, and by integrating with so many steps that their error is small."""
+    found, settled = one_revolution(of, np.zeros(len(of)), POINTS)
+    assert settled.all()
+    return found, revolve(of, steady_state(of), POINTS)
+
+
+@pytest.mark.parametrize("kind", ["", *KINDS])
+def test_it_is_the_motion_that_integrating_settles_at(kind, monkeypatch):
+    monkeypatch.setattr("swgsim.motion.STEPS_PER_REVOLUTION", 4 * POINTS)
+    found, expected = both(drive(0.0, strong(kind) if kind else ()))
+    for name in ("phi_in", "omega_in", "omega_out", "T_in", "T_out", "dt"):
+        np.testing.assert_allclose(getattr(found, name), getattr(expected, name), rtol=1e-6, atol=1e-6)
+
+
+def test_all_power_that_is_not_lost_comes_out():
+    without = Transmission(b0=0, b1=0, b2=0, b3=0, mu=0)
+    found, _ = one_revolution(Drive([without] * 4, OPERATING), np.zeros(4), POINTS)
+    np.testing.assert_allclose(found.efficiency, 1, atol=1e-5)
+
+
+def test_friction_over_the_output_revolution_begins_anew_with_each_of_the_input():
+    found, expected = both(drive(0.07))
+    # It changes by b3 2 pi / 101 within, and what of that is seen depends on the numbers of points.
+    step = 0.07 * 2 * np.pi / 101 / np.sin(np.pi / 6)
+    np.testing.assert_allclose(found.T_out, expected.T_out, atol=step)
+
+
+def test_it_begins_at_the_angle_that_is_asked_for():
+    start = np.array([0.0, 0.7, -0.4, 3.0])
+    found, _ = one_revolution(drive(0.0), start, POINTS)
+    whole, _ = one_revolution(drive(0.0), np.zeros(4), POINTS)
+    np.testing.assert_allclose(found.phi_in[:, 0], start, atol=1e-9)
+    for T_out, angle, one, at in zip(found.T_out, found.phi_in, whole.T_out, whole.phi_in, strict=True):
+        again = np.interp(angle, at, one, period=2 * np.pi)
+        np.testing.assert_allclose(T_out, again, atol=0.02 * np.ptp(one))
+
+
+def test_what_does_not_settle_is_integrated(monkeypatch):
+    runs = [Driven(Transmission(b3=0.0), point, (), 0.0) for point in OPERATING]
+    forget()
+    found = one_turn(runs, POINTS)
+    forget()
+    monkeypatch.setattr(harmonic_balance, "CORRECTIONS", 1)
+    integrated = []
+    settle = turning.settled
+    monkeypatch.setattr(turning, "settled", lambda driven: integrated.extend(driven) or settle(driven))
+    again = one_turn(runs, POINTS)
+    forget()
+    assert integrated == runs
+    np.testing.assert_allclose(again.T_out, found.T_out, rtol=1e-4)
+    assert not np.array_equal(again.T_out, found.T_out)
