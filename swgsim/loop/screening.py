@@ -209,7 +209,11 @@ def family_wise(
     lowest = np.zeros(0)
     for drawn in noise:
         gains = np.add.reduceat(drawn**2, starts, axis=0)
-        lowest = np.append(lowest, log_tail(gains, freedom[used, None]).min(axis=0))
+        # Of those with as many directions the largest gain is the least likely.
+        largest = (
+            log_tail(gains[freedom[used] == many].max(axis=0), many) for many in np.unique(freedom[used]).tolist()
+        )
+        lowest = np.append(lowest, np.min(list(largest), axis=0))
         if len(lowest) >= DRAWS or (lowest <= own.min()).sum() >= LUCK:
             break
     beaten, none = (lowest[:, None] <= own).sum(axis=0), 1 / (len(lowest) + 1)
