@@ -15,7 +15,8 @@ from swgsim.effects import Effect
 from swgsim.effects.library import LIBRARY
 from swgsim.effects.regularity import Regularity
 from swgsim.gear import Gear, OperatingPoint
-from swgsim.loop.closing import Closed, close
+from swgsim.loop.closed import Closed
+from swgsim.loop.closing import close
 from swgsim.loop.commissioning import commission
 from swgsim.loop.fitting import fit
 from swgsim.loop.leading import ALPHA

@@ -9,10 +9,10 @@ from chain_fixtures import GEAR
 from fabricated_trials import FITTED, MIMIC, PAIR, A, B, C, Dip, Mimic, tried
 from loop_fixtures import BUMP, Bump, Wave
 
-from swgsim.loop import asking, closing, steps
+from swgsim.loop import asking, closed, closing, steps
 from swgsim.loop.answer import UNKNOWN, Answer
 from swgsim.loop.asking import Round
-from swgsim.loop.closing import Closed
+from swgsim.loop.closed import Closed
 from swgsim.loop.evidence import FORM_TOLERANCE, Coherence
 from swgsim.loop.leading import ALPHA, screened
 from swgsim.loop.model import Model
@@ -132,10 +132,28 @@ def test_what_is_left_unknown_is_asked_for_where_it_may_speak_against_a_rival(mo
     monkeypatch.setattr(
         closing, "_forward", lambda *_: closing.End(FITTED, (step,), (), ((), ()), Round((), None, None))
     )
-    monkeypatch.setattr(closing, "left", lambda now, seed, most: (now, seed, most))
+    left = tuple(Described(Atom(order, "in s1 alone", "constant"), 20.0, 2, 0.1, 0.0) for order in (3, 5))
+    monkeypatch.setattr(closing, "left", lambda now, seed, most: left if (now, seed, most) == (FITTED, 7, 3) else ())
     monkeypatch.setattr(closing, "with_rivals", lambda step, after, found, unknown: given.append(unknown) or step)
-    closing.close(FITTED.measured, FITTED.unit, (), seed=7)
-    assert given == ([(FITTED, 7, 1)] if contradiction else [()])
+    found = closing.close(FITTED.measured, FITTED.unit, (), seed=7)
+    assert given == ([left[:1]] if contradiction else [()])
+    assert found.unknown == left
+
+
+def test_an_effect_that_leaves_much_is_put_off_and_what_is_left_without_it_is_described(monkeypatch):
+    step, bare = Step(A, (), ()), replace(FITTED)
+    much = Described(Atom(4, "the same in s1 to s4", "constant"), 1e9, 2, 0.1, 0.0)
+    more = replace(much, gain=2e9)
+    monkeypatch.setattr(closing, "fit", lambda *_: bare)
+    monkeypatch.setattr(
+        closing, "_forward", lambda *_: closing.End(FITTED, (step,), (), ((), ()), Round((), None, None))
+    )
+    monkeypatch.setattr(closing, "screened", lambda *_: ())
+    monkeypatch.setattr(closing, "left", lambda now, *_: (more,) if now is bare else (much,))
+    found = closing.close(FITTED.measured, FITTED.unit, ())
+    assert (found.steps, found.outweighed, found.unknown, found.withdrawn) == ((), (A,), (more,), ())
+    assert found.rejected == (A,)
+    assert found.asked is bare
 
 
 @pytest.mark.parametrize(("settled", "left"), [(True, True), (False, True), (True, False)])
@@ -180,16 +198,16 @@ def test_how_well_parts_agree_is_asked_with_all_effects_in_the_model(monkeypatch
         assert {number, other} == {1, 2}
         return 2 * others[other].form_error
 
-    monkeypatch.setattr(closing, "coherence", coherence)
-    monkeypatch.setattr(closing, "doubt_by_others", doubt)
+    monkeypatch.setattr(closed, "coherence", coherence)
+    monkeypatch.setattr(closed, "doubt_by_others", doubt)
     first, second = Step(replace(A, beside=(disturbance,)), (), ()), Step(B, (), ())
-    closed = Closed(declared, declared, declared, (first, second), (), (), (), None, (disturbance,))
-    assert [each.doubt for each in closed.coherence] == pytest.approx([0.5, 0.2])
+    now = Closed(declared, declared, declared, (first, second), (), (), (), None, (disturbance,))
+    assert [each.doubt for each in now.coherence] == pytest.approx([0.5, 0.2])
     assert free == [4, 2, 2, 2]
     monkeypatch.setattr(
-        closing, "widened", lambda now, first, each: {"free": now.allowed.shape[1], "first": first, "of": len(each)}
+        closed, "widened", lambda now, first, each: {"free": now.allowed.shape[1], "first": first, "of": len(each)}
     )
-    assert closed.deviation == {"free": 2, "first": 1, "of": 2}
+    assert now.deviation == {"free": 2, "first": 1, "of": 2}
 
 
 def test_what_is_in_the_model_is_no_rival():
@@ -233,6 +251,24 @@ def test_effects_that_cancel_are_no_causes(monkeypatch, other, both):
     pair = (Step(replace(A, effects=(*A.effects, *B.effects)), (), ()),)
     assert steps.cancelling(pair, now) == (pair if both else ())
     assert steps.cancelling(found[:1], now) == ()
+
+
+@pytest.mark.parametrize(
+    ("patterns", "gains", "light"),
+    [
+        (["the same in s1 to s4"], [11.0], True),
+        (["the same in s1 to s4"], [9.0], False),
+        (["in s2 alone"], [1e6], False),
+        (["in s2 alone", "in s2 alone", "the same in s1 to s4"], [1e6, 1e6, 9.0], False),
+        (["in T_out alone", "in T_in alone"], [1e6, 11.0], True),
+        ([], [], False),
+    ],
+    ids=["much", "little", "an instrument", "an instrument beside little", "two channels", "nothing"],
+)
+def test_what_brings_hardly_more_than_what_is_left_is_no_cause(patterns, gains, light):
+    left = [Described(Atom(2, p, "constant"), g, 2, 0.1, 0.0) for p, g in zip(patterns, gains, strict=True)]
+    weak, strong = Step(replace(A, evidence=50.0), (), ()), Step(replace(B, evidence=5e9), (), ())
+    assert steps.outweighed([weak, strong], left) == ((weak,) if light else ())
 
 
 def test_another_pair_is_a_rival_if_what_only_it_has_says_nothing_more():
@@ -283,11 +319,13 @@ def test_other_pairs_may_be_rivals_of_a_pair_alone(monkeypatch, accepted, listed
 
 
 def test_it_is_said_why_an_effect_is_no_cause():
+    light = replace(A)
     vague = replace(A, coherence=(Coherence(0.5, 0.3, 0.7, 0.66),))
     pair = replace(PAIR, coherence=(Coherence(0.5, 0.0, 0.0), Coherence(0.5, 0.3, 0.7, 0.66)))
-    closed = Closed(FITTED, FITTED, FITTED, (), (), (), (B, C, vague, pair), None, (), (C,), (B,))
-    answer = Answer(UNKNOWN, closed, (), (), (), (), ())
+    found = Closed(FITTED, FITTED, FITTED, (), (), (), (B, C, light, vague, pair), None, (), (C,), (B,), (light,))
+    answer = Answer(UNKNOWN, found, (), (), (), ())
     assert why(B, answer) == "it and another one all but cancel: together they imitate something else"
     assert why(C, answer).startswith("accepted at first")
+    assert why(light, answer).startswith("it explains hardly more than what it leaves")
     assert why(vague, answer) == "operating points, channels and orders leave its size in doubt by 66 %"
     assert "leave the size of wave in doubt by 66 %" in why(pair, answer)

@@ -8,7 +8,7 @@ from loop_fixtures import Bump, drawn, fitted_to, holding
 
 from swgsim.effects.regularity import OF_TIME
 from swgsim.loop import patching
-from swgsim.loop.closing import Closed
+from swgsim.loop.closed import Closed
 from swgsim.loop.declared import Declared
 from swgsim.loop.errors import errors, of_points_left_out
 from swgsim.loop.features import Layout
@@ -48,8 +48,8 @@ def is_added(fitted: Fitted, shares: np.ndarray, rivals: tuple[str, ...] = ()) -
     held = np.sum([s * rows for s, rows in zip(shares, fitted.measured.point_rows(), strict=True)], axis=0)
     now = holding(fitted, 20 * held * columns(ATOM, fitted)[:, 0] + drawn(fitted.errors, np.random.default_rng(2)))
     described = Described(ATOM, 1000.0, 2, 20.0, 0.0, 0.001, rivals)
-    closed = Closed(now, now, now, (), (), (), (), None)
-    return patching.patched(closed, [described]).after is not now
+    closed = Closed(now, now, now, (), (), (), (), None, unknown=(described,))
+    return patching.patched(closed).after is not now
 
 
 def test_one_that_holds_everywhere_is_added(fitted: Fitted) -> None:

@@ -7,7 +7,8 @@ from swgsim.effects.base import Effect
 from swgsim.effects.regularity import Regularity
 from swgsim.effects.text import in_words
 from swgsim.loop.between import between
-from swgsim.loop.closing import Closed, close
+from swgsim.loop.closed import Closed
+from swgsim.loop.closing import close
 from swgsim.loop.leading import ALPHA
 from swgsim.loop.lines import cleaned, search
 from swgsim.loop.patching import patched
@@ -17,13 +18,11 @@ from swgsim.loop.sidelines import Sideline
 from swgsim.loop.trial import Trial
 from swgsim.loop.unit import Unit
 from swgsim.loop.unnamed import Unnamed
-from swgsim.loop.vocabulary import Described, left
+from swgsim.loop.vocabulary import Described
 from swgsim.recording import Recording
 from swgsim.turning import forget
 
 NOTHING, FOUND, UNKNOWN = "nothing_missing", "effect_found", "unknown_effect"
-# Regularities that are described at most.
-MOST_ATOMS = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,8 +38,6 @@ class Answer:
         Declared effects between the orders; the model of the order lines does without them.
     lines : tuple of Sideline
         Effects between the orders that were found.
-    unknown : tuple of Described
-        Regularities that no effect of the library explains.
     unnamed : tuple of Unnamed
         Lines between the orders that none explains.
     absorbed : tuple of Score
@@ -51,9 +48,13 @@ class Answer:
     closed: Closed
     known: tuple[Effect, ...]
     lines: tuple[Sideline, ...]
-    unknown: tuple[Described, ...]
     unnamed: tuple[Unnamed, ...]
     absorbed: tuple[Score, ...]
+
+    @property
+    def unknown(self) -> tuple[Described, ...]:
+        """Regularities that no effect of the library explains."""
+        return self.closed.unknown
 
     @property
     def added(self) -> tuple[Effect, ...]:
@@ -133,8 +134,7 @@ def answer(
     lines = search(between(recordings, N), kinds, ALPHA, known)
     clean = [cleaned(recording, lines.effects, N) for recording in recordings] if lines.effects else recordings
     closed = close(Measured.of(clean), unit, kinds, seed=seed)
-    unknown = (*closed.apart, *left(closed.asked, seed, MOST_ATOMS))
     absorbed = tuple(score for score in closed.scores if score.absorbed)
     found = closed.steps or lines.named
-    verdict = FOUND if found else UNKNOWN if closed.rejected or unknown or lines.unnamed else NOTHING
-    return Answer(verdict, patched(closed, unknown), tuple(known), lines.named, unknown, lines.unnamed, absorbed)
+    verdict = FOUND if found else UNKNOWN if closed.rejected or closed.unknown or lines.unnamed else NOTHING
+    return Answer(verdict, patched(closed), tuple(known), lines.named, lines.unnamed, absorbed)

@@ -1,21 +1,19 @@
 """Closing the loop: ask, add, and ask again; then ask for each effect once more with all the others in the model."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property, reduce
+from functools import reduce
 from typing import NamedTuple
-
-import numpy as np
 
 from swgsim.effects.base import Effect
 from swgsim.loop.asking import Round, ask, ask_behind
-from swgsim.loop.evidence import Coherence, coherence, doubt_by_others, signature
+from swgsim.loop.closed import Closed
+from swgsim.loop.evidence import signature
 from swgsim.loop.fitting import Fitted, extended, fit
 from swgsim.loop.leading import screened
 from swgsim.loop.screening import Score
 from swgsim.loop.session import Measured
-from swgsim.loop.steps import Step, cancelling, contradicted, joined, what, with_rivals
-from swgsim.loop.trial import Trial, seen, widened
+from swgsim.loop.steps import Step, cancelling, contradicted, joined, outweighed, what, with_rivals
+from swgsim.loop.trial import seen
 from swgsim.loop.unit import Unit
 from swgsim.loop.vocabulary import Described, freed, left, set_free
 from swgsim.seeds import generator
@@ -24,79 +22,8 @@ from swgsim.seeds import generator
 MOST = 3
 # Times that an effect is asked again with all the others in the model, at most.
 MOST_AGAIN = 6
-
-
-@dataclass(frozen=True, eq=False)
-class Closed:
-    """What closing the loop found.
-
-    Attributes
-    ----------
-    before, after : Fitted
-        The model without and with what was found; all effects were fitted together, if that came to rest.
-    asked : Fitted
-        The model of the last asking, with the form of what was found open within the tolerance: of what this leaves it
-        is asked what more is missing.
-    steps : tuple of Step
-    scores : tuple of Score
-        Of the first screening, best hypothesis of each effect.
-    left : tuple of Score
-        Of the last screening.
-    rejected : tuple of Trial
-        Significant, but of the wrong form: they contradict themselves, cancel one another, a bare regularity explains
-        more, or they act only where one was set apart.
-    outdone_by : Described or None
-        That regularity.
-    apart : tuple of Described
-        Disturbances of single channels that were set apart before an effect was found behind them.
-    withdrawn : tuple of Trial
-        Accepted at first, and another one, or nothing, in its place once the others were in the model.
-    cancelling : tuple of Trial
-        Accepted, until they were seen to cancel one another; they are among the rejected.
-    """
-
-    before: Fitted
-    after: Fitted
-    asked: Fitted
-    steps: tuple[Step, ...]
-    scores: tuple[Score, ...]
-    left: tuple[Score, ...]
-    rejected: tuple[Trial, ...]
-    outdone_by: Described | None
-    apart: tuple[Described, ...] = ()
-    withdrawn: tuple[Trial, ...] = ()
-    cancelling: tuple[Trial, ...] = ()
-
-    @property
-    def nearest(self) -> Trial | None:
-        """Of what was rejected: the trial that came nearest."""
-        return self.rejected[0] if self.rejected and np.isfinite(self.rejected[0].merit) else None
-
-    @cached_property
-    def coherence(self) -> tuple[Coherence, ...]:
-        """How well the parts of each effect agree once all that was found is in the model.
-
-        When one was accepted, those that were found later still passed for an imperfect form of it. An imperfect form
-        of one leaves the sizes of the others in doubt too.
-        """
-        first, after = len(self.before.model.effects), self._beside_what_is_apart
-        beside = [step.accepted.beside for step in self.steps for _ in step.accepted.effects]
-        found = {n: coherence(reduce(set_free, each, after), n) for n, each in enumerate(beside, first)}
-        by_others = (doubt_by_others(after, n, {m: c for m, c in found.items() if m != n}) for n in found)
-        return tuple(
-            replace(each, doubt=float(np.hypot(each.doubt, more)))
-            for each, more in zip(found.values(), by_others, strict=True)
-        )
-
-    @cached_property
-    def deviation(self) -> dict[str, float]:
-        """Standard deviation of each fitted parameter, by noise, all shapes and the imperfect form of all effects."""
-        return widened(self._beside_what_is_apart, len(self.before.model.effects), self.coherence)
-
-    @property
-    def _beside_what_is_apart(self) -> Fitted:
-        """The model with what was found, what was set apart being free as when that was fitted."""
-        return reduce(set_free, self.apart, self.after)
+# Regularities that are described at most.
+MOST_ATOMS = 3
 
 
 class End(NamedTuple):
@@ -144,13 +71,19 @@ def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed
             end = _forward(together, revised, forward.apart, kinds, seed)
     if cancelled := cancelling(end.steps, end.now):
         end = _without(cancelled, end, before, kinds, seed)
+    unknown = left(end.now, seed, MOST_ATOMS)
+    if light := outweighed(end.steps, (*end.apart, *unknown)):
+        end = _without(light, end, before, kinds, seed)
+        unknown = left(end.now, seed, MOST_ATOMS)
     found, after = what(end.steps), end.scores[-1]
-    unknown = left(end.now, seed, 1) if any(map(contradicted, end.steps)) else ()
-    steps = tuple(with_rivals(step, after, found, unknown) for step in end.steps)
-    withdrawn = tuple(step.accepted for step in forward.steps if not what([step]) <= found | what(cancelled))
+    spoiling = unknown[:1] if any(map(contradicted, end.steps)) else ()
+    steps = tuple(with_rivals(step, after, found, spoiling) for step in end.steps)
+    dropped = found | what(cancelled) | what(light)
+    withdrawn = tuple(step.accepted for step in forward.steps if not what([step]) <= dropped)
     return Closed(
         before, _together(end), end.now, steps, forward.scores[0], after, end.last.trials, end.last.outdone_by,
-        end.apart, withdrawn, tuple(step.accepted for step in cancelled),
+        end.apart, withdrawn, tuple(step.accepted for step in cancelled), tuple(step.accepted for step in light),
+        (*end.apart, *unknown),
     )  # fmt: skip
 
 
@@ -185,18 +118,18 @@ def _forward(
         now = found.accepted.with_open_form
 
 
-def _without(cancelled: Sequence[Step], end: End, before: Fitted, kinds: Sequence[type[Effect]], seed: int) -> End:
-    """The end without steps that cancel one another, of which none is the cause; the runner-up is not taken instead.
+def _without(dropped: Sequence[Step], end: End, before: Fitted, kinds: Sequence[type[Effect]], seed: int) -> End:
+    """The end without steps of which none is the cause after all; the runner-up is not taken instead.
 
     A pair goes as a whole, as its members were only sound together. Where the rest does not come to rest, it goes too.
     """
-    kept = tuple(step for step in end.steps if step not in cancelled)
+    kept = tuple(step for step in end.steps if step not in dropped)
     now = joined(reduce(set_free, end.apart, before), kept)
     if not kept or not now.calibrated.settled:
         kept, now = (), reduce(freed, end.apart, before)
     scores = screened(now, kinds, generator("screen without", seed))
-    accepted = sorted((step.accepted for step in cancelled), key=lambda trial: -trial.merit)
-    others = (trial for step in cancelled for trial in step.others)
+    accepted = sorted((step.accepted for step in dropped), key=lambda trial: -trial.merit)
+    others = (trial for step in dropped for trial in step.others)
     return End(now, kept, end.apart, (*end.scores, scores), Round((*accepted, *others, *end.last.trials), None, None))
 
 

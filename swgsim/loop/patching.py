@@ -1,17 +1,15 @@
 """Patches: regularities without a cause, in the model where they hold wherever the recordings can try them."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities, size_of
 from swgsim.effects.regularity import OF_TEMPERATURE, OF_TIME
-from swgsim.loop.closing import Closed
+from swgsim.loop.closed import Closed
 from swgsim.loop.errors import of_points_left_out
 from swgsim.loop.evidence import LEAST_GAIN
 from swgsim.loop.fitting import Fitted, extended
 from swgsim.loop.trial import gained
-from swgsim.loop.vocabulary import Described
 
 # Share of its size that an effect found must keep beside a patch; one that takes it away says the same once more.
 KEPT = 0.5
@@ -19,15 +17,15 @@ KEPT = 0.5
 WORSE = 2.0
 
 
-def patched(closed: Closed, unknown: Sequence[Described]) -> Closed:
-    """With those regularities in the model too that hold at operating points which they were not fitted to.
+def patched(closed: Closed) -> Closed:
+    """With those unknown regularities in the model too that hold at operating points which they were not fitted to.
 
     One that may follow the temperature, or the time, or another law as well is none of them: what rises together in one
     session parts in the next. Nor is one that takes away what an effect was found for.
     """
     if len(closed.after.predictive) < 2:
         return closed  # no operating point can be left out
-    for each in unknown:
+    for each in closed.unknown:
         if each.rivals and {each.atom.law, *each.rivals} & {OF_TEMPERATURE, OF_TIME}:
             continue
         fitted = extended(closed.after, [each.effect])

@@ -17,6 +17,8 @@ from swgsim.loop.vocabulary import Described
 
 # Two effects cancel if the cosine between what they do is below the negative of this.
 CANCELLED = 0.9
+# What is left must not reach this part of the fall of the sum of squares that an effect brought.
+LEFT = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +71,27 @@ def cancelling(steps: Sequence[Step], now: Fitted) -> tuple[Step, ...]:
     opposed = (seen.T @ seen < -CANCELLED).any(axis=0)
     opposing = [step for step, each in zip(owners, opposed, strict=True) if each]
     return tuple(step for step in steps if step in opposing)
+
+
+def outweighed(steps: Iterable[Step], unknown: Sequence[Described]) -> tuple[Step, ...]:
+    """Steps that brought hardly more than what is left although no effect explains it.
+
+    A cause that the library lacks looks like that: one of its effects takes a part of it. What one instrument may have
+    put into its channel is another thing.
+
+    Parameters
+    ----------
+    steps : iterable of Step
+    unknown : sequence of Described
+        What is left.
+    """
+    shared = sum(each.gain for each in unknown if not each.atom.alone)
+    single: dict[str, float] = {}
+    for each in unknown:
+        if each.atom.alone:
+            single[each.atom.pattern] = single.get(each.atom.pattern, 0.0) + each.gain
+    gain = shared + sum(single.values()) - max(single.values(), default=0.0)
+    return tuple(step for step in steps if gain > LEFT * 2 * step.accepted.evidence)
 
 
 def with_rivals(

@@ -105,6 +105,8 @@ def why(trial: Trial, answer: Answer, better: Trial | None = None) -> str:
     if trial in answer.closed.cancelling:
         which = "its effects" if len(trial.effects) > 1 else "it and another one"
         return f"{which} all but cancel: together they imitate something else"
+    if trial in answer.closed.outweighed:
+        return "it explains hardly more than what it leaves, which no effect explains: a part of something else"
     if trial in answer.closed.withdrawn:
         return "accepted at first; once the others were in the model, another one, or nothing, stood in its place"
     if not trial.fitted.calibrated.settled:

@@ -1,0 +1,92 @@
+"""What closing the loop found."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property, reduce
+
+import numpy as np
+
+from swgsim.loop.evidence import Coherence, coherence, doubt_by_others
+from swgsim.loop.fitting import Fitted
+from swgsim.loop.screening import Score
+from swgsim.loop.steps import Step
+from swgsim.loop.trial import Trial, widened
+from swgsim.loop.vocabulary import Described, set_free
+
+
+@dataclass(frozen=True, eq=False)
+class Closed:
+    """What closing the loop found.
+
+    Attributes
+    ----------
+    before, after : Fitted
+        The model without and with what was found; all effects were fitted together, if that came to rest.
+    asked : Fitted
+        The model of the last asking, with the form of what was found open within the tolerance: of what this leaves it
+        is asked what more is missing.
+    steps : tuple of Step
+    scores : tuple of Score
+        Of the first screening, best hypothesis of each effect.
+    left : tuple of Score
+        Of the last screening.
+    rejected : tuple of Trial
+        Significant, but of the wrong form: they contradict themselves, cancel one another, a bare regularity explains
+        more, they act only where one was set apart, or hardly say more than what they leave.
+    outdone_by : Described or None
+        That regularity.
+    apart : tuple of Described
+        Disturbances of single channels that were set apart before an effect was found behind them.
+    withdrawn : tuple of Trial
+        Accepted at first, and another one, or nothing, in its place once the others were in the model.
+    cancelling : tuple of Trial
+        Accepted, until they were seen to cancel one another; they are among the rejected.
+    outweighed : tuple of Trial
+        Accepted, until more was left than they had made likely; they are among the rejected.
+    unknown : tuple of Described
+        What no effect of the library explains: what was set apart first.
+    """
+
+    before: Fitted
+    after: Fitted
+    asked: Fitted
+    steps: tuple[Step, ...]
+    scores: tuple[Score, ...]
+    left: tuple[Score, ...]
+    rejected: tuple[Trial, ...]
+    outdone_by: Described | None
+    apart: tuple[Described, ...] = ()
+    withdrawn: tuple[Trial, ...] = ()
+    cancelling: tuple[Trial, ...] = ()
+    outweighed: tuple[Trial, ...] = ()
+    unknown: tuple[Described, ...] = ()
+
+    @property
+    def nearest(self) -> Trial | None:
+        """Of what was rejected: the trial that came nearest."""
+        return self.rejected[0] if self.rejected and np.isfinite(self.rejected[0].merit) else None
+
+    @cached_property
+    def coherence(self) -> tuple[Coherence, ...]:
+        """How well the parts of each effect agree once all that was found is in the model.
+
+        When one was accepted, those that were found later still passed for an imperfect form of it. An imperfect form
+        of one leaves the sizes of the others in doubt too.
+        """
+        first, after = len(self.before.model.effects), self._beside_what_is_apart
+        beside = [step.accepted.beside for step in self.steps for _ in step.accepted.effects]
+        found = {n: coherence(reduce(set_free, each, after), n) for n, each in enumerate(beside, first)}
+        by_others = (doubt_by_others(after, n, {m: c for m, c in found.items() if m != n}) for n in found)
+        return tuple(
+            replace(each, doubt=float(np.hypot(each.doubt, more)))
+            for each, more in zip(found.values(), by_others, strict=True)
+        )
+
+    @cached_property
+    def deviation(self) -> dict[str, float]:
+        """Standard deviation of each fitted parameter, by noise, all shapes and the imperfect form of all effects."""
+        return widened(self._beside_what_is_apart, len(self.before.model.effects), self.coherence)
+
+    @property
+    def _beside_what_is_apart(self) -> Fitted:
+        """The model with what was found, what was set apart being free as when that was fitted."""
+        return reduce(set_free, self.apart, self.after)
