@@ -253,6 +253,20 @@ def test_effects_that_cancel_are_no_causes(monkeypatch, other, both):
     assert steps.cancelling(found[:1], now) == ()
 
 
+def test_the_nearest_explains_a_share_of_what_is_left_beyond_noise(monkeypatch):
+    rows = len(FITTED.errors.variance)
+    left = np.sqrt((rows + 1000.0) / rows) * np.ones(rows)
+    monkeypatch.setattr(type(FITTED.whole), "whiten", lambda *_: left)
+    monkeypatch.setattr(Trial, "merit", property(lambda trial: trial.evidence))
+    monkeypatch.setattr(Trial, "explained", lambda *_: 840.0)
+    found = Closed(FITTED, FITTED, FITTED, (), (), (), (A,), None)
+    assert found.nearest_explains == pytest.approx(0.84)
+    assert Closed(FITTED, FITTED, FITTED, (), (), (), (), None).nearest_explains == 0
+    answer = Answer(UNKNOWN, found, (), (), (), ())
+    assert answer.sentence.endswith("the nearest known effect, bump (height 1), explains 84 % of it and does not hold.")
+    assert effects.nearest(answer) == {"name": "bump", "explains": pytest.approx(0.84)}
+
+
 @pytest.mark.parametrize(
     ("patterns", "gains", "light"),
     [

@@ -92,11 +92,17 @@ class Answer:
                 f"library stands out of it ({len(self.absorbed)} of {len(self.closed.scores)} cannot be tested with "
                 "these recordings)."
             )
-        near = f"; the nearest known effect, {in_words(self.nearest.effects[0])}, does not hold" if self.nearest else ""
-        rest = f"; something unknown is left: {self.left}{near}" if self.left else ""
+        rest = f"; something unknown is left: {self.left}{self._nearest}" if self.left else ""
         if self.verdict == FOUND:
             return f"The model lacks {' and '.join(self._explanations())}{rest}."
-        return f"The model lacks something that is not in the library: {self.left}{near}."
+        return f"The model lacks something that is not in the library: {self.left}{self._nearest}."
+
+    @property
+    def _nearest(self) -> str:
+        if self.nearest is None:
+            return ""
+        known, share = " with ".join(map(in_words, self.nearest.effects)), 100 * self.closed.nearest_explains
+        return f"; the nearest known effect, {known}, explains {share:.0f} % of it and does not hold"
 
     def _explanations(self) -> list[str]:
         """What was found, step by step, each with what these recordings cannot tell from it."""

@@ -66,6 +66,15 @@ class Closed:
         return self.rejected[0] if self.rejected and np.isfinite(self.rejected[0].merit) else None
 
     @cached_property
+    def nearest_explains(self) -> float:
+        """Share of the sum of squares of what is left, beyond that of noise, by which :attr:`nearest` makes it fall."""
+        if self.nearest is None:
+            return 0.0
+        left = self.asked.whole.whiten(self.asked.from_start)
+        beyond = float(left @ left) - len(left)
+        return float(np.clip(self.nearest.explained(self.asked) / max(beyond, 1.0), 0.0, 1.0))
+
+    @cached_property
     def coherence(self) -> tuple[Coherence, ...]:
         """How well the parts of each effect agree once all that was found is in the model.
 

@@ -70,6 +70,12 @@ def of_line(line: Sideline) -> dict[str, Any]:
     }
 
 
+def nearest(answer: Answer) -> dict[str, Any] | None:
+    """Of what was not accepted, what comes nearest to what is left, and the share of it that this explains."""
+    trial = answer.nearest
+    return {"name": names(trial), "explains": answer.closed.nearest_explains} if trial else None
+
+
 def rejected(answer: Answer, sizes: Sizes) -> list[dict[str, Any]]:
     """Effects that were fitted but not added."""
     steps = answer.closed.steps
