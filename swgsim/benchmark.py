@@ -14,7 +14,8 @@ from swgsim.direct import DirectSolver
 from swgsim.dynamics import OMEGA_IN, OMEGA_OUT, Drive
 from swgsim.flexspline import solve_flex_spline
 from swgsim.gear import OperatingPoint, Transmission
-from swgsim.motion import run, steady_state
+from swgsim.harmonic_balance import one_revolution
+from swgsim.motion import revolve, run, steady_state
 from swgsim.plan import Plan
 
 # Instants of each recording that the slow way solves; its time is scaled up to all of them.
@@ -108,5 +109,33 @@ def integrator_vs_solve_ivp(transmissions: Sequence[Transmission], points: Seque
         "ratio": float(np.mean(seconds) / batched),
         "max_relative_error": float(max(errors)),
         "seconds_per_run": {"batched": batched, "solve_ivp": float(np.mean(seconds))},
+        "runs": len(pairs),
+    }
+
+
+def harmonic_balance_vs_integrating(
+    transmissions: Sequence[Transmission], points: Sequence[OperatingPoint], samples: int = 64
+) -> dict[str, Any]:
+    """One revolution of the periodic motion by harmonic balance against integrating until it settles, then over it.
+
+    Returns
+    -------
+    dict
+        ratio of the times; max_relative_difference, the largest of T_out and of the speeds over their own mean.
+    """
+    pairs = [(t, point) for t in transmissions for point in points]
+    drive = Drive([t for t, _ in pairs], [point for _, point in pairs])
+    with threadpool_limits(1):
+        start = time.perf_counter()
+        balanced, _ = one_revolution(drive, np.zeros(len(drive)), samples)
+        middle = time.perf_counter()
+        integrated = revolve(drive, steady_state(drive), samples)
+        end = time.perf_counter()
+    channels = ("T_out", "omega_in", "omega_out")
+    both = [(getattr(balanced, name), getattr(integrated, name)) for name in channels]
+    return {
+        "ratio": (end - middle) / (middle - start),
+        "max_relative_difference": max(float(np.abs(a - b).max() / b.mean()) for a, b in both),
+        "seconds": {"harmonic_balance": middle - start, "integrating": end - middle},
         "runs": len(pairs),
     }

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from swgsim import harmonic_balance, turning
+from swgsim.benchmark import harmonic_balance_vs_integrating
 from swgsim.dynamics import Drive
 from swgsim.effects.base import Effect
 from swgsim.effects.library import LIBRARY
@@ -49,6 +50,12 @@ def test_it_is_the_motion_that_integrating_settles_at(kind, monkeypatch):
     found, expected = both(drive(0.0, strong(kind) if kind else ()))
     for name in ("phi_in", "omega_in", "omega_out", "T_in", "T_out", "dt"):
         np.testing.assert_allclose(getattr(found, name), getattr(expected, name), rtol=1e-6, atol=1e-6)
+
+
+def test_the_benchmark_compares_the_same_motion():
+    found = harmonic_balance_vs_integrating([Transmission(b3=0.0)], OPERATING, POINTS)
+    assert found["max_relative_difference"] < 1e-5
+    assert found["runs"] == len(OPERATING)
 
 
 def test_all_power_that_is_not_lost_comes_out():

@@ -271,18 +271,30 @@ def test_the_nearest_explains_a_share_of_what_is_left_beyond_noise(monkeypatch):
     ("patterns", "gains", "light"),
     [
         (["the same in s1 to s4"], [11.0], True),
+        (["the same in s1 to s4", "the same in s1 to s4"], [5.0, 11.0], True),
+        (["the same in s1 to s4", "the same in s1 to s4"], [5.0, 9.0], False),
         (["the same in s1 to s4"], [9.0], False),
         (["in s2 alone"], [1e6], False),
         (["in s2 alone", "in s2 alone", "the same in s1 to s4"], [1e6, 1e6, 9.0], False),
         (["in T_out alone", "in T_in alone"], [1e6, 11.0], True),
         ([], [], False),
     ],
-    ids=["much", "little", "an instrument", "an instrument beside little", "two channels", "nothing"],
+    ids=[
+        "much",
+        "much beside little",
+        "little and what an effect may explain",
+        "little",
+        "an instrument",
+        "an instrument beside little",
+        "two channels",
+        "nothing",
+    ],
 )
 def test_what_brings_hardly_more_than_what_is_left_is_no_cause(patterns, gains, light):
     left = [Described(Atom(2, p, "constant"), g, 2, 0.1, 0.0) for p, g in zip(patterns, gains, strict=True)]
     weak, strong = Step(replace(A, evidence=50.0), (), ()), Step(replace(B, evidence=5e9), (), ())
-    assert steps.outweighed([weak, strong], left) == ((weak,) if light else ())
+    after = (replace(A.score, gain=5.0, chance=2 * ALPHA), replace(B.score, gain=1e9, chance=ALPHA / 2))
+    assert steps.outweighed([weak, strong], left, after) == ((weak,) if light else ())
 
 
 def test_another_pair_is_a_rival_if_what_only_it_has_says_nothing_more():

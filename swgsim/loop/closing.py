@@ -72,7 +72,7 @@ def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed
     if cancelled := cancelling(end.steps, end.now):
         end = _without(cancelled, end, before, kinds, seed)
     unknown = left(end.now, seed, MOST_ATOMS)
-    if light := outweighed(end.steps, (*end.apart, *unknown)):
+    if light := outweighed(end.steps, (*end.apart, *unknown), end.scores[-1]):
         end = _without(light, end, before, kinds, seed)
         unknown = left(end.now, seed, MOST_ATOMS)
     found, after = what(end.steps), end.scores[-1]

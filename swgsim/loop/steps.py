@@ -73,18 +73,22 @@ def cancelling(steps: Sequence[Step], now: Fitted) -> tuple[Step, ...]:
     return tuple(step for step in steps if step in opposing)
 
 
-def outweighed(steps: Iterable[Step], unknown: Sequence[Described]) -> tuple[Step, ...]:
+def outweighed(steps: Iterable[Step], unknown: Sequence[Described], after: Sequence[Score]) -> tuple[Step, ...]:
     """Steps that brought hardly more than what is left although no effect explains it.
 
     A cause that the library lacks looks like that: one of its effects takes a part of it. What one instrument may have
-    put into its channel is another thing.
+    put into its channel is another thing; so is what an effect may explain that does not quite stand out.
 
     Parameters
     ----------
     steps : iterable of Step
     unknown : sequence of Described
         What is left.
+    after : sequence of Score
+        Of a screening behind all steps.
     """
+    weak = max((score.gain for score in after if score.chance > ALPHA), default=0.0)
+    unknown = [each for each in unknown if each.gain > weak]
     shared = sum(each.gain for each in unknown if not each.atom.alone)
     single: dict[str, float] = {}
     for each in unknown:
