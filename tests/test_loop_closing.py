@@ -264,7 +264,7 @@ def test_the_nearest_explains_a_share_of_what_is_left_beyond_noise(monkeypatch):
     assert Closed(FITTED, FITTED, FITTED, (), (), (), (), None).nearest_explains == 0
     answer = Answer(UNKNOWN, found, (), (), (), ())
     assert answer.sentence.endswith("the nearest known effect, bump (height 1), explains 84 % of it and does not hold.")
-    assert effects.nearest(answer) == {"name": "bump", "explains": pytest.approx(0.84)}
+    assert effects.nearest(answer) == {"name": "loop_fixtures:Bump", "explains": pytest.approx(0.84)}
 
 
 @pytest.mark.parametrize(
