@@ -293,8 +293,18 @@ def test_the_nearest_explains_a_share_of_what_is_left_beyond_noise(monkeypatch):
 def test_what_brings_hardly_more_than_what_is_left_is_no_cause(patterns, gains, light):
     left = [Described(Atom(2, p, "constant"), g, 2, 0.1, 0.0) for p, g in zip(patterns, gains, strict=True)]
     weak, strong = Step(replace(A, evidence=50.0), (), ()), Step(replace(B, evidence=5e9), (), ())
-    after = (replace(A.score, gain=5.0, chance=2 * ALPHA), replace(B.score, gain=1e9, chance=ALPHA / 2))
-    assert steps.outweighed([weak, strong], left, after) == ((weak,) if light else ())
+    assert steps.outweighed([weak, strong], left, [replace(A.score, gain=5.0)]) == ((weak,) if light else ())
+
+
+def test_nothing_is_outweighed_by_nothing():
+    assert steps.outweighed([Step(replace(A, evidence=-1.0), (), ())], [], []) == ()
+
+
+@pytest.mark.parametrize(("steps", "untried"), [(1, ["Bump"]), (3, ["Bump", "Wave"])])
+def test_effects_that_do_not_stand_out_are_untried_and_all_once_enough_were_added(steps, untried):
+    scores = (replace(A.score, chance=2 * ALPHA), replace(B.score, chance=ALPHA / 2))
+    end = closing.End(FITTED, (Step(A, (), ()),) * steps, (), (scores,), Round((), None, None))
+    assert [score.hypothesis.kind.__name__ for score in closing._untried(end)] == untried
 
 
 def test_another_pair_is_a_rival_if_what_only_it_has_says_nothing_more():

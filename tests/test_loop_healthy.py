@@ -15,6 +15,7 @@ from swgsim.loop.model import Model, Situation
 from swgsim.loop.session import KEPT, OF_SESSION, WANDER, Measured
 
 LAYOUT = Layout(("T_in", "s0", "s1"))
+NAMES = [name for name in OF_SESSION if name == "index" or name.partition(" of ")[2] in LAYOUT.channels]
 SITUATIONS = tuple(Situation(point, Conditions(25.0 + number, 600.0 * number)) for number, point in enumerate(POINTS))
 
 
@@ -88,13 +89,28 @@ def test_zeros_of_a_session_wander_as_a_random_walk_of_that_session(predicted):
     assert (np.diag(found)[hours > 0] > 0).all()
 
 
+def test_what_is_told_of_a_walk_holds_at_other_times_of_that_session(predicted):
+    measured = silent(LAYOUT, predicted)
+    mean = np.flatnonzero((LAYOUT.channel == "s1") & (LAYOUT.order == 0))[0]
+    told = measured.session_columns(predicted).reshape(*predicted.shape, -1)[::2, mean]
+    first = [r for r in measured.recordings if r.session == "0"]
+    there = [Situation(r.point, r.conditions) for r in first]
+    after = replace(there[-1], conditions=replace(there[-1].conditions, elapsed=there[-1].conditions.elapsed + 3600))
+    further = measured.further("0", [*there, after], np.vstack([predicted[::2], predicted[-1:]]))
+    found = further.session_columns(further.values, measured).reshape(*further.values.shape, -1)[:, mean]
+    np.testing.assert_allclose(found[:-1], told, atol=1e-12)
+    # From the last recording on, its zero is the best guess.
+    walks = slice(len(NAMES), None)
+    np.testing.assert_allclose(found[-1, walks], found[-2, walks], atol=1e-12)
+    assert found[-1, walks].any()
+
+
 def test_a_session_has_gains_and_drifts_of_its_own(predicted):
     measured = silent(LAYOUT, predicted)
     columns = measured.session_columns(predicted).reshape(*predicted.shape, -1)
-    names = [name for name in OF_SESSION if name == "index" or name.partition(" of ")[2] in LAYOUT.channels]
-    first = columns[..., : len(names)]
+    first = columns[..., : len(NAMES)]
     assert not first[1::2].any()
-    gain, drift = first[::2, :, names.index("gain of T_in")], first[::2, :, names.index("drift of s1")]
+    gain, drift = first[::2, :, NAMES.index("gain of T_in")], first[::2, :, NAMES.index("drift of s1")]
     np.testing.assert_allclose(gain, OF_SESSION["gain of T_in"] * predicted[::2] * (LAYOUT.channel == "T_in"))
     mean = np.flatnonzero((LAYOUT.channel == "s1") & (LAYOUT.order == 0))
     assert drift[:, mean[0]] == pytest.approx(OF_SESSION["drift of s1"] * np.array([0, 1 / 3, 2 / 3]))

@@ -44,7 +44,6 @@ def expected(fitted: Fitted) -> Float[np.ndarray, "situation feature"]:
     found = mean[first : first + left_open.shape[-1]]
     # The model stands where its parameters were found to be; what they are counted from lies further back.
     beyond = mean[len(mean) - J.shape[-1] :] - np.array(list(fitted.calibrated.position.values()))
-    # The unseen points are of the beginning of the session, when no zero has wandered yet: such columns come last.
-    instruments = measured.further(session, UNSEEN, predicted).session_columns(predicted)
-    shown = (instruments @ mean[fitted.singles : first][: instruments.shape[1]]).reshape(predicted.shape)
+    instruments = measured.further(session, UNSEEN, predicted).session_columns(predicted, measured)
+    shown = (instruments @ mean[fitted.singles : first]).reshape(predicted.shape)
     return predicted + shift + left_open @ found + J @ beyond + shown

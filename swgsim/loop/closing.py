@@ -9,7 +9,7 @@ from swgsim.loop.asking import Round, ask, ask_behind
 from swgsim.loop.closed import Closed
 from swgsim.loop.evidence import signature
 from swgsim.loop.fitting import Fitted, extended, fit
-from swgsim.loop.leading import screened
+from swgsim.loop.leading import ALPHA, screened
 from swgsim.loop.screening import Score
 from swgsim.loop.session import Measured
 from swgsim.loop.steps import Step, cancelling, contradicted, joined, outweighed, what, with_rivals
@@ -71,15 +71,15 @@ def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed
             end = _forward(together, revised, forward.apart, kinds, seed)
     if cancelled := cancelling(end.steps, end.now):
         end = _without(cancelled, end, before, kinds, seed)
-    unknown = left(end.now, seed, MOST_ATOMS)
-    if light := outweighed(end.steps, (*end.apart, *unknown), end.scores[-1]):
-        end = _without(light, end, before, kinds, seed)
+    unknown, light = left(end.now, seed, MOST_ATOMS), tuple[Step, ...]()
+    while more := outweighed(end.steps, unknown, _untried(end)):
+        end, light = _without(more, end, before, kinds, seed), (*light, *more)
         unknown = left(end.now, seed, MOST_ATOMS)
     found, after = what(end.steps), end.scores[-1]
     spoiling = unknown[:1] if any(map(contradicted, end.steps)) else ()
     steps = tuple(with_rivals(step, after, found, spoiling) for step in end.steps)
-    dropped = found | what(cancelled) | what(light)
-    withdrawn = tuple(step.accepted for step in forward.steps if not what([step]) <= dropped)
+    told = found | what(cancelled) | what(light)
+    withdrawn = tuple(step.accepted for step in forward.steps if not what([step]) <= told)
     return Closed(
         before, _together(end), end.now, steps, forward.scores[0], after, end.last.trials, end.last.outdone_by,
         end.apart, withdrawn, tuple(step.accepted for step in cancelled), tuple(step.accepted for step in light),
@@ -131,6 +131,11 @@ def _without(dropped: Sequence[Step], end: End, before: Fitted, kinds: Sequence[
     accepted = sorted((step.accepted for step in dropped), key=lambda trial: -trial.merit)
     others = (trial for step in dropped for trial in step.others)
     return End(now, kept, end.apart, (*end.scores, scores), Round((*accepted, *others, *end.last.trials), None, None))
+
+
+def _untried(end: End) -> list[Score]:
+    """Effects that were not fitted to what is left."""
+    return [score for score in end.scores[-1] if score.chance > ALPHA or len(end.steps) >= MOST]
 
 
 def _backward(

@@ -100,11 +100,23 @@ class Measured:
         points = [r.point for r in self.recordings]
         return [np.repeat([p == point for p in points], len(self.layout)) for point in dict.fromkeys(points)]
 
-    def session_columns(self, predicted: Float[np.ndarray, "situation feature"]) -> Float[np.ndarray, "row column"]:
-        """Errors that all recordings of a session share, one standard deviation each."""
+    def session_columns(
+        self, predicted: Float[np.ndarray, "situation feature"], known: "Measured | None" = None
+    ) -> Float[np.ndarray, "row column"]:
+        """Errors that all recordings of a session share, one standard deviation each.
+
+        Parameters
+        ----------
+        predicted : array (situation, feature)
+        known : Measured, optional
+            Recordings of the same sessions by whose errors these are told; without them there are no others.
+        """
+        known = known or self
         hours = np.array([[r.conditions.elapsed / 3600] for r in self.recordings])
+        gauges = [name for name in SENSORS if name in self.layout.channels]
+        zeros = [(self.layout.channel == gauge) & (self.layout.order == 0) for gauge in gauges]
         columns = []
-        for session in dict.fromkeys(r.session for r in self.recordings):
+        for session in dict.fromkeys(r.session for r in known.recordings):
             here = np.array([[r.session == session] for r in self.recordings])
             for name, sd in OF_SESSION.items():
                 kind, _, channel = name.partition(" of ")
@@ -118,22 +130,16 @@ class Measured:
                 }[kind]
                 if kind == "index" or own.any():
                     columns.append((sd * here * moved).ravel())
-            for path in _walks(hours[:, 0], here[:, 0]):
-                columns += [
-                    np.outer(WANDER * path, (self.layout.channel == gauge) & (self.layout.order == 0)).ravel()
-                    for gauge in SENSORS
-                    if gauge in self.layout.channels
-                ]
+            told = np.array([r.conditions.elapsed / 3600 for r in known.recordings if r.session == session])
+            for path in _walks(told, hours * here):
+                columns += [np.outer(path, zero).ravel() for zero in zeros]
         return np.stack(columns, axis=1)
 
 
-def _walks(hours: Float[np.ndarray, " recording"], here: np.ndarray) -> Float[np.ndarray, "path recording"]:
-    """The paths that make up a random walk since the session began (Karhunen-Loeve), where its recordings are."""
-    since = hours[here]
-    values, vectors = np.linalg.eigh(np.minimum.outer(since, since))
+def _walks(told: Float[np.ndarray, " one"], hours: Float[np.ndarray, "other 1"]) -> Float[np.ndarray, "path other"]:
+    """The paths of which a random walk is made up as it is told at some times (Karhunen-Loeve), at other times."""
+    values, vectors = np.linalg.eigh(np.minimum.outer(told, told))
     largest = np.argsort(-values)
     beyond = np.cumsum(values[largest]) - values[largest] > KEPT * values.sum()
     kept = largest[~beyond & (values[largest] > 0)]
-    paths = np.zeros((len(kept), len(hours)))
-    paths[:, here] = (vectors * np.sqrt(np.maximum(values, 0)))[:, kept].T
-    return paths
+    return WANDER * (np.minimum(told, hours) @ (vectors[:, kept] / np.sqrt(values[kept]))).T

@@ -73,29 +73,29 @@ def cancelling(steps: Sequence[Step], now: Fitted) -> tuple[Step, ...]:
     return tuple(step for step in steps if step in opposing)
 
 
-def outweighed(steps: Iterable[Step], unknown: Sequence[Described], after: Sequence[Score]) -> tuple[Step, ...]:
-    """Steps that brought hardly more than what is left although no effect explains it.
+def outweighed(steps: Iterable[Step], unknown: Sequence[Described], untried: Sequence[Score]) -> tuple[Step, ...]:
+    """Steps that brought less than ten times what is left although no effect explains it.
 
     A cause that the library lacks looks like that: one of its effects takes a part of it. What one instrument may have
-    put into its channel is another thing; so is what an effect may explain that does not quite stand out.
+    put into its channel is another thing; so is what an effect may explain that was not tried.
 
     Parameters
     ----------
     steps : iterable of Step
     unknown : sequence of Described
         What is left.
-    after : sequence of Score
-        Of a screening behind all steps.
+    untried : sequence of Score
+        Of effects that were not fitted to it, as they do not quite stand out, or as enough were added.
     """
-    weak = max((score.gain for score in after if score.chance > ALPHA), default=0.0)
-    unknown = [each for each in unknown if each.gain > weak]
-    shared = sum(each.gain for each in unknown if not each.atom.alone)
+    may_be_known = max((score.gain for score in untried), default=0.0)
+    unknown = [each for each in unknown if each.gain > may_be_known]
+    gain = sum(each.gain for each in unknown if not each.atom.alone)
     single: dict[str, float] = {}
     for each in unknown:
         if each.atom.alone:
             single[each.atom.pattern] = single.get(each.atom.pattern, 0.0) + each.gain
-    gain = shared + sum(single.values()) - max(single.values(), default=0.0)
-    return tuple(step for step in steps if gain > LEFT * 2 * step.accepted.evidence)
+    gain += sum(single.values()) - max(single.values(), default=0.0)
+    return tuple(step for step in steps if gain > LEFT * max(2 * step.accepted.evidence, 0.0))
 
 
 def with_rivals(
