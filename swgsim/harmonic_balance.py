@@ -10,7 +10,7 @@ from jaxtyping import Bool, Complex, Float
 from swgsim.dynamics import OMEGA_IN, OMEGA_OUT, PHI_IN, PHI_OUT, SPEED_ERROR, Drive, State
 from swgsim.motion import Motion
 
-# Times at which the equations hold, at least: eight for each wave of the highest order that the loop fits.
+# Times at which the equations hold, at least: eight for each wave of the highest order that the loop compares.
 TIMES = 96
 # The last correction is below this, relatively, and is one of so many.
 TOLERANCE, CORRECTIONS = 1e-9, 40
@@ -36,6 +36,7 @@ def one_revolution(
     points : int
     """
     each = -(-TIMES // points)
+    each += each * points % 2  # an even number of times
     turn = 2 * np.pi * np.arange(points * each)[:, None] / (points * each)
     _, speed_in, phi_out, speed_out, speed_error = drive.at_rest_in_rotating_frame()
     by_time = 1j * np.arange(len(turn) // 2 + 1)[:, None] * drive.omega
@@ -95,14 +96,14 @@ class _Linear:
         at = np.stack([self.of_input, slopes[PHI_OUT]], axis=1)
         fast = np.stack([slopes[OMEGA_IN], slopes[OMEGA_OUT]], axis=1)
         matrix = np.eye(2)[:, :, None, None] * by_time**2 - at[:, :, None] - by_time * fast[:, :, None]
-        self.inverse = np.linalg.inv(np.moveaxis(matrix[:, :, 1:], (0, 1), (2, 3)))
+        self.inverse = np.linalg.inv(np.moveaxis(matrix[:, :, 1:-1], (0, 1), (2, 3)))
         of_means = -np.stack([slopes[SPEED_ERROR], slopes[PHI_OUT]], axis=1)
         self.inverse_of_means = np.linalg.inv(np.moveaxis(of_means, 2, 0))
 
     def correction(self, missed: Lines) -> tuple[Lines, Float[np.ndarray, " run"]]:
         """What takes away what the equations miss: of the lines, and of the integral of the speed error."""
         by = np.zeros_like(missed)
-        by[:, 1:-1] = -np.einsum("orij,jor->ior", self.inverse[:-1], missed[:, 1:-1])
+        by[:, 1:-1] = -np.einsum("orij,jor->ior", self.inverse, missed[:, 1:-1])
         by[0, 0] = -2 * by[0].real.sum(axis=0)  # the angle stays where it starts
         means = self.of_input * by[0, 0].real - missed[:, 0].real
         of_error, by[1, 0] = np.einsum("rij,jr->ir", self.inverse_of_means, means)

@@ -55,11 +55,13 @@ def one_turn(driven: Sequence[Driven], points: int) -> Motion:
         forget()
         new = list(driven)
     if new:
-        found, there = one_revolution(*_drive(new), points)
+        found, balanced = one_revolution(*_drive(new), points)
+        # Too far from linear, as close to a resonance that is hardly damped.
+        left = [each for each, known in zip(new, balanced, strict=True) if not known]
+        integrated = [revolve(*settled(left), points)] if left else []
         _remember(new, found)
-        if not there.all():  # too far from linear, as close to a resonance that is hardly damped
-            left = [each for each, settled_at in zip(new, there, strict=True) if not settled_at]
-            _remember(left, revolve(*settled(left), points))
+        for motion in integrated:
+            _remember(left, motion)
     return Motion(*(np.stack(part) for part in zip(*(_remembered[each, points] for each in driven), strict=True)))
 
 
