@@ -127,7 +127,7 @@ def simulate(runs: Sequence[Run], window: Window, sectors: int = SECTORS) -> Sim
 def simulate_turns(runs: Sequence[Run], revolutions: int, points: int, sectors: int = SECTORS) -> list[Recording]:
     """Recordings of whole revolutions of the wave generator in the steady state.
 
-    One revolution is integrated, unless it is remembered, and repeated; effects on gauges and acquisition then act on
+    One revolution is found, unless it is remembered, and repeated; effects on gauges and acquisition then act on
     all of them in time.
 
     Parameters

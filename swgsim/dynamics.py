@@ -31,7 +31,7 @@ State = Float[np.ndarray, "5 *any run"]
 
 @dataclass(frozen=True)
 class Torques:
-    """Torques [N m] and sliding speed [rad/s], each an array (run,), or (time, run); a steady load is (run,) always.
+    """Torques [N m] and sliding speed [rad/s], each an array (run,), or (time, run); a steady load may stay (run,).
 
     ``T_motor`` drives the input, ``T_wedge`` brakes it: the wave generator and losses beside it. ``T_in`` is what a
     torque flange feels that has a share of J_in, the rotor's, before it.

@@ -58,10 +58,10 @@ def one_turn(driven: Sequence[Driven], points: int) -> Motion:
         found, balanced = one_revolution(*_drive(new), points)
         # Too far from linear, as close to a resonance that is hardly damped.
         left = [each for each, known in zip(new, balanced, strict=True) if not known]
-        integrated = [revolve(*settled(left), points)] if left else []
+        integrated = revolve(*settled(left), points) if left else None
         _remember(new, found)
-        for motion in integrated:
-            _remember(left, motion)
+        if integrated:
+            _remember(left, integrated)
     return Motion(*(np.stack(part) for part in zip(*(_remembered[each, points] for each in driven), strict=True)))
 
 

@@ -32,7 +32,10 @@ class Crack:
 
 
 class Instant(NamedTuple):
-    """The drive of some runs at one instant, arrays (run,): angles [rad], speeds [rad/s], torque [N m]."""
+    """The drive of some runs at one instant or at several, arrays (run,) or (time, run).
+
+    Angles [rad], speeds [rad/s], torque [N m].
+    """
 
     phi_in: np.ndarray
     omega_in: np.ndarray
@@ -45,7 +48,7 @@ class Instant(NamedTuple):
 
 
 class Extra(NamedTuple):
-    """Torques [N m] that an effect adds to the equations of motion, each an array (run,) or a number.
+    """Torques [N m] that an effect adds to the equations of motion, each an array like those or a number.
 
     ``T_motor`` drives the input and is felt by its torque flange, ``T_loss`` brakes the input behind the flange,
     ``T_stiff`` and ``T_fric`` add to eqs. (2) and (5), ``T_load`` to the load.

@@ -80,7 +80,7 @@ class Answer:
 
     @property
     def nearest(self) -> Trial | None:
-        """Where something unknown is left: the known effect that comes nearest, of the wrong form."""
+        """Where something unknown is left: the known effect that comes nearest, and was not accepted."""
         return self.closed.nearest
 
     @property
@@ -102,7 +102,7 @@ class Answer:
         if self.nearest is None:
             return ""
         known, share = " with ".join(map(in_words, self.nearest.effects)), 100 * self.closed.nearest_explains
-        return f"; the nearest known effect, {known}, explains {share:.0f} % of it and does not hold"
+        return f"; the nearest known effect, {known}, explains {share:.0f} % of it and was not accepted"
 
     def _explanations(self) -> list[str]:
         """What was found, step by step, each with what these recordings cannot tell from it."""

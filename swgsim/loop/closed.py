@@ -31,7 +31,7 @@ class Closed:
         Of the last screening.
     rejected : tuple of Trial
         Significant, but of the wrong form: they contradict themselves, cancel one another, a bare regularity explains
-        more, they act only where one was set apart, or hardly say more than what they leave.
+        more, they act only where one was set apart, or bring too little beside what they leave.
     outdone_by : Described or None
         That regularity.
     apart : tuple of Described
@@ -41,7 +41,7 @@ class Closed:
     cancelling : tuple of Trial
         Accepted, until they were seen to cancel one another; they are among the rejected.
     outweighed : tuple of Trial
-        Accepted, until more was left than they had made likely; they are among the rejected.
+        Accepted, until they were seen to leave more than a tenth of what they brought; they are among the rejected.
     unknown : tuple of Described
         What no effect of the library explains: what was set apart first.
     """
@@ -67,12 +67,15 @@ class Closed:
 
     @cached_property
     def nearest_explains(self) -> float:
-        """Share of the sum of squares of what is left, beyond that of noise, by which :attr:`nearest` makes it fall."""
+        """Share of what is left in the order lines by which :attr:`nearest` makes their sum of squares fall.
+
+        Beyond that of noise, but no less is left than it explains, or than the regularities do that were described.
+        """
         if self.nearest is None:
             return 0.0
-        left = self.asked.whole.whiten(self.asked.from_start)
-        beyond = float(left @ left) - len(left)
-        return float(np.clip(self.nearest.explained(self.asked) / max(beyond, 1.0), 0.0, 1.0))
+        left, explained = self.asked.whole.whiten(self.asked.from_start), self.nearest.explained(self.asked)
+        described = sum(each.gain for each in self.unknown if each not in self.apart)
+        return explained / max(float(left @ left) - len(left), explained, described)
 
     @cached_property
     def coherence(self) -> tuple[Coherence, ...]:

@@ -70,12 +70,6 @@ def of_line(line: Sideline) -> dict[str, Any]:
     }
 
 
-def nearest(answer: Answer) -> dict[str, Any] | None:
-    """Of what was not accepted, what comes nearest to what is left, and the share of it that this explains."""
-    trial = answer.nearest
-    return {"name": names(trial), "explains": answer.closed.nearest_explains} if trial else None
-
-
 def rejected(answer: Answer, sizes: Sizes) -> list[dict[str, Any]]:
     """Effects that were fitted but not added."""
     steps = answer.closed.steps
@@ -89,7 +83,8 @@ def rejected(answer: Answer, sizes: Sizes) -> list[dict[str, Any]]:
         names(trial): (trial, step.accepted) for step in steps for trial in step.others if not elsewhere(trial)
     }
     put_off = (*answer.closed.rejected, *(trial for trial in answer.closed.withdrawn if not elsewhere(trial)))
-    tried |= {names(trial): (trial, None) for trial in put_off}
+    # Of two of a kind the first one is told, which came nearer.
+    tried |= {names(trial): (trial, None) for trial in reversed(put_off)}
     return [
         {
             "name": name,
@@ -112,7 +107,7 @@ def why(trial: Trial, answer: Answer, better: Trial | None = None) -> str:
         which = "its effects" if len(trial.effects) > 1 else "it and another one"
         return f"{which} all but cancel: together they imitate something else"
     if trial in answer.closed.outweighed:
-        return "it explains hardly more than what it leaves, which no effect explains: a part of something else"
+        return "it brings less than ten times what it leaves, which no effect explains: a part of something else"
     if trial in answer.closed.withdrawn:
         return "accepted at first; once the others were in the model, another one, or nothing, stood in its place"
     if not trial.fitted.calibrated.settled:

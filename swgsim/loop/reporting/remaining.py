@@ -24,7 +24,6 @@ def unknown(answer: Answer) -> dict[str, Any] | None:
         return None
     patches = {Atom(patch.order, patch.pattern, patch.law) for patch in answer.patches}
     atoms = [_described(each) | {"added": each.atom in patches} for each in answer.unknown]
-    nearest = answer.nearest
     return {
         "words": answer.left,
         "orders": sorted({each["order"] for each in atoms}),
@@ -34,8 +33,15 @@ def unknown(answer: Answer) -> dict[str, Any] | None:
         "lines": [asdict(line) | {"words": str(line)} for line in answer.unnamed],
         "effects": entries([each.effect for each in answer.unknown]),
         "added": entries(answer.patches),
-        "nearest": {"name": names(nearest), "why": why(nearest, answer)} if nearest else None,
+        "nearest": _nearest(answer),
     }
+
+
+def _nearest(answer: Answer) -> dict[str, Any] | None:
+    trial = answer.nearest
+    if trial is None:
+        return None
+    return {"name": names(trial), "explains": answer.closed.nearest_explains, "why": why(trial, answer)}
 
 
 def _described(each: Described) -> dict[str, Any]:

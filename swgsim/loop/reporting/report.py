@@ -12,7 +12,7 @@ from swgsim.loop.answer import Answer
 from swgsim.loop.errors import noise_floor
 from swgsim.loop.experiment import Experiment
 from swgsim.loop.fitting import Fitted
-from swgsim.loop.reporting.effects import accepted, nearest, of_line, rejected
+from swgsim.loop.reporting.effects import accepted, of_line, rejected
 from swgsim.loop.reporting.numbers import estimate
 from swgsim.loop.reporting.remaining import absorbed, detectable, next_experiment, scored, unknown, untried
 from swgsim.loop.reporting.sizes import Sizes, error
@@ -51,7 +51,6 @@ def report(
         "noise_floor": sizes.named(floor),
         "calibrated": calibrated(after),
         "effects": [*accepted(answer), *(of_line(line) for line in answer.lines)],
-        "nearest": nearest(answer),
         "rejected": rejected(answer, sizes),
         "error": error(before, after, floor, sizes),
         "unknown": unknown(answer),
