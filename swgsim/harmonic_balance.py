@@ -41,7 +41,7 @@ def one_revolution(
     _, speed_in, phi_out, speed_out, speed_error = drive.at_rest_in_rotating_frame()
     by_time = 1j * np.arange(len(turn) // 2 + 1)[:, None] * drive.omega
     by_time[-1] = 0  # the derivative of the last one vanishes at all times
-    # Of what lies beside uniform rotation; the angle of the input does not at the first time.
+    # Of what deviates from uniform rotation; at the first time the angle of the input does not.
     lines = np.zeros((2, *by_time.shape), complex)
     lines[1, 0] = phi_out
 
