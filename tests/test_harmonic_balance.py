@@ -51,7 +51,7 @@ def test_it_is_the_motion_that_integrating_settles_at(kind, monkeypatch):
     found, expected = both(drive(0.0, *([strong(kind)] if kind else [])))
     for name in ("phi_in", "omega_in", "omega_out", "T_in", "T_out", "dt"):
         np.testing.assert_allclose(getattr(found, name), getattr(expected, name), rtol=1e-6, atol=1e-6)
-    if kind:
+    if kind not in ("", "lost_motion"):  # a gap that the load keeps closed changes nothing here
         without, _ = one_revolution(drive(0.0), np.zeros(len(OPERATING)), POINTS)
         assert np.abs(found.T_in - without.T_in).max() > 1e-4
 
