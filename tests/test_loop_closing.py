@@ -295,19 +295,6 @@ def test_what_brings_hardly_more_than_what_is_left_is_no_cause(patterns, gains, 
     assert steps.outweighed([weak, strong], left, [replace(A.score, gain=5.0)]) == ((weak,) if light else ())
 
 
-def test_the_memory_of_what_was_not_accepted_is_given_back(monkeypatch):
-    held = [replace(each, fitted=replace(FITTED, errors=replace(FITTED.errors))) for each in (A, B)]
-    for trial in held:
-        assert trial.fitted.whole is trial.fitted.whole
-        trial.fitted.errors.whiten(trial.fitted.residual)
-    monkeypatch.setattr(asking, "_asked", lambda *_: Round((held[0], held[1]), held[0], None))
-    asking.ask(FITTED, (), (), 0)
-    assert [("whole" in each.fitted.__dict__, "_L" in each.fitted.errors.__dict__) for each in held] == [
-        (True, True),
-        (False, False),
-    ]
-
-
 def test_nothing_is_outweighed_by_nothing():
     assert steps.outweighed([Step(replace(A, evidence=-1.0), (), ())], [], []) == ()
 

@@ -41,15 +41,6 @@ def ask(
     apart: Sequence[Described] = (),
 ) -> Round:
     """Fit the best hypotheses, and judge the best of them, behind what was set apart."""
-    found = _asked(now, scores, kinds, seed, apart)
-    for trial in found.others:
-        trial.let_go()
-    return found
-
-
-def _asked(
-    now: Fitted, scores: Sequence[Score], kinds: Sequence[type[Effect]], seed: int, apart: Sequence[Described]
-) -> Round:
     leading = leaders(scores)
     if not leading:
         return Round((), None, None)

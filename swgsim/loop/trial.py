@@ -11,7 +11,6 @@ from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities, size_of
 from swgsim.loop.evidence import LEAST_GAIN, Coherence, coherence, open_as_found, open_form, signature
 from swgsim.loop.fitting import Fitted, extended
-from swgsim.loop.held import let_go
 from swgsim.loop.screening import Score
 from swgsim.loop.shapes import over_shapes
 from swgsim.loop.vocabulary import Described
@@ -95,10 +94,6 @@ class Trial:
         """Standard deviation of each fitted parameter, by noise, all shapes and an imperfect form."""
         first = len(self.fitted.model.effects) - len(self.effects)
         return widened(self.fitted, first, self.coherence)
-
-    def let_go(self) -> None:
-        """Give back the memory, a tenth of a GiB, of what can be computed again."""
-        let_go(self, self.fitted, self.fitted.errors)
 
     @property
     def merit(self) -> float:
