@@ -61,9 +61,18 @@ class Closed:
     unknown: tuple[Described, ...] = ()
 
     @property
-    def nearest(self) -> Trial | None:
-        """Of what was rejected: the trial that came nearest."""
+    def best_rejected(self) -> Trial | None:
+        """Of what was rejected: the trial that was judged."""
         return self.rejected[0] if self.rejected and np.isfinite(self.rejected[0].merit) else None
+
+    @cached_property
+    def nearest(self) -> Trial | None:
+        """Of what was rejected: the trial that explains most of what is left in the library's own form.
+
+        Another one may predict it better, its form being open.
+        """
+        fitted = (trial for trial in self.rejected if np.isfinite(trial.merit))
+        return max(fitted, key=lambda trial: trial.explained(self.asked), default=None)
 
     @cached_property
     def nearest_explains(self) -> float:

@@ -98,7 +98,7 @@ def rejected(answer: Answer, sizes: Sizes) -> list[dict[str, Any]]:
 def why(trial: Trial, answer: Answer, better: Trial | None = None) -> str:
     """Why a trial was not accepted, in words."""
     outdone_by = answer.closed.outdone_by
-    if better is None and outdone_by and trial is answer.closed.nearest:
+    if better is None and outdone_by and trial is answer.closed.best_rejected:
         return (
             f"a bare regularity explains the same thing better, or far more beside it: {outdone_by} (fall of the sum "
             f"of squares {outdone_by.gain:.0f} against {trial.explained(answer.closed.asked):.0f})"
@@ -128,7 +128,7 @@ def why(trial: Trial, answer: Answer, better: Trial | None = None) -> str:
             f"it does not help to predict operating points left out: log-likelihood {trial.gain:+.1f}, "
             f"at least {LEAST_GAIN:g} are asked for"
         )
-    if better is None and trial is answer.closed.nearest and answer.closed.apart:
+    if better is None and trial is answer.closed.best_rejected and answer.closed.apart:
         return "it acts only where a disturbance was set apart, and may be part of that"
     if better is None:
         return "another effect explains more, which was not accepted, and the runner-up is never taken instead"
