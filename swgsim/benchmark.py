@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Sequence
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -83,16 +84,15 @@ def integrator_vs_solve_ivp(transmissions: Sequence[Transmission], points: Seque
         T_out and of the speeds over their own ripple.
     """
     window = Window()
-    pairs = [(t, point) for t in transmissions for point in points]
-    drive = Drive([t for t, _ in pairs], [point for _, point in pairs])
+    drive = _every(transmissions, points)
     with threadpool_limits(1):
         state = steady_state(drive)
         start = time.perf_counter()
         motion = run(drive, state, 1 / window.rate, window.samples)
-        batched = (time.perf_counter() - start) / len(pairs)
+        batched = (time.perf_counter() - start) / len(drive)
         seconds, errors = [], []
         for i in range(len(points)):
-            single = Drive([pairs[i][0]], [pairs[i][1]])
+            single = Drive([drive.transmissions[i]], [drive.points[i]])
 
             def rate(_: float, y: np.ndarray, single: Drive = single) -> np.ndarray:
                 column = y[:, None]
@@ -109,7 +109,7 @@ def integrator_vs_solve_ivp(transmissions: Sequence[Transmission], points: Seque
         "ratio": float(np.mean(seconds) / batched),
         "max_relative_error": float(max(errors)),
         "seconds_per_run": {"batched": batched, "solve_ivp": float(np.mean(seconds))},
-        "runs": len(pairs),
+        "runs": len(drive),
     }
 
 
@@ -123,8 +123,7 @@ def harmonic_balance_vs_integrating(
     dict
         ratio of the times; max_relative_difference, the largest of T_out and of the speeds over their own mean.
     """
-    pairs = [(t, point) for t in transmissions for point in points]
-    drive = Drive([t for t, _ in pairs], [point for _, point in pairs])
+    drive = _every(transmissions, points)
     with threadpool_limits(1):
         start = time.perf_counter()
         balanced, _ = one_revolution(drive, np.zeros(len(drive)), samples)
@@ -137,5 +136,10 @@ def harmonic_balance_vs_integrating(
         "ratio": (end - middle) / (middle - start),
         "max_relative_difference": max(float(np.abs(a - b).max() / b.mean()) for a, b in both),
         "seconds": {"harmonic_balance": middle - start, "integrating": end - middle},
-        "runs": len(pairs),
+        "runs": len(drive),
     }
+
+
+def _every(transmissions: Sequence[Transmission], points: Sequence[OperatingPoint]) -> Drive:
+    """Every gear at every operating point."""
+    return Drive(*zip(*product(transmissions, points), strict=True))

@@ -289,7 +289,7 @@ def test_the_nearest_explains_a_share_of_what_is_left_beyond_noise(monkeypatch):
         "nothing",
     ],
 )
-def test_what_brings_hardly_more_than_what_is_left_is_no_cause(patterns, gains, light):
+def test_what_brings_less_than_ten_times_what_is_left_is_no_cause(patterns, gains, light):
     left = [Described(Atom(2, p, "constant"), g, 2, 0.1, 0.0) for p, g in zip(patterns, gains, strict=True)]
     weak, strong = Step(replace(A, evidence=50.0), (), ()), Step(replace(B, evidence=5e9), (), ())
     assert steps.outweighed([weak, strong], left, [replace(A.score, gain=5.0)]) == ((weak,) if light else ())
