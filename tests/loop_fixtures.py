@@ -11,6 +11,7 @@ from swgsim.conditions import Conditions
 from swgsim.effects import Effect
 from swgsim.effects.quantity import phase, size
 from swgsim.gear import OperatingPoint
+from swgsim.loop.alone import Alone
 from swgsim.loop.calibration import Calibrated
 from swgsim.loop.features import Layout
 from swgsim.loop.fitting import Fitted
@@ -87,7 +88,7 @@ def fitted_to(
     rows = len(recordings) * len(layout)
     variance = rng.uniform(0.5, 2.0, (len(recordings), len(layout)))
     measured = Measured(recordings, layout, np.zeros(variance.shape), variance)
-    errors = Covariance(variance.ravel(), rng.normal(0, 0.5, (rows, 3)))
+    errors = Covariance(Alone.white(variance), rng.normal(0, 0.5, (rows, 3)))
     situations = len(measured.situations)
     calibrated = Calibrated(
         Model(GEAR), {}, np.zeros((situations, len(layout))), np.zeros((situations, len(layout), 0)), True
@@ -113,5 +114,7 @@ def holding(fitted: Fitted, residual: np.ndarray) -> Fitted:
 
 def drawn(covariance: Covariance, rng: np.random.Generator) -> np.ndarray:
     """A residual with this covariance."""
-    common = covariance.G @ rng.standard_normal(covariance.G.shape[1])
+    recordings, _, kinds = covariance.alone.C.shape
+    common = covariance.alone.made(rng.standard_normal(recordings * kinds))
+    common += covariance.G @ rng.standard_normal(covariance.G.shape[1])
     return common + np.sqrt(covariance.variance) * rng.standard_normal(len(covariance.variance))

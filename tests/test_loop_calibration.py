@@ -10,6 +10,7 @@ from loop_fixtures import POINTS, Bump
 from swgsim.conditions import Conditions
 from swgsim.gauges import LIMITS
 from swgsim.gear import W0_LIMITS
+from swgsim.loop.alone import Alone
 from swgsim.loop.calibration import calibrate
 from swgsim.loop.declared import Declared, at, of_unit
 from swgsim.loop.features import Layout
@@ -42,7 +43,7 @@ def predicting(monkeypatch, formula) -> None:
 
 def fitted(parameters, measured, *, noise=0.01, **more):
     """Calibrated to one recording of every situation."""
-    errors = Covariance(np.full(measured.size, noise**2), np.zeros((measured.size, 0)))
+    errors = Covariance(Alone.white(np.full(measured.shape, noise**2)), np.zeros((measured.size, 0)))
     of_recording = np.arange(len(SITUATIONS))
     return calibrate(START, parameters, measured, errors, SITUATIONS, of_recording, LAYOUT, **more)
 

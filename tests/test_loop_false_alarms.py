@@ -8,10 +8,12 @@ from loop_fixtures import BUMP, POINTS, fitted_to, holding
 from scipy.stats import binom
 
 from swgsim.conditions import Conditions
+from swgsim.loop.alone import Alone
 from swgsim.loop.features import Layout
+from swgsim.loop.gaussian import Covariance
 from swgsim.loop.model import Situation
 from swgsim.loop.repeats import from_repeats
-from swgsim.loop.scatter import STATED, Scatter, covariance, kinds, trends
+from swgsim.loop.scatter import STATED, Scatter, kinds, trends
 from swgsim.loop.screening import screen
 
 LAYOUT = Layout(("T_in", "s0"))
@@ -42,7 +44,7 @@ def chances(*, known: bool) -> np.ndarray:
         guess = from_repeats(r, fitted.measured.variance, B, following, GROUPS, Scatter.stated(LAYOUT))
         if known:
             guess = Scatter(dict(zip(KINDS, sd.tolist(), strict=True)), 1000, np.zeros((len(KINDS), len(KINDS))))
-        errors = covariance(fitted.measured.variance, guess.columns(B))
+        errors = Covariance(Alone(fitted.measured.variance, guess.columns(B)), np.zeros((r.size, 0)))
         r = r.ravel() + fitted.open @ rng.standard_normal(3)
         now = replace(holding(fitted, r), scatter=guess, errors=errors)
         scores = screen([BUMP] * signatures.shape[1], np.split(signatures, signatures.shape[1], axis=1), now, rng)

@@ -4,26 +4,40 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.linalg import block_diag
 from scipy.special import log_ndtr
 from scipy.stats import multivariate_normal
 
+from swgsim.loop.alone import Alone
 from swgsim.loop.gaussian import Covariance
 from swgsim.loop.tail import log_tail
 
-SHAPES = {"rows": st.integers(2, 12), "columns": st.integers(0, 15), "seed": st.integers(0, 10_000)}
+SHAPES = {
+    "recordings": st.integers(1, 4),
+    "features": st.integers(2, 5),
+    "kinds": st.integers(0, 6),
+    "columns": st.integers(0, 15),
+    "seed": st.integers(0, 10_000),
+}
 
 
-def random_covariance(rows: int, columns: int, seed: int) -> tuple[Covariance, np.ndarray, np.random.Generator]:
-    """One with common errors from a hundredth to a hundred times the noise, and its dense form."""
+def random_covariance(
+    recordings: int, features: int, kinds: int, columns: int, seed: int
+) -> tuple[Covariance, np.ndarray, np.random.Generator]:
+    """One with errors of every kind from a hundredth to a hundred times the noise, and its dense form."""
     rng = np.random.default_rng(seed)
-    found = Covariance(rng.uniform(0.1, 10, rows), rng.normal(size=(rows, columns)) * 10 ** rng.uniform(-2, 2, columns))
-    return found, np.diag(found.variance) + found.G @ found.G.T, rng
+    noise = rng.uniform(0.1, 10, (recordings, features))
+    C = rng.normal(size=(recordings, features, kinds)) * 10 ** rng.uniform(-2, 2, kinds)
+    G = rng.normal(size=(recordings * features, columns)) * 10 ** rng.uniform(-2, 2, columns)
+    dense = block_diag(*(np.diag(own) + each @ each.T for own, each in zip(noise, C, strict=True))) + G @ G.T
+    return Covariance(Alone(noise, C), G), dense, rng
 
 
 @settings(deadline=None, max_examples=60)
 @given(**SHAPES)
-def test_whitening_makes_the_covariance_the_identity(rows, columns, seed):
-    covariance, dense, rng = random_covariance(rows, columns, seed)
+def test_whitening_makes_the_covariance_the_identity(**shape):
+    covariance, dense, rng = random_covariance(**shape)
+    rows = len(dense)
     W = covariance.whiten(np.eye(rows))
     np.testing.assert_allclose(W @ dense @ W.T, np.eye(rows), atol=1e-7)
     x = rng.normal(size=(rows, 3))
@@ -33,8 +47,9 @@ def test_whitening_makes_the_covariance_the_identity(rows, columns, seed):
 
 @settings(deadline=None, max_examples=60)
 @given(**SHAPES)
-def test_whitening_is_symmetric_in_units_of_the_noise(rows, columns, seed):
-    covariance, dense, _ = random_covariance(rows, columns, seed)
+def test_whitening_is_symmetric_in_units_of_the_noise(**shape):
+    covariance, dense, _ = random_covariance(**shape)
+    rows = len(dense)
     scaled = np.array([covariance.whiten_in_place(each) for each in np.diag(np.sqrt(covariance.variance))])
     np.testing.assert_allclose(scaled, scaled.T, atol=1e-9)
     W = scaled.T / np.sqrt(covariance.variance)
@@ -43,8 +58,9 @@ def test_whitening_is_symmetric_in_units_of_the_noise(rows, columns, seed):
 
 @settings(deadline=None, max_examples=60)
 @given(**SHAPES)
-def test_weighing_multiplies_by_the_inverse_of_the_covariance(rows, columns, seed):
-    covariance, dense, rng = random_covariance(rows, columns, seed)
+def test_weighing_multiplies_by_the_inverse_of_the_covariance(**shape):
+    covariance, dense, rng = random_covariance(**shape)
+    rows = len(dense)
     inverse = np.linalg.inv(dense)
     np.testing.assert_allclose(covariance.weigh(np.eye(rows)), inverse, atol=1e-7)
     block = rng.random(rows) < 0.5
@@ -53,8 +69,9 @@ def test_weighing_multiplies_by_the_inverse_of_the_covariance(rows, columns, see
 
 @settings(deadline=None, max_examples=60)
 @given(**SHAPES)
-def test_log_likelihood_is_the_normal_one_without_its_constant(rows, columns, seed):
-    covariance, dense, rng = random_covariance(rows, columns, seed)
+def test_log_likelihood_is_the_normal_one_without_its_constant(**shape):
+    covariance, dense, rng = random_covariance(**shape)
+    rows = len(dense)
     r = rng.normal(size=rows)
     expected = multivariate_normal(np.zeros(rows), dense).logpdf(r) + 0.5 * rows * np.log(2 * np.pi)
     assert covariance.log_likelihood(r) == pytest.approx(expected, rel=1e-6, abs=1e-6)
@@ -62,8 +79,9 @@ def test_log_likelihood_is_the_normal_one_without_its_constant(rows, columns, se
 
 @settings(deadline=None, max_examples=60)
 @given(**SHAPES)
-def test_rows_left_out_have_the_conditional_distribution(rows, columns, seed):
-    covariance, dense, rng = random_covariance(rows, columns, seed)
+def test_rows_left_out_have_the_conditional_distribution(**shape):
+    covariance, dense, rng = random_covariance(**shape)
+    rows = len(dense)
     r = rng.normal(size=rows)
     block = rng.permutation(np.arange(rows) < max(1, rows // 3))
     gain = dense[np.ix_(block, ~block)] @ np.linalg.inv(dense[np.ix_(~block, ~block)])
@@ -76,14 +94,37 @@ def test_rows_left_out_have_the_conditional_distribution(rows, columns, seed):
 
 @settings(deadline=None, max_examples=60)
 @given(**SHAPES)
-def test_common_errors_are_told_as_their_conditional_mean(rows, columns, seed):
-    covariance, dense, rng = random_covariance(rows, columns, seed)
+def test_common_errors_are_told_as_their_conditional_mean(**shape):
+    covariance, dense, rng = random_covariance(**shape)
+    rows = len(dense)
     r = rng.normal(size=rows)
     np.testing.assert_allclose(covariance.told(r), covariance.G.T @ np.linalg.solve(dense, r), rtol=1e-5, atol=1e-5)
 
 
+@settings(deadline=None, max_examples=60)
+@given(**SHAPES)
+def test_some_features_have_their_part_of_the_covariance(**shape):
+    covariance, dense, rng = random_covariance(**shape)
+    chosen = rng.permutation(np.arange(shape["features"]) < rng.integers(1, shape["features"] + 1))
+    rows = np.tile(chosen, shape["recordings"])
+    r = rng.normal(size=rows.sum())
+    expected = np.linalg.solve(dense[np.ix_(rows, rows)], r)
+    np.testing.assert_allclose(covariance.features(chosen).weigh(r), expected, rtol=1e-5, atol=1e-5)
+
+
+@settings(deadline=None, max_examples=60)
+@given(**SHAPES)
+def test_errors_of_single_recordings_move_no_other_one(**shape):
+    covariance, dense, rng = random_covariance(**shape)
+    alone, by = covariance.alone, rng.normal(size=shape["recordings"] * shape["kinds"])
+    np.testing.assert_allclose(alone.made(by), alone.dense @ by, atol=1e-9)
+    np.testing.assert_allclose(
+        alone.dense @ alone.dense.T + np.diag(covariance.variance) + covariance.G @ covariance.G.T, dense, atol=1e-7
+    )
+
+
 def test_further_columns_add_their_covariance():
-    covariance, dense, rng = random_covariance(6, 2, 1)
+    covariance, dense, rng = random_covariance(2, 3, 2, 2, 1)
     more = rng.normal(size=(6, 3))
     W = covariance.with_columns(more).whiten(np.eye(6))
     np.testing.assert_allclose(W @ (dense + more @ more.T) @ W.T, np.eye(6), atol=1e-9)

@@ -9,10 +9,11 @@ from loop_fixtures import BUMP, Bump, drawn, fitted_to, holding
 
 from swgsim.loop import evidence, vocabulary
 from swgsim.loop import trial as trial_module
+from swgsim.loop.alone import Alone
 from swgsim.loop.beside import beside_unknown, elsewhere, in_company, outdone
 from swgsim.loop.features import Layout
 from swgsim.loop.model import Model
-from swgsim.loop.scatter import Scatter, covariance
+from swgsim.loop.scatter import Scatter
 from swgsim.loop.screening import Score
 from swgsim.loop.trial import Trial, gained, tried
 from swgsim.loop.vocabulary import Atom, columns, describe, set_free, strongest
@@ -160,8 +161,8 @@ def scattered(fitted, factor: float):
     """A fit whose recordings also err in two ways, by so much."""
     moves = np.random.default_rng(5).standard_normal((*fitted.measured.values.shape, 2))
     scatter = Scatter({"load": factor, "speed": 2.0}, 6, 0.1 * np.eye(2))
-    errors = covariance(fitted.measured.variance, scatter.columns(moves)).with_columns(fitted.errors.G)
-    return replace(fitted, scatter=scatter, errors=errors)
+    alone = Alone(fitted.measured.variance, scatter.columns(moves))
+    return replace(fitted, scatter=scatter, errors=replace(fitted.errors, alone=alone))
 
 
 def test_what_shows_in_other_channels_too_is_no_part_of_a_disturbance(fitted, stray, signature):

@@ -7,6 +7,7 @@ from loop_fixtures import POINTS, silent
 
 from swgsim.conditions import Conditions
 from swgsim.gear import OperatingPoint
+from swgsim.loop.alone import Alone
 from swgsim.loop.features import ORDERS, Layout
 from swgsim.loop.gaussian import Covariance
 from swgsim.loop.model import Model, Situation
@@ -20,7 +21,6 @@ from swgsim.loop.scatter import (
     PER_KELVIN,
     STATED,
     Scatter,
-    covariance,
     directions,
     kinds,
     of_recordings,
@@ -101,7 +101,7 @@ def test_without_repeats_all_recordings_tell_it_beside_what_is_open(seed):
     unit = {name: B[..., KINDS.index(f"zero of {name}")] * STATED[f"zero of {name}"] for name in ("s0", "s1", "T_out")}
     residual += (COMMON * unit["T_out"] + PER_HOUR * (elapsed / 3600)[:, None] * unit["s0"]).ravel()
     residual += (AT_FULL_LOAD * (loads / 70)[:, None] * unit["s1"]).ravel()
-    found = from_all(residual, Covariance(variance.ravel(), open_), B, common, STATEMENT)
+    found = from_all(residual, Covariance(Alone.white(variance), open_), B, common, STATEMENT)
     share = np.array([found.sd[kind] / STATED[kind] / factor.get(kind, 1.0) for kind in KINDS])
     assert found.repeats == 0
     # Eighteen errors of each kind leave a sixth.
@@ -162,16 +162,6 @@ def test_two_repeats_weigh_the_statement_with_what_they_show():
     found = np.log(scatter.sd["load"] / STATED["load"])
     # Derivative of the logarithm of the posterior: size^2 / s^2 - 1 - log(s) / DOUBT^2 = 0.
     assert size**2 * np.exp(-2 * found) - 1 - found / DOUBT**2 == pytest.approx(0, abs=0.03)
-
-
-def test_covariance_holds_every_recording_by_itself():
-    rng = np.random.default_rng(1)
-    columns = rng.normal(size=(3, len(LAYOUT), 2))
-    found = covariance(np.ones((3, len(LAYOUT))), columns)
-    dense = (found.G @ found.G.T).reshape(3, len(LAYOUT), 3, len(LAYOUT))
-    for i in range(3):
-        np.testing.assert_allclose(dense[i, :, i], columns[i] @ columns[i].T, atol=1e-12)
-        assert not dense[i][:, np.arange(3) != i].any()
 
 
 def test_kinds_follow_the_channels():

@@ -45,5 +45,5 @@ def expected(fitted: Fitted) -> Float[np.ndarray, "situation feature"]:
     # The model stands where its parameters were found to be; what they are counted from lies further back.
     beyond = mean[len(mean) - J.shape[-1] :] - np.array(list(fitted.calibrated.position.values()))
     instruments = measured.further(session, UNSEEN, predicted).session_columns(predicted, measured)
-    shown = (instruments @ mean[fitted.singles : first]).reshape(predicted.shape)
+    shown = (instruments @ mean[:first]).reshape(predicted.shape)
     return predicted + shift + left_open @ found + J @ beyond + shown

@@ -100,6 +100,7 @@ def elsewhere(trial: Trial, apart: Sequence[Described], now: Fitted) -> bool:
     if not apart:
         return True
     disturbed = [channel for each in apart for channel in PATTERNS[each.atom.pattern]]
-    others = ~np.isin(np.tile(now.measured.layout.channel, len(now.measured)), disturbed)
-    beyond = np.linalg.norm(now.whole.rows(others).whiten(trial.signature[others]), axis=0)
+    others = ~np.isin(now.measured.layout.channel, disturbed)
+    there = trial.signature[np.tile(others, len(now.measured))]
+    beyond = np.linalg.norm(now.whole.features(others).whiten(there), axis=0)
     return bool((beyond**2 > ELSEWHERE * np.linalg.norm(now.whole.whiten(trial.signature), axis=0) ** 2).all())

@@ -116,10 +116,8 @@ def worst(fitted: Fitted, after: Fitted) -> list[int]:
 def _of_mean(fitted: Fitted, rows: Sequence[int]) -> Float[np.ndarray, "feature column"]:
     """Errors of the mean of some recordings that are theirs alone, one standard deviation each."""
     measured = fitted.measured
-    own = fitted.singles
     white = np.diag(np.sqrt(measured.variance[rows].mean(axis=0) / len(rows)))
-    common = fitted.errors.G[:, :own].reshape(*measured.values.shape, own)[rows].mean(axis=0)
-    return np.hstack([white, common])
+    return np.hstack([white, *fitted.errors.alone.C[rows] / len(rows)])
 
 
 def _of_channel(features: np.ndarray, i: int) -> np.ndarray:

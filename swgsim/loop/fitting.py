@@ -9,9 +9,10 @@ from jaxtyping import Float
 
 from swgsim.effects.base import Effect
 from swgsim.loop import repeats, scatter
+from swgsim.loop.alone import Alone
 from swgsim.loop.calibration import Calibrated, calibrate, linearised
 from swgsim.loop.declared import Declared, at, of_effects
-from swgsim.loop.gaussian import Covariance, Expected
+from swgsim.loop.gaussian import Covariance, Expected, without_what_noise_hides
 from swgsim.loop.model import Model
 from swgsim.loop.scatter import Scatter
 from swgsim.loop.session import Measured
@@ -84,22 +85,17 @@ class Fitted:
 
     def allowing(self, columns: Float[np.ndarray, "row column"]) -> "Fitted":
         """The same with more left open, one standard deviation each, also when effects are added to it."""
+        columns = without_what_noise_hides(columns, self.errors.variance)
         if not columns.shape[1]:
             return self
         kept = [] if self.allowed is None else [self.allowed]
         return replace(self, open=np.hstack([self.open, columns]), allowed=np.hstack([*kept, columns]))
 
     def scattering(self, scatter: Scatter) -> "Fitted":
-        """The same with other errors of single recordings, which are the first columns of all errors."""
+        """The same with other errors of single recordings."""
         ratio = np.array(list(scatter.sd.values())) / np.array(list(self.scatter.sd.values()))
-        scale = np.ones(self.errors.G.shape[1])
-        scale[: self.singles] = np.tile(ratio, len(self.measured))
-        return replace(self, scatter=scatter, errors=Covariance(self.errors.variance, self.errors.G * scale))
-
-    @property
-    def singles(self) -> int:
-        """How many of the common errors are those of single recordings; they come first."""
-        return len(self.measured) * len(self.scatter.sd)
+        alone = replace(self.errors.alone, C=self.errors.alone.C * ratio)
+        return replace(self, scatter=scatter, errors=replace(self.errors, alone=alone))
 
     @cached_property
     def residual(self) -> Float[np.ndarray, " row"]:
@@ -123,10 +119,10 @@ class Fitted:
 
     @property
     def nuisances(self) -> slice:
-        """Which columns of :attr:`whole` are neither errors of single recordings nor fitted parameters: zeros and gains
-        of sessions, and what is left open of the gear and of effects found earlier.
+        """Which columns of :attr:`whole` are no fitted parameters: zeros and gains of sessions, and what is left open
+        of the gear and of effects found earlier.
         """
-        return slice(self.singles, self.whole.G.shape[1] - len(self.parameters))
+        return slice(self.whole.G.shape[1] - len(self.parameters))
 
     @cached_property
     def by_others(self) -> list[tuple[np.ndarray, Expected]]:
@@ -176,13 +172,13 @@ class Fitted:
         The errors of single recordings are in each draw as large as their estimate leaves them; all others are as
         declared.
         """
-        rows, columns = self.whole.G.shape
+        alone, G = self.whole.alone, self.whole.G
         deviation = np.sqrt(self.whole.variance)[:, None]
         while True:
-            factors = np.ones((columns, draws))
-            factors[: self.singles] = np.tile(self.scatter.drawn(rng, draws), (len(self.measured), 1))
-            noise = deviation * rng.standard_normal((rows, draws))
-            yield self.whole.weigh(noise + self.whole.G @ (factors * rng.standard_normal((columns, draws))))
+            factors = np.tile(self.scatter.drawn(rng, draws), (len(self.measured), 1))
+            noise = deviation * rng.standard_normal((len(G), draws))
+            single = alone.made(factors * rng.standard_normal(factors.shape))
+            yield self.whole.weigh(noise + single + G @ rng.standard_normal((G.shape[1], draws)))
 
     @cached_property
     def log_likelihood(self) -> float:
@@ -227,8 +223,7 @@ def fit(
         moves = scatter.of_recordings(here, measured)
         unsure = unit.left_open(here, measured.situations, measured.layout)
         predicted, offset = unsure.predicted, measured.rows(unsure.shift)
-        errors = scatter.covariance(noise, guess.columns(moves))
-        errors = errors.with_columns(measured.session_columns(predicted))
+        errors = Covariance(Alone(noise, guess.columns(moves)), measured.session_columns(predicted))
         left = measured.rows(unsure.columns)
         open_ = left if allowed is None else np.hstack([left, allowed])
         calibrated = calibrate(
@@ -241,11 +236,11 @@ def fit(
             guess = repeats.from_repeats(residual, noise, moves, trends, measured.repeats, known)
         else:
             J = measured.rows(calibrated.J).reshape(residual.size, -1)
-            common = Covariance(noise.ravel(), np.hstack([measured.session_columns(predicted), open_, J]))
+            common = Covariance(Alone.white(noise), np.hstack([measured.session_columns(predicted), open_, J]))
             from_start = residual.ravel() + J @ np.array(list(calibrated.position.values()))
             guess = repeats.from_all(from_start, common, moves, trends, known)
         here, begin = calibrated.model, calibrated.position
-    errors = scatter.covariance(noise, guess.columns(moves)).with_columns(measured.session_columns(predicted))
+    errors = Covariance(Alone(noise, guess.columns(moves)), measured.session_columns(predicted))
     return Fitted(measured, unit, parameters, calibrated, guess, errors, open_, offset, allowed)
 
 

@@ -7,8 +7,9 @@ import numpy as np
 from jaxtyping import Float
 from scipy.optimize import minimize
 
+from swgsim.loop.alone import Alone
 from swgsim.loop.gaussian import Covariance
-from swgsim.loop.scatter import DOUBT, Scatter, covariance
+from swgsim.loop.scatter import DOUBT, Scatter
 
 
 class Told(NamedTuple):
@@ -92,7 +93,7 @@ def from_all(
     known : Scatter
     """
     common = common.with_columns(trends.reshape(len(residual), -1))
-    B = common.whiten(covariance(common.variance.reshape(directions.shape[:2]), directions).G)
+    B = common.whiten(Alone(common.alone.noise, directions).dense)
     return _likeliest([_told(B, common.whiten(residual)[:, None], np.ones(len(residual)))], known, 0)
 
 

@@ -10,7 +10,6 @@ from swgsim.effects import ParameterScatter
 from swgsim.effects.frozen import FULL_LOAD
 from swgsim.effects.kinematic_error_order import KinematicErrorOrder
 from swgsim.loop.features import Layout
-from swgsim.loop.gaussian import Covariance
 from swgsim.loop.model import Model, Situation, predict
 from swgsim.loop.session import Measured
 
@@ -146,14 +145,3 @@ def trends(
         AT_FULL_LOAD * np.array([each.point.T_out for each in situations]) / FULL_LOAD,
     ]
     return np.concatenate([COMMON * moves, *(following * law[:, None, None] for law in laws)], axis=-1)
-
-
-def covariance(
-    variance: Float[np.ndarray, "recording feature"], columns: Float[np.ndarray, "recording feature kind"]
-) -> Covariance:
-    """White noise and the errors of every single recording."""
-    recordings, features, kinds = columns.shape
-    G = np.zeros((recordings, features, recordings, kinds))
-    for i in range(recordings):
-        G[i, :, i] = columns[i]
-    return Covariance(variance.ravel(), G.reshape(recordings * features, recordings * kinds))
