@@ -1,0 +1,90 @@
+"""Errors of single recordings: noise, and errors that move many numbers of one recording and none of another."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+
+@dataclass(frozen=True, eq=False)
+class Alone:
+    """diag(variance) + C C^T within every recording; rows (recording, feature) of a residual, one below the other.
+
+    Attributes
+    ----------
+    noise : array (recording, feature)
+        Variance of the independent errors.
+    C : array (recording, feature, kind)
+        Errors of each recording, one standard deviation each.
+    """
+
+    noise: Float[np.ndarray, "recording feature"]
+    C: Float[np.ndarray, "recording feature kind"]
+
+    @classmethod
+    def white(cls, noise: Float[np.ndarray, "recording feature"]) -> "Alone":
+        """Independent errors only."""
+        return cls(noise, np.zeros((*noise.shape, 0)))
+
+    @cached_property
+    def _shares(self) -> tuple[Float[np.ndarray, "recording feature kind"], Float[np.ndarray, "recording kind 1"]]:
+        """Q and r for which, in units of the independent errors, 1 - Q Q' is the inverse and 1 - Q r / (1 + r) Q' its
+        symmetric root.
+        """
+        scaled = self.C / self._deviation[..., None]
+        eigenvalues, V = np.linalg.eigh(scaled.transpose(0, 2, 1) @ scaled)
+        r = np.sqrt(1 + np.maximum(eigenvalues, 0))  # what rounding makes of them shrinks nothing
+        return scaled @ (V / r[:, None, :]), r[..., None]
+
+    @cached_property
+    def _deviation(self) -> Float[np.ndarray, "recording feature"]:
+        return np.sqrt(self.noise)
+
+    def whiten(self, X: np.ndarray) -> np.ndarray:
+        """W X with W covariance W' = 1, for an array (row,) or (row, column)."""
+        Q, r = self._shares
+        scaled = self._split(X) / self._deviation[..., None]
+        return (scaled - Q @ (r / (1 + r) * (Q.transpose(0, 2, 1) @ scaled))).reshape(X.shape)
+
+    def weigh(self, X: np.ndarray) -> np.ndarray:
+        """P X with P the inverse of the covariance, for an array (row,) or (row, column)."""
+        Q, _ = self._shares
+        scaled = self._split(X) / self._deviation[..., None]
+        return ((scaled - Q @ (Q.transpose(0, 2, 1) @ scaled)) / self._deviation[..., None]).reshape(X.shape)
+
+    def precision(self, block: Bool[np.ndarray, " row"]) -> Float[np.ndarray, "block block"]:
+        """The block of P of some of the rows."""
+        Q, _ = self._shares
+        inside = block.reshape(self.noise.shape)
+        found = np.diag(1 / self.noise[inside])
+        ends = np.cumsum([0, *inside.sum(axis=1)])
+        for start, end, rows, share, deviation in zip(ends, ends[1:], inside, Q, self._deviation, strict=False):
+            own = share[rows] / deviation[rows, None]
+            found[start:end, start:end] -= own @ own.T
+        return found
+
+    @property
+    def log_determinant(self) -> float:
+        """Of the covariance."""
+        return float(np.log(self.noise).sum() + 2 * np.log(self._shares[1]).sum())
+
+    def made(self, errors: np.ndarray) -> np.ndarray:
+        """What errors (recording and kind,), in standard deviations, make of the rows; or each of several."""
+        recordings, features, kinds = self.C.shape
+        split = errors.reshape(recordings, kinds, *errors.shape[1:] or (1,))
+        return (self.C @ split).reshape(recordings * features, *errors.shape[1:])
+
+    @property
+    def dense(self) -> Float[np.ndarray, "row error"]:
+        """All errors as columns of their own; most of it is nothing."""
+        recordings, _, kinds = self.C.shape
+        return self.made(np.eye(recordings * kinds))
+
+    def features(self, chosen: Bool[np.ndarray, " feature"]) -> "Alone":
+        """Of some of the features."""
+        return Alone(self.noise[:, chosen], self.C[:, chosen])
+
+    def _split(self, X: np.ndarray) -> np.ndarray:
+        """Rows by recording (recording, feature, column)."""
+        return X.reshape(*self.noise.shape, -1)
