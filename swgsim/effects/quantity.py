@@ -1,7 +1,10 @@
 """Parameters of effects: unit, physical bounds, typical value, and what a search for the effect may do with them."""
 
+from collections.abc import Mapping
 from dataclasses import MISSING, Field, dataclass, field, fields
 from enum import Enum
+from functools import cache
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -108,9 +111,10 @@ def choice_among(*among: float, unit: str) -> Any:
     return _parameter(Quantity(Role.CHOICE, unit, min(among), max(among), among[0], among=among), among[0])
 
 
-def quantities(kind: type) -> dict[str, Quantity]:
+@cache
+def quantities(kind: type) -> Mapping[str, Quantity]:
     """The parameters of a class of effects, in order."""
-    return {f.name: f.metadata["quantity"] for f in fields(kind) if "quantity" in f.metadata}
+    return MappingProxyType({f.name: f.metadata["quantity"] for f in fields(kind) if "quantity" in f.metadata})
 
 
 def size_of(kind: type) -> str:

@@ -69,10 +69,10 @@ def layout_of(recordings: Sequence[Recording]) -> Layout:
     return Layout(tuple(name for name in COMPARED if all(name in r.channels for r in recordings)))
 
 
-def basis(phi: Float[np.ndarray, " time"], orders: int) -> Float[np.ndarray, "time column"]:
+def basis(phi: Float[np.ndarray, "*batch time"], orders: int) -> Float[np.ndarray, "*batch time column"]:
     """One, then cosines, then sines of the orders 1 to `orders`."""
-    turns = np.exp(1j * np.outer(phi, np.arange(1, orders + 1)))
-    return np.column_stack([np.ones(len(phi)), turns.real, turns.imag])
+    turns = np.multiply.accumulate(np.repeat(np.exp(1j * phi)[..., None], orders, axis=-1), axis=-1)
+    return np.concatenate([np.ones((*phi.shape, 1)), turns.real, turns.imag], axis=-1)
 
 
 def features(recording: Recording, layout: Layout) -> Float[np.ndarray, " feature"]:
@@ -83,9 +83,15 @@ def features(recording: Recording, layout: Layout) -> Float[np.ndarray, " featur
     ValueError
         If a revolution has too few samples for the orders that are fitted.
     """
-    columns, values = basis(recording.channels["phi_in"], FITTED), _values(recording, layout)
+    return features_alike([recording], layout)[0]
+
+
+def features_alike(recordings: Sequence[Recording], layout: Layout) -> Float[np.ndarray, "recording feature"]:
+    """The feature vectors of recordings of equal length; raises like :func:`features`."""
+    columns = basis(np.array([each.channels["phi_in"] for each in recordings]), FITTED)
+    values = np.array([_values(each, layout) for each in recordings])
     kept = np.concatenate([np.arange(ORDERS + 1), FITTED + 1 + np.arange(ORDERS)])
-    return _coefficients(columns, values)[kept].T.ravel()
+    return _coefficients(columns, values)[:, kept].transpose(0, 2, 1).reshape(len(recordings), -1)
 
 
 def remainder(recording: Recording, layout: Layout) -> Float[np.ndarray, "channel time"]:
@@ -112,7 +118,8 @@ def _values(recording: Recording, layout: Layout) -> Float[np.ndarray, "time cha
 
 
 def _coefficients(
-    columns: Float[np.ndarray, "time column"], values: Float[np.ndarray, "time channel"]
-) -> Float[np.ndarray, "column channel"]:
+    columns: Float[np.ndarray, "*batch time column"], values: Float[np.ndarray, "*batch time channel"]
+) -> Float[np.ndarray, "*batch column channel"]:
     """Least squares."""
-    return np.linalg.solve(columns.T @ columns, columns.T @ values)
+    across = columns.swapaxes(-1, -2)
+    return np.linalg.solve(across @ columns, across @ values)

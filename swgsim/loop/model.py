@@ -10,11 +10,13 @@ from swgsim.chain import SECTORS, Run, simulate_turns
 from swgsim.conditions import Conditions
 from swgsim.effects.base import Effect, overrides
 from swgsim.gear import Gear, OperatingPoint
-from swgsim.loop.features import Layout, features
+from swgsim.loop.features import Layout, features_alike
 from swgsim.loop.own_lines import Lines, OwnLines
 
 # Samples per revolution; the highest order that is fitted needs more than twice its number.
 POINTS = 64
+# Recordings whose features are found at once: as many as a cache of the processor holds.
+AT_ONCE = 64
 
 
 @dataclass(frozen=True)
@@ -65,8 +67,10 @@ def predict(
     keys = [_key(run) for run in runs]
     distinct = dict(zip(reversed(keys), reversed(runs), strict=True))
     recordings = simulate_turns(list(distinct.values()), revolutions=1, points=POINTS, sectors=sectors)
-    found = {key: features(recording, layout) for key, recording in zip(distinct, recordings, strict=True)}
-    return np.array([found[key] for key in keys]).reshape(len(models), len(situations), len(layout))
+    some = (recordings[i : i + AT_ONCE] for i in range(0, len(recordings), AT_ONCE))
+    found = np.concatenate([features_alike(each, layout) for each in some])
+    row = {key: number for number, key in enumerate(distinct)}
+    return found[[row[key] for key in keys]].reshape(len(models), len(situations), len(layout))
 
 
 def _key(run: Run) -> tuple:

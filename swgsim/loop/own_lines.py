@@ -10,6 +10,7 @@ from swgsim.effects.base import Effect, Scene
 from swgsim.effects.frozen import FULL_LOAD
 from swgsim.effects.regularity import FULL_SPEED
 from swgsim.gauges import GaugeSet
+from swgsim.loop.features import basis
 from swgsim.recordings import SENSORS
 
 # What lines may follow over operating points, of load and speed in units of full ones.
@@ -73,8 +74,9 @@ class OwnLines(Effect):
         moved = np.array(self.gauges.position)[which] - np.array(self.lines.gauges.position)[which]
         share = np.divide(now, was, out=np.ones(len(was)), where=was != 0)
         seen = signals.copy()
+        turned = share[:, None] * np.exp(-1j * moved[:, None] * self._orders)
+        waves = _waves(turned * self._of(own), scene)
         # The structure follows the torque at once, and so its ripple.
-        waves = self._waves(own, scene, share[:, None] * np.exp(-1j * np.outer(moved, self._orders)))
         seen[which] += (waves * laws(scene.T_out, scene.point.n_in_rpm)[:, None]).sum(axis=0)
         return seen
 
@@ -83,17 +85,20 @@ class OwnLines(Effect):
     ) -> Mapping[str, Float[np.ndarray, " time"]]:
         """The channels of the drive with their lines."""
         drive = [name for name in self.lines.channels if name not in SENSORS]
-        waves = np.tensordot(laws(np.array(scene.point.T_out), scene.point.n_in_rpm), self._waves(drive, scene), 1)
+        here = laws(np.array(scene.point.T_out), scene.point.n_in_rpm)
+        waves = _waves(np.tensordot(here, self._of(drive), 1), scene)
         return {**channels, **{name: channels[name] + wave for name, wave in zip(drive, waves, strict=True)}}
 
     @property
     def _orders(self) -> Int[np.ndarray, " order"]:
         return np.arange(self.lines.values.shape[-1])
 
-    def _waves(
-        self, names: Sequence[str], scene: Scene, changed: Complex[np.ndarray, "channel order"] | complex = 1.0
-    ) -> Float[np.ndarray, "law channel time"]:
-        """The lines of some channels over time by law, changed by so many times."""
-        which = [self.lines.channels.index(name) for name in names]
-        turns = np.exp(1j * np.outer(self._orders, scene.phi_in))
-        return (changed * self.lines.values[:, which] @ turns).real
+    def _of(self, names: Sequence[str]) -> Complex[np.ndarray, "law channel order"]:
+        """The lines of some channels."""
+        return self.lines.values[:, [self.lines.channels.index(name) for name in names]]
+
+
+def _waves(lines: Complex[np.ndarray, "*batch order"], scene: Scene) -> Float[np.ndarray, "*batch time"]:
+    """What lines are over time."""
+    parts = np.concatenate([lines.real, -lines.imag[..., 1:]], axis=-1)
+    return parts @ basis(scene.phi_in, lines.shape[-1] - 1).T
