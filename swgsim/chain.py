@@ -60,7 +60,14 @@ class Run:
     @cached_property
     def affected_gear(self) -> Gear:
         """The gear with the parameters that the effects change."""
-        return reduce(lambda gear, effect: effect.gear(gear), self.acting, self.gear)
+        changing = tuple(effect for effect in self.acting if type(effect).gear is not Effect.gear)
+        return _affected(self.gear, changing) if changing else self.gear
+
+
+@lru_cache(maxsize=4096)
+def _affected(gear: Gear, effects: tuple[Effect, ...]) -> Gear:
+    """A gear with what effects change of it: the same in many runs."""
+    return reduce(lambda gear, effect: effect.gear(gear), effects, gear)
 
 
 @dataclass(frozen=True)

@@ -29,29 +29,30 @@ class Alone:
 
     @cached_property
     def _shares(self) -> tuple[Float[np.ndarray, "recording feature kind"], Float[np.ndarray, "recording kind 1"]]:
-        """Q and r for which, in units of the independent errors, 1 - Q Q' is the inverse and 1 - Q r / (1 + r) Q' its
-        symmetric root.
+        """Q and r for which diag(1 / noise) - Q Q' is the inverse, and, with both sides in units of the independent
+        errors, 1 - Q r / (1 + r) Q' its symmetric root.
         """
-        scaled = self.C / self._deviation[..., None]
+        scaled = self.C / np.sqrt(self.noise)[..., None]
         eigenvalues, V = np.linalg.eigh(scaled.transpose(0, 2, 1) @ scaled)
         r = np.sqrt(1 + np.maximum(eigenvalues, 0))  # what rounding makes of them shrinks nothing
-        return scaled @ (V / r[:, None, :]), r[..., None]
-
-    @cached_property
-    def _deviation(self) -> Float[np.ndarray, "recording feature"]:
-        return np.sqrt(self.noise)
+        return self.C / self.noise[..., None] @ (V / r[:, None, :]), r[..., None]
 
     def whiten(self, X: np.ndarray) -> np.ndarray:
         """W X with W covariance W' = 1, for an array (row,) or (row, column)."""
         Q, r = self._shares
-        scaled = self._split(X) / self._deviation[..., None]
-        return (scaled - Q @ (r / (1 + r) * (Q.transpose(0, 2, 1) @ scaled))).reshape(X.shape)
+        split = self._split(X)
+        found = split / self.noise[..., None]
+        found -= Q @ (r / (1 + r) * (Q.transpose(0, 2, 1) @ split))
+        found *= np.sqrt(self.noise)[..., None]
+        return found.reshape(X.shape)
 
     def weigh(self, X: np.ndarray) -> np.ndarray:
         """P X with P the inverse of the covariance, for an array (row,) or (row, column)."""
         Q, _ = self._shares
-        scaled = self._split(X) / self._deviation[..., None]
-        return ((scaled - Q @ (Q.transpose(0, 2, 1) @ scaled)) / self._deviation[..., None]).reshape(X.shape)
+        split = self._split(X)
+        found = split / self.noise[..., None]
+        found -= Q @ (Q.transpose(0, 2, 1) @ split)
+        return found.reshape(X.shape)
 
     def precision(self, block: Bool[np.ndarray, " row"]) -> Float[np.ndarray, "block block"]:
         """The block of P of some of the rows."""
@@ -59,9 +60,8 @@ class Alone:
         inside = block.reshape(self.noise.shape)
         found = np.diag(1 / self.noise[inside])
         ends = np.cumsum([0, *inside.sum(axis=1)])
-        for start, end, rows, share, deviation in zip(ends, ends[1:], inside, Q, self._deviation, strict=False):
-            own = share[rows] / deviation[rows, None]
-            found[start:end, start:end] -= own @ own.T
+        for start, end, rows, share in zip(ends, ends[1:], inside, Q, strict=False):
+            found[start:end, start:end] -= share[rows] @ share[rows].T
         return found
 
     @property
