@@ -148,14 +148,13 @@ def simulate_turns(runs: Sequence[Run], revolutions: int, points: int, sectors: 
     """
     driven, of_run = _driven(runs)
     motion = one_turn(driven, points)
-    simulation = Simulation(_gauge_signals(runs, motion, of_run, points, sectors), motion, of_run)
+    signals = np.tile(_gauge_signals(runs, motion, of_run, points, sectors), revolutions)
+    simulation = Simulation(signals, motion.repeated(revolutions), of_run)
+    steps = np.arange(revolutions * points) / points
     recordings = []
     for i, each in enumerate(runs):
-        one = channels_of(simulation, i, points)
-        channels = {name: np.tile(values, revolutions) for name, values in one.items()}
-        channels["phi_in"] += np.repeat(2 * np.pi * np.arange(revolutions), points)
-        time = np.arange(revolutions * points) * 2 * np.pi / each.point.omega_in / points
-        seen = _as_seen(each, time, channels)
+        time = steps * 2 * np.pi / each.point.omega_in
+        seen = _as_seen(each, time, channels_of(simulation, i, len(steps)))
         recordings.append(Recording(f"{i + 1}", f"{each.gear.number}", "1", each.point, 1, time, seen, each.conditions))
     return recordings
 

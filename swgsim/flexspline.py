@@ -80,7 +80,13 @@ class FlexSpline:
 @lru_cache(maxsize=64)
 def gauge_response(flex: FlexSpline, gauges: GaugeSet) -> Complex[np.ndarray, "order 5 load"]:
     """Bridge signals per load and circumferential order [mV/V per m, per N]."""
-    return bridges(gauges, strain_rows(flex.sector, gauges.radius) @ flex.fields)
+    return bridges(gauges, _strain(flex, gauges.radius))
+
+
+@lru_cache(maxsize=4)
+def _strain(flex: FlexSpline, radius: float) -> Complex[np.ndarray, "order 3 load"]:
+    """Strains on the back of the collar at angle 0, of which every bridge there is made."""
+    return strain_rows(flex.sector, radius) @ flex.fields
 
 
 def prescribed(sector: Sector) -> Bool[np.ndarray, " dof"]:

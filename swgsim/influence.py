@@ -133,10 +133,7 @@ def influence_map(
     effects : sequence of Effect
         Those that touch wave generator, mesh or structure.
     """
-    sectors = flex.sector.count
-    displacement = _sampled_ellipse(wave_generator, flex.sector.hat.radius, sectors)
-    loads = boundary_conditions(flex, displacement, effects, PSI)
-    amplitudes = np.stack([np.fft.rfft(load, axis=1) for load in loads]) / sectors * order_weights(sectors)
+    amplitudes = _load_amplitudes(flex, wave_generator, tuple(effects))
     response = gauge_response(flex, gauges)
     cracks = [crack for effect in effects for crack in effect.cracks()]
     values = np.stack([
@@ -147,6 +144,17 @@ def influence_map(
     coefficients = np.fft.rfft(values, axis=1)[:, : ORDERS + 1] / ANGLES
     coefficients[:, 1:] *= 2
     return InfluenceMap(np.swapaxes(coefficients, 1, 2))
+
+
+@lru_cache(maxsize=64)
+def _load_amplitudes(
+    flex: FlexSpline, wave_generator: WaveGenerator, effects: tuple[Effect, ...]
+) -> Complex[np.ndarray, "2 psi order"]:
+    """Circumferential orders of what wave generator and teeth impose; the same for all gauges that see it."""
+    sectors = flex.sector.count
+    displacement = _sampled_ellipse(wave_generator, flex.sector.hat.radius, sectors)
+    loads = boundary_conditions(flex, displacement, effects, PSI)
+    return np.stack([np.fft.rfft(load, axis=1) for load in loads]) / sectors * order_weights(sectors)
 
 
 def _cracked(

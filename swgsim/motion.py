@@ -37,6 +37,15 @@ class Motion:
     T_out: Float[np.ndarray, "run time"]
     dt: float | Float[np.ndarray, " run"]
 
+    def repeated(self, times: int) -> "Motion":
+        """One revolution of the wave generator in the steady state, so many times."""
+        points = self.phi_in.shape[1] - 1
+        turn, within = np.divmod(np.arange(times * points + 1), points)
+        omega_in, omega_out, T_in, T_out = (
+            each[:, within] for each in (self.omega_in, self.omega_out, self.T_in, self.T_out)
+        )
+        return Motion(self.phi_in[:, within] + 2 * np.pi * turn, omega_in, omega_out, T_in, T_out, self.dt)
+
     @property
     def efficiency(self) -> Float[np.ndarray, " run"]:
         """P_out / P_in over the largest whole number of wave-generator revolutions in the window."""
