@@ -29,8 +29,9 @@ def main(cfg: DictConfig) -> None:
         "harmonic_balance_vs_integrating": benchmark.harmonic_balance_vs_integrating(
             [replace(each, b3=0.0) for each in stiffnesses[::10]], plan.grid.points
         ),
+        "errors_by_recording_vs_dense": benchmark.errors_by_recording_vs_dense(),
     }
-    chain, integrator, balance = result.values()
+    chain, integrator, balance, errors = result.values()
     result["training"] = training = training_benchmark.measure()
     print(
         f"chain against one sparse solve per sample: {chain['ratio']:,.0f} times faster, "
@@ -43,6 +44,10 @@ def main(cfg: DictConfig) -> None:
     print(
         f"periodic motion by harmonic balance against integrating: {balance['ratio']:,.0f} times faster, "
         f"largest difference {balance['max_relative_difference']:.1e}"
+    )
+    print(
+        f"errors kept by recording against dense columns: {errors['ratio']:.1f} times faster, "
+        f"{errors['ratio_of_bytes']:.1f} times fewer bytes, largest difference {errors['max_relative_difference']:.1e}"
     )
     print(
         f"training a convolutional network on {training['recordings']} recordings: {training['seconds']:.1f} s, "

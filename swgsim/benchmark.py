@@ -16,6 +16,8 @@ from swgsim.dynamics import OMEGA_IN, OMEGA_OUT, Drive
 from swgsim.flexspline import solve_flex_spline
 from swgsim.gear import OperatingPoint, Transmission
 from swgsim.harmonic_balance import one_revolution
+from swgsim.loop.alone import Alone
+from swgsim.loop.gaussian import Covariance
 from swgsim.motion import revolve, run, steady_state
 from swgsim.plan import Plan
 
@@ -137,6 +139,35 @@ def harmonic_balance_vs_integrating(
         "max_relative_difference": max(float(np.abs(a - b).max() / b.mean()) for a, b in both),
         "seconds": {"harmonic_balance": middle - start, "integrating": end - middle},
         "runs": len(drive),
+    }
+
+
+def errors_by_recording_vs_dense(
+    recordings: int = 18, features: int = 200, kinds: int = 15, common: int = 480
+) -> dict[str, Any]:
+    """A covariance that keeps errors of single recordings by recording against one with all of them as dense columns.
+
+    Returns
+    -------
+    dict
+        ratio of the times to set up and to weigh a residual; ratio_of_bytes; max_relative_difference of that.
+    """
+    rng = np.random.default_rng(0)
+    noise, C = np.ones((recordings, features)), rng.standard_normal((recordings, features, kinds))
+    G, r = rng.standard_normal((recordings * features, common)), rng.standard_normal(recordings * features)
+    with threadpool_limits(1):
+        start = time.perf_counter()
+        alone = Alone(noise, C)
+        by_recording = Covariance(alone, G).weigh(r)
+        middle = time.perf_counter()
+        columns = np.hstack([alone.dense, G])
+        dense = Covariance(Alone.white(noise), columns).weigh(r)
+        end = time.perf_counter()
+    return {
+        "ratio": (end - middle) / (middle - start),
+        "ratio_of_bytes": columns.nbytes / (C.nbytes + G.nbytes),
+        "max_relative_difference": float(np.abs(by_recording - dense).max() / np.abs(dense).max()),
+        "seconds": {"by_recording": middle - start, "dense": end - middle},
     }
 
 

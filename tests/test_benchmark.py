@@ -12,3 +12,7 @@ def test_chain_and_direct_solver_agree(monkeypatch: object) -> None:
     result = benchmark.chain_vs_solve_per_step(replace(small_plan(), sectors=100))
     assert result["max_relative_difference"] < 1e-5
     assert result["recordings"] == small_plan().grid.count()
+
+
+def test_errors_by_recording_are_the_dense_ones():
+    assert benchmark.errors_by_recording_vs_dense(3, 20, 4, 6)["max_relative_difference"] < 1e-10

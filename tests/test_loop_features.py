@@ -5,7 +5,7 @@ import pytest
 from loop_fixtures import POINTS, recorded, turning
 
 from swgsim.loop.between import between
-from swgsim.loop.features import FITTED, ORDERS, Layout, features, layout_of, remainder
+from swgsim.loop.features import FITTED, ORDERS, Layout, features, features_alike, layout_of, remainder
 
 LAYOUT = Layout(("T_in", "s1"))
 
@@ -40,6 +40,13 @@ def test_amplitude_and_phase_of_one_line():
     assert found[1, 0] == pytest.approx(1, abs=1e-10)
     found[0, 2] = found[1, 0] = 0
     assert np.abs(found).max() < 1e-10
+
+
+def test_recordings_of_equal_length_are_looked_at_together():
+    phi = [turning(point, 3.0, 10_000.0)[:500] for point in POINTS[:3]]
+    several = [recorded(signals(lines_of(seed), each)) for seed, each in enumerate(phi)]
+    for one, found in zip(several, features_alike(several, LAYOUT), strict=True):
+        np.testing.assert_allclose(found, features(one, LAYOUT), atol=1e-12)
 
 
 def test_lines_and_vectors_are_each_others_inverse():

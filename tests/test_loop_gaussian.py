@@ -9,7 +9,7 @@ from scipy.special import log_ndtr
 from scipy.stats import multivariate_normal
 
 from swgsim.loop.alone import Alone
-from swgsim.loop.gaussian import Covariance
+from swgsim.loop.gaussian import HIDDEN, Covariance, without_what_noise_hides
 from swgsim.loop.tail import log_tail
 
 SHAPES = {
@@ -128,6 +128,28 @@ def test_further_columns_add_their_covariance():
     more = rng.normal(size=(6, 3))
     W = covariance.with_columns(more).whiten(np.eye(6))
     np.testing.assert_allclose(W @ (dense + more @ more.T) @ W.T, np.eye(6), atol=1e-9)
+
+
+@settings(deadline=None, max_examples=60)
+@given(**SHAPES)
+def test_what_noise_hides_is_hardly_any_variance(**shape):
+    """Along every direction, in units of the noise."""
+    covariance, _, _ = random_covariance(**shape)
+    deviation = np.sqrt(covariance.variance)[:, None]
+    fewer = without_what_noise_hides(covariance.G, covariance.variance)
+    dropped = (covariance.G @ covariance.G.T - fewer @ fewer.T) / deviation / deviation.T
+    share = np.linalg.eigvalsh(dropped)
+    rounding = 1e-12 * max(float(np.linalg.norm(covariance.G / deviation) ** 2), 1.0)
+    assert share.max() <= HIDDEN + rounding
+    assert share.min() >= -rounding
+    assert fewer.shape[1] <= min(covariance.G.shape)
+
+
+def test_columns_that_say_the_same_become_one():
+    column = np.linspace(1, 2, 6)[:, None]
+    fewer = without_what_noise_hides(np.hstack([3 * column, 4 * column, 1e-3 * np.eye(6)[:, :1]]), np.ones(6))
+    assert fewer.shape == (6, 1)
+    np.testing.assert_allclose(fewer @ fewer.T, 25 * column @ column.T, rtol=1e-5)
 
 
 @pytest.mark.parametrize("value", [0.1, 3.0, 100.0, 599.0, 601.0, 2000.0, 1e6])

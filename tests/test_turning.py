@@ -49,6 +49,16 @@ def test_batches_agree_to_the_accuracy_of_the_steady_state():
             np.testing.assert_allclose(getattr(alone, name)[0], getattr(together, name)[number], rtol=1e-6, atol=1e-7)
 
 
+def test_a_revolution_is_repeated():
+    one = one_turn([SOFT, STIFF], 64)
+    found = one.repeated(3)
+    for name in CHANNELS[1:-1]:
+        np.testing.assert_array_equal(getattr(found, name)[:, :-1], np.tile(getattr(one, name)[:, :-1], 3))
+    np.testing.assert_allclose(np.diff(found.phi_in)[:, 64:], np.diff(found.phi_in)[:, :-64], atol=1e-9)
+    np.testing.assert_allclose(found.phi_in[:, -1] - found.phi_in[:, 0], 6 * np.pi, atol=1e-9)
+    np.testing.assert_allclose(found.efficiency, one.efficiency, rtol=1e-9)
+
+
 def test_memory_is_bounded(monkeypatch):
     monkeypatch.setattr(turning, "MOST", 2)
     one_turn([SOFT, STIFF], 64)

@@ -134,7 +134,8 @@ def without_what_noise_hides(
     """
     scaled = columns / np.sqrt(variance)[:, None]
     share, V = np.linalg.eigh(scaled.T @ scaled)
-    return columns @ V[:, share > HIDDEN]
+    kept = share > HIDDEN
+    return columns if kept.all() else columns @ V[:, kept]
 
 
 class Expected(NamedTuple):
