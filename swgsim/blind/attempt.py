@@ -17,6 +17,7 @@ from swgsim.effects import text
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import size_of
 from swgsim.loop.answer import Answer, answer
+from swgsim.loop.declared import name_of
 from swgsim.loop.evidence import signature
 from swgsim.loop.fitting import Fitted, fit
 from swgsim.loop.sidelines import is_random
@@ -91,7 +92,7 @@ def _intervals(said: Answer, case: Sealed) -> list[dict[str, Any]]:
         if alike is not None:
             number = len(after.unit.model.effects) + alike
             effect, name = after.model.effects[number], size_of(type(true))
-            deviation = said.closed.deviation.get(f"{type(effect).title()} {number + 1}: {name}", np.nan)
+            deviation = said.closed.deviation.get(name_of(effect, number, name), np.nan)
             values = {"true": _acted(true, case, after, number), "found": getattr(effect, name), "deviation": deviation}
             found.append({"name": true.name(), **{key: float(value) for key, value in values.items()}})
     return found

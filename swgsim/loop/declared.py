@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities
 from swgsim.gauges import LIMITS
 from swgsim.gear import W0_LIMITS, Gear, KinematicError
@@ -159,10 +160,15 @@ def of_effects(model: Model) -> dict[str, Declared]:
             bounds = {} if angular else {"low": quantity.low, "high": quantity.high}
             # A size is free; where a position or a shape is not seen at all it stays near where the search left it.
             sd = span if quantity.role in (Role.SIZE, Role.PHASE) else span / 20
-            found[f"{type(effect).title()} {number + 1}: {name}"] = Declared(
+            found[name_of(effect, number, name)] = Declared(
                 quantity.unit, sd, _reader(number, name), _mover(number, name), **bounds
             )
     return found
+
+
+def name_of(effect: Effect, number: int, parameter: str) -> str:
+    """Name of a parameter of an effect of a model, such as ``cam form 1: amplitude``."""
+    return f"{effect.title()} {number + 1}: {parameter}"
 
 
 def _reader(number: int, name: str) -> Callable[[Model], float]:

@@ -5,6 +5,7 @@ from jaxtyping import Float
 from scipy.integrate import trapezoid
 
 from swgsim.effects.quantity import Role, quantities, size_of
+from swgsim.loop.declared import name_of
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.model import predict
 
@@ -31,7 +32,7 @@ def over_shapes(fitted: Fitted, number: int) -> dict[str, float]:
     if len(searched) != 1:
         return {}
     (shape,) = searched
-    of_size, of_shape = (f"{effect.title()} {number + 1}: {name}" for name in (size, shape))
+    of_size, of_shape = (name_of(effect, number, name) for name in (size, shape))
     here, near, q = getattr(effect, shape), REACH * fitted.deviation[of_shape], declared[shape]
     close = np.clip(here + np.linspace(-near, near, NEAR), q.low, q.high)
     tried = np.unique([*np.linspace(q.low, q.high, EVERYWHERE), *close])

@@ -9,6 +9,7 @@ from jaxtyping import Float
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities, size_of
+from swgsim.loop.declared import name_of
 from swgsim.loop.evidence import LEAST_GAIN, Coherence, coherence, open_as_found, open_form, signature
 from swgsim.loop.fitting import Fitted, extended
 from swgsim.loop.screening import Score
@@ -157,7 +158,7 @@ def widened(fitted: Fitted, first: int, coherences: Sequence[Coherence]) -> dict
         effect = fitted.model.effects[number]
         size = size_of(type(effect))
         by = getattr(effect, size) - quantities(type(effect))[size].nothing
-        name = f"{effect.title()} {number + 1}: {size}"
+        name = name_of(effect, number, size)
         found[name] = float(np.linalg.norm([found[name], agreement.doubt * by, EXACT * by]))
     return found
 

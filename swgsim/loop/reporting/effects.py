@@ -7,6 +7,7 @@ from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities
 from swgsim.effects.text import path_of
 from swgsim.loop.answer import Answer
+from swgsim.loop.declared import name_of
 from swgsim.loop.errors import errors
 from swgsim.loop.evidence import LEAST_GAIN, NO_SIZE
 from swgsim.loop.reporting.numbers import estimate, number, probability
@@ -144,7 +145,7 @@ def _parameters(effect: Effect, deviation: Mapping[str, float], number_: int) ->
     found = {}
     for name, q in quantities(type(effect)).items():
         value = getattr(effect, name)
-        spread = deviation.get(f"{effect.title()} {number_ + 1}: {name}")
+        spread = deviation.get(name_of(effect, number_, name))
         if spread is None:
             found[name] = {"value": number(value), "ci95": None, "unit": q.unit}
         elif q.role in (Role.PHASE, Role.ANGLE):
