@@ -111,9 +111,13 @@ def choice_among(*among: float, unit: str) -> Any:
     return _parameter(Quantity(Role.CHOICE, unit, min(among), max(among), among[0], among=among), among[0])
 
 
-@cache
 def quantities(kind: type) -> Mapping[str, Quantity]:
     """The parameters of a class of effects, in order."""
+    return _declared(kind)
+
+
+@cache
+def _declared(kind: type) -> Mapping[str, Quantity]:
     return MappingProxyType({f.name: f.metadata["quantity"] for f in fields(kind) if "quantity" in f.metadata})
 
 

@@ -1,6 +1,6 @@
 """The inner parameters of a hypothesis, no longer on a grid: zoomed in on by the score, with the real chain."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import product
 
@@ -105,7 +105,7 @@ def _spacing(quantity: Quantity) -> float:
     return (quantity.high - quantity.low) / max(quantity.points, 2)
 
 
-def _moved(score: Score, by: dict[str, float], declared: dict[str, Quantity]) -> Hypothesis:
+def _moved(score: Score, by: dict[str, float], declared: Mapping[str, Quantity]) -> Hypothesis:
     """A hypothesis with inner parameters moved, linearised about the size that was found."""
     hypothesis, inner = score.hypothesis, dict(score.hypothesis.inner)
     for name, step in by.items():
