@@ -403,7 +403,21 @@ def test_the_score_counts_what_it_says() -> None:
     assert found["baselines"]["correlation"]["false_effect_rate"]["value"] == 1
     assert found["confusion"]["cam_form"] == {"cam_form": 1, "coning": 1, "nothing": 1, "failure": 1}
     assert [case.failed for case in worst(cases)] == [True, False, False, False]
+    assert found["seconds_max"] == SAID["seconds"]["loop"]
     json.dumps(found, allow_nan=False)
+
+
+def test_worse_predictions_are_told_from_those_of_the_true_model() -> None:
+    """Worse by the loop alone, by both, and by neither, within a few per cent."""
+    errors = [(1.0, 1.2, 1.0), (1.0, 1.2, 1.2), (1.0, 1.04, 1.04), (1.0, 0.5, 1.2)]
+    cases = [
+        Judged(HIDDEN, {**SAID, "error": {"before": before, "after": after, "oracle": oracle}})
+        for before, after, oracle in errors
+    ]
+    found = score(cases)
+    assert (found["worse_than_before"]["value"], found["worse_than_before"]["count"]) == (0.5, 4)
+    with_truth = found["worse_with_the_true_model_too"]
+    assert (with_truth["value"], with_truth["count"]) == (0.5, 2)
 
 
 def _words(folder: Path) -> list[str]:

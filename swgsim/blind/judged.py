@@ -129,6 +129,13 @@ class Judged:
         return self.over("after", "before") > WORSE
 
     @property
+    def worse_with_truth(self) -> bool:
+        """Whether the model that knows what is hidden makes it worse too: by what the recordings leave open, such as
+        the zero of a channel, that happened to be better without.
+        """
+        return self.over("oracle", "before") > WORSE
+
+    @property
     def cause(self) -> str:
         """What went wrong, if anything."""
         if self.failed:
