@@ -60,7 +60,7 @@ class Run:
     @cached_property
     def affected_gear(self) -> Gear:
         """The gear with the parameters that the effects change."""
-        changing = tuple(effect for effect in self.acting if type(effect).gear is not Effect.gear)
+        changing = tuple(effect for effect in self.acting if overrides(effect, "gear"))
         return _affected(self.gear, changing) if changing else self.gear
 
 

@@ -85,7 +85,7 @@ def gauge_response(flex: FlexSpline, gauges: GaugeSet) -> Complex[np.ndarray, "o
 
 @lru_cache(maxsize=4)
 def _strain(flex: FlexSpline, radius: float) -> Complex[np.ndarray, "order 3 load"]:
-    """Strains on the back of the collar at angle 0, of which every bridge there is made."""
+    """Strains (rr, tt, rt) on the back of the collar at angle 0 [1/m, 1/N], of which every bridge there is made."""
     return strain_rows(flex.sector, radius) @ flex.fields
 
 

@@ -13,7 +13,7 @@ from jaxtyping import Complex, Float, Int
 from scipy import linalg
 
 from swgsim.cyclic import order_weights, orders
-from swgsim.effects.base import Crack, Effect
+from swgsim.effects.base import Crack, Effect, overrides
 from swgsim.flexspline import BAND, TEETH, WAVE_GENERATOR, FlexSpline, gauge_response
 from swgsim.gauges import GaugeSet, offsets
 from swgsim.gear import WaveGenerator
@@ -133,7 +133,8 @@ def influence_map(
     effects : sequence of Effect
         Those that touch wave generator, mesh or structure.
     """
-    amplitudes = _load_amplitudes(flex, wave_generator, tuple(effects))
+    loading = tuple(effect for effect in effects if overrides(effect, "wave_generator", "engaged", "mesh", "carried"))
+    amplitudes = _load_amplitudes(flex, wave_generator, loading)
     response = gauge_response(flex, gauges)
     cracks = [crack for effect in effects for crack in effect.cracks()]
     values = np.stack([
@@ -150,7 +151,9 @@ def influence_map(
 def _load_amplitudes(
     flex: FlexSpline, wave_generator: WaveGenerator, effects: tuple[Effect, ...]
 ) -> Complex[np.ndarray, "2 psi order"]:
-    """Circumferential orders of what wave generator and teeth impose; the same for all gauges that see it."""
+    """Circumferential orders of the displacement [m] that the wave generator imposes, and of the force of the teeth per
+    output torque [N/(N m)]; the same for all gauges that see it.
+    """
     sectors = flex.sector.count
     displacement = _sampled_ellipse(wave_generator, flex.sector.hat.radius, sectors)
     loads = boundary_conditions(flex, displacement, effects, PSI)

@@ -230,6 +230,7 @@ def test_what_was_open_before_stays_open_and_each_of_two_effects_has_its_own_for
     parts, found = 0.1 * evidence.parts(two, evidence.signature(two, 1)), opened.allowed[:, 3:]
     # As few columns as say the same.
     np.testing.assert_allclose(found @ found.T, parts @ parts.T, atol=1e-3)
+    assert found.shape[1] < parts.shape[1]
     np.testing.assert_array_equal(opened.strict.open, held.strict.open)
 
 

@@ -181,7 +181,7 @@ def test_what_shows_in_other_channels_too_is_no_part_of_a_disturbance(fitted, st
 def test_other_errors_of_single_recordings_are_those_it_would_have_been_given(fitted):
     found, expected = scattered(fitted, 1.0).scattering(scattered(fitted, 7.0).scatter), scattered(fitted, 7.0)
     assert found.scatter.sd == expected.scatter.sd
-    np.testing.assert_allclose(found.errors.G, expected.errors.G)
+    np.testing.assert_allclose(found.errors.alone.C, expected.errors.alone.C)
 
 
 def test_what_larger_errors_of_single_recordings_explain_is_no_merit_of_an_effect(fitted):

@@ -54,6 +54,7 @@ def test_a_revolution_is_repeated():
     found = one.repeated(3)
     for name in CHANNELS[1:-1]:
         np.testing.assert_array_equal(getattr(found, name)[:, :-1], np.tile(getattr(one, name)[:, :-1], 3))
+    np.testing.assert_array_equal(found.phi_in[:, :64], one.phi_in[:, :64])
     np.testing.assert_allclose(np.diff(found.phi_in)[:, 64:], np.diff(found.phi_in)[:, :-64], atol=1e-9)
     np.testing.assert_allclose(found.phi_in[:, -1] - found.phi_in[:, 0], 6 * np.pi, atol=1e-9)
     np.testing.assert_allclose(found.efficiency, one.efficiency, rtol=1e-9)

@@ -130,9 +130,7 @@ class Judged:
 
     @property
     def worse_with_truth(self) -> bool:
-        """Whether the model that knows what is hidden makes it worse too: by what the recordings leave open, such as
-        the zero of a channel, that happened to be better without.
-        """
+        """Whether the model that knows what is hidden makes it worse too."""
         return self.over("oracle", "before") > WORSE
 
     @property

@@ -13,52 +13,52 @@ class Alone:
 
     Attributes
     ----------
-    noise : array (recording, feature)
-        Variance of the independent errors.
+    variance : array (recording, feature)
+        Of the independent errors.
     C : array (recording, feature, kind)
         Errors of each recording, one standard deviation each.
     """
 
-    noise: Float[np.ndarray, "recording feature"]
+    variance: Float[np.ndarray, "recording feature"]
     C: Float[np.ndarray, "recording feature kind"]
 
     @classmethod
-    def white(cls, noise: Float[np.ndarray, "recording feature"]) -> "Alone":
+    def white(cls, variance: Float[np.ndarray, "recording feature"]) -> "Alone":
         """Independent errors only."""
-        return cls(noise, np.zeros((*noise.shape, 0)))
+        return cls(variance, np.zeros((*variance.shape, 0)))
 
     @cached_property
     def _shares(self) -> tuple[Float[np.ndarray, "recording feature kind"], Float[np.ndarray, "recording kind 1"]]:
-        """Q and r for which diag(1 / noise) - Q Q' is the inverse, and, with both sides in units of the independent
+        """Q and r for which diag(1 / variance) - Q Q' is the inverse, and, with both sides in units of the independent
         errors, 1 - Q r / (1 + r) Q' its symmetric root.
         """
-        scaled = self.C / np.sqrt(self.noise)[..., None]
+        scaled = self.C / np.sqrt(self.variance)[..., None]
         eigenvalues, V = np.linalg.eigh(scaled.transpose(0, 2, 1) @ scaled)
         r = np.sqrt(1 + np.maximum(eigenvalues, 0))  # what rounding makes of them shrinks nothing
-        return self.C / self.noise[..., None] @ (V / r[:, None, :]), r[..., None]
+        return self.C / self.variance[..., None] @ (V / r[:, None, :]), r[..., None]
 
     def whiten(self, X: np.ndarray) -> np.ndarray:
         """W X with W covariance W' = 1, for an array (row,) or (row, column)."""
         Q, r = self._shares
         split = self._split(X)
-        found = split / self.noise[..., None]
+        found = split / self.variance[..., None]
         found -= Q @ (r / (1 + r) * (Q.transpose(0, 2, 1) @ split))
-        found *= np.sqrt(self.noise)[..., None]
+        found *= np.sqrt(self.variance)[..., None]
         return found.reshape(X.shape)
 
     def weigh(self, X: np.ndarray) -> np.ndarray:
         """P X with P the inverse of the covariance, for an array (row,) or (row, column)."""
         Q, _ = self._shares
         split = self._split(X)
-        found = split / self.noise[..., None]
+        found = split / self.variance[..., None]
         found -= Q @ (Q.transpose(0, 2, 1) @ split)
         return found.reshape(X.shape)
 
     def precision(self, block: Bool[np.ndarray, " row"]) -> Float[np.ndarray, "block block"]:
         """The block of P of some of the rows."""
         Q, _ = self._shares
-        inside = block.reshape(self.noise.shape)
-        found = np.diag(1 / self.noise[inside])
+        inside = block.reshape(self.variance.shape)
+        found = np.diag(1 / self.variance[inside])
         ends = np.cumsum([0, *inside.sum(axis=1)])
         for start, end, rows, share in zip(ends, ends[1:], inside, Q, strict=False):
             found[start:end, start:end] -= share[rows] @ share[rows].T
@@ -67,7 +67,7 @@ class Alone:
     @property
     def log_determinant(self) -> float:
         """Of the covariance."""
-        return float(np.log(self.noise).sum() + 2 * np.log(self._shares[1]).sum())
+        return float(np.log(self.variance).sum() + 2 * np.log(self._shares[1]).sum())
 
     def made(self, errors: np.ndarray) -> np.ndarray:
         """What errors (recording and kind,), in standard deviations, make of the rows; or each of several."""
@@ -83,8 +83,8 @@ class Alone:
 
     def features(self, chosen: Bool[np.ndarray, " feature"]) -> "Alone":
         """Of some of the features."""
-        return Alone(self.noise[:, chosen], self.C[:, chosen])
+        return Alone(self.variance[:, chosen], self.C[:, chosen])
 
     def _split(self, X: np.ndarray) -> np.ndarray:
         """Rows by recording (recording, feature, column)."""
-        return X.reshape(*self.noise.shape, -1)
+        return X.reshape(*self.variance.shape, -1)

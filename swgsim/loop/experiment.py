@@ -18,6 +18,7 @@ from swgsim.loop import scatter
 from swgsim.loop.answer import Answer
 from swgsim.loop.evidence import FORM_TOLERANCE, allowance
 from swgsim.loop.fitting import Fitted
+from swgsim.loop.gaussian import without_what_noise_hides
 from swgsim.loop.model import Model, Situation, predict
 
 # What a test bench can run, and that it can do as it stands, with a warm gear, or after an hour.
@@ -149,7 +150,7 @@ class _Further:
         # A difference within the tolerance of form told nothing, so far.
         errors = fitted.errors
         for number in _added(fitted):
-            errors = errors.with_columns(allowance(fitted, number))
+            errors = errors.with_columns(without_what_noise_hides(allowance(fitted, number), errors.variance))
         C = errors.whiten(measured.rows(directions[:count]))
         d = errors.whiten(measured.rows(differences[:count]))
         L = np.linalg.cholesky(np.eye(C.shape[1]) + C.T @ C)

@@ -56,7 +56,7 @@ class Layout:
 
     def vector(self, lines: Complex[np.ndarray, "*batch channel order"]) -> Float[np.ndarray, "*batch feature"]:
         """Feature vectors of complex order lines."""
-        parts = np.concatenate([lines.real, -lines.imag[..., 1:]], axis=-1)
+        parts = along_basis(lines)
         return parts.reshape(*parts.shape[:-2], -1)
 
     def turning(self, features: Float[np.ndarray, "*batch feature"]) -> Float[np.ndarray, "*batch feature"]:
@@ -73,6 +73,11 @@ def basis(phi: Float[np.ndarray, "*batch time"], orders: int) -> Float[np.ndarra
     """One, then cosines, then sines of the orders 1 to `orders`."""
     turns = np.multiply.accumulate(np.repeat(np.exp(1j * phi)[..., None], orders, axis=-1), axis=-1)
     return np.concatenate([np.ones((*phi.shape, 1)), turns.real, turns.imag], axis=-1)
+
+
+def along_basis(lines: Complex[np.ndarray, "*batch order"]) -> Float[np.ndarray, "*batch column"]:
+    """What complex order lines have along the columns of :func:`basis`; a mean is real."""
+    return np.concatenate([lines.real, -lines.imag[..., 1:]], axis=-1)
 
 
 def features(recording: Recording, layout: Layout) -> Float[np.ndarray, " feature"]:

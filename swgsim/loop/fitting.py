@@ -84,7 +84,9 @@ class Fitted:
         return replace(self, open=self.open[:, : -self.allowed.shape[1]], allowed=None)
 
     def allowing(self, columns: Float[np.ndarray, "row column"]) -> "Fitted":
-        """The same with more left open, one standard deviation each, also when effects are added to it."""
+        """The same with more left open, one standard deviation each, also when effects are added to it; other columns
+        may stand for these, as few as noise leaves different.
+        """
         columns = without_what_noise_hides(columns, self.errors.variance)
         if not columns.shape[1]:
             return self

@@ -39,7 +39,7 @@ class Covariance:
     @property
     def variance(self) -> Float[np.ndarray, " row"]:
         """Of the independent errors."""
-        return self.alone.noise.ravel()
+        return self.alone.variance.ravel()
 
     @cached_property
     def _weighed(self) -> Float[np.ndarray, "row column"]:
@@ -98,7 +98,7 @@ class Covariance:
 
     def features(self, chosen: Bool[np.ndarray, " feature"]) -> "Covariance":
         """The covariance of some of the features."""
-        rows = np.tile(chosen, len(self.alone.noise))
+        rows = np.tile(chosen, len(self.alone.variance))
         return Covariance(self.alone.features(chosen), self.G[rows])
 
     def left_out(self, r: Float[np.ndarray, " row"], blocks: Sequence[Bool[np.ndarray, " row"]]) -> list["Expected"]:

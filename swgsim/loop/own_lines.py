@@ -10,7 +10,7 @@ from swgsim.effects.base import Effect, Scene
 from swgsim.effects.frozen import FULL_LOAD
 from swgsim.effects.regularity import FULL_SPEED
 from swgsim.gauges import GaugeSet
-from swgsim.loop.features import basis
+from swgsim.loop.features import along_basis, basis
 from swgsim.recordings import SENSORS
 
 # What lines may follow over operating points, of load and speed in units of full ones.
@@ -100,5 +100,4 @@ class OwnLines(Effect):
 
 def _waves(lines: Complex[np.ndarray, "*batch order"], scene: Scene) -> Float[np.ndarray, "*batch time"]:
     """What lines are over time."""
-    parts = np.concatenate([lines.real, -lines.imag[..., 1:]], axis=-1)
-    return parts @ basis(scene.phi_in, lines.shape[-1] - 1).T
+    return along_basis(lines) @ basis(scene.phi_in, lines.shape[-1] - 1).T

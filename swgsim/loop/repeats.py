@@ -93,7 +93,7 @@ def from_all(
     known : Scatter
     """
     common = common.with_columns(trends.reshape(len(residual), -1))
-    B = common.whiten(Alone(common.alone.noise, directions).dense)
+    B = common.whiten(Alone(common.alone.variance, directions).dense)
     return _likeliest([_told(B, common.whiten(residual)[:, None], np.ones(len(residual)))], known, 0)
 
 
