@@ -90,6 +90,23 @@ def test_one_that_takes_an_effect_away_is_not(
     assert is_added(with_bump(fitted, 10.0), np.ones(6)) == added
 
 
+@pytest.mark.parametrize(
+    ("rivals", "taken"),
+    [
+        ((), "with the square of the load"),
+        (("with the root of the load", "proportional to the load"), "proportional to the load"),
+    ],
+)
+def test_of_laws_that_explain_it_as_well_the_simplest_is_taken(
+    fitted: Fitted, monkeypatch: pytest.MonkeyPatch, rivals: tuple[str, ...], taken: str
+) -> None:
+    given = []
+    monkeypatch.setattr(patching, "extended", lambda now, added: given.extend(added) or now)
+    curved = Described(replace(ATOM, law="with the square of the load"), 1000.0, 2, 20.0, 0.0, 0.001, rivals)
+    patching.patched(Closed(fitted, fitted, fitted, (), (), (), (), None, unknown=(curved,)))
+    assert [effect.law for effect in given] == [taken]
+
+
 def test_noise_is_not(fitted: Fitted) -> None:
     assert not is_added(fitted, np.zeros(6))
 

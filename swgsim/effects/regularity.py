@@ -30,6 +30,7 @@ OF_TEMPERATURE, OF_TIME = (
     "proportional to the time since the session began",
 )
 FULL_SPEED, KELVIN, HOUR = 4000.0, 10.0, 3600.0
+# Simple ones first.
 LAWS: Mapping[str, Callable[[OperatingPoint, Conditions], float]] = {
     "constant": lambda point, _: 1.0,
     "proportional to the load": lambda point, _: point.T_out / FULL_LOAD,

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities, size_of
-from swgsim.effects.regularity import OF_TEMPERATURE, OF_TIME
+from swgsim.effects.regularity import LAWS, OF_TEMPERATURE, OF_TIME
 from swgsim.loop.closed import Closed
 from swgsim.loop.errors import of_points_left_out
 from swgsim.loop.evidence import LEAST_GAIN
@@ -21,14 +21,16 @@ def patched(closed: Closed) -> Closed:
     """With those unknown regularities in the model too that hold at operating points which they were not fitted to.
 
     One that may follow the temperature, or the time, or another law as well is none of them: what rises together in one
-    session parts in the next. Nor is one that takes away what an effect was found for.
+    session parts in the next. Nor is one that takes away what an effect was found for. Of other laws that explain it as
+    well the simplest is taken, as two loads leave a root, a line and a square alike, and these lie far apart between them.
     """
     if len(closed.after.predictive) < 2:
         return closed  # no operating point can be left out
     for each in closed.unknown:
         if each.rivals and {each.atom.law, *each.rivals} & {OF_TEMPERATURE, OF_TIME}:
             continue
-        fitted = extended(closed.after, [each.effect])
+        simplest = min((each.atom.law, *each.rivals), key=list(LAWS).index)
+        fitted = extended(closed.after, [replace(each.effect, law=simplest)])
         if fitted.calibrated.settled and _spares(closed.after, fitted) and _holds(closed.after, fitted):
             closed = replace(closed, after=fitted)
     return closed
