@@ -21,8 +21,8 @@ def patched(closed: Closed) -> Closed:
     """With those unknown regularities in the model too that hold at operating points which they were not fitted to.
 
     One that may follow the temperature, or the time, or another law as well is none of them: what rises together in one
-    session parts in the next. Nor is one that takes away what an effect was found for. Of other laws that explain it as
-    well the simplest is taken, as two loads leave a root, a line and a square alike, and these lie far apart between them.
+    session parts in the next. Nor is one that takes away what an effect was found for. Of laws that explain it alike
+    the simplest is taken: a root, a line and a square through two loads lie far apart between them.
     """
     if len(closed.after.predictive) < 2:
         return closed  # no operating point can be left out
