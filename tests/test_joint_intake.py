@@ -23,7 +23,7 @@ from fabricated_joints import (
     write_file,
     write_kinova,
 )
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from scipy.io import savemat
 
@@ -440,6 +440,8 @@ COURSES = {
 
 @FUZZ
 @given(st.lists(st.lists(st.sampled_from(list(COURSES)), min_size=4, max_size=4), min_size=1, max_size=3))
+@example([["zero", "huge", "zero", "zero"], ["back", "tiny", "zero", "zero"]])
+@example([["zero", "huge", "zero", "zero"], ["ramp", "tiny", "zero", "zero"]])
 def test_any_course_of_the_signals_is_judged(tmp_path: Path, runs: list[list[str]]) -> None:
     for path in tmp_path.iterdir():
         path.unlink()

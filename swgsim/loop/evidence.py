@@ -7,7 +7,6 @@ import numpy as np
 from jaxtyping import Float
 from scipy.stats import chi2
 
-from swgsim.loop.declared import name_of
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.model import predict
 from swgsim.singular import svd
@@ -175,8 +174,7 @@ def _shares(
     """
     if not off.any():
         return np.zeros(off.shape[1])
-    own = name_of(fitted.model.effects[number], number, "")
-    others = [column for column, name in enumerate(fitted.parameters) if not name.startswith(own)]
+    others = [column for column, name in enumerate(fitted.parameters) if f" {number + 1}: " not in name]
     errors = fitted.errors.with_columns(np.hstack([fitted.open, fitted.J[:, others]]))
     whole = errors.whiten(signed)
     return errors.whiten(off).T @ whole / (whole @ whole)

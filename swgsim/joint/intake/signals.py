@@ -15,6 +15,7 @@ from swgsim.joint.intake.thresholds import (
     CLIPPED_PILE,
     CLIPPED_REFUSES,
     CLIPPED_RUN,
+    FARTHEST,
     FROZEN_REFUSES,
     FROZEN_WARNS,
     LEAST_MOVED,
@@ -25,7 +26,8 @@ from swgsim.joint.recording import PREDICTED, JointRecording
 def signal_findings(run: Run, recording: JointRecording) -> Iterator[Defect]:
     """Of each signal but the velocity, which has findings of its own."""
     fresh = ~repeated(run)
-    by_velocity = _summed(fresh * np.abs(run.signals["omega"][1:]) * np.diff(recording.time))
+    with np.errstate(over="ignore"):  # a velocity from steps of time next to 0
+        by_velocity = _summed(fresh * np.abs(run.signals["omega"][1:]) * np.diff(recording.time))
     by_angle = _summed(np.abs(np.diff(run.signals["q"])))
     for name, values in run.signals.items():
         if name in ("T_rigid", *PREDICTED) and not values.any():
@@ -41,8 +43,8 @@ def signal_findings(run: Run, recording: JointRecording) -> Iterator[Defect]:
 
 
 def _summed(steps: Float[np.ndarray, " step"]) -> Float[np.ndarray, " time"]:
-    """The way from the start to each sample; a row that only repeats the one before adds nothing."""
-    return np.concatenate([[0.0], np.cumsum(steps)])
+    """The way from the start to each sample, of finite steps; a row that only repeats the one before adds nothing."""
+    return np.concatenate([[0.0], np.cumsum(np.minimum(steps, FARTHEST))])
 
 
 def _frozen(run: Run, name: str, way: Float[np.ndarray, " time"]) -> Iterator[Defect]:

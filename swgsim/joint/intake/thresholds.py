@@ -56,6 +56,8 @@ SHORT_STEP = 0.5
 # Share of the way that a torque, current or angle keeps one value. A digitised torque of a real joint does for 0.6 %.
 FROZEN_WARNS = 0.05
 FROZEN_REFUSES = 0.2
+# A step of the way that no joint takes from one sample to the next [rad]; hostile numbers go no further.
+FARTHEST = 1e9
 
 # A clipped signal piles up at its largest value: this often, and so many times more often than at the next values;
 # the largest value of noise is reached once or twice.
