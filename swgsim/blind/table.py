@@ -15,7 +15,7 @@ OF_LOOP = {
     "right_family_first": "right family first",
     "false_extra_effect": "false extra effect",
     "worse_than_before": "worse than before",
-    "worse_with_the_true_model_too": "worse by the truth too",
+    "worse_with_the_true_model_too": "... with the truth too",
     "coverage95": "95 % intervals cover",
     "look_alikes_named": "look-alikes named",
     "absorbed_named_as_such": "untestable named as such",

@@ -116,7 +116,7 @@ def quantities(kind: type) -> Mapping[str, Quantity]:
     return _declared(kind)
 
 
-@cache  # which takes no class of effects for hashable, says mypy, and so is not the function above
+@cache  # not the function above, as mypy takes no class of effects for hashable
 def _declared(kind: type) -> Mapping[str, Quantity]:
     return MappingProxyType({f.name: f.metadata["quantity"] for f in fields(kind) if "quantity" in f.metadata})
 
