@@ -1,6 +1,5 @@
 """Engines: the same bytes of each, workers and schedulers that die, and clusters that are not fit."""
 
-import json
 import subprocess
 import sys
 import time
@@ -55,7 +54,8 @@ def started(folder: Path, *workers: tuple[str, ...]) -> Iterator[Cluster]:
         while not file.exists():
             assert scheduler.poll() is None
             time.sleep(0.1)
-        address = json.loads(file.read_text())["address"]
+        # Written in place, so that it may be there in part.
+        address = distributed.utils.json_load_robust(file, timeout=60)["address"]
         if members:
             with distributed.Client(address, set_as_default=False) as client:
                 client.wait_for_workers(len(members), timeout=120)
