@@ -11,7 +11,7 @@ from swgsim.conditions import Conditions
 from swgsim.gauges import LIMITS
 from swgsim.gear import W0_LIMITS
 from swgsim.loop.alone import Alone
-from swgsim.loop.calibration import calibrate
+from swgsim.loop.calibration import DIFFERENCE, calibrate
 from swgsim.loop.declared import Declared, at, of_unit
 from swgsim.loop.features import Layout
 from swgsim.loop.gaussian import Covariance
@@ -100,6 +100,39 @@ def test_prior_and_data_are_weighed_by_their_precision(monkeypatch, A):
     information = float((A[..., 0] ** 2).sum()) / 100.0
     found = fitted({"x": height(0, sd=0.5)}, 3 * A[..., 0], noise=10.0)
     assert found.model.effects[0].height == pytest.approx(3 * information / (information + 4), rel=0.01)
+
+
+def test_slopes_are_asked_for_downhill_only(monkeypatch, A):
+    """A halved step needs a prediction, not one for every parameter."""
+    asked = []
+
+    def formula(x, y):
+        asked.append((x, y))
+        return A[..., 0] * np.arctan(x)
+
+    predicting(monkeypatch, formula)
+    target = A[..., 0] * np.arctan(0.3)
+    found = fitted({"x": height(0), "y": height(1)}, target, noise=1e-3, position={"x": 3.0})
+    costs = [float(((A[..., 0] * np.arctan(x) - target) ** 2).sum()) for x, _ in asked]
+    lowest = np.minimum.accumulate(costs)
+    downhill = {x for (x, _), cost, least in zip(asked, costs, lowest, strict=True) if cost == least}
+    sloped = {x for x, y in asked if y == DIFFERENCE}
+    assert found.settled
+    assert len(downhill) < len({x for x, y in asked if y == 0})
+    assert sloped <= downhill
+
+
+def test_what_is_missed_by_far_is_fitted_no_closer_than_it_tells(monkeypatch, A):
+    """Of a model that misses a hundred times the noise, the last digits of a fit mean nothing."""
+    steps = []
+    for miss in (0.0, 1.0):
+        asked = []
+        predicting(monkeypatch, lambda x, y: asked.append(x) or A[..., 0] * (x + 0.3 * x**2))  # noqa: B023
+        found = fitted({"x": height(0)}, A[..., 0] + miss * A[..., 1])
+        assert found.settled
+        assert found.model.effects[0].height == pytest.approx(0.805, abs=0.1)  # x + 0.3 x^2 = 1
+        steps.append(len(asked))
+    assert steps[1] < steps[0]
 
 
 @pytest.mark.parametrize("sd", [1.0, 30.0, 1000.0])

@@ -90,39 +90,46 @@ def calibrate(
     names = list(parameters)
     if not names:
         return Calibrated(start, {}, *linearised(start, parameters, situations, layout), True)
-    here = np.array([(position or {}).get(name, 0.0) for name in names])
     low, high = _bounds(start, parameters)
-    here = np.clip(here, low, high)
-    lowest, settled = np.inf, False
-    best = (start, here, np.empty((0, 0)), np.empty((0, 0, 0)))
-    step, slope, curvature = np.zeros(len(here)), np.zeros(len(here)), np.zeros((len(here), len(here)))
-    length = 1.0
-    for _ in range(STEPS):
-        model = at(start, parameters, dict(zip(names, here.tolist(), strict=True)))
-        predicted, J = linearised(model, parameters, situations, layout)
+    here = np.clip([(position or {}).get(name, 0.0) for name in names], low, high)
+
+    def model_at(there: Float[np.ndarray, " parameter"]) -> Model:
+        return at(start, parameters, dict(zip(names, there.tolist(), strict=True)))
+
+    def missed(
+        predicted: Float[np.ndarray, "situation feature"], there: Float[np.ndarray, " parameter"]
+    ) -> tuple[Float[np.ndarray, " row"], float]:
         r = errors.whiten((measured - predicted[of_recording]).ravel())
-        cost = float(r @ r + here @ here)
-        expected = float(step @ (2 * slope - curvature @ step))
-        if cost > lowest:
-            settled = expected < SETTLED
-            if settled:
-                break
-            # The step led uphill, as the model is not linear: half of it from where it began.
-            step, length = step / 2, length / 2
-            here = best[1] + step
-            continue
-        settled = lowest - cost < SETTLED * length
-        fell = (lowest - cost) / expected if expected else 1.0
-        length *= 0.5 if fell < LITTLE else 2.0 if fell > MUCH and length < 1 else 1.0
-        lowest, best = cost, (model, here, predicted, J)
-        if settled:
-            break
+        return r, float(r @ r + there @ there)
+
+    model = model_at(here)
+    predicted, J = linearised(model, parameters, situations, layout)
+    r, cost = missed(predicted, here)
+    length, settled = 1.0, False
+    for _ in range(STEPS):
         columns = errors.whiten(J[of_recording].reshape(-1, len(here)))
         curvature, slope = columns.T @ columns + np.eye(len(here)), columns.T @ r - here
         step = _step(curvature, slope, here, low, high)
         step *= length * min(1.0, LONGEST / max(float(np.abs(step).max()), 1e-12))
-        here = here + step
-    model, here, predicted, J = best
+        # What still misses by many times what is declared tells its parameters no better than that.
+        little = SETTLED * max(1.0, cost / len(r))
+        while True:
+            expected = float(step @ (2 * slope - curvature @ step))
+            there = model_at(here + step)
+            predicted_there = predict([there], situations, layout)[0]
+            r_there, cost_there = missed(predicted_there, here + step)
+            if cost_there <= cost or not expected >= little:
+                break
+            # The step led uphill, as the model is not linear: half of it.
+            step, length = step / 2, length / 2
+        fell = cost - cost_there
+        settled = bool(fell < little * length or expected < little)
+        if fell >= 0:
+            model, here, predicted, r, cost = there, here + step, predicted_there, r_there, cost_there
+        if settled or not fell >= 0:
+            break
+        length *= 0.5 if fell < LITTLE * expected else 2.0 if fell > MUCH * expected and length < 1 else 1.0
+        J = linearised(model, parameters, situations, layout)[1]
     return Calibrated(model, dict(zip(names, here.tolist(), strict=True)), predicted, J, settled)
 
 
