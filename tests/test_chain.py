@@ -7,7 +7,7 @@ import pytest
 from chain_fixtures import GEAR, SECTORS, amplitude
 
 from swgsim.acquisition import Window
-from swgsim.chain import Run, simulate
+from swgsim.chain import Run, simulate, simulate_turns
 from swgsim.effects import (
     EccentricWaveGenerator,
     Effect,
@@ -17,7 +17,10 @@ from swgsim.effects import (
     TipToothCrack,
     WarmGrease,
 )
+from swgsim.effects.clipping import Clipping
+from swgsim.effects.signal_hysteresis import SignalHysteresis
 from swgsim.gear import OperatingPoint
+from swgsim.loop.features import Layout, features
 
 POINT = OperatingPoint(2000, 39)
 WINDOW = Window()
@@ -106,3 +109,13 @@ def test_gauge_errors_act_as_they_should() -> None:
 def test_empty_grid_is_refused() -> None:
     with pytest.raises(ValueError, match="the grid is empty"):
         simulate([], WINDOW)
+
+
+@pytest.mark.parametrize("effect", [Clipping(0.22), SignalHysteresis(0.05)])
+def test_corners_have_their_order_lines_with_few_samples_too(effect: Effect) -> None:
+    run, layout = Run(GEAR, OperatingPoint(2000, 70), (effect,)), Layout(("s0", "s1", "s2"))
+    few, many = (features(*simulate_turns([run], 1, points, SECTORS), layout) for points in (64, 4096))
+    sound = features(*simulate_turns([replace(run, effects=())], 1, 64, SECTORS), layout)
+    assert np.abs(many - sound).max() > 1e-3
+    # A recording tells a line to about 2e-5 mV/V.
+    np.testing.assert_allclose(few, many, rtol=0, atol=2e-6)

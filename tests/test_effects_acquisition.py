@@ -418,7 +418,8 @@ def test_random_phases_are_drawn_anew_and_nothing_else(name: str, phases: int) -
 
 
 def test_clipping_cuts_the_peaks_of_a_loaded_gear_only(recordings: Recordings) -> None:
-    assert recordings["clipping", LOADED, LATE].channels["s1"].max() == 0.25
+    # Filtered, an edge overshoots a little.
+    assert recordings["clipping", LOADED, LATE].channels["s1"].max() == pytest.approx(0.25, abs=5e-4)
     added = changed(recordings, "clipping")
     assert {0, 2, 4} < set(added)
     assert (change(recordings, "clipping", 0)[1:].real < 0).all()

@@ -4,13 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from bench_fixtures import good
+from bench_fixtures import POINTS, good
 from chain_fixtures import GEAR
 
 from swgsim.effects import Effect
 from swgsim.effects.clipping import Clipping
 from swgsim.effects.root_tooth_crack import RootToothCrack
 from swgsim.effects.zero_offset import ZeroOffset
+from swgsim.gear import OperatingPoint
 from swgsim.loop import refining
 from swgsim.loop.fitting import BENT, Fitted, fit, unbent
 from swgsim.loop.hypotheses import hypotheses, signatures
@@ -23,9 +24,9 @@ from swgsim.loop.unit import Unit
 pytestmark = pytest.mark.end_to_end
 
 
-def asked(*hidden: Effect) -> tuple[Fitted, Score]:
+def asked(*hidden: Effect, points: tuple[OperatingPoint, ...] = POINTS) -> tuple[Fitted, Score]:
     """A model without the effects that recordings have, and the best hypothesis of the first of them."""
-    measured = Measured.of(good(effects=hidden, repeats=1))
+    measured = Measured.of(good(effects=hidden, repeats=1, points=points))
     # A unit of which only the maps are not known, so that nothing is fitted.
     maps = Unit(Model(GEAR)).left_open(Model(GEAR), measured.situations, measured.layout).columns.shape[-1]
     fitted = fit(measured, Unit(Model(GEAR), reach=np.eye(maps)))
@@ -41,6 +42,20 @@ def test_an_effect_far_from_proportional_begins_near_its_size(level):
     # Sizes are tried in steps of a factor 1.8, and then in a dozen between the neighbours of the best.
     assert begun.level == pytest.approx(level, rel=0.2)
     assert abs(np.log(score.estimate / level)) > np.log(2)
+
+
+def test_an_effect_whose_typical_size_does_nothing_here_is_seen():
+    """At this load no signal reaches the typical level."""
+    level = 0.2
+    fitted, score = asked(Clipping(level), points=(OperatingPoint(2000, 30), OperatingPoint(4000, 30)))
+    sizes = list(hypotheses([Clipping]))
+    typical, *further = signatures(sizes, fitted.model, fitted.measured)
+    assert not typical.any()
+    assert all(signature.any() for signature in further)
+    assert score.chance < 0.01
+    begun = zoom(score, fitted)
+    assert isinstance(begun, Clipping)
+    assert begun.level == pytest.approx(level, rel=0.05)
 
 
 def test_effects_of_a_unit_that_was_bent_begin_at_what_is_declared_of_it():

@@ -91,9 +91,17 @@ class Effect:
     The methods of this base class change nothing. Fields over the circumference are sampled at the wave-generator
     angles ``psi`` (relative to the flex spline) and at equally spaced angles ``theta`` around it. The parameters of a
     subclass are declared by the functions of :mod:`swgsim.effects.quantity` and are checked against their bounds.
+
+    Attributes
+    ----------
+    place : str
+        Of :data:`PLACES`.
+    sharp : bool
+        Whether signals have corners with it, whose order lines only a dense sampling shows as they are.
     """
 
     place: ClassVar[str] = ""
+    sharp: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         title = self.title()

@@ -42,6 +42,8 @@ class Quantity:
         Values that a search tries, evenly from low to high; a choice tries all.
     among : tuple of float
         Of a choice: all values that there are; if empty, every integer from low to high.
+    further : tuple of float
+        Of a size: those that a search tries beside the typical one, where their signatures are of another shape.
     """
 
     role: Role
@@ -52,6 +54,7 @@ class Quantity:
     nothing: float = 0.0
     points: int = 1
     among: tuple[float, ...] = ()
+    further: tuple[float, ...] = ()
 
     def check(self, owner: str, name: str, value: Any) -> None:
         """Raise a ValueError unless the value is a number within the bounds, or one of those that there are."""
@@ -73,12 +76,14 @@ class Quantity:
             return tuple((2 * np.pi * np.arange(self.points) / self.points).tolist())
         if self.role is Role.SHAPE and self.points > 1:
             return tuple(np.linspace(self.low, self.high, self.points).tolist())
-        return (self.typical,)
+        return self.typical, *self.further
 
 
-def size(*, unit: str, low: float, high: float, typical: float, nothing: float = 0.0) -> Any:
+def size(
+    *, unit: str, low: float, high: float, typical: float, nothing: float = 0.0, further: tuple[float, ...] = ()
+) -> Any:
     """How much of the effect there is; every effect has one."""
-    return _parameter(Quantity(Role.SIZE, unit, low, high, typical, nothing))
+    return _parameter(Quantity(Role.SIZE, unit, low, high, typical, nothing, further=further))
 
 
 def phase(default: float = 0.0) -> Any:

@@ -30,6 +30,7 @@ class SignalHysteresis(Effect):
     """
 
     place = "gauge"
+    sharp = True
     share: float = size(unit="-", low=0, high=0.2, typical=0.02)
 
     def gauge(self, signals: Float[np.ndarray, "5 time"], scene: Scene) -> Float[np.ndarray, "5 time"]:

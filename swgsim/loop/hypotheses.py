@@ -1,4 +1,6 @@
-"""What the library offers as explanations: every effect at typical size with its inner parameters tried out."""
+"""What the library offers as explanations: every effect at typical size with its inner parameters tried out, and at
+further sizes where these look different.
+"""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -82,9 +84,9 @@ def hypotheses(kinds: Iterable[type[Effect]]) -> Iterator[Hypothesis]:
         if any(q.role is Role.RANDOM for q in declared.values()):
             continue
         inner = {n: q.tried for n, q in declared.items() if q.role in (Role.ANGLE, Role.SHAPE, Role.CHOICE)}
-        combinations = list(product(*inner.values()))
-        for values in combinations:
-            yield Hypothesis(kind, tuple(zip(inner, values, strict=True)), len(combinations))
+        combinations = list(product(declared[size_of(kind)].tried, *inner.values()))
+        for size, *values in combinations:
+            yield Hypothesis(kind, tuple(zip(inner, values, strict=True)), len(combinations), size)
 
 
 def signatures(found: Sequence[Hypothesis], model: Model, measured: Measured) -> list[Float[np.ndarray, "row column"]]:
