@@ -253,6 +253,35 @@ def test_effects_that_cancel_are_no_causes(monkeypatch, other, both):
     assert steps.cancelling(found[:1], now) == ()
 
 
+@pytest.mark.parametrize("least", [True, False])
+def test_what_is_slight_beside_what_it_cancels_is_none_alone(monkeypatch, least):
+    rng = np.random.default_rng(3)
+    one, another = rng.standard_normal((2, len(FITTED.errors.variance)))
+    seen = [one, 0.2 * another - one]
+    now = replace(FITTED, calibrated=replace(FITTED.calibrated, model=FITTED.model.plus(Bump(1.0), Wave(1.0))))
+    monkeypatch.setattr(steps, "signature", lambda _, number: seen[number - len(FITTED.model.effects)])
+    share = FORM_TOLERANCE**2 * (0.9 if least else 1.1)
+    found = Step(A, (), ()), Step(replace(B, evidence=share * A.evidence), (), ())
+    assert steps.cancelling(found, now) == (found[1:] if least else found)
+
+
+@pytest.mark.parametrize(
+    ("gain", "evidence", "pays"),
+    [(50, 1000, True), (9, -1, False), (9, 2.9, False), (4, 4, True), (2, 9, False), (-2, 11, True), (-4, 1000, False)],
+)
+def test_an_effect_pays_where_points_left_out_and_all_together_say_so(gain, evidence, pays):
+    assert replace(A, gains=np.full(6, gain / 6), evidence=evidence).pays == pays
+
+
+def test_effects_that_are_no_likelier_than_nothing_are_luck(monkeypatch):
+    lucky = [replace(each, gains=np.full(6, 1.5), evidence=-1.0) for each in (A, B)]
+    monkeypatch.setattr(asking, "unbent", lambda now: now)
+    monkeypatch.setattr(asking, "zoom", lambda *_: Bump(1.0))
+    monkeypatch.setattr(asking, "tried", lambda *_: trials.pop())
+    trials = list(lucky)
+    assert asking.ask(FITTED, [A.score, B.score], [], 0) == asking.Round((), None, None)
+
+
 def test_the_nearest_explains_a_share_of_what_is_left_beyond_noise(monkeypatch):
     rows = len(FITTED.errors.variance)
     left = np.sqrt((rows + 1000.0) / rows) * np.ones(rows)

@@ -86,9 +86,11 @@ class Trial:
 
     @property
     def pays(self) -> bool:
-        """Whether its fit came to rest and helps on operating points it was not fitted on."""
-        helps = self.gain > LEAST_GAIN or (self.evidence > LEAST_EVIDENCE and self.gain > -LEAST_GAIN)
-        return helps and self.fitted.calibrated.settled
+        """Whether its fit came to rest, helps on operating points it was not fitted on, and is likelier altogether than
+        that it is not there: the two count different errors of the fit, and the luck of noise is seldom in both.
+        """
+        helps = self.evidence > LEAST_GAIN if self.gain > LEAST_GAIN else self.evidence > LEAST_EVIDENCE
+        return helps and self.gain > -LEAST_GAIN and self.fitted.calibrated.settled
 
     @property
     def deviation(self) -> dict[str, float]:

@@ -126,8 +126,8 @@ def why(trial: Trial, answer: Answer, better: Trial | None = None) -> str:
         )
     if not trial.pays:
         return (
-            f"it does not help to predict operating points left out: log-likelihood {trial.gain:+.1f}, "
-            f"at least {LEAST_GAIN:g} are asked for"
+            "it does not help to predict operating points left out, or is no likelier than nothing: log-likelihood "
+            f"{trial.gain:+.1f} there and {trial.evidence:+.1f} of all recordings, at least {LEAST_GAIN:g} asked for"
         )
     if better is None and trial is answer.closed.best_rejected and answer.closed.apart:
         return "it acts only where a disturbance was set apart, and may be part of that"
