@@ -410,12 +410,15 @@ def test_the_score_counts_what_it_says() -> None:
 def test_worse_predictions_are_told_from_those_of_the_true_model() -> None:
     """Worse by the loop alone, by both, and by neither, within a few per cent."""
     errors = [(1.0, 1.2, 1.0), (1.0, 1.2, 1.2), (1.0, 1.04, 1.04), (1.0, 0.5, 1.2)]
+    weak = replace(HIDDEN, strengths=(60.0,))
     cases = [
-        Judged(HIDDEN, {**SAID, "error": {"before": before, "after": after, "oracle": oracle}})
-        for before, after, oracle in errors
+        Judged(case, {**SAID, "error": {"before": before, "after": after, "oracle": oracle}})
+        for case, (before, after, oracle) in zip((HIDDEN, weak, HIDDEN, HIDDEN), errors, strict=True)
     ]
     found = score(cases)
     assert (found["worse_than_before"]["value"], found["worse_than_before"]["count"]) == (0.5, 4)
+    of_detectable = found["worse_than_before_of_detectable"]
+    assert (of_detectable["value"], of_detectable["count"]) == (pytest.approx(1 / 3), 3)
     with_truth = found["worse_with_the_true_model_too"]
     assert (with_truth["value"], with_truth["count"]) == (0.5, 2)
 

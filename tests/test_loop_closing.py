@@ -267,7 +267,7 @@ def test_what_is_slight_beside_what_it_cancels_is_none_alone(monkeypatch, least)
 
 @pytest.mark.parametrize(
     ("gain", "evidence", "pays"),
-    [(50, 1000, True), (9, -1, False), (9, 2.9, False), (4, 4, True), (2, 9, False), (-2, 11, True), (-4, 1000, False)],
+    [(50, 1000, True), (9, -1, False), (9, 6, False), (4, 8, True), (2, 8, False), (-2, 11, True), (-4, 1000, False)],
 )
 def test_an_effect_pays_where_points_left_out_and_all_together_say_so(gain, evidence, pays):
     assert replace(A, gains=np.full(6, gain / 6), evidence=evidence).pays == pays

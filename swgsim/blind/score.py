@@ -51,6 +51,7 @@ def score(cases: Sequence[Judged]) -> dict[str, Any]:
         "after_over_oracle_median": median([case.over("after", "oracle") for case in known if not case.failed]),
         "after_over_before_median": median([case.over("after", "before") for case in known if not case.failed]),
         "worse_than_before": rate([case.worse for case in answered]),
+        "worse_than_before_of_detectable": rate([case.worse for case in known if not case.failed]),
         "worse_with_the_true_model_too": rate([case.worse_with_truth for case in answered if case.worse]),
         "coverage95": rate(_covered(answered)),
         "coverage95_of_library_form": rate(_covered([c for c in answered if c.case.form in ("mesh", "stray order")])),

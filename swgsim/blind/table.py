@@ -15,6 +15,7 @@ OF_LOOP = {
     "right_family_first": "right family first",
     "false_extra_effect": "false extra effect",
     "worse_than_before": "worse than before",
+    "worse_than_before_of_detectable": "... of detectable ones",
     "worse_with_the_true_model_too": "... with the truth too",
     "coverage95": "95 % intervals cover",
     "look_alikes_named": "look-alikes named",

@@ -5,13 +5,12 @@ from typing import NamedTuple
 
 from swgsim.effects.base import Effect
 from swgsim.loop.beside import elsewhere, in_company, outdone
-from swgsim.loop.evidence import LEAST_GAIN
 from swgsim.loop.fitting import Fitted, unbent
 from swgsim.loop.leading import ALPHA, leaders, screened
 from swgsim.loop.pairs import of_doubles, paired, worth_it
 from swgsim.loop.refining import zoom
 from swgsim.loop.screening import Score
-from swgsim.loop.trial import Trial, tried
+from swgsim.loop.trial import LIKELIER, Trial, tried
 from swgsim.loop.vocabulary import Described, describe, freed, strongest
 from swgsim.seeds import generator
 
@@ -48,8 +47,8 @@ def ask(
     start = unbent(now)
     alone = (tried(now, score, (zoom(score, start),), start) for score in leading)
     trials = tuple(sorted(alone, key=lambda trial: -trial.merit))
-    if all(trial.evidence <= LEAST_GAIN for trial in trials):
-        return Round((), None, None)  # the luck of a wide search, as none is likelier than nothing
+    if all(trial.evidence <= LIKELIER for trial in trials):
+        return Round((), None, None)  # the luck of a wide search
     best = trials[0]
     pairs = () if best.sound else paired(now, start, trials, kinds, seed)
     accepted = best if best.sound else worth_it(pairs, best) or in_company(now, best, seed)

@@ -17,8 +17,9 @@ from swgsim.loop.shapes import over_shapes
 from swgsim.loop.vocabulary import Described
 from swgsim.singular import svd
 
-# Log-likelihood of all recordings that an effect must gain where left-out operating points do not tell.
-LEAST_EVIDENCE = 10.0
+# Log-likelihood of all recordings that an effect must gain: odds of twenty to one after a search of sixty effects; and
+# where left-out operating points do not tell.
+LIKELIER, LEAST_EVIDENCE = 7.0, 10.0
 # Share to which the chain has the size of an effect right at all: an estimate, of what its mesh makes.
 EXACT = 0.01
 # An effect of which no more than this is left, in standard deviations, is none.
@@ -89,7 +90,7 @@ class Trial:
         """Whether its fit came to rest, helps on operating points it was not fitted on, and is likelier altogether than
         that it is not there: the two count different errors of the fit, and the luck of noise is seldom in both.
         """
-        helps = self.evidence > LEAST_GAIN if self.gain > LEAST_GAIN else self.evidence > LEAST_EVIDENCE
+        helps = self.evidence > (LIKELIER if self.gain > LEAST_GAIN else LEAST_EVIDENCE)
         return helps and self.gain > -LEAST_GAIN and self.fitted.calibrated.settled
 
     @property

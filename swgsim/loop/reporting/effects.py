@@ -14,7 +14,7 @@ from swgsim.loop.reporting.numbers import estimate, number, probability
 from swgsim.loop.reporting.sizes import Sizes
 from swgsim.loop.sidelines import Sideline
 from swgsim.loop.steps import Step, chosen
-from swgsim.loop.trial import LEAST_EVIDENCE, Trial
+from swgsim.loop.trial import LEAST_EVIDENCE, LIKELIER, Trial
 
 
 def names(trial: Trial) -> str:
@@ -126,8 +126,9 @@ def why(trial: Trial, answer: Answer, better: Trial | None = None) -> str:
         )
     if not trial.pays:
         return (
-            "it does not help to predict operating points left out, or is no likelier than nothing: log-likelihood "
-            f"{trial.gain:+.1f} there and {trial.evidence:+.1f} of all recordings, at least {LEAST_GAIN:g} asked for"
+            "it does not help to predict operating points left out, or the whole is hardly likelier with it: "
+            f"log-likelihood {trial.gain:+.1f} and {trial.evidence:+.1f}, at least {LEAST_GAIN:g} and {LIKELIER:g} are "
+            f"asked for, or {LEAST_EVIDENCE:g} of the whole"
         )
     if better is None and trial is answer.closed.best_rejected and answer.closed.apart:
         return "it acts only where a disturbance was set apart, and may be part of that"
@@ -174,7 +175,8 @@ def _evidence(step: Step, which: int) -> dict[str, Any]:
     agreement = trial.coherence[which]
     together = " (together with the other effect of the pair)" if len(trial.effects) > 1 else ""
     raised = (
-        f"operating points left out by {trial.gain:.0f} (at least {LEAST_GAIN:g} are asked for)"
+        f"operating points left out by {trial.gain:.0f} and that of all together by {trial.evidence:.0f} (at "
+        f"least {LEAST_GAIN:g} and {LIKELIER:g} are asked for)"
         if trial.gain > LEAST_GAIN
         else f"all recordings together by {trial.evidence:.0f} (at least {LEAST_EVIDENCE:g} are asked for; every "
         "operating point shows it alike, so those left out do not tell)"
