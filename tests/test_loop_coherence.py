@@ -14,7 +14,8 @@ from swgsim.loop.features import Layout
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.form import lines_anywhere
 from swgsim.loop.model import Model
-from swgsim.loop.unit import STRUCTURE
+from swgsim.loop.trial import EXACT, widened
+from swgsim.loop.unit import LESS, STRUCTURE
 
 LAYOUT = Layout(("T_in", "s0", "s1"))
 STRONG = 10.0  # in units of the noise, feature by feature
@@ -161,12 +162,30 @@ def test_a_size_is_as_doubtful_as_another_structure_would_make_it(of_gauges):
     fitted, gauges, columns = of_gauges
     rng = np.random.default_rng(15)
     weights = fitted.whole.whiten(gauges)
-    drawn_columns = 0.3 * columns @ rng.standard_normal((columns.shape[1], 300))
+    drawn_columns = LESS * 0.3 * columns @ rng.standard_normal((columns.shape[1], 300))
     moved = weights @ fitted.whole.whiten(drawn_columns) / (weights @ weights)
     held = replace(fitted, unit=replace(fitted.unit, structure=0.3))
     agreement = evidence.coherence(holding(held, drawn(fitted.whole, rng)), 0)
     assert agreement.form_error < 0.05
     assert agreement.doubt == pytest.approx(moved.std(), rel=0.2)
+
+
+@pytest.mark.parametrize(("place", "structural"), [("mesh", True), ("structure", True), ("drive", False)])
+def test_the_whole_of_what_acts_on_another_structure_is_known_to_the_form_tolerance(
+    planted, monkeypatch, place, structural
+):
+    fitted, _ = planted
+    monkeypatch.setattr(Bump, "place", place)
+    monkeypatch.setattr("swgsim.loop.trial.over_shapes", lambda *_: {})
+    sound = [evidence.Coherence(1.0, 0.0, 0.0)]
+    for structure, share in ((STRUCTURE, EXACT), (0.03, evidence.FORM_TOLERANCE if structural else EXACT)):
+        held = replace(
+            fitted, unit=replace(fitted.unit, structure=structure), parameters={}, 
+            calibrated=replace(fitted.calibrated, model=Model(GEAR, (Bump(2.0),))),
+        )  # fmt: skip
+        monkeypatch.setattr(type(held), "deviation", {"bump 1: height": 0.0})
+        (name,) = widened(held, 0, sound)
+        assert widened(held, 0, sound)[name] == pytest.approx(2.0 * share)
 
 
 def test_a_size_is_as_doubtful_as_imperfect_forms_of_other_effects_would_make_it(planted, monkeypatch):

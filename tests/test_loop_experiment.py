@@ -12,6 +12,7 @@ from swgsim.loop import experiment
 from swgsim.loop.experiment import FEASIBLE, SEPARATED, easiest
 from swgsim.loop.features import Layout
 from swgsim.loop.model import Model
+from swgsim.loop.unit import LESS
 
 PLAIN, WARM = 0, len(FEASIBLE)
 
@@ -45,7 +46,7 @@ def test_another_structure_makes_two_effects_uncertain_by_the_root_of_their_squa
         for s in (0.01, 0.3)
     )
     added = (unknown[0] ** 2).sum(axis=-1) - (known[0] ** 2).sum(axis=-1)
-    np.testing.assert_allclose(added, np.where(layout.channel == "s0", 0.3**2 * (5.0**2 + 10.0**2), 0.0))
+    np.testing.assert_allclose(added, np.where(layout.channel == "s0", (LESS * 0.3) ** 2 * (5.0**2 + 10.0**2), 0.0))
 
 
 @pytest.mark.parametrize("recordings", [1, 6])

@@ -10,7 +10,15 @@ from jaxtyping import Float
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities, size_of
 from swgsim.loop.declared import name_of
-from swgsim.loop.evidence import LEAST_GAIN, Coherence, coherence, open_as_found, open_form, signature
+from swgsim.loop.evidence import (
+    FORM_TOLERANCE,
+    LEAST_GAIN,
+    Coherence,
+    coherence,
+    open_as_found,
+    open_form,
+    signature,
+)
 from swgsim.loop.fitting import Fitted, extended
 from swgsim.loop.screening import Score
 from swgsim.loop.shapes import over_shapes
@@ -20,7 +28,8 @@ from swgsim.singular import svd
 # Log-likelihood of all recordings that an effect must gain: odds of twenty to one after a search of sixty effects; and
 # where left-out operating points do not tell.
 LIKELIER, LEAST_EVIDENCE = 7.0, 10.0
-# Share to which the chain has the size of an effect right at all: an estimate, of what its mesh makes.
+# Share to which the chain has the size of an effect right at all: an estimate, of what its mesh makes; of what acts on
+# the structure of a gear that has another one, the form tolerance.
 EXACT = 0.01
 # An effect of which no more than this is left, in standard deviations, is none.
 NOTHING = 0.1
@@ -162,8 +171,14 @@ def widened(fitted: Fitted, first: int, coherences: Sequence[Coherence]) -> dict
         size = size_of(type(effect))
         by = getattr(effect, size) - quantities(type(effect))[size].nothing
         name = name_of(effect, number, size)
-        found[name] = float(np.linalg.norm([found[name], agreement.doubt * by, EXACT * by]))
+        found[name] = float(np.linalg.norm([found[name], agreement.doubt * by, _exact(effect, fitted) * by]))
     return found
+
+
+def _exact(effect: Effect, fitted: Fitted) -> float:
+    """Share to which the chain has the size of an effect right."""
+    structural = effect.place in ("wave generator", "mesh", "structure")
+    return FORM_TOLERANCE if structural and fitted.unit.of_another_structure else EXACT
 
 
 def gain(fitted: Fitted, directions: Float[np.ndarray, "row direction"]) -> float:

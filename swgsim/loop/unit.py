@@ -19,6 +19,8 @@ from swgsim.loop.scatter import Scatter
 
 # Declared accuracy of the structural model before the gear itself has been recorded: the mesh alone makes up to 2 %.
 STRUCTURE = 0.01
+# An effect's signature is known so many times less well than the maps of the healthy gear, whose lines were learned.
+LESS = 2.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +75,11 @@ class Unit:
     def powers(self) -> int:
         """Powers of the load by which the maps may deviate."""
         return 3 if self.seen_healthy else 2
+
+    @property
+    def of_another_structure(self) -> bool:
+        """Whether commissioning found the structure less accurate than a truss of the gear is."""
+        return self.structure > STRUCTURE
 
     @property
     def declared(self) -> dict[str, Declared]:
@@ -130,9 +137,9 @@ class Unit:
         has them quite different. Where the structure is as accurate as declared, this is far below the tolerance of
         form.
         """
-        if self.structure <= STRUCTURE:
+        if not self.of_another_structure:
             return np.zeros((*signature.shape, 0))
-        return self.structure * lines_anywhere(signature, layout)
+        return LESS * self.structure * lines_anywhere(signature, layout)
 
 
 def _driving(model: Model) -> Model:
