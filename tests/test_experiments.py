@@ -138,3 +138,12 @@ def test_unknown_choice_is_answered_with_the_list():
     assert answer.returncode != 0
     assert "Could not find 'classifier/forest'" in answer.stderr
     assert all(name in answer.stderr for name in ("knn", "mlp", "nb", "rf", "svm"))
+
+
+@pytest.mark.parametrize("uri", [None, "http://127.0.0.1:5999"])
+def test_the_server_is_that_of_the_environment_unless_one_is_named(monkeypatch, uri):
+    monkeypatch.delenv("MLFLOW_TRACKING_URI", raising=False)
+    if uri:
+        monkeypatch.setenv("MLFLOW_TRACKING_URI", uri)
+    assert composed("tracking=server").tracking.uri == (uri or "http://127.0.0.1:5000")
+    assert composed("tracking=server", "tracking.uri=http://there:5000").tracking.uri == "http://there:5000"
