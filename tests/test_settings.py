@@ -25,7 +25,9 @@ MAKERS = {
 )
 def test_every_choice_of_the_configuration_makes_an_object(path, monkeypatch):
     monkeypatch.delenv("MLFLOW_TRACKING_URI", raising=False)
-    config = OmegaConf.to_container(OmegaConf.create(path.read_text().replace("${seed}", "0")), resolve=True)
+    written = OmegaConf.create(path.read_text().replace("${seed}", "0"))
+    # Other groups refer to one another.
+    config = OmegaConf.to_container(written, resolve=path.parent.name == "tracking")
     assert config["name"] == path.stem
     assert MAKERS[path.parent.name](config) is not None
 
