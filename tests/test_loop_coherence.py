@@ -179,13 +179,10 @@ def test_the_whole_of_what_acts_on_another_structure_is_known_to_the_form_tolera
     monkeypatch.setattr("swgsim.loop.trial.over_shapes", lambda *_: {})
     sound = [evidence.Coherence(1.0, 0.0, 0.0)]
     for structure, share in ((STRUCTURE, EXACT), (0.03, evidence.FORM_TOLERANCE if structural else EXACT)):
-        held = replace(
-            fitted, unit=replace(fitted.unit, structure=structure), parameters={}, 
-            calibrated=replace(fitted.calibrated, model=Model(GEAR, (Bump(2.0),))),
-        )  # fmt: skip
+        unit, two = replace(fitted.unit, structure=structure), Model(GEAR, (Bump(2.0),))
+        held = replace(fitted, unit=unit, calibrated=replace(fitted.calibrated, model=two))
         monkeypatch.setattr(type(held), "deviation", {"bump 1: height": 0.0})
-        (name,) = widened(held, 0, sound)
-        assert widened(held, 0, sound)[name] == pytest.approx(2.0 * share)
+        assert widened(held, 0, sound) == {"bump 1: height": pytest.approx(2.0 * share)}
 
 
 def test_a_size_is_as_doubtful_as_imperfect_forms_of_other_effects_would_make_it(planted, monkeypatch):

@@ -118,7 +118,7 @@ def calibrate(
             there = model_at(here + step)
             predicted_there = predict([there], situations, layout)[0]
             r_there, cost_there = missed(predicted_there, here + step)
-            if cost_there <= cost or not expected >= little:
+            if cost_there <= cost or not expected >= little:  # nor is it a number
                 break
             # The step led uphill, as the model is not linear: half of it.
             step, length = step / 2, length / 2

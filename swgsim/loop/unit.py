@@ -131,7 +131,7 @@ class Unit:
     def open_of(
         self, signature: Float[np.ndarray, "situation feature"], layout: Layout
     ) -> Float[np.ndarray, "situation feature column"]:
-        """What an inaccurate structural model leaves open of an effect: its lines lie off as those of the maps do.
+        """What an inaccurate structural model leaves open of an effect: its lines lie further off than the maps'.
 
         A share of each part is no tolerance for parts that are small because others cancel in them; another structure
         has them quite different. Where the structure is as accurate as declared, this is far below the tolerance of
