@@ -42,8 +42,8 @@ SEARCHED = ["eccentric_wave_generator", "cam_form", "reduced_damping", "gauge_ga
 HIDDEN = EccentricWaveGenerator(3e-5, 1.0)
 KEYS = {
     "verdict", "sentence", "noise_floor", "calibrated", "effects", "rejected", "error", "unknown", "next_experiment",
-    "moved", "absorbed", "detectable", "scores", "commissioned", "structure", "learned", "less_certain", "channels",
-    "recordings", "defects", "seconds",
+    "moved", "absorbed", "detectable", "scores", "commissioned", "structure", "learned", "less_certain", "zeros",
+    "channels", "recordings", "defects", "seconds",
 }  # fmt: skip
 
 
@@ -175,7 +175,7 @@ def test_next_experiment_is_named_where_one_helps():
     assert "no recording on the bench tells reduced damping" in str(helpless)
     assert next_experiments(replace(found, absorbed=())) == ()
     # What is unknown in a gear never commissioned may be what it has always had.
-    hum = Unnamed("frequency", 50.0, 1e-3, "s0", chance=1e-9, explained=100.0, reach=0.1)
+    hum = Unnamed("frequency", 50.0, 1e-3, "s0", chance=1e-9, explained=100.0, reach=0.1, noise=10.0)
     assert next_experiment((), found) is None
     assert "commissioning=FOLDER" in next_experiment((), replace(found, unnamed=(hum,)))["words"]
 

@@ -19,6 +19,7 @@ from swgsim.effects.bridge_nonlinearity import BridgeNonlinearity
 from swgsim.effects.channel_crosstalk import ChannelCrosstalk
 from swgsim.effects.channel_skew import ChannelSkew
 from swgsim.effects.clipping import Clipping
+from swgsim.effects.debonding import Debonding
 from swgsim.effects.encoder_eccentricity import EncoderEccentricity
 from swgsim.effects.filter_mismatch import FilterMismatch
 from swgsim.effects.flange_gain import FlangeGain
@@ -64,6 +65,7 @@ EFFECTS = (
     ChannelSkew(50e-6),
     FilterMismatch(1, 20e-6),
     AmplifierDrift(0.002),
+    Debonding(1, 0.02),
     EncoderEccentricity(0.002, 0.5),
     MainsHum(0.001, 50.0, 0.3),
     MotorPickup(5, 0.001, 0.4),
@@ -78,6 +80,7 @@ VARIANTS: Mapping[str, Effect] = {
     "gain of all": GaugeGain(ALL, 0.02),
     "thermal output of all": ThermalOutput(ALL, 2e-4),
     "cubic": TorqueNonlinearity(0.01, power=3),
+    "cubic bridge": BridgeNonlinearity(0.01, sensor=1, power=3),
     "moment with the load": TiltingMoment(0.01, 0.4, with_load=1),
     "thrust on s0": AxialThrust(0.002, on_s0=1),
     "hum of one": MainsHum(0.001, 50.0, 0.3, sensor=1),
@@ -239,6 +242,15 @@ def test_gauge_factor_and_amplifier_scale_all_gauges_alike(recordings: Recording
     assert np.abs(change(recordings, name, 2, conditions=FRESH)).max() < 1e-7
 
 
+def test_a_gauge_that_comes_off_fades_with_all_its_orders_and_alone(recordings: Recordings) -> None:
+    for point in (IDLE, LOADED, FAST):
+        for k in (0, 1, 2, 4):
+            faded = change(recordings, "debonding", k, point) / order(recordings, "healthy", k, point)
+            np.testing.assert_allclose(faded[1], -0.02 * 1800 / 3600, rtol=1e-3)
+            assert np.abs(np.delete(faded, 1)).max() < 1e-9
+    assert np.abs(change(recordings, "debonding", 2, conditions=FRESH)).max() < 1e-6
+
+
 def test_creep_grows_the_means_with_time_and_load_only(recordings: Recordings) -> None:
     for point in (IDLE, LOADED):
         added = change(recordings, "bond_creep", 0, point) / order(recordings, "healthy", 0, point)
@@ -285,6 +297,15 @@ def test_bridge_nonlinearity_makes_order_four_and_couples_mean_to_order_two(reco
     assert change(recordings, "bridge_nonlinearity", 0)[0] == pytest.approx(
         0.01 * order(recordings, "healthy", 0)[0] ** 2, rel=0.01
     )
+
+
+def test_a_cubic_bridge_makes_order_six_of_its_own_gauge(recordings: Recordings) -> None:
+    """A wave of order 2 about a mean, cubed: a quarter of its cube at order 6, and with the mean an order 4."""
+    mean, two = order(recordings, "healthy", 0)[1], order(recordings, "healthy", 2)[1]
+    six, four = (change(recordings, "cubic bridge", k) for k in (6, 4))
+    assert six[1] == pytest.approx(0.01 / 0.25 * two**3 / 4, rel=0.05)
+    assert four[1] == pytest.approx(0.01 / 0.25 * 3 * mean * two**2 / 2, rel=0.05)
+    assert np.abs(np.delete(six, 1)).max() == 0
 
 
 def test_self_heating_moves_all_zeros_alike(recordings: Recordings) -> None:

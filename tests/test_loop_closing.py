@@ -14,6 +14,7 @@ from swgsim.loop.answer import UNKNOWN, Answer
 from swgsim.loop.asking import Round
 from swgsim.loop.closed import Closed
 from swgsim.loop.evidence import FORM_TOLERANCE, Coherence
+from swgsim.loop.fitting import Fitted
 from swgsim.loop.leading import ALPHA, screened
 from swgsim.loop.model import Model
 from swgsim.loop.reporting import effects
@@ -251,6 +252,28 @@ def test_effects_that_cancel_are_no_causes(monkeypatch, other, both):
     pair = (Step(replace(A, effects=(*A.effects, *B.effects)), (), ()),)
     assert steps.cancelling(pair, now) == (pair if both else ())
     assert steps.cancelling(found[:1], now) == ()
+
+
+def test_two_forms_of_one_kind_that_cancel_are_that_kind(monkeypatch):
+    rng = np.random.default_rng(3)
+    one, another = rng.standard_normal((2, len(FITTED.errors.variance)))
+    seen = [one, 0.2 * another - one]
+    now = replace(FITTED, calibrated=replace(FITTED.calibrated, model=FITTED.model.plus(Bump(1.0), Bump(2.0))))
+    monkeypatch.setattr(steps, "signature", lambda _, number: seen[number - len(FITTED.model.effects)])
+    assert steps.cancelling((Step(A, (), ()), Step(replace(A, effects=(Bump(2.0),)), (), ())), now) == ()
+
+
+def test_where_no_effect_explains_zeros_that_moved_bridges_were_balanced_anew(monkeypatch):
+    """The same is asked once more, and whatever follows begins there."""
+    wide, seen = FITTED.with_zeros(4.0), []
+    monkeypatch.setattr(Fitted, "balanced", property(lambda now: now if now.measured.zeros > 1 else wide))
+    monkeypatch.setattr(closing, "fit", lambda *_: FITTED)
+    monkeypatch.setattr(closing, "screened", lambda *_: ())
+    monkeypatch.setattr(closing, "left", lambda *_: ())
+    monkeypatch.setattr(closing, "ask", lambda now, *_: seen.append(now.measured.zeros) or Round((), None, None))
+    found = closing.close(FITTED.measured, FITTED.unit, ())
+    assert seen == [1.0, 4.0]
+    assert found.before.measured.zeros == found.asked.measured.zeros == 4.0
 
 
 @pytest.mark.parametrize("least", [True, False])

@@ -121,6 +121,20 @@ def test_parts_that_leave_no_size_do_not_agree(planted, judged):
     assert replace(found, chance=1.0, disagreement=0.9 * NO_SIZE).holds
 
 
+def test_an_effect_of_one_channel_and_order_disagrees_by_its_points_alone(planted, monkeypatch):
+    """Channel and order are all of it; that it may be as wrong there as from point to point says nothing of its size."""
+    fitted, whole = planted
+    line = whole * np.tile((LAYOUT.channel == "T_in") & (LAYOUT.order == 2), len(fitted.measured))
+    monkeypatch.setattr(evidence, "signature", lambda *_: line)
+    sizes = np.array([0.6, 1.4, 0.6, 1.4, 0.6, 1.4])
+    off = line * np.repeat(sizes[fitted.measured.of_recording] - 1, len(LAYOUT))
+    strong, held = 30 * line, replace(fitted, open=np.hstack([fitted.open, 300 * line[:, None]]))
+    monkeypatch.setattr(evidence, "signature", lambda *_: strong)
+    found = evidence.coherence(holding(held, 30 * off + drawn(fitted.whole, np.random.default_rng(21))), 0)
+    assert 0.3 < found.form_error < 0.6
+    assert found.disagreement < NO_SIZE < found.doubt
+
+
 @pytest.fixture
 def of_gauges(planted, monkeypatch):
     """A model with an effect that gauges show, its signature, and what another structure makes of that: columns."""
@@ -156,6 +170,27 @@ def test_another_structure_does_not_excuse_another_law(of_gauges, monkeypatch):
         held = replace(fitted, unit=unit, open=np.hstack([fitted.open, 10 * cubic[:, None]]))
         residual = truth - cubic * (cubic @ truth) / (cubic @ cubic) + drawn(fitted.whole, rng)
         assert evidence.coherence(holding(held, residual), 0).holds == holds
+
+
+def test_where_the_structure_is_another_one_the_power_of_the_load_may_be_too(of_gauges):
+    fitted, gauges, _ = of_gauges
+    load = np.array([recording.point.T_out for recording in fitted.measured.recordings])
+    truth = gauges * np.repeat(load / 39, len(LAYOUT))
+    residual = truth - gauges * (gauges @ truth) / (gauges @ gauges) + drawn(fitted.whole, np.random.default_rng(19))
+    for structure, holds in ((STRUCTURE, False), (0.03, True)):
+        unit = replace(fitted.unit, structure=structure)
+        held = replace(fitted, unit=unit, open=np.hstack([fitted.open, 10 * gauges[:, None]]))
+        assert evidence.coherence(holding(held, residual), 0).holds == holds
+
+
+def test_an_exact_form_pays_for_no_inaccurate_structure(of_gauges):
+    """What is open and not needed makes all recordings unlikelier, however accurate the structure is declared to be."""
+    fitted, _, columns = of_gauges
+    noise = drawn(fitted.whole, np.random.default_rng(20))
+    held = holding(replace(fitted, unit=replace(fitted.unit, structure=0.3)), noise)
+    assert held.allowing(LESS * 0.3 * columns).log_likelihood < held.log_likelihood - 50
+    opened = evidence.open_as_found(held, [evidence.Coherence(1.0, form_error=0.0, doubt=0.0)])
+    assert opened.log_likelihood >= held.log_likelihood
 
 
 def test_a_size_is_as_doubtful_as_another_structure_would_make_it(of_gauges):

@@ -89,6 +89,18 @@ def test_zeros_of_a_session_wander_as_a_random_walk_of_that_session(predicted):
     assert (np.diag(found)[hours > 0] > 0).all()
 
 
+def test_zeros_of_bridges_balanced_anew_lie_and_wander_further_and_nothing_else_does(predicted):
+    measured = silent(LAYOUT, predicted)
+    columns, wide = (each.session_columns(predicted) for each in (measured, replace(measured, zeros=4.0)))
+    further = ((wide / np.where(columns == 0, 1.0, columns)) > 2).any(axis=0)
+    mean_of_a_gauge = np.tile((LAYOUT.order == 0) & (LAYOUT.channel != "T_in"), len(measured))
+    assert not columns[np.ix_(~mean_of_a_gauge, further)].any()
+    np.testing.assert_allclose(wide, columns * np.where(further, 4.0, 1.0))
+    walks = columns.shape[1] - 2 * len(NAMES)
+    assert further.sum() == walks + 2 * sum(name.startswith("zero of s") for name in NAMES)
+    assert replace(measured, zeros=4.0).further("0", [], predicted[:0]).zeros == 4.0
+
+
 def test_what_is_told_of_a_walk_holds_at_other_times_of_that_session(predicted):
     measured = silent(LAYOUT, predicted)
     mean = np.flatnonzero((LAYOUT.channel == "s1") & (LAYOUT.order == 0))[0]

@@ -12,6 +12,7 @@ from swgsim.loop import trial as trial_module
 from swgsim.loop.alone import Alone
 from swgsim.loop.beside import beside_unknown, elsewhere, in_company, outdone
 from swgsim.loop.features import Layout
+from swgsim.loop.gaussian import Covariance
 from swgsim.loop.model import Model
 from swgsim.loop.scatter import Scatter
 from swgsim.loop.screening import Score
@@ -203,3 +204,38 @@ def test_smaller_errors_of_single_recordings_are(fitted):
     points, together = gained(holding(scattered(fitted, 10.0), differing), holding(small, calm))
     assert points.sum() > 20
     assert together > 20
+
+
+GAUGES = Layout(("s0", "s1", "s2", "s3", "s4"))
+
+
+@pytest.fixture
+def of_zeros():
+    """A model whose gauges have noise of 0.1 uV/V and zeros of a session, and the same with the means moved."""
+    fitted = fitted_to(GAUGES, np.random.default_rng(1), repeats=2, open_=0)
+    measured = replace(fitted.measured, variance=1e-8 * fitted.measured.variance)
+    errors = Covariance(Alone.white(measured.variance), measured.session_columns(fitted.calibrated.predicted))
+    fitted = replace(fitted, measured=measured, errors=errors)
+
+    def moved(*zeros: float):
+        residual = np.tile(np.where(GAUGES.order == 0, np.repeat(zeros, len(GAUGES) // 5), 0.0), len(measured))
+        return holding(fitted, residual + drawn(Covariance(errors.alone, errors.G[:, :0]), np.random.default_rng(2)))
+
+    return moved
+
+
+def test_bridges_that_were_balanced_anew_are_told_by_their_zeros(of_zeros):
+    calm = of_zeros(0.004, -0.006, 0.002, -0.004, 0.005)
+    assert calm.balanced is calm
+    anew = of_zeros(0.03, -0.045, 0.015, -0.03, 0.04)
+    assert anew.balanced.measured.zeros in (4.0, 8.0)
+    assert anew.balanced.balanced is anew.balanced
+
+
+def test_an_effect_must_explain_zeros_better_than_bridges_balanced_anew_do(of_zeros):
+    """An effect that would move two of five gauges, and leave three where they were, or where they are as far off."""
+    for rest, pays in ((0.004, True), (0.04, False)):
+        now, after = of_zeros(0.3, -0.3, rest, -rest, rest), of_zeros(0.0, 0.0, rest, -rest, rest)
+        _, together = gained(now, after)
+        assert (together > trial_module.LIKELIER) == pays
+        assert after.log_likelihood - now.log_likelihood > 1000

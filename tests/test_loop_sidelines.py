@@ -242,6 +242,12 @@ def test_a_line_without_a_name_is_described():
     assert "order 5.3" in str(line) or "order 5.4" in str(line)
 
 
+def test_a_line_explains_as_much_between_two_lines_of_the_spectrum_as_on_one():
+    revolutions = between(measured((), 7))[0].revolutions
+    found = [unnamed(between(measured((Whistle(1e-3, (65 + off) / revolutions),), 7)), 0.005) for off in (0.0, 0.5)]
+    assert found[1].explained == pytest.approx(found[0].explained, rel=0.05)
+
+
 def test_what_turns_with_the_circular_spline_is_no_line():
     """Twelve revolutions hardly tell it from order 2, beside which it leaks."""
     beating = (Whistle(0.02, 2 - 2 / 101), Whistle(0.01, 4 - 2 / 101), Whistle(0.01, 2 / 101))

@@ -62,6 +62,7 @@ THRESHOLDS = {
     "structure": [unit.STRUCTURE, *commissioning.COARSER, commissioning.WELL],
     "unexplained": commissioning.UNEXPLAINED,
     "bent": [fitting.BENT, fitting.MISFIT],
+    "balanced": fitting.LIKELIER_BALANCED,
     "luck": commissioning.LUCK,
     "loosest": [commissioning.LOOSEST, commissioning.ALIEN],
     "tolerance_of_lines": sidelines.TOLERANCE,

@@ -22,6 +22,7 @@ from swgsim.effects.circular_spline_runout import CircularSplineRunout
 from swgsim.effects.clipping import Clipping
 from swgsim.effects.coning import Coning
 from swgsim.effects.cubic_friction import CubicFriction
+from swgsim.effects.debonding import Debonding
 from swgsim.effects.eccentric_wave_generator import EccentricWaveGenerator
 from swgsim.effects.elastic_hysteresis import ElasticHysteresis
 from swgsim.effects.encoder_eccentricity import EncoderEccentricity
@@ -135,6 +136,7 @@ SEARCHED: tuple[type[Effect], ...] = (
     BoltPreload,
     BondCreep,
     BridgeNonlinearity,
+    Debonding,
     GaugeFactorTemperature,
     SelfHeating,
     SignalHysteresis,

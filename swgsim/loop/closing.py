@@ -62,6 +62,7 @@ def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed
     """
     before = fit(measured, unit)
     end = forward = _forward(before, (), (), kinds, seed)
+    before = before.with_zeros(forward.now.measured.zeros)
     if len(forward.steps) > 1:
         base = reduce(set_free, forward.apart, before)
         revised = _backward(base, forward.steps, forward.apart, kinds, seed)
@@ -110,6 +111,9 @@ def _forward(
         number = len(steps)
         scores = (*scores, screened(now, kinds, generator("screen", seed, number)))
         found = ask(now, scores[-1] if number < MOST else (), kinds, seed, apart)
+        if not found.accepted and now.balanced is not now:
+            now = now.balanced
+            continue  # no effect explains where the zeros of gauges lie
         if found.trials and not found.accepted:
             found, apart = ask_behind(now, found, kinds, seed, number, apart)
         if found.accepted is None:

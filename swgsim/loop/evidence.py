@@ -13,10 +13,15 @@ from swgsim.singular import svd
 
 # Log-likelihood by which one explanation is told from another, or from none.
 LEAST_GAIN = 3.0
-# A real cause never has the library's exact shape: its parts may differ from it by this share (standard deviation).
+# A real cause never has the library's exact shape: its parts may differ from it by this share, and the power of load
+# and speed that it goes with by as much (standard deviations).
 FORM_TOLERANCE = 0.2
+# Load below which a power of it is that of this one [N m].
+LEAST_LOAD = 1.0
 # Shares of which the likeliest is sought.
 FORM_ERRORS = np.append(0.0, np.geomspace(1e-3, 10, 200))
+# Shares of its declared inaccuracy that a structure of another author's may need for the form of an effect.
+INACCURATE = (0.1, 0.3, 1.0)
 # Probability below which the parts contradict one another even so.
 CONTRADICTION = 1e-3
 # Parts that leave so large a share of the size in doubt have none in common: two deviations from it lies nothing.
@@ -75,6 +80,23 @@ def parts(fitted: Fitted, whole: Float[np.ndarray, " row"]) -> Float[np.ndarray,
     return np.stack([whole * mask for mask in masks], axis=1)
 
 
+def forms(fitted: Fitted, whole: Float[np.ndarray, " row"]) -> Float[np.ndarray, "row form"]:
+    """The parts of a signature; and in a gear of another structure, whose laws may be others too, what another power of
+    load and speed makes of it, its mean size being kept.
+    """
+    split = parts(fitted, whole)
+    return np.hstack([split, _powers(fitted, whole)]) if fitted.unit.of_another_structure else split
+
+
+def _powers(fitted: Fitted, whole: Float[np.ndarray, " row"]) -> Float[np.ndarray, "row law"]:
+    points = [recording.point for recording in fitted.measured.recordings]
+    laws = [[max(abs(p.T_out), LEAST_LOAD), p.n_in_rpm] for p in points]
+    logs = np.repeat(np.log(laws), len(fitted.measured.layout), axis=0)
+    weights = whole**2 / fitted.errors.variance
+    mean = weights @ logs / max(float(weights.sum()), np.finfo(float).tiny)
+    return whole[:, None] * (logs - mean)
+
+
 def allowance(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
     """What an imperfect form of an effect leaves open; without it the form error would pass for another effect.
 
@@ -86,7 +108,7 @@ def allowance(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
     if not signed.any():
         return np.zeros((len(signed), 0))
     lines = layout.lines(signed.reshape(measured.values.shape))
-    columns = [parts(fitted, signed)]
+    columns = [forms(fitted, signed)]
     for turn in (1, 1j):
         for channel in range(lines.shape[1]):
             for order in np.flatnonzero(np.abs(lines[:, channel]).max(axis=0) > 0):
@@ -117,7 +139,7 @@ def coherence(fitted: Fitted, number: int) -> Coherence:
     signed = signature(fitted, number)
     structure = _of_structure(fitted, signed)
     whole = fitted.whole.with_columns(structure)
-    split = whole.whiten(parts(fitted, signed))
+    split = whole.whiten(forms(fitted, signed))
     if not np.any(split):
         return Coherence(0.0, 0.0, 0.0)
     U, s, _ = svd(split)
@@ -131,24 +153,26 @@ def coherence(fitted: Fitted, number: int) -> Coherence:
     apart = error * parts(fitted, signed)
     shares = _shares(fitted, number, signed, np.hstack([apart, structure]))
     beyond_noise = unlikely[0] - unlikely.min() > 2 * LEAST_GAIN
-    disagreement = float(np.linalg.norm(shares[: apart.shape[1]])) if beyond_noise else 0.0
+    # What is in one channel and order alone has these as parts that are all of it, and disagree with nothing.
+    several = (apart != error * signed[:, None]).any(axis=0)
+    disagreement = float(np.linalg.norm(shares[: apart.shape[1]][several])) if beyond_noise else 0.0
     return Coherence(chance, error, float(np.linalg.norm(shares)), disagreement)
 
 
 def open_as_found(fitted: Fitted, coherences: Sequence[Coherence]) -> Fitted:
-    """A fit with the form of the effects that were added last as open as their parts ask for, within the tolerance.
+    """A fit with the form of the effects that were added last as open as their parts ask for, within the tolerance; and
+    as open by an inaccurate structure as is likeliest, which at any rate is no more than declared.
 
     Held to the library's exact form, a cause that is a little different would be counted as wrong wherever its size is
     predicted from other operating points, and a mimic that bends to these few numbers would be preferred.
     """
     first = len(fitted.model.effects) - len(coherences)
-    columns = []
-    for number, agreement in enumerate(coherences, first):
-        signed = signature(fitted, number)
-        columns.append(_of_structure(fitted, signed))
-        if agreement.tolerated:
-            columns.append(agreement.tolerated * parts(fitted, signed))
-    return fitted.allowing(np.hstack(columns))
+    signed = [signature(fitted, number) for number in range(first, len(fitted.model.effects))]
+    by_parts = [each.tolerated * forms(fitted, s) for each, s in zip(coherences, signed, strict=True) if each.tolerated]
+    opened = fitted.allowing(np.hstack(by_parts)) if by_parts else fitted
+    structure = np.hstack([_of_structure(fitted, each) for each in signed])
+    tried = [opened, *(opened.allowing(share * structure) for share in INACCURATE if structure.any())]
+    return max(tried, key=lambda each: each.log_likelihood)
 
 
 def doubt_by_others(fitted: Fitted, number: int, others: Mapping[int, Coherence]) -> float:

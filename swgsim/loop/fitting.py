@@ -21,6 +21,8 @@ from swgsim.loop.unit import Unit
 # A parameter of a unit that was fitted so many spreads from its declared value was bent by what the model lacks, if a
 # channel is still missed by so many times what is declared of it (mean squares), which is no matter of noise.
 BENT, MISFIT = 5.0, 10.0
+# Where bridges were balanced anew their zeros lie so many times as far as declared, if that is likelier by so much.
+BALANCED, LIKELIER_BALANCED = (2.0, 4.0, 8.0, 16.0), 3.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,6 +100,21 @@ class Fitted:
         ratio = np.array(list(scatter.sd.values())) / np.array(list(self.scatter.sd.values()))
         alone = replace(self.errors.alone, C=self.errors.alone.C * ratio)
         return replace(self, scatter=scatter, errors=replace(self.errors, alone=alone))
+
+    def with_zeros(self, times: float) -> "Fitted":
+        """The same with the zeros of gauges so many times as far off as declared."""
+        if times == self.measured.zeros:
+            return self
+        measured = replace(self.measured, zeros=times)
+        errors = Covariance(self.errors.alone, measured.session_columns(self.calibrated.predicted))
+        return replace(self, measured=measured, errors=errors)
+
+    @cached_property
+    def balanced(self) -> "Fitted":
+        """The same with the zeros of gauges as far off as is likeliest; as they are if that is hardly likelier."""
+        wider = [self.with_zeros(times) for times in BALANCED if times > self.measured.zeros]
+        best = max(wider, key=lambda each: each.log_likelihood, default=self)
+        return best if best.log_likelihood > self.log_likelihood + LIKELIER_BALANCED else self
 
     @cached_property
     def residual(self) -> Float[np.ndarray, " row"]:

@@ -42,12 +42,15 @@ class Measured:
     values : array (recording, feature)
     variance : array (recording, feature)
         Of the noise.
+    zeros : float
+        So many times as far as declared may the zeros of gauges lie, as where the bridges were balanced anew.
     """
 
     recordings: tuple[Recording, ...]
     layout: Layout
     values: Float[np.ndarray, "recording feature"]
     variance: Float[np.ndarray, "recording feature"]
+    zeros: float = 1.0
 
     @classmethod
     def of(cls, recordings: Sequence[Recording]) -> "Measured":
@@ -68,7 +71,7 @@ class Measured:
             Recording(f"planned {i}", "", session, each.point, 1, np.empty(0), {}, each.conditions)
             for i, each in enumerate(situations)
         )
-        return Measured(recordings, self.layout, predicted, 0 * predicted)
+        return Measured(recordings, self.layout, predicted, 0 * predicted, self.zeros)
 
     @cached_property
     def situations(self) -> tuple[Situation, ...]:
@@ -124,7 +127,7 @@ class Measured:
                 mean = own & (self.layout.order == 0)
                 moved = {
                     "index": self.turning,
-                    "zero": mean[None, :],
+                    "zero": (self.zeros if channel in gauges else 1.0) * mean[None, :],
                     "gain": own * predicted[self.of_recording],
                     "drift": hours * mean,
                 }[kind]
@@ -132,7 +135,7 @@ class Measured:
                     columns.append((sd * here * moved).ravel())
             told = np.array([r.conditions.elapsed / 3600 for r in known.recordings if r.session == session])
             for path in _walks(told, hours * here):
-                columns += [np.outer(path, zero).ravel() for zero in zeros]
+                columns += [self.zeros * np.outer(path, zero).ravel() for zero in zeros]
         return np.stack(columns, axis=1)
 
 

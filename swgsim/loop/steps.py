@@ -60,8 +60,8 @@ def cancelling(steps: Sequence[Step], now: Fitted) -> tuple[Step, ...]:
     """Steps whose effects all but cancel those of another one, in a model with all of them.
 
     Where the cause is missing in the library, two laws that are alike, one less the other, bend into nearly any law
-    between them; of two causes each adds something of its own. Where one of them brings no more than the other may miss
-    by an imperfect form, it is that one alone which is none.
+    between them; of two causes each adds something of its own. Two of one kind are that kind in a form between theirs.
+    Where one of them brings no more than the other may miss by an imperfect form, it is that one alone which is none.
     """
     owners = [step for step in steps for _ in step.accepted.effects]
     if len(owners) < 2:
@@ -69,7 +69,8 @@ def cancelling(steps: Sequence[Step], now: Fitted) -> tuple[Step, ...]:
     first = len(now.model.effects) - len(owners)
     seen = now.errors.whiten(np.stack([signature(now, first + i) for i in range(len(owners))], axis=1))
     seen /= np.maximum(np.linalg.norm(seen, axis=0), np.finfo(float).tiny)
-    opposed = (seen.T @ seen < -CANCELLED).any(axis=0)
+    kinds = np.array([effect.name() for step in steps for effect in step.accepted.effects])
+    opposed = ((seen.T @ seen < -CANCELLED) & (kinds[:, None] != kinds)).any(axis=0)
     opposing = {step for step, each in zip(owners, opposed, strict=True) if each}
     most = max((step.accepted.evidence for step in opposing), default=0.0)
     slight = {step for step in opposing if step.accepted.evidence < FORM_TOLERANCE**2 * most}

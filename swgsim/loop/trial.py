@@ -146,10 +146,10 @@ def gained(now: Fitted, fitted: Fitted) -> tuple[Float[np.ndarray, " point"], fl
     """Log-likelihood of each operating point left out, and of all together, that a fit gains over the model before.
 
     An effect that makes repeats differ makes the errors of single recordings larger, and these explain much without
-    it; so the model before has them as large, if that makes it likelier.
+    it; so the model before has them as large, if that makes it likelier. What moves the zeros of several gauges,
+    bridges that were balanced anew explain too.
     """
-    wider = now.scattering(fitted.scatter)
-    without = wider if wider.log_likelihood > now.log_likelihood else now
+    without = max((now, now.scattering(fitted.scatter), now.balanced), key=lambda each: each.log_likelihood)
     return fitted.predictive - without.predictive, fitted.log_likelihood - without.log_likelihood
 
 

@@ -69,6 +69,8 @@ class Unnamed:
         Sum of squares that it explains beyond the noise beside it, in units of the floor.
     reach : float
         To which its place is known.
+    noise : float
+        Sum of squares that the noise beside it makes of its numbers, in units of the floor.
     """
 
     kind: str
@@ -78,6 +80,7 @@ class Unnamed:
     chance: float
     explained: float
     reach: float
+    noise: float
 
     def effects(self, gauges: Sequence[str]) -> list[Effect]:
         """Whatever it may be in these gauges, its place being known to its reach."""
@@ -85,16 +88,16 @@ class Unnamed:
         return [Line(gauge, self.kind, float(place), 1.0) for gauge in gauges for place in places]
 
     def refined(self, spectra: Sequence[Between]) -> "Unnamed":
-        """The line where it explains most, no longer at a place of the grid."""
+        """The line where it explains most, no longer at a place of the grid, between two of which it loses half."""
         found = self
         for _ in range(ZOOMS):
-            near = [replace(found, at=float(found.at + found.reach * step)) for step in (-1.0, -0.5, 0.0, 0.5, 1.0)]
-            best = max(near, key=lambda line: sum(each.held(line._exactly(each.gauges)) for each in spectra))
-            found = replace(best, reach=found.reach / 2)
+            near = [found._at(float(found.at + found.reach * step), spectra) for step in (-1.0, -0.5, 0.0, 0.5, 1.0)]
+            found = replace(max(near, key=lambda line: line.explained), reach=found.reach / 2)
         return found
 
-    def _exactly(self, gauges: Sequence[str]) -> list[Effect]:
-        return [Line(gauge, self.kind, self.at, 1.0) for gauge in gauges]
+    def _at(self, place: float, spectra: Sequence[Between]) -> "Unnamed":
+        held = sum(each.held([Line(gauge, self.kind, place, 1.0) for gauge in each.gauges]) for each in spectra)
+        return replace(self, at=place, explained=float(held - self.noise))
 
     def __str__(self) -> str:
         where = f"order {self.at:.2f}" if self.kind == "order" else f"{self.at:.1f} Hz"
@@ -144,7 +147,8 @@ def _best(spectra: Sequence[Between], kind: str, level: float) -> list[Unnamed]:
     gain, freedom, rest, beside = (each[tried] for each in (gain, freedom, rest, beside))
     noise, luck = by_luck(gain, freedom, rest, beside)
     chances = np.minimum(1.0, len(tried) * len(KINDS) * luck)
-    explained = np.where(chances <= level, gain - noise * freedom, -np.inf)
+    by_noise = noise * freedom
+    explained = np.where(chances <= level, gain - by_noise, -np.inf)
     most = int(np.argmax(explained))
     if chances[most] > level:
         return []
@@ -154,7 +158,7 @@ def _best(spectra: Sequence[Between], kind: str, level: float) -> list[Unnamed]:
     return [
         Unnamed(
             kind, float(grid[best]), float(amplitude[largest]), spectra[0].gauges[largest], float(chances[most]),
-            float(explained[most]), min(steps) / 2,
+            float(explained[most]), min(steps) / 2, float(by_noise[most]),
         )
     ]  # fmt: skip
 

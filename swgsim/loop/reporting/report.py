@@ -63,6 +63,7 @@ def report(
         "structure": before.unit.structure,
         "learned": _orders(before, before.unit.learned, 0.0),
         "less_certain": _orders(before, before.unit.inflation, 1.0),
+        "zeros": measured.zeros,
         "channels": {name: CHANNELS[name].unit for name in measured.layout.channels},
         "recordings": _recordings(measured),
         "defects": [str(defect) for defect in defects],
