@@ -122,15 +122,14 @@ def test_parts_that_leave_no_size_do_not_agree(planted, judged):
 
 
 def test_an_effect_of_one_channel_and_order_disagrees_by_its_points_alone(planted, monkeypatch):
-    """Channel and order are all of it; that it may be as wrong there as from point to point says nothing of its size."""
+    """Channel and order are all of it: that they may be as wrong as a point says nothing against its size."""
     fitted, whole = planted
-    line = whole * np.tile((LAYOUT.channel == "T_in") & (LAYOUT.order == 2), len(fitted.measured))
+    line = 30 * whole * np.tile((LAYOUT.channel == "T_in") & (LAYOUT.order == 2), len(fitted.measured))
+    sizes = np.array([0.6, 1.4, 0.6, 1.4, 0.6, 1.4])[fitted.measured.of_recording]
+    off = line * np.repeat(sizes - 1, len(LAYOUT)) + drawn(fitted.whole, np.random.default_rng(21))
     monkeypatch.setattr(evidence, "signature", lambda *_: line)
-    sizes = np.array([0.6, 1.4, 0.6, 1.4, 0.6, 1.4])
-    off = line * np.repeat(sizes[fitted.measured.of_recording] - 1, len(LAYOUT))
-    strong, held = 30 * line, replace(fitted, open=np.hstack([fitted.open, 300 * line[:, None]]))
-    monkeypatch.setattr(evidence, "signature", lambda *_: strong)
-    found = evidence.coherence(holding(held, 30 * off + drawn(fitted.whole, np.random.default_rng(21))), 0)
+    held = replace(fitted, open=np.hstack([fitted.open, 10 * line[:, None]]))
+    found = evidence.coherence(holding(held, off), 0)
     assert 0.3 < found.form_error < 0.6
     assert found.disagreement < NO_SIZE < found.doubt
 
