@@ -12,6 +12,7 @@ from swgsim.loop import trial as trial_module
 from swgsim.loop.alone import Alone
 from swgsim.loop.beside import beside_unknown, elsewhere, in_company, outdone
 from swgsim.loop.features import Layout
+from swgsim.loop.fitting import LIKELIER_BALANCED
 from swgsim.loop.gaussian import Covariance
 from swgsim.loop.model import Model
 from swgsim.loop.scatter import Scatter
@@ -227,6 +228,9 @@ def of_zeros():
 def test_bridges_that_were_balanced_anew_are_told_by_their_zeros(of_zeros):
     calm = of_zeros(0.004, -0.006, 0.002, -0.004, 0.005)
     assert calm.balanced is calm
+    hardly = of_zeros(0.009, -0.011, 0.008, -0.01, 0.009)
+    assert 0 < hardly.with_zeros(2.0).log_likelihood - hardly.log_likelihood < LIKELIER_BALANCED
+    assert hardly.balanced is hardly
     anew = of_zeros(0.03, -0.045, 0.015, -0.03, 0.04)
     assert anew.balanced.measured.zeros in (4.0, 8.0)
     assert anew.balanced.balanced is anew.balanced
