@@ -65,6 +65,7 @@ SAID = {
     "smallest_chance": 1e-3,
     "baselines": {name: ["cam_form"] for name in baselines.BASELINES},
     "error": {"before": 2.0, "after": 1.0, "oracle": 1.0},
+    "heldout": {"before": 2.0, "after": 2.0},
     "intervals": [{"name": "cam_form", "true": 1.0, "found": 1.1, "deviation": 0.1}],
     "seconds": {"loop": 5.0, "loop_of_one_core": 4.0},
     "peak_memory_mib": 100.0,
@@ -128,6 +129,10 @@ def test_scattered_sizes_have_the_spread_that_was_asked_for() -> None:
 def test_a_size_stays_within_its_bounds() -> None:
     assert resized(LIBRARY["reduced_damping"](0.4), 3.0).b1_ratio == 0.3
     assert resized(LIBRARY["reduced_damping"](0.8), 0.5).b1_ratio == pytest.approx(0.9)
+
+
+def test_of_a_level_more_is_a_lower_one() -> None:
+    assert resized(LIBRARY["clipping"](0.22), 1.1).level == pytest.approx(0.2)
 
 
 @pytest.mark.parametrize("kind", SEARCHED, ids=lambda kind: kind.name())
@@ -421,6 +426,14 @@ def test_worse_predictions_are_told_from_those_of_the_true_model() -> None:
     assert (of_detectable["value"], of_detectable["count"]) == (pytest.approx(1 / 3), 3)
     with_truth = found["worse_with_the_true_model_too"]
     assert (with_truth["value"], with_truth["count"]) == (0.5, 2)
+
+
+def test_of_one_operating_point_there_is_no_error_held_out() -> None:
+    """Worse, within a few per cent, and not to be had."""
+    heldout = [(1.0, 1.2), (1.0, 1.04), (None, None)]
+    cases = [Judged(HIDDEN, {**SAID, "heldout": {"before": before, "after": after}}) for before, after in heldout]
+    found = score(cases)["worse_where_recorded"]
+    assert (found["value"], found["count"]) == (0.5, 2)
 
 
 def _words(folder: Path) -> list[str]:

@@ -11,6 +11,8 @@ from swgsim.effects.base import Effect, Scene
 from swgsim.effects.quantity import choice, phase, quantities, size, size_of
 from swgsim.gear import OperatingPoint
 
+# A size that is nothing only so many times beyond its typical value is a level that something reaches.
+LEVEL = 10.0
 # Load at which another law in the load changes nothing [N m].
 MIDDLE_LOAD = 39.0
 
@@ -64,10 +66,11 @@ class Altered(Effect):
 
 
 def resized(effect: Effect, factor: float) -> Effect:
-    """An effect of so many times its size, as far as its bounds go."""
+    """An effect of so many times its size, as far as its bounds go; of a level, so many times lower."""
     name = size_of(type(effect))
     q = quantities(type(effect))[name]
-    value = q.nothing + factor * (getattr(effect, name) - q.nothing)
+    now = getattr(effect, name)
+    value = now / factor if q.nothing > LEVEL * q.typical else q.nothing + factor * (now - q.nothing)
     return replace(effect, **{name: float(np.clip(value, q.low, q.high))})
 
 

@@ -20,6 +20,7 @@ from swgsim.loop.answer import Answer, answer
 from swgsim.loop.declared import name_of
 from swgsim.loop.evidence import signature
 from swgsim.loop.fitting import Fitted, fit
+from swgsim.loop.reporting.sizes import heldout
 from swgsim.loop.sidelines import is_random
 from swgsim.loop.steps import chosen
 from swgsim.loop.trial import Trial
@@ -73,7 +74,7 @@ def _against_truth(found: Answer, unit: Unit, case: Sealed, setting: Setting) ->
     truth = unseen(case, setting, before.measured.layout)
     errors = {"before": unseen_error(before, truth), "after": unseen_error(after, truth)}
     errors["oracle"] = unseen_error(_oracle(before, unit, case), truth)
-    return {"error": errors, "intervals": _intervals(found, case)}
+    return {"error": errors, "heldout": heldout(before, after), "intervals": _intervals(found, case)}
 
 
 def _oracle(before: Fitted, unit: Unit, case: Sealed) -> Fitted:

@@ -125,13 +125,21 @@ class Judged:
 
     @property
     def worse(self) -> bool:
-        """Whether the loop made the prediction worse."""
+        """Whether the loop made the prediction worse where nothing was recorded, of what there is without noise."""
         return self.over("after", "before") > WORSE
 
     @property
     def worse_with_truth(self) -> bool:
         """Whether the model that knows what is hidden makes it worse too."""
         return self.over("oracle", "before") > WORSE
+
+    @property
+    def worse_where_recorded(self) -> bool | None:
+        """Whether the report's own error at operating points left out, of what was measured there, became worse; None
+        where there was only one.
+        """
+        before, after = self.said["heldout"]["before"], self.said["heldout"]["after"]
+        return None if before is None else after > WORSE * before
 
     @property
     def cause(self) -> str:

@@ -53,6 +53,7 @@ def score(cases: Sequence[Judged]) -> dict[str, Any]:
         "worse_than_before": rate([case.worse for case in answered]),
         "worse_than_before_of_detectable": rate([case.worse for case in known if not case.failed]),
         "worse_with_the_true_model_too": rate([case.worse_with_truth for case in answered if case.worse]),
+        "worse_where_recorded": rate([worse for case in answered if (worse := case.worse_where_recorded) is not None]),
         "coverage95": rate(_covered(answered)),
         "coverage95_of_library_form": rate(_covered([c for c in answered if c.case.form in ("mesh", "stray order")])),
         "seconds_median": median([case.said["seconds"]["loop"] for case in answered])["value"],

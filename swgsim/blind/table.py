@@ -17,6 +17,7 @@ OF_LOOP = {
     "worse_than_before": "worse than before",
     "worse_than_before_of_detectable": "... of detectable ones",
     "worse_with_the_true_model_too": "... with the truth too",
+    "worse_where_recorded": "... at recorded points",
     "coverage95": "95 % intervals cover",
     "look_alikes_named": "look-alikes named",
     "absorbed_named_as_such": "untestable named as such",

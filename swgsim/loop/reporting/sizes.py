@@ -43,6 +43,12 @@ class Sizes:
         return {name: number(value) for name, value in zip(self.channels, error.tolist(), strict=True)}
 
 
+def heldout(before: Fitted, after: Fitted) -> dict[str, float | None]:
+    """Errors of both at recorded operating points, each by the model fitted to the others, as the report has them."""
+    sizes = Sizes.of(before.measured)
+    return {name: sizes.overall(errors(each, after).heldout) for name, each in (("before", before), ("after", after))}
+
+
 def error(before: Fitted, after: Fitted, floor: Float[np.ndarray, " channel"], sizes: Sizes) -> dict[str, Any]:
     """Errors before and after, of what was fitted and of operating points left out."""
     found = {"before": errors(before, after), "after": errors(after, after)}
