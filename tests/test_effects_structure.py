@@ -15,6 +15,7 @@ from swgsim.effects.bearing_cage import BearingCage
 from swgsim.effects.bearing_order import BearingOrder
 from swgsim.effects.circular_spline_runout import CircularSplineRunout
 from swgsim.effects.coning import Coning
+from swgsim.effects.eccentric_wave_generator import EccentricWaveGenerator
 from swgsim.effects.frozen import turned
 from swgsim.effects.load_sharing import LoadSharing
 from swgsim.effects.lobe_shift import LobeShift
@@ -35,6 +36,9 @@ REVOLUTIONS = 12
 EFFECTS: Mapping[str, Effect] = {
     "rotating eccentricity": RotatingEccentricity(20e-6, 0.3),
     "rotating eccentricity, equal lobes": RotatingEccentricity(20e-6, 0.3, unequal=0),
+    "fixed eccentricity": EccentricWaveGenerator(2e-6, 0.3),
+    "fixed eccentricity, equal lobes": EccentricWaveGenerator(2e-6, 0.3, unequal=0),
+    "fixed eccentricity, stiff teeth": EccentricWaveGenerator(2e-6, 0.3, unequal=3),
     "tilt": TiltedWaveGenerator(1e-3, 0.3),
     "tilt about the middle": TiltedWaveGenerator(1e-3, 0.3, lever=0.0),
     "coning": Coning(0.1),
@@ -203,6 +207,15 @@ def test_rotating_eccentricity_of_equal_lobes_is_the_same_at_all_loads(change: C
     unequal = change("rotating eccentricity", BASE)
     assert np.abs(change("rotating eccentricity", LOADED) - lines).max() > 0.01 * np.abs(lines).max()
     np.testing.assert_allclose(lines[1:, 1], unequal[1:, 1], rtol=0.02)
+
+
+def test_stiff_teeth_load_the_lobes_of_a_fixed_eccentricity_three_times_as_unequally(change: Change) -> None:
+    """Which is all that there is of it beside an offset of each gauge."""
+    equal, paper, stiff = (
+        change(f"fixed eccentricity{teeth}", LOADED)[1:] for teeth in (", equal lobes", "", ", stiff teeth")
+    )
+    assert np.abs(equal[:, 1:]).max() < 1e-6 * np.abs(paper[:, 1:]).max()
+    np.testing.assert_allclose(stiff - equal, 3 * (paper - equal), atol=0.02 * np.abs(stiff - equal).max())
 
 
 @pytest.mark.parametrize("name", ["tilt", "teeth 3", "runout 1", "sleeve 1", "sleeve 2", "out of round 3"])

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.effects.base import Effect
+from swgsim.effects.off_centre import OffCentre, unequal_lobes
 from swgsim.effects.quantity import phase, size
 
 
 @dataclass(frozen=True)
-class EccentricWaveGenerator(Effect):
+class EccentricWaveGenerator(OffCentre):
     """The axis of the wave generator is off centre by u_ecc = [r, theta, 0] (section II-B), fixed to the flex spline.
 
     Signature: opposite offsets of opposite gauges, a pattern of one wave around the collar, and changed even orders
@@ -23,17 +23,15 @@ class EccentricWaveGenerator(Effect):
         Eccentricity [m], from 0 to 0.15 mm; beyond, the teeth of one lobe would leave engagement.
     theta : float
         Its direction [rad].
+    unequal : float
+        By how much more than the other the lobe is loaded that sinks deeper: 0 if both carry alike, 1 in proportion to
+        depth, as in the paper's chain, up to 3 for stiff teeth (an estimate).
     """
 
-    place = "wave generator"
     r: float = size(unit="m", low=0, high=0.15e-3, typical=0.05e-3)
     theta: float = phase()
+    unequal: float = unequal_lobes()
 
-    def wave_generator(
-        self,
-        displacement: Float[np.ndarray, "psi theta"],
-        psi: Float[np.ndarray, " psi"],
-        theta: Float[np.ndarray, " theta"],
-    ) -> Float[np.ndarray, "psi theta"]:
-        """The displacement plus the radial part of the shift."""
-        return displacement + self.r * np.cos(theta - self.theta)
+    def shift(self, psi: Float[np.ndarray, " psi"], theta: Float[np.ndarray, " theta"]) -> Float[np.ndarray, " theta"]:
+        """Of the axis, seen from an angle [m]."""
+        return self.r * np.cos(theta - self.theta)

@@ -1,0 +1,56 @@
+"""What an axis off centre does to the wave generator and to how its two lobes share the load."""
+
+from abc import abstractmethod
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.effects.base import Effect
+from swgsim.effects.quantity import shape
+
+
+def unequal_lobes() -> Any:
+    """What the shift adds to the share of a lobe, beside what its depth does for the whole ellipse (an estimate).
+
+    0 if the teeth give way so far that both lobes carry alike, 1 in proportion to depth, as in the paper's chain, more
+    if they are stiff.
+    """
+    return shape(1.0, unit="-", low=0, high=3, points=4)
+
+
+class OffCentre(Effect):
+    """The lobe that sinks deeper into the teeth carries more of the load; how much more rests on how far they give way.
+
+    Attributes
+    ----------
+    unequal : float
+        Of :func:`unequal_lobes`; a subclass declares it behind its own parameters.
+    """
+
+    place = "wave generator"
+    unequal: float
+
+    @abstractmethod
+    def shift(
+        self, psi: Float[np.ndarray, " psi"], theta: Float[np.ndarray, " theta"]
+    ) -> Float[np.ndarray, "psi theta"] | Float[np.ndarray, " theta"]:
+        """The radial part of the shift [m]."""
+
+    def wave_generator(
+        self,
+        displacement: Float[np.ndarray, "psi theta"],
+        psi: Float[np.ndarray, " psi"],
+        theta: Float[np.ndarray, " theta"],
+    ) -> Float[np.ndarray, "psi theta"]:
+        """The displacement plus the shift."""
+        return displacement + self.shift(psi, theta)
+
+    def engaged(
+        self,
+        depth: Float[np.ndarray, "psi theta"],
+        psi: Float[np.ndarray, " psi"],
+        theta: Float[np.ndarray, " theta"],
+    ) -> Float[np.ndarray, "psi theta"]:
+        """The depth, with as much of the shift as loads the lobes unequally."""
+        return depth + (self.unequal - 1) * self.shift(psi, theta)
