@@ -1,5 +1,6 @@
 """A unit as recordings of its healthy state show it."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -9,6 +10,7 @@ from scipy.stats import chi2, false_discovery_control
 
 from swgsim.loop.fitting import MISFIT, Fitted, fit
 from swgsim.loop.form import column_counts, largest_lines, lines_of
+from swgsim.loop.own_lines import Lines
 from swgsim.loop.session import Measured
 from swgsim.loop.unit import Unit
 from swgsim.recordings import SENSORS
@@ -26,6 +28,8 @@ LUCK = 0.05
 # of many arms lines cancel that are large in each. Those of speed and torques, of which the equations of motion make
 # the most, are learned while no more than this share of their channel's ripple is missed; else it is none of this gear.
 LOOSEST, ALIEN = COARSER[-1], 0.5
+# So often at most a fit is linearised about the lines that it finds, until its log-likelihood stays within so much.
+ABOUT, AT_REST = 6, 1.0
 
 
 def commission(measured: Measured, unit: Unit) -> Unit:
@@ -37,32 +41,69 @@ def commission(measured: Measured, unit: Unit) -> Unit:
         If the model does not describe the healthy gear.
     """
     forget()
-    fitted = _learning(_as_accurate_as_shown(measured, replace(unit, seen_healthy=True)))
+    fitted = _about_its_lines(_learning(_as_accurate_as_shown(measured, replace(unit, seen_healthy=True))))
     _require_own(measured, fitted.missed)
     beyond = _beyond(measured, fitted.missed)
     if beyond.max() > 1:
-        fitted = _again(fitted, inflation=beyond)
-    predicted = fitted.calibrated.predicted
-    unit = replace(fitted.unit, largest=largest_lines(predicted, measured.layout))
+        fitted = _about_its_lines(_again(fitted, inflation=beyond))
+    covariance, mean = _told(fitted)
+    # Declared effects stay as they were found: later fits have parameters of their own for them.
+    own = [name in fitted.unit.declared for name in fitted.parameters]
+    kept = np.flatnonzero([*own, *[True] * fitted.open.shape[1]])
+    reach, shift = np.linalg.cholesky(covariance[np.ix_(kept, kept)]), mean[kept]
+    # Lines go into the model, so that effects on the signals act on them too.
+    lines, form = _lines(fitted, mean)
+    shift[len(shift) - form :] = 0.0
+    model, nominal = replace(fitted.model, own_lines=lines), fitted.unit.model.gear
+    largest = _largest(fitted)
+    return replace(
+        fitted.unit, model=model, reach=reach, shift=shift, scatter=fitted.scatter, nominal=nominal, largest=largest
+    )
+
+
+def _about_its_lines(fitted: Fitted) -> Fitted:
+    """The fit linearised about the lines that it finds, where the model has them quite different.
+
+    Trigger, gains, lags and temperatures act on the whole of a line, of which the model may have a small part.
+    """
+    if not (fitted.unit.of_another_structure or fitted.unit.learned is not None):
+        return fitted
+    largest = _largest(fitted)
+    for _ in range(ABOUT):
+        _, mean = _told(fitted)
+        lines, form = _lines(fitted, mean)
+        # What the lines are declared to be is still counted from the model alone.
+        back = np.append(np.zeros(fitted.open.shape[1] - form), -mean[len(mean) - form :])
+        model = replace(fitted.unit.model, own_lines=lines)
+        before, fitted = fitted, _again(fitted, model=model, shift=back, largest=largest)
+        if abs(fitted.log_likelihood - before.log_likelihood) < AT_REST:
+            break
+    return fitted
+
+
+def _told(fitted: Fitted) -> tuple[Float[np.ndarray, "direction direction"], Float[np.ndarray, " direction"]]:
+    """What recordings tell of the parameters, and of all else that is open: its covariance and mean, in spreads."""
     columns = np.hstack([fitted.J, fitted.open])
     white = fitted.errors.whiten(columns)
     covariance = np.linalg.inv(white.T @ white + np.eye(columns.shape[1]))
     mean = covariance @ (white.T @ fitted.errors.whiten(fitted.from_start[:, None])[:, 0])
     # The parameters themselves stay where the fit has them; all else takes up the rest.
     mean[: fitted.J.shape[1]] -= np.array(list(fitted.calibrated.position.values()))
-    nominal = unit.model.gear
-    # Declared effects stay as they were found: later fits have parameters of their own for them.
-    own = [name in unit.declared for name in fitted.parameters]
-    kept = np.flatnonzero([*own, *[True] * fitted.open.shape[1]])
-    reach, shift = np.linalg.cholesky(covariance[np.ix_(kept, kept)]), mean[kept]
-    # Lines go into the model, so that effects on the signals act on them too.
-    sizes = unit.form(predicted, measured.layout)
-    form = len(shift) - sum(column_counts(sizes, unit.powers))
-    gauges = fitted.model.run(measured.situations[0]).affected_gear.gauges
-    lines = lines_of(sizes, shift[form:], unit.powers, measured.layout, gauges)
-    shift[form:] = 0.0
-    model = replace(fitted.model, own_lines=lines)
-    return replace(unit, model=model, reach=reach, shift=shift, scatter=fitted.scatter, nominal=nominal)
+    return covariance, mean
+
+
+def _lines(fitted: Fitted, mean: Float[np.ndarray, " direction"]) -> tuple[Lines, int]:
+    """The lines by which the gear differs from the model, and how many of the directions, the last ones, they are."""
+    unit, layout = fitted.unit, fitted.measured.layout
+    sizes = unit.form(fitted.calibrated.predicted, layout)
+    form = sum(column_counts(sizes, unit.powers))
+    gauges = fitted.model.run(fitted.measured.situations[0]).affected_gear.gauges
+    return lines_of(sizes, mean[len(mean) - form :], unit.powers, layout, gauges), form
+
+
+def _largest(fitted: Fitted) -> Mapping[str, float]:
+    """The largest line of each gauge by the model alone, by which deviations of the maps are counted."""
+    return fitted.unit.largest or largest_lines(fitted.calibrated.predicted, fitted.measured.layout)
 
 
 def _as_accurate_as_shown(measured: Measured, unit: Unit) -> Fitted:
