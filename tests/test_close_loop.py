@@ -135,7 +135,11 @@ def test_effects_are_given_back_as_they_were_found(folders, sick):
     (found,) = from_text((folders / "sick-answer" / "effects.yaml").read_text(), "effects.yaml")
     (effect,) = sick.report["effects"]
     assert isinstance(found, EccentricWaveGenerator)
-    assert {name: p["value"] for name, p in effect["parameters"].items()} == {"r": found.r, "theta": found.theta}
+    assert {name: p["value"] for name, p in effect["parameters"].items()} == {
+        "r": found.r,
+        "theta": found.theta,
+        "unequal": found.unequal,
+    }
 
 
 def test_nothing_is_missing_in_a_sound_gear(folders, capsys):

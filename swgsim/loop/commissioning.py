@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 from scipy.stats import chi2, false_discovery_control
 
 from swgsim.loop.fitting import MISFIT, Fitted, fit
@@ -28,6 +28,8 @@ LUCK = 0.05
 # of many arms lines cancel that are large in each. Those of speed and torques, of which the equations of motion make
 # the most, are learned while no more than this share of their channel's ripple is missed; else it is none of this gear.
 LOOSEST, ALIEN = COARSER[-1], 0.5
+# Variance of a ripple that is not the model's, in that of noise: so much that it tells nothing.
+UNHEARD = 1e8
 # So often at most a fit is linearised about the lines that it finds, until its log-likelihood stays within so much.
 ABOUT, AT_REST = 6, 1.0
 
@@ -41,11 +43,17 @@ def commission(measured: Measured, unit: Unit) -> Unit:
         If the model does not describe the healthy gear.
     """
     forget()
-    fitted = _about_its_lines(_learning(_as_accurate_as_shown(measured, replace(unit, seen_healthy=True))))
+    healthy = replace(unit, seen_healthy=True)
+    fitted = _learning(_as_accurate_as_shown(measured, healthy))
+    foreign = _foreign(measured, fitted.missed)
+    if foreign.any():
+        deaf = replace(healthy, inflation=np.where(foreign, UNHEARD, 1.0))
+        fitted = _learning(_as_accurate_as_shown(measured, deaf))
+    fitted = _about_its_lines(fitted)
     _require_own(measured, fitted.missed)
     beyond = _beyond(measured, fitted.missed)
     if beyond.max() > 1:
-        fitted = _about_its_lines(_again(fitted, inflation=beyond))
+        fitted = _about_its_lines(_again(fitted, inflation=beyond * np.where(foreign, UNHEARD, 1.0)))
     covariance, mean = _told(fitted)
     # Declared effects stay as they were found: later fits have parameters of their own for them.
     own = [name in fitted.unit.declared for name in fitted.parameters]
@@ -104,6 +112,13 @@ def _lines(fitted: Fitted, mean: Float[np.ndarray, " direction"]) -> tuple[Lines
 def _largest(fitted: Fitted) -> Mapping[str, float]:
     """The largest line of each gauge by the model alone, by which deviations of the maps are counted."""
     return fitted.unit.largest or largest_lines(fitted.calibrated.predicted, fitted.measured.layout)
+
+
+def _foreign(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> Bool[np.ndarray, " feature"]:
+    """Ripple of speed and torques that is not the model's, as where the torque is that of the brake: features of it."""
+    layout, shares = measured.layout, _unexplained(measured, missed)
+    drive = [name for name, share in shares.items() if name not in SENSORS and share > UNEXPLAINED]
+    return np.isin(layout.channel, drive) & (layout.order > 0)
 
 
 def _as_accurate_as_shown(measured: Measured, unit: Unit) -> Fitted:
