@@ -123,7 +123,7 @@ def simulate(runs: Sequence[Run], window: Window, sectors: int = SECTORS) -> Sim
     signals = _gauge_signals(runs, motion, of_run, window.samples, sectors)
     ideal = Simulation(signals, motion, of_run)
     seen = {
-        i: _as_seen(each, window.time, channels_of(ideal, i, window.samples))
+        i: _as_seen(each, window.time, channels_of(ideal, i, window.samples), motion.T_out[of_run[i], : window.samples])
         for i, each in enumerate(runs)
         if any(overrides(effect, "gauge", "acquisition") for effect in each.acting)
     }
@@ -157,7 +157,8 @@ def simulate_turns(runs: Sequence[Run], revolutions: int, points: int, sectors: 
     for i, each in enumerate(runs):
         time = steps * 2 * np.pi / each.point.omega_in
         as_seen = _as_filtered if any(effect.sharp for effect in each.acting) else _as_seen
-        seen = as_seen(each, time, channels_of(simulation, i, len(steps)))
+        transmitted = simulation.motion.T_out[of_run[i], : len(steps)]
+        seen = as_seen(each, time, channels_of(simulation, i, len(steps)), transmitted)
         recordings.append(Recording(f"{i + 1}", f"{each.gear.number}", "1", each.point, 1, time, seen, each.conditions))
     return recordings
 
@@ -194,16 +195,19 @@ def channels_of(simulation: Simulation, i: int, samples: int) -> dict[str, np.nd
         "phi_in": motion.phi_in[m, :samples].copy(),
         "n_in": motion.omega_in[m, :samples] * 60 / (2 * np.pi),
         "T_in": motion.T_in[m, :samples].copy(),
-        "T_out": motion.T_out[m, :samples].copy(),
+        "T_out": motion.T_flange[m, :samples].copy(),
         **dict(zip(SENSORS, simulation.signals[i, :, :samples], strict=True)),
     }
 
 
 def _as_seen(
-    each: Run, time: Float[np.ndarray, " time"], channels: Mapping[str, np.ndarray]
+    each: Run,
+    time: Float[np.ndarray, " time"],
+    channels: Mapping[str, np.ndarray],
+    transmitted: Float[np.ndarray, " time"],
 ) -> Mapping[str, np.ndarray]:
-    """The channels with what the effects make of gauges and acquisition."""
-    scene = Scene(time, channels["phi_in"], channels["T_out"], each.point, each.conditions)
+    """The channels with what the effects make of gauges and acquisition, where the gear transmits a torque [N m]."""
+    scene = Scene(time, channels["phi_in"], transmitted, each.point, each.conditions)
     signals = np.array([channels[sensor] for sensor in SENSORS])
     for effect in each.acting:
         signals = effect.gauge(signals, scene)
@@ -214,7 +218,10 @@ def _as_seen(
 
 
 def _as_filtered(
-    each: Run, time: Float[np.ndarray, " time"], channels: Mapping[str, np.ndarray]
+    each: Run,
+    time: Float[np.ndarray, " time"],
+    channels: Mapping[str, np.ndarray],
+    transmitted: Float[np.ndarray, " time"],
 ) -> Mapping[str, np.ndarray]:
     """The same of whole revolutions, sampled so densely that corners lie where they are; what the effects change is
     filtered before samples are taken, else the high orders of a corner would pass for low ones.
@@ -224,7 +231,7 @@ def _as_filtered(
     turning = np.array([[each.point.omega_in * (name == "phi_in")] for name in channels])
     repeating = np.array(list(channels.values())) - turning * time
     denser = resample(repeating, len(dense), axis=1) + turning * dense
-    seen = _as_seen(each, dense, dict(zip(channels, denser, strict=True)))
+    seen = _as_seen(each, dense, dict(zip(channels, denser, strict=True)), resample(transmitted, len(dense)))
     change = resample(np.array([seen[name] for name in channels]) - denser, len(time), axis=1)
     return {name: channels[name] + more for name, more in zip(channels, change, strict=True)}
 

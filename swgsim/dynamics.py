@@ -34,7 +34,8 @@ class Torques:
     """Torques [N m] and sliding speed [rad/s], each an array (run,), or (time, run); a steady load may stay (run,).
 
     ``T_motor`` drives the input, ``T_wedge`` brakes it: the wave generator and losses beside it. ``T_in`` is what a
-    torque flange feels that has a share of J_in, the rotor's, before it.
+    torque flange feels that has a share of J_in, the rotor's, before it. ``T_out`` is what the gear transmits, and
+    ``T_flange`` what a flange feels that has a share of J_out before it.
     """
 
     T_motor: Float[np.ndarray, "*any run"]
@@ -43,6 +44,7 @@ class Torques:
     T_stiff: Float[np.ndarray, "*any run"]
     T_fric: Float[np.ndarray, "*any run"]
     T_out: Float[np.ndarray, "*any run"]
+    T_flange: Float[np.ndarray, "*any run"]
     T_load: Float[np.ndarray, "*constant run"]
     sliding: Float[np.ndarray, "*any run"]
 
@@ -141,7 +143,9 @@ class Drive:
         T_motor = self.gain_p * (self.omega - omega_in) + self.gain_i * speed_error + extra.T_motor
         T_wedge = (self.tan_in + p["error_lever"] * slope) * T_stiff + extra.T_loss
         T_in = T_motor - p["rotor_share"] * (T_motor - T_wedge)
-        return Torques(T_motor, T_in, T_wedge, T_stiff, T_fric, T_out, self.T_load + extra.T_load, sliding)
+        T_load = self.T_load + extra.T_load
+        T_flange = T_out - p["load_share"] * (T_out - T_load)
+        return Torques(T_motor, T_in, T_wedge, T_stiff, T_fric, T_out, T_flange, T_load, sliding)
 
     def extra(self, now: Instant) -> Extra:
         """What all effects together add."""

@@ -50,6 +50,9 @@ class Transmission:
     rotor_share : float
         Share of J_in on the motor's side of the torque flange at the input, from 0 (the flange feels what the motor
         does) to 1 (what brakes the wave generator); depends on the test bench.
+    load_share : float
+        Share of J_out on the gear's side of the torque flange at the output, from 0 (the flange feels what the gear
+        transmits, with its ripple) to 1 (what the brake does); depends on the test bench.
     kinematic_error : tuple of KinematicError
     error_lever : float
         Share of the kinematic error's slope that is part of the input's lever: 1 by virtual work, 0 where the error is
@@ -71,6 +74,7 @@ class Transmission:
     J_in: float = 1.2e-4
     J_out: float = 1.0
     rotor_share: float = 0.0
+    load_share: float = 0.0
     kinematic_error: tuple[KinematicError, ...] = (
         KinematicError(1, 0.4e-4, 0.3),
         KinematicError(2, 0.7e-4, 1.1),
@@ -89,7 +93,7 @@ class Transmission:
             require(owner, name, getattr(self, name), low=0)
         require(owner, "b2", self.b2)
         require(owner, "theta_b", self.theta_b)
-        for name in ("rotor_share", "error_lever"):
+        for name in ("rotor_share", "load_share", "error_lever"):
             require(owner, name, getattr(self, name), low=0, high=1)
         require(owner, "alpha_tooth", self.alpha_tooth, low=0.05, high=1.5)
 

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Bool, Complex, Float
 
 from swgsim.dynamics import OMEGA_IN, OMEGA_OUT, PHI_IN, PHI_OUT, SPEED_ERROR, Drive, State
-from swgsim.motion import Motion
+from swgsim.motion import Motion, kept_of
 
 # Times at which the equations hold, at least: eight for each wave of the highest order that the loop compares.
 TIMES = 96
@@ -69,11 +69,11 @@ def one_revolution(
                 break
         state = at_all_times()
         torques = drive.torques(state)
-    kept = np.stack([state[PHI_IN], state[OMEGA_IN], state[OMEGA_OUT], torques.T_in, torques.T_out])[:, ::each]
+    kept = np.stack(kept_of(state, torques))[:, ::each]
     kept = np.concatenate([kept, kept[:, :1]], axis=1)
     kept[0, -1] += 2 * np.pi
-    phi_in, omega_in, omega_out, T_in, T_out = np.ascontiguousarray(kept.swapaxes(1, 2))
-    return Motion(phi_in, omega_in, omega_out, T_in, T_out, drive.period / points), settled
+    phi_in, omega_in, omega_out, T_in, T_out, T_flange = np.ascontiguousarray(kept.swapaxes(1, 2))
+    return Motion(phi_in, omega_in, omega_out, T_in, T_out, T_flange, drive.period / points), settled
 
 
 def _accelerations(drive: Drive, state: State) -> Float[np.ndarray, "2 time run"]:

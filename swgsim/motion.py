@@ -1,12 +1,12 @@
 """Motion of many runs: the periodic steady state and the window that is integrated from it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from math import ceil
 
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.dynamics import OMEGA_IN, OMEGA_OUT, PHI_IN, PHI_OUT, SPEED_ERROR, Drive, State
+from swgsim.dynamics import OMEGA_IN, OMEGA_OUT, PHI_IN, PHI_OUT, SPEED_ERROR, Drive, State, Torques
 
 # Steps of the integrator, at least: 24 per cycle of the kinematic error's order 4, and 40 per cycle of the resonance.
 STEPS_PER_REVOLUTION = 96
@@ -24,8 +24,8 @@ class Motion:
         Angle of the wave generator relative to the flex spline [rad].
     omega_in, omega_out : arrays
         Angular speeds [rad/s].
-    T_in, T_out : arrays
-        Torque at the input and transmitted to the output [N m].
+    T_in, T_out, T_flange : arrays
+        Torque at the input, transmitted to the output, and felt by a flange there [N m].
     dt : float or array (run,)
         Time between points [s].
     """
@@ -35,16 +35,18 @@ class Motion:
     omega_out: Float[np.ndarray, "run time"]
     T_in: Float[np.ndarray, "run time"]
     T_out: Float[np.ndarray, "run time"]
+    T_flange: Float[np.ndarray, "run time"]
     dt: float | Float[np.ndarray, " run"]
 
     def repeated(self, times: int) -> "Motion":
         """One revolution of the wave generator in the steady state, so many times."""
         points = self.phi_in.shape[1] - 1
         turn, within = np.divmod(np.arange(times * points + 1), points)
-        omega_in, omega_out, T_in, T_out = (
-            each[:, within] for each in (self.omega_in, self.omega_out, self.T_in, self.T_out)
+        omega_in, omega_out, T_in, T_out, T_flange = (
+            each[:, within] for each in (self.omega_in, self.omega_out, self.T_in, self.T_out, self.T_flange)
         )
-        return Motion(self.phi_in[:, within] + 2 * np.pi * turn, omega_in, omega_out, T_in, T_out, self.dt)
+        phi_in = self.phi_in[:, within] + 2 * np.pi * turn
+        return Motion(phi_in, omega_in, omega_out, T_in, T_out, T_flange, self.dt)
 
     @property
     def efficiency(self) -> Float[np.ndarray, " run"]:
@@ -106,16 +108,21 @@ def revolve(drive: Drive, state: State, points: int) -> Motion:
 def _integrate(drive: Drive, state: State, dt: float | Float[np.ndarray, " run"], substeps: int, count: int) -> Motion:
     """``count`` points ``dt`` apart, with ``substeps`` steps of the integrator between them."""
     step = np.full(len(drive), dt / substeps)
-    kept = np.empty((5, count + 1, len(drive)))
+    kept = np.empty((len(fields(Motion)) - 1, count + 1, len(drive)))  # all but the time between points
     for i in range(count + 1):
         torques = drive.torques(state)
-        kept[:, i] = state[PHI_IN], state[OMEGA_IN], state[OMEGA_OUT], torques.T_in, torques.T_out
+        kept[:, i] = kept_of(state, torques)
         if i < count:
             state = drive.step(state, torques, step)
             for _ in range(substeps - 1):
                 state = drive.step(state, drive.torques(state), step)
-    phi_in, omega_in, omega_out, T_in, T_out = np.ascontiguousarray(np.swapaxes(kept, 1, 2))
-    return Motion(phi_in, omega_in, omega_out, T_in, T_out, dt)
+    phi_in, omega_in, omega_out, T_in, T_out, T_flange = np.ascontiguousarray(np.swapaxes(kept, 1, 2))
+    return Motion(phi_in, omega_in, omega_out, T_in, T_out, T_flange, dt)
+
+
+def kept_of(state: State, torques: Torques) -> tuple[np.ndarray, ...]:
+    """What a motion keeps of an instant, in its order."""
+    return state[PHI_IN], state[OMEGA_IN], state[OMEGA_OUT], torques.T_in, torques.T_out, torques.T_flange
 
 
 def steady_state(drive: Drive, tolerance: float = 1e-8) -> State:

@@ -73,6 +73,7 @@ def _drive(driven: Sequence[Driven]) -> tuple[Drive, np.ndarray]:
 
 def _remember(driven: Sequence[Driven], found: Motion) -> None:
     dt = np.broadcast_to(found.dt, len(driven))
-    rows = zip(found.phi_in, found.omega_in, found.omega_out, found.T_in, found.T_out, dt, strict=True)
+    of_runs = found.phi_in, found.omega_in, found.omega_out, found.T_in, found.T_out, found.T_flange, dt
+    rows = zip(*of_runs, strict=True)
     points = found.phi_in.shape[1] - 1
     _remembered.update(zip([(each, points) for each in driven], rows, strict=True))

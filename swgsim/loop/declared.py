@@ -121,6 +121,7 @@ def of_unit(gear: Gear, structure: float = 0.0) -> dict[str, Declared]:
         "J_in": _of_size("J_in", "kg m^2", t.J_in, BENCH),
         "J_out": _of_size("J_out", "kg m^2", t.J_out, BENCH),
         "rotor share": _of_transmission("rotor_share", "-", SHARE, 0.0, 1.0),
+        "load share": _of_transmission("load_share", "-", SHARE, 0.0, 1.0),
         "error lever": _of_transmission("error_lever", "-", SHARE, 0.0, 1.0),
         "control frequency": _of_size("control_frequency", "Hz", t.control_frequency, CONTROL),
         "control damping": _of_size("control_damping", "-", t.control_damping, CONTROL),
