@@ -56,6 +56,18 @@ def test_energy_balance_closes() -> None:
     assert np.ptp(energy) > 1e-3
 
 
+def test_a_flange_at_the_output_feels_no_more_than_what_lies_behind_it() -> None:
+    """Behind all of the load it feels the brake, which has no ripple; the motion is the same."""
+    drives = [Drive([replace(NOMINAL, load_share=share)], [POINTS[1]]) for share in (0.0, 0.4, 1.0)]
+    state = steady_state(drives[0])
+    torques = [drive.torques(state) for drive in drives]
+    assert torques[0].T_flange == torques[0].T_out != torques[0].T_load
+    assert torques[2].T_flange == pytest.approx(torques[2].T_load)
+    assert torques[1].T_flange == pytest.approx(0.6 * torques[0].T_flange + 0.4 * torques[2].T_flange)
+    rates = [drive.derivative(state, each) for drive, each in zip(drives, torques, strict=True)]
+    np.testing.assert_array_equal(rates[0], rates[2])
+
+
 def test_a_flange_feels_no_more_of_the_rotor_than_lies_before_it() -> None:
     """It changes neither the motion nor the mean torque; all of the inertia before it, and it feels what brakes."""
     drives = [Drive([replace(NOMINAL, rotor_share=share)], [POINTS[1]]) for share in (0.0, 0.4, 1.0)]

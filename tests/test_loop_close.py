@@ -1,6 +1,6 @@
 """The loop from recordings of the virtual bench to what the model lacks, on a coarse mesh."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -17,13 +17,15 @@ from swgsim.effects.regularity import Regularity
 from swgsim.gear import Gear, OperatingPoint
 from swgsim.loop.closed import Closed
 from swgsim.loop.closing import close
-from swgsim.loop.commissioning import commission
+from swgsim.loop.commissioning import UNHEARD, commission
 from swgsim.loop.fitting import fit
 from swgsim.loop.leading import ALPHA
 from swgsim.loop.model import Model
 from swgsim.loop.session import Measured
 from swgsim.loop.unit import STRUCTURE, Unit
 from swgsim.loop.vocabulary import describe, freed
+from swgsim.recording import Recording
+from swgsim.recordings import SENSORS
 from swgsim.virtual_bench import Sessions, record_sessions
 
 pytestmark = pytest.mark.end_to_end
@@ -79,6 +81,19 @@ def test_a_gear_of_another_flex_spline_is_commissioned_as_accurately_as_it_can_b
     assert accepted(close(recorded((), seed=2, gear=other), own, SEARCHED)) == []
     (found,) = accepted(close(recorded((ECCENTRIC,), seed=2, gear=other), own, [*SEARCHED, LIBRARY["tilting_moment"]]))
     assert type(found) is type(ECCENTRIC)
+
+
+def test_a_gear_is_known_as_it_was_recorded_where_most_of_a_line_is_learned():
+    """Trigger, gains and lags act on the whole of the line, not on the third of it that the model has."""
+    hat = replace(GEAR.flex_spline, length=22e-3, collar=0.9e-3, wall=0.47e-3)
+    gauges = replace(GEAR.gauges, radius=27e-3, gain=(3.0,) * 5, position=tuple(0.01 * np.array([0, 2, 3, 1, 2])))
+    healthy = recorded((), seed=1, gear=replace(GEAR, flex_spline=hat, gauges=gauges))
+    own = commission(healthy, Unit(Model(GEAR)))
+    predicted, shift, *_ = own.left_open(own.model, healthy.situations, healthy.layout, {})
+    off = (healthy.values - (predicted + shift)[healthy.of_recording]).mean(axis=0)
+    lobes = np.isin(healthy.layout.channel, SENSORS[1:]) & (healthy.layout.order == 2)
+    assert np.abs(healthy.values[:, lobes]).max() > 0.5
+    assert np.abs(off[lobes]).max() < 5e-3
 
 
 def test_a_bench_with_another_drive_and_stronger_gauges_is_commissioned():
@@ -203,14 +218,40 @@ def test_load_and_speed_control_of_the_bench_are_found_by_commissioning():
     assert closed.steps == closed.rejected == ()
 
 
-def test_a_channel_that_the_model_does_not_describe_cannot_be_commissioned():
-    """The torque of a brake has no ripple of the gear."""
-    still = [
-        replace(each, channels={**each.channels, "T_out": np.full(len(each.time), each.point.T_out)})
-        for each in recorded((), seed=9).recordings
-    ]
-    with pytest.raises(ValueError, match=r"cannot be commissioned on these recordings.*T_out \(\d"):
-        commission(Measured.of(still), Unit(Model(GEAR)))
+def _shown(measured: Measured, T_out: Callable[[Recording], np.ndarray]) -> Measured:
+    """The same with another torque at the output, and a little noise of it."""
+    rng = np.random.default_rng(9)
+    return Measured.of([
+        replace(r, channels={**r.channels, "T_out": T_out(r) + rng.normal(0, 0.01, len(r.time))})
+        for r in measured.recordings
+    ])  # fmt: skip
+
+
+def test_the_torque_of_a_brake_is_told_from_that_of_the_gear():
+    def of_brake(recording: Recording) -> np.ndarray:
+        return np.full(len(recording.time), recording.channels["T_out"].mean())
+
+    own = commission(_shown(recorded((), seed=9), of_brake), Unit(Model(GEAR)))
+    assert own.model.gear.transmission.load_share == pytest.approx(1, abs=0.01)
+    softer = LIBRARY["reduced_stiffness"](0.8)
+    closed = close(_shown(recorded((softer,), seed=8), of_brake), own, [*SEARCHED, type(softer)])
+    (found,) = accepted(closed)
+    assert found.k1_ratio == pytest.approx(0.8, abs=0.05)
+
+
+def test_a_ripple_that_is_none_of_the_gear_is_not_listened_to():
+    """As that of a load which is shaken; a fault is found in the other channels all the same."""
+
+    def shaken(recording: Recording) -> np.ndarray:
+        return recording.channels["T_out"] + 5 * np.cos(5 * recording.channels["phi_in"] + recording.point.T_out)
+
+    own = commission(_shown(recorded((), seed=9), shaken), Unit(Model(GEAR)))
+    ripple = (recorded((), seed=9).layout.channel == "T_out") & (recorded((), seed=9).layout.order > 0)
+    assert (own.inflation[ripple] >= UNHEARD).all()
+    assert (own.inflation[~ripple] < UNHEARD).all()
+    assert accepted(close(_shown(recorded((), seed=8), shaken), own, SEARCHED)) == []
+    (found,) = accepted(close(_shown(recorded((ECCENTRIC,), seed=8), shaken), own, SEARCHED))
+    assert found.r == pytest.approx(10e-6, rel=0.2)
 
 
 def test_an_effect_is_found_behind_a_disturbance_that_dwarfs_it(unit):
