@@ -106,7 +106,11 @@ def _lines(fitted: Fitted, mean: Float[np.ndarray, " direction"]) -> tuple[Lines
     sizes = unit.form(fitted.calibrated.predicted, layout)
     form = sum(column_counts(sizes, unit.powers))
     gauges = fitted.model.run(fitted.measured.situations[0]).affected_gear.gauges
-    return lines_of(sizes, mean[len(mean) - form :], unit.powers, layout, gauges), form
+    before, found = fitted.model.own_lines, mean[len(mean) - form :]
+    if before is None or unit.shift is None:
+        return lines_of(sizes, found, unit.powers, layout, gauges), form
+    more = lines_of(sizes, found + unit.shift[len(unit.shift) - form :], unit.powers, layout, gauges)
+    return before.seen_by(gauges).plus(more), form
 
 
 def _largest(fitted: Fitted) -> Mapping[str, float]:

@@ -105,5 +105,6 @@ def lines_of(sizes: Sizes, found: Float[np.ndarray, " column"], powers: int, lay
         own = np.flatnonzero(size)
         by_law[:followed, own] += share.reshape(len(own), followed).T * size[own]
     lines = layout.lines(by_law)
-    there = np.flatnonzero(lines.any(axis=(0, 2)))
+    lie_off = layout.channel[np.any(sizes, axis=0)]
+    there = np.flatnonzero(np.isin(layout.channels, lie_off))
     return Lines(tuple(layout.channels[i] for i in there), lines[:, there], gauges)

@@ -14,8 +14,8 @@ from swgsim.loop.model import Model, Situation
 
 # Standard deviations, all estimates. Of a lag behind the angle [s]: a filter of 10 kHz has 16 us, one of 3 kHz 50.
 LAG = 5e-5
-# Of a gauge's gain and zero with the temperature [1/K, mV/V per K] (physics.md AC6, SE5).
-GAIN_PER_KELVIN, ZERO_PER_KELVIN = 1e-4, 2.5e-4
+# Of a gauge's gain and zero with the temperature [1/K, mV/V per K] (physics.md SE6, AC6, SE5).
+GAIN_PER_KELVIN, ZERO_PER_KELVIN = 3e-4, 2.5e-4
 # Of a gauge's mean, which the drag of the wave generator moves with the speed [mV/V at so many rpm].
 MEAN_AT_FULL_SPEED, FULL_SPEED = 1e-3, 4000.0
 # Of friction with the temperature of the grease [1/K] (physics.md DY3).

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Complex, Float, Int
+from jaxtyping import Complex, Float
 
 from swgsim.effects.base import Effect, Scene
 from swgsim.effects.frozen import FULL_LOAD
@@ -46,6 +46,21 @@ class Lines:
     values: Complex[np.ndarray, "law channel order"]
     gauges: GaugeSet
 
+    def seen_by(self, gauges: GaugeSet) -> "Lines":
+        """The same lines as other gauges see them: later if they have moved, and as much larger as their gain is."""
+        values, orders = self.values.copy(), np.arange(self.values.shape[-1])
+        for number, name in enumerate(self.channels):
+            if name in SENSORS:
+                sensor = SENSORS.index(name)
+                was, now = self.gauges.gain[sensor], gauges.gain[sensor]
+                moved = gauges.position[sensor] - self.gauges.position[sensor]
+                values[:, number] *= (now / was if was else 1.0) * np.exp(-1j * moved * orders)
+        return Lines(self.channels, values, gauges)
+
+    def plus(self, more: "Lines") -> "Lines":
+        """With what lines of the same channels, seen by the same gauges, add."""
+        return Lines(self.channels, self.values + more.values, self.gauges)
+
 
 @dataclass(frozen=True)
 class OwnLines(Effect):
@@ -69,15 +84,12 @@ class OwnLines(Effect):
     def gauge(self, signals: Float[np.ndarray, "5 time"], scene: Scene) -> Float[np.ndarray, "5 time"]:
         """The bridge signals with their lines."""
         own = [name for name in self.lines.channels if name in SENSORS]
-        which = [SENSORS.index(name) for name in own]
-        was, now = (np.array(each.gain)[which] for each in (self.lines.gauges, self.gauges))
-        moved = np.array(self.gauges.position)[which] - np.array(self.lines.gauges.position)[which]
-        share = np.divide(now, was, out=np.ones(len(was)), where=was != 0)
+        waves = _waves(_of(self.lines.seen_by(self.gauges), own), scene)
         seen = signals.copy()
-        turned = share[:, None] * np.exp(-1j * moved[:, None] * self._orders)
-        waves = _waves(turned * self._of(own), scene)
         # The structure follows the torque at once, and so its ripple.
-        seen[which] += (waves * laws(scene.T_out, scene.point.n_in_rpm)[:, None]).sum(axis=0)
+        seen[[SENSORS.index(name) for name in own]] += (waves * laws(scene.T_out, scene.point.n_in_rpm)[:, None]).sum(
+            axis=0
+        )
         return seen
 
     def acquisition(
@@ -86,16 +98,13 @@ class OwnLines(Effect):
         """The channels of the drive with their lines."""
         drive = [name for name in self.lines.channels if name not in SENSORS]
         here = laws(np.array(scene.point.T_out), scene.point.n_in_rpm)
-        waves = _waves(np.tensordot(here, self._of(drive), 1), scene)
+        waves = _waves(np.tensordot(here, _of(self.lines, drive), 1), scene)
         return {**channels, **{name: channels[name] + wave for name, wave in zip(drive, waves, strict=True)}}
 
-    @property
-    def _orders(self) -> Int[np.ndarray, " order"]:
-        return np.arange(self.lines.values.shape[-1])
 
-    def _of(self, names: Sequence[str]) -> Complex[np.ndarray, "law channel order"]:
-        """The lines of some channels."""
-        return self.lines.values[:, [self.lines.channels.index(name) for name in names]]
+def _of(lines: Lines, names: Sequence[str]) -> Complex[np.ndarray, "law channel order"]:
+    """The lines of some channels."""
+    return lines.values[:, [lines.channels.index(name) for name in names]]
 
 
 def _waves(lines: Complex[np.ndarray, "*batch order"], scene: Scene) -> Float[np.ndarray, "*batch time"]:
