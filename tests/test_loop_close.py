@@ -94,6 +94,8 @@ def test_a_gear_is_known_as_it_was_recorded_where_most_of_a_line_is_learned():
     lobes = np.isin(healthy.layout.channel, SENSORS[1:]) & (healthy.layout.order == 2)
     assert np.abs(healthy.values[:, lobes]).max() > 0.5
     assert np.abs(off[lobes]).max() < 5e-3
+    means = np.isin(healthy.layout.channel, SENSORS[1:]) & (healthy.layout.order == 0)
+    assert np.abs(off[means]).max() < 0.3e-3
 
 
 def test_a_bench_with_another_drive_and_stronger_gauges_is_commissioned():

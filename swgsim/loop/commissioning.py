@@ -44,12 +44,10 @@ def commission(measured: Measured, unit: Unit) -> Unit:
     """
     forget()
     healthy = replace(unit, seen_healthy=True)
-    fitted = _learning(_as_accurate_as_shown(measured, healthy))
+    fitted = _as_it_is(measured, healthy)
     foreign = _foreign(measured, fitted.missed)
     if foreign.any():
-        deaf = replace(healthy, inflation=np.where(foreign, UNHEARD, 1.0))
-        fitted = _learning(_as_accurate_as_shown(measured, deaf))
-    fitted = _about_its_lines(fitted)
+        fitted = _as_it_is(measured, replace(healthy, inflation=np.where(foreign, UNHEARD, 1.0)))
     _require_own(measured, fitted.missed)
     beyond = _beyond(measured, fitted.missed)
     if beyond.max() > 1:
@@ -116,6 +114,11 @@ def _lines(fitted: Fitted, mean: Float[np.ndarray, " direction"]) -> tuple[Lines
 def _largest(fitted: Fitted) -> Mapping[str, float]:
     """The largest line of each gauge by the model alone, by which deviations of the maps are counted."""
     return fitted.unit.largest or largest_lines(fitted.calibrated.predicted, fitted.measured.layout)
+
+
+def _as_it_is(measured: Measured, unit: Unit) -> Fitted:
+    """The fit to recordings of the healthy gear, whatever structure it has."""
+    return _about_its_lines(_learning(_as_accurate_as_shown(measured, unit)))
 
 
 def _foreign(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> Bool[np.ndarray, " feature"]:
