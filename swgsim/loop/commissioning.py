@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 from scipy.stats import chi2, false_discovery_control
 
+from swgsim.loop.features import Layout
 from swgsim.loop.fitting import MISFIT, Fitted, fit
 from swgsim.loop.form import column_counts, largest_lines, lines_of
 from swgsim.loop.own_lines import Lines
@@ -30,6 +31,8 @@ LUCK = 0.05
 LOOSEST, ALIEN = COARSER[-1], 0.5
 # Variance of a ripple that is not the model's, in that of noise: so much that it tells nothing.
 UNHEARD = 1e8
+# So often at most the drive alone is fitted, until the fit has come to rest.
+DRIVES = 4
 # So often at most a fit is linearised about the lines that it finds, until its log-likelihood stays within so much.
 ABOUT, AT_REST = 6, 1.0
 
@@ -132,7 +135,7 @@ def _as_accurate_as_shown(measured: Measured, unit: Unit) -> Fitted:
     """The fit at the accuracy of the structural model that is shown: the declared one, or a coarser one while a channel
     is missed and that makes the recordings likelier.
     """
-    best = fit(measured, unit)
+    best = fit(measured, unit, position=_by_drive_alone(measured, unit))
     for structure in COARSER:
         if max(best.misfit.values()) < WELL:
             break
@@ -141,6 +144,23 @@ def _as_accurate_as_shown(measured: Measured, unit: Unit) -> Fitted:
             break
         best = coarser
     return best
+
+
+def _by_drive_alone(measured: Measured, unit: Unit) -> dict[str, float]:
+    """Where speed and torques alone have the parameters: gauges on quite another flex spline would lead them astray."""
+    drive = tuple(name for name in measured.layout.channels if name not in SENSORS)
+    if not drive:
+        return {}
+    heard = np.isin(measured.layout.channel, drive)
+    alone = Measured(measured.recordings, Layout(drive), measured.values[:, heard], measured.variance[:, heard])
+    unit = replace(unit, inflation=None if unit.inflation is None else unit.inflation[heard])
+    position: dict[str, float] = {}
+    for _ in range(DRIVES):
+        fitted = fit(alone, unit, position=position)
+        position = dict(fitted.calibrated.position)
+        if fitted.calibrated.settled:
+            break
+    return position
 
 
 def _again(fitted: Fitted, **changes: Any) -> Fitted:
