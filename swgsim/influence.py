@@ -83,6 +83,19 @@ def _sampled_ellipse(wave_generator: WaveGenerator, radius: float, sectors: int)
     return ellipse(wave_generator, radius, PSI, fine_angles(sectors))
 
 
+@lru_cache(maxsize=4096)
+def lobes(wave_generator: WaveGenerator, radius: float, effects: tuple[Effect, ...]) -> complex:
+    """How effects change the two lobes, as order 2 of the displacement that turns with the wave generator: the size is
+    their stroke, in that of the ideal ellipse, and half of the angle [rad] is how far they are ahead.
+    """
+    psi, theta = (np.linspace(0, 2 * np.pi, points, endpoint=False) for points in (16, 64))
+    ideal = displacement = ellipse(wave_generator, radius, psi, theta)
+    for effect in effects:
+        displacement = effect.wave_generator(displacement, psi, theta)
+    turning = np.exp(2j * (theta - psi[:, None]))
+    return complex((displacement * turning).mean() / (ideal * turning).mean())
+
+
 def boundary_conditions(
     flex: FlexSpline,
     displacement: Float[np.ndarray, "psi theta"],

@@ -10,6 +10,7 @@ from swgsim.chain import SECTORS, Run, simulate_turns
 from swgsim.conditions import Conditions
 from swgsim.effects.base import Effect, overrides
 from swgsim.gear import Gear, OperatingPoint
+from swgsim.influence import lobes
 from swgsim.loop.features import Layout, features_alike
 from swgsim.loop.own_lines import Lines, OwnLines
 
@@ -48,7 +49,10 @@ class Model:
         run = Run(self.gear, situation.point, self.effects, conditions=situation.conditions)
         if self.own_lines is None:
             return run
-        return replace(run, effects=(OwnLines(self.own_lines, run.affected_gear.gauges), *self.effects))
+        gear = run.affected_gear
+        moving = tuple(effect for effect in run.acting if overrides(effect, "wave_generator"))
+        stroke = lobes(gear.wave_generator, gear.flex_spline.radius, moving) if moving else 1.0
+        return replace(run, effects=(OwnLines(self.own_lines, gear.gauges, stroke), *self.effects))
 
     def plus(self, *effects: Effect) -> "Model":
         """The model with more effects."""

@@ -22,6 +22,9 @@ LAWS: tuple[Callable[[np.ndarray, float], np.ndarray | float], ...] = (
     lambda load, speed: load * speed,
 )
 
+# Those that have nothing without a load.
+LOADED = np.array([np.all(law(np.zeros(1), 1.0) == 0) for law in LAWS])
+
 
 def laws(T_out: Float[np.ndarray, "..."], n_in_rpm: float) -> Float[np.ndarray, "law ..."]:
     """All laws at a torque [N m] and a speed [rpm]."""
@@ -68,23 +71,29 @@ class OwnLines(Effect):
 
     It comes before all other effects, so that whatever delays, filters or clips a signal does so to the whole of it. A
     gauge that has moved since sees them later, and one of another gain as much larger; the torque that they follow is
-    felt at all angles at once.
+    felt at all angles at once. Lobes that turn ahead take the lines along, and what is there without a load goes with
+    their stroke.
 
     Attributes
     ----------
     lines : Lines
     gauges : GaugeSet
         That see them.
+    lobes : complex
+        Stroke and turn of the lobes since (:func:`swgsim.influence.lobes`).
     """
 
     place = "structure"
     lines: Lines
     gauges: GaugeSet
+    lobes: complex = 1.0
 
     def gauge(self, signals: Float[np.ndarray, "5 time"], scene: Scene) -> Float[np.ndarray, "5 time"]:
         """The bridge signals with their lines."""
         own = [name for name in self.lines.channels if name in SENSORS]
-        waves = _waves(_of(self.lines.seen_by(self.gauges), own), scene)
+        lines = _of(self.lines.seen_by(self.gauges), own)
+        ahead = np.exp(0.5j * np.angle(self.lobes) * np.arange(lines.shape[-1]))
+        waves = _waves(lines * ahead * np.where(LOADED, 1.0, abs(self.lobes))[:, None, None], scene)
         seen = signals.copy()
         # The structure follows the torque at once, and so its ripple.
         seen[[SENSORS.index(name) for name in own]] += (waves * laws(scene.T_out, scene.point.n_in_rpm)[:, None]).sum(
