@@ -17,6 +17,8 @@ SETTLED, STEPS, LONGEST = 0.05, 24, 5.0
 # The next steps are half as long where the cost fell by less than the first share of what was expected, as the model is
 # not linear, and twice as long where it fell by more than the second.
 LITTLE, MUCH = 0.25, 0.75
+# A line that is no gear's.
+NOWHERE = 1e9
 # Difference for the derivatives, in spreads; small against a nonlinearity, large against rounding.
 DIFFERENCE = 0.01
 
@@ -116,11 +118,11 @@ def calibrate(
         while True:
             expected = float(step @ (2 * slope - curvature @ step))
             there = model_at(here + step)
-            predicted_there = predict([there], situations, layout)[0]
+            predicted_there = _predicted(there, situations, layout)
             r_there, cost_there = missed(predicted_there, here + step)
             if cost_there <= cost or not expected >= little:  # nor is it a number
                 break
-            # The step led uphill, as the model is not linear: half of it.
+            # The step led uphill, as the model is not linear, or to where nothing turns steadily: half of it.
             step, length = step / 2, length / 2
         fell = cost - cost_there
         settled = bool(fell < little * length or expected < little)
@@ -131,6 +133,15 @@ def calibrate(
         length *= 0.5 if fell < LITTLE * expected else 2.0 if fell > MUCH * expected and length < 1 else 1.0
         J = linearised(model, parameters, situations, layout)[1]
     return Calibrated(model, dict(zip(names, here.tolist(), strict=True)), predicted, J, settled)
+
+
+def _predicted(model: Model, situations: Sequence[Situation], layout: Layout) -> Float[np.ndarray, "situation feature"]:
+    """What a model predicts; worse than anything where it has no steady state."""
+    try:
+        with np.errstate(over="ignore", invalid="ignore"):
+            return predict([model], situations, layout)[0]
+    except RuntimeError:
+        return np.full((len(situations), len(layout)), NOWHERE)
 
 
 def _bounds(start: Model, parameters: Mapping[str, Declared]) -> tuple[np.ndarray, np.ndarray]:

@@ -18,8 +18,9 @@ BENCH, CONTROL = 0.3, 1.0
 SHARE = 0.5
 # Of a gauge's gain and of the wave generator's stroke in a series, as a share; an estimate.
 STRAINED = 0.01
-# Below this share of its nominal value, a stiffness, a friction or the stroke of the wave generator is that of no gear.
-LEAST = 0.05
+# Below this share of its nominal value, a stiffness, a friction or the stroke of the wave generator is that of no gear;
+# nor is a stiffness, a friction or what belongs to the bench beyond so many times it.
+LEAST, MOST = 0.05, 5.0
 
 
 @dataclass(frozen=True)
@@ -71,7 +72,7 @@ def _of_transmission(name: str, unit: str, sd: float, low: float = -np.inf, high
 
 def _of_size(name: str, unit: str, nominal: float, spread: float = 0.1) -> Declared:
     """A stiffness, friction or the like, whose spread is a share of it."""
-    return _of_transmission(name, unit, spread * nominal, LEAST * nominal)
+    return _of_transmission(name, unit, spread * nominal, LEAST * nominal, MOST * nominal)
 
 
 def _of_gauge(name: str, sensor: int, unit: str, sd: float) -> Declared:
