@@ -146,6 +146,22 @@ def test_a_step_uphill_is_halved(monkeypatch, A, sd):
     assert found.settled or sd > 100
 
 
+def test_a_step_to_where_nothing_turns_steadily_is_halved(monkeypatch, A):
+    """As one of stiffness and inertia together may be, far from the gear."""
+    out = []
+
+    def formula(x: float, y: float) -> np.ndarray:
+        if abs(x) > 4:
+            out.append(x)
+            raise RuntimeError("no steady state")
+        return A[..., 0] * np.arctan(x)
+
+    predicting(monkeypatch, formula)
+    found = fitted({"x": height(0, sd=30)}, A[..., 0] * np.arctan(0.3), noise=1e-3, position={"x": 0.1})
+    assert out
+    assert found.model.effects[0].height == pytest.approx(0.3, abs=1e-2)
+
+
 def test_a_fit_that_does_not_come_to_rest_says_so(monkeypatch, A):
     predicting(monkeypatch, lambda x, y: A[..., 0] * x)
     found = fitted({"x": height(0, sd=0.01)}, 1.9 * A[..., 0], noise=1e-5)

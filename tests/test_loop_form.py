@@ -103,6 +103,28 @@ def test_a_gauge_that_has_moved_sees_its_deviation_later():
     np.testing.assert_allclose(found[:, 1], np.tile(expected, (len(SITUATIONS), 1)), atol=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("effect", "scaled", "ahead"),
+    [
+        (LIBRARY["worn_wave_generator"](0.1), 0.9, 0.0),
+        (LIBRARY["lobe_shift"](0.05), 1.0, 0.05),
+        (LIBRARY["eccentric_wave_generator"](50e-6, 0.3), 1.0, 0.0),
+    ],
+    ids=["worn", "turned", "shifted"],
+)
+def test_lobes_take_the_deviation_along(effect, scaled, ahead):
+    """With their stroke what is there without a load, and with their turn all of it."""
+    lines = np.zeros((5, 1, ORDERS + 1), complex)
+    lines[:2, 0, 2], lines[:2, 0, 5] = 0.01, 0.03j
+    deviating = Model(GEAR, (), Lines(("s0",), lines, GEAR.gauges))
+    found = with_and_without(deviating, effect)[:, 1]
+    load = np.array([point.T_out for point in POINTS])[:, None] / FULL_LOAD
+    turn = np.exp(1j * ahead * load * np.arange(ORDERS + 1))
+    expected = (scaled * lines[0, 0] + load * lines[1, 0]) * turn
+    # The ripple of the torque makes some more of the part that follows it.
+    np.testing.assert_allclose(found[:, [2, 5]], expected[:, [2, 5]], rtol=0.02)
+
+
 def test_the_chain_has_a_gauge_that_has_moved_see_the_same_later():
     """But for what comes of the torque's ripple, which is felt at all angles at once."""
     moved = Model(GEAR, (LIBRARY["gauge_position"](sensor=1, shift=0.05),))
