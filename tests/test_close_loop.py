@@ -7,6 +7,7 @@ from functools import partial
 from html import unescape
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
 
@@ -23,9 +24,11 @@ from swgsim.effects.thermal_growth import ThermalGrowth
 from swgsim.gear import OperatingPoint
 from swgsim.intake.folder import write_folder
 from swgsim.loop import job, model
-from swgsim.loop.answer import NOTHING, answer
+from swgsim.loop.answer import NOTHING, Answer, answer
+from swgsim.loop.commissioning import UNHEARD
 from swgsim.loop.experiment import RECORDINGS, SEPARATED, next_experiments
 from swgsim.loop.reporting.remaining import next_experiment
+from swgsim.loop.reporting.report import report
 from swgsim.loop.session import Measured
 from swgsim.loop.unit import Unit
 from swgsim.loop.unnamed import Unnamed
@@ -42,8 +45,8 @@ SEARCHED = ["eccentric_wave_generator", "cam_form", "reduced_damping", "gauge_ga
 HIDDEN = EccentricWaveGenerator(3e-5, 1.0)
 KEYS = {
     "verdict", "sentence", "noise_floor", "calibrated", "effects", "rejected", "error", "unknown", "next_experiment",
-    "moved", "absorbed", "detectable", "scores", "commissioned", "structure", "learned", "less_certain", "zeros",
-    "channels", "recordings", "defects", "seconds",
+    "moved", "absorbed", "detectable", "scores", "commissioned", "structure", "learned", "less_certain", "unheard",
+    "zeros", "channels", "recordings", "defects", "seconds",
 }  # fmt: skip
 
 
@@ -157,12 +160,26 @@ def test_nothing_is_missing_in_a_sound_gear(folders, capsys):
     assert said["error"]["before"] == said["error"]["after"]
 
 
-def test_next_experiment_is_named_where_one_helps():
+@pytest.fixture(scope="module")
+def found() -> Answer:
+    """The answer to recordings of one operating point of a gear never seen."""
+    unit = Unit(model.Model(gear(GEAR)))
+    return answer(recorded(seed=4, points=POINTS[2:3]), unit, [LoadSharing, ReducedDamping, ThermalGrowth])
+
+
+def test_what_is_not_listened_to_is_said(found):
+    before, layout = found.closed.before, found.closed.before.measured.layout
+    heard = np.where((layout.channel == "T_out") & (layout.order > 0), UNHEARD, 1.0)
+    heard[(layout.channel == "s1") & (layout.order == 4)] = 5.0
+    deaf = replace(before, unit=replace(before.unit, inflation=heard))
+    said = report(replace(found, closed=replace(found.closed, before=deaf)), ())
+    assert (said["unheard"], said["less_certain"]) == (["T_out"], {"s1": [4]})
+
+
+def test_next_experiment_is_named_where_one_helps(found):
     """Load sharing shows at another speed, and so does growth with heat, for which the gear need not be warmed; less
     damping is what b1 of the series may be as well, at any point.
     """
-    recordings = recorded(seed=4, points=POINTS[2:3])
-    found = answer(recordings, Unit(model.Model(gear(GEAR))), [LoadSharing, ReducedDamping, ThermalGrowth])
     asked = replace(found, absorbed=found.closed.scores)
     experiments = {each.between[0].split(" of ")[0]: each for each in next_experiments(asked)}
     helpful, helpless = experiments["load sharing"], experiments["reduced damping"]

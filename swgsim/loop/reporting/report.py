@@ -9,6 +9,7 @@ from jaxtyping import Float
 from swgsim.defects.defect import Defect
 from swgsim.effects.base import Effect
 from swgsim.loop.answer import Answer
+from swgsim.loop.commissioning import UNHEARD
 from swgsim.loop.errors import noise_floor
 from swgsim.loop.experiment import Experiment
 from swgsim.loop.fitting import Fitted
@@ -45,6 +46,8 @@ def report(
     measured = before.measured
     sizes = Sizes.of(measured)
     floor = noise_floor(measured)
+    unheard = _orders(before, before.unit.inflation, UNHEARD / 2)
+    less_certain = _orders(before, before.unit.inflation, 1.0)
     return {
         "verdict": answer.verdict,
         "sentence": answer.sentence,
@@ -62,7 +65,8 @@ def report(
         "commissioned": before.unit.commissioned,
         "structure": before.unit.structure,
         "learned": _orders(before, before.unit.learned, 0.0),
-        "less_certain": _orders(before, before.unit.inflation, 1.0),
+        "less_certain": {name: orders for name, orders in less_certain.items() if name not in unheard},
+        "unheard": list(unheard),
         "zeros": measured.zeros,
         "channels": {name: CHANNELS[name].unit for name in measured.layout.channels},
         "recordings": _recordings(measured),
