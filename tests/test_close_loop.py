@@ -25,12 +25,11 @@ from swgsim.gear import OperatingPoint
 from swgsim.intake.folder import write_folder
 from swgsim.loop import job, model
 from swgsim.loop.answer import NOTHING, Answer, answer
-from swgsim.loop.commissioning import UNHEARD
 from swgsim.loop.experiment import RECORDINGS, SEPARATED, next_experiments
 from swgsim.loop.reporting.remaining import next_experiment
 from swgsim.loop.reporting.report import report
 from swgsim.loop.session import Measured
-from swgsim.loop.unit import Unit
+from swgsim.loop.unit import UNHEARD, Unit
 from swgsim.loop.unnamed import Unnamed
 from swgsim.recording import Recording
 from swgsim.settings import gear

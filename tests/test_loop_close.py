@@ -17,12 +17,12 @@ from swgsim.effects.regularity import Regularity
 from swgsim.gear import Gear, OperatingPoint
 from swgsim.loop.closed import Closed
 from swgsim.loop.closing import close
-from swgsim.loop.commissioning import UNHEARD, commission
+from swgsim.loop.commissioning import commission
 from swgsim.loop.fitting import fit
 from swgsim.loop.leading import ALPHA
 from swgsim.loop.model import Model
 from swgsim.loop.session import Measured
-from swgsim.loop.unit import STRUCTURE, Unit
+from swgsim.loop.unit import STRUCTURE, UNHEARD, Unit
 from swgsim.loop.vocabulary import describe, freed
 from swgsim.recording import Recording
 from swgsim.recordings import SENSORS

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from loop_fixtures import fitted_to
 
-from swgsim.loop import commissioning
-from swgsim.loop.commissioning import LUCK, UNEXPLAINED, _beyond, _require_own
+from swgsim.loop import relined
 from swgsim.loop.features import Layout
+from swgsim.loop.missing import LUCK, UNEXPLAINED, beyond_noise, require_own
 from swgsim.loop.session import Measured
 
 LAYOUT = Layout(("T_out", "s0", "s1", "s2"))
@@ -33,8 +33,8 @@ def test_a_coarser_fit_begins_where_the_finer_one_found_the_parameters(monkeypat
     found = {"gain of s1": 5.0, "k1": -0.5}
     fitted = replace(fitted, parameters=fitted.unit.declared, calibrated=replace(fitted.calibrated, position=found))
     asked = []
-    monkeypatch.setattr(commissioning, "fit", lambda *given, position: asked.append((given[1], position)) or fitted)
-    commissioning._again(fitted, structure=0.1)
+    monkeypatch.setattr(relined, "fit", lambda *given, position: asked.append((given[1], position)) or fitted)
+    relined.again(fitted, structure=0.1)
     ((unit, position),) = asked
     assert unit.structure == 0.1
     assert position == pytest.approx({"gain of s1": 0.5, "k1": -0.5})
@@ -43,7 +43,7 @@ def test_a_coarser_fit_begins_where_the_finer_one_found_the_parameters(monkeypat
 def test_noise_is_rarely_taken_for_something_missed(measured):
     """Of all lines together."""
     rng = np.random.default_rng(2)
-    found = [(_beyond(measured, rng.standard_normal(measured.values.shape)) > 1).any() for _ in range(100)]
+    found = [(beyond_noise(measured, rng.standard_normal(measured.values.shape)) > 1).any() for _ in range(100)]
     assert np.mean(found) < 2.5 * LUCK
 
 
@@ -55,7 +55,7 @@ def test_what_is_missed_alike_in_many_recordings_counts_once(measured, common):
     off = {point: 2.0 if common else 2 * rng.choice([-1, 1]) for point in points}
     missed = rng.standard_normal(measured.values.shape)
     missed[:, line("T_out", 3)] += np.array([off[point] for point in points])[:, None]
-    beyond = _beyond(measured, missed)[line("T_out", 3)]
+    beyond = beyond_noise(measured, missed)[line("T_out", 3)]
     alike = len(measured) if common else REPEATS
     assert beyond == pytest.approx(alike * 2.0**2, rel=0.4)
 
@@ -63,7 +63,7 @@ def test_what_is_missed_alike_in_many_recordings_counts_once(measured, common):
 def test_gauges_that_sit_alike_are_missed_alike(measured):
     missed = np.zeros(measured.values.shape)
     missed[:, line("s1", 4)] = 5.0
-    beyond = _beyond(measured, missed)
+    beyond = beyond_noise(measured, missed)
     assert beyond[line("s1", 4)][0] == beyond[line("s2", 4)][0] > 1
     assert beyond[line("s0", 4)] == pytest.approx(1.0)
 
@@ -71,12 +71,12 @@ def test_gauges_that_sit_alike_are_missed_alike(measured):
 def test_a_channel_of_which_a_tenth_is_missed_is_refused(measured):
     missed = np.zeros(measured.values.shape)
     missed[:, line("s0", 1)] = 100 * 0.9 * UNEXPLAINED
-    _require_own(measured, missed)
+    require_own(measured, missed)
     missed[:, line("s0", 1)] = 100 * 1.1 * UNEXPLAINED
     with pytest.raises(ValueError, match=r"leaves s0 \(11 %\) of the ripple unexplained, at most 10 %"):
-        _require_own(measured, missed)
+        require_own(measured, missed)
 
 
 def test_a_channel_without_ripple_is_not_refused_for_its_noise(measured):
     missed = np.random.default_rng(4).normal(0, 1.5, measured.values.shape)
-    _require_own(replace(measured, values=missed), missed)
+    require_own(replace(measured, values=missed), missed)

@@ -21,6 +21,8 @@ from swgsim.loop.scatter import Scatter
 STRUCTURE = 0.01
 # An effect's signature is known so many times less well than the maps of the healthy gear, whose lines were learned.
 LESS = 2.0
+# Variance of a ripple that is none of this gear, in that of noise: so much that it tells nothing.
+UNHEARD = 1e8
 
 
 @dataclass(frozen=True, eq=False)

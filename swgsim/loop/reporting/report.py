@@ -9,7 +9,6 @@ from jaxtyping import Float
 from swgsim.defects.defect import Defect
 from swgsim.effects.base import Effect
 from swgsim.loop.answer import Answer
-from swgsim.loop.commissioning import UNHEARD
 from swgsim.loop.errors import noise_floor
 from swgsim.loop.experiment import Experiment
 from swgsim.loop.fitting import Fitted
@@ -18,6 +17,7 @@ from swgsim.loop.reporting.numbers import estimate
 from swgsim.loop.reporting.remaining import absorbed, detectable, next_experiment, scored, unknown, untried
 from swgsim.loop.reporting.sizes import Sizes, error
 from swgsim.loop.session import Measured
+from swgsim.loop.unit import UNHEARD
 from swgsim.recording import CHANNELS
 
 

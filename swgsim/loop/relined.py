@@ -1,0 +1,72 @@
+"""A fit to a healthy gear, linearised about the lines that it finds where the model has them quite different."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.loop.fitting import Fitted, fit
+from swgsim.loop.form import column_counts, largest_lines, lines_of
+from swgsim.loop.own_lines import Lines
+
+# So often at most, until the log-likelihood stays within so much.
+ROUNDS, AT_REST = 6, 1.0
+
+
+def about_its_lines(fitted: Fitted) -> Fitted:
+    """The fit linearised about the lines that it finds, where the model has them quite different.
+
+    Trigger, gains, lags and temperatures act on the whole of a line, of which the model may have a small part.
+    """
+    if not (fitted.unit.of_another_structure or fitted.unit.learned is not None):
+        return fitted
+    largest = largest_of(fitted)
+    for _ in range(ROUNDS):
+        _, mean = told(fitted)
+        lines, form = lines_found(fitted, mean)
+        # What the lines are declared to be is still counted from the model alone.
+        back = np.append(np.zeros(fitted.open.shape[1] - form), -mean[len(mean) - form :])
+        model = replace(fitted.unit.model, own_lines=lines)
+        before, fitted = fitted, again(fitted, model=model, shift=back, largest=largest)
+        if abs(fitted.log_likelihood - before.log_likelihood) < AT_REST:
+            break
+    return fitted
+
+
+def told(fitted: Fitted) -> tuple[Float[np.ndarray, "direction direction"], Float[np.ndarray, " direction"]]:
+    """What recordings tell of the parameters, and of all else that is open: its covariance and mean, in spreads."""
+    columns = np.hstack([fitted.J, fitted.open])
+    white = fitted.errors.whiten(columns)
+    covariance = np.linalg.inv(white.T @ white + np.eye(columns.shape[1]))
+    mean = covariance @ (white.T @ fitted.errors.whiten(fitted.from_start[:, None])[:, 0])
+    # The parameters themselves stay where the fit has them; all else takes up the rest.
+    mean[: fitted.J.shape[1]] -= np.array(list(fitted.calibrated.position.values()))
+    return covariance, mean
+
+
+def lines_found(fitted: Fitted, mean: Float[np.ndarray, " direction"]) -> tuple[Lines, int]:
+    """The lines by which the gear differs from the model, and how many of the directions, the last ones, they are."""
+    unit, layout = fitted.unit, fitted.measured.layout
+    sizes = unit.form(fitted.calibrated.predicted, layout)
+    form = sum(column_counts(sizes, unit.powers))
+    gauges = fitted.model.run(fitted.measured.situations[0]).affected_gear.gauges
+    before, found = fitted.model.own_lines, mean[len(mean) - form :]
+    if before is None or unit.shift is None:
+        return lines_of(sizes, found, unit.powers, layout, gauges), form
+    more = lines_of(sizes, found + unit.shift[len(unit.shift) - form :], unit.powers, layout, gauges)
+    return before.seen_by(gauges).plus(more), form
+
+
+def largest_of(fitted: Fitted) -> Mapping[str, float]:
+    """The largest line of each gauge by the model alone, by which deviations of the maps are counted."""
+    return fitted.unit.largest or largest_lines(fitted.calibrated.predicted, fitted.measured.layout)
+
+
+def again(fitted: Fitted, **changes: Any) -> Fitted:
+    """A fit to a unit of which other things are declared, from where the parameters were found."""
+    unit = replace(fitted.unit, **changes)
+    was, now = fitted.parameters, {**fitted.parameters, **unit.declared}
+    position = {name: by * was[name].sd / now[name].sd for name, by in fitted.calibrated.position.items()}
+    return fit(fitted.measured, unit, position=position)
