@@ -8,11 +8,13 @@ from chain_fixtures import GEAR
 from loop_fixtures import Bump, drawn, fitted_to, holding
 
 from swgsim.effects.base import Effect
+from swgsim.effects.library import LIBRARY
 from swgsim.effects.quantity import shape, size
 from swgsim.loop import shapes
 from swgsim.loop.declared import of_effects
 from swgsim.loop.features import Layout
 from swgsim.loop.fitting import Fitted
+from swgsim.loop.hypotheses import hypotheses
 from swgsim.loop.model import Model
 from swgsim.loop.shapes import over_shapes
 
@@ -123,3 +125,15 @@ def test_neither_other_effects_nor_what_was_set_free_change_that(fitted_at):
 def test_an_effect_without_such_a_shape_is_left_alone():
     fitted = fitted_to(LAYOUT, np.random.default_rng(1))
     assert over_shapes(replace(fitted, calibrated=replace(fitted.calibrated, model=Model(GEAR, (Bump(1.0),)))), 0) == {}
+
+
+def test_how_lobes_share_the_load_is_open_in_a_gear_of_another_structure_only() -> None:
+    """There is one such shape on the structure of the model, and it is that of the model."""
+    kind = LIBRARY["eccentric_wave_generator"]
+    model, name = Model(GEAR, (kind(1e-5, 0.3),)), "eccentric wave generator 1: unequal"
+    for another, tried in ((False, {1.0}), (True, {0.0, 1.0, 2.0, 3.0})):
+        assert {dict(each.inner)["unequal"] for each in hypotheses([kind], another)} == tried
+        assert (name in of_effects(model, another)) == another
+    (alone,) = hypotheses([kind])
+    assert alone.repeats(kind(2e-5, 1.0))
+    assert not alone.repeats(kind(2e-5, 1.0, unequal=2.0))

@@ -88,7 +88,7 @@ def drawn_inner(kind: type[Effect], rng: np.random.Generator) -> Effect:
             values[name] = q.tried[int(rng.integers(len(q.tried)))]
         elif q.role in (Role.PHASE, Role.ANGLE, Role.RANDOM):
             values[name] = float(rng.uniform(0, 2 * np.pi))
-        elif q.role is Role.SHAPE and q.points > 1:
+        elif q.role is Role.SHAPE and q.open(another_structure=False):
             values[name] = float(rng.uniform(q.low, q.high))
         elif q.role is Role.SHAPE:
             values[name] = float(np.clip(q.typical * rng.uniform(0.85, 1.15), q.low, q.high))

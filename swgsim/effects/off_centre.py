@@ -14,9 +14,9 @@ def unequal_lobes() -> Any:
     """What the shift adds to the share of a lobe, beside what its depth does for the whole ellipse (an estimate).
 
     0 if the teeth give way so far that both lobes carry alike, 1 in proportion to depth, as in the paper's chain, more
-    if they are stiff.
+    if they are stiff. A search leaves it open where commissioning finds another structure than the model's.
     """
-    return shape(1.0, unit="-", low=0, high=3, points=4)
+    return shape(1.0, unit="-", low=0, high=3, points=4, of_structure=True)
 
 
 class OffCentre(Effect):

@@ -44,6 +44,8 @@ class Quantity:
         Of a choice: all values that there are; if empty, every integer from low to high.
     further : tuple of float
         Of a size: those that a search tries beside the typical one, where their signatures are of another shape.
+    of_structure : bool
+        Of a shape: it is the typical one, unless the gear's structure is found to be another one than the model's.
     """
 
     role: Role
@@ -55,6 +57,11 @@ class Quantity:
     points: int = 1
     among: tuple[float, ...] = ()
     further: tuple[float, ...] = ()
+    of_structure: bool = False
+
+    def open(self, another_structure: bool) -> bool:
+        """Whether a search may choose a value of its own, of a gear of the model's structure or of another one."""
+        return self.points > 1 and (another_structure or not self.of_structure)
 
     def check(self, owner: str, name: str, value: Any) -> None:
         """Raise a ValueError unless the value is a number within the bounds, or one of those that there are."""
@@ -101,9 +108,9 @@ def angle(default: Any = MISSING, *, points: int = 24) -> Any:
     return _parameter(Quantity(Role.ANGLE, "rad", 0, 2 * np.pi, 0.0, points=points), default)
 
 
-def shape(default: float, *, unit: str, low: float, high: float, points: int = 1) -> Any:
+def shape(default: float, *, unit: str, low: float, high: float, points: int = 1, of_structure: bool = False) -> Any:
     """A number that shapes the effect; its default is the typical value."""
-    return _parameter(Quantity(Role.SHAPE, unit, low, high, default, points=points), default)
+    return _parameter(Quantity(Role.SHAPE, unit, low, high, default, points=points, of_structure=of_structure), default)
 
 
 def choice(default: Any = MISSING, *, low: int, high: int) -> Any:

@@ -146,15 +146,21 @@ def of_unit(gear: Gear, structure: float = 0.0) -> dict[str, Declared]:
     return found
 
 
-def of_effects(model: Model) -> dict[str, Declared]:
+def of_effects(model: Model, another_structure: bool = False) -> dict[str, Declared]:
     """The parameters of the effects that a model has, free within their bounds.
 
     Choices are not among them, nor shapes of which a search tries the typical value only.
+
+    Parameters
+    ----------
+    model : Model
+    another_structure : bool
+        Whether the gear's structure is another one than the model's.
     """
     found = {}
     for number, effect in enumerate(model.effects):
         for name, quantity in quantities(type(effect)).items():
-            fixed = quantity.role is Role.SHAPE and quantity.points == 1
+            fixed = quantity.role is Role.SHAPE and not quantity.open(another_structure)
             if quantity.role in (Role.CHOICE, Role.RANDOM) or fixed:
                 continue
             angular = quantity.role in (Role.PHASE, Role.ANGLE)

@@ -233,7 +233,8 @@ def fit(
         What effects and regularities found earlier leave open, one standard deviation each.
     """
     start = model or unit.model
-    parameters = of_effects(start) if unit.commissioned else unit.declared | of_effects(start)
+    parameters = {} if unit.commissioned else unit.declared
+    parameters = parameters | of_effects(start, unit.of_another_structure)
     known = unit.scatter.carried if unit.scatter else Scatter.stated(measured.layout)
     repeated = len(set(measured.repeats)) < len(measured)
     guess, noise = known, unit.inflated(measured.variance)

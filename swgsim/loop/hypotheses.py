@@ -68,7 +68,8 @@ class Hypothesis:
         """
         declared = quantities(self.kind)
         return type(effect) is self.kind and all(
-            (declared[name].role is Role.CHOICE or len(declared[name].tried) == 1) and getattr(effect, name) == value
+            (declared[name].role is Role.CHOICE or declared[name].of_structure or len(declared[name].tried) == 1)
+            and getattr(effect, name) == value
             for name, value in self.inner
         )
 
@@ -77,13 +78,24 @@ class Hypothesis:
         return self.kind.title() + (f" ({inner})" if inner else "")
 
 
-def hypotheses(kinds: Iterable[type[Effect]]) -> Iterator[Hypothesis]:
-    """All combinations of inner parameters that are tried, effect by effect; those with random phases are left out."""
+def hypotheses(kinds: Iterable[type[Effect]], another_structure: bool = False) -> Iterator[Hypothesis]:
+    """All combinations of inner parameters that are tried, effect by effect; those with random phases are left out.
+
+    Parameters
+    ----------
+    kinds : iterable of effect classes
+    another_structure : bool
+        Whether the gear's structure is another one than the model's.
+    """
     for kind in kinds:
         declared = quantities(kind)
         if any(q.role is Role.RANDOM for q in declared.values()):
             continue
-        inner = {n: q.tried for n, q in declared.items() if q.role in (Role.ANGLE, Role.SHAPE, Role.CHOICE)}
+        inner = {
+            n: (q.typical,) if q.of_structure and not q.open(another_structure) else q.tried
+            for n, q in declared.items()
+            if q.role in (Role.ANGLE, Role.SHAPE, Role.CHOICE)
+        }
         combinations = list(product(declared[size_of(kind)].tried, *inner.values()))
         for size, *values in combinations:
             yield Hypothesis(kind, tuple(zip(inner, values, strict=True)), len(combinations), size)

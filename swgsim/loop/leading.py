@@ -17,7 +17,9 @@ LEADERS, NEARLY, NEARLY_LEADERS = 4, 0.05, 8
 
 def screened(fitted: Fitted, kinds: Sequence[type[Effect]], rng: np.random.Generator) -> tuple[Score, ...]:
     """The best hypothesis of every effect that was not added yet."""
-    found = [each for each in hypotheses(kinds) if not any(map(each.repeats, fitted.added))]
+    found = [
+        each for each in hypotheses(kinds, fitted.unit.of_another_structure) if not any(map(each.repeats, fitted.added))
+    ]
     if not found:
         return ()
     fitted = unbent(fitted)

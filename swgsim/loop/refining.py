@@ -31,7 +31,8 @@ def zoom(score: Score, fitted: Fitted) -> Effect:
     The signature is taken at the size that was found last, as that of a crack is far from proportional to its size.
     """
     declared = quantities(score.hypothesis.kind)
-    searched = [name for name, q in declared.items() if q.role in (Role.ANGLE, Role.SHAPE) and q.points > 1]
+    another = fitted.unit.of_another_structure
+    searched = [name for name, q in declared.items() if q.role in (Role.ANGLE, Role.SHAPE) and q.open(another)]
     best = score
     reach = {name: _spacing(declared[name]) for name in searched}
     for _ in range(ROUNDS if searched else 1):

@@ -28,7 +28,8 @@ def over_shapes(fitted: Fitted, number: int) -> dict[str, float]:
     """
     effect = fitted.model.effects[number]
     declared, size = quantities(type(effect)), size_of(type(effect))
-    searched = [name for name, q in declared.items() if q.role is Role.SHAPE and q.points > 1]
+    another = fitted.unit.of_another_structure
+    searched = [name for name, q in declared.items() if q.role is Role.SHAPE and q.open(another)]
     if len(searched) != 1:
         return {}
     (shape,) = searched
