@@ -17,10 +17,12 @@ from swgsim.effects import (
     TipToothCrack,
     WarmGrease,
 )
+from swgsim.effects.axial_thrust import AxialThrust
 from swgsim.effects.clipping import Clipping
 from swgsim.effects.signal_hysteresis import SignalHysteresis
 from swgsim.gear import OperatingPoint
 from swgsim.loop.features import Layout, features
+from swgsim.recordings import SENSORS
 
 POINT = OperatingPoint(2000, 39)
 WINDOW = Window()
@@ -119,3 +121,16 @@ def test_corners_have_their_order_lines_with_few_samples_too(effect: Effect) -> 
     assert np.abs(many - sound).max() > 1e-3
     # A recording tells a line to about 2e-5 mV/V.
     np.testing.assert_allclose(few, many, rtol=0, atol=2e-6)
+
+
+@pytest.mark.parametrize("sharp", [False, True])
+def test_where_the_flange_sits_is_no_matter_of_the_gauges(sharp: bool) -> None:
+    """At the brake it shows no ripple; gauges, and what effects make of them, feel the gear's torque all the same."""
+    effects = (AxialThrust(0.01), *([Clipping(0.2)] if sharp else []))
+    gears = [replace(GEAR, transmission=replace(GEAR.transmission, load_share=share)) for share in (0.0, 1.0)]
+    runs = [Run(gear, OperatingPoint(2000.0, 70.0), effects) for gear in gears]
+    at_gear, at_brake = (each.channels for each in simulate_turns(runs, 1, 64, SECTORS))
+    assert np.ptp(at_gear["T_out"]) > 0.1
+    np.testing.assert_allclose(at_brake["T_out"], 70.0)
+    for sensor in SENSORS:
+        np.testing.assert_allclose(at_brake[sensor], at_gear[sensor], atol=1e-9)

@@ -12,7 +12,7 @@ from swgsim.gauges import LIMITS
 from swgsim.gear import W0_LIMITS
 from swgsim.loop.alone import Alone
 from swgsim.loop.calibration import DIFFERENCE, calibrate
-from swgsim.loop.declared import Declared, at, of_unit
+from swgsim.loop.declared import MOST, Declared, at, of_unit
 from swgsim.loop.features import Layout
 from swgsim.loop.gaussian import Covariance
 from swgsim.loop.model import Model, Situation
@@ -211,10 +211,15 @@ def test_a_fit_that_goes_far_astray_still_has_a_gear(w0, by):
 
 
 def test_no_fit_makes_a_parameter_of_the_gear_that_cannot_be():
-    """A step that leads far below zero ends at the bound, which is that of a gear that still turns."""
+    """A step that leads far below zero ends at the bound, which is that of a gear that still turns; one far beyond, at
+    what is another gear or bench.
+    """
     model = Model(GEAR)
     bounded = ("k1", "b0", "b1", "mu", "w0")
     moved = at(model, {name: of_unit(GEAR)[name] for name in bounded}, dict.fromkeys(bounded, -1e3)).gear
     for name in bounded[:4]:
         assert 0 < getattr(moved.transmission, name) < getattr(GEAR.transmission, name)
     assert 0 < moved.wave_generator.w0 < GEAR.wave_generator.w0
+    far = ("k1", "b0", "b1", "mu", "J_in", "J_out")
+    moved = at(model, {name: of_unit(GEAR)[name] for name in far}, dict.fromkeys(far, 1e3)).gear.transmission
+    assert [getattr(moved, name) / getattr(GEAR.transmission, name) for name in far] == pytest.approx([MOST] * len(far))

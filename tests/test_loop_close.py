@@ -17,7 +17,8 @@ from swgsim.effects.regularity import Regularity
 from swgsim.gear import Gear, OperatingPoint
 from swgsim.loop.closed import Closed
 from swgsim.loop.closing import close
-from swgsim.loop.commissioning import commission
+from swgsim.loop.commissioning import _by_drive_alone, commission
+from swgsim.loop.declared import at
 from swgsim.loop.fitting import fit
 from swgsim.loop.leading import ALPHA
 from swgsim.loop.model import Model
@@ -81,6 +82,18 @@ def test_a_gear_of_another_flex_spline_is_commissioned_as_accurately_as_it_can_b
     assert accepted(close(recorded((), seed=2, gear=other), own, SEARCHED)) == []
     (found,) = accepted(close(recorded((ECCENTRIC,), seed=2, gear=other), own, [*SEARCHED, LIBRARY["tilting_moment"]]))
     assert type(found) is type(ECCENTRIC)
+
+
+def test_gauges_on_another_flex_spline_do_not_lead_the_drive_astray():
+    """Speed and torques alone have the load, whatever the gauges say, and say nothing of those."""
+    hat = replace(GEAR.flex_spline, length=22e-3, collar=0.9e-3, wall=0.47e-3)
+    transmission = replace(GEAR.transmission, J_out=0.6 * GEAR.transmission.J_out)
+    other = replace(GEAR, flex_spline=hat, transmission=transmission, gauges=replace(GEAR.gauges, gain=(3.0,) * 5))
+    unit = Unit(Model(GEAR), seen_healthy=True)
+    position = _by_drive_alone(recorded((), seed=1, gear=other), unit)
+    found = at(unit.model, unit.declared, position).gear
+    assert found.transmission.J_out == pytest.approx(transmission.J_out, rel=0.05)
+    assert found.gauges.gain == pytest.approx(GEAR.gauges.gain)
 
 
 def test_a_gear_is_known_as_it_was_recorded_where_most_of_a_line_is_learned():

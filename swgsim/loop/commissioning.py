@@ -37,12 +37,13 @@ def commission(measured: Measured, unit: Unit) -> Unit:
     healthy = replace(unit, seen_healthy=True)
     fitted = _as_it_is(measured, healthy)
     foreign = foreign_ripple(measured, fitted.missed)
+    unheard = np.where(foreign, UNHEARD, 1.0)
     if foreign.any():
-        fitted = _as_it_is(measured, replace(healthy, inflation=np.where(foreign, UNHEARD, 1.0)))
+        fitted = _as_it_is(measured, replace(healthy, inflation=unheard))
     require_own(measured, fitted.missed)
     beyond = beyond_noise(measured, fitted.missed)
     if beyond.max() > 1:
-        fitted = about_its_lines(again(fitted, inflation=beyond * np.where(foreign, UNHEARD, 1.0)))
+        fitted = about_its_lines(again(fitted, inflation=beyond * unheard))
     covariance, mean = told(fitted)
     # Declared effects stay as they were found: later fits have parameters of their own for them.
     own = [name in fitted.unit.declared for name in fitted.parameters]

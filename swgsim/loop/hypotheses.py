@@ -92,7 +92,7 @@ def hypotheses(kinds: Iterable[type[Effect]], another_structure: bool = False) -
         if any(q.role is Role.RANDOM for q in declared.values()):
             continue
         inner = {
-            n: (q.typical,) if q.of_structure and not q.open(another_structure) else q.tried
+            n: (q.typical,) if q.of_structure and not another_structure else q.tried
             for n, q in declared.items()
             if q.role in (Role.ANGLE, Role.SHAPE, Role.CHOICE)
         }

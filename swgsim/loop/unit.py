@@ -38,7 +38,8 @@ class Unit:
         deviations of lines) may still lie from where they were found, as columns of one standard deviation; None for
         a unit never seen.
     shift : array (direction,) or None
-        Where commissioning found them beside the model, in spreads.
+        Where commissioning found them beside the model, in spreads; while it goes on, less what the model has of their
+        lines already.
     structure : float
         Accuracy of the maps, as a share of a gauge's largest line: as declared, or as commissioning found it.
     seen_healthy : bool
@@ -48,7 +49,8 @@ class Unit:
     nominal : Gear or None
         After commissioning, the gear by whose spread the declared parameters are counted.
     largest : mapping or None
-        After commissioning, the largest line of each gauge, by which deviations of the maps are counted.
+        From commissioning on, the largest line of each gauge by the model alone, by which deviations of the maps are
+        counted.
     learned : array (feature,) or None
         After commissioning, how far the lines lie from the model's that this has quite different (standard deviation, 0
         for all others): so far that recordings of the healthy gear have to tell.
