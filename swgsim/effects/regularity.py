@@ -30,6 +30,8 @@ OF_TEMPERATURE, OF_TIME = (
     "proportional to the time since the session began",
 )
 FULL_SPEED, KELVIN, HOUR = 4000.0, 10.0, 3600.0
+# Highest order; a model of 64 samples per revolution that is given a higher one would take it for one below 13.
+HIGHEST = 50
 # Simple ones first.
 LAWS: Mapping[str, Callable[[OperatingPoint, Conditions], float]] = {
     "constant": lambda point, _: 1.0,
@@ -54,7 +56,7 @@ class Regularity(Effect):
     Attributes
     ----------
     order : int
-        Of the wave generator's revolution, from 0 (the mean) to 12.
+        Of the wave generator's revolution, from 0 (the mean) to 50.
     amplitude : float
         At 70 N m, 4000 rpm, 10 K above 25 degC or after 1 h, where the law has them; in the unit of the channels, from
         -100 to 100.
@@ -67,7 +69,7 @@ class Regularity(Effect):
     """
 
     place = "acquisition"
-    order: int = choice(low=0, high=12)
+    order: int = choice(low=0, high=HIGHEST)
     amplitude: float = size(unit="-", low=-100, high=100, typical=1e-3)
     phase: float = phase()
     pattern: str = "the same in s1 to s4"

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from swgsim.effects.base import Effect
 from swgsim.effects.regularity import Regularity
 from swgsim.effects.text import in_words
+from swgsim.loop.above import above
 from swgsim.loop.between import between
 from swgsim.loop.closed import Closed
 from swgsim.loop.closing import close
@@ -22,6 +23,8 @@ from swgsim.loop.vocabulary import Described
 from swgsim.recording import Recording
 from swgsim.turning import forget
 
+# Regularities at high orders that are described at most.
+MOST_ABOVE = 3
 NOTHING, FOUND, UNKNOWN = "nothing_missing", "effect_found", "unknown_effect"
 
 
@@ -40,6 +43,8 @@ class Answer:
         Effects between the orders that were found.
     unnamed : tuple of Unnamed
         Lines between the orders that none explains.
+    above : tuple of Described
+        Regularities at orders above those that the model is compared at.
     absorbed : tuple of Score
         Effects that these recordings cannot tell from what the model declares not to know.
     """
@@ -49,12 +54,13 @@ class Answer:
     known: tuple[Effect, ...]
     lines: tuple[Sideline, ...]
     unnamed: tuple[Unnamed, ...]
+    above: tuple[Described, ...]
     absorbed: tuple[Score, ...]
 
     @property
     def unknown(self) -> tuple[Described, ...]:
         """Regularities that no effect of the library explains."""
-        return self.closed.unknown
+        return (*self.closed.unknown, *self.above)
 
     @property
     def added(self) -> tuple[Effect, ...]:
@@ -141,6 +147,7 @@ def answer(
     clean = [cleaned(recording, lines.effects, N) for recording in recordings] if lines.effects else recordings
     closed = close(Measured.of(clean), unit, kinds, seed=seed)
     absorbed = tuple(score for score in closed.scores if score.absorbed)
-    found = closed.steps or lines.named
-    verdict = FOUND if found else UNKNOWN if closed.rejected or closed.unknown or lines.unnamed else NOTHING
-    return Answer(verdict, patched(closed), tuple(known), lines.named, lines.unnamed, absorbed)
+    high = above(clean, unit.healthy, closed.before.model, closed.after.model, ALPHA, MOST_ABOVE)
+    found, unknown = closed.steps or lines.named, closed.rejected or closed.unknown or lines.unnamed or high
+    verdict = FOUND if found else UNKNOWN if unknown else NOTHING
+    return Answer(verdict, patched(closed), tuple(known), lines.named, lines.unnamed, high, absorbed)

@@ -31,7 +31,7 @@ BEATING = (0, 2, 4)
 HELD = 0.05
 
 # Of one line, or of many.
-Sums = float | Float[np.ndarray, " line"]
+Sums = float | Float[np.ndarray, "*line"]
 
 
 class Explained(NamedTuple):

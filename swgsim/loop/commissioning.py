@@ -55,7 +55,7 @@ def commission(measured: Measured, unit: Unit) -> Unit:
     model, nominal = replace(fitted.model, own_lines=lines), fitted.unit.model.gear
     return replace(
         fitted.unit, model=model, reach=reach, shift=shift, scatter=fitted.scatter, nominal=nominal,
-        largest=largest_of(fitted),
+        largest=largest_of(fitted), healthy=measured.recordings,
     )  # fmt: skip
 
 

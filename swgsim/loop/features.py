@@ -106,9 +106,14 @@ def remainder(recording: Recording, layout: Layout) -> Float[np.ndarray, "channe
     return (values - columns @ _coefficients(columns, values)).T
 
 
-def _require_dense(recording: Recording) -> None:
+def samples_per_turn(recording: Recording) -> float:
+    """Samples per revolution of the wave generator."""
     angle = recording.channels["phi_in"]
-    dense = 2 * np.pi * (len(angle) - 1) / abs(float(angle[-1] - angle[0]))
+    return 2 * np.pi * (len(angle) - 1) / abs(float(angle[-1] - angle[0]))
+
+
+def _require_dense(recording: Recording) -> None:
+    dense = samples_per_turn(recording)
     if dense < DENSE:
         enough = np.ceil(recording.rate * (DENSE + 1) / dense)
         raise ValueError(

@@ -16,6 +16,7 @@ from swgsim.loop.form import Sizes, form_columns, largest_lines, lines_anywhere
 from swgsim.loop.healthy import FRICTION, of_friction, of_gauges
 from swgsim.loop.model import Model, Situation, predict
 from swgsim.loop.scatter import Scatter
+from swgsim.recording import Recording
 
 # Declared accuracy of the structural model before the gear itself has been recorded: the mesh alone makes up to 2 %.
 STRUCTURE = 0.01
@@ -57,6 +58,8 @@ class Unit:
     inflation : array (feature,) or None
         After commissioning, factor by which the variance of each line is larger than that of noise, by what the model
         misses of the healthy gear; for as many repeats as commissioning had.
+    healthy : tuple of Recording
+        By which it was commissioned.
     """
 
     model: Model
@@ -69,6 +72,7 @@ class Unit:
     largest: Mapping[str, float] | None = None
     learned: Float[np.ndarray, " feature"] | None = None
     inflation: Float[np.ndarray, " feature"] | None = None
+    healthy: tuple[Recording, ...] = ()
 
     @property
     def commissioned(self) -> bool:

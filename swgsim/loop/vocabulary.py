@@ -4,6 +4,7 @@ Atoms are tested as the effects of the library are, after projecting out what th
 they are also the widest question that can be asked of a residual: whether anything regular is left in it at all.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby, product
 
@@ -128,13 +129,15 @@ def strongest(fitted: Fitted, rng: np.random.Generator) -> Described:
     freedom = np.array([each.freedom for each in projected.described])
     noise = (projected.along(each) for each in fitted.null(AT_ONCE, rng))
     chances = family_wise(projected.along(fitted.weighed), freedom, noise)
-    best, *others = projected.ranked
-    rivals = tuple(
-        other.atom.law
-        for other in others
-        if replace(other.atom, law=best.atom.law) == best.atom and best.gain - other.gain < 2 * LEAST_GAIN
-    )
-    return replace(best, chance=float(chances[projected.described.index(best)]), rivals=rivals)
+    best = projected.ranked[0]
+    chance = float(chances[projected.described.index(best)])
+    return replace(best, chance=chance, rivals=other_laws(best, projected.ranked))
+
+
+def other_laws(best: Described, others: Sequence[Described]) -> tuple[str, ...]:
+    """By which others explain the same order and pattern as well."""
+    same = [other for other in others if replace(other.atom, law=best.atom.law) == best.atom]
+    return tuple(o.atom.law for o in same if o.atom != best.atom and best.gain - o.gain < 2 * LEAST_GAIN)
 
 
 def left(fitted: Fitted, seed: int, most: int) -> tuple[Described, ...]:
