@@ -220,6 +220,18 @@ def test_two_lines_are_found_one_after_the_other():
     assert found.unnamed == ()
 
 
+def test_a_hum_that_differs_from_cable_to_cable_and_its_harmonic_are_hum():
+    """A line without a name explains more of it than a hum of all gauges or of one does."""
+    hum = LIBRARY["mains_hum"]
+    cables = [hum(size, 50.0, sensor=s) for s, size in ((1, 2e-3), (2, 1e-3), (4, 7e-4))]
+    recordings = measured((*cables, hum(6e-4, 150.0, sensor=3), hum(3e-4, 150.0, sensor=2)), 5)
+    found = search(between(recordings), KINDS, 0.005)
+    assert [(line.effect.name(), line.effect.frequency) for line in found.named] == [
+        ("mains_hum", 50), ("mains_hum", 150),
+    ]  # fmt: skip
+    assert found.unnamed == ()
+
+
 def test_what_was_found_is_gone_from_the_spectra():
     recordings = measured((LIBRARY["mains_hum"](5e-3, 60.0, deviation=0.003),), 6)
     found = search(between(recordings), KINDS, 0.005)

@@ -127,6 +127,10 @@ class Effect:
         random = [name for name, quantity in quantities(type(self)).items() if quantity.role is Role.RANDOM]
         return replace(self, **{name: float(rng.uniform(0, 2 * np.pi)) for name in random})
 
+    def parts(self) -> tuple["Effect", ...]:
+        """What of it may be of any size beside the others, such as a hum in the cable of each gauge."""
+        return (self,)
+
     def gear(self, gear: Gear) -> Gear:
         """A gear with changed parameters."""
         return gear

@@ -1,7 +1,7 @@
 """Disturbance: mains hum."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -17,15 +17,15 @@ class MainsHum(Effect):
     """The mains or one of its harmonics couples into all bridges alike, or into the cable of one (physics.md SE20).
 
     Signature: a line at a fixed frequency, so at another order at every speed, alike in all gauges or in one, with
-    another phase in every recording, whatever the load. A line elsewhere is something else. Typical: 0.1 to 1 % of
-    order 2, 0.0002 to 0.002 mV/V.
+    another phase in every recording, whatever the load. Cables of several may hum differently, and at several
+    harmonics. A line elsewhere is something else. Typical: 0.1 to 1 % of order 2, 0.0002 to 0.002 mV/V.
 
     Attributes
     ----------
     amplitude : float
         [mV/V], from 0 to 0.05 (a quarter of order 2; beyond, a cable is broken).
     frequency : float
-        [Hz], one of the first three multiples of 50 and of 60 Hz.
+        [Hz], one of the first three multiples of 50 and of 60 Hz, or of their fifth and sixth, as a rectifier makes.
     phase : float
         At the trigger [rad].
     sensor : int
@@ -36,10 +36,14 @@ class MainsHum(Effect):
 
     place = "acquisition"
     amplitude: float = size(unit="mV/V", low=0, high=0.05, typical=5e-4)
-    frequency: float = choice_among(50, 60, 100, 120, 150, 180, unit="Hz")
+    frequency: float = choice_among(50, 60, 100, 120, 150, 180, 250, 300, 360, unit="Hz")
     phase: float = random_phase()
     sensor: int = choice(ALL, low=0, high=ALL)
     deviation: float = shape(0.0, unit="-", low=-0.004, high=0.004, points=3)
+
+    def parts(self) -> tuple[Effect, ...]:
+        """The hum of each gauge."""
+        return tuple(replace(self, sensor=s) for s in range(ALL))
 
     def acquisition(
         self, channels: Mapping[str, Float[np.ndarray, " time"]], scene: Scene

@@ -68,16 +68,36 @@ def search(
         found = found.taking_out(nearby(effect, spectra))
     sought = list(kinds)
     while len(found.named) + len(found.unnamed) < MOST:
-        best = next((line for line in ranked(found.left, sought)[:1] if line.chance <= level and line.holds), None)
+        likely = ranked(found.left, sought)
+        best = next((line for line in likely[:1] if line.chance <= level and line.holds), None)
         bare = unnamed(found.left, level)
-        if best and (bare is None or bare.explained <= (1 + OUTDONE_SHARE) * best.explained + OUTDONE):
-            found = replace(found, named=(*found.named, best)).taking_out(nearby(best.effect, spectra))
-            sought = [kind for kind in sought if kind is not type(best.effect)]
+        if bare and (best is None or bare.explained > (1 + OUTDONE_SHARE) * best.explained + OUTDONE):
+            coupled = (line for line in likely if line.chance <= level and line.holds and _in_parts(line))
+            best = next((line for line in coupled if _explains(line, bare, found.left)), None)
+        if best:
+            found = replace(found, named=(*found.named, best)).taking_out(_near(best, spectra))
+            sought = [kind for kind in sought if _in_parts(best) or kind is not type(best.effect)]
         elif bare:
             found = replace(found, unnamed=(*found.unnamed, bare)).taking_out(bare.effects(spectra[0].gauges))
         else:
             break
     return found
+
+
+def _in_parts(line: Sideline) -> bool:
+    """Whether its place tells the cause, and not how it is spread over the gauges."""
+    return len(line.effect.parts()) > 1
+
+
+def _explains(line: Sideline, bare: Unnamed, left: Sequence[Between]) -> bool:
+    """Whether the parts of an effect, each of any size, explain what a line without a name does."""
+    explained = sum(each.held(_near(line, left)) for each in left) - bare.noise
+    return bare.explained <= (1 + OUTDONE_SHARE) * explained + OUTDONE
+
+
+def _near(line: Sideline, spectra: Sequence[Between]) -> list[Effect]:
+    """All that may be there where an effect is."""
+    return [part for each in nearby(line.effect, spectra) for part in each.parts()]
 
 
 def cleaned(recording: Recording, effects: Sequence[Effect], N: int | None = None) -> Recording:
