@@ -71,7 +71,7 @@ transfer: data  ## beyond the paper: networks, transfer to gears never seen, rep
 	$(BIN)/python scripts/transfer_report.py grid=$(GEARS) paper_grid=$(GRID) started=$(STARTED)
 	@echo "open report/transfer.html; 'make ui' shows the runs"
 
-loop: $(READY)  ## closing the loop once, from nothing: record, hide an effect, find it; loop/answer/page.html (under two minutes)
+loop: $(READY)  ## closing the loop once, from nothing: record, hide an effect, find it; loop/answer/page.html (34 s)
 	@set -e; rm -rf loop; \
 	$(BIN)/python scripts/record.py out=loop/commissioning seed=1 sessions.name=commissioning; \
 	$(BIN)/python scripts/record.py out=loop/recordings seed=2 'hidden=[{eccentric_wave_generator: {r: 1.0e-5, theta: 1.0}}]'; \
@@ -89,7 +89,7 @@ joints: $(READY)  ## real robot joints (files: docs/joint_recordings.md), report
 	$(BIN)/python scripts/joints.py $(if $(MEASURED),folder=$(MEASURED)) $(if $(SMALL),'only=*joint 1')
 	@echo "open report/joints.html, and joints/*/page.html for every case"
 
-embedded: $(READY)  ## classifiers as C on microcontrollers, report/embedded.md; with scripts/install_arm.sh (SMALL=1: three of them)
+embedded: $(READY)  ## classifiers as C on microcontrollers, report/embedded.md; flash and instructions after scripts/install_arm.sh (SMALL=1: three of them)
 	$(BIN)/python scripts/generate.py grid=$(GEARS) condition=bench
 	$(BIN)/python scripts/generate.py grid=$(GRID) condition=disturbed
 	$(BIN)/python scripts/embedded.py unseen=$(GEARS)-bench disturbed=$(GRID)-disturbed \
