@@ -212,12 +212,19 @@ def _hidden(path: Path, recordings: str) -> str:
     """
     if not path.is_file():
         raise ValueError(f"truth={path} does not exist; scripts/record.py writes it beside the folder of recordings")
-    folder = Path(recordings)
     try:
-        sealed = truth.truth_of(folder).resolve() == path.resolve()
-        told = truth.open_truth(folder) if sealed else truth.parsed(path, path.read_bytes())
+        told = _told(path, Path(recordings))
         effects = [(name, values.items()) for entry in told["hidden"] for name, values in entry.items()]
     except (KeyError, TypeError, AttributeError) as error:
         raise ValueError(f"truth={path} is no truth of scripts/record.py: it has no list 'hidden' ({error})") from error
     named_ = [f"{words(name)} ({', '.join(f'{k} {v}' for k, v in values)})" for name, values in effects]
     return " and ".join(named_) or "none"
+
+
+def _told(path: Path, folder: Path) -> Mapping[str, Any]:
+    """What a truth says; only of a folder without a seal may it be any."""
+    beside = truth.truth_of(folder)
+    own, sealed = path.resolve() == beside.resolve(), (folder / truth.SEAL).is_file()
+    if sealed and not own and not truth.vouched(folder, path.read_bytes()):
+        raise ValueError(f"truth={path} is not the one that {folder / truth.SEAL} was written for: give {beside}")
+    return truth.open_truth(folder, path) if own or sealed else truth.parsed(path, path.read_bytes())
