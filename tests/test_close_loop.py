@@ -213,9 +213,19 @@ def test_recordings_that_do_not_belong_together_are_refused(folders, tmp_path):
         job.run(choices(folders, "sound", truth=str(CONF / "gear" / "gear1.yaml")))
 
 
+def test_a_recording_does_not_commission_itself(folders, tmp_path):
+    """All that it shows would be learned as healthy, and nothing found missing."""
+    with pytest.raises(ValueError, match=r"is in both recordings=.* and commissioning=.*of the healthy state"):
+        job.run(choices(folders, "sick", commissioning=str(folders / "sick")))
+    healthy, *others = recorded(seed=1, points=POINTS[:1])
+    copy = replace(healthy, name="renamed", channels={n: v for n, v in healthy.channels.items() if n != "s0"})
+    with pytest.raises(ValueError, match=f"recording renamed is in both .* there as {healthy.name}"):
+        job._alike([copy], [healthy, *others])
+
+
 def test_channels_that_only_one_side_has_are_left_out(folders):
-    recordings = recorded(seed=1, points=POINTS[:1])
-    fewer = tuple(replace(r, channels={n: v for n, v in r.channels.items() if n != "s0"}) for r in recordings)
+    recordings, others = (recorded(seed=seed, points=POINTS[:1]) for seed in (1, 2))
+    fewer = tuple(replace(r, channels={n: v for n, v in r.channels.items() if n != "s0"}) for r in others)
     one, other = job._alike(recordings, fewer)
     assert Measured.of(one).layout == Measured.of(other).layout
     assert "s0" not in one[0].channels

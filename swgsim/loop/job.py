@@ -181,7 +181,7 @@ def _alike(
     Raises
     ------
     ValueError
-        If they are of different gears, or share no channel.
+        If they are of different gears, share no channel, or one is in both.
     """
     one, other = recordings[0], healthy[0]
     if one.gear != other.gear:
@@ -195,7 +195,21 @@ def _alike(
             f"recordings ({', '.join(one.channels)}) and commissioning ({', '.join(other.channels)}) share no channel "
             "beside the angle: record the same ones"
         )
-    return _only(recordings, common), _only(healthy, common)
+    recordings, healthy = _only(recordings, common), _only(healthy, common)
+    _require_apart(recordings, healthy)
+    return recordings, healthy
+
+
+def _require_apart(recordings: Sequence[Recording], healthy: Sequence[Recording]) -> None:
+    """Raise a ValueError if a recording is in both: what it shows would be taken for what the gear has always had."""
+    there = {each.numbers: each.name for each in healthy}
+    for each in recordings:
+        if each.numbers in there:
+            raise ValueError(
+                f"recording {each.name} is in both recordings=... and commissioning=..., there as "
+                f"{there[each.numbers]}: all that it shows would be learned as healthy, give recordings of the healthy "
+                "state"
+            )
 
 
 def _only(recordings: Sequence[Recording], names: Sequence[str]) -> tuple[Recording, ...]:
