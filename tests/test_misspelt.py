@@ -1,0 +1,47 @@
+"""What a mistake in a command is answered with."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import interrupts
+import pytest
+from misspelt import FULL, answered
+
+ROOT = Path(__file__).parents[1]
+
+
+def given(*words: str, **environment: str) -> subprocess.CompletedProcess:
+    """The end of close_loop.py."""
+    around = {name: value for name, value in os.environ.items() if name != FULL} | environment
+    command = [sys.executable, "scripts/close_loop.py", *words]
+    return subprocess.run(command, cwd=ROOT, env=around, capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize("words", [(), ("--multirun", "seed=1,2")])
+def test_a_mistake_ends_with_a_sentence_and_not_with_a_traceback(words: tuple[str, ...]) -> None:
+    answer = given(*words)
+    assert answer.returncode == 1
+    said = answer.stderr.splitlines()
+    assert said[-2].startswith("no recordings: give recordings=FOLDER")
+    assert said[-1] == f"({FULL}=1 shows where)"
+    assert "Traceback" not in answer.stderr
+
+
+def test_the_traceback_is_there_for_who_asks() -> None:
+    answer = given(**{FULL: "1"})
+    assert answer.returncode == 1
+    assert "Traceback" in answer.stderr
+    assert "ValueError: no recordings" in answer.stderr
+
+
+def test_an_error_that_is_no_mistake_keeps_its_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
+    def main() -> None:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(interrupts, "kept", lambda: None)
+    monkeypatch.delenv(FULL, raising=False)
+    with pytest.raises(ZeroDivisionError):
+        answered(main, "close_loop")
+    assert FULL not in os.environ
