@@ -14,7 +14,8 @@ from hydra import compose, initialize_config_dir
 from hydra.core.global_hydra import GlobalHydra
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override
-from hydra.errors import CompactHydraException, ConfigCompositionException
+from hydra.errors import CompactHydraException, ConfigCompositionException, OverrideParseException
+from omegaconf import DictConfig
 from omegaconf.errors import OmegaConfBaseException
 
 # Set to 1, the variable of Hydra that asks for tracebacks.
@@ -53,6 +54,9 @@ def _in_a_sentence() -> Iterator[None]:
     os.environ[FULL] = "1"  # Hydra hands errors on and prints none
     try:
         yield
+    except OverrideParseException as error:
+        print(_unread(error), file=sys.stderr)
+        raise SystemExit(1) from error
     except (CompactHydraException, ValueError, OSError) as error:
         print(error, file=sys.stderr)
         if isinstance(error.__cause__, OmegaConfBaseException):  # of a choice: Hydra says only which one
@@ -61,6 +65,16 @@ def _in_a_sentence() -> Iterator[None]:
         raise SystemExit(1) from error
     finally:
         del os.environ[FULL]
+
+
+def _unread(error: OverrideParseException) -> str:
+    """What to write for a word that Hydra cannot read."""
+    if "=" not in error.override:
+        return f"cannot read {error.override!r}: choices are name=value, such as recordings=FOLDER"
+    return (
+        f"cannot read {error.override!r}: a value with such characters needs quotes of its own, such as "
+        """'recordings="folder (1)"'"""
+    )
 
 
 def _is_group(override: Override) -> bool:
@@ -74,7 +88,10 @@ def _first(override: Override) -> str:
 
 def unknown(config_name: str, words: list[str]) -> Iterator[str]:
     """One sentence for each override whose key the configuration does not have."""
-    overrides = OverridesParser.create().parse_overrides(words)
+    try:
+        overrides = OverridesParser.create().parse_overrides(words)
+    except OverrideParseException:
+        return  # told already, if it was a choice at all and not the value of an option of Hydra's
     GlobalHydra.instance().clear()
     try:
         with initialize_config_dir(str(CONF), version_base="1.3"):
@@ -87,6 +104,8 @@ def unknown(config_name: str, words: list[str]) -> Iterator[str]:
             continue
         node = config
         for part in key.split("."):
+            if not isinstance(node, DictConfig):
+                break  # below a value, of which Hydra has said that it has nothing below it
             if part not in node:
                 yield f"unknown choice {part!r}; choose from {', '.join(sorted(map(str, node)))}"
                 break

@@ -36,6 +36,24 @@ def test_the_traceback_is_there_for_who_asks() -> None:
     assert "ValueError: no recordings" in answer.stderr
 
 
+@pytest.mark.parametrize(
+    ("word", "said"),
+    [
+        ("recordings", "cannot read 'recordings': choices are name=value, such as recordings=FOLDER"),
+        (
+            "recordings=run (1)",
+            "cannot read 'recordings=run (1)': a value with such characters needs quotes",
+        ),
+        ("seed.x=1", "Could not override 'seed.x'"),
+    ],
+)
+def test_a_word_that_is_no_choice_is_answered(word: str, said: str) -> None:
+    answer = given(word)
+    assert answer.returncode == 1
+    assert answer.stderr.startswith(said)
+    assert "Traceback" not in answer.stderr
+
+
 def test_an_error_that_is_no_mistake_keeps_its_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
     def main() -> None:
         raise ZeroDivisionError
