@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 from dataclasses import replace
 from functools import partial
 from html import unescape
@@ -211,6 +212,15 @@ def test_recordings_that_do_not_belong_together_are_refused(folders, tmp_path):
         job.run(choices(tmp_path, "sound") | {"recordings": str(tmp_path / "bare")})
     with pytest.raises(ValueError, match=r"no truth of scripts/record\.py"):
         job.run(choices(folders, "sound", truth=str(CONF / "gear" / "gear1.yaml")))
+
+
+def test_a_message_about_a_file_says_of_which_folder(folders, tmp_path):
+    shutil.copytree(folders / "healthy", tmp_path / "spoiled")
+    (tmp_path / "spoiled" / "recording_0001.csv").write_text("t_s\n")
+    of_folder = f"commissioning={tmp_path / 'spoiled'}: recording_0001.csv, row 2: found a header without rows"
+    for folder, message in (("spoiled", of_folder), ("lost", f"commissioning={tmp_path / 'lost'}: found nothing")):
+        with pytest.raises(ValueError, match=message):
+            job.run(choices(folders, "sick", commissioning=str(tmp_path / folder)))
 
 
 def test_a_recording_does_not_commission_itself(folders, tmp_path):

@@ -139,6 +139,15 @@ def test_cases_are_answered_once_and_missing_ones_are_named(files, tmp_path, mon
     assert json.loads((tmp_path / "report" / "joints.json").read_text()) == said
 
 
+def test_a_message_about_a_file_says_of_which_folder(files, tmp_path):
+    (tmp_path / "day4_run.csv").write_text("t,q,v,i,T\n")
+    for choice in ("recordings", "holdout"):
+        with pytest.raises(
+            ValueError, match=rf"{choice}={tmp_path}: day4_run\.csv, row 2: found a header without rows"
+        ):
+            job.run(asked(files, **{choice: str(tmp_path)}), lambda _: None)
+
+
 def test_what_was_fitted_may_not_judge(files, tmp_path):
     with pytest.raises(ValueError, match="run day1_run of the holdout folder is also in the recordings to fit"):
         job.run(asked(files, holdout=str(files / "logs"), out=str(tmp_path)), lambda _: None)

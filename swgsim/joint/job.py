@@ -10,8 +10,10 @@ from swgsim.defects.defect import Defect, summary
 from swgsim.effects.library import named
 from swgsim.effects.text import as_text
 from swgsim.files import replacing, write_json, write_text
+from swgsim.intake.file_defect import read_for
 from swgsim.joint.days import days
-from swgsim.joint.intake.read import read_joints
+from swgsim.joint.intake.read import JointFiles, read_joints
+from swgsim.joint.intake.source import JointSource
 from swgsim.joint.intake.source_file import read_source
 from swgsim.joint.judged import Judged
 from swgsim.joint.ladder import climb
@@ -45,9 +47,9 @@ def run(config: Mapping[str, Any], tell: Callable[[str], None] = print) -> Outco
         raise ValueError("no recordings: give recordings=FOLDER, the files that the source describes")
     kinds = library(config)
     source = read_source(source_path(config["source"]))
-    files, judging = read_joints(Path(config["recordings"]), source), None
-    if config["holdout"] is not None and Path(config["holdout"]).is_dir():
-        judging = read_joints(Path(config["holdout"]), source)
+    files = _read("recordings", config["recordings"], source)
+    by_folder = config["holdout"] is not None and Path(config["holdout"]).is_dir()
+    judging = _read("holdout", config["holdout"], source) if by_folder else None
     defects = (*files.defects, *(judging.defects if judging else ()))
     if defects:
         tell(summary(defects))
@@ -64,6 +66,11 @@ def run(config: Mapping[str, Any], tell: Callable[[str], None] = print) -> Outco
     figures = _write(Path(config["out"]), judged, by_day, lines, said)
     tell("\n".join(_lines(said)))
     return Outcome(said, figures, digest((*case.table.recordings, *case.heldout.recordings), config))
+
+
+def _read(what: str, folder: str, source: JointSource) -> JointFiles:
+    with read_for(what, folder):
+        return read_joints(Path(folder), source)
 
 
 def source_path(source: str) -> Path:

@@ -15,6 +15,7 @@ from swgsim.effects.base import Effect
 from swgsim.effects.library import SEARCHED, named
 from swgsim.effects.text import as_text, sized
 from swgsim.files import write_json, write_text
+from swgsim.intake.file_defect import read_for
 from swgsim.intake.read import read_recordings
 from swgsim.loop.angle_zero import from_zero, require_same_zero, zero_defects, zero_of
 from swgsim.loop.answer import Answer, answer
@@ -155,7 +156,8 @@ def digest(recordings: Sequence[Recording]) -> str:
 
 def _read(path: str, what: str, mapping: str | None) -> tuple[tuple[Recording, ...], tuple[Defect, ...]]:
     """Recordings of one gear with what the loop needs."""
-    recordings, defects = read_recordings(Path(path), Path(mapping) if mapping else None)
+    with read_for(what, path):
+        recordings, defects = read_recordings(Path(path), Path(mapping) if mapping else None)
     gears = list(dict.fromkeys(recording.gear for recording in recordings))
     if len(gears) > 1:
         raise ValueError(
