@@ -223,6 +223,12 @@ def test_a_message_about_a_file_says_of_which_folder(folders, tmp_path):
             job.run(choices(folders, "sick", commissioning=str(tmp_path / folder)))
 
 
+@pytest.mark.parametrize("out", ["sick.json", "sick.json/answer", "x" * 300])
+def test_a_folder_that_cannot_be_written_is_refused_before_anything_is_read(folders, out):
+    with pytest.raises(OSError, match=f"{out} was not written; choose another folder"):
+        job.run(choices(folders, "lost", out=str(folders / out)))
+
+
 def test_a_recording_does_not_commission_itself(folders, tmp_path):
     """All that it shows would be learned as healthy, and nothing found missing."""
     with pytest.raises(ValueError, match=r"is in both recordings=.* and commissioning=.*of the healthy state"):

@@ -148,6 +148,11 @@ def test_a_message_about_a_file_says_of_which_folder(files, tmp_path):
             job.run(asked(files, **{choice: str(tmp_path)}), lambda _: None)
 
 
+def test_a_folder_that_cannot_be_written_is_refused_before_anything_is_read(files):
+    with pytest.raises(FileExistsError, match=r"source\.yaml was not written; choose another folder"):
+        job.run(asked(files, recordings="lost", out=str(files / "source.yaml")), lambda _: None)
+
+
 def test_what_was_fitted_may_not_judge(files, tmp_path):
     with pytest.raises(ValueError, match="run day1_run of the holdout folder is also in the recordings to fit"):
         job.run(asked(files, holdout=str(files / "logs"), out=str(tmp_path)), lambda _: None)

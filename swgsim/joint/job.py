@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from swgsim.defects.defect import Defect, summary
 from swgsim.effects.library import named
 from swgsim.effects.text import as_text
-from swgsim.files import replacing, write_json, write_text
+from swgsim.files import replacing, require_writable, write_json, write_text
 from swgsim.intake.file_defect import read_for
 from swgsim.joint.days import days
 from swgsim.joint.intake.read import JointFiles, read_joints
@@ -41,11 +41,14 @@ def run(config: Mapping[str, Any], tell: Callable[[str], None] = print) -> Outco
     ------
     ValueError
         If recordings cannot be used, or a choice is unknown or missing; it says what to do.
+    OSError
+        If the folder ``out`` cannot be written.
     """
     start = time.perf_counter()
     if config["recordings"] is None:
         raise ValueError("no recordings: give recordings=FOLDER, the files that the source describes")
     kinds = library(config)
+    require_writable(Path(config["out"]))
     source = read_source(source_path(config["source"]))
     files = _read("recordings", config["recordings"], source)
     by_folder = config["holdout"] is not None and Path(config["holdout"]).is_dir()

@@ -14,7 +14,7 @@ from swgsim.defects.defect import Defect
 from swgsim.effects.base import Effect
 from swgsim.effects.library import SEARCHED, named
 from swgsim.effects.text import as_text, sized
-from swgsim.files import write_json, write_text
+from swgsim.files import require_writable, write_json, write_text
 from swgsim.intake.file_defect import read_for
 from swgsim.intake.read import read_recordings
 from swgsim.loop.angle_zero import from_zero, require_same_zero, zero_defects, zero_of
@@ -62,11 +62,14 @@ def run(config: Mapping[str, Any]) -> Outcome:
     ------
     ValueError
         If recordings cannot be used, do not belong together, or a choice is unknown; it says what to do.
+    OSError
+        If the folder ``out`` cannot be written.
     """
     start = time.perf_counter()
     if config["recordings"] is None:
         raise ValueError("no recordings: give recordings=FOLDER, a folder with manifest.csv or a file of recordings")
     kinds = library(config)
+    require_writable(Path(config["out"]))
     hidden = None if config["truth"] is None else _hidden(Path(config["truth"]), config["recordings"])
     recordings, defects = _read(config["recordings"], "recordings", config["mapping"])
     declared = settings.effects(config["effects"])
