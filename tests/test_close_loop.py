@@ -18,6 +18,7 @@ from swgsim.chain import simulate_turns
 from swgsim.conditions import Conditions
 from swgsim.effects.base import Effect
 from swgsim.effects.eccentric_wave_generator import EccentricWaveGenerator
+from swgsim.effects.library import SEARCHED as LIBRARY_SEARCHED
 from swgsim.effects.load_sharing import LoadSharing
 from swgsim.effects.reduced_damping import ReducedDamping
 from swgsim.effects.text import from_text
@@ -221,6 +222,14 @@ def test_a_message_about_a_file_says_of_which_folder(folders, tmp_path):
     for folder, message in (("spoiled", of_folder), ("lost", f"commissioning={tmp_path / 'lost'}: found nothing")):
         with pytest.raises(ValueError, match=message):
             job.run(choices(folders, "sick", commissioning=str(tmp_path / folder)))
+
+
+@pytest.mark.parametrize("searched", ["cam_form, gauge_gain", ["cam_form", "gauge_gain"]])
+@pytest.mark.parametrize("library", ["reduced_damping", ["reduced_damping"]])
+def test_names_are_a_list_or_a_text_with_commas(searched, library):
+    kinds = job.library({"searched": searched, "library": library})
+    assert [kind.name() for kind in kinds] == ["cam_form", "gauge_gain", "reduced_damping"]
+    assert job.library({"searched": None, "library": None}) == LIBRARY_SEARCHED
 
 
 @pytest.mark.parametrize("out", ["sick.json", "sick.json/answer", "x" * 300])

@@ -119,6 +119,15 @@ def test_an_effect_of_a_user_is_searched(files, tmp_path, monkeypatch):
     assert [kind.__name__ for kind in kinds] == ["Mine"]
 
 
+@pytest.mark.parametrize("library", ["asymmetric_friction", ["asymmetric_friction"]])
+def test_names_are_a_list_or_a_text_with_commas(library):
+    kinds = job.library({"searched": ", ".join(SEARCHED), "library": library})
+    assert [kind.name() for kind in kinds] == [*SEARCHED, "asymmetric_friction"]
+    assert [kind.name() for kind in job.library({"searched": SEARCHED, "library": None})] == SEARCHED
+    with pytest.raises(ValueError, match="'' is no effect on a joint"):
+        job.library({"searched": "asymmetric_friction,", "library": None})
+
+
 def test_cases_are_answered_once_and_missing_ones_are_named(files, tmp_path, monkeypatch, capsys):
     case = {"source": str(files / "source.yaml"), "recordings": "logs", "holdout": "day4", "searched": SEARCHED}
     config = {

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from swgsim.defects.defect import Defect, summary
-from swgsim.effects.library import named
+from swgsim.effects.library import listed, named
 from swgsim.effects.text import as_text
 from swgsim.files import replacing, require_writable, write_json, write_text
 from swgsim.intake.file_defect import read_for
@@ -102,10 +102,9 @@ def library(config: Mapping[str, Any]) -> tuple[type[Term], ...]:
         If one is unknown, or is an effect of the gauge chain; it lists the choices.
     """
     known = {kind.name(): kind for kind in SEARCHED}
-    searched = list(known) if config["searched"] is None else config["searched"]
-    searched = searched.split(",") if isinstance(searched, str) else searched
+    searched = list(known) if config["searched"] is None else listed(config["searched"])
     found: list[type[Term]] = []
-    for name in (*searched, *config["library"]):
+    for name in (*searched, *listed(config["library"])):
         kind = known.get(name) or (named(name) if ":" in name else None)
         if kind is None or not issubclass(kind, Term):
             raise ValueError(

@@ -12,7 +12,7 @@ from threadpoolctl import threadpool_limits
 from swgsim import settings, truth
 from swgsim.defects.defect import Defect
 from swgsim.effects.base import Effect
-from swgsim.effects.library import SEARCHED, named
+from swgsim.effects.library import SEARCHED, listed, named
 from swgsim.effects.text import as_text, sized
 from swgsim.files import require_writable, write_json, write_text
 from swgsim.intake.file_defect import read_for
@@ -99,8 +99,8 @@ def run(config: Mapping[str, Any]) -> Outcome:
 
 def library(config: Mapping[str, Any]) -> tuple[type[Effect], ...]:
     """The effects that are searched for: those named, or all of the library, and further ones from outside."""
-    searched = SEARCHED if config["searched"] is None else tuple(map(named, config["searched"]))
-    return tuple(dict.fromkeys((*searched, *map(named, config["library"]))))
+    searched = SEARCHED if config["searched"] is None else tuple(map(named, listed(config["searched"])))
+    return tuple(dict.fromkeys((*searched, *map(named, listed(config["library"])))))
 
 
 def write(folder: Path, found: Answer, said: Mapping[str, Any]) -> dict[str, "Figure"]:
