@@ -7,7 +7,10 @@ from pathlib import Path
 
 import interrupts
 import pytest
+from close_loop import require_one_kind
+from hydra import compose, initialize_config_dir
 from misspelt import FULL, answered
+from omegaconf import OmegaConf
 
 ROOT = Path(__file__).parents[1]
 
@@ -17,6 +20,12 @@ def given(*words: str, **environment: str) -> subprocess.CompletedProcess:
     around = {name: value for name, value in os.environ.items() if name != FULL} | environment
     command = [sys.executable, "scripts/close_loop.py", *words]
     return subprocess.run(command, cwd=ROOT, env=around, capture_output=True, text=True, check=False)
+
+
+def chosen(*words: str) -> dict:
+    """The choices of close_loop.py."""
+    with initialize_config_dir(str(ROOT / "conf"), version_base="1.3"):
+        return OmegaConf.to_container(compose("close_loop", list(words)), resolve=True)
 
 
 @pytest.mark.parametrize("words", [(), ("--multirun", "seed=1,2")])
@@ -52,6 +61,27 @@ def test_a_word_that_is_no_choice_is_answered(word: str, said: str) -> None:
     assert answer.returncode == 1
     assert answer.stderr.startswith(said)
     assert "Traceback" not in answer.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["holdout=S3"], "holdout= is for robot joints: give source= as well"),
+        (["without=*Load"], "without= is for robot joints"),
+        (["source=ur10e", "truth=a.json"], "truth= is for strain gauges, source=ur10e for robot joints"),
+        (["source=ur10e", "effect=tilting_moment"], "effects= is for strain gauges"),
+    ],
+)
+def test_a_choice_for_the_other_kind_of_recordings_is_refused(words: list[str], said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        require_one_kind(chosen(*words))
+
+
+@pytest.mark.parametrize(
+    "words", [["effect=tilting_moment", "truth=a.json"], ["source=ur10e", "joint=joint_2", "holdout=S3", "gear=gear2"]]
+)
+def test_choices_for_one_kind_go_together(words: list[str]) -> None:
+    require_one_kind(chosen(*words))
 
 
 def test_an_error_that_is_no_mistake_keeps_its_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
