@@ -124,9 +124,7 @@ def _locked(lock: Path, path: Path, wait: bool) -> IO[bytes]:
             fcntl.flock(raw, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             raw.close()
-            raise RuntimeError(
-                f"another process is making {path}: wait for it, or choose another folder with data=..."
-            ) from None
+            raise RuntimeError(f"another process is making {path}: wait for it, or choose another folder") from None
         if _is_at(raw, lock):
             return raw
         # Its last owner removed it after it was opened here: such a lock keeps nobody out.
