@@ -14,8 +14,19 @@ from swgsim.loop import job as of_gauges
 from swgsim.loop.job import Outcome
 
 EXPERIMENT = "loop"
-# What is asked of recordings of a robot joint.
-CHOICES = ("joint", "signal", "holdout")
+# What is asked of recordings of a robot joint, and of no others; and of gauges only.
+OF_JOINT = ("joint", "signal", "holdout", "without")
+OF_GAUGES = ("commissioning", "mapping", "commissioning_mapping", "effects", "truth")
+
+
+def require_one_kind(config: Mapping[str, Any]) -> None:
+    """Raise a ValueError for a choice that is for recordings of the other kind: nothing would look at it."""
+    source = config["source"]
+    to_leave = f"is for strain gauges, source={source} for robot joints: leave one out"
+    others, said = (OF_JOINT, "is for robot joints: give source= as well") if source is None else (OF_GAUGES, to_leave)
+    for name in others:
+        if config[name] not in (None, []):
+            raise ValueError(f"{name}= {said}")
 
 
 def record(config: Mapping[str, Any], outcome: Outcome) -> None:
@@ -26,7 +37,7 @@ def record(config: Mapping[str, Any], outcome: Outcome) -> None:
 
     said = outcome.report
     store = settings.store({**config["tracking"], "experiment": EXPERIMENT})
-    asked = ("recordings", "commissioning", "seed") if config["source"] is None else ("recordings", "source", *CHOICES)
+    asked = ("recordings", "commissioning", "seed") if config["source"] is None else ("recordings", "source", *OF_JOINT)
     chosen = {name: config[name] for name in asked}
     key = hashlib.sha256(json.dumps([config, outcome.digest], sort_keys=True).encode()).hexdigest()[:16]
     tags = {"data_digest": outcome.digest, "verdict": said["verdict"], "sentence": said["sentence"][:5000]}
@@ -50,6 +61,7 @@ def metrics(said: Mapping[str, Any]) -> dict[str, float]:
 def main(config: DictConfig) -> None:
     """Resolve the configuration, run the job and keep its run."""
     resolved: dict[str, Any] = OmegaConf.to_container(config, resolve=True)  # type: ignore[assignment]
+    require_one_kind(resolved)
     record(resolved, (of_gauges if resolved["source"] is None else of_joint).run(resolved))
 
 

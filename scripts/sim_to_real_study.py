@@ -24,7 +24,7 @@ from swgsim.bench import Bench
 from swgsim.compute import Engine
 from swgsim.effects import text
 from swgsim.effects.base import Effect
-from swgsim.effects.library import SEARCHED, named
+from swgsim.effects.library import SEARCHED, listed, named
 from swgsim.gear import Gear, OperatingPoint
 from swgsim.loop import job as loop_job
 from swgsim.loop.answer import answer
@@ -152,7 +152,7 @@ def closed(
     config: Mapping[str, Any], name: str, recordings: Sequence[Recording], unit: Unit
 ) -> tuple[tuple[Effect, ...], dict[str, Any]]:
     """What the loop finds in recordings of a commissioned unit, and what it says; its page goes to a folder."""
-    kinds = SEARCHED if config["searched"] is None else tuple(map(named, config["searched"]))
+    kinds = SEARCHED if config["searched"] is None else tuple(map(named, listed(config["searched"])))
     found = answer(recordings, unit, kinds, seed=config["seed"])
     said = report(found, kinds)
     loop_job.write(Path(config["out"]) / STUDY / name, found, said)

@@ -4,9 +4,10 @@ import errno
 import fcntl
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import IO, Any
 
 # What to do where a file cannot be written.
@@ -23,6 +24,8 @@ REMEDIES = {
     errno.ENOLCK: OTHER_FOLDER_WITH_LOCKS,
     errno.EOPNOTSUPP: OTHER_FOLDER_WITH_LOCKS,
 }
+# Where a folder cannot be made. Of a file these say as well that one is missing that is read meanwhile.
+NO_FOLDER = dict.fromkeys((errno.ENOENT, errno.EEXIST, errno.ENOTDIR, errno.ENAMETOOLONG), "choose another folder")
 
 
 @contextmanager
@@ -38,7 +41,7 @@ def replacing(path: Path) -> Iterator[Path]:
     """
     aside = path.with_name(f".{path.name}.tmp")
     with remedied(path):
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_folder(path.parent)
         try:
             yield aside
             with aside.open("r+b") as raw:
@@ -67,7 +70,7 @@ def sole_maker(path: Path, *, wait: bool = False) -> Iterator[None]:
     """
     lock = path.with_name(f".{path.name}.lock")
     with remedied(path):
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_folder(path.parent)
         owned = _locked(lock, path, wait)
     with owned:
         try:
@@ -77,15 +80,40 @@ def sole_maker(path: Path, *, wait: bool = False) -> Iterator[None]:
 
 
 @contextmanager
-def remedied(path: Path) -> Iterator[None]:
+def remedied(path: Path, remedies: Mapping[int, str] = REMEDIES) -> Iterator[None]:
     """Say which file, or in which folder, could not be written and what to do."""
     try:
         yield
     except OSError as error:
         number = error.errno or 0
-        if number not in REMEDIES:
+        if number not in remedies:
             raise
-        raise OSError(number, f"{os.strerror(number)}: {path} was not written; {REMEDIES[number]}") from error
+        raise OSError(number, f"{os.strerror(number)}: {path} was not written; {remedies[number]}") from error
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder unless it is there.
+
+    Raises
+    ------
+    OSError
+        If that cannot be; it names the folder and the remedy.
+    """
+    with remedied(folder, {**REMEDIES, **NO_FOLDER}):
+        folder.mkdir(parents=True, exist_ok=True)
+
+
+def require_writable(folder: Path) -> None:
+    """Make a folder, and a file in it that is gone at once: better refused before a long computation than after it.
+
+    Raises
+    ------
+    OSError
+        If the folder cannot be written; it names it and the remedy.
+    """
+    make_folder(folder)
+    with remedied(folder), TemporaryFile(dir=folder):
+        pass
 
 
 def _locked(lock: Path, path: Path, wait: bool) -> IO[bytes]:
@@ -96,9 +124,7 @@ def _locked(lock: Path, path: Path, wait: bool) -> IO[bytes]:
             fcntl.flock(raw, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             raw.close()
-            raise RuntimeError(
-                f"another process is making {path}: wait for it, or choose another folder with data=..."
-            ) from None
+            raise RuntimeError(f"another process is making {path}: wait for it, or choose another folder") from None
         if _is_at(raw, lock):
             return raw
         # Its last owner removed it after it was opened here: such a lock keeps nobody out.

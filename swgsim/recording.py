@@ -1,5 +1,6 @@
 """One recording with every channel that a test bench delivers, and the facts that belong to it."""
 
+import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -77,3 +78,11 @@ class Recording:
     def rate(self) -> float:
         """Sampling rate [Hz]."""
         return (len(self.time) - 1) / float(self.time[-1] - self.time[0])
+
+    @property
+    def numbers(self) -> str:
+        """Digest of the channels, which a copy under another name shares."""
+        digest = hashlib.sha256()
+        for name in sorted(self.channels):
+            digest.update(name.encode() + self.channels[name].tobytes())
+        return digest.hexdigest()

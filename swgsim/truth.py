@@ -66,21 +66,31 @@ def write_sealed(
         shutil.rmtree(aside, ignore_errors=True)
 
 
-def open_truth(folder: Path) -> dict[str, Any]:
+def vouched(folder: Path, content: bytes) -> bool:
+    """Whether the seal of a folder is of the file of a truth that has this content."""
+    return (folder / SEAL).read_text(encoding="utf-8", errors="replace").split()[:1] == [_digest(content)]
+
+
+def open_truth(folder: Path, path: Path | None = None) -> dict[str, Any]:
     """The truth of a folder, once it is certain that neither has been changed.
+
+    Parameters
+    ----------
+    folder : Path
+    path : Path, optional
+        Where the truth lies, if not beside the folder.
 
     Raises
     ------
     ValueError
         If the truth is not the one that was sealed, or a file of the folder is not the one that was recorded.
     """
-    path = truth_of(folder)
+    path = path or truth_of(folder)
     for needed in (path, folder / SEAL):
         if not needed.is_file():
             raise ValueError(f"no {needed}: {folder} cannot be checked without it")
     content = path.read_bytes()
-    sealed = (folder / SEAL).read_text(encoding="utf-8", errors="replace").split()[:1]
-    if sealed != [_digest(content)]:
+    if not vouched(folder, content):
         raise ValueError(
             f"{path} is not the truth that was sealed in {folder / SEAL}: one of them was changed afterwards"
         )

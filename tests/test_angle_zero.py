@@ -133,8 +133,9 @@ def job_of(folder: Path) -> dict[str, object]:
 def test_recordings_and_commissioning_are_counted_from_the_zero_of_the_gear(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for name in ("commissioning", "recordings"):
-        write_folder(tmp_path / name, ahead(good(points=CORNERS), 0.6))
+    made = {"commissioning": good(points=CORNERS), "recordings": good(points=CORNERS, turns=13)}
+    for name, recordings in made.items():
+        write_folder(tmp_path / name, ahead(recordings, 0.6))
     seen, told = [], []
     monkeypatch.setattr(job, "commission", lambda measured, unit: seen.append(measured.recordings) or unit)
     monkeypatch.setattr(job, "answer", lambda recordings, *_, **__: seen.append(recordings))
@@ -143,10 +144,9 @@ def test_recordings_and_commissioning_are_counted_from_the_zero_of_the_gear(
     monkeypatch.setattr(job, "write", lambda *_: {})
     monkeypatch.setattr(job, "lines", lambda said: [])
     job.run(job_of(tmp_path))
-    for recordings in seen:
-        for each, right in zip(recordings, good(points=CORNERS), strict=True):
+    for recordings, rights in zip(seen, made.values(), strict=True):
+        for each, right in zip(recordings, rights, strict=True):
             np.testing.assert_allclose(each.channels["phi_in"], right.channels["phi_in"], atol=0.02)
-    assert len(seen) == 2
     assert [defect.severity for defect in told if defect.kind == "angle_zero"] == ["warn"]
 
 

@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 from dataclasses import replace
 from functools import partial
 from html import unescape
@@ -17,6 +18,7 @@ from swgsim.chain import simulate_turns
 from swgsim.conditions import Conditions
 from swgsim.effects.base import Effect
 from swgsim.effects.eccentric_wave_generator import EccentricWaveGenerator
+from swgsim.effects.library import SEARCHED as LIBRARY_SEARCHED
 from swgsim.effects.load_sharing import LoadSharing
 from swgsim.effects.reduced_damping import ReducedDamping
 from swgsim.effects.text import from_text
@@ -213,9 +215,42 @@ def test_recordings_that_do_not_belong_together_are_refused(folders, tmp_path):
         job.run(choices(folders, "sound", truth=str(CONF / "gear" / "gear1.yaml")))
 
 
+def test_a_message_about_a_file_says_of_which_folder(folders, tmp_path):
+    shutil.copytree(folders / "healthy", tmp_path / "spoiled")
+    (tmp_path / "spoiled" / "recording_0001.csv").write_text("t_s\n")
+    of_folder = f"commissioning={tmp_path / 'spoiled'}: recording_0001.csv, row 2: found a header without rows"
+    for folder, message in (("spoiled", of_folder), ("lost", f"commissioning={tmp_path / 'lost'}: found nothing")):
+        with pytest.raises(ValueError, match=message):
+            job.run(choices(folders, "sick", commissioning=str(tmp_path / folder)))
+
+
+@pytest.mark.parametrize("searched", ["cam_form, gauge_gain", ["cam_form", "gauge_gain"]])
+@pytest.mark.parametrize("library", ["reduced_damping", ["reduced_damping"]])
+def test_names_are_a_list_or_a_text_with_commas(searched, library):
+    kinds = job.library({"searched": searched, "library": library})
+    assert [kind.name() for kind in kinds] == ["cam_form", "gauge_gain", "reduced_damping"]
+    assert job.library({"searched": None, "library": None}) == LIBRARY_SEARCHED
+
+
+@pytest.mark.parametrize("out", ["sick.json", "sick.json/answer", "x" * 300])
+def test_a_folder_that_cannot_be_written_is_refused_before_anything_is_read(folders, out):
+    with pytest.raises(OSError, match=f"{out} was not written; choose another folder"):
+        job.run(choices(folders, "lost", out=str(folders / out)))
+
+
+def test_a_recording_does_not_commission_itself(folders, tmp_path):
+    """All that it shows would be learned as healthy, and nothing found missing."""
+    with pytest.raises(ValueError, match=r"is in both recordings=.* and commissioning=.*of the healthy state"):
+        job.run(choices(folders, "sick", commissioning=str(folders / "sick")))
+    healthy, *others = recorded(seed=1, points=POINTS[:1])
+    copy = replace(healthy, name="renamed", channels={n: v for n, v in healthy.channels.items() if n != "s0"})
+    with pytest.raises(ValueError, match=f"recording renamed is in both .* there as {healthy.name}"):
+        job._alike([copy], [healthy, *others])
+
+
 def test_channels_that_only_one_side_has_are_left_out(folders):
-    recordings = recorded(seed=1, points=POINTS[:1])
-    fewer = tuple(replace(r, channels={n: v for n, v in r.channels.items() if n != "s0"}) for r in recordings)
+    recordings, others = (recorded(seed=seed, points=POINTS[:1]) for seed in (1, 2))
+    fewer = tuple(replace(r, channels={n: v for n, v in r.channels.items() if n != "s0"}) for r in others)
     one, other = job._alike(recordings, fewer)
     assert Measured.of(one).layout == Measured.of(other).layout
     assert "s0" not in one[0].channels

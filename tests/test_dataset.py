@@ -19,7 +19,7 @@ from swgsim.bench import Bench
 from swgsim.compute import Engine
 from swgsim.dataset import disturb, generate
 from swgsim.disturbance import Disturbance
-from swgsim.files import sole_maker
+from swgsim.files import replacing, sole_maker
 from swgsim.grid import Case
 from swgsim.plan import Plan, block_size
 from swgsim.population import Population
@@ -260,6 +260,11 @@ def test_a_part_that_a_worker_of_a_killed_run_of_other_choices_replaced_is_not_j
     assert not path.exists()
     generate(small_plan(), path, Engine(1), nothing)
     assert path.read_bytes() == clean.read_bytes()
+
+
+def test_a_file_that_is_missed_meanwhile_is_named_and_not_the_folder(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError, match=r"directory: 'lost'"), replacing(tmp_path / "a.h5"):
+        Path("lost").read_bytes()
 
 
 def test_disturbed_is_clean_plus_equation_10(clean: Path, tmp_path: Path) -> None:

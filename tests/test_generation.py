@@ -140,7 +140,9 @@ def test_two_processes_do_not_make_the_same_data_set(tmp_path: Path) -> None:
     with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as first:
         assert first.stdout is not None
         assert "small-clean.h5" in first.stdout.readline()
-        with pytest.raises(RuntimeError, match=r"another process is making .*small-clean\.h5: wait for it, or .*data="):
+        with pytest.raises(
+            RuntimeError, match=r"another process is making .*small-clean\.h5: wait for it, or choose another folder$"
+        ):
             run(config)
         assert first.poll() is None
         first.kill()

@@ -119,6 +119,15 @@ def test_an_effect_of_a_user_is_searched(files, tmp_path, monkeypatch):
     assert [kind.__name__ for kind in kinds] == ["Mine"]
 
 
+@pytest.mark.parametrize("library", ["asymmetric_friction", ["asymmetric_friction"]])
+def test_names_are_a_list_or_a_text_with_commas(library):
+    kinds = job.library({"searched": ", ".join(SEARCHED), "library": library})
+    assert [kind.name() for kind in kinds] == [*SEARCHED, "asymmetric_friction"]
+    assert [kind.name() for kind in job.library({"searched": SEARCHED, "library": None})] == SEARCHED
+    with pytest.raises(ValueError, match="'' is no effect on a joint"):
+        job.library({"searched": "asymmetric_friction,", "library": None})
+
+
 def test_cases_are_answered_once_and_missing_ones_are_named(files, tmp_path, monkeypatch, capsys):
     case = {"source": str(files / "source.yaml"), "recordings": "logs", "holdout": "day4", "searched": SEARCHED}
     config = {
@@ -137,6 +146,20 @@ def test_cases_are_answered_once_and_missing_ones_are_named(files, tmp_path, mon
     monkeypatch.setattr(job, "run", lambda *_: pytest.fail("computed again"))
     cases.run(config)
     assert json.loads((tmp_path / "report" / "joints.json").read_text()) == said
+
+
+def test_a_message_about_a_file_says_of_which_folder(files, tmp_path):
+    (tmp_path / "day4_run.csv").write_text("t,q,v,i,T\n")
+    for choice in ("recordings", "holdout"):
+        with pytest.raises(
+            ValueError, match=rf"{choice}={tmp_path}: day4_run\.csv, row 2: found a header without rows"
+        ):
+            job.run(asked(files, **{choice: str(tmp_path)}), lambda _: None)
+
+
+def test_a_folder_that_cannot_be_written_is_refused_before_anything_is_read(files):
+    with pytest.raises(FileExistsError, match=r"source\.yaml was not written; choose another folder"):
+        job.run(asked(files, recordings="lost", out=str(files / "source.yaml")), lambda _: None)
 
 
 def test_what_was_fitted_may_not_judge(files, tmp_path):

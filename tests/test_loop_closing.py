@@ -19,6 +19,7 @@ from swgsim.loop.leading import ALPHA, screened
 from swgsim.loop.model import Model
 from swgsim.loop.reporting import effects
 from swgsim.loop.reporting.effects import why
+from swgsim.loop.reporting.remaining import unknown
 from swgsim.loop.steps import Step, contradicted, what, with_rivals
 from swgsim.loop.trial import Trial
 from swgsim.loop.vocabulary import Atom, Described
@@ -314,8 +315,18 @@ def test_the_nearest_explains_a_share_of_what_is_left_beyond_noise(monkeypatch):
     found = Closed(FITTED, FITTED, FITTED, (), (), (), (A,), None)
     assert found.nearest_explains == pytest.approx(0.84)
     assert Closed(FITTED, FITTED, FITTED, (), (), (), (), None).nearest_explains == 0
-    answer = Answer(UNKNOWN, found, (), (), (), ())
+    answer = Answer(UNKNOWN, found, (), (), (), (), ())
     assert answer.sentence.endswith("effect, bump (height 1), explains 84 % of it and was not accepted.")
+    assert answer.nearest is A
+
+
+@pytest.mark.parametrize(("share", "named"), [(0.12, True), (0.08, False), (0.0, False)])
+def test_an_effect_that_explains_less_than_a_tenth_is_not_called_the_nearest(share, named):
+    closed = Closed(FITTED, FITTED, FITTED, (), (), (), (A,), None)
+    vars(closed).update(nearest=A, nearest_explains=share)  # what was computed once
+    answer = Answer(UNKNOWN, closed, (), (), (), (), ())
+    assert ("nearest known effect" in answer.sentence) == named
+    assert (unknown(answer)["nearest"] is not None) == named
 
 
 @pytest.mark.parametrize(
@@ -410,7 +421,7 @@ def test_it_is_said_why_an_effect_is_no_cause():
     vague = replace(A, coherence=(Coherence(0.5, 0.3, 0.7, 0.66),))
     pair = replace(PAIR, coherence=(Coherence(0.5, 0.0, 0.0), Coherence(0.5, 0.3, 0.7, 0.66)))
     found = Closed(FITTED, FITTED, FITTED, (), (), (), (B, C, light, vague, pair), None, (), (C,), (B,), (light,))
-    answer = Answer(UNKNOWN, found, (), (), (), ())
+    answer = Answer(UNKNOWN, found, (), (), (), (), ())
     assert why(B, answer) == "it and another one all but cancel: together they imitate something else"
     assert why(C, answer).startswith("accepted at first")
     assert why(light, answer).startswith("it brings less than ten times what it leaves")

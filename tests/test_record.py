@@ -16,6 +16,7 @@ from omegaconf import OmegaConf
 from swgsim import settings
 from swgsim.effects import EccentricWaveGenerator
 from swgsim.intake.read import inspect_recordings, read_recordings
+from swgsim.loop import job
 from swgsim.record_job import run
 from swgsim.recording import Recording
 from swgsim.recordings import SENSORS
@@ -131,6 +132,17 @@ def test_tampering_is_detected(tamper: Any, message: str, clean: Path, tmp_path:
     tamper(folder)
     with pytest.raises(ValueError, match=message):
         open_truth(folder)
+
+
+def test_the_truth_of_another_folder_is_not_shown_beside_an_answer(clean: Path, riddle: Path, tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=rf"is not the one that .*seal\.txt was written for: give {truth_of(clean)}"):
+        job._hidden(truth_of(riddle), str(clean))
+    shown = job._hidden(truth_of(riddle), str(riddle))
+    assert shown.startswith("zero offset (")
+    elsewhere = tmp_path / "kept.json"
+    elsewhere.write_bytes(truth_of(riddle).read_bytes())
+    assert job._hidden(elsewhere, str(riddle)) == shown
+    assert job._hidden(elsewhere, str(tmp_path)) == shown  # without a seal nobody can tell
 
 
 def test_a_hidden_zero_offset_moves_only_its_gauge(clean: Path, tmp_path: Path) -> None:

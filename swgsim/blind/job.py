@@ -23,7 +23,7 @@ from swgsim.blind.sealed import as_json, from_json
 from swgsim.blind.strata import DETECTABLE, plans
 from swgsim.blind.table import table
 from swgsim.compute import Engine
-from swgsim.effects.library import SEARCHED, named
+from swgsim.effects.library import SEARCHED, listed, named
 from swgsim.files import sole_maker, write_json, write_text
 from swgsim.loop import (
     asking,
@@ -125,7 +125,7 @@ def setting_of(config: Mapping[str, Any]) -> Setting:
         settings.gear(config["gear"]),
         settings.build(Bench, config["condition"]["bench"]),
         settings.build(Window, config["window"]),
-        tuple(named(name) for name in chosen) if chosen else SEARCHED,
+        tuple(map(named, listed(chosen))) if chosen else SEARCHED,
         config["revolutions"],
         tuple(config["sectors"]),
         config["seed"],

@@ -2,7 +2,7 @@
 
 import importlib
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from swgsim.effects.aged_grease import AgedGrease
 from swgsim.effects.amplifier_drift import AmplifierDrift
@@ -159,6 +159,15 @@ SEARCHED: tuple[type[Effect], ...] = (
 # Effects that vary from one recording to the next, stand for several others, or have no cause.
 OTHERS: tuple[type[Effect], ...] = (OutputPosition, ParameterScatter, Regularity, RunIn)
 LIBRARY: Mapping[str, type[Effect]] = {kind.name(): kind for kind in (*SEARCHED, *OTHERS)}
+
+
+def listed(names: str | Sequence[str] | None) -> list[str]:
+    """Names from a list, from one text with commas between them, or none.
+
+    >>> listed("cam_form, coning")
+    ['cam_form', 'coning']
+    """
+    return [name.strip() for name in names.split(",")] if isinstance(names, str) else list(names or ())
 
 
 def named(name: str) -> type[Effect]:

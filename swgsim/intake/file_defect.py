@@ -1,5 +1,8 @@
 """What is wrong with a file: always named by file, row, column, what was found and what was expected."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
 from reprlib import Repr
 
 # Rows are counted as an editor counts the lines of a CSV file: the header is row 1, the first sample row 2.
@@ -28,6 +31,22 @@ class FileDefect(ValueError):
         self.file, self.row, self.column, self.found, self.expected = file, row, column, found, expected
         place = [file, *([f"row {row}"] if row else []), *([f"column {column}"] if column else [])]
         super().__init__(f"{', '.join(place)}: found {found}, expected {expected}")
+
+
+@contextmanager
+def read_for(choice: str, path: str) -> Iterator[None]:
+    """Say for which choice a file was read: files of one name are in many folders.
+
+    Raises
+    ------
+    ValueError
+        For a FileDefect.
+    """
+    try:
+        yield
+    except FileDefect as defect:
+        place = "" if Path(defect.file) == Path(path) else f"{path}: "
+        raise ValueError(f"{choice}={place}{defect}") from defect
 
 
 def shown(value: object) -> str:

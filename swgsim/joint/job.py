@@ -7,11 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from swgsim.defects.defect import Defect, summary
-from swgsim.effects.library import named
+from swgsim.effects.library import listed, named
 from swgsim.effects.text import as_text
-from swgsim.files import replacing, write_json, write_text
+from swgsim.files import replacing, require_writable, write_json, write_text
+from swgsim.intake.file_defect import read_for
 from swgsim.joint.days import days
-from swgsim.joint.intake.read import read_joints
+from swgsim.joint.intake.read import JointFiles, read_joints
+from swgsim.joint.intake.source import JointSource
 from swgsim.joint.intake.source_file import read_source
 from swgsim.joint.judged import Judged
 from swgsim.joint.ladder import climb
@@ -39,15 +41,18 @@ def run(config: Mapping[str, Any], tell: Callable[[str], None] = print) -> Outco
     ------
     ValueError
         If recordings cannot be used, or a choice is unknown or missing; it says what to do.
+    OSError
+        If the folder ``out`` cannot be written.
     """
     start = time.perf_counter()
     if config["recordings"] is None:
         raise ValueError("no recordings: give recordings=FOLDER, the files that the source describes")
     kinds = library(config)
+    require_writable(Path(config["out"]))
     source = read_source(source_path(config["source"]))
-    files, judging = read_joints(Path(config["recordings"]), source), None
-    if config["holdout"] is not None and Path(config["holdout"]).is_dir():
-        judging = read_joints(Path(config["holdout"]), source)
+    files = _read("recordings", config["recordings"], source)
+    by_folder = config["holdout"] is not None and Path(config["holdout"]).is_dir()
+    judging = _read("holdout", config["holdout"], source) if by_folder else None
     defects = (*files.defects, *(judging.defects if judging else ()))
     if defects:
         tell(summary(defects))
@@ -64,6 +69,11 @@ def run(config: Mapping[str, Any], tell: Callable[[str], None] = print) -> Outco
     figures = _write(Path(config["out"]), judged, by_day, lines, said)
     tell("\n".join(_lines(said)))
     return Outcome(said, figures, digest((*case.table.recordings, *case.heldout.recordings), config))
+
+
+def _read(what: str, folder: str, source: JointSource) -> JointFiles:
+    with read_for(what, folder):
+        return read_joints(Path(folder), source)
 
 
 def source_path(source: str) -> Path:
@@ -92,10 +102,9 @@ def library(config: Mapping[str, Any]) -> tuple[type[Term], ...]:
         If one is unknown, or is an effect of the gauge chain; it lists the choices.
     """
     known = {kind.name(): kind for kind in SEARCHED}
-    searched = list(known) if config["searched"] is None else config["searched"]
-    searched = searched.split(",") if isinstance(searched, str) else searched
+    searched = list(known) if config["searched"] is None else listed(config["searched"])
     found: list[type[Term]] = []
-    for name in (*searched, *config["library"]):
+    for name in (*searched, *listed(config["library"])):
         kind = known.get(name) or (named(name) if ":" in name else None)
         if kind is None or not issubclass(kind, Term):
             raise ValueError(

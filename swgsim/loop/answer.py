@@ -25,6 +25,8 @@ from swgsim.turning import forget
 
 # Regularities at high orders that are described at most.
 MOST_ABOVE = 3
+# A known effect that explains less of what is left is not near it.
+LEAST_EXPLAINED = 0.1
 NOTHING, FOUND, UNKNOWN = "nothing_missing", "effect_found", "unknown_effect"
 
 
@@ -86,8 +88,8 @@ class Answer:
 
     @property
     def nearest(self) -> Trial | None:
-        """Where something unknown is left: the known effect that comes nearest, and was not accepted."""
-        return self.closed.nearest
+        """Where something unknown is left: the known effect that comes nearest and was not accepted; if one is near."""
+        return self.closed.nearest if self.closed.nearest_explains >= LEAST_EXPLAINED else None
 
     @property
     def sentence(self) -> str:

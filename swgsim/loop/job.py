@@ -12,9 +12,10 @@ from threadpoolctl import threadpool_limits
 from swgsim import settings, truth
 from swgsim.defects.defect import Defect
 from swgsim.effects.base import Effect
-from swgsim.effects.library import SEARCHED, named
+from swgsim.effects.library import SEARCHED, listed, named
 from swgsim.effects.text import as_text, sized
-from swgsim.files import write_json, write_text
+from swgsim.files import require_writable, write_json, write_text
+from swgsim.intake.file_defect import read_for
 from swgsim.intake.read import read_recordings
 from swgsim.loop.angle_zero import from_zero, require_same_zero, zero_defects, zero_of
 from swgsim.loop.answer import Answer, answer
@@ -61,11 +62,14 @@ def run(config: Mapping[str, Any]) -> Outcome:
     ------
     ValueError
         If recordings cannot be used, do not belong together, or a choice is unknown; it says what to do.
+    OSError
+        If the folder ``out`` cannot be written.
     """
     start = time.perf_counter()
     if config["recordings"] is None:
         raise ValueError("no recordings: give recordings=FOLDER, a folder with manifest.csv or a file of recordings")
     kinds = library(config)
+    require_writable(Path(config["out"]))
     hidden = None if config["truth"] is None else _hidden(Path(config["truth"]), config["recordings"])
     recordings, defects = _read(config["recordings"], "recordings", config["mapping"])
     declared = settings.effects(config["effects"])
@@ -95,8 +99,8 @@ def run(config: Mapping[str, Any]) -> Outcome:
 
 def library(config: Mapping[str, Any]) -> tuple[type[Effect], ...]:
     """The effects that are searched for: those named, or all of the library, and further ones from outside."""
-    searched = SEARCHED if config["searched"] is None else tuple(map(named, config["searched"]))
-    return tuple(dict.fromkeys((*searched, *map(named, config["library"]))))
+    searched = SEARCHED if config["searched"] is None else tuple(map(named, listed(config["searched"])))
+    return tuple(dict.fromkeys((*searched, *map(named, listed(config["library"])))))
 
 
 def write(folder: Path, found: Answer, said: Mapping[str, Any]) -> dict[str, "Figure"]:
@@ -155,7 +159,8 @@ def digest(recordings: Sequence[Recording]) -> str:
 
 def _read(path: str, what: str, mapping: str | None) -> tuple[tuple[Recording, ...], tuple[Defect, ...]]:
     """Recordings of one gear with what the loop needs."""
-    recordings, defects = read_recordings(Path(path), Path(mapping) if mapping else None)
+    with read_for(what, path):
+        recordings, defects = read_recordings(Path(path), Path(mapping) if mapping else None)
     gears = list(dict.fromkeys(recording.gear for recording in recordings))
     if len(gears) > 1:
         raise ValueError(
@@ -181,7 +186,7 @@ def _alike(
     Raises
     ------
     ValueError
-        If they are of different gears, or share no channel.
+        If they are of different gears, share no channel, or one is in both.
     """
     one, other = recordings[0], healthy[0]
     if one.gear != other.gear:
@@ -195,7 +200,21 @@ def _alike(
             f"recordings ({', '.join(one.channels)}) and commissioning ({', '.join(other.channels)}) share no channel "
             "beside the angle: record the same ones"
         )
-    return _only(recordings, common), _only(healthy, common)
+    recordings, healthy = _only(recordings, common), _only(healthy, common)
+    _require_apart(recordings, healthy)
+    return recordings, healthy
+
+
+def _require_apart(recordings: Sequence[Recording], healthy: Sequence[Recording]) -> None:
+    """Raise a ValueError if a recording is in both: what it shows would be taken for what the gear has always had."""
+    there = {each.numbers: each.name for each in healthy}
+    for each in recordings:
+        if each.numbers in there:
+            raise ValueError(
+                f"recording {each.name} is in both recordings=... and commissioning=..., there as "
+                f"{there[each.numbers]}: all that it shows would be learned as healthy, give recordings of the healthy "
+                "state"
+            )
 
 
 def _only(recordings: Sequence[Recording], names: Sequence[str]) -> tuple[Recording, ...]:
@@ -212,12 +231,19 @@ def _hidden(path: Path, recordings: str) -> str:
     """
     if not path.is_file():
         raise ValueError(f"truth={path} does not exist; scripts/record.py writes it beside the folder of recordings")
-    folder = Path(recordings)
     try:
-        sealed = truth.truth_of(folder).resolve() == path.resolve()
-        told = truth.open_truth(folder) if sealed else truth.parsed(path, path.read_bytes())
+        told = _told(path, Path(recordings))
         effects = [(name, values.items()) for entry in told["hidden"] for name, values in entry.items()]
     except (KeyError, TypeError, AttributeError) as error:
         raise ValueError(f"truth={path} is no truth of scripts/record.py: it has no list 'hidden' ({error})") from error
     named_ = [f"{words(name)} ({', '.join(f'{k} {v}' for k, v in values)})" for name, values in effects]
     return " and ".join(named_) or "none"
+
+
+def _told(path: Path, folder: Path) -> Mapping[str, Any]:
+    """What a truth says; only of a folder without a seal may it be any."""
+    beside = truth.truth_of(folder)
+    own, sealed = path.resolve() == beside.resolve(), (folder / truth.SEAL).is_file()
+    if sealed and not own and not truth.vouched(folder, path.read_bytes()):
+        raise ValueError(f"truth={path} is not the one that {folder / truth.SEAL} was written for: give {beside}")
+    return truth.open_truth(folder, path) if own or sealed else truth.parsed(path, path.read_bytes())
