@@ -3,12 +3,13 @@
 from dataclasses import replace
 
 import numpy as np
+from jaxtyping import Float
 
 from swgsim.loop.features import Layout
 from swgsim.loop.fitting import Fitted, fit
 from swgsim.loop.form import largest_lines
 from swgsim.loop.missing import beyond_noise, foreign_ripple, require_own, unexplained
-from swgsim.loop.relined import about_its_lines, again, largest_of, lines_found, told
+from swgsim.loop.relined import about_its_lines, again, largest_of, lines_found, told, triangle
 from swgsim.loop.session import Measured
 from swgsim.loop.unit import UNHEARD, Unit
 from swgsim.recordings import SENSORS
@@ -44,11 +45,11 @@ def commission(measured: Measured, unit: Unit) -> Unit:
     beyond = beyond_noise(measured, fitted.missed)
     if beyond.max() > 1:
         fitted = about_its_lines(again(fitted, inflation=beyond * unheard))
-    covariance, mean = told(fitted)
+    root, mean = told(fitted)
     # Declared effects stay as they were found: later fits have parameters of their own for them.
     own = [name in fitted.unit.declared for name in fitted.parameters]
     kept = np.flatnonzero([*own, *[True] * fitted.open.shape[1]])
-    reach, shift = np.linalg.cholesky(covariance[np.ix_(kept, kept)]), mean[kept]
+    reach, shift = triangle(root[kept].T).T, mean[kept]
     # Lines go into the model, so that effects on the signals act on them too.
     lines, form = lines_found(fitted, mean)
     shift[len(shift) - form :] = 0.0
@@ -60,17 +61,18 @@ def commission(measured: Measured, unit: Unit) -> Unit:
 
 
 def _as_it_is(measured: Measured, unit: Unit) -> Fitted:
-    """The fit to recordings of the healthy gear, whatever structure it has."""
-    return about_its_lines(_learning(_as_accurate_as_shown(measured, unit)))
+    """The fit to recordings of the healthy gear, whatever drive and structure it has."""
+    position, learned = _by_drive_alone(measured, unit)
+    fitted = fit(measured, replace(unit, learned=learned), position=position)
+    return about_its_lines(_learning(_as_accurate_as_shown(fitted)))
 
 
-def _as_accurate_as_shown(measured: Measured, unit: Unit) -> Fitted:
-    """The fit at the accuracy of the structural model that is shown: the declared one, or a coarser one while a channel
+def _as_accurate_as_shown(best: Fitted) -> Fitted:
+    """The fit at the accuracy of the structural model that is shown: the declared one, or a coarser one while a gauge
     is missed and that makes the recordings likelier.
     """
-    best = fit(measured, unit, position=_by_drive_alone(measured, unit))
     for structure in COARSER:
-        if max(best.misfit.values()) < WELL:
+        if max((missed for name, missed in best.misfit.items() if name in SENSORS), default=0.0) < WELL:
             break
         coarser = again(best, structure=structure)
         if coarser.log_likelihood <= best.log_likelihood:
@@ -79,11 +81,14 @@ def _as_accurate_as_shown(measured: Measured, unit: Unit) -> Fitted:
     return best
 
 
-def _by_drive_alone(measured: Measured, unit: Unit) -> dict[str, float]:
-    """Where speed and torques alone have the parameters: gauges on quite another flex spline would lead them astray."""
+def _by_drive_alone(measured: Measured, unit: Unit) -> tuple[dict[str, float], Float[np.ndarray, " feature"] | None]:
+    """Where speed and torques alone have the parameters, and which of their lines they learn.
+
+    Gauges on quite another flex spline would lead the drive astray, and other equations of motion the gauges.
+    """
     drive = tuple(name for name in measured.layout.channels if name not in SENSORS)
     if not drive:
-        return {}
+        return {}, None
     heard = np.isin(measured.layout.channel, drive)
     alone = Measured(measured.recordings, Layout(drive), measured.values[:, heard], measured.variance[:, heard])
     unit = replace(unit, inflation=None if unit.inflation is None else unit.inflation[heard])
@@ -93,7 +98,12 @@ def _by_drive_alone(measured: Measured, unit: Unit) -> dict[str, float]:
         position = dict(fitted.calibrated.position)
         if fitted.calibrated.settled:
             break
-    return position
+    fitted = _learning(fitted)
+    if fitted.unit.learned is None:
+        return position, None
+    learned = np.zeros(len(measured.layout))
+    learned[heard] = fitted.unit.learned
+    return dict(fitted.calibrated.position), learned
 
 
 def _learning(fitted: Fitted) -> Fitted:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from jaxtyping import Float
+from scipy.linalg import qr, solve_triangular
 
 from swgsim.loop.fitting import Fitted, fit
 from swgsim.loop.form import column_counts, largest_lines, lines_of
@@ -36,14 +37,24 @@ def about_its_lines(fitted: Fitted) -> Fitted:
 
 
 def told(fitted: Fitted) -> tuple[Float[np.ndarray, "direction direction"], Float[np.ndarray, " direction"]]:
-    """What recordings tell of the parameters, and of all else that is open: its covariance and mean, in spreads."""
+    """What recordings tell of the parameters, and of all else that is open: a root of its covariance, and its mean, in
+    spreads.
+
+    By orthogonal triangles, as what is told to a millionth of a spread would be lost in its square.
+    """
     columns = np.hstack([fitted.J, fitted.open])
     white = fitted.errors.whiten(columns)
-    covariance = np.linalg.inv(white.T @ white + np.eye(columns.shape[1]))
-    mean = covariance @ (white.T @ fitted.errors.whiten(fitted.from_start[:, None])[:, 0])
+    unity = np.eye(columns.shape[1])
+    root = solve_triangular(triangle(np.vstack([white, unity])), unity)
+    mean = root @ (root.T @ (white.T @ fitted.errors.whiten(fitted.from_start[:, None])[:, 0]))
     # The parameters themselves stay where the fit has them; all else takes up the rest.
     mean[: fitted.J.shape[1]] -= np.array(list(fitted.calibrated.position.values()))
-    return covariance, mean
+    return root, mean
+
+
+def triangle(A: Float[np.ndarray, "row column"]) -> Float[np.ndarray, "column column"]:
+    """Upper triangular R with R' R = A' A."""
+    return np.asarray(qr(A, mode="r")[0])[: A.shape[1]]
 
 
 def lines_found(fitted: Fitted, mean: Float[np.ndarray, " direction"]) -> tuple[Lines, int]:
