@@ -18,8 +18,8 @@ from swgsim.loop.unit import Unit
 from swgsim.loop.vocabulary import Described, freed, left, set_free
 from swgsim.seeds import generator
 
-# Effects that are added at most.
-MOST = 3
+# Steps at most, each one effect or a pair.
+MOST_STEPS = 3
 # Times that an effect is asked again with all the others in the model, at most.
 MOST_AGAIN = 6
 # Regularities that are described at most.
@@ -110,7 +110,7 @@ def _forward(
     while True:
         number = len(steps)
         scores = (*scores, screened(now, kinds, generator("screen", seed, number)))
-        found = ask(now, scores[-1] if number < MOST else (), kinds, seed, apart)
+        found = ask(now, scores[-1] if number < MOST_STEPS else (), kinds, seed, apart)
         if not found.accepted and now.balanced is not now:
             now = now.balanced
             continue  # no effect explains where the zeros of gauges lie
@@ -139,7 +139,7 @@ def _without(dropped: Sequence[Step], end: End, before: Fitted, kinds: Sequence[
 
 def _untried(end: End) -> list[Score]:
     """Effects that were not fitted to what is left."""
-    return [score for score in end.scores[-1] if score.chance > ALPHA or len(end.steps) >= MOST]
+    return [score for score in end.scores[-1] if score.chance > ALPHA or len(end.steps) >= MOST_STEPS]
 
 
 def _backward(
