@@ -28,6 +28,7 @@ from swgsim.files import sole_maker, write_json, write_text
 from swgsim.loop import (
     asking,
     beside,
+    closing,
     commissioning,
     declared,
     evidence,
@@ -44,24 +45,30 @@ from swgsim.loop import (
     steps,
     trial,
     unit,
+    vocabulary,
 )
 from swgsim.version import code_version
 
 THRESHOLDS = {
     "alpha": leading.ALPHA,
     "least_gain": evidence.LEAST_GAIN,
+    "likelier": trial.LIKELIER,
     "least_evidence": trial.LEAST_EVIDENCE,
     "exact": trial.EXACT,
     "pair_gain": pairs.PAIR_GAIN,
+    "most": [closing.MOST_STEPS, closing.MOST_AGAIN, closing.MOST_ATOMS],
+    "leaders": [leading.LEADERS, leading.NEARLY_LEADERS],
     "nearly": leading.NEARLY,
     "form_tolerance": evidence.FORM_TOLERANCE,
     "contradiction": evidence.CONTRADICTION,
     "no_size": evidence.NO_SIZE,
     "cancelled": steps.CANCELLED,
     "left": steps.LEFT,
+    "of_session": session.OF_SESSION,
     "wandering": [session.WANDER, session.KEPT],
     "visible": screening.VISIBLE,
     "set_apart": asking.SET_APART,
+    "wide": vocabulary.WIDE,
     "structure": [unit.STRUCTURE, *commissioning.COARSER, commissioning.WELL],
     "unexplained": missing.UNEXPLAINED,
     "bent": [fitting.BENT, fitting.MISFIT],
