@@ -8,6 +8,7 @@ from jaxtyping import Float
 from scipy.stats import chi2
 
 from swgsim.loop.fitting import Fitted
+from swgsim.loop.gaussian import as_squares
 from swgsim.loop.model import predict
 from swgsim.singular import svd
 
@@ -152,7 +153,7 @@ def coherence(fitted: Fitted, number: int) -> Coherence:
     error = float(FORM_ERRORS[np.argmin(unlikely)])
     apart = error * parts(fitted, signed)
     shares = _shares(fitted, number, signed, np.hstack([apart, structure]))
-    beyond_noise = unlikely[0] - unlikely.min() > 2 * LEAST_GAIN
+    beyond_noise = unlikely[0] - unlikely.min() > as_squares(LEAST_GAIN)
     # What is in one channel and order alone has these as parts that are all of it, and disagree with nothing.
     several = (apart != error * signed[:, None]).any(axis=0)
     disagreement = float(np.linalg.norm(shares[: apart.shape[1]][several])) if beyond_noise else 0.0

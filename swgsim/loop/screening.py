@@ -14,8 +14,9 @@ from jaxtyping import Float, Int
 
 from swgsim.effects.quantity import quantities
 from swgsim.loop.fitting import Fitted
+from swgsim.loop.gaussian import as_squares
 from swgsim.loop.hypotheses import Hypothesis
-from swgsim.loop.tail import log_tail
+from swgsim.loop.tail import log_tail, surprise
 from swgsim.singular import svd
 
 # Share of a signature beside the declared parameters below which what is left is rounding, of the chain and of its
@@ -66,8 +67,7 @@ class Score:
     @property
     def rank(self) -> float:
         """What hypotheses are ordered by: how unlikely the gain is by luck, in a search of this extent."""
-        unlikely = -2 * float(log_tail(self.gain, self.freedom)) if self.freedom else 0.0
-        return unlikely - 2 * float(np.log(self.hypothesis.tried))
+        return surprise(self.gain, self.freedom) - as_squares(float(np.log(self.hypothesis.tried)))
 
     @property
     def detectable(self) -> float:
