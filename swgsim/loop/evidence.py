@@ -14,6 +14,9 @@ from swgsim.singular import svd
 
 # Log-likelihood by which one explanation is told from another, or from none.
 LEAST_GAIN = 3.0
+# What has no name comes before an effect only if it explains more than it does by this much, as a sum of squares, and
+# by this share.
+OUTDONE, OUTDONE_SHARE = 17.0, 0.05
 # A real cause never has the library's exact shape: its parts may differ from it by this share, and the power of load
 # and speed that it goes with by as much (standard deviations).
 FORM_TOLERANCE = 0.2
