@@ -16,6 +16,7 @@ from swgsim.loop.answer import Answer
 from swgsim.loop.features import ORDERS, basis
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.leading import ALPHA
+from swgsim.loop.reporting.numbers import NORMAL
 from swgsim.loop.session import Measured
 from swgsim.recording import CHANNELS
 
@@ -226,7 +227,7 @@ def parameters(answer: Answer, report: Mapping[str, Any]) -> Figure:
     rows = np.arange(len(names))[::-1]
     for fitted, colour, label, side in ((before, BEFORE, "before", 0.17), (after, AFTER, "after", -0.17)):
         centre = [fitted.calibrated.position[name] for name in names]
-        half = [1.96 * fitted.deviation[name] / fitted.parameters[name].sd for name in names]
+        half = [NORMAL * fitted.deviation[name] / fitted.parameters[name].sd for name in names]
         axes.errorbar(centre, rows + side, xerr=half, fmt="o", markersize=4, color=colour, capsize=2, label=label)
     axes.axvline(0, color=GREY)
     axes.set_yticks(rows, names, fontsize=8)
