@@ -19,6 +19,7 @@ from swgsim.loop.leading import ALPHA
 from swgsim.loop.reporting.numbers import NORMAL
 from swgsim.loop.session import Measured
 from swgsim.recording import CHANNELS
+from swgsim.recordings import SENSORS
 
 BEFORE, AFTER, FLOOR, GREY = "#D55E00", "#0072B2", "#000000", "#bbbbbb"
 POINTS = 360
@@ -82,7 +83,7 @@ def over_angle(answer: Answer) -> Figure:
     before, after = answer.closed.before, answer.closed.after
     measured = before.measured
     channels = measured.layout.channels
-    shown = [i for i, name in enumerate(channels) if name.startswith("s")] or list(range(len(channels)))
+    shown = [i for i, name in enumerate(channels) if name in SENSORS] or list(range(len(channels)))
     rows = worst(before, after)
     psi = np.linspace(0, 2 * np.pi, POINTS)
     noise = _of_mean(before, rows)
@@ -107,7 +108,7 @@ def worst(fitted: Fitted, after: Fitted) -> list[int]:
     """The recordings of the operating point at which a model is wrong most, in units of the noise."""
     measured = fitted.measured
     white = ((fitted.residual - after.nuisance) / np.sqrt(fitted.errors.variance)).reshape(measured.values.shape)
-    gauges = np.char.startswith(measured.layout.channel, "s")
+    gauges = np.isin(measured.layout.channel, SENSORS)
     size = (white[:, gauges if gauges.any() else slice(None)] ** 2).sum(axis=1)
     points = [recording.point for recording in measured.recordings]
     groups = [[i for i, each in enumerate(points) if each == point] for point in dict.fromkeys(points)]

@@ -12,6 +12,7 @@ from swgsim.effects.frozen import FULL_SPEED
 from swgsim.loop.declared import Declared
 from swgsim.loop.features import Layout
 from swgsim.loop.model import Model, Situation
+from swgsim.recordings import SENSORS
 
 # Standard deviations, all estimates. Of a lag behind the angle [s]: a filter of 10 kHz has 16 us, one of 3 kHz 50.
 LAG = 5e-5
@@ -36,7 +37,7 @@ def of_gauges(
         ZERO_PER_KELVIN * _warmer(situations) * mean,
         MEAN_AT_FULL_SPEED * speed / FULL_SPEED * mean,
     ]
-    gauges = [name for name in layout.channels if name.startswith("s")]
+    gauges = [name for name in layout.channels if name in SENSORS]
     columns = [each * (layout.channel == name) for name in gauges for each in moved]
     return np.stack(columns, axis=-1) if columns else np.zeros((*predicted.shape, 0))
 
