@@ -19,6 +19,8 @@ from swgsim.loop.session import Measured
 from swgsim.loop.unit import Unit
 from swgsim.seeds import generator, seed_hash
 
+# How far laws are off the library's: by this power of the load, or with sizes that vary by this share over operating
+# points; estimates, within what the loop tolerates of a form (evidence.FORM_TOLERANCE).
 EXPONENT, SPREAD = 0.2, 0.1
 # A stray order is so large beside the effect's own ripple.
 STRAY = (0.1, 0.2)

@@ -19,7 +19,7 @@ from swgsim.blind.bench import Setting
 from swgsim.blind.drawing import draw
 from swgsim.blind.judged import Judged
 from swgsim.blind.score import score
-from swgsim.blind.sealed import as_json, from_json
+from swgsim.blind.sealed import SHORT, as_json, from_json
 from swgsim.blind.strata import DETECTABLE, plans
 from swgsim.blind.table import table
 from swgsim.compute import Engine
@@ -85,6 +85,7 @@ THRESHOLDS = {
     "elsewhere": beside.ELSEWHERE,
     "patches": [patching.WORSE, patching.KEPT],
     "detectable": DETECTABLE,
+    "short": SHORT,
     "look_alike": judged.LOOK_ALIKE,
     "worse": judged.WORSE,
 }
