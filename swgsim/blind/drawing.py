@@ -39,10 +39,18 @@ def draw(plan: Plan, setting: Setting) -> Sealed:
     if plan.stratum == HARD_NULL and not plan.commissioned:
         run_in = (1 - rng.uniform(0, RUN_IN), 1 - rng.uniform(0, RUN_IN))
     case = Sealed(
-        plan.number, plan.stratum, plan.design.name, plan.design.points, plan.design.repeats,
-        seed_hash("blind unit", setting.seed, plan.number) % 2**31, int(rng.choice(setting.sectors)),
-        plan.commissioned, plan.stratum == HARD_NULL, run_in, plan.form,
-    )  # fmt: skip
+        number=plan.number,
+        stratum=plan.stratum,
+        design=plan.design.name,
+        points=plan.design.points,
+        repeats=plan.design.repeats,
+        seed=seed_hash("blind unit", setting.seed, plan.number) % 2**31,
+        sectors=int(rng.choice(setting.sectors)),
+        commissioned=plan.commissioned,
+        hard=plan.stratum == HARD_NULL,
+        run_in=run_in,
+        form=plan.form,
+    )
     if not plan.kinds:
         return case
     measured = Measured.of(in_question(case, setting, ()))
