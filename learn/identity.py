@@ -26,6 +26,7 @@ PRESENTATION = (  # modules that only show results, beside the packages tracking
     "page.py",
     "paper.py",
     "report.py",
+    "report_job.py",
     "selective.py",
     "training_benchmark.py",
 )

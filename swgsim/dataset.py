@@ -111,6 +111,12 @@ def disturb(source: Path, path: Path, disturbance: Disturbance, configuration: s
     ----------
     source, path : Path
         The clean file and the one to make.
+    disturbance : Disturbance
+        Drawn anew for every recording, from its seed.
+    configuration : str
+        The choices that the made file says it is of.
+    progress : callable
+        Called with the number of recordings whenever that many more are done.
     """
     rows, sensors, samples = storage.shape(source)
 

@@ -110,6 +110,7 @@ def boundary_conditions(
 
     Parameters
     ----------
+    flex : FlexSpline
     displacement : array (psi, theta)
         By the ideal wave generator, at :func:`fine_angles` [m].
     effects : sequence of Effect

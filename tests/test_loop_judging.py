@@ -84,7 +84,7 @@ def test_a_trial_is_judged_with_the_form_that_its_parts_ask_for(fitted, signatur
     found = tried(now, Score(BUMP, 100.0, 1, 1.0, 0.0, 0.1, 1.0, 1e-6), (Bump(1.0),), now)
     assert found.coherence[0].holds
     held = gained(now, after)
-    assert found.gain > held[0].sum() + 100
+    assert found.heldout_gain > held[0].sum() + 100
     assert found.evidence > held[1] + 100
     np.testing.assert_array_equal(found.fitted.open, after.open)
 

@@ -1,6 +1,5 @@
 """The report from end to end on a small grid, and what it says when something is missing."""
 
-import importlib.util
 import json
 import re
 from pathlib import Path
@@ -18,6 +17,7 @@ from learn import report, tracking
 from learn.choices import choices
 from learn.evaluation import Evaluation
 from learn.paper import PROTOCOLS, compare
+from learn.report_job import run
 from swgsim import storage
 from swgsim.examples import SEVEREST
 from swgsim.finding import Finding, percent
@@ -173,13 +173,6 @@ def test_unknown_grid_is_answered_by_name():
         configured("report", "grid=large")
 
 
-def script():
-    specification = importlib.util.spec_from_file_location("report_script", ROOT / "scripts" / "report.py")
-    module = importlib.util.module_from_spec(specification)
-    specification.loader.exec_module(module)
-    return module
-
-
 def keep_runs_like_the_papers(store, digests):
     """One finished run for every cell of the paper's tables, with random and with grouped folds."""
     recall = {f"recall/{label}": 90.0 for label in CLASSES}
@@ -213,7 +206,7 @@ def test_whole_report_from_a_small_data_set(tmp_path):
     keep_runs_like_the_papers(store, {condition: storage.digest(path) for condition, path in paths.items()})
 
     where = [data, f"tracking.folder={tmp_path / 'runs'}", f"out={tmp_path / 'report'}"]
-    script().run(configured("report", "grid=small", *where))
+    run(configured("report", "grid=small", *where))
 
     content = json.loads((tmp_path / "report" / "report.json").read_text())
     assert content["tables"]["table9"]["mean_absolute_difference"] == pytest.approx(0)

@@ -26,7 +26,7 @@ from learn.transfer_report import studies as transfer_studies
 from learn.transfer_report.content import cnn_fit, content
 from learn.transfer_report.page import Table
 from swgsim import storage
-from swgsim.oracle.job import KNOWN
+from swgsim.oracle.columns import KNOWN
 from swgsim.recordings import CLASSES
 from swgsim.seeds import generator
 

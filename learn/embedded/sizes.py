@@ -32,10 +32,6 @@ class Sizes:
     flash: Mapping[str, int]
     ram: int
 
-    @property
-    def all_flash(self) -> int:
-        return sum(self.flash.values())
-
 
 def sizes(folder: Path, machine: Machine) -> Sizes:
     """Link an exported method with the smallest firmware and see what it takes.

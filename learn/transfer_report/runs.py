@@ -10,7 +10,7 @@ import pandas as pd
 from learn.identity import code_version
 from learn.inputs import OPERATING_POINT, SPECIMEN
 from learn.tracking import Store, finished_runs, table_of
-from swgsim.oracle.job import KNOWN
+from swgsim.oracle.columns import KNOWN
 from swgsim.recordings import CLASSES
 from swgsim.style import words
 

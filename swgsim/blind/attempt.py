@@ -57,7 +57,12 @@ def what_was_said(found: Answer, recordings: Sequence[Recording], library: Seque
         "lines": [line.effect.name() for line in found.lines],
         "found": text.entries(found.effects),
         "rejected": [
-            {"names": _names(t), "gain": t.gain, "chances": [c.chance for c in t.coherence], "settled": _settled(t)}
+            {
+                "names": _names(t),
+                "gain": t.heldout_gain,
+                "chances": [c.chance for c in t.coherence],
+                "settled": _settled(t),
+            }
             for t in closed.rejected
         ],
         "unknown": [[each.atom.order, each.atom.pattern, each.atom.law] for each in found.unknown],

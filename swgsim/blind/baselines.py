@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.effects.base import Effect
-from swgsim.loop.closing import MOST
+from swgsim.loop.closing import MOST_STEPS
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.hypotheses import Hypothesis, hypotheses, signatures
 from swgsim.loop.leading import ALPHA
@@ -54,7 +54,7 @@ def bic_forward(task: Task) -> list[str]:
     r = white(task.fitted.from_start)
     left = [white(signature) for signature in task.signatures]
     named = []
-    for _ in range(MOST):
+    for _ in range(MOST_STEPS):
         gains = []
         for columns in left:
             basis = _basis(columns)
@@ -80,7 +80,7 @@ def sparse_regression(task: Task) -> list[str]:
     seen = length > 1e-9 * length.max()
     order = np.random.default_rng(0).permutation(len(r))
     X = (white[:, seen] / length[seen])[order]
-    fitted = OrthogonalMatchingPursuitCV(max_iter=2 * MOST, cv=5, fit_intercept=False).fit(X, r[order])
+    fitted = OrthogonalMatchingPursuitCV(max_iter=2 * MOST_STEPS, cv=5, fit_intercept=False).fit(X, r[order])
     largest = np.argsort(-np.abs(fitted.coef_))[: np.count_nonzero(fitted.coef_)]
     # The first step is always taken; alone and unable to pay on other rows, it names nothing.
     if len(largest) == 1 and _pays(X, r[order], int(largest[0])) <= 0:

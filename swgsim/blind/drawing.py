@@ -19,6 +19,8 @@ from swgsim.loop.session import Measured
 from swgsim.loop.unit import Unit
 from swgsim.seeds import generator, seed_hash
 
+# How far laws are off the library's: by this power of the load, or with sizes that vary by this share over operating
+# points; estimates, within what the loop tolerates of a form (evidence.FORM_TOLERANCE).
 EXPONENT, SPREAD = 0.2, 0.1
 # A stray order is so large beside the effect's own ripple.
 STRAY = (0.1, 0.2)
@@ -37,10 +39,18 @@ def draw(plan: Plan, setting: Setting) -> Sealed:
     if plan.stratum == HARD_NULL and not plan.commissioned:
         run_in = (1 - rng.uniform(0, RUN_IN), 1 - rng.uniform(0, RUN_IN))
     case = Sealed(
-        plan.number, plan.stratum, plan.design.name, plan.design.points, plan.design.repeats,
-        seed_hash("blind unit", setting.seed, plan.number) % 2**31, int(rng.choice(setting.sectors)),
-        plan.commissioned, plan.stratum == HARD_NULL, run_in, plan.form,
-    )  # fmt: skip
+        number=plan.number,
+        stratum=plan.stratum,
+        design=plan.design.name,
+        points=plan.design.points,
+        repeats=plan.design.repeats,
+        seed=seed_hash("blind unit", setting.seed, plan.number) % 2**31,
+        sectors=int(rng.choice(setting.sectors)),
+        commissioned=plan.commissioned,
+        hard=plan.stratum == HARD_NULL,
+        run_in=run_in,
+        form=plan.form,
+    )
     if not plan.kinds:
         return case
     measured = Measured.of(in_question(case, setting, ()))

@@ -19,7 +19,7 @@ from swgsim.blind.bench import Setting
 from swgsim.blind.drawing import draw
 from swgsim.blind.judged import Judged
 from swgsim.blind.score import score
-from swgsim.blind.sealed import as_json, from_json
+from swgsim.blind.sealed import SHORT, as_json, from_json
 from swgsim.blind.strata import DETECTABLE, plans
 from swgsim.blind.table import table
 from swgsim.compute import Engine
@@ -28,12 +28,12 @@ from swgsim.files import sole_maker, write_json, write_text
 from swgsim.loop import (
     asking,
     beside,
+    closing,
     commissioning,
     declared,
     evidence,
     fitting,
     leading,
-    lines,
     missing,
     pairs,
     patching,
@@ -44,24 +44,30 @@ from swgsim.loop import (
     steps,
     trial,
     unit,
+    vocabulary,
 )
 from swgsim.version import code_version
 
 THRESHOLDS = {
     "alpha": leading.ALPHA,
     "least_gain": evidence.LEAST_GAIN,
+    "likelier": trial.LIKELIER,
     "least_evidence": trial.LEAST_EVIDENCE,
     "exact": trial.EXACT,
     "pair_gain": pairs.PAIR_GAIN,
+    "most": [closing.MOST_STEPS, closing.MOST_AGAIN, closing.MOST_ATOMS],
+    "leaders": [leading.LEADERS, leading.NEARLY_LEADERS],
     "nearly": leading.NEARLY,
     "form_tolerance": evidence.FORM_TOLERANCE,
     "contradiction": evidence.CONTRADICTION,
     "no_size": evidence.NO_SIZE,
     "cancelled": steps.CANCELLED,
     "left": steps.LEFT,
+    "of_session": session.OF_SESSION,
     "wandering": [session.WANDER, session.KEPT],
     "visible": screening.VISIBLE,
     "set_apart": asking.SET_APART,
+    "wide": vocabulary.WIDE,
     "structure": [unit.STRUCTURE, *commissioning.COARSER, commissioning.WELL],
     "unexplained": missing.UNEXPLAINED,
     "bent": [fitting.BENT, fitting.MISFIT],
@@ -74,12 +80,12 @@ THRESHOLDS = {
     "loosest": [commissioning.LOOSEST, commissioning.ALIEN],
     "tolerance_of_lines": sidelines.TOLERANCE,
     "contradiction_of_lines": sidelines.CONTRADICTION,
-    "outdone": [beside.OUTDONE, beside.OUTDONE_SHARE, beside.SAME_THING, beside.DWARFED],
-    "outdone_by_lines": [lines.OUTDONE, lines.OUTDONE_SHARE],
+    "outdone": [evidence.OUTDONE, evidence.OUTDONE_SHARE, beside.SAME_THING, beside.DWARFED],
     "another_thing": beside.ANOTHER_THING,
     "elsewhere": beside.ELSEWHERE,
     "patches": [patching.WORSE, patching.KEPT],
     "detectable": DETECTABLE,
+    "short": SHORT,
     "look_alike": judged.LOOK_ALIKE,
     "worse": judged.WORSE,
 }

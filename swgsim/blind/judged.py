@@ -15,6 +15,7 @@ from swgsim.loop.answer import NOTHING, UNKNOWN
 ROUNDING = 1e-9
 # An effect outside the library looks like one inside if that reproduces this share of its projected signature.
 LOOK_ALIKE = 0.9
+# An error that grew to no more than this many times itself is no worse: less would matter to nobody (an estimate).
 WORSE = 1.05
 RIGHT = "right"
 

@@ -9,10 +9,9 @@ import numpy as np
 from swgsim.blind.baselines import BASELINES
 from swgsim.blind.intervals import median, rate
 from swgsim.blind.judged import RIGHT, Judged
-from swgsim.blind.strata import PAIR, UNTESTABLE
+from swgsim.blind.strata import PAIR, SINGLE, UNTESTABLE
+from swgsim.loop.reporting.numbers import NORMAL
 
-# Two standard deviations, so to speak.
-NORMAL_95 = 1.96
 WORST = 5
 
 
@@ -92,7 +91,7 @@ def _described(cases: Sequence[Judged]) -> dict[str, Any]:
 def _covered(cases: Sequence[Judged]) -> list[bool]:
     """Whether true sizes lie within the intervals of sizes that were rightly found."""
     found = [each for case in cases for each in case.said["intervals"]]
-    return [abs(each["found"] - each["true"]) <= NORMAL_95 * each["deviation"] for each in found]
+    return [abs(each["found"] - each["true"]) <= NORMAL * each["deviation"] for each in found]
 
 
 def _baseline(name: str, cases: Sequence[Judged]) -> dict[str, Any]:
@@ -119,7 +118,7 @@ def _by_strength(cases: Sequence[Judged]) -> Mapping[str, Any]:
     found = {}
     for low, high in ((30, 200), (200, 1200), (1200, 10000), (10000, np.inf)):
         here = [
-            case for case in cases if case.case.stratum in ("single", "pair") and low <= min(case.case.strengths) < high
+            case for case in cases if case.case.stratum in (SINGLE, PAIR) and low <= min(case.case.strengths) < high
         ]
         found[f"{low:g} to {high:g}"] = rate([case.right_first for case in here])
     return found

@@ -11,6 +11,10 @@ from swgsim.effects import text
 from swgsim.effects.base import Effect
 from swgsim.gear import OperatingPoint
 
+# What was planned to be detectable counts as that with this share of the strength too: a size stops at its bounds, and
+# is sought to a few per cent only, beside parameters that are fitted.
+SHORT = 0.9
+
 
 @dataclass(frozen=True)
 class Sealed:
@@ -84,7 +88,7 @@ class Sealed:
     @property
     def detectable(self) -> bool:
         """Whether all that is hidden is strong enough to be found."""
-        return bool(self.strengths) and min(self.strengths) >= 0.9 * DETECTABLE
+        return bool(self.strengths) and min(self.strengths) >= SHORT * DETECTABLE
 
     @property
     def described(self) -> tuple[int, str, str] | None:

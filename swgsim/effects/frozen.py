@@ -8,8 +8,9 @@ from jaxtyping import Float
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import size
 
-# Load to which laws in the load refer [N m]: the limit for repeated peaks of a size 17, ratio 100 gear.
-FULL_LOAD = 70.0
+# Load [N m] and speed [rpm] to which laws in them refer: the limit for repeated peaks of a size 17, ratio 100 gear, and
+# the higher speed of the paper.
+FULL_LOAD, FULL_SPEED = 70.0, 4000.0
 
 
 def turned(field: Float[np.ndarray, "psi theta"], angle: float) -> Float[np.ndarray, "psi theta"]:

@@ -9,7 +9,7 @@ from jaxtyping import Float
 from swgsim.checks import require_known
 from swgsim.conditions import Conditions
 from swgsim.effects.base import Effect, Scene
-from swgsim.effects.frozen import FULL_LOAD
+from swgsim.effects.frozen import FULL_LOAD, FULL_SPEED
 from swgsim.effects.quantity import choice, phase, size
 from swgsim.gear import OperatingPoint
 
@@ -29,7 +29,7 @@ OF_TEMPERATURE, OF_TIME = (
     "proportional to the temperature above 25 degC",
     "proportional to the time since the session began",
 )
-FULL_SPEED, KELVIN, HOUR = 4000.0, 10.0, 3600.0
+KELVIN, HOUR = 10.0, 3600.0
 # Highest order; a model of 64 samples per revolution that is given a higher one would take it for one below 13.
 HIGHEST = 50
 # Simple ones first.

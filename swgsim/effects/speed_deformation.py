@@ -4,12 +4,9 @@ from dataclasses import dataclass
 
 from swgsim.conditions import Conditions
 from swgsim.effects.base import Effect
-from swgsim.effects.frozen import ScaledDisplacement
+from swgsim.effects.frozen import FULL_SPEED, ScaledDisplacement
 from swgsim.effects.quantity import size
 from swgsim.gear import OperatingPoint
-
-# Speed to which the share refers [rpm].
-FULL_SPEED = 4000.0
 
 
 @dataclass(frozen=True)

@@ -6,11 +6,11 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.effects.base import Effect, Scene
+from swgsim.effects.frozen import FULL_LOAD
 from swgsim.effects.quantity import choice, size
 
 # Mean signal per torque of the default gear [mV/V per N m]: the all-round bridge has twice the arms.
 SENSITIVITY = 1.622e-3 * np.array([[2.0], [1.0], [1.0], [1.0], [1.0]])
-FULL_LOAD = 70.0
 
 
 @dataclass(frozen=True)

@@ -7,17 +7,16 @@ from functools import reduce
 import numpy as np
 
 from swgsim.effects.regularity import PATTERNS
-from swgsim.loop.evidence import Coherence, coherence
+from swgsim.loop.evidence import OUTDONE, OUTDONE_SHARE, Coherence, coherence
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.leading import ALPHA
 from swgsim.loop.trial import Trial, gain
 from swgsim.loop.vocabulary import Described, columns, freed, set_free, strongest
 from swgsim.seeds import generator
 
-# A regularity explains the same thing better than an effect only if it does so by this much (twice a log-likelihood,
-# and a share), and leaves the effect less than half of its gain. What explains so many times more makes any effect
-# beside it doubtful, even if it is another thing.
-OUTDONE, OUTDONE_SHARE, SAME_THING, DWARFED = 17.0, 0.05, 0.5, 4.0
+# A regularity that explains more than an effect explains the same thing only if it leaves the effect less than half of
+# its gain. What explains so many times more makes any effect beside it doubtful, even if it is another thing.
+SAME_THING, DWARFED = 0.5, 4.0
 # Regularities that may spoil the agreement of an effect's parts, at most; it keeps so much of its gain if they are
 # another thing.
 COMPANY, ANOTHER_THING = 2, 0.8

@@ -1,6 +1,6 @@
 """Closing the loop: ask, add, and ask again; then ask for each effect once more with all the others in the model."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import reduce
 from typing import NamedTuple
 
@@ -13,13 +13,13 @@ from swgsim.loop.leading import ALPHA, screened
 from swgsim.loop.screening import Score
 from swgsim.loop.session import Measured
 from swgsim.loop.steps import Step, cancelling, contradicted, joined, outweighed, what, with_rivals
-from swgsim.loop.trial import seen
+from swgsim.loop.trial import Trial, seen
 from swgsim.loop.unit import Unit
 from swgsim.loop.vocabulary import Described, freed, left, set_free
 from swgsim.seeds import generator
 
-# Effects that are added at most.
-MOST = 3
+# Steps at most, each one effect or a pair.
+MOST_STEPS = 3
 # Times that an effect is asked again with all the others in the model, at most.
 MOST_AGAIN = 6
 # Regularities that are described at most.
@@ -60,32 +60,68 @@ def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed
         The library.
     seed : int
     """
-    before = fit(measured, unit)
-    end = forward = _forward(before, (), (), kinds, seed)
-    before = before.with_zeros(forward.now.measured.zeros)
-    if len(forward.steps) > 1:
-        base = reduce(set_free, forward.apart, before)
-        revised = _backward(base, forward.steps, forward.apart, kinds, seed)
-        if [what([step]) for step in revised] == [what([step]) for step in forward.steps]:
-            end = forward._replace(steps=revised)
-        elif (together := joined(base, revised)).calibrated.settled:
-            end = _forward(together, revised, forward.apart, kinds, seed)
-    if cancelled := cancelling(end.steps, end.now):
+    first = fit(measured, unit)
+    forward = _forward(first, (), (), kinds, seed)
+    before = first.with_zeros(forward.now.measured.zeros)
+    end = _revised(forward, before, kinds, seed)
+    cancelled = cancelling(end.steps, end.now)
+    if cancelled:
         end = _without(cancelled, end, before, kinds, seed)
-    unknown, light = left(end.now, seed, MOST_ATOMS), tuple[Step, ...]()
-    while more := outweighed(end.steps, unknown, _untried(end)):
-        end, light = _without(more, end, before, kinds, seed), (*light, *more)
-        unknown = left(end.now, seed, MOST_ATOMS)
-    found, after = what(end.steps), end.scores[-1]
-    spoiling = unknown[:1] if any(map(contradicted, end.steps)) else ()
-    steps = tuple(with_rivals(step, after, found, spoiling) for step in end.steps)
-    told = found | what(cancelled) | what(light)
-    withdrawn = tuple(step.accepted for step in forward.steps if not what([step]) <= told)
+    end, light, unknown = _weighed(end, before, kinds, seed)
+    told = what(end.steps) | what(cancelled) | what(light)
     return Closed(
-        before, _together(end), end.now, steps, forward.scores[0], after, end.last.trials, end.last.outdone_by,
-        end.apart, withdrawn, tuple(step.accepted for step in cancelled), tuple(step.accepted for step in light),
-        (*end.apart, *unknown),
-    )  # fmt: skip
+        before=before,
+        after=_together(end),
+        asked=end.now,
+        steps=_beside_rivals(end, unknown),
+        scores=forward.scores[0],
+        left=end.scores[-1],
+        rejected=end.last.trials,
+        outdone_by=end.last.outdone_by,
+        apart=end.apart,
+        withdrawn=_accepted(step for step in forward.steps if not what([step]) <= told),
+        cancelling=_accepted(cancelled),
+        outweighed=_accepted(light),
+        unknown=(*end.apart, *unknown),
+    )
+
+
+def _accepted(steps: Iterable[Step]) -> tuple[Trial, ...]:
+    return tuple(step.accepted for step in steps)
+
+
+def _revised(forward: End, before: Fitted, kinds: Sequence[type[Effect]], seed: int) -> End:
+    """The end with every step asked again, and from where others stand in their places, asking to the end once more."""
+    if len(forward.steps) < 2:
+        return forward
+    base = reduce(set_free, forward.apart, before)
+    revised = _backward(base, forward.steps, forward.apart, kinds, seed)
+    if [what([step]) for step in revised] == [what([step]) for step in forward.steps]:
+        return forward._replace(steps=revised)
+    together = joined(base, revised)
+    return _forward(together, revised, forward.apart, kinds, seed) if together.calibrated.settled else forward
+
+
+def _weighed(
+    end: End, before: Fitted, kinds: Sequence[type[Effect]], seed: int
+) -> tuple[End, tuple[Step, ...], tuple[Described, ...]]:
+    """The end without steps that are outweighed by what is left, these steps, and what is left."""
+    light: tuple[Step, ...] = ()
+    unknown = left(end.now, seed, MOST_ATOMS)
+    while more := outweighed(end.steps, unknown, _untried(end)):
+        end = _without(more, end, before, kinds, seed)
+        light = (*light, *more)
+        unknown = left(end.now, seed, MOST_ATOMS)
+    return end, light, unknown
+
+
+def _beside_rivals(end: End, unknown: Sequence[Described]) -> tuple[Step, ...]:
+    """The steps with their rivals; what is left may speak against one only where a trial that is as good contradicts
+    itself.
+    """
+    found = what(end.steps)
+    spoiling = unknown[:1] if any(map(contradicted, end.steps)) else ()
+    return tuple(with_rivals(step, end.scores[-1], found, spoiling) for step in end.steps)
 
 
 def _together(end: End) -> Fitted:
@@ -110,7 +146,7 @@ def _forward(
     while True:
         number = len(steps)
         scores = (*scores, screened(now, kinds, generator("screen", seed, number)))
-        found = ask(now, scores[-1] if number < MOST else (), kinds, seed, apart)
+        found = ask(now, scores[-1] if number < MOST_STEPS else (), kinds, seed, apart)
         if not found.accepted and now.balanced is not now:
             now = now.balanced
             continue  # no effect explains where the zeros of gauges lie
@@ -139,7 +175,7 @@ def _without(dropped: Sequence[Step], end: End, before: Fitted, kinds: Sequence[
 
 def _untried(end: End) -> list[Score]:
     """Effects that were not fitted to what is left."""
-    return [score for score in end.scores[-1] if score.chance > ALPHA or len(end.steps) >= MOST]
+    return [score for score in end.scores[-1] if score.chance > ALPHA or len(end.steps) >= MOST_STEPS]
 
 
 def _backward(

@@ -8,11 +8,15 @@ from jaxtyping import Float
 from scipy.stats import chi2
 
 from swgsim.loop.fitting import Fitted
+from swgsim.loop.gaussian import as_squares
 from swgsim.loop.model import predict
 from swgsim.singular import svd
 
 # Log-likelihood by which one explanation is told from another, or from none.
 LEAST_GAIN = 3.0
+# What has no name comes before an effect only if it explains more than it does by this much, as a sum of squares, and
+# by this share.
+OUTDONE, OUTDONE_SHARE = 17.0, 0.05
 # A real cause never has the library's exact shape: its parts may differ from it by this share, and the power of load
 # and speed that it goes with by as much (standard deviations).
 FORM_TOLERANCE = 0.2
@@ -26,6 +30,9 @@ INACCURATE = (0.1, 0.3, 1.0)
 CONTRADICTION = 1e-3
 # Parts that leave so large a share of the size in doubt have none in common: two deviations from it lies nothing.
 NO_SIZE = 0.5
+# Parts of points, of channels and of orders have the same sum; directions of them below this share of the largest are
+# what differences and rounding leave of that (an estimate).
+ROUNDING = 1e-3
 
 
 @dataclass(frozen=True)
@@ -143,7 +150,7 @@ def coherence(fitted: Fitted, number: int) -> Coherence:
     if not np.any(split):
         return Coherence(0.0, 0.0, 0.0)
     U, s, _ = svd(split)
-    seen = s > 1e-3 * max(float(s.max()), 1e-12)
+    seen = s > ROUNDING * max(float(s.max()), 1e-12)
     u, s = (U.T @ whole.whiten(fitted.from_start))[seen], s[seen]
 
     chance = float(chi2.sf((u**2 / (1 + (FORM_TOLERANCE * s) ** 2)).sum(), len(s)))
@@ -152,7 +159,7 @@ def coherence(fitted: Fitted, number: int) -> Coherence:
     error = float(FORM_ERRORS[np.argmin(unlikely)])
     apart = error * parts(fitted, signed)
     shares = _shares(fitted, number, signed, np.hstack([apart, structure]))
-    beyond_noise = unlikely[0] - unlikely.min() > 2 * LEAST_GAIN
+    beyond_noise = unlikely[0] - unlikely.min() > as_squares(LEAST_GAIN)
     # What is in one channel and order alone has these as parts that are all of it, and disagree with nothing.
     several = (apart != error * signed[:, None]).any(axis=0)
     disagreement = float(np.linalg.norm(shares[: apart.shape[1]][several])) if beyond_noise else 0.0

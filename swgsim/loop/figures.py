@@ -16,8 +16,10 @@ from swgsim.loop.answer import Answer
 from swgsim.loop.features import ORDERS, basis
 from swgsim.loop.fitting import Fitted
 from swgsim.loop.leading import ALPHA
+from swgsim.loop.reporting.numbers import NORMAL
 from swgsim.loop.session import Measured
 from swgsim.recording import CHANNELS
+from swgsim.recordings import SENSORS
 
 BEFORE, AFTER, FLOOR, GREY = "#D55E00", "#0072B2", "#000000", "#bbbbbb"
 POINTS = 360
@@ -81,7 +83,7 @@ def over_angle(answer: Answer) -> Figure:
     before, after = answer.closed.before, answer.closed.after
     measured = before.measured
     channels = measured.layout.channels
-    shown = [i for i, name in enumerate(channels) if name.startswith("s")] or list(range(len(channels)))
+    shown = [i for i, name in enumerate(channels) if name in SENSORS] or list(range(len(channels)))
     rows = worst(before, after)
     psi = np.linspace(0, 2 * np.pi, POINTS)
     noise = _of_mean(before, rows)
@@ -106,7 +108,7 @@ def worst(fitted: Fitted, after: Fitted) -> list[int]:
     """The recordings of the operating point at which a model is wrong most, in units of the noise."""
     measured = fitted.measured
     white = ((fitted.residual - after.nuisance) / np.sqrt(fitted.errors.variance)).reshape(measured.values.shape)
-    gauges = np.char.startswith(measured.layout.channel, "s")
+    gauges = np.isin(measured.layout.channel, SENSORS)
     size = (white[:, gauges if gauges.any() else slice(None)] ** 2).sum(axis=1)
     points = [recording.point for recording in measured.recordings]
     groups = [[i for i, each in enumerate(points) if each == point] for point in dict.fromkeys(points)]
@@ -226,7 +228,7 @@ def parameters(answer: Answer, report: Mapping[str, Any]) -> Figure:
     rows = np.arange(len(names))[::-1]
     for fitted, colour, label, side in ((before, BEFORE, "before", 0.17), (after, AFTER, "after", -0.17)):
         centre = [fitted.calibrated.position[name] for name in names]
-        half = [1.96 * fitted.deviation[name] / fitted.parameters[name].sd for name in names]
+        half = [NORMAL * fitted.deviation[name] / fitted.parameters[name].sd for name in names]
         axes.errorbar(centre, rows + side, xerr=half, fmt="o", markersize=4, color=colour, capsize=2, label=label)
     axes.axvline(0, color=GREY)
     axes.set_yticks(rows, names, fontsize=8)

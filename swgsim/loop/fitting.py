@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
@@ -236,32 +237,57 @@ def fit(
     parameters = {} if unit.commissioned else unit.declared
     parameters = parameters | of_effects(start, unit.of_another_structure)
     known = unit.scatter.carried if unit.scatter else Scatter.stated(measured.layout)
-    repeated = len(set(measured.repeats)) < len(measured)
-    guess, noise = known, unit.inflated(measured.variance)
-    here, begin = at(start, parameters, position or {}), position
-    for _ in range(1 if unit.scatter and model else 2):
-        moves = scatter.of_recordings(here, measured)
-        unsure = unit.left_open(here, measured.situations, measured.layout)
-        predicted, offset = unsure.predicted, measured.rows(unsure.shift)
-        errors = Covariance(Alone(noise, guess.columns(moves)), measured.session_columns(predicted))
-        left = measured.rows(unsure.columns)
-        open_ = left if allowed is None else np.hstack([left, allowed])
-        calibrated = calibrate(
-            start, parameters, measured.values - offset.reshape(measured.values.shape), errors.with_columns(open_),
-            measured.situations, measured.of_recording, measured.layout, begin,
-        )  # fmt: skip
-        residual = measured.values - offset.reshape(measured.values.shape) - calibrated.predicted[measured.of_recording]
-        trends = scatter.trends(moves, [measured.situations[i] for i in measured.of_recording], measured.layout)
-        if repeated or unit.scatter:
-            guess = repeats.from_repeats(residual, noise, moves, trends, measured.repeats, known)
-        else:
-            J = measured.rows(calibrated.J).reshape(residual.size, -1)
-            common = Covariance(Alone.white(noise), np.hstack([measured.session_columns(predicted), open_, J]))
-            from_start = residual.ravel() + J @ np.array(list(calibrated.position.values()))
-            guess = repeats.from_all(from_start, common, moves, trends, known)
-        here, begin = calibrated.model, calibrated.position
-    errors = Covariance(Alone(noise, guess.columns(moves)), measured.session_columns(predicted))
-    return Fitted(measured, unit, parameters, calibrated, guess, errors, open_, offset, allowed)
+    fixed = _Fixed(measured, unit, start, parameters, known, allowed)
+    found = _turn(fixed, at(start, parameters, position or {}), position, known)
+    if unit.scatter and model:
+        return found  # errors that commissioning found are good enough a guess for the many fits of effects (estimate)
+    return _turn(fixed, found.model, found.calibrated.position, found.scatter)
+
+
+class _Fixed(NamedTuple):
+    """What is the same in all turns of a fit: ``start`` is its model at the declared values, ``known`` the errors of
+    single recordings as they were known before it.
+    """
+
+    measured: Measured
+    unit: Unit
+    start: Model
+    parameters: dict[str, Declared]
+    known: Scatter
+    allowed: Float[np.ndarray, "row column"] | None
+
+
+def _turn(fixed: _Fixed, here: Model, begin: Mapping[str, float] | None, guess: Scatter) -> Fitted:
+    """Parameters fitted beside guessed errors of single recordings, and these errors estimated anew; how either acts is
+    taken from a model that is near, and parameters begin anywhere [spreads].
+    """
+    measured, unit = fixed.measured, fixed.unit
+    noise = unit.inflated(measured.variance)
+    moves = scatter.of_recordings(here, measured)
+    unsure = unit.left_open(here, measured.situations, measured.layout)
+    offset, left = measured.rows(unsure.shift), measured.rows(unsure.columns)
+    open_ = left if fixed.allowed is None else np.hstack([left, fixed.allowed])
+    of_sessions = measured.session_columns(unsure.predicted)
+    values = measured.values - offset.reshape(measured.values.shape)
+    calibrated = calibrate(
+        fixed.start, fixed.parameters, values,
+        Covariance(Alone(noise, guess.columns(moves)), of_sessions).with_columns(open_),
+        measured.situations, measured.of_recording, measured.layout, begin,
+    )  # fmt: skip
+    residual = values - calibrated.predicted[measured.of_recording]
+    trends = scatter.trends(moves, [measured.situations[i] for i in measured.of_recording], measured.layout)
+    if unit.scatter or len(set(measured.repeats)) < len(measured):
+        estimated = repeats.from_repeats(residual, noise, moves, trends, measured.repeats, fixed.known)
+    else:
+        J = measured.rows(calibrated.J).reshape(residual.size, -1)
+        common = Covariance(Alone.white(noise), np.hstack([of_sessions, open_, J]))
+        from_start = residual.ravel() + J @ np.array(list(calibrated.position.values()))
+        estimated = repeats.from_all(from_start, common, moves, trends, fixed.known)
+    errors = Covariance(Alone(noise, estimated.columns(moves)), of_sessions)
+    return Fitted(
+        measured, unit, fixed.parameters, calibrated, estimated,
+        errors=errors, open=open_, offset=offset, allowed=fixed.allowed,
+    )  # fmt: skip
 
 
 def unbent(now: Fitted) -> Fitted:

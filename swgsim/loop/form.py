@@ -14,6 +14,7 @@ from swgsim.gauges import GaugeSet
 from swgsim.loop.features import ORDERS, Layout, basis
 from swgsim.loop.model import POINTS, Situation
 from swgsim.loop.own_lines import LAWS, Lines, laws
+from swgsim.recordings import SENSORS
 
 # How far lines may deviate, of maps and of lines that are learned, each an array (feature,).
 Sizes = tuple[Float[np.ndarray, " feature"], Float[np.ndarray, " feature"]]
@@ -22,7 +23,7 @@ Sizes = tuple[Float[np.ndarray, " feature"], Float[np.ndarray, " feature"]]
 def largest_lines(predicted: Float[np.ndarray, "situation feature"], layout: Layout) -> dict[str, float]:
     """The largest line of every gauge, its mean aside."""
     lines = np.abs(layout.lines(predicted))[:, :, 1:].max(axis=(0, 2))
-    return {name: float(line) for name, line in zip(layout.channels, lines, strict=True) if name.startswith("s")}
+    return {name: float(line) for name, line in zip(layout.channels, lines, strict=True) if name in SENSORS}
 
 
 def lines_anywhere(
@@ -34,7 +35,7 @@ def lines_anywhere(
     """
     largest = np.abs(layout.lines(signature))[:, :, 1:].max(axis=2)
     of_feature = np.repeat(largest, len(layout) // len(layout.channels), axis=1)
-    gauges = [i for i, name in enumerate(layout.channel) if name.startswith("s")]
+    gauges = [i for i, name in enumerate(layout.channel) if name in SENSORS]
     return of_feature[:, :, None] * np.eye(len(layout))[:, gauges]
 
 
@@ -75,7 +76,7 @@ def _followed(
     over_turn = laws(mean + turn[:, 1:] @ torque[1:], situation.point.n_in_rpm)
     by_ripple = (turn / (turn**2).sum(axis=0)).T @ (over_turn[:, :, None] * turn)  # angles are passed evenly
     by_mean = laws(mean, situation.point.n_in_rpm)[:, None, None] * np.eye(turn.shape[1])
-    return np.array([by_ripple if name.startswith("s") else by_mean for name in layout.channels])
+    return np.array([by_ripple if name in SENSORS else by_mean for name in layout.channels])
 
 
 def _columns(

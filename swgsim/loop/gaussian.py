@@ -120,6 +120,11 @@ class Covariance:
         return Expected(missed, float(np.log(np.diag(L)).sum() - 0.5 * white @ white), self.told(expected))
 
 
+def as_squares(log_likelihood: float) -> float:
+    """A gain of log-likelihood as a fall of a sum of squares: a log-likelihood is minus half of one."""
+    return 2 * log_likelihood
+
+
 def without_what_noise_hides(
     columns: Float[np.ndarray, "row column"], variance: Float[np.ndarray, " row"]
 ) -> Float[np.ndarray, "row fewer"]:

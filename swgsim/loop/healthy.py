@@ -8,16 +8,18 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from jaxtyping import Float
 
+from swgsim.effects.frozen import FULL_SPEED
 from swgsim.loop.declared import Declared
 from swgsim.loop.features import Layout
 from swgsim.loop.model import Model, Situation
+from swgsim.recordings import SENSORS
 
 # Standard deviations, all estimates. Of a lag behind the angle [s]: a filter of 10 kHz has 16 us, one of 3 kHz 50.
 LAG = 5e-5
 # Of a gauge's gain and zero with the temperature [1/K, mV/V per K] (physics.md SE6, AC6, SE5).
 GAIN_PER_KELVIN, ZERO_PER_KELVIN = 3e-4, 2.5e-4
-# Of a gauge's mean, which the drag of the wave generator moves with the speed [mV/V at so many rpm].
-MEAN_AT_FULL_SPEED, FULL_SPEED = 1e-3, 4000.0
+# Of a gauge's mean, which the drag of the wave generator moves with the speed [mV/V at full speed].
+MEAN_AT_FULL_SPEED = 1e-3
 # Of friction with the temperature of the grease [1/K] (physics.md DY3).
 FRICTION, FRICTION_PER_KELVIN = ("b0", "b1"), 0.03
 
@@ -35,7 +37,7 @@ def of_gauges(
         ZERO_PER_KELVIN * _warmer(situations) * mean,
         MEAN_AT_FULL_SPEED * speed / FULL_SPEED * mean,
     ]
-    gauges = [name for name in layout.channels if name.startswith("s")]
+    gauges = [name for name in layout.channels if name in SENSORS]
     columns = [each * (layout.channel == name) for name in gauges for each in moved]
     return np.stack(columns, axis=-1) if columns else np.zeros((*predicted.shape, 0))
 

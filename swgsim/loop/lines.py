@@ -10,6 +10,7 @@ from jaxtyping import Float
 
 from swgsim.effects.base import Effect
 from swgsim.loop.between import Between, ordinary, scene_of, shapes
+from swgsim.loop.evidence import OUTDONE, OUTDONE_SHARE
 from swgsim.loop.sidelines import Sideline, nearby, ranked
 from swgsim.loop.unnamed import Unnamed, unnamed
 from swgsim.recording import Recording
@@ -18,8 +19,6 @@ from swgsim.singular import svd
 
 # Lines that are found at most, with a name or without.
 MOST = 4
-# A line without a name comes before an effect if it explains more than the effect does by this share and amount.
-OUTDONE_SHARE, OUTDONE = 0.05, 17.0
 # Shapes below this share of the largest one are rounding; above the other one they are seen as well as it.
 ROUNDING, WELL_SEEN = 1e-3, 0.5
 

@@ -7,8 +7,7 @@ import numpy as np
 from jaxtyping import Complex, Float
 
 from swgsim.effects.base import Effect, Scene
-from swgsim.effects.frozen import FULL_LOAD
-from swgsim.effects.regularity import FULL_SPEED
+from swgsim.effects.frozen import FULL_LOAD, FULL_SPEED
 from swgsim.gauges import GaugeSet
 from swgsim.loop.features import along_basis, basis
 from swgsim.recordings import SENSORS

@@ -68,7 +68,8 @@ def _with(
 def worth_it(pairs: Sequence[Trial], alone: Trial) -> Trial | None:
     """The best pair, if both of its members are sound together and it gains more than the best effect alone."""
     best = pairs[0] if pairs else None
-    return best if best and best.sound and best.merit > alone.merit + 2 * PAIR_GAIN else None
+    asked = 2 * PAIR_GAIN  # of points left out and of all recordings: merit is the sum of both
+    return best if best and best.sound and best.merit > alone.merit + asked else None
 
 
 def of_doubles(

@@ -11,6 +11,10 @@ from swgsim.loop.alone import Alone
 from swgsim.loop.gaussian import Covariance
 from swgsim.loop.scatter import DOUBT, Scatter
 
+# Logarithms of the ratio to the known one between which a standard deviation is sought: 7 and 5 times as far as the
+# stated one is doubted, so they only keep the search from numbers too small or large to compute with (estimates).
+RATIOS = (-8.0, 6.0)
+
 
 class Told(NamedTuple):
     """What numbers with noise of covariance V say of errors, kind after kind, that move them by B.
@@ -135,7 +139,7 @@ def _likeliest(told: Sequence[Told], known: Scatter, contrasts: int) -> Scatter:
         return total, slope
 
     fitted = minimize(
-        cost, np.zeros(kinds), jac=True, method="L-BFGS-B", bounds=[(-8, 6)] * kinds,
+        cost, np.zeros(kinds), jac=True, method="L-BFGS-B", bounds=[RATIOS] * kinds,
         options={"ftol": 1e-14, "gtol": 1e-6, "maxiter": 500},
     )  # fmt: skip
     sd = dict(zip(known.sd, (known_sd * np.exp(fitted.x)).tolist(), strict=True))

@@ -12,7 +12,7 @@ from scipy.stats import chi2
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Quantity, Role, quantities, size_of
 from swgsim.loop.between import Between, by_luck
-from swgsim.loop.tail import log_tail
+from swgsim.loop.tail import surprise
 
 # A line's size may differ from its law over load and speed by this share.
 TOLERANCE = 0.3
@@ -57,7 +57,7 @@ class Sideline:
     @property
     def rank(self) -> float:
         """How unlikely the gain is by luck."""
-        return -2 * float(log_tail(self.gain, self.freedom)) if self.freedom else 0.0
+        return surprise(self.gain, self.freedom)
 
     @property
     def holds(self) -> bool:

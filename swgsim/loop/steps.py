@@ -10,6 +10,7 @@ from swgsim.effects.quantity import Role, quantities
 from swgsim.loop.beside import beside_unknown
 from swgsim.loop.evidence import FORM_TOLERANCE, LEAST_GAIN, open_form, signature
 from swgsim.loop.fitting import Fitted, extended, unbent
+from swgsim.loop.gaussian import as_squares
 from swgsim.loop.leading import ALPHA
 from swgsim.loop.screening import Score
 from swgsim.loop.trial import Trial
@@ -99,7 +100,7 @@ def outweighed(steps: Iterable[Step], unknown: Sequence[Described], untried: Seq
         if each.atom.alone:
             single[each.atom.pattern] = single.get(each.atom.pattern, 0.0) + each.gain
     gain += sum(single.values()) - max(single.values(), default=0.0)
-    return tuple(step for step in steps if gain > LEFT * max(2 * step.accepted.evidence, 0.0))
+    return tuple(step for step in steps if gain > LEFT * max(as_squares(step.accepted.evidence), 0.0))
 
 
 def with_rivals(

@@ -17,3 +17,12 @@ def log_tail(value: np.ndarray | float, freedom: np.ndarray | int) -> np.ndarray
     # Leading terms of the incomplete gamma function; exact for two degrees of freedom.
     far = -half + (freedom / 2 - 1) * np.log(half) - gammaln(freedom / 2)
     return np.where(np.isfinite(near) & (near > -300), near, np.minimum(far, 0.0))
+
+
+def surprise(value: float, freedom: int) -> float:
+    """How unlikely a sum of squares is by luck: the sum of two squares that is as unlikely; 0 of no freedom at all.
+
+    >>> surprise(2000.0, 2), surprise(0.0, 0)
+    (2000.0, 0.0)
+    """
+    return -2 * float(log_tail(value, freedom)) if freedom else 0.0

@@ -70,8 +70,8 @@ class Trial:
     beside: tuple[Described, ...] = ()
 
     @property
-    def gain(self) -> float:
-        """Of all operating points."""
+    def heldout_gain(self) -> float:
+        """Of the log-likelihood of all operating points left out; a score's gain is a fall of a sum of squares."""
         return float(self.gains.sum())
 
     @cached_property
@@ -99,8 +99,8 @@ class Trial:
         """Whether its fit came to rest, helps on operating points it was not fitted on, and is likelier altogether than
         that it is not there: the two count different errors of the fit, and the luck of noise is seldom in both.
         """
-        helps = self.evidence > (LIKELIER if self.gain > LEAST_GAIN else LEAST_EVIDENCE)
-        return helps and self.gain > -LEAST_GAIN and self.fitted.calibrated.settled
+        helps = self.evidence > (LIKELIER if self.heldout_gain > LEAST_GAIN else LEAST_EVIDENCE)
+        return helps and self.heldout_gain > -LEAST_GAIN and self.fitted.calibrated.settled
 
     @property
     def deviation(self) -> dict[str, float]:
@@ -111,7 +111,7 @@ class Trial:
     @property
     def merit(self) -> float:
         """What trials are ordered by; one that was fitted down to nothing is none."""
-        return self.gain + self.evidence if seen(self.fitted, self.signature) else -np.inf
+        return self.heldout_gain + self.evidence if seen(self.fitted, self.signature) else -np.inf
 
 
 def seen(fitted: Fitted, signatures: Float[np.ndarray, "row effect"]) -> bool:

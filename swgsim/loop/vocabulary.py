@@ -16,9 +16,10 @@ from swgsim.effects.regularity import LAWS, PATTERNS, Regularity
 from swgsim.loop.evidence import LEAST_GAIN
 from swgsim.loop.features import ORDERS, Layout
 from swgsim.loop.fitting import Fitted, extended
+from swgsim.loop.gaussian import as_squares
 from swgsim.loop.leading import ALPHA
 from swgsim.loop.screening import AT_ONCE, VISIBLE, family_wise
-from swgsim.loop.tail import log_tail
+from swgsim.loop.tail import surprise
 from swgsim.seeds import generator
 
 # Prior standard deviation of an atom that is set free, in amplitudes found.
@@ -80,7 +81,7 @@ class Described:
     @property
     def rank(self) -> float:
         """How unlikely the gain is by luck."""
-        return -2 * float(log_tail(self.gain, self.freedom)) if self.freedom else 0.0
+        return surprise(self.gain, self.freedom)
 
     @property
     def effect(self) -> Regularity:
@@ -137,7 +138,7 @@ def strongest(fitted: Fitted, rng: np.random.Generator) -> Described:
 def other_laws(best: Described, others: Sequence[Described]) -> tuple[str, ...]:
     """By which others explain the same order and pattern as well."""
     same = [other for other in others if replace(other.atom, law=best.atom.law) == best.atom]
-    return tuple(o.atom.law for o in same if o.atom != best.atom and best.gain - o.gain < 2 * LEAST_GAIN)
+    return tuple(o.atom.law for o in same if o.atom != best.atom and best.gain - o.gain < as_squares(LEAST_GAIN))
 
 
 def left(fitted: Fitted, seed: int, most: int) -> tuple[Described, ...]:

@@ -18,13 +18,12 @@ from swgsim.compute import Engine
 from swgsim.files import replacing, sole_maker
 from swgsim.gear import Gear
 from swgsim.oracle.cells import Resolution
+from swgsim.oracle.columns import KNOWN
 from swgsim.oracle.model import expectations
 from swgsim.oracle.oracle import judge
 from swgsim.plan import Plan
 from swgsim.recordings import CLASSES, Recordings
 from swgsim.version import code_version
-
-KNOWN = "known:"  # before a class: its probability for an oracle that knows the session of the flanges as well
 
 
 def run(config: Mapping[str, Any]) -> dict[str, float]:

@@ -26,6 +26,11 @@ def point_model(plan: Plan, gear: Gear, expected: Expectation, session_known: bo
 
     Parameters
     ----------
+    plan : Plan
+        Of the data set: its bench, window and seed.
+    gear : Gear
+    expected : Expectation
+        Of this gear at the operating point.
     session_known : bool
         Whether the oracle also knows the bias of the torque flanges during the session of the gear's samples.
 
@@ -64,6 +69,18 @@ def judge(
     plan: Plan, gear: Gear, expected: Sequence[Expectation], samples: Recordings, session_known: bool
 ) -> Float[np.ndarray, "sample class"]:
     """Posterior probability of each of CLASSES for samples of one gear of which this is expected.
+
+    Parameters
+    ----------
+    plan : Plan
+        Of the data set that the samples are from.
+    gear : Gear
+    expected : sequence of Expectation
+        Of this gear, at every operating point of its samples.
+    samples : Recordings
+        None of them a reference.
+    session_known : bool
+        As in :func:`point_model`.
 
     Raises
     ------

@@ -10,6 +10,7 @@ from swgsim.joint.figures.parts import face, pieces, session_key, sessions, shor
 from swgsim.joint.judged import Judged
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.textbook import Zero
+from swgsim.loop.reporting.numbers import NORMAL
 
 # Below, a probability rests on assumptions that nobody can check.
 SMALL = 1e-6
@@ -27,7 +28,7 @@ def friction(judged: Judged, days: Days) -> Figure:
         at = _at(grid)
         curve = day.coulomb * at.sense + day.zero + day.share * rising(at, judged.ladder.top.terms)
         over.plot(grid, curve, color=colour, linewidth=1.2)
-        beside.errorbar(place, day.share, yerr=1.96 * day.deviation, color=colour, marker=marker, capsize=4)
+        beside.errorbar(place, day.share, yerr=NORMAL * day.deviation, color=colour, marker=marker, capsize=4)
     beside.set_xticks(
         range(len(days.days)), short([day.session for day in days.days]), rotation=30, ha="right", fontsize=8
     )

@@ -127,8 +127,8 @@ def why(trial: Trial, answer: Answer, better: Trial | None = None) -> str:
     if not trial.pays:
         return (
             "it does not help to predict operating points left out, or the whole is hardly likelier with it: "
-            f"log-likelihood {trial.gain:+.1f} and {trial.evidence:+.1f}, at least {LEAST_GAIN:g} and {LIKELIER:g} are "
-            f"asked for, or {LEAST_EVIDENCE:g} of the whole"
+            f"log-likelihood {trial.heldout_gain:+.1f} and {trial.evidence:+.1f}, at least {LEAST_GAIN:g} and "
+            f"{LIKELIER:g} are asked for, or {LEAST_EVIDENCE:g} of the whole"
         )
     if better is None and trial is answer.closed.best_rejected and answer.closed.apart:
         return "it acts only where a disturbance was set apart, and may be part of that"
@@ -136,8 +136,8 @@ def why(trial: Trial, answer: Answer, better: Trial | None = None) -> str:
         return "another effect explains more, which was not accepted, and the runner-up is never taken instead"
     return (
         f"it explains less than {' and '.join(e.title() for e in better.effects)}: log-likelihood of operating points "
-        f"left out {trial.gain:+.0f} against {better.gain:+.0f}, of all recordings {trial.evidence:+.0f} against "
-        f"{better.evidence:+.0f}"
+        f"left out {trial.heldout_gain:+.0f} against {better.heldout_gain:+.0f}, of all recordings "
+        f"{trial.evidence:+.0f} against {better.evidence:+.0f}"
     )
 
 
@@ -164,7 +164,7 @@ def _rival(trial: Trial) -> dict[str, Any]:
             {"name": path_of(type(e)), "parameters": _parameters(e, trial.deviation, first + i)}
             for i, e in enumerate(trial.effects)
         ],
-        "heldout_gain": number(trial.gain),
+        "heldout_gain": number(trial.heldout_gain),
         "beside": [str(each) for each in trial.beside],
     }  # fmt: skip
 
@@ -175,9 +175,9 @@ def _evidence(step: Step, which: int) -> dict[str, Any]:
     agreement = trial.coherence[which]
     together = " (together with the other effect of the pair)" if len(trial.effects) > 1 else ""
     raised = (
-        f"operating points left out by {trial.gain:.0f} and that of all together by {trial.evidence:.0f} (at "
+        f"operating points left out by {trial.heldout_gain:.0f} and that of all together by {trial.evidence:.0f} (at "
         f"least {LEAST_GAIN:g} and {LIKELIER:g} are asked for)"
-        if trial.gain > LEAST_GAIN
+        if trial.heldout_gain > LEAST_GAIN
         else f"all recordings together by {trial.evidence:.0f} (at least {LEAST_EVIDENCE:g} are asked for; every "
         "operating point shows it alike, so those left out do not tell)"
     )
@@ -189,7 +189,7 @@ def _evidence(step: Step, which: int) -> dict[str, Any]:
             f"probability {probability(score.chance)} in the whole library; one size serves all operating points, "
             f"channels and orders, with parts that differ by {100 * agreement.form_error:.0f} %{once}"
         ),
-        "heldout_gain": number(trial.gain),
+        "heldout_gain": number(trial.heldout_gain),
         "evidence": number(trial.evidence),
         "score": number(score.gain),
         "chance": number(score.chance),
