@@ -69,13 +69,6 @@ def test_a_gauge_stays_within_what_may_be_said_of_it():
     assert position.value(position.at(Model(GEAR), 5.0)) == LIMITS["position"][1]
 
 
-def test_gains_are_known_no_better_than_the_structure():
-    own = {structure: of_unit(GEAR, structure) for structure in (0.0, 0.1)}
-    assert own[0.1]["gain of s1"].sd == 0.1
-    assert own[0.0]["gain of s1"].sd == 0.01
-    assert own[0.1]["w0"].sd == own[0.0]["w0"].sd
-
-
 def test_known_parameters_are_recovered(monkeypatch, A):
     predicting(monkeypatch, lambda x, y: A @ [x + 0.1 * x**2, np.sin(y)])
     noise = 0.01 * np.random.default_rng(2).standard_normal(A.shape[:2])

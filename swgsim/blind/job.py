@@ -68,7 +68,7 @@ THRESHOLDS = {
     "visible": screening.VISIBLE,
     "set_apart": asking.SET_APART,
     "wide": vocabulary.WIDE,
-    "structure": [unit.STRUCTURE, *commissioning.COARSER, commissioning.WELL],
+    "structure": [unit.STRUCTURE, commissioning.ANOTHER, commissioning.WORST, commissioning.LOOSEST],
     "unexplained": missing.UNEXPLAINED,
     "bent": [fitting.BENT, fitting.MISFIT],
     "balanced": [fitting.LIKELIER_BALANCED, *fitting.BALANCED],

@@ -11,17 +11,17 @@ from swgsim.loop.form import largest_lines
 from swgsim.loop.missing import beyond_noise, foreign_ripple, require_own, unexplained
 from swgsim.loop.relined import about_its_lines, again, largest_of, lines_found, told, triangle
 from swgsim.loop.session import Measured
-from swgsim.loop.unit import UNHEARD, Unit
+from swgsim.loop.unit import STRUCTURE, UNHEARD, Unit
 from swgsim.recordings import SENSORS
 from swgsim.turning import forget
 
-# Accuracies of the structural model that are tried beyond the declared one, as shares of a gauge's largest line, while
-# a channel is missed by more than so many times what is declared of it (mean squares).
-COARSER, WELL = (0.03, 0.1, 0.3), 1.3
 # Lines that are missed are learned. A gauge's may lie off by this share of the largest line of all gauges: in a bridge
 # of many arms lines cancel that are large in each. Those of speed and torques, of which the equations of motion make
 # the most, are learned while no more than this share of their channel's ripple is missed; else it is none of this gear.
-LOOSEST, ALIEN = COARSER[-1], 0.5
+LOOSEST, ALIEN = 0.6, 0.5
+# Where the gauges' lines lie off by more than this share, twice what the mesh of the truss makes, it is another
+# structure; signatures of effects are not known to be wrong by more than the last one (an estimate).
+ANOTHER, WORST = 2 * STRUCTURE, 0.3
 # So often at most the drive alone is fitted, until the fit has come to rest.
 DRIVES = 4
 
@@ -55,30 +55,19 @@ def commission(measured: Measured, unit: Unit) -> Unit:
     shift[len(shift) - form :] = 0.0
     model, nominal = replace(fitted.model, own_lines=lines), fitted.unit.model.gear
     return replace(
-        fitted.unit, model=model, reach=reach, shift=shift, scatter=fitted.scatter, nominal=nominal,
-        largest=largest_of(fitted), healthy=measured.recordings,
+        fitted.unit, model=model, structure=_structure(fitted), reach=reach, shift=shift, scatter=fitted.scatter,
+        nominal=nominal, largest=largest_of(fitted), healthy=measured.recordings,
     )  # fmt: skip
 
 
 def _as_it_is(measured: Measured, unit: Unit) -> Fitted:
-    """The fit to recordings of the healthy gear, whatever drive and structure it has."""
+    """The fit to recordings of the healthy gear, whatever drive and structure it has.
+
+    What lines lie off is told twice, as those that were missed have led the parameters astray before.
+    """
     position, learned = _by_drive_alone(measured, unit)
     fitted = fit(measured, replace(unit, learned=learned), position=position)
-    return about_its_lines(_learning(_as_accurate_as_shown(fitted)))
-
-
-def _as_accurate_as_shown(best: Fitted) -> Fitted:
-    """The fit at the accuracy of the structural model that is shown: the declared one, or a coarser one while a gauge
-    is missed and that makes the recordings likelier.
-    """
-    for structure in COARSER:
-        if max((missed for name, missed in best.misfit.items() if name in SENSORS), default=0.0) < WELL:
-            break
-        coarser = again(best, structure=structure)
-        if coarser.log_likelihood <= best.log_likelihood:
-            break
-        best = coarser
-    return best
+    return about_its_lines(_learning(_learning(fitted)))
 
 
 def _by_drive_alone(measured: Measured, unit: Unit) -> tuple[dict[str, float], Float[np.ndarray, " feature"] | None]:
@@ -107,10 +96,12 @@ def _by_drive_alone(measured: Measured, unit: Unit) -> tuple[dict[str, float], F
 
 
 def _learning(fitted: Fitted) -> Fitted:
-    """The fit in which lines that are missed may lie as far off as they do, so that they are learned."""
+    """The fit in which lines that are missed, or were before, may lie as far off as they do: they are learned."""
     measured, layout = fitted.measured, fitted.measured.layout
-    beyond = beyond_noise(measured, fitted.missed)
-    off = np.sqrt((fitted.residual.reshape(measured.values.shape) ** 2).mean(axis=0)) * (beyond > 1)
+    sought = beyond_noise(measured, fitted.missed) > 1
+    if fitted.unit.learned is not None:
+        sought |= fitted.unit.learned > 0
+    off = np.sqrt((fitted.residual.reshape(measured.values.shape) ** 2).mean(axis=0)) * sought
     largest = largest_lines(fitted.calibrated.predicted, layout)
     missed = unexplained(measured, fitted.missed)
     for channel in layout.channels:
@@ -120,3 +111,14 @@ def _learning(fitted: Fitted) -> Fitted:
         elif missed[channel] > ALIEN:
             off[own] = 0.0
     return again(fitted, learned=off) if off.any() else fitted
+
+
+def _structure(fitted: Fitted) -> float:
+    """How well the model knows what acts on the structure: as well as it has the lines of s1 to s4, which sit alike."""
+    layout, learned, largest = fitted.measured.layout, fitted.unit.learned, largest_of(fitted)
+    alike = [name for name in layout.channels if name in SENSORS[1:]]
+    if learned is None or not alike:
+        return STRUCTURE
+    off = np.mean([learned[layout.channel == name] for name in alike], axis=0)
+    share = float(np.linalg.norm(off)) / max(largest.values())
+    return min(share, WORST) if share > ANOTHER else STRUCTURE

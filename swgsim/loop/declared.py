@@ -101,17 +101,8 @@ def _of_kinematic_error(order: int, part: str, sd: float) -> Declared:
     return _of_gear("rad", sd, lambda gear: phasor(gear).real if part == "cosine" else phasor(gear).imag, moved)
 
 
-def of_unit(gear: Gear, structure: float = 0.0) -> dict[str, Declared]:
-    """The parameters that differ from unit to unit, with their spread in a series.
-
-    Parameters
-    ----------
-    gear : Gear
-        The nominal one.
-    structure : float
-        Accuracy of the structural model, as a share: what is strained at a gauge is known no better. The stroke of the
-        wave generator is, or gains would be told from it by shapes alone.
-    """
+def of_unit(gear: Gear) -> dict[str, Declared]:
+    """The parameters by which units differ from the nominal gear, with their spread in a series."""
     t = gear.transmission
     found = {
         "k1": _of_size("k1", "N m/rad", t.k1),
@@ -139,7 +130,7 @@ def of_unit(gear: Gear, structure: float = 0.0) -> dict[str, Declared]:
         for part in ("cosine", "sine"):
             found[f"kinematic error {term.order} {part}"] = _of_kinematic_error(term.order, part, 0.3e-4)
     for sensor in range(5):
-        found[f"gain of s{sensor}"] = _of_gauge("gain", sensor, "-", max(STRAINED, structure))
+        found[f"gain of s{sensor}"] = _of_gauge("gain", sensor, "-", STRAINED)
         found[f"zero of s{sensor}"] = _of_gauge("offset", sensor, "mV/V", 0.02)
         found[f"position of s{sensor}"] = _of_gauge("position", sensor, "rad", 0.01)
         found[f"grid angle of s{sensor}"] = _of_gauge("grid_angle", sensor, "rad", 0.01)

@@ -21,7 +21,7 @@ def about_its_lines(fitted: Fitted) -> Fitted:
 
     Trigger, gains, lags and temperatures act on the whole of a line, of which the model may have a small part.
     """
-    if not (fitted.unit.of_another_structure or fitted.unit.learned is not None):
+    if fitted.unit.learned is None:
         return fitted
     largest = largest_of(fitted)
     for _ in range(ROUNDS):

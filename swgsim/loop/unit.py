@@ -42,7 +42,8 @@ class Unit:
         Where commissioning found them beside the model, in spreads; while it goes on, less what the model has of their
         lines already.
     structure : float
-        Accuracy of the maps, as a share of a gauge's largest line: as declared, or as commissioning found it.
+        How well the model knows the signatures of what acts on the structure, as a share of a gauge's largest line: as
+        declared, or as far as commissioning found the lines of s1 to s4 to lie off.
     seen_healthy : bool
         Whether recordings of the healthy gear tell more of it, and so more is open, than can be of a gear never seen.
     scatter : Scatter or None
@@ -92,7 +93,7 @@ class Unit:
     @property
     def declared(self) -> dict[str, Declared]:
         """Parameters of the gear that are not known exactly, with their spread before commissioning."""
-        return of_unit(self.nominal or self.model.gear, self.structure)
+        return of_unit(self.nominal or self.model.gear)
 
     def inflated(self, variance: Float[np.ndarray, "recording feature"]) -> Float[np.ndarray, "recording feature"]:
         """Variance of independent errors, from that of noise."""
@@ -133,7 +134,7 @@ class Unit:
     def form(self, predicted: Float[np.ndarray, "situation feature"], layout: Layout) -> Sizes:
         """How far lines may deviate by the maps, and by what of them is learned: the last of the directions."""
         largest = self.largest or largest_lines(predicted, layout)
-        of_maps = self.structure * np.array([largest.get(channel, 0.0) for channel in layout.channel])
+        of_maps = STRUCTURE * np.array([largest.get(channel, 0.0) for channel in layout.channel])
         return of_maps, np.zeros(len(layout)) if self.learned is None else self.learned
 
     def open_of(
