@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from loop_fixtures import fitted_to
 
-from swgsim.loop import relined
 from swgsim.loop.features import Layout
 from swgsim.loop.missing import LUCK, UNEXPLAINED, beyond_noise, require_own
 from swgsim.loop.session import Measured
@@ -25,19 +24,6 @@ def measured() -> Measured:
 
 def line(channel: str, order: int) -> np.ndarray:
     return (LAYOUT.channel == channel) & (LAYOUT.order == order)
-
-
-def test_a_coarser_fit_begins_where_the_finer_one_found_the_parameters(monkeypatch):
-    """Positions are counted in spreads, of which those of gains are others then."""
-    fitted = fitted_to(LAYOUT, np.random.default_rng(1))
-    found = {"gain of s1": 5.0, "k1": -0.5}
-    fitted = replace(fitted, parameters=fitted.unit.declared, calibrated=replace(fitted.calibrated, position=found))
-    asked = []
-    monkeypatch.setattr(relined, "fit", lambda *given, position: asked.append((given[1], position)) or fitted)
-    relined.again(fitted, structure=0.1)
-    ((unit, position),) = asked
-    assert unit.structure == 0.1
-    assert position == pytest.approx({"gain of s1": 0.5, "k1": -0.5})
 
 
 def test_noise_is_rarely_taken_for_something_missed(measured):

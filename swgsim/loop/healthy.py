@@ -64,6 +64,14 @@ def of_friction(
     return J[..., numbers] * np.array(spreads) * _warmer(situations)[..., None]
 
 
+def of_learned(
+    learned: Float[np.ndarray, " feature"], situations: Sequence[Situation], layout: Layout
+) -> Float[np.ndarray, "situation feature column"]:
+    """Lines of speed and torques that were learned, which follow friction with the temperature, each as it may."""
+    drive = [i for i, name in enumerate(layout.channel) if name not in SENSORS and learned[i] > 0]
+    return FRICTION_PER_KELVIN * _warmer(situations)[..., None] * (learned * np.eye(len(layout)))[:, drive]
+
+
 def _warmer(situations: Sequence[Situation]) -> Float[np.ndarray, "situation 1"]:
     """Temperature above the reference [K]."""
     return np.array([[s.conditions.warmer] for s in situations])

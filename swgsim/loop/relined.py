@@ -77,7 +77,4 @@ def largest_of(fitted: Fitted) -> Mapping[str, float]:
 
 def again(fitted: Fitted, **changes: Any) -> Fitted:
     """A fit to a unit of which other things are declared, from where the parameters were found."""
-    unit = replace(fitted.unit, **changes)
-    was, now = fitted.parameters, {**fitted.parameters, **unit.declared}
-    position = {name: by * was[name].sd / now[name].sd for name, by in fitted.calibrated.position.items()}
-    return fit(fitted.measured, unit, position=position)
+    return fit(fitted.measured, replace(fitted.unit, **changes), position=fitted.calibrated.position)

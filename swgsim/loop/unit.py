@@ -13,7 +13,7 @@ from swgsim.loop.calibration import linearised
 from swgsim.loop.declared import Declared, of_unit
 from swgsim.loop.features import Layout
 from swgsim.loop.form import Sizes, form_columns, largest_lines, lines_anywhere
-from swgsim.loop.healthy import FRICTION, of_friction, of_gauges
+from swgsim.loop.healthy import FRICTION, of_friction, of_gauges, of_learned
 from swgsim.loop.model import Model, Situation, predict
 from swgsim.loop.scatter import Scatter
 from swgsim.recording import Recording
@@ -125,6 +125,8 @@ class Unit:
         directions = [of_own if self.nominal else of_own[..., :0]]
         if self.seen_healthy:
             directions += [of_gauges(predicted, situations, layout), of_friction(model, own, of_own, situations)]
+        if self.learned is not None:
+            directions.append(of_learned(self.learned, situations, layout))
         torque = predict([_driving(model)], situations, Layout(("T_out",)))[0]
         directions.append(form_columns(self.form(predicted, layout), situations, self.powers, layout, torque))
         open_ = np.concatenate(directions, axis=-1)
