@@ -128,7 +128,8 @@ def test_an_effect_of_one_channel_and_order_disagrees_by_its_points_alone(plante
     sizes = np.array([0.6, 1.4, 0.6, 1.4, 0.6, 1.4])[fitted.measured.of_recording]
     off = line * np.repeat(sizes - 1, len(LAYOUT)) + drawn(fitted.whole, np.random.default_rng(21))
     monkeypatch.setattr(evidence, "signature", lambda *_: line)
-    held = replace(fitted, open=np.hstack([fitted.open, 10 * line[:, None]]))
+    one = replace(fitted.calibrated, model=Model(GEAR, (Bump(1.0),)))
+    held = replace(fitted, calibrated=one, open=np.hstack([fitted.open, 10 * line[:, None]]))
     found = evidence.coherence(holding(held, off), 0)
     assert 0.3 < found.form_error < 0.6
     assert found.disagreement < NO_SIZE < found.doubt
@@ -140,6 +141,7 @@ def of_gauges(planted, monkeypatch):
     fitted, whole = planted
     gauges = whole * (np.tile(LAYOUT.channel != "T_in", len(fitted.measured)))
     monkeypatch.setattr(evidence, "signature", lambda fitted, number: gauges)
+    monkeypatch.setattr(Bump, "place", "structure")
     columns = lines_anywhere(gauges.reshape(fitted.measured.values.shape), LAYOUT).reshape(len(gauges), -1)
     return replace(fitted, calibrated=replace(fitted.calibrated, model=Model(GEAR, (Bump(1.0),)))), gauges, columns
 
@@ -153,6 +155,18 @@ def test_small_parts_are_as_uncertain_as_commissioning_found_the_structure(of_ga
         unit = replace(fitted.unit, structure=structure)
         held = replace(fitted, unit=unit, open=np.hstack([fitted.open, 10 * gauges[:, None]]))
         assert evidence.coherence(holding(held, off + drawn(fitted.whole, rng)), 0).holds == holds
+
+
+def test_another_structure_does_not_excuse_what_acts_on_no_structure(of_gauges, monkeypatch):
+    """A drive's torque reaches the gauges by lines that commissioning has learned."""
+    fitted, gauges, columns = of_gauges
+    rng = np.random.default_rng(14)
+    residual = 0.7 * columns @ rng.standard_normal(columns.shape[1]) + drawn(fitted.whole, rng)
+    unit = replace(fitted.unit, structure=0.3)
+    held = holding(replace(fitted, unit=unit, open=np.hstack([fitted.open, 10 * gauges[:, None]])), residual)
+    for place, holds in (("structure", True), ("drive", False)):
+        monkeypatch.setattr(Bump, "place", place)
+        assert evidence.coherence(held, 0).holds == holds
 
 
 def test_another_structure_does_not_excuse_another_law(of_gauges, monkeypatch):
@@ -306,7 +320,8 @@ def test_doubt_does_not_rest_on_what_rounding_leaves_of_a_size_that_is_open_far(
     derivative = 1e5 * whole.reshape(fitted.measured.values.shape)[first]
     derivative *= 1 + 1e-3 * rng.standard_normal(derivative.shape)
     height = Declared("-", 1.0, lambda model: 0.0, lambda model, to: model)
-    calibrated = replace(fitted.calibrated, position={"bump 1: height": 0.0}, J=derivative[..., None])
+    one, position = Model(GEAR, (Bump(1.0),)), {"bump 1: height": 0.0}
+    calibrated = replace(fitted.calibrated, model=one, position=position, J=derivative[..., None])
     far = replace(fitted, parameters={"bump 1: height": height}, calibrated=calibrated)
     residual = split_by_form(fitted, whole, 0.2, rng) - whole + drawn(fitted.errors, rng)
     found = evidence.coherence(holding(far, residual), 0)

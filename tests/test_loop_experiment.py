@@ -39,6 +39,7 @@ def test_another_structure_makes_two_effects_uncertain_by_the_root_of_their_squa
     signatures = np.zeros((2, 1, len(layout)))
     signatures[:, 0, (layout.channel == "s0") & (layout.order == 2)] = np.array([[3.0, 4.0], [8.0, 6.0]])
     monkeypatch.setattr(experiment, "predict", lambda *_: -signatures)
+    monkeypatch.setattr(Bump, "place", "mesh")
     known, unknown = (
         experiment._tolerance(
             replace(fitted, calibrated=model, unit=replace(fitted.unit, structure=s)), (), np.zeros((1, len(layout)))

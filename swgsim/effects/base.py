@@ -118,6 +118,11 @@ class Effect:
         """The name in words."""
         return cls.name().replace("_", " ")
 
+    @property
+    def structural(self) -> bool:
+        """Whether it acts on what deforms the flex spline, of which the maps of a truss make its signature."""
+        return self.place in ("wave generator", "mesh", "structure")
+
     def at(self, point: OperatingPoint, conditions: Conditions) -> "Effect":
         """The effect as it is at an operating point and under the conditions of a recording."""
         return self

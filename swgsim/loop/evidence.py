@@ -125,11 +125,16 @@ def allowance(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
     whole, open_ = signed[:, None], np.hstack(columns)
     weighed = whole / fitted.errors.variance[:, None]
     tolerated = FORM_TOLERANCE * (open_ - whole @ (weighed.T @ open_) / float((weighed * whole).sum()))
-    return np.hstack([tolerated, _of_structure(fitted, signed)])
+    return np.hstack([tolerated, _of_structure(fitted, number, signed)])
 
 
-def _of_structure(fitted: Fitted, signed: Float[np.ndarray, " row"]) -> Float[np.ndarray, "row column"]:
-    """What an inaccurate structural model leaves open of a signature."""
+def _of_structure(fitted: Fitted, number: int, signed: Float[np.ndarray, " row"]) -> Float[np.ndarray, "row column"]:
+    """What an inaccurate structural model leaves open of the signature of an effect that acts on the structure.
+
+    What torque does to the gauges, and gauges and amplifiers to their signals, commissioning has learned.
+    """
+    if not fitted.model.effects[number].structural:
+        return np.zeros((len(signed), 0))
     measured = fitted.measured
     columns = fitted.unit.open_of(signed.reshape(measured.values.shape), measured.layout)
     return columns.reshape(len(signed), -1)
@@ -144,7 +149,7 @@ def open_form(fitted: Fitted, added: int) -> Fitted:
 def coherence(fitted: Fitted, number: int) -> Coherence:
     """Whether the parts of an effect's signature agree on its size."""
     signed = signature(fitted, number)
-    structure = _of_structure(fitted, signed)
+    structure = _of_structure(fitted, number, signed)
     whole = fitted.whole.with_columns(structure)
     split = whole.whiten(forms(fitted, signed))
     if not np.any(split):
@@ -173,11 +178,11 @@ def open_as_found(fitted: Fitted, coherences: Sequence[Coherence]) -> Fitted:
     Held to the library's exact form, a cause that is a little different would be counted as wrong wherever its size is
     predicted from other operating points, and a mimic that bends to these few numbers would be preferred.
     """
-    first = len(fitted.model.effects) - len(coherences)
-    signed = [signature(fitted, number) for number in range(first, len(fitted.model.effects))]
+    numbers = range(len(fitted.model.effects) - len(coherences), len(fitted.model.effects))
+    signed = [signature(fitted, number) for number in numbers]
     by_parts = [each.tolerated * forms(fitted, s) for each, s in zip(coherences, signed, strict=True) if each.tolerated]
     opened = fitted.allowing(np.hstack(by_parts)) if by_parts else fitted
-    structure = np.hstack([_of_structure(fitted, each) for each in signed])
+    structure = np.hstack([_of_structure(fitted, number, each) for number, each in zip(numbers, signed, strict=True)])
     tried = [opened, *(opened.allowing(share * structure) for share in INACCURATE if structure.any())]
     return max(tried, key=lambda each: each.log_likelihood)
 

@@ -206,5 +206,7 @@ def _tolerance(
     masks += [layout.order == order for order in np.unique(layout.order)]
     shares = np.stack([FORM_TOLERANCE * (predicted - each) * mask for each in without for mask in masks], axis=-1)
     # At one operating point the same line of several effects is off together by the root of their squares.
-    structure = np.sqrt(sum(fitted.unit.open_of(predicted - each, layout) ** 2 for each in without))
+    structural = [fitted.model.effects[number].structural for number in effects]
+    acting = [acts * (predicted - each) for acts, each in zip(structural, without, strict=True)]
+    structure = np.sqrt(sum(fitted.unit.open_of(each, layout) ** 2 for each in acting))
     return np.concatenate([shares, structure], axis=-1)

@@ -177,8 +177,7 @@ def widened(fitted: Fitted, first: int, coherences: Sequence[Coherence]) -> dict
 
 def _exact(effect: Effect, fitted: Fitted) -> float:
     """Share to which the chain has the size of an effect right."""
-    structural = effect.place in ("wave generator", "mesh", "structure")
-    return FORM_TOLERANCE if structural and fitted.unit.of_another_structure else EXACT
+    return FORM_TOLERANCE if effect.structural and fitted.unit.of_another_structure else EXACT
 
 
 def gain(fitted: Fitted, directions: Float[np.ndarray, "row direction"]) -> float:
