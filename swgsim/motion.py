@@ -125,6 +125,7 @@ def kept_of(state: State, torques: Torques) -> tuple[np.ndarray, ...]:
     return state[PHI_IN], state[OMEGA_IN], state[OMEGA_OUT], torques.T_in, torques.T_out, torques.T_flange
 
 
+@np.errstate(over="ignore", invalid="ignore")  # of runs that do not settle
 def steady_state(drive: Drive, tolerance: float = 1e-8) -> State:
     """The state at phi_in = 0 that repeats after one revolution of the wave generator (shooting).
 

@@ -17,7 +17,7 @@ from swgsim.effects.regularity import Regularity
 from swgsim.gear import Gear, OperatingPoint
 from swgsim.loop.closed import Closed
 from swgsim.loop.closing import close
-from swgsim.loop.commissioning import _by_drive_alone, commission
+from swgsim.loop.commissioning import _drive_alone, commission
 from swgsim.loop.declared import at
 from swgsim.loop.fitting import fit
 from swgsim.loop.leading import ALPHA
@@ -90,9 +90,9 @@ def test_gauges_on_another_flex_spline_do_not_lead_the_drive_astray():
     transmission = replace(GEAR.transmission, J_out=0.6 * GEAR.transmission.J_out)
     other = replace(GEAR, flex_spline=hat, transmission=transmission, gauges=replace(GEAR.gauges, gain=(3.0,) * 5))
     unit = Unit(Model(GEAR), seen_healthy=True)
-    position, learned = _by_drive_alone(recorded((), seed=1, gear=other), unit)
-    assert learned is None
-    found = at(unit.model, unit.declared, position).gear
+    drive = _drive_alone(recorded((), seed=1, gear=other), unit)
+    assert drive.unit.learned is None
+    found = at(unit.model, unit.declared, drive.calibrated.position).gear
     assert found.transmission.J_out == pytest.approx(transmission.J_out, rel=0.05)
     assert found.gauges.gain == pytest.approx(GEAR.gauges.gain)
 

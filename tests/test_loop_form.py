@@ -15,7 +15,7 @@ from swgsim.loop.features import ORDERS, Layout
 from swgsim.loop.form import form_columns, largest_lines, lines_of
 from swgsim.loop.model import Model, Situation, predict
 from swgsim.loop.own_lines import Lines, OwnLines
-from swgsim.loop.unit import Unit
+from swgsim.loop.unit import STRUCTURE, Unit
 
 LAYOUT = Layout(("T_in", "s0", "s1"))
 SITUATIONS = tuple(Situation(point, Conditions()) for point in POINTS)
@@ -43,7 +43,7 @@ def test_only_maps_of_gauges_deviate_and_by_a_share_of_their_largest_line():
     of_maps, of_learned = Unit(Model(GEAR), structure=0.03).form(predicted, LAYOUT)
     largest = largest_lines(predicted, LAYOUT)
     assert largest["s0"] == np.abs(LAYOUT.lines(predicted))[:, 1, 1:].max()
-    expected = {"T_in": 0.0, "s0": 0.03 * largest["s0"], "s1": 0.03 * largest["s1"]}
+    expected = {"T_in": 0.0, "s0": STRUCTURE * largest["s0"], "s1": STRUCTURE * largest["s1"]}
     np.testing.assert_allclose(of_maps, [expected[name] for name in LAYOUT.channel])
     assert not of_learned.any()
 

@@ -48,6 +48,7 @@ def signature(fitted, stray):
 def trial(fitted, signature) -> Trial:
     """An effect with this signature, fitted; what is left of the residual is that of the fit."""
     score = Score(BUMP, 100.0, 1, 1.0, 0.0, 0.1, 1.0, 1e-6)
+    fitted = replace(fitted, calibrated=replace(fitted.calibrated, model=Model(GEAR, (Bump(1.0),))))
     found = Trial(score, (Bump(1.0),), fitted, np.full(6, 50.0), 100.0, (evidence.coherence(fitted, -1),))
     found.__dict__["signature"] = signature[:, None]
     return found

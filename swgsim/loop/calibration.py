@@ -131,15 +131,18 @@ def calibrate(
         if settled or not fell >= 0:
             break
         length *= 0.5 if fell < LITTLE * expected else 2.0 if fell > MUCH * expected and length < 1 else 1.0
-        J = linearised(model, parameters, situations, layout)[1]
+        try:
+            J = linearised(model, parameters, situations, layout)[1]
+        except RuntimeError:  # hardly anything turns steadily there
+            settled = False
+            break
     return Calibrated(model, dict(zip(names, here.tolist(), strict=True)), predicted, J, settled)
 
 
 def _predicted(model: Model, situations: Sequence[Situation], layout: Layout) -> Float[np.ndarray, "situation feature"]:
     """What a model predicts; worse than anything where it has no steady state."""
     try:
-        with np.errstate(over="ignore", invalid="ignore"):
-            return predict([model], situations, layout)[0]
+        return predict([model], situations, layout)[0]
     except RuntimeError:
         return np.full((len(situations), len(layout)), NOWHERE)
 

@@ -1,9 +1,10 @@
 """A unit as recordings of its healthy state show it."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from swgsim.loop.features import Layout
 from swgsim.loop.fitting import Fitted, fit
@@ -35,12 +36,7 @@ def commission(measured: Measured, unit: Unit) -> Unit:
         If the model does not describe the healthy gear.
     """
     forget()
-    healthy = replace(unit, seen_healthy=True)
-    fitted = _as_it_is(measured, healthy)
-    foreign = foreign_ripple(measured, fitted.missed)
-    unheard = np.where(foreign, UNHEARD, 1.0)
-    if foreign.any():
-        fitted = _as_it_is(measured, replace(healthy, inflation=unheard))
+    fitted, unheard = _listening(measured, replace(unit, seen_healthy=True))
     require_own(measured, fitted.missed)
     beyond = beyond_noise(measured, fitted.missed)
     if beyond.max() > 1:
@@ -60,39 +56,60 @@ def commission(measured: Measured, unit: Unit) -> Unit:
     )  # fmt: skip
 
 
-def _as_it_is(measured: Measured, unit: Unit) -> Fitted:
+def _listening(measured: Measured, unit: Unit) -> tuple[Fitted, Float[np.ndarray, " feature"]]:
+    """The fit that does not listen to ripple of speed and torques that is none of this gear, and by which factor the
+    variance of every line is larger for that.
+    """
+    unheard = np.ones(len(measured.layout))
+    while True:
+        drive, foreign = _drive_alone(measured, unit), np.zeros(len(unheard), bool)
+        if drive is not None:
+            foreign[_of_drive(measured)] = foreign_ripple(drive.measured, drive.missed)
+        if not foreign.any():
+            fitted = _as_it_is(measured, unit, drive)
+            foreign = foreign_ripple(measured, fitted.missed)
+        foreign &= unheard == 1
+        if not foreign.any():
+            return fitted, unheard
+        unheard = np.where(foreign, UNHEARD, unheard)
+        unit = replace(unit, inflation=unheard)
+
+
+def _as_it_is(measured: Measured, unit: Unit, drive: Fitted | None) -> Fitted:
     """The fit to recordings of the healthy gear, whatever drive and structure it has.
 
     What lines lie off is told twice, as those that were missed have led the parameters astray before.
     """
-    position, learned = _by_drive_alone(measured, unit)
-    fitted = fit(measured, replace(unit, learned=learned), position=position)
-    return about_its_lines(_learning(_learning(fitted)))
+    position: Mapping[str, float] = {} if drive is None else drive.calibrated.position
+    if drive is not None and drive.unit.learned is not None:
+        learned = np.zeros(len(measured.layout))
+        learned[_of_drive(measured)] = drive.unit.learned
+        unit = replace(unit, learned=learned)
+    return about_its_lines(_learning(_learning(fit(measured, unit, position=position))))
 
 
-def _by_drive_alone(measured: Measured, unit: Unit) -> tuple[dict[str, float], Float[np.ndarray, " feature"] | None]:
-    """Where speed and torques alone have the parameters, and which of their lines they learn.
+def _drive_alone(measured: Measured, unit: Unit) -> Fitted | None:
+    """The fit to speed and torques alone, with those of their lines learned that are missed.
 
     Gauges on quite another flex spline would lead the drive astray, and other equations of motion the gauges.
     """
+    heard = _of_drive(measured)
+    if not heard.any():
+        return None
     drive = tuple(name for name in measured.layout.channels if name not in SENSORS)
-    if not drive:
-        return {}, None
-    heard = np.isin(measured.layout.channel, drive)
     alone = Measured(measured.recordings, Layout(drive), measured.values[:, heard], measured.variance[:, heard])
     unit = replace(unit, inflation=None if unit.inflation is None else unit.inflation[heard])
-    position: dict[str, float] = {}
-    for _ in range(DRIVES):
-        fitted = fit(alone, unit, position=position)
-        position = dict(fitted.calibrated.position)
+    fitted = fit(alone, unit)
+    for _ in range(DRIVES - 1):
         if fitted.calibrated.settled:
             break
-    fitted = _learning(fitted)
-    if fitted.unit.learned is None:
-        return position, None
-    learned = np.zeros(len(measured.layout))
-    learned[heard] = fitted.unit.learned
-    return dict(fitted.calibrated.position), learned
+        fitted = fit(alone, unit, position=fitted.calibrated.position)
+    return _learning(fitted)
+
+
+def _of_drive(measured: Measured) -> Bool[np.ndarray, " feature"]:
+    """The features of speed and torques."""
+    return ~np.isin(measured.layout.channel, SENSORS)
 
 
 def _learning(fitted: Fitted) -> Fitted:
