@@ -8,6 +8,7 @@ from loop_fixtures import fitted_to
 
 from swgsim.loop.features import Layout
 from swgsim.loop.missing import LUCK, UNEXPLAINED, beyond_noise, require_own
+from swgsim.loop.relined import told, triangle
 from swgsim.loop.session import Measured
 
 LAYOUT = Layout(("T_out", "s0", "s1", "s2"))
@@ -66,3 +67,17 @@ def test_a_channel_of_which_a_tenth_is_missed_is_refused(measured):
 def test_a_channel_without_ripple_is_not_refused_for_its_noise(measured):
     missed = np.random.default_rng(4).normal(0, 1.5, measured.values.shape)
     require_own(replace(measured, values=missed), missed)
+
+
+def test_what_is_told_to_a_billionth_of_a_spread_has_a_root():
+    """The inverse of its square is no covariance any more; a direction that nothing tells stays as it was."""
+    fitted = fitted_to(LAYOUT, np.random.default_rng(5))
+    open_ = np.hstack([1e9 * fitted.open, 0 * fitted.open[:, :1]])
+    root, mean = told(replace(fitted, open=open_))
+    covariance = root @ root.T
+    white = fitted.errors.whiten(fitted.open)
+    np.testing.assert_allclose(covariance[:-1, :-1] * 1e18, np.linalg.inv(white.T @ white), rtol=1e-6)
+    assert covariance[-1, -1] == pytest.approx(1.0)
+    assert mean == pytest.approx(0.0)
+    part = triangle(root[1:].T).T
+    np.testing.assert_allclose(part @ part.T, covariance[1:, 1:], rtol=1e-9, atol=1e-30)

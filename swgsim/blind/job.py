@@ -26,6 +26,8 @@ from swgsim.compute import Engine
 from swgsim.effects.library import SEARCHED, listed, named
 from swgsim.files import sole_maker, write_json, write_text
 from swgsim.loop import (
+    above,
+    answer,
     asking,
     beside,
     closing,
@@ -68,6 +70,7 @@ THRESHOLDS = {
     "visible": screening.VISIBLE,
     "set_apart": asking.SET_APART,
     "wide": vocabulary.WIDE,
+    "above": [above.KNOWN, answer.MOST_ABOVE],
     "structure": [unit.STRUCTURE, commissioning.ANOTHER, commissioning.WORST, commissioning.LOOSEST],
     "unexplained": missing.UNEXPLAINED,
     "bent": [fitting.BENT, fitting.MISFIT],

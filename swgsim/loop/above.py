@@ -133,12 +133,15 @@ def beside(recordings: Sequence[Recording], healthy: Sequence[Recording], before
     sought[asked:] = 0.0
     U, s, _ = svd(followed)
     anyway = np.linalg.qr(scale[..., None] * U[:, s > RANK * s[0]])[0] if healthy else np.zeros((*scale.shape, 0))
+    lines, asked_for = (scale * left)[..., None], scale[..., None] * sought
+    return Above(
+        channels, _without(anyway, lines)[..., 0], _without(anyway, asked_for), len(every) - anyway.shape[-1]
+    )  # fmt: skip
 
-    def less(columns: np.ndarray) -> np.ndarray:
-        return columns - anyway @ (anyway.swapaxes(-1, -2) @ columns)
 
-    white, laws_ = less((scale * left)[..., None])[..., 0], less(scale[..., None] * sought)
-    return Above(channels, white, laws_, len(every) - anyway.shape[-1])
+def _without(Q: Float[np.ndarray, "*batch row direction"], columns: np.ndarray) -> np.ndarray:
+    """Columns without their part along orthonormal directions."""
+    return columns - Q @ (Q.swapaxes(-1, -2) @ columns)
 
 
 def _modelled(
