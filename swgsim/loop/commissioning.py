@@ -64,7 +64,7 @@ def _listening(measured: Measured, unit: Unit) -> tuple[Fitted, Float[np.ndarray
     while True:
         drive, foreign = _drive_alone(measured, unit), np.zeros(len(unheard), bool)
         if drive is not None:
-            foreign[_of_drive(measured)] = foreign_ripple(drive.measured, drive.missed)
+            foreign[_of_drive(measured)] = foreign_ripple(drive.measured, drive.missed, ALIEN)
         if not foreign.any():
             fitted = _as_it_is(measured, unit, drive)
             foreign = foreign_ripple(measured, fitted.missed)
@@ -104,7 +104,7 @@ def _drive_alone(measured: Measured, unit: Unit) -> Fitted | None:
         if fitted.calibrated.settled:
             break
         fitted = fit(alone, unit, position=fitted.calibrated.position)
-    return _learning(fitted)
+    return _learning(_learning(fitted))
 
 
 def _of_drive(measured: Measured) -> Bool[np.ndarray, " feature"]:

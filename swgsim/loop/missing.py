@@ -59,10 +59,15 @@ def unexplained(measured: Measured, missed: Float[np.ndarray, "recording feature
     return shares
 
 
-def foreign_ripple(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> Bool[np.ndarray, " feature"]:
-    """Ripple of speed and torques that is not the model's, as where the torque is that of the brake: features of it."""
+def foreign_ripple(
+    measured: Measured, missed: Float[np.ndarray, "recording feature"], most: float = UNEXPLAINED
+) -> Bool[np.ndarray, " feature"]:
+    """Ripple of speed and torques that is not the model's, as where the torque is that of the brake: features of it.
+
+    So it is where more than a share of it is unexplained.
+    """
     layout, shares = measured.layout, unexplained(measured, missed)
-    drive = [name for name, share in shares.items() if name not in SENSORS and share > UNEXPLAINED]
+    drive = [name for name, share in shares.items() if name not in SENSORS and share > most]
     return np.isin(layout.channel, drive) & (layout.order > 0)
 
 
