@@ -104,7 +104,7 @@ def _drive_alone(measured: Measured, unit: Unit) -> Fitted | None:
         if fitted.calibrated.settled:
             break
         fitted = fit(alone, unit, position=fitted.calibrated.position)
-    return _learning(_learning(fitted))
+    return _learning(fitted)
 
 
 def _of_drive(measured: Measured) -> Bool[np.ndarray, " feature"]:
