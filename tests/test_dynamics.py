@@ -89,6 +89,11 @@ def test_an_error_without_a_lever_brakes_as_a_gear_without_one_does() -> None:
     assert torques.T_wedge == pytest.approx(drive.tan_in * torques.T_stiff)
 
 
+def test_a_steady_state_that_rounding_keeps_from_settling_further_is_one() -> None:
+    drive = Drive([NOMINAL], [POINTS[1]])
+    np.testing.assert_allclose(steady_state(drive, tolerance=0.0), steady_state(drive), rtol=1e-6, atol=1e-9)
+
+
 def test_steady_state_is_where_a_long_transient_ends() -> None:
     point = POINTS[4]
     # b3 varies over an output revolution: there is a strictly periodic state only without it.

@@ -58,6 +58,17 @@ def test_friction_follows_the_temperature_by_as_much_as_declared():
     np.testing.assert_allclose(found[5, :, healthy.FRICTION.index("b1")], J[5, :, 1] * spreads)
 
 
+def test_lines_of_the_drive_that_were_learned_follow_the_temperature_and_those_of_gauges_do_not():
+    learned = np.zeros(len(LAYOUT))
+    torque, gauge = (np.flatnonzero((LAYOUT.channel == name) & (LAYOUT.order == 2))[0] for name in ("T_in", "s1"))
+    learned[[torque, gauge]] = 4.0
+    found = healthy.of_learned(learned, SITUATIONS, LAYOUT)
+    assert found.shape == (len(SITUATIONS), len(LAYOUT), 1)
+    warmer = np.array([s.conditions.warmer for s in SITUATIONS])
+    np.testing.assert_allclose(found[:, torque, 0], 4.0 * healthy.FRICTION_PER_KELVIN * warmer)
+    assert not np.delete(found, torque, axis=1).any()
+
+
 def silent(layout: Layout, values: np.ndarray) -> Measured:
     """Features of recordings of two sessions without any samples."""
     recordings = [
