@@ -21,7 +21,7 @@ def say(owner: h5py.HLObject, **said: object) -> None:
         owner.attrs[name] = _fixed(name, value) if isinstance(value, str) else value
 
 
-def told(owner: h5py.HLObject, name: str) -> str | float:
+def attribute(owner: h5py.HLObject, name: str) -> str | float:
     """One attribute.
 
     Raises

@@ -13,7 +13,7 @@ import h5py
 import numpy as np
 import pandas as pd
 
-from swgsim.attributes import say, told
+from swgsim.attributes import attribute, say
 from swgsim.files import replacing
 from swgsim.hdf5_writer import created
 from swgsim.recordings import CLASSES, COLUMNS, SENSORS, Recordings
@@ -150,7 +150,7 @@ def blocks(path: Path, rows: int | None = None) -> Iterator[Recordings]:
     said = attributes(path)
     with _opened(path) as file:
         _require_layout(path, file)
-        rate = float(told(file, "sampling_rate_hz"))
+        rate = float(attribute(file, "sampling_rate_hz"))
         total = len(file["signals"])
         for start in range(0, total, rows or total):
             where = slice(start, start + (rows or total))
@@ -165,7 +165,7 @@ def blocks(path: Path, rows: int | None = None) -> Iterator[Recordings]:
 def attributes(path: Path) -> dict[str, str]:
     """What a file says of itself: configuration and version of the code."""
     with _opened(path) as file:
-        said = {name: told(file, name) for name in file.attrs}
+        said = {name: attribute(file, name) for name in file.attrs}
     return {name: value for name, value in said.items() if isinstance(value, str)}
 
 

@@ -38,7 +38,8 @@ from swgsim.gear import OperatingPoint
 from swgsim.loop import calibration
 from swgsim.loop.declared import of_unit
 from swgsim.loop.features import ORDERS, Layout, features
-from swgsim.loop.fitting import Fitted, fit
+from swgsim.loop.fitted import Fitted
+from swgsim.loop.fitting import fit
 from swgsim.loop.hypotheses import Hypothesis
 from swgsim.loop.model import Model, predict
 from swgsim.loop.session import Measured

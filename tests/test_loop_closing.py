@@ -14,13 +14,13 @@ from swgsim.loop.answer import UNKNOWN, Answer
 from swgsim.loop.asking import Round
 from swgsim.loop.closed import Closed
 from swgsim.loop.evidence import FORM_TOLERANCE, Coherence
-from swgsim.loop.fitting import Fitted
+from swgsim.loop.fitted import Fitted
 from swgsim.loop.leading import ALPHA, screened
 from swgsim.loop.model import Model
 from swgsim.loop.reporting import effects
 from swgsim.loop.reporting.effects import why
 from swgsim.loop.reporting.remaining import unknown
-from swgsim.loop.steps import Step, contradicted, what, with_rivals
+from swgsim.loop.steps import Step, causes, contradicted, with_rivals
 from swgsim.loop.trial import Trial
 from swgsim.loop.vocabulary import Atom, Described
 
@@ -81,7 +81,7 @@ def test_a_pair_is_not_halved(monkeypatch):
 def rivals(other: Trial, chance: float) -> tuple[Trial, ...]:
     """Rivals of an effect, where the other one is as unlikely as this once that is in the model."""
     after = (replace(other.score, chance=chance),)
-    step = with_rivals(Step(A, (), (other,)), after, what([Step(A, (), ())]))
+    step = with_rivals(Step(A, (), (other,)), after, causes([Step(A, (), ())]))
     assert {*step.rivals, *step.others} == {other}
     return step.rivals
 
@@ -107,7 +107,7 @@ def test_what_is_unknown_does_not_speak_against_rivals_alone(monkeypatch, agrees
     step, after = Step(A, (), (other,)), (replace(other.score, chance=2 * ALPHA),)
     assert contradicted(step)
     assert not contradicted(Step(A, (), (MIMIC,)))
-    found = with_rivals(step, after, what([step]), unknown)
+    found = with_rivals(step, after, causes([step]), unknown)
     assert (found.rivals, found.others) == (((agreeing,), ()) if agrees else ((), (other,)))
 
 
@@ -215,8 +215,8 @@ def test_how_well_parts_agree_is_asked_with_all_effects_in_the_model(monkeypatch
 def test_what_is_in_the_model_is_no_rival():
     step, other = Step(A, (), (B,)), Step(B, (), ())
     after = (replace(B.score, chance=2 * ALPHA),)
-    assert with_rivals(step, after, what([step])).rivals == (B,)
-    assert with_rivals(step, after, what([step, other])).rivals == ()
+    assert with_rivals(step, after, causes([step])).rivals == (B,)
+    assert with_rivals(step, after, causes([step, other])).rivals == ()
 
 
 @pytest.mark.parametrize(
@@ -371,7 +371,7 @@ def test_effects_that_do_not_stand_out_are_untried_and_all_once_enough_were_adde
 
 def test_another_pair_is_a_rival_if_what_only_it_has_says_nothing_more():
     one, other = PAIR, replace(PAIR, effects=(Bump(1.0), Dip(1.0)))
-    found = what([Step(one, (), ())])
+    found = causes([Step(one, (), ())])
     for chance, rival in ((2 * ALPHA, (other,)), (ALPHA / 2, ())):
         after = (replace(C.score, chance=chance),)
         assert with_rivals(Step(one, (), (other,)), after, found).rivals == rival

@@ -11,7 +11,7 @@ from swgsim.loop import evidence
 from swgsim.loop.declared import Declared
 from swgsim.loop.evidence import NO_SIZE
 from swgsim.loop.features import Layout
-from swgsim.loop.fitting import Fitted
+from swgsim.loop.fitted import Fitted
 from swgsim.loop.form import lines_anywhere
 from swgsim.loop.model import Model
 from swgsim.loop.trial import EXACT, widened

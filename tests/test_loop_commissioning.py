@@ -8,7 +8,7 @@ from loop_fixtures import fitted_to
 
 from swgsim.loop.features import Layout
 from swgsim.loop.missing import LUCK, UNEXPLAINED, beyond_noise, require_own
-from swgsim.loop.relined import told, triangle
+from swgsim.loop.relined import posterior, triangle
 from swgsim.loop.session import Measured
 
 LAYOUT = Layout(("T_out", "s0", "s1", "s2"))
@@ -73,7 +73,7 @@ def test_what_is_told_to_a_billionth_of_a_spread_has_a_root():
     """The inverse of its square is no covariance any more; a direction that nothing tells stays as it was."""
     fitted = fitted_to(LAYOUT, np.random.default_rng(5))
     open_ = np.hstack([1e9 * fitted.open, 0 * fitted.open[:, :1]])
-    root, mean = told(replace(fitted, open=open_))
+    root, mean = posterior(replace(fitted, open=open_))
     covariance = root @ root.T
     white = fitted.errors.whiten(fitted.open)
     np.testing.assert_allclose(covariance[:-1, :-1] * 1e18, np.linalg.inv(white.T @ white), rtol=1e-6)

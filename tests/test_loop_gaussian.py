@@ -98,7 +98,9 @@ def test_common_errors_are_told_as_their_conditional_mean(**shape):
     covariance, dense, rng = random_covariance(**shape)
     rows = len(dense)
     r = rng.normal(size=rows)
-    np.testing.assert_allclose(covariance.told(r), covariance.G.T @ np.linalg.solve(dense, r), rtol=1e-5, atol=1e-5)
+    np.testing.assert_allclose(
+        covariance.common_mean(r), covariance.G.T @ np.linalg.solve(dense, r), rtol=1e-5, atol=1e-5
+    )
 
 
 @settings(deadline=None, max_examples=60)

@@ -12,7 +12,7 @@ from swgsim.loop import trial as trial_module
 from swgsim.loop.alone import Alone
 from swgsim.loop.beside import beside_unknown, elsewhere, in_company, outdone
 from swgsim.loop.features import Layout
-from swgsim.loop.fitting import LIKELIER_BALANCED
+from swgsim.loop.fitted import LIKELIER_BALANCED
 from swgsim.loop.gaussian import Covariance
 from swgsim.loop.model import Model
 from swgsim.loop.scatter import Scatter

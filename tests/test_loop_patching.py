@@ -12,7 +12,7 @@ from swgsim.loop.closed import Closed
 from swgsim.loop.declared import Declared
 from swgsim.loop.errors import errors, of_points_left_out
 from swgsim.loop.features import Layout
-from swgsim.loop.fitting import Fitted
+from swgsim.loop.fitted import Fitted
 from swgsim.loop.vocabulary import Atom, Described, columns
 
 LAYOUT = Layout(("s1", "s2", "s3", "s4"))

@@ -13,7 +13,8 @@ from swgsim.effects.root_tooth_crack import RootToothCrack
 from swgsim.effects.zero_offset import ZeroOffset
 from swgsim.gear import OperatingPoint
 from swgsim.loop import refining
-from swgsim.loop.fitting import BENT, Fitted, fit, unbent
+from swgsim.loop.fitted import Fitted
+from swgsim.loop.fitting import BENT, fit, unbent
 from swgsim.loop.hypotheses import hypotheses, signatures
 from swgsim.loop.model import Model
 from swgsim.loop.refining import zoom

@@ -13,7 +13,7 @@ from swgsim.effects.quantity import shape, size
 from swgsim.loop import shapes
 from swgsim.loop.declared import of_effects
 from swgsim.loop.features import Layout
-from swgsim.loop.fitting import Fitted
+from swgsim.loop.fitted import Fitted
 from swgsim.loop.hypotheses import hypotheses
 from swgsim.loop.model import Model
 from swgsim.loop.shapes import over_shapes

@@ -19,7 +19,8 @@ from swgsim.effects.quantity import size_of
 from swgsim.loop.answer import Answer, answer
 from swgsim.loop.declared import name_of
 from swgsim.loop.evidence import signature
-from swgsim.loop.fitting import Fitted, fit
+from swgsim.loop.fitted import Fitted
+from swgsim.loop.fitting import fit
 from swgsim.loop.reporting.sizes import heldout
 from swgsim.loop.sidelines import is_random
 from swgsim.loop.steps import chosen

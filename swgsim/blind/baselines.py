@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from swgsim.effects.base import Effect
 from swgsim.loop.closing import MOST_STEPS
-from swgsim.loop.fitting import Fitted
+from swgsim.loop.fitted import Fitted
 from swgsim.loop.hypotheses import Hypothesis, hypotheses, signatures
 from swgsim.loop.leading import ALPHA
 from swgsim.loop.tail import log_tail

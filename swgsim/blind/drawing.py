@@ -13,7 +13,8 @@ from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities, size_of
 from swgsim.loop.commissioning import commission
 from swgsim.loop.errors import per_channel
-from swgsim.loop.fitting import Fitted, fit
+from swgsim.loop.fitted import Fitted
+from swgsim.loop.fitting import fit
 from swgsim.loop.model import Model, predict
 from swgsim.loop.session import Measured
 from swgsim.loop.unit import Unit

@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from swgsim.blind.bench import UNSEEN
 from swgsim.loop.errors import size
-from swgsim.loop.fitting import Fitted
+from swgsim.loop.fitted import Fitted
 
 # Speed is what the motor's control makes of it; its ripple is nobody's aim.
 JUDGED = ("T_in", "T_out", "s0", "s1", "s2", "s3", "s4")
@@ -39,7 +39,7 @@ def expected(fitted: Fitted) -> Float[np.ndarray, "situation feature"]:
     situations = (*measured.situations, *UNSEEN)
     unsure = fitted.unit.left_open(fitted.model, situations, measured.layout, fitted.parameters)
     predicted, shift, left_open, J = (part[-len(UNSEEN) :] for part in unsure)
-    mean = fitted.whole.told(fitted.from_start)
+    mean = fitted.whole.common_mean(fitted.from_start)
     first = fitted.errors.G.shape[1]
     found = mean[first : first + left_open.shape[-1]]
     # The model stands where its parameters were found to be; what they are counted from lies further back.

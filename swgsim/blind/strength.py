@@ -10,7 +10,7 @@ from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Quantity, quantities, size_of
 from swgsim.loop.between import between
 from swgsim.loop.calibration import calibrate
-from swgsim.loop.fitting import Fitted
+from swgsim.loop.fitted import Fitted
 from swgsim.loop.hypotheses import hypotheses, signatures
 from swgsim.loop.model import predict
 from swgsim.loop.sidelines import is_random

@@ -6,7 +6,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from swgsim.attributes import say, told
+from swgsim.attributes import attribute, say
 from swgsim.files import replacing
 from swgsim.hdf5_writer import created
 from swgsim.intake import facts
@@ -49,7 +49,7 @@ def read_file(path: Path) -> tuple[Recording, ...]:
     verify(path)
     try:
         with h5py.File(path, "r") as file:
-            title = told(file, "title")
+            title = attribute(file, "title")
             if title != TITLE:
                 expected = f"a file titled {TITLE!r}; a data set of generate.py is another thing"
                 raise FileDefect(str(path), f"the title {shown(title)}", expected)
@@ -99,7 +99,7 @@ def _write_group(group: h5py.Group, recording: Recording) -> None:
 def _read_group(file: h5py.File, name: str, where: str) -> Recording:
     """One recording; units must be those that were written."""
     group = _plain(file, name, h5py.Group, where)
-    attributes = {key: told(group, key) for key in facts.KNOWN if key in group.attrs}
+    attributes = {key: attribute(group, key) for key in facts.KNOWN if key in group.attrs}
     said = facts.parse(attributes, where)
     columns = {}
     for key in group:
@@ -107,7 +107,7 @@ def _read_group(file: h5py.File, name: str, where: str) -> Recording:
             raise FileDefect(where, f"unknown variable {shown(key)}", f"time and some of {', '.join(CHANNELS)}")
         unit = "s" if key == "time" else CHANNELS[key].unit
         variable = _plain(group, key, h5py.Dataset, where)
-        if (found := told(variable, "units")) != unit:
+        if (found := attribute(variable, "units")) != unit:
             raise FileDefect(where, f"unit {shown(found)}", unit, column=key)
         columns["t" if key == "time" else key] = numbers(variable, where, key)
     lengths = {key: len(values) for key, values in columns.items()}

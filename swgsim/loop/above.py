@@ -118,15 +118,16 @@ def beside(recordings: Sequence[Recording], healthy: Sequence[Recording], before
     """The lines beside what is known of them; parameters as of :func:`above`."""
     every, asked = (*recordings, *healthy), len(recordings)
     channels, highest = layout_of(every).channels, min(HIGHEST, int(min(map(samples_per_turn, every)) / 2) - 1)
-    healthily, now = (_modelled(model, every, channels, highest) for model in (before, after))
+    known = _modelled(before, every, channels, highest)
+    now = _modelled(after, recordings, channels, highest)
     # What was found may be as much sharper than the library has it as its form is open at the lower orders.
-    changed = np.abs(now - healthily)
-    changed[..., asked:] = 0.0
-    modelled = np.concatenate([now[..., :asked], healthily[..., asked:]], axis=-1)
+    changed = np.zeros(known.shape[1:])
+    changed[:, :asked] = np.abs(now - known[..., :asked])[1:].max(axis=0)
+    modelled = np.concatenate([now, known[..., asked:]], axis=-1)
     left = (_lines(every, channels, highest) - modelled)[ORDERS + 1 :]
     followed = np.array([laws(np.array(each.point.T_out), each.point.n_in_rpm) for each in every])
     own = left[..., asked:] @ (followed @ np.linalg.pinv(followed[asked:])).T if healthy else np.zeros(left.shape)
-    doubt = KNOWN * (np.abs(modelled[ORDERS + 1 :]) + np.abs(own)) + FORM_TOLERANCE * changed[1:].max(axis=0)
+    doubt = KNOWN * (np.abs(modelled[ORDERS + 1 :]) + np.abs(own)) + FORM_TOLERANCE * changed
     scale = 1 / np.sqrt(_variance(every, channels, highest)[ORDERS + 1 :] + doubt**2)
     # The healthy gear has none of what is sought, and tells what the gear follows anyway.
     sought = np.array([[law(each.point, each.conditions) for law in LAWS.values()] for each in every])

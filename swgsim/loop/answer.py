@@ -81,7 +81,7 @@ class Answer:
         return (*chain, *(line.effect for line in self.lines))
 
     @property
-    def left(self) -> str:
+    def unexplained(self) -> str:
         """What no known effect explains, in words; empty if there is nothing."""
         described = "; ".join(map(str, (*self.unknown, *self.unnamed)))
         return described or ("a regularity without a simple description" if self.closed.rejected else "")
@@ -100,10 +100,10 @@ class Answer:
                 f"library stands out of it ({len(self.absorbed)} of {len(self.closed.scores)} cannot be tested with "
                 "these recordings)."
             )
-        rest = f"; something unknown is left: {self.left}{self._nearest}" if self.left else ""
+        rest = f"; something unknown is left: {self.unexplained}{self._nearest}" if self.unexplained else ""
         if self.verdict == FOUND:
             return f"The model lacks {' and '.join(self._explanations())}{rest}."
-        return f"The model lacks something that is not in the library: {self.left}{self._nearest}."
+        return f"The model lacks something that is not in the library: {self.unexplained}{self._nearest}."
 
     @property
     def _nearest(self) -> str:

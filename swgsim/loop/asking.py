@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 from swgsim.effects.base import Effect
 from swgsim.loop.beside import elsewhere, in_company, outdone
-from swgsim.loop.fitting import Fitted, unbent
+from swgsim.loop.fitted import Fitted
+from swgsim.loop.fitting import unbent
 from swgsim.loop.leading import ALPHA, leaders, screened
 from swgsim.loop.pairs import of_doubles, paired, worth_it
 from swgsim.loop.refining import zoom

@@ -8,7 +8,7 @@ import numpy as np
 
 from swgsim.effects.regularity import PATTERNS
 from swgsim.loop.evidence import OUTDONE, OUTDONE_SHARE, Coherence, coherence
-from swgsim.loop.fitting import Fitted
+from swgsim.loop.fitted import Fitted
 from swgsim.loop.leading import ALPHA
 from swgsim.loop.trial import Trial, gain
 from swgsim.loop.vocabulary import Described, columns, freed, set_free, strongest

@@ -6,7 +6,7 @@ from functools import cached_property, reduce
 import numpy as np
 
 from swgsim.loop.evidence import Coherence, coherence, doubt_by_others
-from swgsim.loop.fitting import Fitted
+from swgsim.loop.fitted import Fitted
 from swgsim.loop.screening import Score
 from swgsim.loop.steps import Step
 from swgsim.loop.trial import Trial, widened

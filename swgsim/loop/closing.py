@@ -8,14 +8,15 @@ from swgsim.effects.base import Effect
 from swgsim.loop.asking import Round, ask, ask_behind
 from swgsim.loop.closed import Closed
 from swgsim.loop.evidence import signature
-from swgsim.loop.fitting import Fitted, extended, fit
+from swgsim.loop.fitted import Fitted
+from swgsim.loop.fitting import extended, fit
 from swgsim.loop.leading import ALPHA, screened
 from swgsim.loop.screening import Score
 from swgsim.loop.session import Measured
-from swgsim.loop.steps import Step, cancelling, contradicted, joined, outweighed, what, with_rivals
+from swgsim.loop.steps import Step, cancelling, causes, contradicted, joined, outweighed, with_rivals
 from swgsim.loop.trial import Trial, seen
 from swgsim.loop.unit import Unit
-from swgsim.loop.vocabulary import Described, freed, left, set_free
+from swgsim.loop.vocabulary import Described, freed, regularities, set_free
 from swgsim.seeds import generator
 
 # Steps at most, each one effect or a pair.
@@ -68,7 +69,7 @@ def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed
     if cancelled:
         end = _without(cancelled, end, before, kinds, seed)
     end, light, unknown = _weighed(end, before, kinds, seed)
-    told = what(end.steps) | what(cancelled) | what(light)
+    named = causes(end.steps) | causes(cancelled) | causes(light)
     return Closed(
         before=before,
         after=_together(end),
@@ -79,7 +80,7 @@ def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed
         rejected=end.last.trials,
         outdone_by=end.last.outdone_by,
         apart=end.apart,
-        withdrawn=_accepted(step for step in forward.steps if not what([step]) <= told),
+        withdrawn=_accepted(step for step in forward.steps if not causes([step]) <= named),
         cancelling=_accepted(cancelled),
         outweighed=_accepted(light),
         unknown=(*end.apart, *unknown),
@@ -96,7 +97,7 @@ def _revised(forward: End, before: Fitted, kinds: Sequence[type[Effect]], seed: 
         return forward
     base = reduce(set_free, forward.apart, before)
     revised = _backward(base, forward.steps, forward.apart, kinds, seed)
-    if [what([step]) for step in revised] == [what([step]) for step in forward.steps]:
+    if [causes([step]) for step in revised] == [causes([step]) for step in forward.steps]:
         return forward._replace(steps=revised)
     together = joined(base, revised)
     return _forward(together, revised, forward.apart, kinds, seed) if together.calibrated.settled else forward
@@ -107,11 +108,11 @@ def _weighed(
 ) -> tuple[End, tuple[Step, ...], tuple[Described, ...]]:
     """The end without steps that are outweighed by what is left, these steps, and what is left."""
     light: tuple[Step, ...] = ()
-    unknown = left(end.now, seed, MOST_ATOMS)
+    unknown = regularities(end.now, seed, MOST_ATOMS)
     while more := outweighed(end.steps, unknown, _untried(end)):
         end = _without(more, end, before, kinds, seed)
         light = (*light, *more)
-        unknown = left(end.now, seed, MOST_ATOMS)
+        unknown = regularities(end.now, seed, MOST_ATOMS)
     return end, light, unknown
 
 
@@ -119,7 +120,7 @@ def _beside_rivals(end: End, unknown: Sequence[Described]) -> tuple[Step, ...]:
     """The steps with their rivals; what is left may speak against one only where a trial that is as good contradicts
     itself.
     """
-    found = what(end.steps)
+    found = causes(end.steps)
     spoiling = unknown[:1] if any(map(contradicted, end.steps)) else ()
     return tuple(with_rivals(step, end.scores[-1], found, spoiling) for step in end.steps)
 
@@ -187,9 +188,9 @@ def _backward(
     dropped; one in whose place something does that is not accepted, half of it, or one of the others, stays as it was.
     """
     kept = list(steps)
-    beside = {kept[-1]: what(kept[:-1])}  # as which it was accepted
+    beside = {kept[-1]: causes(kept[:-1])}  # as which it was accepted
     for number in range(MOST_AGAIN):
-        beside_now = {step: what(each for each in kept if each is not step) for step in kept}
+        beside_now = {step: causes(each for each in kept if each is not step) for step in kept}
         stale = next((step for step in kept if step not in beside or not beside_now[step] <= beside[step]), None)
         if stale is None:
             break
@@ -201,8 +202,8 @@ def _backward(
             kept = others  # which stood out even beside it
             continue
         again = Step(found.accepted, (), found.others) if found.accepted else stale
-        if what([again]) < what([stale]) or what([again]) & what(others):
+        if causes([again]) < causes([stale]) or causes([again]) & causes(others):
             again = stale
         kept[kept.index(stale)] = again
-        beside[again] = what(others)
+        beside[again] = causes(others)
     return tuple(kept)

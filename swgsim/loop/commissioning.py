@@ -7,10 +7,11 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from swgsim.loop.features import Layout
-from swgsim.loop.fitting import Fitted, fit
+from swgsim.loop.fitted import Fitted
+from swgsim.loop.fitting import fit
 from swgsim.loop.form import largest_lines
 from swgsim.loop.missing import beyond_noise, foreign_ripple, require_own, unexplained
-from swgsim.loop.relined import about_its_lines, again, largest_of, lines_found, told, triangle
+from swgsim.loop.relined import about_its_lines, again, largest_of, lines_found, posterior, triangle
 from swgsim.loop.session import Measured
 from swgsim.loop.unit import STRUCTURE, UNHEARD, Unit
 from swgsim.recordings import SENSORS
@@ -41,7 +42,7 @@ def commission(measured: Measured, unit: Unit) -> Unit:
     beyond = beyond_noise(measured, fitted.missed)
     if beyond.max() > 1:
         fitted = about_its_lines(again(fitted, inflation=beyond * unheard))
-    root, mean = told(fitted)
+    root, mean = posterior(fitted)
     # Declared effects stay as they were found: later fits have parameters of their own for them.
     own = [name in fitted.unit.declared for name in fitted.parameters]
     kept = np.flatnonzero([*own, *[True] * fitted.open.shape[1]])

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.loop.fitting import Fitted
+from swgsim.loop.fitted import Fitted
 from swgsim.loop.session import Measured
 
 

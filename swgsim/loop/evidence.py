@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.stats import chi2
 
-from swgsim.loop.fitting import Fitted
+from swgsim.loop.fitted import Fitted
 from swgsim.loop.gaussian import as_squares
 from swgsim.loop.model import predict
 from swgsim.singular import svd

@@ -17,7 +17,7 @@ from swgsim.gear import OperatingPoint
 from swgsim.loop import scatter
 from swgsim.loop.answer import Answer
 from swgsim.loop.evidence import FORM_TOLERANCE, allowance
-from swgsim.loop.fitting import Fitted
+from swgsim.loop.fitted import Fitted
 from swgsim.loop.gaussian import without_what_noise_hides
 from swgsim.loop.model import Model, Situation, predict
 

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from swgsim import style
 from swgsim.loop.answer import Answer
 from swgsim.loop.features import ORDERS, basis
-from swgsim.loop.fitting import Fitted
+from swgsim.loop.fitted import Fitted
 from swgsim.loop.leading import ALPHA
 from swgsim.loop.reporting.numbers import NORMAL
 from swgsim.loop.session import Measured

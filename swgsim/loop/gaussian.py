@@ -76,7 +76,7 @@ class Covariance:
 
     def weigh(self, X: np.ndarray) -> np.ndarray:
         """P X with P the inverse of the covariance, for an array (row,) or (row, column)."""
-        return self.alone.weigh(X) - self._weighed @ self.told(X)
+        return self.alone.weigh(X) - self._weighed @ self.common_mean(X)
 
     def precision(self, block: Bool[np.ndarray, " row"]) -> Float[np.ndarray, "block block"]:
         """The block of P of some of the rows: of their distribution where all the others are known."""
@@ -92,7 +92,7 @@ class Covariance:
         white = self.whiten(r)
         return -0.5 * float(white @ white + 2 * np.log(np.diag(self._L)).sum() + self.alone.log_determinant)
 
-    def told(self, X: np.ndarray) -> np.ndarray:
+    def common_mean(self, X: np.ndarray) -> np.ndarray:
         """The common errors (column,) that a residual (row,) tells, or each of several, in standard deviations."""
         return cho_solve((self._L, True), self._weighed.T @ X)
 
@@ -117,7 +117,7 @@ class Covariance:
         missed = solve_triangular(L, white, lower=True, trans=1)
         expected = np.array(r, copy=True)
         expected[block] -= missed  # which tells no more than the others do
-        return Expected(missed, float(np.log(np.diag(L)).sum() - 0.5 * white @ white), self.told(expected))
+        return Expected(missed, float(np.log(np.diag(L)).sum() - 0.5 * white @ white), self.common_mean(expected))
 
 
 def as_squares(log_likelihood: float) -> float:

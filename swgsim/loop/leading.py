@@ -5,7 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from swgsim.effects.base import Effect
-from swgsim.loop.fitting import Fitted, unbent
+from swgsim.loop.fitted import Fitted
+from swgsim.loop.fitting import unbent
 from swgsim.loop.hypotheses import hypotheses, signatures
 from swgsim.loop.screening import Score, best_of_kind, screen
 

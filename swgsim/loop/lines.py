@@ -24,7 +24,7 @@ ROUNDING, WELL_SEEN = 1e-3, 0.5
 
 
 @dataclass(frozen=True, eq=False)
-class Lines:
+class LinesBetween:
     """What was found between the orders.
 
     Attributes
@@ -42,14 +42,14 @@ class Lines:
     left: tuple[Between, ...]
     effects: tuple[Effect, ...]
 
-    def taking_out(self, effects: Sequence[Effect]) -> "Lines":
+    def taking_out(self, effects: Sequence[Effect]) -> "LinesBetween":
         """The same without what these effects may have put there."""
         return replace(self, left=tuple(each.without(effects) for each in self.left), effects=(*self.effects, *effects))
 
 
 def search(
     spectra: Sequence[Between], kinds: Iterable[type[Effect]], level: float, known: Sequence[Effect] = ()
-) -> Lines:
+) -> LinesBetween:
     """Lines between the orders, one after the other as long as one is too unlikely to be luck.
 
     Parameters
@@ -62,7 +62,7 @@ def search(
     known : sequence of Effect
         Declared effects, which are taken out first.
     """
-    found = Lines((), (), tuple(spectra), ())
+    found = LinesBetween((), (), tuple(spectra), ())
     for effect in known if spectra else ():
         found = found.taking_out(nearby(effect, spectra))
     sought = list(kinds)

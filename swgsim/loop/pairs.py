@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 
 from swgsim.effects.base import Effect
-from swgsim.loop.fitting import Fitted, unbent
+from swgsim.loop.fitted import Fitted
+from swgsim.loop.fitting import unbent
 from swgsim.loop.leading import LEADERS, NEARLY, leaders, screened
 from swgsim.loop.refining import zoom
 from swgsim.loop.trial import Trial, tried

@@ -8,7 +8,8 @@ from swgsim.effects.regularity import LAWS, OF_TEMPERATURE, OF_TIME
 from swgsim.loop.closed import Closed
 from swgsim.loop.errors import of_points_left_out
 from swgsim.loop.evidence import LEAST_GAIN
-from swgsim.loop.fitting import Fitted, extended
+from swgsim.loop.fitted import Fitted
+from swgsim.loop.fitting import extended
 from swgsim.loop.trial import gained
 
 # Share of its size that an effect found must keep beside a patch; one that takes it away says the same once more.

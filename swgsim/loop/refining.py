@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Quantity, Role, quantities, size_of
-from swgsim.loop.fitting import Fitted
+from swgsim.loop.fitted import Fitted
 from swgsim.loop.hypotheses import Hypothesis, signatures
 from swgsim.loop.model import predict
 from swgsim.loop.screening import Score, rank

@@ -8,7 +8,8 @@ import numpy as np
 from jaxtyping import Float
 from scipy.linalg import qr, solve_triangular
 
-from swgsim.loop.fitting import Fitted, fit
+from swgsim.loop.fitted import Fitted
+from swgsim.loop.fitting import fit
 from swgsim.loop.form import column_counts, largest_lines, lines_of
 from swgsim.loop.own_lines import Lines
 
@@ -25,7 +26,7 @@ def about_its_lines(fitted: Fitted) -> Fitted:
         return fitted
     largest = largest_of(fitted)
     for _ in range(ROUNDS):
-        _, mean = told(fitted)
+        _, mean = posterior(fitted)
         lines, form = lines_found(fitted, mean)
         # What the lines are declared to be is still counted from the model alone.
         back = np.append(np.zeros(fitted.open.shape[1] - form), -mean[len(mean) - form :])
@@ -36,7 +37,7 @@ def about_its_lines(fitted: Fitted) -> Fitted:
     return fitted
 
 
-def told(fitted: Fitted) -> tuple[Float[np.ndarray, "direction direction"], Float[np.ndarray, " direction"]]:
+def posterior(fitted: Fitted) -> tuple[Float[np.ndarray, "direction direction"], Float[np.ndarray, " direction"]]:
     """What recordings tell of the parameters, and of all else that is open: a root of its covariance, and its mean, in
     spreads.
 

@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from swgsim.effects.quantity import quantities
-from swgsim.loop.fitting import Fitted
+from swgsim.loop.fitted import Fitted
 from swgsim.loop.gaussian import as_squares
 from swgsim.loop.hypotheses import Hypothesis
 from swgsim.loop.tail import log_tail, surprise

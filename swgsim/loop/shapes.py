@@ -6,7 +6,7 @@ from scipy.integrate import trapezoid
 
 from swgsim.effects.quantity import Role, quantities, size_of
 from swgsim.loop.declared import name_of
-from swgsim.loop.fitting import Fitted
+from swgsim.loop.fitted import Fitted
 from swgsim.loop.model import predict
 
 # Shapes over all of the range, and about the one that was found out to so many of its standard deviations.

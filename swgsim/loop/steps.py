@@ -9,7 +9,8 @@ from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities
 from swgsim.loop.beside import beside_unknown
 from swgsim.loop.evidence import FORM_TOLERANCE, LEAST_GAIN, open_form, signature
-from swgsim.loop.fitting import Fitted, extended, unbent
+from swgsim.loop.fitted import Fitted
+from swgsim.loop.fitting import extended, unbent
 from swgsim.loop.gaussian import as_squares
 from swgsim.loop.leading import ALPHA
 from swgsim.loop.screening import Score
@@ -46,7 +47,7 @@ def joined(base: Fitted, steps: Sequence[Step]) -> Fitted:
     return open_form(extended(unbent(base), added), len(added)) if added else base
 
 
-def what(steps: Iterable[Step]) -> frozenset[tuple[object, ...]]:
+def causes(steps: Iterable[Step]) -> frozenset[tuple[object, ...]]:
     """The effects of steps: their kinds, and what of them is chosen and never fitted."""
     return frozenset(chosen(effect) for step in steps for effect in step.accepted.effects)
 

@@ -19,7 +19,8 @@ from swgsim.loop.evidence import (
     open_form,
     signature,
 )
-from swgsim.loop.fitting import Fitted, extended
+from swgsim.loop.fitted import Fitted
+from swgsim.loop.fitting import extended
 from swgsim.loop.screening import Score
 from swgsim.loop.shapes import over_shapes
 from swgsim.loop.vocabulary import Described

@@ -15,7 +15,8 @@ from swgsim.effects.quantity import quantities
 from swgsim.effects.regularity import LAWS, PATTERNS, Regularity
 from swgsim.loop.evidence import LEAST_GAIN
 from swgsim.loop.features import ORDERS, Layout
-from swgsim.loop.fitting import Fitted, extended
+from swgsim.loop.fitted import Fitted
+from swgsim.loop.fitting import extended
 from swgsim.loop.gaussian import as_squares
 from swgsim.loop.leading import ALPHA
 from swgsim.loop.screening import AT_ONCE, VISIBLE, family_wise
@@ -141,7 +142,7 @@ def other_laws(best: Described, others: Sequence[Described]) -> tuple[str, ...]:
     return tuple(o.atom.law for o in same if o.atom != best.atom and best.gain - o.gain < as_squares(LEAST_GAIN))
 
 
-def left(fitted: Fitted, seed: int, most: int) -> tuple[Described, ...]:
+def regularities(fitted: Fitted, seed: int, most: int) -> tuple[Described, ...]:
     """Atoms that are no luck, the likeliest first; each is taken out before the next is sought."""
     found: list[Described] = []
     while len(found) < most:

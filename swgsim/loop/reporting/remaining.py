@@ -20,12 +20,12 @@ from swgsim.loop.vocabulary import Atom, Described
 
 def unknown(answer: Answer) -> dict[str, Any] | None:
     """What no effect of the library explains, in words and numbers, and as effects that can be added."""
-    if not answer.left:
+    if not answer.unexplained:
         return None
     patches = {Atom(patch.order, patch.pattern, patch.law) for patch in answer.patches}
     atoms = [_described(each) | {"added": each.atom in patches} for each in answer.unknown]
     return {
-        "words": answer.left,
+        "words": answer.unexplained,
         "orders": sorted({each["order"] for each in atoms}),
         "pattern": atoms[0]["pattern"] if atoms else None,
         "law": atoms[0]["law"] if atoms else None,
@@ -62,7 +62,7 @@ def next_experiment(experiments: Sequence[Experiment], answer: Answer) -> dict[s
     helpful = sorted((e for e in experiments if e.recordings), key=lambda e: (e.recordings or 0, -e.separation))
     helpless = [e for e in experiments if not e.recordings]
     words = [str(e) for e in (*helpful, *helpless)]
-    commission = bool(helpless or answer.left) and not answer.closed.before.unit.commissioned
+    commission = bool(helpless or answer.unexplained) and not answer.closed.before.unit.commissioned
     if commission:
         words.append("recordings of the healthy gear, given as commissioning=FOLDER, tell what it has always had")
     if not words:

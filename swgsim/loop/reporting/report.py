@@ -11,7 +11,7 @@ from swgsim.effects.base import Effect
 from swgsim.loop.answer import Answer
 from swgsim.loop.errors import noise_floor
 from swgsim.loop.experiment import Experiment
-from swgsim.loop.fitting import Fitted
+from swgsim.loop.fitted import Fitted
 from swgsim.loop.reporting.effects import accepted, of_line, rejected
 from swgsim.loop.reporting.numbers import estimate
 from swgsim.loop.reporting.remaining import absorbed, detectable, next_experiment, scored, unknown, untried

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.loop.errors import errors, per_channel
-from swgsim.loop.fitting import Fitted
+from swgsim.loop.fitted import Fitted
 from swgsim.loop.reporting.numbers import number
 from swgsim.loop.session import Measured
 from swgsim.recording import CHANNELS

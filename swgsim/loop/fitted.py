@@ -1,0 +1,206 @@
+"""A model as fitted to recordings: its parameters, the errors of single recordings, and what stays unexplained."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.effects.base import Effect
+from swgsim.loop.calibration import Calibrated
+from swgsim.loop.declared import Declared
+from swgsim.loop.gaussian import Covariance, Expected, without_what_noise_hides
+from swgsim.loop.model import Model
+from swgsim.loop.scatter import Scatter
+from swgsim.loop.session import Measured
+from swgsim.loop.unit import Unit
+
+# Where bridges were balanced anew their zeros lie so many times as far as declared, if that is likelier by so much.
+BALANCED, LIKELIER_BALANCED = (2.0, 4.0, 8.0, 16.0), 3.0
+
+
+@dataclass(frozen=True, eq=False)
+class Fitted:
+    """A model calibrated to what was measured.
+
+    Attributes
+    ----------
+    measured : Measured
+    unit : Unit
+    parameters : mapping
+        What was fitted, with its spread.
+    calibrated : Calibrated
+    scatter : Scatter
+    errors : Covariance
+        Noise, errors of single recordings and of sessions; rows (recording, feature).
+    open : array (row, direction)
+        What the unit leaves open beside the fitted parameters (:meth:`Unit.left_open`), one standard deviation each.
+    offset : array (row,)
+        Where commissioning found the recordings beside the model, by what is not in it: frictions, lags, zeros.
+    allowed : array (row, column) or None
+        The part of ``open`` that the form of effects found earlier leaves open, and regularities that were set free; it
+        comes last.
+    """
+
+    measured: Measured
+    unit: Unit
+    parameters: dict[str, Declared]
+    calibrated: Calibrated
+    scatter: Scatter
+    errors: Covariance
+    open: Float[np.ndarray, "row direction"]
+    offset: Float[np.ndarray, " row"]
+    allowed: Float[np.ndarray, "row column"] | None = None
+
+    @property
+    def model(self) -> Model:
+        """The model at its likeliest parameters."""
+        return self.calibrated.model
+
+    @property
+    def added(self) -> tuple[Effect, ...]:
+        """The effects that the model has beyond the unit's."""
+        return self.model.effects[len(self.unit.model.effects) :]
+
+    @property
+    def declared(self) -> dict[str, Declared]:
+        """The fitted parameters that are the unit's own; none once it is commissioned."""
+        return {name: parameter for name, parameter in self.parameters.items() if ": " not in name}
+
+    @property
+    def position_of_unit(self) -> dict[str, float]:
+        """Deviation of the unit's parameters from their declared values, in spreads."""
+        return {name: self.calibrated.position[name] for name in self.declared}
+
+    @property
+    def strict(self) -> "Fitted":
+        """The same without what effects and regularities found earlier leave open, for predictions."""
+        if self.allowed is None:
+            return self
+        return replace(self, open=self.open[:, : -self.allowed.shape[1]], allowed=None)
+
+    def allowing(self, columns: Float[np.ndarray, "row column"]) -> "Fitted":
+        """The same with more left open, one standard deviation each, also when effects are added to it; other columns
+        may stand for these, as few as noise leaves different.
+        """
+        columns = without_what_noise_hides(columns, self.errors.variance)
+        if not columns.shape[1]:
+            return self
+        kept = [] if self.allowed is None else [self.allowed]
+        return replace(self, open=np.hstack([self.open, columns]), allowed=np.hstack([*kept, columns]))
+
+    def scattering(self, scatter: Scatter) -> "Fitted":
+        """The same with other errors of single recordings."""
+        ratio = np.array(list(scatter.sd.values())) / np.array(list(self.scatter.sd.values()))
+        alone = replace(self.errors.alone, C=self.errors.alone.C * ratio)
+        return replace(self, scatter=scatter, errors=replace(self.errors, alone=alone))
+
+    def with_zeros(self, times: float) -> "Fitted":
+        """The same with the zeros of gauges so many times as far off as declared."""
+        if times == self.measured.zeros:
+            return self
+        measured = replace(self.measured, zeros=times)
+        errors = Covariance(self.errors.alone, measured.session_columns(self.calibrated.predicted))
+        return replace(self, measured=measured, errors=errors)
+
+    @cached_property
+    def balanced(self) -> "Fitted":
+        """The same with the zeros of gauges as far off as is likeliest; as they are if that is hardly likelier."""
+        wider = [self.with_zeros(times) for times in BALANCED if times > self.measured.zeros]
+        best = max(wider, key=lambda each: each.log_likelihood, default=self)
+        return best if best.log_likelihood > self.log_likelihood + LIKELIER_BALANCED else self
+
+    @cached_property
+    def residual(self) -> Float[np.ndarray, " row"]:
+        """Measured less predicted at the likeliest parameters."""
+        return self.measured.values.ravel() - self.offset - self.measured.rows(self.calibrated.predicted)
+
+    @cached_property
+    def J(self) -> Float[np.ndarray, "row parameter"]:
+        """Change by one spread of each fitted parameter."""
+        return self.measured.rows(self.calibrated.J).reshape(len(self.errors.variance), len(self.parameters))
+
+    @cached_property
+    def whole(self) -> Covariance:
+        """All errors, with everything open that the model does not know exactly."""
+        return self.errors.with_columns(np.hstack([self.open, self.J]))
+
+    @property
+    def from_start(self) -> Float[np.ndarray, " row"]:
+        """Residual of the linearised model at the values where the spreads begin: what :attr:`whole` describes."""
+        return self.residual + self.J @ np.array(list(self.calibrated.position.values()))
+
+    @property
+    def nuisances(self) -> slice:
+        """Which columns of :attr:`whole` are no fitted parameters: zeros and gains of sessions, and what is left open
+        of the gear and of effects found earlier.
+        """
+        return slice(self.whole.G.shape[1] - len(self.parameters))
+
+    @cached_property
+    def by_others(self) -> list[tuple[np.ndarray, Expected]]:
+        """The rows of every operating point (a mask) and what all the others say of them; none if there is one only."""
+        blocks = self.measured.point_rows()
+        if len(blocks) == 1:
+            return []
+        return list(zip(blocks, self.whole.left_out(self.from_start, blocks), strict=True))
+
+    @cached_property
+    def nuisance(self) -> Float[np.ndarray, " row"]:
+        """What the nuisances make of every operating point, as all the others tell it; nothing if there is one only."""
+        made = np.zeros(len(self.residual))
+        for block, expected in self.by_others:
+            made[block] = self.whole.G[block, self.nuisances] @ expected.common[self.nuisances]
+        return made
+
+    @property
+    def missed(self) -> Float[np.ndarray, "recording feature"]:
+        """Residual weighed by what is declared of it, in standard deviations."""
+        return self.whole.whiten_in_place(self.from_start).reshape(self.measured.values.shape)
+
+    @property
+    def misfit(self) -> dict[str, float]:
+        """Mean square of every channel's residual in units of what is declared of it: 1 where the model is right."""
+        layout = self.measured.layout
+        square = (self.missed**2).mean(axis=0)
+        return {channel: float(square[layout.channel == channel].mean()) for channel in layout.channels}
+
+    @cached_property
+    def deviation(self) -> dict[str, float]:
+        """Standard deviation of each fitted parameter, in its unit."""
+        # The form tolerance of an effect is no doubt about its own size.
+        columns = self.errors.with_columns(self.strict.open).whiten(self.J)
+        covariance = np.linalg.inv(columns.T @ columns + np.eye(columns.shape[1]))
+        spread = np.sqrt(np.diag(covariance)).tolist()
+        return {name: s * p.sd for (name, p), s in zip(self.parameters.items(), spread, strict=True)}
+
+    @cached_property
+    def weighed(self) -> Float[np.ndarray, " row"]:
+        """Residual of the linearised model, weighed by the inverse of its covariance."""
+        return self.whole.weigh(self.from_start)
+
+    def null(self, draws: int, rng: np.random.Generator) -> Iterator[Float[np.ndarray, "row draw"]]:
+        """What pure noise makes of :attr:`weighed`, so many draws at a time, without end.
+
+        The errors of single recordings are in each draw as large as their estimate leaves them; all others are as
+        declared.
+        """
+        alone, G = self.whole.alone, self.whole.G
+        deviation = np.sqrt(self.whole.variance)[:, None]
+        while True:
+            factors = np.tile(self.scatter.drawn(rng, draws), (len(self.measured), 1))
+            noise = deviation * rng.standard_normal((len(G), draws))
+            single = alone.made(factors * rng.standard_normal(factors.shape))
+            yield self.whole.weigh(noise + single + G @ rng.standard_normal((G.shape[1], draws)))
+
+    @cached_property
+    def log_likelihood(self) -> float:
+        """Of all recordings together, everything that is not known exactly being open within its spread."""
+        return self.whole.log_likelihood(self.from_start)
+
+    @cached_property
+    def predictive(self) -> Float[np.ndarray, " point"]:
+        """Log-likelihood of every operating point as predicted from all the others; of all if there is one only."""
+        expected = [expected.log_likelihood for _, expected in self.by_others]
+        return np.array(expected or [self.log_likelihood])
