@@ -135,7 +135,9 @@ def test_what_is_left_unknown_is_asked_for_where_it_may_speak_against_a_rival(mo
         closing, "_forward", lambda *_: closing.End(FITTED, (step,), (), ((), ()), Round((), None, None))
     )
     left = tuple(Described(Atom(order, "in s1 alone", "constant"), 20.0, 2, 0.1, 0.0) for order in (3, 5))
-    monkeypatch.setattr(closing, "left", lambda now, seed, most: left if (now, seed, most) == (FITTED, 7, 3) else ())
+    monkeypatch.setattr(
+        closing, "regularities", lambda now, seed, most: left if (now, seed, most) == (FITTED, 7, 3) else ()
+    )
     monkeypatch.setattr(closing, "with_rivals", lambda step, after, found, unknown: given.append(unknown) or step)
     found = closing.close(FITTED.measured, FITTED.unit, (), seed=7)
     assert given == ([left[:1]] if contradiction else [()])
@@ -151,7 +153,7 @@ def test_an_effect_that_leaves_much_is_put_off_and_what_is_left_without_it_is_de
         closing, "_forward", lambda *_: closing.End(FITTED, (step,), (), ((), ()), Round((), None, None))
     )
     monkeypatch.setattr(closing, "screened", lambda *_: ())
-    monkeypatch.setattr(closing, "left", lambda now, *_: (more,) if now is bare else (much,))
+    monkeypatch.setattr(closing, "regularities", lambda now, *_: (more,) if now is bare else (much,))
     found = closing.close(FITTED.measured, FITTED.unit, ())
     assert (found.steps, found.outweighed, found.unknown, found.withdrawn) == ((), (A,), (more,), ())
     assert found.rejected == (A,)
@@ -270,7 +272,7 @@ def test_where_no_effect_explains_zeros_that_moved_bridges_were_balanced_anew(mo
     monkeypatch.setattr(Fitted, "balanced", property(lambda now: now if now.measured.zeros > 1 else wide))
     monkeypatch.setattr(closing, "fit", lambda *_: FITTED)
     monkeypatch.setattr(closing, "screened", lambda *_: ())
-    monkeypatch.setattr(closing, "left", lambda *_: ())
+    monkeypatch.setattr(closing, "regularities", lambda *_: ())
     monkeypatch.setattr(closing, "ask", lambda now, *_: seen.append(now.measured.zeros) or Round((), None, None))
     found = closing.close(FITTED.measured, FITTED.unit, ())
     assert seen == [1.0, 4.0]

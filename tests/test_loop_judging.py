@@ -10,7 +10,7 @@ from loop_fixtures import BUMP, Bump, drawn, fitted_to, holding
 from swgsim.loop import evidence, vocabulary
 from swgsim.loop import trial as trial_module
 from swgsim.loop.alone import Alone
-from swgsim.loop.beside import beside_unknown, elsewhere, in_company, outdone
+from swgsim.loop.beside import beside_unknown, in_company, more_than, outdone
 from swgsim.loop.features import Layout
 from swgsim.loop.fitted import LIKELIER_BALANCED
 from swgsim.loop.gaussian import Covariance
@@ -168,17 +168,20 @@ def scattered(fitted, factor: float):
     return replace(fitted, scatter=scatter, errors=replace(fitted.errors, alone=alone))
 
 
-def test_what_shows_in_other_channels_too_is_no_part_of_a_disturbance(fitted, stray, signature):
-    rng = np.random.default_rng(3)
+@pytest.mark.parametrize(("share", "left", "another"), [(1.0, 30, True), (0.05, 0, True), (0.05, 30, False)])
+def test_what_shows_in_other_channels_or_leaves_nothing_is_no_part_of_a_disturbance(
+    fitted, stray, signature, share, left, another
+):
     there = np.tile(LAYOUT.channel == "s2", len(fitted.measured))
-    for share, another in ((1.0, True), (0.05, False)):
-        effect = np.where(there, signature, share * signature)
-        now = holding(fitted, drawn(fitted.whole, rng) + stray + effect)
-        plain = named(now, STRAY)
-        free = set_free(now, plain)
-        found = trial(now, effect)
-        assert found.explained(free) > 50
-        assert elsewhere(found, [plain], free) == another
+    effect = np.where(there, signature, share * signature)
+    more = columns(Atom(7, "in s2 alone", "constant"), fitted)[:, 0]
+    rest = drawn(fitted.whole, np.random.default_rng(3)) + left * more / np.linalg.norm(fitted.whole.whiten(more))
+    now = holding(fitted, stray + effect + rest)
+    plain = named(now, STRAY)
+    free = set_free(now, plain)
+    found = trial(set_free(holding(fitted, stray + rest), plain), effect)
+    assert found.explained(free) > 50
+    assert more_than([plain], found, free, 0) == another
 
 
 def test_other_errors_of_single_recordings_are_those_it_would_have_been_given(fitted):

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from swgsim.effects.base import Effect
-from swgsim.loop.beside import elsewhere, in_company, outdone
+from swgsim.loop.beside import in_company, more_than, outdone
 from swgsim.loop.fitted import Fitted
 from swgsim.loop.fitting import unbent
 from swgsim.loop.leading import ALPHA, leaders, screened
@@ -53,14 +53,14 @@ def ask(
     best = trials[0]
     pairs = () if best.sound else paired(now, start, trials, kinds, seed)
     accepted = best if best.sound else worth_it(pairs, best) or in_company(now, best, seed)
-    if accepted is None or not elsewhere(accepted, apart, now):
+    if accepted is None or not more_than(apart, accepted, now, seed):
         return Round(trials, None, None)
     plain = describe(now)[0]
     if outdone(accepted, plain, now):
         # What the regularity tells beyond an effect may be a second one.
         pairs = paired(now, start, trials, kinds, seed) if best.sound else ()
         accepted = worth_it(pairs, best)
-        if accepted is None or not elsewhere(accepted, apart, now) or outdone(accepted, plain, now):
+        if accepted is None or not more_than(apart, accepted, now, seed) or outdone(accepted, plain, now):
             return Round(trials, None, plain)
     if accepted in pairs:
         trials = (*trials, *pairs, *of_doubles(accepted, now, start, trials, pairs))

@@ -85,19 +85,26 @@ def _agreement(trial: Trial, fitted: Fitted) -> tuple[Coherence, ...]:
     return tuple(coherence(fitted, known + i) for i in range(len(trial.effects)))
 
 
-def elsewhere(trial: Trial, apart: Sequence[Described], now: Fitted) -> bool:
-    """Whether effects found behind disturbances of single channels act on others too; else they are part of them.
+def more_than(apart: Sequence[Described], trial: Trial, now: Fitted, seed: int) -> bool:
+    """Whether effects found behind disturbances of single channels are more than parts of them: they act on other
+    channels too, or with them nothing is left that has no name.
 
     Parameters
     ----------
-    trial : Trial
     apart : sequence of Described
         The disturbances.
+    trial : Trial
     now : Fitted
-        The model without the effects, in which they are free.
+        The model without the effects, in which the disturbances are free.
+    seed : int
     """
-    if not apart:
+    if not apart or _elsewhere(trial, apart, now):
         return True
+    return strongest(trial.with_open_form, generator("more than apart", seed, len(apart))).chance > ALPHA
+
+
+def _elsewhere(trial: Trial, apart: Sequence[Described], now: Fitted) -> bool:
+    """Whether enough of all its effects is in channels that are not disturbed."""
     disturbed = [channel for each in apart for channel in PATTERNS[each.atom.pattern]]
     others = ~np.isin(now.measured.layout.channel, disturbed)
     there = trial.signature[np.tile(others, len(now.measured))]
