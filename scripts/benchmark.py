@@ -5,8 +5,9 @@ from pathlib import Path
 
 import hydra
 import numpy as np
+from configured import plain
 from misspelt import answered
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig
 
 from learn import training_benchmark
 from swgsim import benchmark, settings
@@ -16,7 +17,7 @@ from swgsim.files import write_json
 @hydra.main(version_base="1.3", config_path="../conf", config_name="benchmark")
 def main(cfg: DictConfig) -> None:
     """Print the ratios and keep them as <report>/benchmark.json."""
-    config = OmegaConf.to_container(cfg, resolve=True)
+    config = plain(cfg)
     report = Path(config.pop("report"))
     plan = settings.plan(config)
     nominal = plan.gears[0].transmission

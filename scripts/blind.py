@@ -1,8 +1,9 @@
 """The blind test of the loop: python scripts/blind.py [cases=20] [seed=5]"""
 
 import hydra
+from configured import plain
 from misspelt import answered
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig
 
 from swgsim.blind.job import run
 
@@ -10,7 +11,7 @@ from swgsim.blind.job import run
 @hydra.main(version_base="1.3", config_path="../conf", config_name="blind")
 def main(config: DictConfig) -> None:
     """Resolve the configuration and run the job."""
-    run(OmegaConf.to_container(config, resolve=True))  # type: ignore[arg-type]
+    run(plain(config))
 
 
 if __name__ == "__main__":

@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from typing import Any
 
 import hydra
+from configured import plain
 from misspelt import answered
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig
 
 from swgsim.joint import job as of_joint
 from swgsim.loop import job as of_gauges
@@ -60,7 +61,7 @@ def metrics(said: Mapping[str, Any]) -> dict[str, float]:
 @hydra.main(version_base="1.3", config_path="../conf", config_name="close_loop")
 def main(config: DictConfig) -> None:
     """Resolve the configuration, run the job and keep its run."""
-    resolved: dict[str, Any] = OmegaConf.to_container(config, resolve=True)  # type: ignore[assignment]
+    resolved = plain(config)
     require_one_kind(resolved)
     record(resolved, (of_gauges if resolved["source"] is None else of_joint).run(resolved))
 

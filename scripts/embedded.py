@@ -1,8 +1,9 @@
 """Exported methods beside one another: python scripts/embedded.py (docs/embedded.md)"""
 
 import hydra
+from configured import plain
 from misspelt import answered
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig
 
 
 @hydra.main(version_base="1.3", config_path="../conf", config_name="embedded")
@@ -10,7 +11,7 @@ def main(config: DictConfig) -> None:
     """Resolve the configuration and run the job."""
     from learn.embedded.report import run
 
-    run(OmegaConf.to_container(config, resolve=True))  # type: ignore[arg-type]
+    run(plain(config))
 
 
 if __name__ == "__main__":

@@ -1,8 +1,9 @@
 """A trained classifier as C or ONNX: python scripts/export.py classifier=extra_trees features=harmonics target=c"""
 
 import hydra
+from configured import plain
 from misspelt import answered
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig
 
 
 @hydra.main(version_base="1.3", config_path="../conf", config_name="export")
@@ -10,7 +11,7 @@ def main(config: DictConfig) -> None:
     """Resolve the configuration and run the job."""
     from learn.embedded.job import run
 
-    run(OmegaConf.to_container(config, resolve=True))  # type: ignore[arg-type]
+    run(plain(config))
 
 
 if __name__ == "__main__":

@@ -1,16 +1,17 @@
 """Generate a data set: python scripts/generate.py grid=paper condition=clean"""
 
 import hydra
+from configured import plain
 from misspelt import answered
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig
 
 from swgsim.generation import run
 
 
 @hydra.main(version_base="1.3", config_path="../conf", config_name="generate")
-def main(cfg: DictConfig) -> None:
+def main(config: DictConfig) -> None:
     """Resolve the configuration and run the job."""
-    run(OmegaConf.to_container(cfg, resolve=True))
+    run(plain(config))
 
 
 if __name__ == "__main__":

@@ -1,8 +1,9 @@
 """Robot joints that were really measured, case by case: python scripts/joints.py [folder=FOLDER] [only=PATTERN]"""
 
 import hydra
+from configured import plain
 from misspelt import answered
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig
 
 from swgsim.joint.cases import run
 
@@ -10,7 +11,7 @@ from swgsim.joint.cases import run
 @hydra.main(version_base="1.3", config_path="../conf", config_name="joints")
 def main(config: DictConfig) -> None:
     """Resolve the configuration and run the job."""
-    run(OmegaConf.to_container(config, resolve=True))  # type: ignore[arg-type]
+    run(plain(config))
 
 
 if __name__ == "__main__":

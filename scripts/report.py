@@ -1,8 +1,9 @@
 """Write the report from the data sets and the runs of the experiments: python scripts/report.py [grid=paper]"""
 
 import hydra
+from configured import plain
 from misspelt import answered
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig
 
 
 @hydra.main(version_base="1.3", config_path="../conf", config_name="report")
@@ -10,7 +11,7 @@ def main(config: DictConfig) -> None:
     """Resolve the configuration and write the report."""
     from learn.report_job import run
 
-    run(OmegaConf.to_container(config, resolve=True))  # type: ignore[arg-type]
+    run(plain(config))
 
 
 if __name__ == "__main__":

@@ -5,8 +5,9 @@ from pathlib import Path
 from typing import Any
 
 import hydra
+from configured import plain
 from misspelt import answered
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig
 
 
 def run(config: Mapping[str, Any]) -> None:
@@ -23,7 +24,7 @@ def run(config: Mapping[str, Any]) -> None:
 @hydra.main(version_base="1.3", config_path="../conf", config_name="sim_to_real")
 def main(config: DictConfig) -> None:
     """Resolve the configuration and run the study."""
-    run(OmegaConf.to_container(config, resolve=True))  # type: ignore[arg-type]
+    run(plain(config))
 
 
 if __name__ == "__main__":

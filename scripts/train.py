@@ -1,8 +1,9 @@
 """Train and judge classifiers: one job, a sweep with -m, or an experiment such as experiment=table7."""
 
 import hydra
+from configured import plain
 from misspelt import answered
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig
 
 
 @hydra.main(version_base="1.3", config_path="../conf", config_name="train")
@@ -10,7 +11,7 @@ def main(config: DictConfig) -> float:
     """One job of ``conf/train.yaml``; its test score [%]."""
     from learn.job import run
 
-    return run(OmegaConf.to_container(config, resolve=True))["test_score"]  # type: ignore[arg-type]
+    return run(plain(config))["test_score"]
 
 
 if __name__ == "__main__":

@@ -1,8 +1,9 @@
 """Write the report of the transfer study from its runs: python scripts/transfer_report.py [grid=gears]"""
 
 import hydra
+from configured import plain
 from misspelt import answered
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig
 
 
 @hydra.main(version_base="1.3", config_path="../conf", config_name="transfer_report")
@@ -10,7 +11,7 @@ def main(config: DictConfig) -> None:
     """Resolve the configuration and write the report."""
     from learn.transfer_report.job import run
 
-    run(OmegaConf.to_container(config, resolve=True))  # type: ignore[arg-type]
+    run(plain(config))
 
 
 if __name__ == "__main__":

@@ -8,9 +8,9 @@ from pathlib import Path
 import interrupts
 import pytest
 from close_loop import require_one_kind
+from configured import plain
 from hydra import compose, initialize_config_dir
 from misspelt import FULL, answered
-from omegaconf import OmegaConf
 
 ROOT = Path(__file__).parents[1]
 
@@ -25,7 +25,13 @@ def given(*words: str, **environment: str) -> subprocess.CompletedProcess:
 def chosen(*words: str) -> dict:
     """The choices of close_loop.py."""
     with initialize_config_dir(str(ROOT / "conf"), version_base="1.3"):
-        return OmegaConf.to_container(compose("close_loop", list(words)), resolve=True)
+        return plain(compose("close_loop", list(words)))
+
+
+def test_a_name_that_is_a_number_is_a_name() -> None:
+    names = {"recordings": "12", "commissioning": "11", "truth": "1.5"}
+    found = chosen("recordings=12", "commissioning=11", "truth=1.5", "seed=3")
+    assert {**names, "seed": 3, "mapping": None}.items() <= found.items()
 
 
 @pytest.mark.parametrize("words", [(), ("--multirun", "seed=1,2")])
