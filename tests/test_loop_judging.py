@@ -168,17 +168,22 @@ def scattered(fitted, factor: float):
     return replace(fitted, scatter=scatter, errors=replace(fitted.errors, alone=alone))
 
 
-@pytest.mark.parametrize(("share", "left", "another"), [(1.0, 30, True), (0.05, 0, True), (0.05, 30, False)])
+@pytest.mark.parametrize(
+    ("share", "left", "own", "another"),
+    [(1.0, 30, 1e3, True), (0.05, 0, 0.0, True), (0.05, 30, 0.0, False), (0.05, 0, 1e3, False)],
+)
 def test_what_shows_in_other_channels_or_leaves_nothing_is_no_part_of_a_disturbance(
-    fitted, stray, signature, share, left, another
+    fitted, stray, signature, share, left, own, another
 ):
+    """Unless the disturbance may be the gear's own line, changed."""
     there = np.tile(LAYOUT.channel == "s2", len(fitted.measured))
     effect = np.where(there, signature, share * signature)
     more = columns(Atom(7, "in s2 alone", "constant"), fitted)[:, 0]
     rest = drawn(fitted.whole, np.random.default_rng(3)) + left * more / np.linalg.norm(fitted.whole.whiten(more))
     now = holding(fitted, stray + effect + rest)
     plain = named(now, STRAY)
-    free = set_free(now, plain)
+    predicted = own * (LAYOUT.order == 5) * np.ones_like(now.calibrated.predicted)
+    free = replace(set_free(now, plain), calibrated=replace(now.calibrated, predicted=predicted))
     found = trial(set_free(holding(fitted, stray + rest), plain), effect)
     assert found.explained(free) > 50
     assert more_than([plain], found, free, 0) == another

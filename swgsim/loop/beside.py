@@ -86,8 +86,10 @@ def _agreement(trial: Trial, fitted: Fitted) -> tuple[Coherence, ...]:
 
 
 def more_than(apart: Sequence[Described], trial: Trial, now: Fitted, seed: int) -> bool:
-    """Whether effects found behind disturbances of single channels are more than parts of them: they act on other
-    channels too, or with them nothing is left that has no name.
+    """Whether effects found behind disturbances of single channels are more than parts of them.
+
+    They are if they act on other channels too. They also are if the disturbances are larger than anything that the gear
+    has there, so that they are none of its own lines changed, and if with the effects nothing is left without a name.
 
     Parameters
     ----------
@@ -100,7 +102,16 @@ def more_than(apart: Sequence[Described], trial: Trial, now: Fitted, seed: int) 
     """
     if not apart or _elsewhere(trial, apart, now):
         return True
+    if not all(_foreign(each, now) for each in apart):
+        return False
     return strongest(trial.with_open_form, generator("more than apart", seed, len(apart))).chance > ALPHA
+
+
+def _foreign(disturbance: Described, now: Fitted) -> bool:
+    """Whether a disturbance is larger than the line that it is added to."""
+    layout = now.measured.layout
+    lines = np.abs(layout.lines(now.calibrated.predicted)).max(axis=0)[:, disturbance.atom.order]
+    return all(disturbance.amplitude > lines[layout.channels.index(c)] for c in PATTERNS[disturbance.atom.pattern])
 
 
 def _elsewhere(trial: Trial, apart: Sequence[Described], now: Fitted) -> bool:
