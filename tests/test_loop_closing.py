@@ -279,6 +279,19 @@ def test_where_no_effect_explains_zeros_that_moved_bridges_were_balanced_anew(mo
     assert found.before.measured.zeros == found.asked.measured.zeros == 4.0
 
 
+def test_what_a_disturbance_hides_is_sought_before_bridges_count_as_balanced_anew(monkeypatch):
+    wide, disturbed = FITTED.with_zeros(4.0), Round((A,), None, None)
+    monkeypatch.setattr(Fitted, "balanced", property(lambda now: now if now.measured.zeros > 1 else wide))
+    monkeypatch.setattr(Trial, "with_open_form", property(lambda _: wide))
+    monkeypatch.setattr(closing, "screened", lambda *_: ())
+    monkeypatch.setattr(closing, "ask", lambda *_: disturbed)
+    monkeypatch.setattr(
+        closing, "ask_behind", lambda now, found, *_: (Round((A,), A, None) if now is FITTED else found, ())
+    )
+    found = closing._forward(FITTED, (), (), (), 0)
+    assert [step.accepted for step in found.steps] == [A]
+
+
 @pytest.mark.parametrize("least", [True, False])
 def test_what_is_slight_beside_what_it_cancels_is_none_alone(monkeypatch, least):
     rng = np.random.default_rng(3)

@@ -148,11 +148,11 @@ def _forward(
         number = len(steps)
         scores = (*scores, screened(now, kinds, generator("screen", seed, number)))
         found = ask(now, scores[-1] if number < MOST_STEPS else (), kinds, seed, apart)
+        if found.trials and not found.accepted:
+            found, apart = ask_behind(now, found, kinds, seed, number, apart)
         if not found.accepted and now.balanced is not now:
             now = now.balanced
             continue  # no effect explains where the zeros of gauges lie
-        if found.trials and not found.accepted:
-            found, apart = ask_behind(now, found, kinds, seed, number, apart)
         if found.accepted is None:
             return End(now, steps, apart, scores, found)
         steps = (*steps, Step(found.accepted, (), found.others))
