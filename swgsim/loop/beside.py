@@ -88,8 +88,9 @@ def _agreement(trial: Trial, fitted: Fitted) -> tuple[Coherence, ...]:
 def more_than(apart: Sequence[Described], trial: Trial, now: Fitted, seed: int) -> bool:
     """Whether effects found behind disturbances of single channels are more than parts of them.
 
-    They are if they act on other channels too. They also are if the disturbances are larger than anything that the gear
-    has there, so that they are none of its own lines changed, and if with the effects nothing is left without a name.
+    They are if they act on other channels too; or if the disturbances are larger than anything that the gear has there,
+    and so none of its own lines changed. But where more of such a channel is left without a name, nobody knows what its
+    disturbance is, and where it ends.
 
     Parameters
     ----------
@@ -100,11 +101,12 @@ def more_than(apart: Sequence[Described], trial: Trial, now: Fitted, seed: int) 
         The model without the effects, in which the disturbances are free.
     seed : int
     """
-    if not apart or _elsewhere(trial, apart, now):
+    if not apart:
         return True
-    if not all(_foreign(each, now) for each in apart):
+    if not _elsewhere(trial, apart, now) and not all(_foreign(each, now) for each in apart):
         return False
-    return strongest(trial.with_open_form, generator("more than apart", seed, len(apart))).chance > ALPHA
+    left = strongest(trial.with_open_form, generator("more than apart", seed, len(apart)))
+    return left.chance > ALPHA or left.atom.pattern not in {each.atom.pattern for each in apart}
 
 
 def _foreign(disturbance: Described, now: Fitted) -> bool:
