@@ -5,12 +5,12 @@ from pathlib import Path
 
 import hydra
 import numpy as np
-from configured import plain
 from misspelt import answered
 from omegaconf import DictConfig
 
 from learn import training_benchmark
 from swgsim import benchmark, settings
+from swgsim.configured import plain
 from swgsim.files import write_json
 
 

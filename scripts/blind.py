@@ -1,11 +1,11 @@
 """The blind test of the loop: python scripts/blind.py [cases=20] [seed=5]"""
 
 import hydra
-from configured import plain
 from misspelt import answered
 from omegaconf import DictConfig
 
 from swgsim.blind.job import run
+from swgsim.configured import plain
 
 
 @hydra.main(version_base="1.3", config_path="../conf", config_name="blind")

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from typing import Any
 
 import hydra
-from configured import plain
 from misspelt import answered
 from omegaconf import DictConfig
 
+from swgsim.configured import plain
 from swgsim.joint import job as of_joint
 from swgsim.loop import job as of_gauges
 from swgsim.loop.job import Outcome

@@ -1,9 +1,10 @@
 """Exported methods beside one another: python scripts/embedded.py (docs/embedded.md)"""
 
 import hydra
-from configured import plain
 from misspelt import answered
 from omegaconf import DictConfig
+
+from swgsim.configured import plain
 
 
 @hydra.main(version_base="1.3", config_path="../conf", config_name="embedded")

@@ -1,9 +1,10 @@
 """A trained classifier as C or ONNX: python scripts/export.py classifier=extra_trees features=harmonics target=c"""
 
 import hydra
-from configured import plain
 from misspelt import answered
 from omegaconf import DictConfig
+
+from swgsim.configured import plain
 
 
 @hydra.main(version_base="1.3", config_path="../conf", config_name="export")

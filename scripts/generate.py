@@ -1,10 +1,10 @@
 """Generate a data set: python scripts/generate.py grid=paper condition=clean"""
 
 import hydra
-from configured import plain
 from misspelt import answered
 from omegaconf import DictConfig
 
+from swgsim.configured import plain
 from swgsim.generation import run
 
 

@@ -1,10 +1,10 @@
 """Robot joints that were really measured, case by case: python scripts/joints.py [folder=FOLDER] [only=PATTERN]"""
 
 import hydra
-from configured import plain
 from misspelt import answered
 from omegaconf import DictConfig
 
+from swgsim.configured import plain
 from swgsim.joint.cases import run
 
 

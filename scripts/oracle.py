@@ -1,10 +1,10 @@
 """The floor of the error: what an oracle says of a data set: python scripts/oracle.py grid=sampled condition=bench"""
 
 import hydra
-from configured import plain
 from misspelt import answered
 from omegaconf import DictConfig
 
+from swgsim.configured import plain
 from swgsim.oracle.job import run
 
 

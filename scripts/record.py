@@ -1,10 +1,10 @@
 """Recordings from a virtual test bench: python scripts/record.py out=recordings/a hidden=my_effects.yaml"""
 
 import hydra
-from configured import plain
 from misspelt import answered
 from omegaconf import DictConfig
 
+from swgsim.configured import plain
 from swgsim.record_job import run
 
 

@@ -1,9 +1,10 @@
 """Write the report from the data sets and the runs of the experiments: python scripts/report.py [grid=paper]"""
 
 import hydra
-from configured import plain
 from misspelt import answered
 from omegaconf import DictConfig
+
+from swgsim.configured import plain
 
 
 @hydra.main(version_base="1.3", config_path="../conf", config_name="report")

@@ -5,9 +5,10 @@ from pathlib import Path
 from typing import Any
 
 import hydra
-from configured import plain
 from misspelt import answered
 from omegaconf import DictConfig
+
+from swgsim.configured import plain
 
 
 def run(config: Mapping[str, Any]) -> None:

@@ -1,9 +1,10 @@
 """Train and judge classifiers: one job, a sweep with -m, or an experiment such as experiment=table7."""
 
 import hydra
-from configured import plain
 from misspelt import answered
 from omegaconf import DictConfig
+
+from swgsim.configured import plain
 
 
 @hydra.main(version_base="1.3", config_path="../conf", config_name="train")

@@ -1,9 +1,10 @@
 """Write the report of the transfer study from its runs: python scripts/transfer_report.py [grid=gears]"""
 
 import hydra
-from configured import plain
 from misspelt import answered
 from omegaconf import DictConfig
+
+from swgsim.configured import plain
 
 
 @hydra.main(version_base="1.3", config_path="../conf", config_name="transfer_report")

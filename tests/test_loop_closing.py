@@ -292,6 +292,19 @@ def test_what_a_disturbance_hides_is_sought_before_bridges_count_as_balanced_ane
     assert [step.accepted for step in found.steps] == [A]
 
 
+@pytest.mark.parametrize(("order", "moved", "asked"), [(0, True, False), (0, False, True), (5, True, True)])
+def test_a_zero_that_balancing_explains_is_not_set_apart(monkeypatch, order, moved, asked):
+    wide, behind = FITTED.with_zeros(4.0), []
+    plain = Described(Atom(order, "in s1 alone", "constant"), 400.0, 1, 0.1, 0.0, 0.0)
+    monkeypatch.setattr(Fitted, "balanced", property(lambda now: wide if moved else now))
+    monkeypatch.setattr(asking, "strongest", lambda *_: plain)
+    monkeypatch.setattr(asking, "freed", lambda now, _: now)
+    monkeypatch.setattr(asking, "screened", lambda *_: ())
+    monkeypatch.setattr(asking, "ask", lambda *_: behind.append(1) or Round((A,), A, None))
+    found, apart = asking.ask_behind(FITTED, Round((A,), None, None), (), 0, 0, ())
+    assert (bool(behind), found.accepted, apart) == ((True, A, (plain,)) if asked else (False, None, ()))
+
+
 @pytest.mark.parametrize("least", [True, False])
 def test_what_is_slight_beside_what_it_cancels_is_none_alone(monkeypatch, least):
     rng = np.random.default_rng(3)

@@ -7,6 +7,7 @@ import pytest
 from chain_fixtures import GEAR
 from loop_fixtures import BUMP, Bump, drawn, fitted_to, holding
 
+from swgsim.effects.regularity import OF_TIME
 from swgsim.loop import evidence, vocabulary
 from swgsim.loop import trial as trial_module
 from swgsim.loop.alone import Alone
@@ -169,22 +170,36 @@ def scattered(fitted, factor: float):
 
 
 @pytest.mark.parametrize(
-    ("share", "left", "own", "another"),
-    [(1.0, 0, 1e3, True), (1.0, 30, 1e3, False), (0.05, 0, 0.0, True), (0.05, 30, 0.0, False), (0.05, 0, 1e3, False)],
+    ("share", "left", "own", "law", "another"),
+    [
+        (1.0, None, 1e3, "constant", True),
+        (1.0, "s2", 1e3, "constant", False),
+        (1.0, "s3", 1e3, "constant", True),
+        (0.05, None, 0.1, "constant", True),
+        (0.05, None, 1e3, "constant", False),
+        (0.05, None, 0.1, OF_TIME, False),  # at the time of these recordings such a disturbance is nothing yet
+        (0.05, "s2", 0.1, "constant", False),
+    ],
 )
-def test_what_is_more_than_a_part_of_a_disturbance(fitted, stray, signature, share, left, own, another):
+def test_what_is_more_than_a_part_of_a_disturbance(fitted, stray, signature, share, left, own, law, another):
     """It shows elsewhere, or the disturbance is no line of the gear's own; and no more of its channel is left."""
     there = np.tile(LAYOUT.channel == "s2", len(fitted.measured))
     effect = np.where(there, signature, share * signature)
-    more = columns(Atom(7, "in s2 alone", "constant"), fitted)[:, 0]
-    rest = drawn(fitted.whole, np.random.default_rng(3)) + left * more / np.linalg.norm(fitted.whole.whiten(more))
+    rest = drawn(fitted.whole, np.random.default_rng(3))
+    if left:
+        more = columns(Atom(7, f"in {left} alone", "constant"), fitted)[:, 0]
+        rest += 30 * more / np.linalg.norm(fitted.whole.whiten(more))
     now = holding(fitted, stray + effect + rest)
     plain = named(now, STRAY)
-    predicted = own * (LAYOUT.order == 5) * np.ones_like(now.calibrated.predicted)
-    free = replace(set_free(now, plain), calibrated=replace(now.calibrated, predicted=predicted))
+    predicted = own * plain.amplitude * (LAYOUT.order == 5) * np.ones_like(now.calibrated.predicted)
+    measured = replace(
+        now.measured, values=now.measured.values + now.measured.rows(predicted).reshape(now.measured.values.shape)
+    )
+    free = set_free(replace(now, measured=measured, calibrated=replace(now.calibrated, predicted=predicted)), plain)
     found = trial(set_free(holding(fitted, stray + rest), plain), effect)
     assert found.explained(free) > 50
-    assert more_than([plain], found, free, 0) == another
+    disturbance = replace(plain, atom=replace(plain.atom, law=law))
+    assert more_than([disturbance], found, free, 0) == another
 
 
 def test_other_errors_of_single_recordings_are_those_it_would_have_been_given(fitted):

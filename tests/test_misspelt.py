@@ -8,9 +8,10 @@ from pathlib import Path
 import interrupts
 import pytest
 from close_loop import require_one_kind
-from configured import plain
 from hydra import compose, initialize_config_dir
 from misspelt import FULL, answered
+
+from swgsim.configured import plain
 
 ROOT = Path(__file__).parents[1]
 
@@ -32,6 +33,11 @@ def test_a_name_that_is_a_number_is_a_name() -> None:
     names = {"recordings": "12", "commissioning": "11", "truth": "1.5"}
     found = chosen("recordings=12", "commissioning=11", "truth=1.5", "seed=3")
     assert {**names, "seed": 3, "mapping": None}.items() <= found.items()
+
+
+@pytest.mark.parametrize("name", ["2024_10_05", "1.50"])
+def test_a_name_that_looks_like_a_number_is_as_it_was_written(name: str) -> None:
+    assert f"recordings={name}: found nothing" in given(f"recordings={name}").stderr
 
 
 @pytest.mark.parametrize("words", [(), ("--multirun", "seed=1,2")])

@@ -80,8 +80,8 @@ def ask_behind(
     while len(apart) < SET_APART:
         more = len(apart) - len(before)
         plain = strongest(now, generator("set apart", seed, number, more))
-        if plain.chance > ALPHA or not plain.atom.alone:
-            break
+        if plain.chance > ALPHA or not plain.atom.alone or (plain.atom.order == 0 and now.balanced is not now):
+            break  # a zero that lies off counts as a bridge balanced anew, if that is likelier
         now, apart = freed(now, plain), (*apart, plain)
         scores = screened(now, kinds, generator("screen beside", seed, number, more + 1))
         behind = ask(now, scores, kinds, seed, apart)

@@ -6,7 +6,7 @@ from functools import reduce
 
 import numpy as np
 
-from swgsim.effects.regularity import PATTERNS
+from swgsim.effects.regularity import LAWS, PATTERNS
 from swgsim.loop.evidence import OUTDONE, OUTDONE_SHARE, Coherence, coherence
 from swgsim.loop.fitted import Fitted
 from swgsim.loop.leading import ALPHA
@@ -20,7 +20,7 @@ SAME_THING, DWARFED = 0.5, 4.0
 # Regularities that may spoil the agreement of an effect's parts, at most; it keeps so much of its gain if they are
 # another thing.
 COMPANY, ANOTHER_THING = 2, 0.8
-# What is found behind disturbances of single channels is another thing if this share of its strength is in others.
+# What is found behind disturbances of single channels acts on others too if this share of its strength is there.
 ELSEWHERE = 0.25
 
 
@@ -89,8 +89,8 @@ def more_than(apart: Sequence[Described], trial: Trial, now: Fitted, seed: int) 
     """Whether effects found behind disturbances of single channels are more than parts of them.
 
     They are if they act on other channels too; or if the disturbances are larger than anything that the gear has there,
-    and so none of its own lines changed. But where more of such a channel is left without a name, nobody knows what its
-    disturbance is, and where it ends.
+    and so are no change of its own lines. But where the strongest of what they leave is of such a channel alone, nobody
+    knows what its disturbance is, and where it ends.
 
     Parameters
     ----------
@@ -110,14 +110,17 @@ def more_than(apart: Sequence[Described], trial: Trial, now: Fitted, seed: int) 
 
 
 def _foreign(disturbance: Described, now: Fitted) -> bool:
-    """Whether a disturbance is larger than the line that it is added to."""
-    layout = now.measured.layout
-    lines = np.abs(layout.lines(now.calibrated.predicted)).max(axis=0)[:, disturbance.atom.order]
-    return all(disturbance.amplitude > lines[layout.channels.index(c)] for c in PATTERNS[disturbance.atom.pattern])
+    """Whether a disturbance of one channel is larger than the line that it is added to, each where it is largest."""
+    measured, atom = now.measured, disturbance.atom
+    (channel,) = PATTERNS[atom.pattern]
+    expected = (measured.values.ravel() - now.residual).reshape(measured.values.shape)
+    own = measured.layout.lines(expected)[:, measured.layout.channels.index(channel), atom.order]
+    law = [LAWS[atom.law](situation.point, situation.conditions) for situation in measured.situations]
+    return bool(disturbance.amplitude * np.abs(law).max() > np.abs(own).max())
 
 
 def _elsewhere(trial: Trial, apart: Sequence[Described], now: Fitted) -> bool:
-    """Whether enough of all its effects is in channels that are not disturbed."""
+    """Whether enough of each effect of a trial is in channels that are not disturbed."""
     disturbed = [channel for each in apart for channel in PATTERNS[each.atom.pattern]]
     others = ~np.isin(now.measured.layout.channel, disturbed)
     there = trial.signature[np.tile(others, len(now.measured))]

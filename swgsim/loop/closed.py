@@ -31,7 +31,7 @@ class Closed:
         Of the last screening.
     rejected : tuple of Trial
         Significant, but of the wrong form: they contradict themselves, cancel one another, a bare regularity explains
-        more, they act only where one was set apart, or bring too little beside what they leave.
+        more, they may be part of one that was set apart, or bring too little beside what they leave.
     outdone_by : Described or None
         That regularity.
     apart : tuple of Described

@@ -131,7 +131,7 @@ def why(trial: Trial, answer: Answer, better: Trial | None = None) -> str:
             f"{LIKELIER:g} are asked for, or {LEAST_EVIDENCE:g} of the whole"
         )
     if better is None and trial is answer.closed.best_rejected and answer.closed.apart:
-        return "it acts only where a disturbance was set apart, and may be part of that"
+        return "it may be part of a disturbance that was set apart, or leaves more of that channel without a name"
     if better is None:
         return "another effect explains more, which was not accepted, and the runner-up is never taken instead"
     return (
