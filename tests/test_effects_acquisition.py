@@ -12,7 +12,7 @@ from swgsim.chain import Run, channels_of, simulate, simulate_turns
 from swgsim.conditions import Conditions
 from swgsim.effects.amplifier_drift import AmplifierDrift
 from swgsim.effects.axial_thrust import AxialThrust
-from swgsim.effects.base import PLACES, Effect
+from swgsim.effects.base import PLACES, Effect, Scene
 from swgsim.effects.bolt_preload import BoltPreload
 from swgsim.effects.bond_creep import BondCreep
 from swgsim.effects.bridge_nonlinearity import BridgeNonlinearity
@@ -33,7 +33,7 @@ from swgsim.effects.motor_pickup import MotorPickup
 from swgsim.effects.one_gauge import ALL
 from swgsim.effects.quantity import Role, quantities
 from swgsim.effects.self_heating import SelfHeating
-from swgsim.effects.signal_hysteresis import SignalHysteresis
+from swgsim.effects.signal_hysteresis import PLAYS, SignalHysteresis
 from swgsim.effects.sub_orders import SubOrders
 from swgsim.effects.thermal_output import ThermalOutput
 from swgsim.effects.tilting_moment import TiltingMoment
@@ -272,6 +272,20 @@ def test_hysteresis_lags_alike_at_all_speeds_and_makes_order_six(recordings: Rec
 def test_hysteresis_is_settled_from_the_first_sample(recordings: Recordings) -> None:
     signal = recordings["signal_hysteresis", LOADED, LATE].channels["s1"].reshape(TURNS, POINTS)
     np.testing.assert_allclose(signal, signal[:1].repeat(TURNS, axis=0), rtol=0, atol=1e-12)
+
+
+def test_hysteresis_takes_every_sample_in_turn() -> None:
+    """However often a signal turns back, and after one revolution ahead."""
+    time, turn = np.arange(40) * 2 * np.pi / LOADED.omega_in / 30, 30
+    signals = np.random.default_rng(2).standard_normal((5, 40))
+    found = SignalHysteresis(0.02).gauge(signals, Scene(time, 0 * time, 0 * time, LOADED, Conditions()))
+    reach = np.ptp(signals, axis=1) / 2
+    x = signals - (signals.max(axis=1) - reach)[:, None]
+    radii, play, held = reach[:, None] * (np.arange(PLAYS) + 0.5) / PLAYS, np.zeros((5, PLAYS)), []
+    for i in (*range(turn), *range(40)):
+        play = np.minimum(np.maximum(play, x[:, i, None] - radii), x[:, i, None] + radii)
+        held.append(play.mean(axis=1))
+    np.testing.assert_allclose(found, signals + 0.08 * (np.transpose(held[turn:]) - x / 2), rtol=1e-12)
 
 
 @pytest.mark.parametrize(("name", "power"), [("torque_nonlinearity", 2), ("cubic", 3)])

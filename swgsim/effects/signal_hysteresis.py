@@ -1,6 +1,7 @@
 """Imperfection: hysteresis of strain and bond."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Float
@@ -41,8 +42,12 @@ class SignalHysteresis(Effect):
         floor, ceiling = x[:, :, None] - radii, x[:, :, None] + radii
         held = np.empty_like(floor)
         play = np.zeros_like(radii)
-        first_turn = range(min(round(samples_per_turn(scene)), len(x)))
-        for i in (*first_turn, *range(len(x))):
-            np.maximum(play, floor[i], out=held[i])
-            play = np.minimum(held[i], ceiling[i], out=held[i])
+        first_turn = min(round(samples_per_turn(scene)), len(x))
+        # Where no signal turns back, a play is where it was but for the nearer of its two ends.
+        turning = np.flatnonzero(np.diff(np.sign(np.diff(x, axis=0)), axis=0).any(axis=1)) + 2
+        starts = np.unique([0, 1, first_turn, *turning, len(x)]).tolist()
+        pieces = [slice(*ends) for ends in pairwise(starts) if ends[1] <= len(x)]
+        for piece in (*(p for p in pieces if p.stop <= first_turn), *pieces):
+            held[piece] = np.clip(play, floor[piece], ceiling[piece])
+            play = held[piece.stop - 1]
         return signals + 4 * self.share * (held.mean(axis=2) - x / 2).T
