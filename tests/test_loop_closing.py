@@ -135,9 +135,7 @@ def test_what_is_left_unknown_is_asked_for_where_it_may_speak_against_a_rival(mo
         closing, "_forward", lambda *_: closing.End(FITTED, (step,), (), ((), ()), Round((), None, None))
     )
     left = tuple(Described(Atom(order, "in s1 alone", "constant"), 20.0, 2, 0.1, 0.0) for order in (3, 5))
-    monkeypatch.setattr(
-        closing, "regularities", lambda now, seed, most: left if (now, seed, most) == (FITTED, 7, 3) else ()
-    )
+    monkeypatch.setattr(closing, "regularities", lambda now, seed: left if (now, seed) == (FITTED, 7) else ())
     monkeypatch.setattr(closing, "with_rivals", lambda step, after, found, unknown: given.append(unknown) or step)
     found = closing.close(FITTED.measured, FITTED.unit, (), seed=7)
     assert given == ([left[:1]] if contradiction else [()])
@@ -403,6 +401,25 @@ def test_another_pair_is_a_rival_if_what_only_it_has_says_nothing_more():
     for chance, rival in ((2 * ALPHA, (other,)), (ALPHA / 2, ())):
         after = (replace(C.score, chance=chance),)
         assert with_rivals(Step(one, (), (other,)), after, found).rivals == rival
+
+
+@pytest.mark.parametrize(
+    ("steps", "balanced", "found"),
+    [((), True, True), ((), False, False), ((Step(B, (), ()),), True, False)],
+    ids=["nothing was found", "zeros may have moved", "an effect was found"],
+)
+def test_an_imperfect_form_is_asked_for_where_nothing_was_found_in_its_own(monkeypatch, steps, balanced, found):
+    refused, said = Round((MIMIC,), None, None), iter([Round((A, MIMIC), A, None)])
+    still = replace(FITTED)
+    monkeypatch.setattr(Fitted, "balanced", property(lambda now: now if balanced or now is not FITTED else still))
+    monkeypatch.setattr(Trial, "with_open_form", FITTED)
+    monkeypatch.setattr(closing, "screened", lambda *_: (A.score,))
+    monkeypatch.setattr(closing, "ask", lambda *_: refused)
+    monkeypatch.setattr(closing, "ask_behind", lambda now, found, *_: (found, ()))
+    monkeypatch.setattr(closing, "ask_imperfect", lambda now, *_: next(said, refused) if now is FITTED else refused)
+    end = closing._forward(FITTED, steps, (), (), 0)
+    assert [each.accepted for each in end.steps] == [*(each.accepted for each in steps), *([A] if found else [])]
+    assert end.last is refused
 
 
 @pytest.mark.parametrize("settled", [True, False])

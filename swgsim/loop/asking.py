@@ -7,6 +7,7 @@ from swgsim.effects.base import Effect
 from swgsim.loop.beside import in_company, more_than, outdone
 from swgsim.loop.fitted import Fitted
 from swgsim.loop.fitting import unbent
+from swgsim.loop.imperfect import imperfect
 from swgsim.loop.leading import ALPHA, leaders, screened
 from swgsim.loop.pairs import of_doubles, paired, worth_it
 from swgsim.loop.refining import zoom
@@ -88,3 +89,9 @@ def ask_behind(
         if behind.accepted:
             return behind, apart
     return found, before
+
+
+def ask_imperfect(now: Fitted, found: Round, scores: Sequence[Score], seed: int) -> Round:
+    """What is accepted in an imperfect form, where nothing was in its own; else what was found."""
+    trials = imperfect(now, scores, seed)
+    return Round((*trials, *found.trials), trials[0], None) if trials else found

@@ -5,7 +5,7 @@ from functools import reduce
 from typing import NamedTuple
 
 from swgsim.effects.base import Effect
-from swgsim.loop.asking import Round, ask, ask_behind
+from swgsim.loop.asking import Round, ask, ask_behind, ask_imperfect
 from swgsim.loop.closed import Closed
 from swgsim.loop.evidence import signature
 from swgsim.loop.fitted import Fitted
@@ -23,8 +23,6 @@ from swgsim.seeds import generator
 MOST_STEPS = 3
 # Times that an effect is asked again with all the others in the model, at most.
 MOST_AGAIN = 6
-# Regularities that are described at most.
-MOST_ATOMS = 3
 
 
 class End(NamedTuple):
@@ -108,11 +106,11 @@ def _weighed(
 ) -> tuple[End, tuple[Step, ...], tuple[Described, ...]]:
     """The end without steps that are outweighed by what is left, these steps, and what is left."""
     light: tuple[Step, ...] = ()
-    unknown = regularities(end.now, seed, MOST_ATOMS)
+    unknown = regularities(end.now, seed)
     while more := outweighed(end.steps, unknown, _untried(end)):
         end = _without(more, end, before, kinds, seed)
         light = (*light, *more)
-        unknown = regularities(end.now, seed, MOST_ATOMS)
+        unknown = regularities(end.now, seed)
     return end, light, unknown
 
 
@@ -148,6 +146,8 @@ def _forward(
         number = len(steps)
         scores = (*scores, screened(now, kinds, generator("screen", seed, number)))
         found = ask(now, scores[-1] if number < MOST_STEPS else (), kinds, seed, apart)
+        if not found.accepted and not steps and now.balanced is now:
+            found = ask_imperfect(now, found, scores[-1], seed)
         if found.trials and not found.accepted:
             found, apart = ask_behind(now, found, kinds, seed, number, apart)
         if not found.accepted and now.balanced is not now:

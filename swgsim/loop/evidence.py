@@ -92,10 +92,11 @@ def forms(fitted: Fitted, whole: Float[np.ndarray, " row"]) -> Float[np.ndarray,
     load and speed makes of it, its mean size being kept.
     """
     split = parts(fitted, whole)
-    return np.hstack([split, _powers(fitted, whole)]) if fitted.unit.of_another_structure else split
+    return np.hstack([split, powers(fitted, whole)]) if fitted.unit.of_another_structure else split
 
 
-def _powers(fitted: Fitted, whole: Float[np.ndarray, " row"]) -> Float[np.ndarray, "row law"]:
+def powers(fitted: Fitted, whole: Float[np.ndarray, " row"]) -> Float[np.ndarray, "row law"]:
+    """What another power of the load, and of the speed, makes of a signature, its mean size being kept."""
     points = [recording.point for recording in fitted.measured.recordings]
     laws = [[max(abs(p.T_out), LEAST_LOAD), p.n_in_rpm] for p in points]
     logs = np.repeat(np.log(laws), len(fitted.measured.layout), axis=0)

@@ -1,13 +1,13 @@
 """What of a screening is worth a fit."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
 from swgsim.effects.base import Effect
 from swgsim.loop.fitted import Fitted
 from swgsim.loop.fitting import unbent
-from swgsim.loop.hypotheses import hypotheses, signatures
+from swgsim.loop.hypotheses import Hypothesis, hypotheses, signatures
 from swgsim.loop.screening import Score, best_of_kind, screen
 
 # Probability of a false effect on recordings in which nothing is missing.
@@ -18,13 +18,17 @@ LEADERS, NEARLY, NEARLY_LEADERS = 4, 0.05, 8
 
 def screened(fitted: Fitted, kinds: Sequence[type[Effect]], rng: np.random.Generator) -> tuple[Score, ...]:
     """The best hypothesis of every effect that was not added yet."""
-    found = [
-        each for each in hypotheses(kinds, fitted.unit.of_another_structure) if not any(map(each.repeats, fitted.added))
-    ]
+    found = offered(fitted, kinds)
     if not found:
         return ()
     fitted = unbent(fitted)
     return tuple(best_of_kind(screen(found, signatures(found, fitted.model, fitted.measured), fitted, rng)))
+
+
+def offered(fitted: Fitted, kinds: Iterable[type[Effect]]) -> list[Hypothesis]:
+    """All hypotheses of the effects that were not added yet."""
+    found = hypotheses(kinds, fitted.unit.of_another_structure)
+    return [each for each in found if not any(map(each.repeats, fitted.added))]
 
 
 def leaders(scores: Sequence[Score]) -> list[Score]:

@@ -34,7 +34,7 @@ def zoom(score: Score, fitted: Fitted) -> Effect:
     another = fitted.unit.of_another_structure
     searched = [name for name, q in declared.items() if q.role in (Role.ANGLE, Role.SHAPE) and q.open(another)]
     best = score
-    reach = {name: _spacing(declared[name]) for name in searched}
+    reach = {name: spacing(declared[name]) for name in searched}
     for _ in range(ROUNDS if searched else 1):
         offsets = product(*[np.linspace(-1, 1, 2 * TRIED + 1) * reach[name] for name in searched])
         around = [_moved(best, dict(zip(searched, offset, strict=True)), declared) for offset in offsets]
@@ -81,7 +81,7 @@ def _at_its_place(effect: Effect, fitted: Fitted) -> Effect:
         here = getattr(effect, size) - q.nothing
         sizes = [float(np.clip(q.nothing + factor * here, q.low, q.high)) for factor in FACTORS]
         moved = [
-            replace(effect, **{name: float((getattr(effect, name) + step * _spacing(declared[name])) % (2 * np.pi))})
+            replace(effect, **{name: float((getattr(effect, name) + step * spacing(declared[name])) % (2 * np.pi))})
             for name in places
             for step in STEPS
         ]
@@ -94,14 +94,18 @@ def _at_its_place(effect: Effect, fitted: Fitted) -> Effect:
 
 def _left(fitted: Fitted, effects: Sequence[Effect]) -> Float[np.ndarray, " effect"]:
     """Sum of squares of the weighed residual that each effect leaves, by the chain."""
-    models = [fitted.model, *(fitted.model.plus(effect) for effect in effects)]
-    predicted = predict(models, fitted.measured.situations, fitted.measured.layout)
-    changes = fitted.measured.rows(np.moveaxis(predicted[1:] - predicted[0], 0, -1))
-    left = (fitted.whole.whiten(fitted.from_start[:, None] - changes) ** 2).sum(axis=0)
+    left = (fitted.whole.whiten(fitted.from_start[:, None] - changes(fitted, effects)) ** 2).sum(axis=0)
     return np.where(np.isfinite(left), left, np.inf)
 
 
-def _spacing(quantity: Quantity) -> float:
+def changes(fitted: Fitted, effects: Sequence[Effect]) -> Float[np.ndarray, "row effect"]:
+    """What each effect does to the features, by the chain."""
+    models = [fitted.model, *(fitted.model.plus(effect) for effect in effects)]
+    predicted = predict(models, fitted.measured.situations, fitted.measured.layout)
+    return fitted.measured.rows(np.moveaxis(predicted[1:] - predicted[0], 0, -1))
+
+
+def spacing(quantity: Quantity) -> float:
     """Distance of the values that the screening tried."""
     return (quantity.high - quantity.low) / max(quantity.points, 2)
 

@@ -60,6 +60,8 @@ class Trial:
         Of each effect of the trial.
     beside : tuple of Described
         Regularities beside it that were taken out before its parts agreed.
+    imperfect : bool
+        Whether its form was open when it was fitted, as what the gear leaves open absorbs it in its own.
     """
 
     score: Score
@@ -69,6 +71,7 @@ class Trial:
     evidence: float
     coherence: tuple[Coherence, ...]
     beside: tuple[Described, ...] = ()
+    imperfect: bool = False
 
     @property
     def heldout_gain(self) -> float:

@@ -26,6 +26,9 @@ from swgsim.seeds import generator
 # Prior standard deviation of an atom that is set free, in amplitudes found.
 WIDE = 100.0
 
+# Regularities that are described at most.
+MOST_ATOMS = 3
+
 
 @dataclass(frozen=True)
 class Atom:
@@ -142,10 +145,10 @@ def other_laws(best: Described, others: Sequence[Described]) -> tuple[str, ...]:
     return tuple(o.atom.law for o in same if o.atom != best.atom and best.gain - o.gain < as_squares(LEAST_GAIN))
 
 
-def regularities(fitted: Fitted, seed: int, most: int) -> tuple[Described, ...]:
-    """Atoms that are no luck, the likeliest first; each is taken out before the next is sought."""
+def regularities(fitted: Fitted, seed: int) -> tuple[Described, ...]:
+    """Atoms that are no luck, the likeliest first, up to MOST_ATOMS; each is taken out before the next is sought."""
     found: list[Described] = []
-    while len(found) < most:
+    while len(found) < MOST_ATOMS:
         best = strongest(fitted, generator("vocabulary", seed, len(found)))
         if best.chance > ALPHA:
             break

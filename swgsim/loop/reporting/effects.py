@@ -9,7 +9,7 @@ from swgsim.effects.text import path_of
 from swgsim.loop.answer import Answer
 from swgsim.loop.declared import name_of
 from swgsim.loop.errors import errors
-from swgsim.loop.evidence import LEAST_GAIN, NO_SIZE
+from swgsim.loop.evidence import FORM_TOLERANCE, LEAST_GAIN, NO_SIZE
 from swgsim.loop.reporting.numbers import estimate, number, probability
 from swgsim.loop.reporting.sizes import Sizes
 from swgsim.loop.sidelines import Sideline
@@ -183,11 +183,20 @@ def _evidence(step: Step, which: int) -> dict[str, Any]:
     )
     beside = "; ".join(map(str, trial.beside))
     once = f", once what has nothing to do with it is taken out: {beside}" if beside else ""
+    luck = f"so high a score comes by luck with probability {probability(score.chance)} in the whole library"
+    agrees = (
+        "one size serves all operating points, channels and orders, with parts that differ by "
+        f"{100 * agreement.form_error:.0f} %{once}"
+    )
+    open_ = (
+        f"in the library's own form, what is open of the gear absorbs all but {100 * score.visible:.2g} % of it; it "
+        f"shows by how it differs from that form (up to {100 * FORM_TOLERANCE:.0f} %, one deviation), which tells all "
+        "that is missing, and is likelier than bare regularities"
+    )
     return {
         "words": (
-            f"adding it{together} raises the log-likelihood of {raised}; so high a score comes by luck with "
-            f"probability {probability(score.chance)} in the whole library; one size serves all operating points, "
-            f"channels and orders, with parts that differ by {100 * agreement.form_error:.0f} %{once}"
+            f"adding it{together} raises the log-likelihood of {raised}; "
+            + (open_ if trial.imperfect else f"{luck}; {agrees}")
         ),
         "heldout_gain": number(trial.heldout_gain),
         "evidence": number(trial.evidence),
