@@ -73,6 +73,10 @@ def test_three_effects(monkeypatch):
     assert backward(monkeypatch, [STILL, NOTHING], A, B, C) == ((Bump, Dip), [(Wave, Dip), (Bump, Dip)])
 
 
+def test_what_was_found_in_an_imperfect_form_is_not_asked_again_in_its_own(monkeypatch):
+    assert backward(monkeypatch, [], replace(A, imperfect=True), B) == ((Bump, Wave), [])
+
+
 def test_a_pair_is_not_halved(monkeypatch):
     pair = replace(A, effects=(*A.effects, *B.effects))
     assert backward(monkeypatch, [STILL], pair, C) == ((Bump, Wave, Dip), [(Dip,)])

@@ -91,7 +91,7 @@ def ask_behind(
     return found, before
 
 
-def ask_imperfect(now: Fitted, found: Round, scores: Sequence[Score], seed: int) -> Round:
+def ask_imperfect(now: Fitted, found: Round, kinds: Sequence[type[Effect]], seed: int) -> Round:
     """What is accepted in an imperfect form, where nothing was in its own; else what was found."""
-    trials = imperfect(now, scores, seed)
+    trials = imperfect(now, kinds, seed)
     return Round((*trials, *found.trials), trials[0], None) if trials else found

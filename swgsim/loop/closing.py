@@ -129,7 +129,7 @@ def _together(end: End) -> Fitted:
     The size of an effect whose form was open when the next one was added is that of the parts that this leaves alone;
     the interval of a size is of a fit to all of them.
     """
-    if len(end.steps) < 2:
+    if len(end.steps) < 2 and not any(step.accepted.imperfect for step in end.steps):
         return end.now.strict  # fitted like that
     fitted = extended(reduce(set_free, end.apart, end.now.strict), ())
     numbers = range(len(fitted.unit.model.effects), len(fitted.model.effects))
@@ -146,8 +146,8 @@ def _forward(
         number = len(steps)
         scores = (*scores, screened(now, kinds, generator("screen", seed, number)))
         found = ask(now, scores[-1] if number < MOST_STEPS else (), kinds, seed, apart)
-        if not found.accepted and not steps and now.balanced is now:
-            found = ask_imperfect(now, found, scores[-1], seed)
+        if not (found.accepted or steps or apart) and now.balanced is now:
+            found = ask_imperfect(now, found, kinds, seed)
         if found.trials and not found.accepted:
             found, apart = ask_behind(now, found, kinds, seed, number, apart)
         if not found.accepted and now.balanced is not now:
@@ -185,13 +185,15 @@ def _backward(
     """Every step asked again with all the others in the model, which hid what it is when it was asked first.
 
     Until each was asked beside all the others that are left. A step in whose place nothing stands out any more is
-    dropped; one in whose place something does that is not accepted, half of it, or one of the others, stays as it was.
+    dropped; one in whose place something does that is not accepted, half of it, or one of the others, stays as it was,
+    and so does one of an imperfect form, as in its own it does not stand out.
     """
     kept = list(steps)
     beside = {kept[-1]: causes(kept[:-1])}  # as which it was accepted
     for number in range(MOST_AGAIN):
         beside_now = {step: causes(each for each in kept if each is not step) for step in kept}
-        stale = next((step for step in kept if step not in beside or not beside_now[step] <= beside[step]), None)
+        asked_again = (step for step in kept if not step.accepted.imperfect)
+        stale = next((s for s in asked_again if s not in beside or not beside_now[s] <= beside[s]), None)
         if stale is None:
             break
         others = [each for each in kept if each is not stale]

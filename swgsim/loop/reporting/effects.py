@@ -9,7 +9,7 @@ from swgsim.effects.text import path_of
 from swgsim.loop.answer import Answer
 from swgsim.loop.declared import name_of
 from swgsim.loop.errors import errors
-from swgsim.loop.evidence import FORM_TOLERANCE, LEAST_GAIN, NO_SIZE
+from swgsim.loop.evidence import LEAST_GAIN, NO_SIZE
 from swgsim.loop.reporting.numbers import estimate, number, probability
 from swgsim.loop.reporting.sizes import Sizes
 from swgsim.loop.sidelines import Sideline
@@ -190,8 +190,8 @@ def _evidence(step: Step, which: int) -> dict[str, Any]:
     )
     open_ = (
         f"in the library's own form, what is open of the gear absorbs all but {100 * score.visible:.2g} % of it; it "
-        f"shows by how it differs from that form (up to {100 * FORM_TOLERANCE:.0f} %, one deviation), which tells all "
-        "that is missing, and is likelier than bare regularities"
+        f"shows by how it differs from that form, by {100 * agreement.form_error:.0f} %, which tells all that is "
+        "missing and is likelier than bare regularities"
     )
     return {
         "words": (
