@@ -10,7 +10,7 @@ from fabricated_trials import FITTED, MIMIC, PAIR, A, B, C, Dip, Mimic, tried
 from loop_fixtures import BUMP, Bump, Wave
 
 from swgsim.loop import asking, closed, closing, steps
-from swgsim.loop.answer import UNKNOWN, Answer
+from swgsim.loop.answer import UNKNOWN, Answer, untestable
 from swgsim.loop.asking import Round
 from swgsim.loop.closed import Closed
 from swgsim.loop.evidence import FORM_TOLERANCE, Coherence
@@ -186,6 +186,9 @@ def test_all_that_was_found_is_fitted_once_more_in_its_own_form(monkeypatch, set
     assert found.open.shape == FITTED.open.shape
     closing._together(end._replace(steps=end.steps[:1]))
     assert len(given) == 1
+    # Its form was open when it was fitted.
+    closing._together(end._replace(steps=(Step(replace(A, imperfect=True), (), ()),)))
+    assert len(given) == 2
 
 
 def test_how_well_parts_agree_is_asked_with_all_effects_in_the_model(monkeypatch):
@@ -408,22 +411,37 @@ def test_another_pair_is_a_rival_if_what_only_it_has_says_nothing_more():
 
 
 @pytest.mark.parametrize(
-    ("steps", "balanced", "found"),
-    [((), True, True), ((), False, False), ((Step(B, (), ()),), True, False)],
-    ids=["nothing was found", "zeros may have moved", "an effect was found"],
+    ("steps", "balanced", "where"),
+    [((), True, "as it is"), ((), False, "balanced"), ((Step(B, (), ()),), True, "nowhere")],
+    ids=["nothing was found", "zeros have moved", "an effect was found"],
 )
-def test_an_imperfect_form_is_asked_for_where_nothing_was_found_in_its_own(monkeypatch, steps, balanced, found):
-    refused, said = Round((MIMIC,), None, None), iter([Round((A, MIMIC), A, None)])
-    still = replace(FITTED)
-    monkeypatch.setattr(Fitted, "balanced", property(lambda now: now if balanced or now is not FITTED else still))
-    monkeypatch.setattr(Trial, "with_open_form", FITTED)
+def test_an_imperfect_form_is_asked_for_where_nothing_was_found_in_its_own(monkeypatch, steps, balanced, where):
+    """And it is settled where the zeros lie."""
+    refused, asked, anew = Round((MIMIC,), None, None), [], replace(FITTED)
+    monkeypatch.setattr(Fitted, "balanced", property(lambda now: now if balanced or now is not FITTED else anew))
+    monkeypatch.setattr(Trial, "with_open_form", anew)
     monkeypatch.setattr(closing, "screened", lambda *_: (A.score,))
     monkeypatch.setattr(closing, "ask", lambda *_: refused)
     monkeypatch.setattr(closing, "ask_behind", lambda now, found, *_: (found, ()))
-    monkeypatch.setattr(closing, "ask_imperfect", lambda now, *_: next(said, refused) if now is FITTED else refused)
+    monkeypatch.setattr(closing, "ask_imperfect", lambda now, *_: asked.append(now) or Round((A, MIMIC), A, None))
     end = closing._forward(FITTED, steps, (), (), 0)
-    assert [each.accepted for each in end.steps] == [*(each.accepted for each in steps), *([A] if found else [])]
+    assert asked == {"as it is": [FITTED], "balanced": [anew], "nowhere": []}[where]
+    assert [each.accepted for each in end.steps] == [*(each.accepted for each in steps), *([A] if asked else [])]
     assert end.last is refused
+
+
+def test_an_effect_that_was_found_is_none_that_cannot_be_tested():
+    scores = (*(replace(each.score, visible=0.0) for each in (A, MIMIC, C)), B.score)
+    closed = Closed(FITTED, FITTED, FITTED, (Step(A, (MIMIC,), ()),), scores, (), (), None)
+    assert untestable(closed) == scores[2:3]
+
+
+def test_the_report_says_that_an_effect_shows_by_its_imperfect_form():
+    step = Step(replace(A, imperfect=True, coherence=(Coherence(0.5, 0.3, 0.1),)), (), ())
+    said = effects._evidence(step, 0)["words"]
+    assert "it shows by how it differs from that form, by 30 %" in said
+    assert "comes by luck" not in said
+    assert "comes by luck" in effects._evidence(Step(A, (), ()), 0)["words"]
 
 
 @pytest.mark.parametrize("settled", [True, False])

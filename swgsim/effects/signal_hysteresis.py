@@ -43,10 +43,10 @@ class SignalHysteresis(Effect):
         held = np.empty_like(floor)
         play = np.zeros_like(radii)
         first_turn = min(round(samples_per_turn(scene)), len(x))
-        # Where no signal turns back, a play is where it was but for the nearer of its two ends.
+        # While no signal turns back a play rests or is dragged by one end: bounds at once are bounds sample by sample.
         turning = np.flatnonzero(np.diff(np.sign(np.diff(x, axis=0)), axis=0).any(axis=1)) + 2
         starts = np.unique([0, 1, first_turn, *turning, len(x)]).tolist()
-        pieces = [slice(*ends) for ends in pairwise(starts) if ends[1] <= len(x)]
+        pieces = [slice(*ends) for ends in pairwise(starts)]
         for piece in (*(p for p in pieces if p.stop <= first_turn), *pieces):
             held[piece] = np.clip(play, floor[piece], ceiling[piece])
             play = held[piece.stop - 1]

@@ -148,9 +148,13 @@ def answer(
     lines = search(between(recordings, N), kinds, ALPHA, known)
     clean = [cleaned(recording, lines.effects, N) for recording in recordings] if lines.effects else recordings
     closed = close(Measured.of(clean), unit, kinds, seed=seed)
-    told = {type(e) for step in closed.steps for trial in (step.accepted, *step.rivals) for e in trial.effects}
-    absorbed = tuple(score for score in closed.scores if score.absorbed and score.hypothesis.kind not in told)
     high = above(clean, unit.healthy, closed.before.model, closed.after.model, ALPHA, MOST_ABOVE)
     found, unknown = closed.steps or lines.named, closed.rejected or closed.unknown or lines.unnamed or high
     verdict = FOUND if found else UNKNOWN if unknown else NOTHING
-    return Answer(verdict, patched(closed), tuple(known), lines.named, lines.unnamed, high, absorbed)
+    return Answer(verdict, patched(closed), tuple(known), lines.named, lines.unnamed, high, untestable(closed))
+
+
+def untestable(closed: Closed) -> tuple[Score, ...]:
+    """Effects that the recordings do not show; one that was found by its imperfect form they do show."""
+    told = {type(e) for step in closed.steps for trial in (step.accepted, *step.rivals) for e in trial.effects}
+    return tuple(score for score in closed.scores if score.absorbed and score.hypothesis.kind not in told)

@@ -31,9 +31,9 @@ from swgsim.seeds import generator
 ABSORBED = FORM_TOLERANCE**2
 # Multiples of the typical size of which the likeliest is sought, and of the size that was found last.
 SIZES, FACTORS = np.geomspace(0.1, 10, 9), np.array([0.5, 0.7, 0.85, 1.2, 1.4, 2.0])
-# Phases of a wave that are tried. A phase, place or shape moves by half of the spacing of what was tried; moves are
-# halved where none is likelier, so many times; moves at most.
-PHASES, HALVED, MOVES = 12, 3, 20
+# Phases of a wave that are tried. A phase, place or shape moves by this share of the spacing of what was tried; it is
+# halved so many times where no move is likelier; moves at most.
+PHASES, STEP, HALVED, MOVES = 12, 0.5, 3, 20
 # What a place between those that were tried, and the fit, add to the evidence (an estimate).
 ADDED = 8.0
 # Directions below this share of the largest variance are rounding.
@@ -145,13 +145,13 @@ def _directions(
 
 def _zoomed(fitted: Fitted, opened: Opened) -> Effect:
     """The effect of a hypothesis at its likeliest size, phase and place, its form being open."""
-    around, step, likeliest = list(_anywhere(opened)), 0.5, -np.inf
+    around, step, likeliest = list(_anywhere(opened)), STEP, -np.inf
     effect = around[0]
     for _ in range(MOVES):
         found = _log_likelihoods(fitted, around)
         if found.max() > likeliest:
             effect, likeliest = around[int(found.argmax())], float(found.max())
-        elif (step := step / 2) < 0.5 / 2**HALVED:
+        elif (step := step / 2) < STEP / 2**HALVED:
             break
         around = list(_around(effect, step, fitted.unit.of_another_structure))
     return effect
@@ -173,7 +173,7 @@ def _around(effect: Effect, step: float, another_structure: bool) -> Iterator[Ef
     for name, q in quantities(type(effect)).items():
         here, turns = getattr(effect, name), np.array([-step, step])
         if q.role is Role.SIZE:
-            to = np.clip(q.nothing + FACTORS ** (2 * step) * (here - q.nothing), q.low, q.high)
+            to = np.clip(q.nothing + FACTORS ** (step / STEP) * (here - q.nothing), q.low, q.high)
         elif q.role is Role.PHASE:
             to = (here + turns * 2 * np.pi / PHASES) % (2 * np.pi)
         elif q.role is Role.ANGLE:

@@ -183,21 +183,20 @@ def _evidence(step: Step, which: int) -> dict[str, Any]:
     )
     beside = "; ".join(map(str, trial.beside))
     once = f", once what has nothing to do with it is taken out: {beside}" if beside else ""
-    luck = f"so high a score comes by luck with probability {probability(score.chance)} in the whole library"
-    agrees = (
-        "one size serves all operating points, channels and orders, with parts that differ by "
-        f"{100 * agreement.form_error:.0f} %{once}"
-    )
-    open_ = (
-        f"in the library's own form, what is open of the gear absorbs all but {100 * score.visible:.2g} % of it; it "
-        f"shows by how it differs from that form, by {100 * agreement.form_error:.0f} %, which tells all that is "
-        "missing and is likelier than bare regularities"
-    )
+    if trial.imperfect:
+        why_believed = (
+            f"in the library's own form, what is open of the gear absorbs all but {100 * score.visible:.2g} % of it; "
+            f"it shows by how it differs from that form, by {100 * agreement.form_error:.0f} %, which tells all that "
+            "is missing and is likelier than bare regularities"
+        )
+    else:
+        why_believed = (
+            f"so high a score comes by luck with probability {probability(score.chance)} in the whole library; one "
+            "size serves all operating points, channels and orders, with parts that differ by "
+            f"{100 * agreement.form_error:.0f} %{once}"
+        )
     return {
-        "words": (
-            f"adding it{together} raises the log-likelihood of {raised}; "
-            + (open_ if trial.imperfect else f"{luck}; {agrees}")
-        ),
+        "words": f"adding it{together} raises the log-likelihood of {raised}; {why_believed}",
         "heldout_gain": number(trial.heldout_gain),
         "evidence": number(trial.evidence),
         "score": number(score.gain),
