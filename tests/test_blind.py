@@ -68,9 +68,11 @@ SAID = {
     "error": {"before": 2.0, "after": 1.0, "oracle": 1.0},
     "heldout": {"before": 2.0, "after": 2.0},
     "intervals": [{"name": "cam_form", "true": 1.0, "found": 1.1, "deviation": 0.1}],
+    "angles": [{"name": "cam_form", "true": 6.2, "found": 0.1, "deviation": 0.1}],
     "seconds": {"loop": 5.0, "loop_of_one_core": 4.0},
     "peak_memory_mib": 100.0,
 }
+INTERVALS = ("intervals", "angles")
 SHORT = replace(CASE, points=FULL.points[:2], repeats=1)
 HIDDEN = replace(CASE, effects=(LIBRARY["cam_form"](3, 2e-6, 1.0),), strengths=(3000.0,))
 
@@ -378,17 +380,17 @@ def test_a_mean_has_the_real_part_of_a_pattern_only() -> None:
 
 def test_the_score_counts_what_it_says() -> None:
     null = replace(CASE, stratum="easy null")
-    quiet = {"accepted": [], "rivals": [], "intervals": [], "verdict": "nothing_missing"}
+    quiet = {"accepted": [], "rivals": [], **dict.fromkeys(INTERVALS, ()), "verdict": "nothing_missing"}
     written = replace(HIDDEN, stratum="written", effects=(OUTSIDE[0](0.01, 1.0),))
     unknown = {**quiet, "verdict": "unknown_effect"}
     cases = [
         Judged(HIDDEN, {**SAID, "seconds": {"loop": 7.0, "loop_of_one_core": 4.0}}),
-        Judged(HIDDEN, {**SAID, "accepted": [["coning"]], "rivals": [[]], "intervals": []}),
+        Judged(HIDDEN, {**SAID, "accepted": [["coning"]], "rivals": [[]], **dict.fromkeys(INTERVALS, ())}),
         Judged(replace(HIDDEN, strengths=(60.0,)), {**SAID, **quiet}),
         Judged(null, {**SAID, **quiet}),
         Judged(null, SAID),
         Judged(written, {**SAID, **unknown, "unknown": [[1, "in s4 alone", "constant"]]}),
-        Judged(written, {**SAID, "intervals": [{"true": 1.0, "found": 2.0, "deviation": 0.1}]}),
+        Judged(written, {**SAID, **dict.fromkeys(INTERVALS, ({"true": 1.0, "found": 2.0, "deviation": 0.1},))}),
         Judged(HIDDEN, {"failure": "it broke"}),
     ]
     found = score(cases)
@@ -405,7 +407,8 @@ def test_the_score_counts_what_it_says() -> None:
         0,
         0,
     ]
-    assert found["coverage95"]["value"] == 2 / 3
+    # An angle a little below a whole turn lies beside one a little above none.
+    assert [found[kind]["value"] for kind in ("coverage95", "coverage95_of_angles")] == [2 / 3, 2 / 3]
     assert found["baselines"]["correlation"]["false_effect_rate"]["value"] == 1
     assert found["confusion"]["cam_form"] == {"cam_form": 1, "coning": 1, "nothing": 1, "failure": 1}
     assert [case.failed for case in worst(cases)] == [True, False, False, False]

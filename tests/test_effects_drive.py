@@ -17,6 +17,7 @@ from swgsim.effects.elastic_hysteresis import ElasticHysteresis
 from swgsim.effects.flank_friction import FlankFriction
 from swgsim.effects.grease_settling import GreaseSettling
 from swgsim.effects.grease_temperature import GreaseTemperature
+from swgsim.effects.input_friction import InputFriction
 from swgsim.effects.input_unbalance import InputUnbalance
 from swgsim.effects.kinematic_error_order import KinematicErrorOrder
 from swgsim.effects.load_dependent_friction import LoadDependentFriction
@@ -51,6 +52,7 @@ EFFECTS = {
         ElasticHysteresis(0.05),
         StiffnessRipple(3, 0.02, 0.7),
         MotorTorqueRipple(3, 0.01, 0.7),
+        InputFriction(3, 3e-3, 0.7),
         InputUnbalance(1e-3, 0.7),
         LoadTorqueRipple(3, 0.02, 0.7),
         GreaseTemperature(0.025),
@@ -89,7 +91,8 @@ def recordings():
     named |= {("ElasticHysteresis", RESONANT): (EFFECTS["ElasticHysteresis"],)}
     named |= {("no " + name, SLOW_HEAVY): (without(EFFECTS[name]),) for name in NAMES}
     named |= {("warm grease", SLOW_HEAVY): (WarmGrease(20.0, 0.025),)}
-    named |= {("against unbalance", SLOW_HEAVY): (MotorTorqueRipple(1, 1e-3, 0.7 + np.pi),)}
+    against = {"InputUnbalance": (1, 1e-3), "InputFriction": (3, 3e-3)}
+    named |= {("against " + n, SLOW_HEAVY): (MotorTorqueRipple(*wave, 0.7 + np.pi),) for n, wave in against.items()}
     slow = {(name, point): effects for point in (CRAWLING, CREEPING) for name, effects in (
         ("healthy", ()), ("StribeckFriction", (EFFECTS["StribeckFriction"],)))}  # fmt: skip
     slow |= {("healthy", UNLOADED): (LARGE_RIPPLE,), ("LostMotion", UNLOADED): (LARGE_RIPPLE, LostMotion(1e-4))}
@@ -159,6 +162,7 @@ def test_sizes_beyond_the_bounds_are_errors(name):
     [
         (KinematicErrorOrder, 8),
         (PositionFriction, 4),
+        (InputFriction, 4),
         (StiffnessRipple, 4),
         (MotorTorqueRipple, 12),
         (LoadTorqueRipple, 4),
@@ -196,6 +200,7 @@ def test_a_wave_of_the_torque_is_in_phase_in_all_gauges(change, name):
         ("StiffnessRipple", "T_stiff", 3, 0.02 * 4),
         ("MotorTorqueRipple", "T_motor", 3, 0.01),
         ("InputUnbalance", "T_loss", 1, 1e-3),
+        ("InputFriction", "T_loss", 3, 3e-3),
         ("LoadTorqueRipple", "T_load", 3, 0.02 * 70),
     ],
 )
@@ -248,12 +253,22 @@ def test_speed_ripple_is_a_share_of_the_speed_and_takes_its_square_in_torque(cha
     assert fast / slow == pytest.approx(4, rel=0.05)
 
 
-def test_unbalance_is_a_ripple_of_the_motor_that_the_flange_does_not_feel(recordings, change):
-    behind_the_flange = ("n_in", "T_out", *SENSORS)
-    assert same(recordings, "InputUnbalance", "against unbalance", SLOW_HEAVY, behind_the_flange)
-    assert not same(recordings, "InputUnbalance", "against unbalance", SLOW_HEAVY, ("T_in",))
-    sizes = [abs(change("InputUnbalance", "n_in", order, SLOW_HEAVY)) for order in range(1, 13)]
-    assert np.argmax(sizes) == 0
+@pytest.mark.parametrize(("name", "order"), [("InputUnbalance", 1), ("InputFriction", 3)])
+def test_a_torque_behind_the_flange_is_a_ripple_of_the_motor_that_the_flange_does_not_feel(
+    recordings, change, name, order
+):
+    assert same(recordings, name, "against " + name, SLOW_HEAVY, ("n_in", "T_out", *SENSORS))
+    assert not same(recordings, name, "against " + name, SLOW_HEAVY, ("T_in",))
+    sizes = [abs(change(name, "n_in", n, SLOW_HEAVY)) for n in range(1, 13)]
+    assert np.argmax(sizes) + 1 == order
+
+
+def test_a_flange_behind_the_rotor_feels_the_share_of_friction_that_the_rotor_makes():
+    """The speed hardly answers the load there, so what the rotor's inertia takes of the torque is felt."""
+    geared = replace(GEAR, transmission=replace(GEAR.transmission, rotor_share=0.8))
+    runs = [Run(geared, FAST_HEAVY, effects) for effects in ((), (EFFECTS["InputFriction"],))]
+    healthy, rough = (each.channels["T_in"] for each in simulate_turns(runs, 1, 96, SECTORS))
+    assert abs(2 * np.fft.rfft(rough - healthy, norm="forward")[3]) == pytest.approx(0.8 * 3e-3, rel=0.1)
 
 
 def test_stribeck_friction_shows_at_low_speed_only_at_every_load(change):

@@ -15,6 +15,7 @@ from swgsim.loop.asking import Round
 from swgsim.loop.closed import Closed
 from swgsim.loop.evidence import FORM_TOLERANCE, Coherence
 from swgsim.loop.fitted import Fitted
+from swgsim.loop.gaussian import as_squares
 from swgsim.loop.leading import ALPHA, screened
 from swgsim.loop.model import Model
 from swgsim.loop.reporting import effects
@@ -494,3 +495,5 @@ def test_it_is_said_why_an_effect_is_no_cause():
     assert why(light, answer).startswith("it brings less than ten times what it leaves")
     assert why(vague, answer) == "operating points, channels and orders leave its size in doubt by 66 %"
     assert "leave the size of wave in doubt by 66 %" in why(pair, answer)
+    foreign = replace(A, own=0.3 * as_squares(A.evidence))
+    assert why(foreign, answer).startswith("as the library has it, it explains 30 % of what it gains")

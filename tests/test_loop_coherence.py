@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from chain_fixtures import GEAR
-from loop_fixtures import Bump, drawn, fitted_to, holding
+from loop_fixtures import Bump, Wave, drawn, fitted_to, holding
 
 from swgsim.loop import evidence
-from swgsim.loop.declared import Declared
+from swgsim.loop.declared import Declared, of_effects
 from swgsim.loop.evidence import NO_SIZE
 from swgsim.loop.features import Layout
 from swgsim.loop.fitted import Fitted
@@ -245,6 +245,25 @@ def test_a_size_is_as_doubtful_as_imperfect_forms_of_other_effects_would_make_it
     found = evidence.doubt_by_others(held, 0, {1: evidence.Coherence(1.0, form_error=0.3, doubt=0.0)})
     assert found == pytest.approx(moved.std(), rel=0.2)
     assert evidence.doubt_by_others(held, 0, {}) == 0.0
+
+
+def test_a_phase_is_as_doubtful_as_imperfect_forms_would_make_it(planted, monkeypatch):
+    """By as much as parts of all sizes move the likeliest phase; those of another effect move it too."""
+    fitted, whole = planted
+    rng = np.random.default_rng(22)
+    J = STRONG * rng.standard_normal((len(fitted.measured.situations), len(LAYOUT), 3))
+    model = Model(GEAR, (Wave(1.0, 0.5), Bump(1.0)))
+    parameters = of_effects(model)
+    held = replace(fitted, parameters=parameters, calibrated=replace(fitted.calibrated, model=model, J=J))
+    other = fitted.measured.rows(J[..., 1]) * np.repeat(rng.uniform(0, 2, len(fitted.measured)), len(LAYOUT))
+    monkeypatch.setattr(evidence, "signature", lambda fitted, number: (whole, other)[number])
+    off = np.hstack([0.3 * evidence.parts(held, whole), 0.2 * evidence.parts(held, other)])
+    likeliest = [held.whole.common_mean(off @ rng.standard_normal(off.shape[1]))[-3:] for _ in range(300)]
+    spreads = [parameter.sd for parameter in parameters.values()]
+    found = evidence.moved_by_forms(held, {n: evidence.Coherence(1.0, e, 0.0) for n, e in enumerate((0.3, 0.2))})
+    assert not any(evidence.moved_by_forms(held, {}).values())
+    assert list(found) == ["wave 1: height", "wave 1: theta", "bump 2: height"]
+    assert list(found.values()) == pytest.approx(np.std(likeliest, axis=0) * spreads, rel=0.15)
 
 
 def test_another_structure_costs_little_at_points_left_out(of_gauges):

@@ -14,11 +14,12 @@ from swgsim.loop.alone import Alone
 from swgsim.loop.beside import beside_unknown, in_company, more_than, outdone
 from swgsim.loop.features import Layout
 from swgsim.loop.fitted import LIKELIER_BALANCED
-from swgsim.loop.gaussian import Covariance
+from swgsim.loop.gaussian import Covariance, as_squares
 from swgsim.loop.model import Model
 from swgsim.loop.scatter import Scatter
 from swgsim.loop.screening import Score
-from swgsim.loop.trial import Trial, gained, tried
+from swgsim.loop.trial import Trial, gain, gained, tried
+from swgsim.loop.unit import STRUCTURE
 from swgsim.loop.vocabulary import Atom, columns, describe, set_free, strongest
 
 LAYOUT = Layout(("T_in", "s1", "s2", "s3", "s4"))
@@ -89,6 +90,33 @@ def test_a_trial_is_judged_with_the_form_that_its_parts_ask_for(fitted, signatur
     assert found.heldout_gain > held[0].sum() + 100
     assert found.evidence > held[1] + 100
     np.testing.assert_array_equal(found.fitted.open, after.open)
+
+
+@pytest.mark.parametrize(("share", "its_own"), [(0.4, False), (0.6, True)])
+def test_an_effect_is_most_of_what_it_is_credited_with(fitted, signature, share, its_own):
+    judged = trial(fitted, signature)
+    judged = replace(judged, own=share * as_squares(judged.evidence))
+    judged.__dict__["signature"] = signature[:, None]
+    assert judged.pays == its_own
+    assert np.isfinite(judged.merit) == its_own
+
+
+@pytest.mark.parametrize(
+    ("structure", "place", "asked"), [(STRUCTURE, "mesh", False), (0.03, "mesh", True), (0.03, "drive", False)]
+)
+def test_what_is_its_own_is_asked_of_an_effect_on_another_structure(
+    fitted, signature, monkeypatch, structure, place, asked
+):
+    """Lines of any gauge are open beside it there, so that a small effect may be credited with much else."""
+    monkeypatch.setattr(Bump, "place", place)
+    now = holding(fitted, signature + drawn(fitted.whole, np.random.default_rng(14)))
+    now = replace(now, unit=replace(fitted.unit, structure=structure))
+    with_effect = replace(now.calibrated, model=Model(GEAR, (Bump(1.0),)))
+    after = replace(now, calibrated=with_effect, open=np.hstack([now.open, 100 * signature[:, None]]))
+    monkeypatch.setattr(trial_module, "extended", lambda start, added: after)
+    monkeypatch.setattr(trial_module, "signature", lambda fitted, number: signature)
+    found = tried(now, Score(BUMP, 100.0, 1, 1.0, 0.0, 0.1, 1.0, 1e-6), (Bump(1.0),), now)
+    assert found.own == (pytest.approx(gain(now, signature[:, None])) if asked else np.inf)
 
 
 def test_another_thing_of_like_size_does_not_outdo_an_effect(fitted, stray, signature):

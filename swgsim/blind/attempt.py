@@ -15,7 +15,7 @@ from swgsim.blind.prediction import unseen_error
 from swgsim.blind.sealed import Sealed
 from swgsim.effects import text
 from swgsim.effects.base import Effect
-from swgsim.effects.quantity import size_of
+from swgsim.effects.quantity import Role, quantities, size_of
 from swgsim.loop.answer import Answer, answer
 from swgsim.loop.declared import name_of
 from swgsim.loop.evidence import signature
@@ -80,7 +80,8 @@ def _against_truth(found: Answer, unit: Unit, case: Sealed, setting: Setting) ->
     truth = unseen(case, setting, before.measured.layout)
     errors = {"before": unseen_error(before, truth), "after": unseen_error(after, truth)}
     errors["oracle"] = unseen_error(_oracle(before, unit, case), truth)
-    return {"error": errors, "heldout": heldout(before, after), "intervals": _intervals(found, case)}
+    sizes, angles = _intervals(found, case)
+    return {"error": errors, "heldout": heldout(before, after), "intervals": sizes, "angles": angles}
 
 
 def _oracle(before: Fitted, unit: Unit, case: Sealed) -> Fitted:
@@ -91,18 +92,25 @@ def _oracle(before: Fitted, unit: Unit, case: Sealed) -> Fitted:
     return fit(before.measured, unit, unit.model.plus(*known))
 
 
-def _intervals(said: Answer, case: Sealed) -> list[dict[str, Any]]:
-    """Sizes of the effects that were rightly found: true, found, and the standard deviation that was given."""
-    found, after = [], said.closed.after
+def _intervals(said: Answer, case: Sealed) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
+    """Sizes of the effects that were rightly found, and their phases and places: true, found, and the standard
+    deviation that was given.
+    """
+    sizes, angles, after = [], [], said.closed.after
     for true in case.effects:
         alike = _found_as(true, after.added)
-        if alike is not None:
-            number = len(after.unit.model.effects) + alike
-            effect, name = after.model.effects[number], size_of(type(true))
+        if alike is None:
+            continue
+        number = len(after.unit.model.effects) + alike
+        effect = after.model.effects[number]
+        for name, q in quantities(type(true)).items():
             deviation = said.closed.deviation.get(name_of(effect, number, name), np.nan)
-            values = {"true": _acted(true, case, after, number), "found": getattr(effect, name), "deviation": deviation}
-            found.append({"name": true.name(), **{key: float(value) for key, value in values.items()}})
-    return found
+            found = {"name": true.name(), "found": float(getattr(effect, name)), "deviation": float(deviation)}
+            if q.role is Role.SIZE:
+                sizes.append(found | {"true": float(_acted(true, case, after, number))})
+            elif q.role in (Role.PHASE, Role.ANGLE):
+                angles.append(found | {"true": float(getattr(true, name))})
+    return sizes, angles
 
 
 def _found_as(true: Effect, effects: Sequence[Effect]) -> int | None:

@@ -7,7 +7,7 @@ FAMILIES: Mapping[str, tuple[str, ...]] = {
     "friction of the flanks": ("flank_friction", "aged_grease", "load_dependent_friction"),
     "place of one bridge": ("gauge_position", "gauge_direction"),
     "torque at the input": ("seal_friction", "flange_zero", "churning_loss", "bearing_friction"),
-    "ripple of the input": ("input_unbalance", "motor_torque_ripple", "speed_ripple"),
+    "ripple of the input": ("input_friction", "input_unbalance", "motor_torque_ripple", "speed_ripple"),
     "deflection": ("worn_wave_generator", "speed_deformation", "thermal_growth"),
     "gain over time": ("amplifier_drift", "bond_creep"),
     "delay of channels": ("channel_skew", "filter_mismatch"),

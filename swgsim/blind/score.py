@@ -54,6 +54,7 @@ def score(cases: Sequence[Judged]) -> dict[str, Any]:
         "worse_with_the_true_model_too": rate([case.worse_with_truth for case in answered if case.worse]),
         "worse_where_recorded": rate([worse for case in answered if (worse := case.worse_where_recorded) is not None]),
         "coverage95": rate(_covered(answered)),
+        "coverage95_of_angles": rate(_angles_covered(answered)),
         "coverage95_of_library_form": rate(_covered([c for c in answered if c.case.form in ("mesh", "stray order")])),
         "seconds_median": median([case.said["seconds"]["loop"] for case in answered])["value"],
         "seconds_max": max((case.said["seconds"]["loop"] for case in answered), default=None),
@@ -92,6 +93,12 @@ def _covered(cases: Sequence[Judged]) -> list[bool]:
     """Whether true sizes lie within the intervals of sizes that were rightly found."""
     found = [each for case in cases for each in case.said["intervals"]]
     return [abs(each["found"] - each["true"]) <= NORMAL * each["deviation"] for each in found]
+
+
+def _angles_covered(cases: Sequence[Judged]) -> list[bool]:
+    """Whether true phases and places lie within their intervals, the shorter way around."""
+    found = [each for case in cases for each in case.said["angles"]]
+    return [abs((e["found"] - e["true"] + np.pi) % (2 * np.pi) - np.pi) <= NORMAL * e["deviation"] for e in found]
 
 
 def _baseline(name: str, cases: Sequence[Judged]) -> dict[str, Any]:

@@ -19,6 +19,7 @@ OF_LOOP = {
     "worse_with_the_true_model_too": "... with the truth too",
     "worse_where_recorded": "... at recorded points",
     "coverage95": "95 % intervals cover",
+    "coverage95_of_angles": "... those of angles",
     "look_alikes_named": "look-alikes named",
     "absorbed_named_as_such": "untestable named as such",
 }

@@ -36,6 +36,7 @@ from swgsim.effects.gauge_gain import GaugeGain
 from swgsim.effects.gauge_position import GaugePosition
 from swgsim.effects.grease_settling import GreaseSettling
 from swgsim.effects.grease_temperature import GreaseTemperature
+from swgsim.effects.input_friction import InputFriction
 from swgsim.effects.input_unbalance import InputUnbalance
 from swgsim.effects.kinematic_error_order import KinematicErrorOrder
 from swgsim.effects.load_dependent_friction import LoadDependentFriction
@@ -100,6 +101,7 @@ SEARCHED: tuple[type[Effect], ...] = (
     BearingFriction,
     ChurningLoss,
     ElasticHysteresis,
+    InputFriction,
     InputUnbalance,
     LoadTorqueRipple,
     LostMotion,

@@ -202,6 +202,26 @@ def doubt_by_others(fitted: Fitted, number: int, others: Mapping[int, Coherence]
     return float(np.linalg.norm(_shares(fitted, number, signature(fitted, number), np.hstack(off)))) if off else 0.0
 
 
+def moved_by_forms(fitted: Fitted, forms_found: Mapping[int, Coherence]) -> dict[str, float]:
+    """Standard deviation of each fitted parameter, as effects differ from the library's shape.
+
+    Parameters
+    ----------
+    fitted : Fitted
+    forms_found : mapping
+        Coherence of each effect by its number.
+    """
+    off = [np.zeros((len(fitted.residual), 0))]
+    for number, each in forms_found.items():
+        signed = signature(fitted, number)
+        off += [each.form_error * parts(fitted, signed), _of_structure(fitted, number, signed)]
+    errors = fitted.errors.with_columns(fitted.strict.open)
+    J = errors.whiten(fitted.J)
+    moved = np.linalg.solve(J.T @ J + np.eye(J.shape[1]), J.T @ errors.whiten(np.hstack(off)))
+    by = np.linalg.norm(moved, axis=1).tolist()
+    return {name: share * p.sd for (name, p), share in zip(fitted.parameters.items(), by, strict=True)}
+
+
 def _shares(
     fitted: Fitted, number: int, signed: Float[np.ndarray, " row"], off: Float[np.ndarray, "row column"]
 ) -> Float[np.ndarray, " column"]:

@@ -15,12 +15,14 @@ from swgsim.loop.evidence import (
     LEAST_GAIN,
     Coherence,
     coherence,
+    moved_by_forms,
     open_as_found,
     open_form,
     signature,
 )
 from swgsim.loop.fitted import Fitted
 from swgsim.loop.fitting import extended
+from swgsim.loop.gaussian import as_squares
 from swgsim.loop.screening import Score
 from swgsim.loop.shapes import over_shapes
 from swgsim.loop.vocabulary import Described
@@ -34,6 +36,9 @@ LIKELIER, LEAST_EVIDENCE = 7.0, 10.0
 EXACT = 0.01
 # An effect of which no more than this is left, in standard deviations, is none.
 NOTHING = 0.1
+# Of what an effect is credited with in a gear of another structure, this share must be its own: what the library has of
+# it explains it. The rest is what that structure may make of it, and of much else.
+OWN = 0.5
 # Directions below this share of the largest one are rounding.
 ROUNDING = 1e-6
 
@@ -62,6 +67,9 @@ class Trial:
         Regularities beside it that were taken out before its parts agreed.
     imperfect : bool
         Whether its form was open when it was fitted, as what the gear leaves open absorbs it in its own.
+    own : float
+        Fall of the residual's sum of squares that its effects bring as the library has them; asked only where another
+        structure leaves much of them open.
     """
 
     score: Score
@@ -72,6 +80,7 @@ class Trial:
     coherence: tuple[Coherence, ...]
     beside: tuple[Described, ...] = ()
     imperfect: bool = False
+    own: float = np.inf
 
     @property
     def heldout_gain(self) -> float:
@@ -101,10 +110,16 @@ class Trial:
     @property
     def pays(self) -> bool:
         """Whether its fit came to rest, helps on operating points it was not fitted on, and is likelier altogether than
-        that it is not there: the two count different errors of the fit, and the luck of noise is seldom in both.
+        that it is not there: the two count different errors of the fit, and the luck of noise is seldom in both. And
+        whether it does so as the effect that it is.
         """
         helps = self.evidence > (LIKELIER if self.heldout_gain > LEAST_GAIN else LEAST_EVIDENCE)
-        return helps and self.heldout_gain > -LEAST_GAIN and self.fitted.calibrated.settled
+        return helps and self.heldout_gain > -LEAST_GAIN and self.fitted.calibrated.settled and not self.disowned
+
+    @property
+    def disowned(self) -> bool:
+        """Whether most of what it gains is what another structure may make of it."""
+        return self.own < OWN * as_squares(self.evidence)
 
     @property
     def deviation(self) -> dict[str, float]:
@@ -114,8 +129,9 @@ class Trial:
 
     @property
     def merit(self) -> float:
-        """What trials are ordered by; one that was fitted down to nothing is none."""
-        return self.heldout_gain + self.evidence if seen(self.fitted, self.signature) else -np.inf
+        """What trials are ordered by; one that was fitted down to nothing, or gains by what it is not, is none."""
+        there = seen(self.fitted, self.signature) and not self.disowned
+        return self.heldout_gain + self.evidence if there else -np.inf
 
 
 def seen(fitted: Fitted, signatures: Float[np.ndarray, "row effect"]) -> bool:
@@ -143,7 +159,9 @@ def tried(now: Fitted, score: Score, added: tuple[Effect, ...], start: Fitted) -
     found = tuple(coherence(fitted, known + number) for number in range(len(added)))
     gains = gained(now, open_as_found(fitted, found))
     # Many trials are kept, so without what was computed of them on the way.
-    return Trial(score, effects, replace(fitted), *gains, found)
+    trial = Trial(score, effects, replace(fitted), *gains, found)
+    open_to_much = fitted.unit.of_another_structure and any(effect.structural for effect in effects)
+    return replace(trial, own=trial.explained(now)) if open_to_much else trial
 
 
 def gained(now: Fitted, fitted: Fitted) -> tuple[Float[np.ndarray, " point"], float]:
@@ -158,8 +176,8 @@ def gained(now: Fitted, fitted: Fitted) -> tuple[Float[np.ndarray, " point"], fl
 
 
 def widened(fitted: Fitted, first: int, coherences: Sequence[Coherence]) -> dict[str, float]:
-    """Standard deviation of each fitted parameter, over all shapes of an effect, and of sizes also by what an imperfect
-    form leaves in doubt.
+    """Standard deviation of each fitted parameter, over all shapes of an effect, and of all that an effect has also by
+    what an imperfect form leaves in doubt.
 
     Parameters
     ----------
@@ -169,14 +187,15 @@ def widened(fitted: Fitted, first: int, coherences: Sequence[Coherence]) -> dict
     coherences : sequence of Coherence
     """
     found = dict(fitted.deviation)
+    moved = moved_by_forms(fitted, dict(enumerate(coherences, first)))
     for number, agreement in enumerate(coherences, first):
         found |= over_shapes(fitted, number)
         effect = fitted.model.effects[number]
         size = size_of(type(effect))
         by = getattr(effect, size) - quantities(type(effect))[size].nothing
-        name = name_of(effect, number, size)
-        found[name] = float(np.linalg.norm([found[name], agreement.doubt * by, _exact(effect, fitted) * by]))
-    return found
+        moved[name_of(effect, number, size)] = float(np.hypot(agreement.doubt, _exact(effect, fitted)) * abs(by))
+    of_effects = {name: doubt for name, doubt in moved.items() if name in found and ": " in name}
+    return found | {name: float(np.hypot(found[name], doubt)) for name, doubt in of_effects.items()}
 
 
 def _exact(effect: Effect, fitted: Fitted) -> float:

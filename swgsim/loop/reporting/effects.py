@@ -10,6 +10,7 @@ from swgsim.loop.answer import Answer
 from swgsim.loop.declared import name_of
 from swgsim.loop.errors import errors
 from swgsim.loop.evidence import LEAST_GAIN, NO_SIZE
+from swgsim.loop.gaussian import as_squares
 from swgsim.loop.reporting.numbers import estimate, number, probability
 from swgsim.loop.reporting.sizes import Sizes
 from swgsim.loop.sidelines import Sideline
@@ -113,6 +114,12 @@ def why(trial: Trial, answer: Answer, better: Trial | None = None) -> str:
         return "accepted at first; once the others were in the model, another one, or nothing, stood in its place"
     if not trial.fitted.calibrated.settled:
         return "its fit did not come to rest"
+    if trial.disowned:
+        share = 100 * trial.own / as_squares(trial.evidence)
+        return (
+            f"as the library has it, it explains {share:.0f} % of what it gains: the rest is what the other structure "
+            "of this gear may make of it, and of much else"
+        )
     split, effect = max(zip(trial.coherence, trial.effects, strict=True), key=lambda each: each[0].disagreement)
     if split.disagreement >= NO_SIZE:
         size = f"the size of {effect.title()}" if len(trial.effects) > 1 else "its size"
