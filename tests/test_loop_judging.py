@@ -92,8 +92,8 @@ def test_a_trial_is_judged_with_the_form_that_its_parts_ask_for(fitted, signatur
     np.testing.assert_array_equal(found.fitted.open, after.open)
 
 
-@pytest.mark.parametrize(("share", "its_own"), [(0.4, False), (0.6, True)])
-def test_an_effect_is_most_of_what_it_is_credited_with(fitted, signature, share, its_own):
+@pytest.mark.parametrize(("share", "its_own"), [(0.3, False), (0.4, True)])
+def test_a_third_of_what_an_effect_is_credited_with_is_its_own(fitted, signature, share, its_own):
     judged = trial(fitted, signature)
     judged = replace(judged, own=share * as_squares(judged.evidence))
     judged.__dict__["signature"] = signature[:, None]

@@ -37,8 +37,8 @@ EXACT = 0.01
 # An effect of which no more than this is left, in standard deviations, is none.
 NOTHING = 0.1
 # Of what an effect is credited with in a gear of another structure, this share must be its own: what the library has of
-# it explains it. The rest is what that structure may make of it, and of much else.
-OWN = 0.5
+# it explains it. The rest is what that structure may make of it, and of much else (set on foreign gears).
+OWN = 1 / 3
 # Directions below this share of the largest one are rounding.
 ROUNDING = 1e-6
 
