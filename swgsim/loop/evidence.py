@@ -202,17 +202,17 @@ def doubt_by_others(fitted: Fitted, number: int, others: Mapping[int, Coherence]
     return float(np.linalg.norm(_shares(fitted, number, signature(fitted, number), np.hstack(off)))) if off else 0.0
 
 
-def moved_by_forms(fitted: Fitted, forms_found: Mapping[int, Coherence]) -> dict[str, float]:
+def moved_by_forms(fitted: Fitted, coherences: Mapping[int, Coherence]) -> dict[str, float]:
     """Standard deviation of each fitted parameter, as effects differ from the library's shape.
 
     Parameters
     ----------
     fitted : Fitted
-    forms_found : mapping
+    coherences : mapping
         Coherence of each effect by its number.
     """
     off = [np.zeros((len(fitted.residual), 0))]
-    for number, each in forms_found.items():
+    for number, each in coherences.items():
         signed = signature(fitted, number)
         off += [each.form_error * parts(fitted, signed), _of_structure(fitted, number, signed)]
     errors = fitted.errors.with_columns(fitted.strict.open)

@@ -118,7 +118,7 @@ class Trial:
 
     @property
     def disowned(self) -> bool:
-        """Whether most of what it gains is what another structure may make of it."""
+        """Whether hardly any of what it gains is its own, and most what another structure may make of it."""
         return self.own < OWN * as_squares(self.evidence)
 
     @property
