@@ -36,6 +36,8 @@ from swgsim.effects.quantity import quantities
 from swgsim.effects.regularity import LAWS, PATTERNS
 from swgsim.gear import OperatingPoint
 from swgsim.loop import calibration
+from swgsim.loop.answer import Answer
+from swgsim.loop.closed import Closed
 from swgsim.loop.declared import of_unit
 from swgsim.loop.features import ORDERS, Layout, features
 from swgsim.loop.fitted import Fitted
@@ -414,6 +416,24 @@ def test_the_score_counts_what_it_says() -> None:
     assert [case.failed for case in worst(cases)] == [True, False, False, False]
     assert (found["seconds_max"], found["seconds_median"]) == (7.0, 5.0)
     json.dumps(found, allow_nan=False)
+
+
+@pytest.mark.parametrize("order", [3, 5])
+def test_angles_are_judged_of_what_was_chosen_alike(fitted: Fitted, order: int) -> None:
+    """The phase of another order is another thing."""
+    found = LIBRARY["cam_form"](order, 2.1e-6, 0.9)
+    after = replace(fitted, calibrated=replace(fitted.calibrated, model=fitted.model.plus(found)))
+    closed = Closed(fitted, after, after, (), (), (), (), None)
+    closed.__dict__["deviation"] = {"cam form 1: amplitude": 1e-7, "cam form 1: phase": 0.2}
+    sizes, angles = attempt._intervals(Answer("effect_found", closed, (), (), (), (), ()), HIDDEN)
+    assert sizes == [{"name": "cam_form", "true": 2e-6, "found": 2.1e-6, "deviation": 1e-7}]
+    assert angles == ([{"name": "cam_form", "true": 1.0, "found": 0.9, "deviation": 0.2}] if order == 3 else [])
+
+
+def test_an_angle_that_may_be_any_is_not_counted() -> None:
+    angles = [{"true": 1.0, "found": 1.2, "deviation": deviation} for deviation in (0.2, 0.05, 2.0)]
+    covered = score([Judged(HIDDEN, {**SAID, "angles": angles})])["coverage95_of_angles"]
+    assert (covered["value"], covered["count"]) == (0.5, 2)
 
 
 def test_worse_predictions_are_told_from_those_of_the_true_model() -> None:

@@ -239,7 +239,7 @@ def test_what_a_regularity_tells_beyond_an_effect_may_be_a_second_one(monkeypatc
     monkeypatch.setattr(asking, "zoom", lambda _, start: Bump(1.0) if start is declared else None)
     monkeypatch.setattr(asking, "tried", lambda now, _, added, start: {FITTED: A}[now] if start is declared else None)
     monkeypatch.setattr(asking, "paired", lambda *_: (pair,) if pair else ())
-    monkeypatch.setattr(asking, "worth_it", lambda pairs, _: next(iter(pairs), None))
+    monkeypatch.setattr(asking, "worth_it", lambda pairs, *_: next(iter(pairs), None))
     monkeypatch.setattr(asking, "describe", lambda _: (plain,))
     monkeypatch.setattr(asking, "outdone", lambda trial, *_: any(trial is each for each in outdone))
     found = asking.ask(FITTED, [A.score], [], 0)
@@ -473,7 +473,7 @@ def test_other_pairs_may_be_rivals_of_a_pair_alone(monkeypatch, accepted, listed
     monkeypatch.setattr(asking, "zoom", lambda *_: Bump(1.0))
     monkeypatch.setattr(asking, "tried", lambda *_: best)
     monkeypatch.setattr(asking, "paired", lambda *_: (PAIR, other))
-    monkeypatch.setattr(asking, "worth_it", lambda pairs, _: pairs[0])
+    monkeypatch.setattr(asking, "worth_it", lambda pairs, *_: pairs[0])
     monkeypatch.setattr(asking, "of_doubles", lambda accepted, *_: (doubles,) if accepted is PAIR else ())
     monkeypatch.setattr(
         asking, "describe", lambda _: (Described(Atom(2, "in s1 alone", "constant"), 1.0, 2, 0.1, 1.0),)
@@ -496,4 +496,4 @@ def test_it_is_said_why_an_effect_is_no_cause():
     assert why(vague, answer) == "operating points, channels and orders leave its size in doubt by 66 %"
     assert "leave the size of wave in doubt by 66 %" in why(pair, answer)
     foreign = replace(A, own=0.3 * as_squares(A.evidence))
-    assert why(foreign, answer).startswith("as the library has it, it explains 30 % of what it gains")
+    assert why(foreign, answer).startswith("as the library has it, it explains 30 % of what it gains;")

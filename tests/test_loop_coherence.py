@@ -264,6 +264,12 @@ def test_a_phase_is_as_doubtful_as_imperfect_forms_would_make_it(planted, monkey
     assert not any(evidence.moved_by_forms(held, {}).values())
     assert list(found) == ["wave 1: height", "wave 1: theta", "bump 2: height"]
     assert list(found.values()) == pytest.approx(np.std(likeliest, axis=0) * spreads, rel=0.15)
+    monkeypatch.setattr("swgsim.loop.trial.over_shapes", lambda *_: {})
+    coherences = [evidence.Coherence(1.0, 0.3, 0.1), evidence.Coherence(1.0, 0.2, 0.4)]
+    theta, height = "wave 1: theta", "bump 2: height"
+    spread = widened(held, 0, coherences)
+    assert spread[theta] == pytest.approx(np.hypot(held.deviation[theta], found[theta]))
+    assert spread[height] == pytest.approx(np.linalg.norm([held.deviation[height], 0.4, EXACT]))
 
 
 def test_another_structure_costs_little_at_points_left_out(of_gauges):

@@ -3,6 +3,7 @@
 from collections import Counter
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from fabricated_trials import FITTED, MIMIC, PAIR, A, B, C, Dip, Mimic
 from loop_fixtures import Bump, Wave
@@ -19,7 +20,8 @@ UNSOUND = (Coherence(0.0, 0.0, 0.0),)
 @pytest.fixture(autouse=True)
 def _by_evidence(monkeypatch):
     """Fabricated trials have a merit; one with two effects is tried as the pair of them."""
-    monkeypatch.setattr(Trial, "merit", property(lambda trial: trial.evidence))
+    for name in ("merit", "credit"):
+        monkeypatch.setattr(Trial, name, property(lambda trial: trial.evidence))
     monkeypatch.setattr(pairs, "unbent", lambda now: now)
     monkeypatch.setattr(pairs, "screened", lambda *_: ())
     monkeypatch.setattr(pairs, "tried", lambda now, score, added, start: replace(PAIR, score=score, effects=added))
@@ -33,8 +35,20 @@ def kinds(found: tuple[Trial, ...]) -> list[tuple[type, ...]]:
 def test_a_pair_must_gain_more_than_the_best_effect_alone_and_be_sound(gain, agrees, worth):
     both = (Coherence(1.0, 0.0, 0.0), Coherence(agrees, 0.0, 0.0))
     pair = replace(PAIR, evidence=A.evidence + gain * 2 * PAIR_GAIN, coherence=both)
-    assert worth_it((pair,), A) is (pair if worth else None)
-    assert worth_it((), A) is None
+    assert worth_it((pair,), A, FITTED) is (pair if worth else None)
+    assert worth_it((), A, FITTED) is None
+
+
+@pytest.mark.parametrize(("place", "share", "worth"), [("mesh", 0.3, False), ("mesh", 0.4, True), ("drive", 0.3, True)])
+def test_in_another_structure_enough_of_what_the_second_adds_must_be_its_own(monkeypatch, place, share, worth):
+    """The first may own all that it gains, and hide that its companion is credited with something else."""
+    monkeypatch.setattr(Wave, "place", place)
+    foreign = replace(FITTED, unit=replace(FITTED.unit, structure=0.03))
+    pair = replace(PAIR, fitted=foreign, evidence=A.evidence + 100)
+    pair.__dict__["signature"] = np.zeros((1, 2))
+    monkeypatch.setattr(Trial, "explained", lambda *_: 2 * A.evidence + share * 200)
+    monkeypatch.setattr(pairs, "gain", lambda *_: 2 * A.evidence)
+    assert worth_it((pair,), A, foreign) is (pair if worth else None)
 
 
 def test_pairs_are_tried_with_the_best():

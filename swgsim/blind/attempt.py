@@ -93,8 +93,8 @@ def _oracle(before: Fitted, unit: Unit, case: Sealed) -> Fitted:
 
 
 def _intervals(said: Answer, case: Sealed) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
-    """Sizes of the effects that were rightly found, and their phases and places: true, found, and the standard
-    deviation that was given.
+    """Sizes of the effects that were rightly found, and phases and places if all that was chosen is right too, such as
+    the order: true, found, and the standard deviation that was given.
     """
     sizes, angles, after = [], [], said.closed.after
     for true in case.effects:
@@ -108,7 +108,7 @@ def _intervals(said: Answer, case: Sealed) -> tuple[list[dict[str, Any]], list[d
             found = {"name": true.name(), "found": float(getattr(effect, name)), "deviation": float(deviation)}
             if q.role is Role.SIZE:
                 sizes.append(found | {"true": float(_acted(true, case, after, number))})
-            elif q.role in (Role.PHASE, Role.ANGLE):
+            elif q.role in (Role.PHASE, Role.ANGLE) and chosen(effect) == chosen(true):
                 angles.append(found | {"true": float(getattr(true, name))})
     return sizes, angles
 

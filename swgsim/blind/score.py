@@ -54,7 +54,7 @@ def score(cases: Sequence[Judged]) -> dict[str, Any]:
         "worse_with_the_true_model_too": rate([case.worse_with_truth for case in answered if case.worse]),
         "worse_where_recorded": rate([worse for case in answered if (worse := case.worse_where_recorded) is not None]),
         "coverage95": rate(_covered(answered)),
-        "coverage95_of_angles": rate(_angles_covered(answered)),
+        "coverage95_of_angles": rate(_covered(answered, "angles", 2 * np.pi)),
         "coverage95_of_library_form": rate(_covered([c for c in answered if c.case.form in ("mesh", "stray order")])),
         "seconds_median": median([case.said["seconds"]["loop"] for case in answered])["value"],
         "seconds_max": max((case.said["seconds"]["loop"] for case in answered), default=None),
@@ -89,16 +89,14 @@ def _described(cases: Sequence[Judged]) -> dict[str, Any]:
     return {**parts, "all": rate([all(each) for each in found])}
 
 
-def _covered(cases: Sequence[Judged]) -> list[bool]:
-    """Whether true sizes lie within the intervals of sizes that were rightly found."""
-    found = [each for case in cases for each in case.said["intervals"]]
-    return [abs(each["found"] - each["true"]) <= NORMAL * each["deviation"] for each in found]
-
-
-def _angles_covered(cases: Sequence[Judged]) -> list[bool]:
-    """Whether true phases and places lie within their intervals, the shorter way around."""
-    found = [each for case in cases for each in case.said["angles"]]
-    return [abs((e["found"] - e["true"] + np.pi) % (2 * np.pi) - np.pi) <= NORMAL * e["deviation"] for e in found]
+def _covered(cases: Sequence[Judged], kind: str = "intervals", turn: float = np.inf) -> list[bool]:
+    """Whether what is true lies within the intervals of what was rightly found: of sizes, or of angles if their turn is
+    given; one whose interval is all of a turn is not told.
+    """
+    found = [each for case in cases for each in case.said[kind] if not NORMAL * each["deviation"] > turn / 2]
+    off = [abs(each["found"] - each["true"]) for each in found]
+    nearer = [min(by % turn, turn - by % turn) for by in off]
+    return [by <= NORMAL * each["deviation"] for by, each in zip(nearer, found, strict=True)]
 
 
 def _baseline(name: str, cases: Sequence[Judged]) -> dict[str, Any]:

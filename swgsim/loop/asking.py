@@ -53,14 +53,14 @@ def ask(
         return Round((), None, None)  # the luck of a wide search
     best = trials[0]
     pairs = () if best.sound else paired(now, start, trials, kinds, seed)
-    accepted = best if best.sound else worth_it(pairs, best) or in_company(now, best, seed)
+    accepted = best if best.sound else worth_it(pairs, best, now) or in_company(now, best, seed)
     if accepted is None or not more_than(apart, accepted, now, seed):
         return Round(trials, None, None)
     plain = describe(now)[0]
     if outdone(accepted, plain, now):
         # What the regularity tells beyond an effect may be a second one.
         pairs = paired(now, start, trials, kinds, seed) if best.sound else ()
-        accepted = worth_it(pairs, best)
+        accepted = worth_it(pairs, best, now)
         if accepted is None or not more_than(apart, accepted, now, seed) or outdone(accepted, plain, now):
             return Round(trials, None, plain)
     if accepted in pairs:

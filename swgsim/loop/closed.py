@@ -63,7 +63,7 @@ class Closed:
     @property
     def best_rejected(self) -> Trial | None:
         """Of what was rejected: the trial that was judged."""
-        return self.rejected[0] if self.rejected and np.isfinite(self.rejected[0].merit) else None
+        return self.rejected[0] if self.rejected and self.rejected[0].there else None
 
     @cached_property
     def nearest(self) -> Trial | None:
@@ -71,7 +71,7 @@ class Closed:
 
         Another one may predict it better, its form being open.
         """
-        fitted = (trial for trial in self.rejected if np.isfinite(trial.merit))
+        fitted = (trial for trial in self.rejected if trial.there)
         return max(fitted, key=lambda trial: trial.explained(self.asked), default=None)
 
     @cached_property

@@ -203,7 +203,10 @@ def doubt_by_others(fitted: Fitted, number: int, others: Mapping[int, Coherence]
 
 
 def moved_by_forms(fitted: Fitted, coherences: Mapping[int, Coherence]) -> dict[str, float]:
-    """Standard deviation of each fitted parameter, as effects differ from the library's shape.
+    """Standard deviation by which each fitted parameter is moved, as effects differ from the library's shape.
+
+    Parts of all of them are larger or smaller, and an inaccurate structure adds what it may; that lines are turned is
+    not in it.
 
     Parameters
     ----------

@@ -5,9 +5,10 @@ from collections.abc import Sequence
 from swgsim.effects.base import Effect
 from swgsim.loop.fitted import Fitted
 from swgsim.loop.fitting import unbent
+from swgsim.loop.gaussian import as_squares
 from swgsim.loop.leading import LEADERS, NEARLY, leaders, screened
 from swgsim.loop.refining import zoom
-from swgsim.loop.trial import Trial, tried
+from swgsim.loop.trial import OWN, Trial, gain, open_to_much, tried
 from swgsim.seeds import generator
 
 # Log-likelihood that a pair must gain over the best effect alone; effects that are tried beside the leaders as they
@@ -37,7 +38,7 @@ def paired(
     """
     best = trials[0]
     pairs = _with(best, now, start, trials, kinds, seed)
-    if best.sound or worth_it(pairs, best):
+    if best.sound or worth_it(pairs, best, now):
         return pairs
     second = _runner_up(trials)
     return _with(second, now, start, trials[1:], kinds, seed) if second else pairs
@@ -66,11 +67,18 @@ def _with(
     return tuple(sorted(pairs, key=lambda pair: -pair.merit))
 
 
-def worth_it(pairs: Sequence[Trial], alone: Trial) -> Trial | None:
-    """The best pair, if both of its members are sound together and it gains more than the best effect alone."""
+def worth_it(pairs: Sequence[Trial], alone: Trial, now: Fitted) -> Trial | None:
+    """The best pair, if both of its members are sound together and it gains more than the best effect alone, enough of
+    it as what its second member is.
+    """
     best = pairs[0] if pairs else None
     asked = 2 * PAIR_GAIN  # of points left out and of all recordings: merit is the sum of both
-    return best if best and best.sound and best.merit > alone.merit + asked else None
+    if best is None or not best.sound or best.merit <= alone.credit + asked:
+        return None
+    if not open_to_much(best.fitted, best.effects[1:]):
+        return best
+    own = best.explained(now) - gain(now, best.signature[:, :1])
+    return best if own >= OWN * as_squares(best.evidence - alone.evidence) else None
 
 
 def of_doubles(
@@ -91,8 +99,8 @@ def of_doubles(
     """
     one, other = map(type, accepted.effects)
     first = next(trial for trial in trials if type(trial.effects[0]) is one)
-    doubles = (t for t in trials if t.pays and abs(t.merit - first.merit) < NEARLY * first.merit)
-    near = NEARLY * (accepted.merit - first.merit)
+    doubles = (t for t in trials if t.pays and abs(t.merit - first.credit) < NEARLY * first.credit)
+    near = NEARLY * (accepted.merit - first.credit)
     seconds = [pair.effects[1] for pair in pairs if pair.sound and accepted.merit - pair.merit < near]
     left = {
         frozenset((type(double.effects[0]), type(second))): (double, second)

@@ -36,8 +36,9 @@ LIKELIER, LEAST_EVIDENCE = 7.0, 10.0
 EXACT = 0.01
 # An effect of which no more than this is left, in standard deviations, is none.
 NOTHING = 0.1
-# Of what an effect is credited with in a gear of another structure, this share must be its own: what the library has of
-# it explains it. The rest is what that structure may make of it, and of much else (set on foreign gears).
+# Of what an effect gains in a gear of another structure, this share must be its own, explained by what the library has
+# of it. The rest is explained by what is left open for that structure, which fits much else as well (set on benches of
+# other authors).
 OWN = 1 / 3
 # Directions below this share of the largest one are rounding.
 ROUNDING = 1e-6
@@ -68,8 +69,8 @@ class Trial:
     imperfect : bool
         Whether its form was open when it was fitted, as what the gear leaves open absorbs it in its own.
     own : float
-        Fall of the residual's sum of squares that its effects bring as the library has them; asked only where another
-        structure leaves much of them open.
+        Fall of the residual's sum of squares by its effects as the library has them, at any size; asked only where
+        another structure leaves much of them open.
     """
 
     score: Score
@@ -118,7 +119,7 @@ class Trial:
 
     @property
     def disowned(self) -> bool:
-        """Whether hardly any of what it gains is its own, and most what another structure may make of it."""
+        """Whether too little of what it gains is its own."""
         return self.own < OWN * as_squares(self.evidence)
 
     @property
@@ -128,10 +129,19 @@ class Trial:
         return widened(self.fitted, first, self.coherence)
 
     @property
+    def there(self) -> bool:
+        """Whether it was not fitted down to nothing."""
+        return seen(self.fitted, self.signature)
+
+    @property
+    def credit(self) -> float:
+        """All that it gains, by whatever."""
+        return self.heldout_gain + self.evidence
+
+    @property
     def merit(self) -> float:
-        """What trials are ordered by; one that was fitted down to nothing, or gains by what it is not, is none."""
-        there = seen(self.fitted, self.signature) and not self.disowned
-        return self.heldout_gain + self.evidence if there else -np.inf
+        """What trials are ordered by; what is not there, or gains by what is not its own, is none."""
+        return self.credit if self.there and not self.disowned else -np.inf
 
 
 def seen(fitted: Fitted, signatures: Float[np.ndarray, "row effect"]) -> bool:
@@ -157,11 +167,16 @@ def tried(now: Fitted, score: Score, added: tuple[Effect, ...], start: Fitted) -
     fitted = extended(start, added)
     effects = fitted.model.effects[known:]
     found = tuple(coherence(fitted, known + number) for number in range(len(added)))
-    gains = gained(now, open_as_found(fitted, found))
+    opened = open_as_found(fitted, found)
+    gains = gained(now, opened)
     # Many trials are kept, so without what was computed of them on the way.
     trial = Trial(score, effects, replace(fitted), *gains, found)
-    open_to_much = fitted.unit.of_another_structure and any(effect.structural for effect in effects)
-    return replace(trial, own=trial.explained(now)) if open_to_much else trial
+    return replace(trial, own=trial.explained(_without(now, opened))) if open_to_much(fitted, effects) else trial
+
+
+def open_to_much(fitted: Fitted, effects: Sequence[Effect]) -> bool:
+    """Whether another structure than the model's leaves open much of what the effects do."""
+    return fitted.unit.of_another_structure and any(effect.structural for effect in effects)
 
 
 def gained(now: Fitted, fitted: Fitted) -> tuple[Float[np.ndarray, " point"], float]:
@@ -171,13 +186,18 @@ def gained(now: Fitted, fitted: Fitted) -> tuple[Float[np.ndarray, " point"], fl
     it; so the model before has them as large, if that makes it likelier. What moves the zeros of several gauges,
     bridges that were balanced anew explain too.
     """
-    without = max((now, now.scattering(fitted.scatter), now.balanced), key=lambda each: each.log_likelihood)
+    without = _without(now, fitted)
     return fitted.predictive - without.predictive, fitted.log_likelihood - without.log_likelihood
 
 
+def _without(now: Fitted, fitted: Fitted) -> Fitted:
+    """The model before a fit, as likely as errors of single recordings and bridges balanced anew make it."""
+    return max((now, now.scattering(fitted.scatter), now.balanced), key=lambda each: each.log_likelihood)
+
+
 def widened(fitted: Fitted, first: int, coherences: Sequence[Coherence]) -> dict[str, float]:
-    """Standard deviation of each fitted parameter, over all shapes of an effect, and of all that an effect has also by
-    what an imperfect form leaves in doubt.
+    """Standard deviation of each fitted parameter, over all shapes of an effect, and also by what imperfect forms leave
+    in doubt of the parameters of effects.
 
     Parameters
     ----------

@@ -114,12 +114,6 @@ def why(trial: Trial, answer: Answer, better: Trial | None = None) -> str:
         return "accepted at first; once the others were in the model, another one, or nothing, stood in its place"
     if not trial.fitted.calibrated.settled:
         return "its fit did not come to rest"
-    if trial.disowned:
-        share = 100 * trial.own / as_squares(trial.evidence)
-        return (
-            f"as the library has it, it explains {share:.0f} % of what it gains: the rest is what the other structure "
-            "of this gear may make of it, and of much else"
-        )
     split, effect = max(zip(trial.coherence, trial.effects, strict=True), key=lambda each: each[0].disagreement)
     if split.disagreement >= NO_SIZE:
         size = f"the size of {effect.title()}" if len(trial.effects) > 1 else "its size"
@@ -130,6 +124,12 @@ def why(trial: Trial, answer: Answer, better: Trial | None = None) -> str:
         return (
             "one size does not serve all operating points, channels and orders "
             f"(probability {probability(poorest.chance)}{form})"
+        )
+    if trial.disowned:
+        share = 100 * trial.own / as_squares(trial.evidence)
+        return (
+            f"as the library has it, it explains {share:.0f} % of what it gains; the rest is explained by what is left "
+            "open for this gear's other structure, which fits much else as well"
         )
     if not trial.pays:
         return (
