@@ -263,6 +263,12 @@ def test_a_torque_behind_the_flange_is_a_ripple_of_the_motor_that_the_flange_doe
     assert np.argmax(sizes) + 1 == order
 
 
+def test_friction_of_the_input_turns_with_the_rotation():
+    forth, back = (EFFECTS["InputFriction"].drive(instant(np.full(2, 1e-3), speed)).T_loss for speed in (200.0, -200.0))
+    assert np.all(np.abs(forth) > 1e-3)
+    np.testing.assert_allclose(back, -forth)
+
+
 def test_a_flange_behind_the_rotor_feels_the_share_of_friction_that_the_rotor_makes():
     """The speed hardly answers the load there, so what the rotor's inertia takes of the torque is felt."""
     geared = replace(GEAR, transmission=replace(GEAR.transmission, rotor_share=0.8))

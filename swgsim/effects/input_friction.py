@@ -6,6 +6,7 @@ import numpy as np
 
 from swgsim.effects.base import Effect, Extra, Instant
 from swgsim.effects.quantity import choice, phase, size
+from swgsim.effects.sense import sense
 
 
 @dataclass(frozen=True)
@@ -32,5 +33,5 @@ class InputFriction(Effect):
     phase: float = phase()
 
     def drive(self, now: Instant) -> Extra:
-        """The torque at the angle of the wave generator."""
-        return Extra(T_loss=self.amplitude * np.cos(self.order * now.phi_in + self.phase))
+        """The torque against the rotation at the angle of the wave generator."""
+        return Extra(T_loss=sense(now.omega_in) * self.amplitude * np.cos(self.order * now.phi_in + self.phase))

@@ -214,8 +214,7 @@ def widened(fitted: Fitted, first: int, coherences: Sequence[Coherence]) -> dict
         size = size_of(type(effect))
         by = getattr(effect, size) - quantities(type(effect))[size].nothing
         moved[name_of(effect, number, size)] = float(np.hypot(agreement.doubt, _exact(effect, fitted)) * abs(by))
-    of_effects = {name: doubt for name, doubt in moved.items() if name in found and ": " in name}
-    return found | {name: float(np.hypot(found[name], doubt)) for name, doubt in of_effects.items()}
+    return found | {name: float(np.hypot(found[name], doubt)) for name, doubt in moved.items() if ": " in name}
 
 
 def _exact(effect: Effect, fitted: Fitted) -> float:
