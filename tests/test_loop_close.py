@@ -22,6 +22,7 @@ from swgsim.loop.declared import at
 from swgsim.loop.fitting import fit
 from swgsim.loop.leading import ALPHA
 from swgsim.loop.model import Model
+from swgsim.loop.reporting.report import calibrated
 from swgsim.loop.session import Measured
 from swgsim.loop.unit import STRUCTURE, UNHEARD, Unit
 from swgsim.loop.vocabulary import describe, freed
@@ -95,6 +96,18 @@ def test_gauges_on_another_flex_spline_do_not_lead_the_drive_astray():
     found = at(unit.model, unit.declared, drive.calibrated.position).gear
     assert found.transmission.J_out == pytest.approx(transmission.J_out, rel=0.05)
     assert found.gauges.gain == pytest.approx(GEAR.gauges.gain)
+
+
+def test_friction_far_from_the_nominal_is_the_gears_own_and_no_line_that_is_learned():
+    """Catalogues, greases and authors differ by a factor of two, and the mean of the input's torque tells which."""
+    friction = {"b0": 2.1, "b1": 0.26, "mu": 0.035}
+    hat = replace(GEAR.flex_spline, length=22e-3, collar=0.9e-3, wall=0.47e-3)
+    other = replace(GEAR, flex_spline=hat, transmission=replace(GEAR.transmission, **friction))
+    healthy = recorded((), seed=1, gear=other)
+    found = calibrated(fit(healthy, commission(healthy, Unit(Model(GEAR)))))
+    for name, value in friction.items():
+        low, high = found[name]["ci95"]
+        assert low < value < high < low + 0.3 * value
 
 
 def test_a_gear_is_known_as_it_was_recorded_where_most_of_a_line_is_learned():

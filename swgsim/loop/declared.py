@@ -16,6 +16,9 @@ from swgsim.loop.model import Model
 BENCH, CONTROL = 0.3, 1.0
 # Spread of what may be anything from 0 to 1.
 SHARE = 0.5
+# Of stiffness and friction in a series, as a share; and of friction where recordings of the healthy gear tell it, as
+# catalogues, greases and authors differ by a factor of two; estimates.
+SERIES, ANY_FRICTION = 0.1, 0.5
 # Of a gauge's gain and of the wave generator's stroke in a series, as a share; an estimate.
 STRAINED = 0.01
 # Below this share of its nominal value, a stiffness, a friction or the stroke of the wave generator is that of no gear;
@@ -70,7 +73,7 @@ def _of_transmission(name: str, unit: str, sd: float, low: float = -np.inf, high
     )
 
 
-def _of_size(name: str, unit: str, nominal: float, spread: float = 0.1) -> Declared:
+def _of_size(name: str, unit: str, nominal: float, spread: float) -> Declared:
     """A stiffness, friction or the like, whose spread is a share of it."""
     return _of_transmission(name, unit, spread * nominal, LEAST * nominal, MOST * nominal)
 
@@ -101,14 +104,22 @@ def _of_kinematic_error(order: int, part: str, sd: float) -> Declared:
     return _of_gear("rad", sd, lambda gear: phasor(gear).real if part == "cosine" else phasor(gear).imag, moved)
 
 
-def of_unit(gear: Gear) -> dict[str, Declared]:
-    """The parameters by which units differ from the nominal gear, with their spread in a series."""
+def of_unit(gear: Gear, friction: float = SERIES) -> dict[str, Declared]:
+    """The parameters by which units differ from the nominal gear, with their spread in a series.
+
+    Parameters
+    ----------
+    gear : Gear
+        The nominal one.
+    friction : float
+        Spread of b0, b1 and mu, as a share.
+    """
     t = gear.transmission
     found = {
-        "k1": _of_size("k1", "N m/rad", t.k1),
-        "b0": _of_size("b0", "N m", t.b0),
-        "b1": _of_size("b1", "N m s/rad", t.b1),
-        "mu": _of_size("mu", "-", t.mu),
+        "k1": _of_size("k1", "N m/rad", t.k1, SERIES),
+        "b0": _of_size("b0", "N m", t.b0, friction),
+        "b1": _of_size("b1", "N m s/rad", t.b1, friction),
+        "mu": _of_size("mu", "-", t.mu, friction),
         # Inertias, flange and speed control belong to the test bench, of which a gear file says little.
         "J_in": _of_size("J_in", "kg m^2", t.J_in, BENCH),
         "J_out": _of_size("J_out", "kg m^2", t.J_out, BENCH),

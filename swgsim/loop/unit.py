@@ -10,7 +10,7 @@ from jaxtyping import Float
 from swgsim.effects.base import overrides
 from swgsim.gear import Gear
 from swgsim.loop.calibration import linearised
-from swgsim.loop.declared import Declared, of_unit
+from swgsim.loop.declared import ANY_FRICTION, SERIES, Declared, of_unit
 from swgsim.loop.features import Layout
 from swgsim.loop.form import Sizes, form_columns, largest_lines, lines_anywhere
 from swgsim.loop.healthy import FRICTION, of_friction, of_gauges, of_learned
@@ -93,7 +93,7 @@ class Unit:
     @property
     def declared(self) -> dict[str, Declared]:
         """Parameters of the gear that are not known exactly, with their spread before commissioning."""
-        return of_unit(self.nominal or self.model.gear)
+        return of_unit(self.nominal or self.model.gear, ANY_FRICTION if self.seen_healthy else SERIES)
 
     def inflated(self, variance: Float[np.ndarray, "recording feature"]) -> Float[np.ndarray, "recording feature"]:
         """Variance of independent errors, from that of noise."""
