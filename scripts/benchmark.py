@@ -31,6 +31,7 @@ def main(cfg: DictConfig) -> None:
             [replace(each, b3=0.0) for each in stiffnesses[::10]], plan.grid.points
         ),
         "errors_by_recording_vs_dense": benchmark.errors_by_recording_vs_dense(),
+        "further_errors_vs_anew": benchmark.further_errors_vs_anew(),
     }
     chain, integrator, balance, errors = result.values()
     result["training"] = training = training_benchmark.measure()

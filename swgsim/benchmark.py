@@ -171,6 +171,34 @@ def errors_by_recording_vs_dense(
     }
 
 
+def further_errors_vs_anew(
+    recordings: int = 18, features: int = 200, kinds: int = 15, common: int = 560, more: int = 50
+) -> dict[str, Any]:
+    """A covariance that is given further errors, as when an effect joins a model, against one that is set up with all.
+
+    Returns
+    -------
+    dict
+        ratio of the times to weigh a residual; max_relative_difference of that.
+    """
+    rng = np.random.default_rng(0)
+    alone = Alone(np.ones((recordings, features)), rng.standard_normal((recordings, features, kinds)))
+    G, r = rng.standard_normal((recordings * features, common + more)), rng.standard_normal(recordings * features)
+    with threadpool_limits(1):
+        known = Covariance(alone, G[:, :common])
+        known.weigh(r)
+        start = time.perf_counter()
+        further = known.with_columns(G[:, common:]).weigh(r)
+        middle = time.perf_counter()
+        anew = Covariance(alone, G).weigh(r)
+        end = time.perf_counter()
+    return {
+        "ratio": (end - middle) / (middle - start),
+        "max_relative_difference": float(np.abs(further - anew).max() / np.abs(anew).max()),
+        "seconds": {"further": middle - start, "anew": end - middle},
+    }
+
+
 def _every(transmissions: Sequence[Transmission], points: Sequence[OperatingPoint]) -> Drive:
     """Every gear at every operating point."""
     return Drive(*zip(*product(transmissions, points), strict=True))

@@ -116,5 +116,5 @@ def drawn(covariance: Covariance, rng: np.random.Generator) -> np.ndarray:
     """A residual with this covariance."""
     recordings, _, kinds = covariance.alone.C.shape
     common = covariance.alone.made(rng.standard_normal(recordings * kinds))
-    common += covariance.G @ rng.standard_normal(covariance.G.shape[1])
+    common += covariance.columns @ rng.standard_normal(covariance.columns.shape[1])
     return common + np.sqrt(covariance.variance) * rng.standard_normal(len(covariance.variance))

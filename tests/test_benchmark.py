@@ -16,3 +16,7 @@ def test_chain_and_direct_solver_agree(monkeypatch: object) -> None:
 
 def test_errors_by_recording_are_the_dense_ones():
     assert benchmark.errors_by_recording_vs_dense(3, 20, 4, 6)["max_relative_difference"] < 1e-10
+
+
+def test_further_errors_are_as_those_that_were_there_from_the_start():
+    assert benchmark.further_errors_vs_anew(3, 20, 4, 6, 3)["max_relative_difference"] < 1e-10

@@ -71,7 +71,7 @@ def test_separation_is_what_all_recordings_together_leave_of_the_difference(monk
     shared = of_session.reshape(60, len(layout), -1)[4]
     to_come = shared @ shared.T + (alone @ alone.T + np.diag(np.median(measured.variance, axis=0))) / recordings
     errors = fitted.errors
-    dense = block_diag(np.diag(errors.variance) + errors.G @ errors.G.T, to_come)
+    dense = block_diag(np.diag(errors.variance) + errors.columns @ errors.columns.T, to_come)
     C = np.vstack([measured.rows(directions[: len(measured.situations)]), directions[new]])
     d = np.concatenate([measured.rows(moved[: len(measured.situations)]), moved[new]])
     assert found == pytest.approx(d @ np.linalg.solve(dense + C @ C.T, d), rel=1e-8)

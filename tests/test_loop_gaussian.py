@@ -24,13 +24,16 @@ SHAPES = {
 def random_covariance(
     recordings: int, features: int, kinds: int, columns: int, seed: int
 ) -> tuple[Covariance, np.ndarray, np.random.Generator]:
-    """One with errors of every kind from a hundredth to a hundred times the noise, and its dense form."""
+    """One with errors of every kind from a hundredth to a hundred times the noise, common ones given at once or in two
+    parts; and its dense form.
+    """
     rng = np.random.default_rng(seed)
     noise = rng.uniform(0.1, 10, (recordings, features))
     C = rng.normal(size=(recordings, features, kinds)) * 10 ** rng.uniform(-2, 2, kinds)
     G = rng.normal(size=(recordings * features, columns)) * 10 ** rng.uniform(-2, 2, columns)
     dense = block_diag(*(np.diag(own) + each @ each.T for own, each in zip(noise, C, strict=True))) + G @ G.T
-    return Covariance(Alone(noise, C), G), dense, rng
+    first = int(rng.integers(columns + 1))
+    return Covariance(Alone(noise, C), G[:, :first]).with_columns(G[:, first:]), dense, rng
 
 
 @settings(deadline=None, max_examples=60)
@@ -99,7 +102,7 @@ def test_common_errors_are_told_as_their_conditional_mean(**shape):
     rows = len(dense)
     r = rng.normal(size=rows)
     np.testing.assert_allclose(
-        covariance.common_mean(r), covariance.G.T @ np.linalg.solve(dense, r), rtol=1e-5, atol=1e-5
+        covariance.common_mean(r), covariance.columns.T @ np.linalg.solve(dense, r), rtol=1e-5, atol=1e-5
     )
 
 
@@ -121,7 +124,7 @@ def test_errors_of_single_recordings_move_no_other_one(**shape):
     alone, by = covariance.alone, rng.normal(size=shape["recordings"] * shape["kinds"])
     np.testing.assert_allclose(alone.made(by), alone.dense @ by, atol=1e-9)
     np.testing.assert_allclose(
-        alone.dense @ alone.dense.T + np.diag(covariance.variance) + covariance.G @ covariance.G.T, dense, atol=1e-7
+        alone.dense @ alone.dense.T + np.diag(covariance.variance) + covariance.columns @ covariance.columns.T, dense, atol=1e-7
     )
 
 
@@ -138,13 +141,13 @@ def test_what_noise_hides_is_hardly_any_variance(**shape):
     """Along every direction, in units of the noise."""
     covariance, _, _ = random_covariance(**shape)
     deviation = np.sqrt(covariance.variance)[:, None]
-    fewer = without_what_noise_hides(covariance.G, covariance.variance)
-    dropped = (covariance.G @ covariance.G.T - fewer @ fewer.T) / deviation / deviation.T
+    fewer = without_what_noise_hides(covariance.columns, covariance.variance)
+    dropped = (covariance.columns @ covariance.columns.T - fewer @ fewer.T) / deviation / deviation.T
     share = np.linalg.eigvalsh(dropped)
-    rounding = 1e-12 * max(float(np.linalg.norm(covariance.G / deviation) ** 2), 1.0)
+    rounding = 1e-12 * max(float(np.linalg.norm(covariance.columns / deviation) ** 2), 1.0)
     assert share.max() <= HIDDEN + rounding
     assert share.min() >= -rounding
-    assert fewer.shape[1] <= min(covariance.G.shape)
+    assert fewer.shape[1] <= min(covariance.columns.shape)
 
 
 def test_columns_that_say_the_same_become_one():

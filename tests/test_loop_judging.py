@@ -194,7 +194,7 @@ def scattered(fitted, factor: float):
     moves = np.random.default_rng(5).standard_normal((*fitted.measured.values.shape, 2))
     scatter = Scatter({"load": factor, "speed": 2.0}, 6, 0.1 * np.eye(2))
     alone = Alone(fitted.measured.variance, scatter.columns(moves))
-    return replace(fitted, scatter=scatter, errors=replace(fitted.errors, alone=alone))
+    return replace(fitted, scatter=scatter, errors=replace(fitted.errors, base=alone))
 
 
 @pytest.mark.parametrize(

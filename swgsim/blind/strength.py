@@ -61,7 +61,7 @@ def _calibrated(effect: Effect, fitted: Fitted) -> float:
     """Sum of squares of an effect beside the likeliest parameters without it, and of what these are off."""
     measured = fitted.measured
     changed = predict([fitted.model.plus(effect)], measured.situations, measured.layout)[0]
-    errors = fitted.errors.with_columns(fitted.open)
+    errors = fitted.of_nuisances
     found = calibrate(
         fitted.model, fitted.parameters, changed[measured.of_recording], errors,
         measured.situations, measured.of_recording, measured.layout,

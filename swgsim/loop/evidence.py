@@ -218,9 +218,8 @@ def moved_by_forms(fitted: Fitted, coherences: Mapping[int, Coherence]) -> dict[
     for number, each in coherences.items():
         signed = signature(fitted, number)
         off += [each.form_error * parts(fitted, signed), _of_structure(fitted, number, signed)]
-    errors = fitted.errors.with_columns(fitted.strict.open)
-    J = errors.whiten(fitted.J)
-    moved = np.linalg.solve(J.T @ J + np.eye(J.shape[1]), J.T @ errors.whiten(np.hstack(off)))
+    J = fitted.of_unit.whiten(fitted.J)
+    moved = np.linalg.solve(J.T @ J + np.eye(J.shape[1]), J.T @ fitted.of_unit.whiten(np.hstack(off)))
     by = np.linalg.norm(moved, axis=1).tolist()
     return {name: share * p.sd for (name, p), share in zip(fitted.parameters.items(), by, strict=True)}
 
@@ -235,6 +234,6 @@ def _shares(
     if not off.any():
         return np.zeros(off.shape[1])
     others = [column for column, name in enumerate(fitted.parameters) if f" {number + 1}: " not in name]
-    errors = fitted.errors.with_columns(np.hstack([fitted.open, fitted.J[:, others]]))
+    errors = fitted.of_nuisances.with_columns(fitted.J[:, others])
     whole = errors.whiten(signed)
     return errors.whiten(off).T @ whole / (whole @ whole)

@@ -88,13 +88,15 @@ class Fitted:
         if not columns.shape[1]:
             return self
         kept = [] if self.allowed is None else [self.allowed]
-        return replace(self, open=np.hstack([self.open, columns]), allowed=np.hstack([*kept, columns]))
+        found = replace(self, open=np.hstack([self.open, columns]), allowed=np.hstack([*kept, columns]))
+        vars(found)["of_unit"] = self.of_unit  # the same, and most of what there is to compute
+        return found
 
     def scattering(self, scatter: Scatter) -> "Fitted":
         """The same with other errors of single recordings."""
         ratio = np.array(list(scatter.sd.values())) / np.array(list(self.scatter.sd.values()))
         alone = replace(self.errors.alone, C=self.errors.alone.C * ratio)
-        return replace(self, scatter=scatter, errors=replace(self.errors, alone=alone))
+        return replace(self, scatter=scatter, errors=replace(self.errors, base=alone))
 
     def with_zeros(self, times: float) -> "Fitted":
         """The same with the zeros of gauges so many times as far off as declared."""
@@ -122,9 +124,19 @@ class Fitted:
         return self.measured.rows(self.calibrated.J).reshape(len(self.errors.variance), len(self.parameters))
 
     @cached_property
+    def of_unit(self) -> Covariance:
+        """All errors, with what the unit leaves open."""
+        return self.errors.with_columns(self.strict.open)
+
+    @property
+    def of_nuisances(self) -> Covariance:
+        """All errors, with everything open beside the fitted parameters."""
+        return self.of_unit if self.allowed is None else self.of_unit.with_columns(self.allowed)
+
+    @cached_property
     def whole(self) -> Covariance:
         """All errors, with everything open that the model does not know exactly."""
-        return self.errors.with_columns(np.hstack([self.open, self.J]))
+        return self.of_nuisances.with_columns(self.J)
 
     @property
     def from_start(self) -> Float[np.ndarray, " row"]:
@@ -136,7 +148,7 @@ class Fitted:
         """Which columns of :attr:`whole` are no fitted parameters: zeros and gains of sessions, and what is left open
         of the gear and of effects found earlier.
         """
-        return slice(self.whole.G.shape[1] - len(self.parameters))
+        return slice(self.errors.columns.shape[1] + self.open.shape[1])
 
     @cached_property
     def by_others(self) -> list[tuple[np.ndarray, Expected]]:
@@ -149,9 +161,9 @@ class Fitted:
     @cached_property
     def nuisance(self) -> Float[np.ndarray, " row"]:
         """What the nuisances make of every operating point, as all the others tell it; nothing if there is one only."""
-        made = np.zeros(len(self.residual))
+        made, columns = np.zeros(len(self.residual)), self.of_nuisances.columns
         for block, expected in self.by_others:
-            made[block] = self.whole.G[block, self.nuisances] @ expected.common[self.nuisances]
+            made[block] = columns[block] @ expected.common[self.nuisances]
         return made
 
     @property
@@ -170,7 +182,7 @@ class Fitted:
     def deviation(self) -> dict[str, float]:
         """Standard deviation of each fitted parameter, in its unit."""
         # The form tolerance of an effect is no doubt about its own size.
-        columns = self.errors.with_columns(self.strict.open).whiten(self.J)
+        columns = self.of_unit.whiten(self.J)
         covariance = np.linalg.inv(columns.T @ columns + np.eye(columns.shape[1]))
         spread = np.sqrt(np.diag(covariance)).tolist()
         return {name: s * p.sd for (name, p), s in zip(self.parameters.items(), spread, strict=True)}
@@ -186,7 +198,7 @@ class Fitted:
         The errors of single recordings are in each draw as large as their estimate leaves them; all others are as
         declared.
         """
-        alone, G = self.whole.alone, self.whole.G
+        alone, G = self.whole.alone, self.whole.columns
         deviation = np.sqrt(self.whole.variance)[:, None]
         while True:
             factors = np.tile(self.scatter.drawn(rng, draws), (len(self.measured), 1))

@@ -23,18 +23,28 @@ HIDDEN = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class Covariance:
-    """A + G G^T.
+    """A + G G^T, where A may be such a sum too: what is known of A serves all that are built on it.
 
     Attributes
     ----------
-    alone : Alone
-        Errors of single recordings.
+    base : Alone or Covariance
+        A: errors of single recordings, and maybe some common ones.
     G : array (row, column)
-        Common errors, one standard deviation each.
+        Common errors, or more of them, one standard deviation each.
     """
 
-    alone: Alone
+    base: "Alone | Covariance"
     G: Float[np.ndarray, "row column"]
+
+    @property
+    def alone(self) -> Alone:
+        """Errors of single recordings."""
+        return self.base if isinstance(self.base, Alone) else self.base.alone
+
+    @property
+    def columns(self) -> Float[np.ndarray, "row column"]:
+        """All common errors, one standard deviation each."""
+        return self.G if isinstance(self.base, Alone) else np.hstack([self.base.columns, self.G])
 
     @property
     def variance(self) -> Float[np.ndarray, " row"]:
@@ -44,7 +54,7 @@ class Covariance:
     @cached_property
     def _weighed(self) -> Float[np.ndarray, "row column"]:
         """A^-1 G."""
-        return self.alone.weigh(self.G)
+        return self.base.weigh(self.G)
 
     @cached_property
     def _L(self) -> Float[np.ndarray, "column column"]:
@@ -62,44 +72,54 @@ class Covariance:
         W = A^-1/2 (1 - G K G' A^-1) with K = (L (1 + L'))^-1, as W' W = (A + G G')^-1 then.
         """
         along = solve_triangular(self._L, self._weighed.T @ X, lower=True)
-        return self.alone.whiten(X - self.G @ solve_triangular(self._raised, along))
+        return self.base.whiten(X - self.G @ solve_triangular(self._raised, along))
 
     def whiten_in_place(self, r: Float[np.ndarray, " row"]) -> Float[np.ndarray, " row"]:
         """W r with W covariance W' = 1, where W is symmetric in units of the independent errors: as near to them as can
         be, so that each number still tells of its row. Slower than :meth:`whiten`.
         """
         deviation = np.sqrt(self.variance)
-        scaled = np.hstack([self.alone.dense, self.G]) / deviation[:, None]
+        scaled = np.hstack([self.alone.dense, self.columns]) / deviation[:, None]
         eigenvalues, V = np.linalg.eigh(scaled.T @ scaled)
         root = np.sqrt(1 + np.maximum(eigenvalues, 0))  # what rounding makes of them shrinks nothing
         return r / deviation - scaled @ (V @ (V.T @ (scaled.T @ (r / deviation)) / (root * (1 + root))))
 
     def weigh(self, X: np.ndarray) -> np.ndarray:
         """P X with P the inverse of the covariance, for an array (row,) or (row, column)."""
-        return self.alone.weigh(X) - self._weighed @ self.common_mean(X)
+        return self.base.weigh(X) - self._weighed @ self._mean(X)
 
     def precision(self, block: Bool[np.ndarray, " row"]) -> Float[np.ndarray, "block block"]:
         """The block of P of some of the rows: of their distribution where all the others are known."""
         common = solve_triangular(self._L, self._weighed[block].T, lower=True)
-        return self.alone.precision(block) - common.T @ common
+        return self.base.precision(block) - common.T @ common
 
     def with_columns(self, G: Float[np.ndarray, "row more"]) -> "Covariance":
         """The covariance with further common errors."""
-        return Covariance(self.alone, np.hstack([self.G, G])) if G.shape[1] else self
+        return Covariance(self, G) if G.shape[1] else self
+
+    @property
+    def log_determinant(self) -> float:
+        """Of the covariance."""
+        return self.base.log_determinant + 2 * float(np.log(np.diag(self._L)).sum())
 
     def log_likelihood(self, r: Float[np.ndarray, " row"]) -> float:
         """Of a residual, without the constant."""
         white = self.whiten(r)
-        return -0.5 * float(white @ white + 2 * np.log(np.diag(self._L)).sum() + self.alone.log_determinant)
+        return -0.5 * (float(white @ white) + self.log_determinant)
 
     def common_mean(self, X: np.ndarray) -> np.ndarray:
         """The common errors (column,) that a residual (row,) tells, or each of several, in standard deviations."""
+        mean = self._mean(X)
+        return mean if isinstance(self.base, Alone) else np.concatenate([self.base.common_mean(X - self.G @ mean), mean])
+
+    def _mean(self, X: np.ndarray) -> np.ndarray:
+        """Those of G."""
         return cho_solve((self._L, True), self._weighed.T @ X)
 
     def features(self, chosen: Bool[np.ndarray, " feature"]) -> "Covariance":
         """The covariance of some of the features."""
         rows = np.tile(chosen, len(self.alone.variance))
-        return Covariance(self.alone.features(chosen), self.G[rows])
+        return Covariance(self.base.features(chosen), self.G[rows])
 
     def left_out(self, r: Float[np.ndarray, " row"], blocks: Sequence[Bool[np.ndarray, " row"]]) -> list["Expected"]:
         """The rows of each block as all the other rows predict them.

@@ -53,7 +53,7 @@ def _sizes(
     q = quantities(type(effect))[name]
     others = [column for column, each in enumerate(fitted.parameters) if each not in own]
     # What else the fit left open is still in its residual.
-    errors = fitted.errors.with_columns(np.hstack([fitted.open, fitted.J[:, others]]))
+    errors = fitted.of_nuisances.with_columns(fitted.J[:, others])
     without = fitted.model.without(number)
     with_shapes = [fitted.parameters[own[1]].at(fitted.model, value) for value in tried.tolist()]
     predicted = predict([without, fitted.model, *with_shapes], fitted.measured.situations, fitted.measured.layout)

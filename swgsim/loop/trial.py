@@ -168,10 +168,10 @@ def tried(now: Fitted, score: Score, added: tuple[Effect, ...], start: Fitted) -
     effects = fitted.model.effects[known:]
     found = tuple(coherence(fitted, known + number) for number in range(len(added)))
     opened = open_as_found(fitted, found)
-    gains = gained(now, opened)
+    without = _supposed(now, opened)
     # Many trials are kept, so without what was computed of them on the way.
-    trial = Trial(score, effects, replace(fitted), *gains, found)
-    return replace(trial, own=trial.explained(_without(now, opened))) if open_to_much(fitted, effects) else trial
+    trial = Trial(score, effects, replace(fitted), *_over(without, opened), found)
+    return replace(trial, own=trial.explained(without)) if open_to_much(fitted, effects) else trial
 
 
 def open_to_much(fitted: Fitted, effects: Sequence[Effect]) -> bool:
@@ -180,18 +180,22 @@ def open_to_much(fitted: Fitted, effects: Sequence[Effect]) -> bool:
 
 
 def gained(now: Fitted, fitted: Fitted) -> tuple[Float[np.ndarray, " point"], float]:
-    """Log-likelihood of each operating point left out, and of all together, that a fit gains over the model before.
+    """Log-likelihood of each operating point left out, and of all together, that a fit gains over the model before."""
+    return _over(_supposed(now, fitted), fitted)
+
+
+def _over(without: Fitted, fitted: Fitted) -> tuple[Float[np.ndarray, " point"], float]:
+    """The same over exactly this model."""
+    return fitted.predictive - without.predictive, fitted.log_likelihood - without.log_likelihood
+
+
+def _supposed(now: Fitted, fitted: Fitted) -> Fitted:
+    """The model before a fit, as likely as errors of single recordings and bridges balanced anew make it.
 
     An effect that makes repeats differ makes the errors of single recordings larger, and these explain much without
     it; so the model before has them as large, if that makes it likelier. What moves the zeros of several gauges,
     bridges that were balanced anew explain too.
     """
-    without = _without(now, fitted)
-    return fitted.predictive - without.predictive, fitted.log_likelihood - without.log_likelihood
-
-
-def _without(now: Fitted, fitted: Fitted) -> Fitted:
-    """The model before a fit, as likely as errors of single recordings and bridges balanced anew make it."""
     return max((now, now.scattering(fitted.scatter), now.balanced), key=lambda each: each.log_likelihood)
 
 
