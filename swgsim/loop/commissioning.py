@@ -79,14 +79,24 @@ def _listening(measured: Measured, unit: Unit) -> tuple[Fitted, Float[np.ndarray
 def _as_it_is(measured: Measured, unit: Unit, drive: Fitted | None) -> Fitted:
     """The fit to recordings of the healthy gear, whatever drive and structure it has.
 
-    What lines lie off is told twice, as those that were missed have led the parameters astray before.
+    What lines lie off is told twice, as those that were missed have led the parameters astray before; the first time
+    beside the drive as speed and torques alone have it.
     """
-    position: Mapping[str, float] = {} if drive is None else drive.calibrated.position
-    if drive is not None and drive.unit.learned is not None:
-        learned = np.zeros(len(measured.layout))
-        learned[_of_drive(measured)] = drive.unit.learned
-        unit = replace(unit, learned=learned)
-    return about_its_lines(_learning(_learning(fit(measured, unit, position=position))))
+    position: Mapping[str, float] = {}
+    learned = np.zeros(len(measured.layout))
+    if drive is not None:
+        position = _told(drive)
+        learned[_of_drive(measured)] = drive.unit.learned if drive.unit.learned is not None else 0.0
+    gauges = fit(measured, replace(unit, learned=learned), held=position)
+    learned = np.where(_of_drive(measured), learned, _lie_off(gauges))
+    fitted = fit(measured, replace(unit, learned=learned), position={**position, **gauges.calibrated.position})
+    return about_its_lines(_learning(fitted))
+
+
+def _told(drive: Fitted) -> dict[str, float]:
+    """Where a fit to speed and torques alone has the parameters of which these tell something."""
+    tells = zip(drive.parameters, np.any(drive.J, axis=0), strict=True)
+    return {name: drive.calibrated.position[name] for name, told in tells if told}
 
 
 def _drive_alone(measured: Measured, unit: Unit) -> Fitted | None:
@@ -115,6 +125,12 @@ def _of_drive(measured: Measured) -> Bool[np.ndarray, " feature"]:
 
 def _learning(fitted: Fitted) -> Fitted:
     """The fit in which lines that are missed, or were before, may lie as far off as they do: they are learned."""
+    learned = _lie_off(fitted)
+    return fitted if learned is None else again(fitted, learned=learned)
+
+
+def _lie_off(fitted: Fitted) -> Float[np.ndarray, " feature"] | None:
+    """How far lines lie off that are missed, or were before; None if none are."""
     measured, layout = fitted.measured, fitted.measured.layout
     sought = beyond_noise(measured, fitted.missed) > 1
     if fitted.unit.learned is not None:
@@ -128,7 +144,7 @@ def _learning(fitted: Fitted) -> Fitted:
             off[own] = np.minimum(off[own], LOOSEST * max(largest.values()))
         elif missed[channel] > ALIEN:
             off[own] = 0.0
-    return again(fitted, learned=off) if off.any() else fitted
+    return off if off.any() else None
 
 
 def _structure(fitted: Fitted) -> float:

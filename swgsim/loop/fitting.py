@@ -31,6 +31,7 @@ def fit(
     *,
     position: Mapping[str, float] | None = None,
     allowed: Float[np.ndarray, "row column"] | None = None,
+    held: Mapping[str, float] | None = None,
 ) -> Fitted:
     """Fit what is not known, and estimate the errors of single recordings, in turns.
 
@@ -44,9 +45,12 @@ def fit(
         Where parameters begin, in spreads.
     allowed : array (row, column), optional
         What effects and regularities found earlier leave open, one standard deviation each.
+    held : mapping, optional
+        Parameters of the unit that are not fitted, and where they stay, in spreads.
     """
-    start = model or unit.model
-    parameters = {} if unit.commissioned else unit.declared
+    held = held or {}
+    start = at(model or unit.model, unit.declared, held)
+    parameters = {} if unit.commissioned else {name: p for name, p in unit.declared.items() if name not in held}
     parameters = parameters | of_effects(start, unit.of_another_structure)
     known = unit.scatter.carried if unit.scatter else Scatter.stated(measured.layout)
     fixed = _Fixed(measured, unit, start, parameters, known, allowed)
