@@ -124,7 +124,9 @@ def test_errors_of_single_recordings_move_no_other_one(**shape):
     alone, by = covariance.alone, rng.normal(size=shape["recordings"] * shape["kinds"])
     np.testing.assert_allclose(alone.made(by), alone.dense @ by, atol=1e-9)
     np.testing.assert_allclose(
-        alone.dense @ alone.dense.T + np.diag(covariance.variance) + covariance.columns @ covariance.columns.T, dense, atol=1e-7
+        alone.dense @ alone.dense.T + np.diag(covariance.variance) + covariance.columns @ covariance.columns.T,
+        dense,
+        atol=1e-7,
     )
 
 

@@ -83,14 +83,20 @@ def _as_it_is(measured: Measured, unit: Unit, drive: Fitted | None) -> Fitted:
     beside the drive as speed and torques alone have it.
     """
     position: Mapping[str, float] = {}
-    learned = np.zeros(len(measured.layout))
+    of_drive = np.zeros(len(measured.layout))
     if drive is not None:
         position = _told(drive)
-        learned[_of_drive(measured)] = drive.unit.learned if drive.unit.learned is not None else 0.0
-    gauges = fit(measured, replace(unit, learned=learned), held=position)
-    learned = np.where(_of_drive(measured), learned, _lie_off(gauges))
-    fitted = fit(measured, replace(unit, learned=learned), position={**position, **gauges.calibrated.position})
+        if drive.unit.learned is not None:
+            of_drive[_of_drive(measured)] = drive.unit.learned
+    gauges = fit(measured, _given(unit, of_drive), held=position)
+    learned = np.where(_of_drive(measured), of_drive, _lie_off(gauges))
+    fitted = fit(measured, _given(unit, learned), position={**position, **gauges.calibrated.position})
     return about_its_lines(_learning(fitted))
+
+
+def _given(unit: Unit, learned: Float[np.ndarray, " feature"]) -> Unit:
+    """The unit with lines that lie so far off."""
+    return replace(unit, learned=learned) if learned.any() else unit
 
 
 def _told(drive: Fitted) -> dict[str, float]:
@@ -126,11 +132,11 @@ def _of_drive(measured: Measured) -> Bool[np.ndarray, " feature"]:
 def _learning(fitted: Fitted) -> Fitted:
     """The fit in which lines that are missed, or were before, may lie as far off as they do: they are learned."""
     learned = _lie_off(fitted)
-    return fitted if learned is None else again(fitted, learned=learned)
+    return again(fitted, learned=learned) if learned.any() else fitted
 
 
-def _lie_off(fitted: Fitted) -> Float[np.ndarray, " feature"] | None:
-    """How far lines lie off that are missed, or were before; None if none are."""
+def _lie_off(fitted: Fitted) -> Float[np.ndarray, " feature"]:
+    """How far lines lie off that are missed, or were before."""
     measured, layout = fitted.measured, fitted.measured.layout
     sought = beyond_noise(measured, fitted.missed) > 1
     if fitted.unit.learned is not None:
@@ -144,7 +150,7 @@ def _lie_off(fitted: Fitted) -> Float[np.ndarray, " feature"] | None:
             off[own] = np.minimum(off[own], LOOSEST * max(largest.values()))
         elif missed[channel] > ALIEN:
             off[own] = 0.0
-    return off if off.any() else None
+    return off
 
 
 def _structure(fitted: Fitted) -> float:

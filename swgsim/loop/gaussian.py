@@ -110,7 +110,9 @@ class Covariance:
     def common_mean(self, X: np.ndarray) -> np.ndarray:
         """The common errors (column,) that a residual (row,) tells, or each of several, in standard deviations."""
         mean = self._mean(X)
-        return mean if isinstance(self.base, Alone) else np.concatenate([self.base.common_mean(X - self.G @ mean), mean])
+        return (
+            mean if isinstance(self.base, Alone) else np.concatenate([self.base.common_mean(X - self.G @ mean), mean])
+        )
 
     def _mean(self, X: np.ndarray) -> np.ndarray:
         """Those of G."""
