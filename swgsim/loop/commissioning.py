@@ -24,8 +24,9 @@ LOOSEST, ALIEN = 0.6, 0.5
 # Where the gauges' lines lie off by more than this share, twice what the mesh of the truss makes, it is another
 # structure; signatures of effects are not known to be wrong by more than the last one (an estimate).
 ANOTHER, WORST = 2 * STRUCTURE, 0.3
-# So often at most the drive alone is fitted, until the fit has come to rest.
-DRIVES = 4
+# So often at most the drive alone is fitted, until the fit has come to rest; so often it is told what lines of gauges
+# lie off.
+DRIVES, TOLD = 4, 2
 
 
 def commission(measured: Measured, unit: Unit) -> Unit:
@@ -79,8 +80,8 @@ def _listening(measured: Measured, unit: Unit) -> tuple[Fitted, Float[np.ndarray
 def _as_it_is(measured: Measured, unit: Unit, drive: Fitted | None) -> Fitted:
     """The fit to recordings of the healthy gear, whatever drive and structure it has.
 
-    What lines lie off is told twice, as those that were missed have led the parameters astray before; the first time
-    beside the drive as speed and torques alone have it.
+    What lines of gauges lie off is told twice, as those that were missed have led the parameters astray before; the
+    first time beside the drive as speed and torques alone have it. Of its lines those alone tell.
     """
     position: Mapping[str, float] = {}
     of_drive = np.zeros(len(measured.layout))
@@ -88,10 +89,12 @@ def _as_it_is(measured: Measured, unit: Unit, drive: Fitted | None) -> Fitted:
         position = _told(drive)
         if drive.unit.learned is not None:
             of_drive[_of_drive(measured)] = drive.unit.learned
-    gauges = fit(measured, _given(unit, of_drive), held=position)
-    learned = np.where(_of_drive(measured), of_drive, _lie_off(gauges))
-    fitted = fit(measured, _given(unit, learned), position={**position, **gauges.calibrated.position})
-    return about_its_lines(_learning(fitted))
+    fitted = fit(measured, _given(unit, of_drive), held=position)
+    for _ in range(TOLD):
+        learned = np.where(_of_drive(measured), of_drive, _lie_off(fitted))
+        position = {**position, **fitted.calibrated.position}
+        fitted = fit(measured, _given(unit, learned), position=position)
+    return about_its_lines(fitted)
 
 
 def _given(unit: Unit, learned: Float[np.ndarray, " feature"]) -> Unit:
@@ -108,7 +111,8 @@ def _told(drive: Fitted) -> dict[str, float]:
 def _drive_alone(measured: Measured, unit: Unit) -> Fitted | None:
     """The fit to speed and torques alone, with those of their lines learned that are missed.
 
-    Gauges on quite another flex spline would lead the drive astray, and other equations of motion the gauges.
+    Gauges on quite another flex spline would lead the drive astray, and other equations of motion the gauges. Their
+    ripple is told first, as it leads friction astray, which the means tell.
     """
     heard = _of_drive(measured)
     if not heard.any():
@@ -121,18 +125,15 @@ def _drive_alone(measured: Measured, unit: Unit) -> Fitted | None:
         if fitted.calibrated.settled:
             break
         fitted = fit(alone, unit, position=fitted.calibrated.position)
-    return _learning(fitted)
+    for told in (alone.layout.order > 0, True):
+        learned = _lie_off(fitted) * told
+        fitted = again(fitted, learned=learned) if learned.any() else fitted
+    return fitted
 
 
 def _of_drive(measured: Measured) -> Bool[np.ndarray, " feature"]:
     """The features of speed and torques."""
     return ~np.isin(measured.layout.channel, SENSORS)
-
-
-def _learning(fitted: Fitted) -> Fitted:
-    """The fit in which lines that are missed, or were before, may lie as far off as they do: they are learned."""
-    learned = _lie_off(fitted)
-    return again(fitted, learned=learned) if learned.any() else fitted
 
 
 def _lie_off(fitted: Fitted) -> Float[np.ndarray, " feature"]:
