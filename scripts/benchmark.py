@@ -33,7 +33,7 @@ def main(cfg: DictConfig) -> None:
         "errors_by_recording_vs_dense": benchmark.errors_by_recording_vs_dense(),
         "further_errors_vs_anew": benchmark.further_errors_vs_anew(),
     }
-    chain, integrator, balance, errors = result.values()
+    chain, integrator, balance, errors, further = result.values()
     result["training"] = training = training_benchmark.measure()
     print(
         f"chain against one sparse solve per sample: {chain['ratio']:,.0f} times faster, "
@@ -50,6 +50,10 @@ def main(cfg: DictConfig) -> None:
     print(
         f"errors kept by recording against dense columns: {errors['ratio']:.1f} times faster, "
         f"{errors['ratio_of_bytes']:.1f} times fewer bytes, largest difference {errors['max_relative_difference']:.1e}"
+    )
+    print(
+        f"further errors against all of them anew: {further['ratio']:.1f} times faster, "
+        f"largest difference {further['max_relative_difference']:.1e}"
     )
     print(
         f"training a convolutional network on {training['recordings']} recordings: {training['seconds']:.1f} s, "

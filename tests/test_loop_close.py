@@ -98,6 +98,14 @@ def test_gauges_on_another_flex_spline_do_not_lead_the_drive_astray():
     assert found.gauges.gain == pytest.approx(GEAR.gauges.gain)
 
 
+def test_a_gear_is_commissioned_with_a_declared_effect_on_its_drive():
+    """Which speed and torques alone tell, as they do the unit's parameters."""
+    worn = LIBRARY["flank_friction"](1.3)
+    own = commission(recorded((worn,), seed=1), Unit(Model(GEAR, (worn,))))
+    (found,) = own.model.effects
+    assert found.mu_ratio == pytest.approx(1.3, rel=0.1)
+
+
 def test_friction_far_from_the_nominal_is_the_gears_own_and_no_line_that_is_learned():
     """Catalogues, greases and authors differ by a factor of two, and the mean of the input's torque tells which."""
     friction = {"b0": 2.1, "b1": 0.26, "mu": 0.035}

@@ -40,7 +40,7 @@ def expected(fitted: Fitted) -> Float[np.ndarray, "situation feature"]:
     unsure = fitted.unit.left_open(fitted.model, situations, measured.layout, fitted.parameters)
     predicted, shift, left_open, J = (part[-len(UNSEEN) :] for part in unsure)
     mean = fitted.whole.common_mean(fitted.from_start)
-    first = fitted.errors.G.shape[1]
+    first = fitted.errors.columns.shape[1]
     found = mean[first : first + left_open.shape[-1]]
     # The model stands where its parameters were found to be; what they are counted from lies further back.
     beyond = mean[len(mean) - J.shape[-1] :] - np.array(list(fitted.calibrated.position.values()))

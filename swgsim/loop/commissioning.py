@@ -24,9 +24,8 @@ LOOSEST, ALIEN = 0.6, 0.5
 # Where the gauges' lines lie off by more than this share, twice what the mesh of the truss makes, it is another
 # structure; signatures of effects are not known to be wrong by more than the last one (an estimate).
 ANOTHER, WORST = 2 * STRUCTURE, 0.3
-# So often at most the drive alone is fitted, until the fit has come to rest; so often it is told what lines of gauges
-# lie off.
-DRIVES, TOLD = 4, 2
+# So often at most the drive alone is fitted, until the fit has come to rest; and so often lines of gauges are learned.
+DRIVES, TIMES = 4, 2
 
 
 def commission(measured: Measured, unit: Unit) -> Unit:
@@ -80,20 +79,24 @@ def _listening(measured: Measured, unit: Unit) -> tuple[Fitted, Float[np.ndarray
 def _as_it_is(measured: Measured, unit: Unit, drive: Fitted | None) -> Fitted:
     """The fit to recordings of the healthy gear, whatever drive and structure it has.
 
-    What lines of gauges lie off is told twice, as those that were missed have led the parameters astray before; the
-    first time beside the drive as speed and torques alone have it. Of its lines those alone tell.
+    Which lines of speed and torques lie off, these alone tell; which of the gauges do is told twice, as those that were
+    missed have led the parameters astray before, the first time beside the drive as speed and torques have it.
     """
     position: Mapping[str, float] = {}
     of_drive = np.zeros(len(measured.layout))
     if drive is not None:
-        position = _told(drive)
+        position = drive.calibrated.position
         if drive.unit.learned is not None:
             of_drive[_of_drive(measured)] = drive.unit.learned
-    fitted = fit(measured, _given(unit, of_drive), held=position)
-    for _ in range(TOLD):
+    held = {} if drive is None else _well_told(drive)
+    free = {name: by for name, by in position.items() if name not in held}
+    fitted = fit(measured, _given(unit, of_drive), position=free, held=held)
+    for _ in range(TIMES):
         learned = np.where(_of_drive(measured), of_drive, _lie_off(fitted))
         position = {**position, **fitted.calibrated.position}
         fitted = fit(measured, _given(unit, learned), position=position)
+        if not learned.any():
+            break
     return about_its_lines(fitted)
 
 
@@ -102,17 +105,19 @@ def _given(unit: Unit, learned: Float[np.ndarray, " feature"]) -> Unit:
     return replace(unit, learned=learned) if learned.any() else unit
 
 
-def _told(drive: Fitted) -> dict[str, float]:
-    """Where a fit to speed and torques alone has the parameters of which these tell something."""
-    tells = zip(drive.parameters, np.any(drive.J, axis=0), strict=True)
-    return {name: drive.calibrated.position[name] for name, told in tells if told}
+def _well_told(drive: Fitted) -> dict[str, float]:
+    """Where a fit to speed and torques alone has the unit's parameters that these tell to less than half a spread."""
+    if not drive.calibrated.settled:
+        return {}
+    told = (name for name, parameter in drive.declared.items() if drive.deviation[name] < parameter.sd / 2)
+    return {name: drive.calibrated.position[name] for name in told}
 
 
 def _drive_alone(measured: Measured, unit: Unit) -> Fitted | None:
     """The fit to speed and torques alone, with those of their lines learned that are missed.
 
-    Gauges on quite another flex spline would lead the drive astray, and other equations of motion the gauges. Their
-    ripple is told first, as it leads friction astray, which the means tell.
+    Gauges on quite another flex spline would lead the drive astray, and other equations of motion the gauges. Of the
+    lines ripple is learned first: while it is missed it leads friction astray, which is for the means to tell.
     """
     heard = _of_drive(measured)
     if not heard.any():
@@ -125,8 +130,9 @@ def _drive_alone(measured: Measured, unit: Unit) -> Fitted | None:
         if fitted.calibrated.settled:
             break
         fitted = fit(alone, unit, position=fitted.calibrated.position)
-    for told in (alone.layout.order > 0, True):
-        learned = _lie_off(fitted) * told
+    ripple = alone.layout.order > 0
+    for sought in (ripple, np.ones_like(ripple)):
+        learned = _lie_off(fitted) * sought
         fitted = again(fitted, learned=learned) if learned.any() else fitted
     return fitted
 

@@ -61,8 +61,8 @@ def fit(
 
 
 class _Fixed(NamedTuple):
-    """What is the same in all turns of a fit: ``start`` is its model at the declared values, ``known`` the errors of
-    single recordings as they were known before it.
+    """What is the same in all turns of a fit: ``start`` is its model where parameters are counted from, ``known`` the
+    errors of single recordings as they were known before it.
     """
 
     measured: Measured

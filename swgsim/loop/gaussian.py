@@ -1,9 +1,9 @@
 """A residual with errors of known kinds: those of single recordings, and ones that recordings share.
 
-The covariance of a residual is A + G G^T. A holds the errors of every recording by itself. The columns of G are errors
-of whole sessions (zero of a bridge, index of the angle) and directions in which declared parameters may lie, each
-scaled to one standard deviation. A residual, a signature and a prediction are all weighed with its inverse square
-root, so that what a declared parameter can absorb costs nothing and counts for nothing.
+The covariance of a residual is A + G G^T. A holds the errors of every recording by itself, and maybe some of the
+others. The columns of G are errors of whole sessions (zero of a bridge, index of the angle) and directions in which
+declared parameters may lie, each scaled to one standard deviation. A residual, a signature and a prediction are all
+weighed with its inverse square root, so that what a declared parameter can absorb costs nothing and counts for nothing.
 """
 
 from collections.abc import Sequence
