@@ -45,7 +45,7 @@ def _left_out(fitted: Fitted) -> Float[np.ndarray, " row"]:
     """Errors of every operating point by the model fitted to the others; NaN where there is one only."""
     missed = np.full(len(fitted.residual), np.nan)
     for block, expected in fitted.by_others:
-        parameters = expected.common[fitted.nuisances.stop :]
+        parameters = expected.common[len(expected.common) - len(fitted.parameters) :]
         missed[block] = fitted.from_start[block] - fitted.J[block] @ parameters
     return missed
 

@@ -39,8 +39,7 @@ class Fitted:
     offset : array (row,)
         Where commissioning found the recordings beside the model, by what is not in it: frictions, lags, zeros.
     allowed : array (row, column) or None
-        The part of ``open`` that the form of effects found earlier leaves open, and regularities that were set free; it
-        comes last.
+        What the form of effects found earlier leaves open too, and regularities that were set free.
     """
 
     measured: Measured
@@ -76,9 +75,7 @@ class Fitted:
     @property
     def strict(self) -> "Fitted":
         """The same without what effects and regularities found earlier leave open, for predictions."""
-        if self.allowed is None:
-            return self
-        return replace(self, open=self.open[:, : -self.allowed.shape[1]], allowed=None)
+        return self if self.allowed is None else self._with_allowed(None)
 
     def allowing(self, columns: Float[np.ndarray, "row column"]) -> "Fitted":
         """The same with more left open, one standard deviation each, also when effects are added to it; other columns
@@ -87,8 +84,10 @@ class Fitted:
         columns = without_what_noise_hides(columns, self.errors.variance)
         if not columns.shape[1]:
             return self
-        kept = [] if self.allowed is None else [self.allowed]
-        found = replace(self, open=np.hstack([self.open, columns]), allowed=np.hstack([*kept, columns]))
+        return self._with_allowed(columns if self.allowed is None else np.hstack([self.allowed, columns]))
+
+    def _with_allowed(self, allowed: Float[np.ndarray, "row column"] | None) -> "Fitted":
+        found = replace(self, allowed=allowed)
         vars(found)["of_unit"] = self.of_unit  # the same, and most of what there is to compute
         return found
 
@@ -126,7 +125,7 @@ class Fitted:
     @cached_property
     def of_unit(self) -> Covariance:
         """All errors, with what the unit leaves open."""
-        return self.errors.with_columns(self.strict.open)
+        return self.errors.with_columns(self.open)
 
     @property
     def of_nuisances(self) -> Covariance:
@@ -143,13 +142,6 @@ class Fitted:
         """Residual of the linearised model at the values where the spreads begin: what :attr:`whole` describes."""
         return self.residual + self.J @ np.array(list(self.calibrated.position.values()))
 
-    @property
-    def nuisances(self) -> slice:
-        """Which columns of :attr:`whole` are no fitted parameters: zeros and gains of sessions, and what is left open
-        of the gear and of effects found earlier.
-        """
-        return slice(self.errors.columns.shape[1] + self.open.shape[1])
-
     @cached_property
     def by_others(self) -> list[tuple[np.ndarray, Expected]]:
         """The rows of every operating point (a mask) and what all the others say of them; none if there is one only."""
@@ -160,10 +152,12 @@ class Fitted:
 
     @cached_property
     def nuisance(self) -> Float[np.ndarray, " row"]:
-        """What the nuisances make of every operating point, as all the others tell it; nothing if there is one only."""
+        """What all that is open beside the fitted parameters makes of every operating point, as all the others tell it:
+        zeros and gains of sessions, the gear, effects found earlier; nothing if there is one point only.
+        """
         made, columns = np.zeros(len(self.residual)), self.of_nuisances.columns
         for block, expected in self.by_others:
-            made[block] = columns[block] @ expected.common[self.nuisances]
+            made[block] = columns[block] @ expected.common[: columns.shape[1]]
         return made
 
     @property

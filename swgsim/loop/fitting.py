@@ -82,12 +82,12 @@ def _turn(fixed: _Fixed, here: Model, begin: Mapping[str, float] | None, guess: 
     moves = scatter.of_recordings(here, measured)
     unsure = unit.left_open(here, measured.situations, measured.layout)
     offset, left = measured.rows(unsure.shift), measured.rows(unsure.columns)
-    open_ = left if fixed.allowed is None else np.hstack([left, fixed.allowed])
+    more = left if fixed.allowed is None else np.hstack([left, fixed.allowed])
     of_sessions = measured.session_columns(unsure.predicted)
     values = measured.values - offset.reshape(measured.values.shape)
     calibrated = calibrate(
         fixed.start, fixed.parameters, values,
-        Covariance(Alone(noise, guess.columns(moves)), of_sessions).with_columns(open_),
+        Covariance(Alone(noise, guess.columns(moves)), of_sessions).with_columns(more),
         measured.situations, measured.of_recording, measured.layout, begin,
     )  # fmt: skip
     residual = values - calibrated.predicted[measured.of_recording]
@@ -96,13 +96,13 @@ def _turn(fixed: _Fixed, here: Model, begin: Mapping[str, float] | None, guess: 
         estimated = repeats.from_repeats(residual, noise, moves, trends, measured.repeats, fixed.known)
     else:
         J = measured.rows(calibrated.J).reshape(residual.size, -1)
-        common = Covariance(Alone.white(noise), np.hstack([of_sessions, open_, J]))
+        common = Covariance(Alone.white(noise), np.hstack([of_sessions, more, J]))
         from_start = residual.ravel() + J @ np.array(list(calibrated.position.values()))
         estimated = repeats.from_all(from_start, common, moves, trends, fixed.known)
     errors = Covariance(Alone(noise, estimated.columns(moves)), of_sessions)
     return Fitted(
         measured, unit, fixed.parameters, calibrated, estimated,
-        errors=errors, open=open_, offset=offset, allowed=fixed.allowed,
+        errors=errors, open=left, offset=offset, allowed=fixed.allowed,
     )  # fmt: skip
 
 
