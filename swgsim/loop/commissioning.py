@@ -83,14 +83,13 @@ def _as_it_is(measured: Measured, unit: Unit, drive: Fitted | None) -> Fitted:
     missed have led the parameters astray before, the first time beside the drive as speed and torques have it.
     """
     position: Mapping[str, float] = {}
+    held: list[str] = []
     of_drive = np.zeros(len(measured.layout))
     if drive is not None:
-        position = drive.calibrated.position
+        position, held = drive.calibrated.position, _well_told(drive)
         if drive.unit.learned is not None:
             of_drive[_of_drive(measured)] = drive.unit.learned
-    held = {} if drive is None else _well_told(drive)
-    free = {name: by for name, by in position.items() if name not in held}
-    fitted = fit(measured, _given(unit, of_drive), position=free, held=held)
+    fitted = fit(measured, _given(unit, of_drive), position=position, held=held)
     for _ in range(TIMES):
         learned = np.where(_of_drive(measured), of_drive, _lie_off(fitted))
         position = {**position, **fitted.calibrated.position}
@@ -105,12 +104,11 @@ def _given(unit: Unit, learned: Float[np.ndarray, " feature"]) -> Unit:
     return replace(unit, learned=learned) if learned.any() else unit
 
 
-def _well_told(drive: Fitted) -> dict[str, float]:
-    """Where a fit to speed and torques alone has the unit's parameters that these tell to less than half a spread."""
+def _well_told(drive: Fitted) -> list[str]:
+    """The unit's parameters that speed and torques alone tell to less than half a spread."""
     if not drive.calibrated.settled:
-        return {}
-    told = (name for name, parameter in drive.declared.items() if drive.deviation[name] < parameter.sd / 2)
-    return {name: drive.calibrated.position[name] for name in told}
+        return []
+    return [name for name, parameter in drive.declared.items() if drive.deviation[name] < parameter.sd / 2]
 
 
 def _drive_alone(measured: Measured, unit: Unit) -> Fitted | None:

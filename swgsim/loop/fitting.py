@@ -1,6 +1,6 @@
 """Fit of what is not known of a model to recordings, in turns with the errors of single recordings."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -31,7 +31,7 @@ def fit(
     *,
     position: Mapping[str, float] | None = None,
     allowed: Float[np.ndarray, "row column"] | None = None,
-    held: Mapping[str, float] | None = None,
+    held: Collection[str] = (),
 ) -> Fitted:
     """Fit what is not known, and estimate the errors of single recordings, in turns.
 
@@ -45,16 +45,16 @@ def fit(
         Where parameters begin, in spreads.
     allowed : array (row, column), optional
         What effects and regularities found earlier leave open, one standard deviation each.
-    held : mapping, optional
-        Parameters of the unit that are not fitted, and where they stay, in spreads.
+    held : collection of str
+        Parameters of the unit that are not fitted but stay where they begin.
     """
-    held = held or {}
-    start = at(model or unit.model, unit.declared, held)
+    begin = dict(position or {})
+    start = at(model or unit.model, unit.declared, {name: begin.pop(name) for name in held})
     parameters = {} if unit.commissioned else {name: p for name, p in unit.declared.items() if name not in held}
     parameters = parameters | of_effects(start, unit.of_another_structure)
     known = unit.scatter.carried if unit.scatter else Scatter.stated(measured.layout)
     fixed = _Fixed(measured, unit, start, parameters, known, allowed)
-    found = _turn(fixed, at(start, parameters, position or {}), position, known)
+    found = _turn(fixed, at(start, parameters, begin), begin, known)
     if unit.scatter and model:
         return found  # errors that commissioning found are good enough a guess for the many fits of effects (estimate)
     return _turn(fixed, found.model, found.calibrated.position, found.scatter)
@@ -73,7 +73,7 @@ class _Fixed(NamedTuple):
     allowed: Float[np.ndarray, "row column"] | None
 
 
-def _turn(fixed: _Fixed, here: Model, begin: Mapping[str, float] | None, guess: Scatter) -> Fitted:
+def _turn(fixed: _Fixed, here: Model, begin: Mapping[str, float], guess: Scatter) -> Fitted:
     """Parameters fitted beside guessed errors of single recordings, and these errors estimated anew; how either acts is
     taken from a model that is near, and parameters begin anywhere [spreads].
     """
