@@ -82,9 +82,19 @@ def save_views(store: Store) -> None:
 
 def link(store: Store, server: str, view: View = SCORES) -> str:
     """Address of the view on an MLflow server such as ``http://127.0.0.1:5050``."""
-    return (
-        f"{server}/#/experiments/{store.experiment_id}/runs?workflowType=machine_learning&viewStateShareKey={view.key}"
-    )
+    return f"{_runs(server, store.experiment_id)}&viewStateShareKey={view.key}"
+
+
+def others(store: Store, server: str) -> dict[str, str]:
+    """Addresses of the runs of all other experiments that have some, by name, such as those of closing the loop."""
+    found = store.client.search_experiments(order_by=["name"])
+    beside = {each.name: each.experiment_id for each in found if each.experiment_id != store.experiment_id}
+    kept = {name: number for name, number in beside.items() if store.client.search_runs([number], max_results=1)}
+    return {name: _runs(server, number) for name, number in kept.items()}
+
+
+def _runs(server: str, experiment: str) -> str:
+    return f"{server}/#/experiments/{experiment}/runs?workflowType=machine_learning"
 
 
 def serve(store: Store, host: str, port: int) -> None:
@@ -93,6 +103,8 @@ def serve(store: Store, host: str, port: int) -> None:
     server = f"http://{host}:{port}" if store.folder else store.uri
     for view in VIEWS:
         print(f"{view.name}: {link(store, server, view)}", flush=True)
+    for name, address in others(store, server).items():
+        print(f"Experiment {name}: {address}", flush=True)
     if store.folder:
         with until_stopped():
             run_mlflow(store.uri, host, port, "--workers", "1")

@@ -1,4 +1,4 @@
-"""Serve MLflow's page on this machine and print the link to the table of scores."""
+"""Serve MLflow's page on this machine and print links to the tables of scores and to all other experiments."""
 
 import hydra
 from misspelt import answered

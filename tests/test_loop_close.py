@@ -99,11 +99,11 @@ def test_gauges_on_another_flex_spline_do_not_lead_the_drive_astray():
 
 
 def test_a_gear_is_commissioned_with_a_declared_effect_on_its_drive():
-    """Which speed and torques alone tell, as they do the unit's parameters."""
-    worn = LIBRARY["flank_friction"](1.3)
-    own = commission(recorded((worn,), seed=1), Unit(Model(GEAR, (worn,))))
+    """It and the friction that it changes are told together."""
+    acting, declared = (LIBRARY["flank_friction"](ratio) for ratio in (1.3, 1.1))
+    own = commission(recorded((acting,), seed=1), Unit(Model(GEAR, (declared,))))
     (found,) = own.model.effects
-    assert found.mu_ratio == pytest.approx(1.3, rel=0.1)
+    assert own.model.gear.transmission.mu * found.mu_ratio == pytest.approx(1.3 * GEAR.transmission.mu, rel=0.05)
 
 
 def test_friction_far_from_the_nominal_is_the_gears_own_and_no_line_that_is_learned():

@@ -13,6 +13,7 @@ from swgsim.loop.evidence import NO_SIZE
 from swgsim.loop.features import Layout
 from swgsim.loop.fitted import Fitted
 from swgsim.loop.form import lines_anywhere
+from swgsim.loop.gaussian import Covariance
 from swgsim.loop.model import Model
 from swgsim.loop.trial import EXACT, widened
 from swgsim.loop.unit import LESS, STRUCTURE
@@ -320,7 +321,29 @@ def test_what_was_open_before_stays_open_and_each_of_two_effects_has_its_own_for
     # As few columns as say the same.
     np.testing.assert_allclose(found @ found.T, parts @ parts.T, atol=1e-3)
     assert found.shape[1] < parts.shape[1]
-    np.testing.assert_array_equal(opened.strict.open, held.strict.open)
+    assert opened.strict.allowed is None
+
+
+def test_what_is_open_of_the_unit_is_the_same_whatever_effects_leave_open(planted):
+    """It is set up once; the errors, the unit's, those of effects and parameters follow one another."""
+    rng = np.random.default_rng(23)
+    fitted, whole = planted
+    parameters = {name: Declared("-", 1.0, lambda model: 0.0, lambda model, to: model) for name in "ab"}
+    J = rng.standard_normal((*fitted.calibrated.predicted.shape, 2))
+    calibrated = replace(fitted.calibrated, position=dict.fromkeys(parameters, 0.0), J=J)
+    fitted = replace(fitted, calibrated=calibrated, parameters=parameters)
+    more = [rng.standard_normal((len(whole), columns)) for columns in (3, 2)]
+    opened = fitted.allowing(more[0]).allowing(more[1])
+    every = [fitted.errors.columns, fitted.open, opened.allowed, opened.J]
+    np.testing.assert_array_equal(opened.whole.columns, np.hstack(every))
+    for each, columns in ((opened, every), (opened.strict, [*every[:2], every[3]])):
+        anew = Covariance(fitted.errors.alone, np.hstack(columns))
+        assert each.log_likelihood == pytest.approx(anew.log_likelihood(fitted.from_start))
+        block, _ = each.by_others[0]
+        told = anew.left_out(fitted.from_start, [block])[0]
+        np.testing.assert_allclose(each.nuisance[block], (anew.columns[:, :-2] @ told.common[:-2])[block])
+    noisier = opened.scattering(replace(opened.scatter, sd={name: 3 * sd for name, sd in opened.scatter.sd.items()}))
+    assert noisier.of_unit.alone is noisier.errors.alone is not opened.errors.alone
 
 
 def test_doubt_is_how_far_parts_that_differ_lead_a_size_astray(planted, judged):

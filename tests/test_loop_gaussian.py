@@ -24,7 +24,7 @@ SHAPES = {
 def random_covariance(
     recordings: int, features: int, kinds: int, columns: int, seed: int
 ) -> tuple[Covariance, np.ndarray, np.random.Generator]:
-    """One with errors of every kind from a hundredth to a hundred times the noise, common ones given at once or in two
+    """One with errors of every kind from a hundredth to a hundred times the noise, common ones given in up to three
     parts; and its dense form.
     """
     rng = np.random.default_rng(seed)
@@ -32,8 +32,8 @@ def random_covariance(
     C = rng.normal(size=(recordings, features, kinds)) * 10 ** rng.uniform(-2, 2, kinds)
     G = rng.normal(size=(recordings * features, columns)) * 10 ** rng.uniform(-2, 2, columns)
     dense = block_diag(*(np.diag(own) + each @ each.T for own, each in zip(noise, C, strict=True))) + G @ G.T
-    first = int(rng.integers(columns + 1))
-    return Covariance(Alone(noise, C), G[:, :first]).with_columns(G[:, first:]), dense, rng
+    first, second, third = np.split(G, np.sort(rng.integers(columns + 1, size=2)), axis=1)
+    return Covariance(Alone(noise, C), first).with_columns(second).with_columns(third), dense, rng
 
 
 @settings(deadline=None, max_examples=60)

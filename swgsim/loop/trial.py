@@ -168,9 +168,9 @@ def tried(now: Fitted, score: Score, added: tuple[Effect, ...], start: Fitted) -
     effects = fitted.model.effects[known:]
     found = tuple(coherence(fitted, known + number) for number in range(len(added)))
     opened = open_as_found(fitted, found)
-    without = _supposed(now, opened)
+    without = _as_likely_before(now, opened)
     # Many trials are kept, so without what was computed of them on the way.
-    trial = Trial(score, effects, replace(fitted), *_over(without, opened), found)
+    trial = Trial(score, effects, replace(fitted), *_gain_over(without, opened), found)
     return replace(trial, own=trial.explained(without)) if open_to_much(fitted, effects) else trial
 
 
@@ -181,15 +181,15 @@ def open_to_much(fitted: Fitted, effects: Sequence[Effect]) -> bool:
 
 def gained(now: Fitted, fitted: Fitted) -> tuple[Float[np.ndarray, " point"], float]:
     """Log-likelihood of each operating point left out, and of all together, that a fit gains over the model before."""
-    return _over(_supposed(now, fitted), fitted)
+    return _gain_over(_as_likely_before(now, fitted), fitted)
 
 
-def _over(without: Fitted, fitted: Fitted) -> tuple[Float[np.ndarray, " point"], float]:
-    """The same over exactly this model."""
+def _gain_over(without: Fitted, fitted: Fitted) -> tuple[Float[np.ndarray, " point"], float]:
+    """Log-likelihood of each operating point left out, and of all together, that one fit has over another."""
     return fitted.predictive - without.predictive, fitted.log_likelihood - without.log_likelihood
 
 
-def _supposed(now: Fitted, fitted: Fitted) -> Fitted:
+def _as_likely_before(now: Fitted, fitted: Fitted) -> Fitted:
     """The model before a fit, as likely as errors of single recordings and bridges balanced anew make it.
 
     An effect that makes repeats differ makes the errors of single recordings larger, and these explain much without
