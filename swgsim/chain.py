@@ -240,19 +240,18 @@ def evaluate(
     maps: Sequence[InfluenceMap], psi: Float[np.ndarray, " time"], T_out: Float[np.ndarray, " time"]
 ) -> Float[np.ndarray, "map 5 time"]:
     """The signals of several structures along one motion, s = A(psi) + T_out B(psi)."""
-    coefficients = np.stack([m.coefficients for m in maps])
-    kept = _significant(coefficients, np.abs(T_out).max())
+    kept = _significant(maps, np.abs(T_out).max())
     turns = harmonics(psi, kept)
     real = np.concatenate([turns.real, -turns.imag])
-    weights = np.concatenate([coefficients[..., kept].real, coefficients[..., kept].imag], axis=-1)
+    coefficients = np.array([m.coefficients[..., kept] for m in maps])
+    weights = np.concatenate([coefficients.real, coefficients.imag], axis=-1)
     A, B = np.moveaxis((weights.reshape(-1, len(real)) @ real).reshape(*weights.shape[:-1], -1), 1, 0)
     return A + T_out * B
 
 
-def _significant(coefficients: np.ndarray, T_out: float) -> np.ndarray:
+def _significant(maps: Sequence[InfluenceMap], T_out: float) -> np.ndarray:
     """The orders that matter relative to the largest signal; sound gears have even ones only, and few of them."""
-    size = np.abs(coefficients) * np.array([1.0, T_out])[:, None, None]
-    size = size.max(axis=tuple(range(size.ndim - 1)))
+    size = (np.array([m.largest for m in maps]).max(axis=0) * [[1.0], [T_out]]).max(axis=0)
     return np.flatnonzero(size > NEGLIGIBLE * size.max())
 
 

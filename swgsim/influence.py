@@ -6,7 +6,7 @@ computed once over the angle and a recording is the evaluation of both along phi
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from jaxtyping import Complex, Float, Int
@@ -39,6 +39,11 @@ class InfluenceMap:
 
     coefficients: Complex[np.ndarray, "2 5 order"]
 
+    @cached_property
+    def largest(self) -> Float[np.ndarray, "2 order"]:
+        """The largest coefficient of all sensors."""
+        return np.abs(self.coefficients).max(axis=1)
+
     def __call__(self, psi: Float[np.ndarray, " time"]) -> Float[np.ndarray, "2 5 time"]:
         """A and B at given angles [rad]."""
         return (self.coefficients @ harmonics(psi, np.arange(self.coefficients.shape[-1]))).real
@@ -65,7 +70,7 @@ def ellipse(
     a, b = radius + wave_generator.w0, radius - wave_generator.w0
 
     def polar(x: np.ndarray) -> np.ndarray:
-        return a * b / np.hypot(b * np.cos(x), a * np.sin(x))
+        return a * b / np.sqrt((a**2 + b**2) / 2 - (a**2 - b**2) / 2 * np.cos(2 * x))
 
     mean = polar(np.linspace(0, 2 * np.pi, 64, endpoint=False)).mean()
     return polar(theta - psi[:, None]) - mean

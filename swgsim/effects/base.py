@@ -3,6 +3,7 @@
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -61,7 +62,7 @@ class Extra(NamedTuple):
     T_load: np.ndarray | float = 0.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Scene:
     """What goes on while signals are recorded.
 
@@ -197,4 +198,9 @@ class Effect:
 
 def overrides(effect: Effect, *methods: str) -> bool:
     """Whether an effect has its own version of one of these methods."""
-    return any(getattr(type(effect), method) is not getattr(Effect, method) for method in methods)
+    return _overrides(type(effect), methods)
+
+
+@cache
+def _overrides(kind: type[Effect], methods: tuple[str, ...]) -> bool:
+    return any(getattr(kind, method) is not getattr(Effect, method) for method in methods)

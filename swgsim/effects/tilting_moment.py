@@ -10,6 +10,9 @@ from swgsim.effects.frozen import FULL_LOAD
 from swgsim.effects.quantity import choice, phase, size
 from swgsim.gauges import LAYOUT
 
+# One wave around the collar as each bridge sees it.
+WAVE = np.array([[np.exp(1j * angles).mean()] for angles in LAYOUT])
+
 
 @dataclass(frozen=True)
 class TiltingMoment(Effect):
@@ -40,4 +43,4 @@ class TiltingMoment(Effect):
     def gauge(self, signals: Float[np.ndarray, "5 time"], scene: Scene) -> Float[np.ndarray, "5 time"]:
         """The signals with the offsets of one wave around the collar."""
         strain = self.strain * (scene.T_out / FULL_LOAD) ** self.with_load
-        return signals + strain * np.array([[np.cos(angles - self.theta).mean()] for angles in LAYOUT])
+        return signals + strain * (WAVE * np.exp(-1j * self.theta)).real

@@ -93,10 +93,17 @@ def features(recording: Recording, layout: Layout) -> Float[np.ndarray, " featur
 
 def features_alike(recordings: Sequence[Recording], layout: Layout) -> Float[np.ndarray, "recording feature"]:
     """The feature vectors of recordings of equal length; raises like :func:`features`."""
-    columns = basis(np.array([each.channels["phi_in"] for each in recordings]), FITTED)
-    values = np.array([_values(each, layout) for each in recordings])
+    # Many runs of a model have the same motion, which decides how values become coefficients.
+    angles = [each.channels["phi_in"] for each in recordings]
+    first = {angle.tobytes(): number for number, angle in reversed(list(enumerate(angles)))}
+    row = {key: number for number, key in enumerate(first)}
+    columns = basis(np.array([angles[number] for number in first.values()]), FITTED)
+    across = columns.swapaxes(-1, -2)
     kept = np.concatenate([np.arange(ORDERS + 1), FITTED + 1 + np.arange(ORDERS)])
-    return _coefficients(columns, values)[:, kept].transpose(0, 2, 1).reshape(len(recordings), -1)
+    fitting = np.linalg.solve(across @ columns, across)[:, kept]
+    values = np.array([_values(each, layout) for each in recordings])
+    found = fitting[[row[angle.tobytes()] for angle in angles]] @ values
+    return found.transpose(0, 2, 1).reshape(len(recordings), -1)
 
 
 def remainder(recording: Recording, layout: Layout) -> Float[np.ndarray, "channel time"]:
@@ -124,7 +131,7 @@ def _require_dense(recording: Recording) -> None:
 
 def _values(recording: Recording, layout: Layout) -> Float[np.ndarray, "time channel"]:
     _require_dense(recording)
-    return np.stack([recording.channels[name] for name in layout.channels], axis=1)
+    return np.array([recording.channels[name] for name in layout.channels]).T
 
 
 def _coefficients(

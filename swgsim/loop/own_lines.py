@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from jaxtyping import Complex, Float
@@ -9,6 +10,7 @@ from jaxtyping import Complex, Float
 from swgsim.effects.base import Effect, Scene
 from swgsim.effects.frozen import FULL_LOAD, FULL_SPEED
 from swgsim.gauges import GaugeSet
+from swgsim.gear import OperatingPoint
 from swgsim.loop.features import along_basis, basis
 from swgsim.recordings import SENSORS
 
@@ -28,7 +30,10 @@ LOADED = np.array([np.all(law(np.zeros(1), 1.0) == 0) for law in LAWS])
 def laws(T_out: Float[np.ndarray, "..."], n_in_rpm: float) -> Float[np.ndarray, "law ..."]:
     """All laws at a torque [N m] and a speed [rpm]."""
     load, speed = T_out / FULL_LOAD, n_in_rpm / FULL_SPEED
-    return np.array([law(load, speed) + 0 * load for law in LAWS])
+    found = np.empty((len(LAWS), *load.shape))
+    for number, law in enumerate(LAWS):
+        found[number] = law(load, speed)
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,25 +94,41 @@ class OwnLines(Effect):
 
     def gauge(self, signals: Float[np.ndarray, "5 time"], scene: Scene) -> Float[np.ndarray, "5 time"]:
         """The bridge signals with their lines."""
-        own = [name for name in self.lines.channels if name in SENSORS]
-        lines = _of(self.lines.seen_by(self.gauges), own)
-        ahead = np.exp(0.5j * np.angle(self.lobes) * np.arange(lines.shape[-1]))
-        waves = _waves(lines * ahead * np.where(LOADED, 1.0, abs(self.lobes))[:, None, None], scene)
+        bridges, along = _of_gauges(self.lines, self.gauges, self.lobes)
+        waves = along @ _basis(self.lines, scene)
         seen = signals.copy()
         # The structure follows the torque at once, and so its ripple.
-        seen[[SENSORS.index(name) for name in own]] += (waves * laws(scene.T_out, scene.point.n_in_rpm)[:, None]).sum(
-            axis=0
-        )
+        seen[bridges] += (waves * laws(scene.T_out, scene.point.n_in_rpm)[:, None]).sum(axis=0)
         return seen
 
     def acquisition(
         self, channels: Mapping[str, Float[np.ndarray, " time"]], scene: Scene
     ) -> Mapping[str, Float[np.ndarray, " time"]]:
         """The channels of the drive with their lines."""
-        drive = [name for name in self.lines.channels if name not in SENSORS]
-        here = laws(np.array(scene.point.T_out), scene.point.n_in_rpm)
-        waves = _waves(np.tensordot(here, _of(self.lines, drive), 1), scene)
+        drive, along = _of_drive(self.lines, scene.point)
+        waves = along @ _basis(self.lines, scene)
         return {**channels, **{name: channels[name] + wave for name, wave in zip(drive, waves, strict=True)}}
+
+
+# What is asked for in every run of a fit.
+@lru_cache(maxsize=1024)
+def _of_gauges(
+    lines: Lines, gauges: GaugeSet, lobes: complex
+) -> tuple[list[int], Float[np.ndarray, "law bridge column"]]:
+    """The bridges that have lines, and what these have along the basis as the gauges see them now."""
+    own = [name for name in lines.channels if name in SENSORS]
+    values = _of(lines.seen_by(gauges), own)
+    ahead = np.exp(0.5j * np.angle(lobes) * np.arange(values.shape[-1]))
+    stroke = np.where(LOADED, 1.0, abs(lobes))[:, None, None]
+    return [SENSORS.index(name) for name in own], along_basis(values * ahead * stroke)
+
+
+@lru_cache(maxsize=1024)
+def _of_drive(lines: Lines, point: OperatingPoint) -> tuple[list[str], Float[np.ndarray, "channel column"]]:
+    """The channels of the drive that have lines, and what these have along the basis at an operating point."""
+    drive = [name for name in lines.channels if name not in SENSORS]
+    here = laws(np.array(point.T_out), point.n_in_rpm)
+    return drive, along_basis(np.tensordot(here, _of(lines, drive), 1))
 
 
 def _of(lines: Lines, names: Sequence[str]) -> Complex[np.ndarray, "law channel order"]:
@@ -115,6 +136,7 @@ def _of(lines: Lines, names: Sequence[str]) -> Complex[np.ndarray, "law channel 
     return lines.values[:, [lines.channels.index(name) for name in names]]
 
 
-def _waves(lines: Complex[np.ndarray, "*batch order"], scene: Scene) -> Float[np.ndarray, "*batch time"]:
-    """What lines are over time."""
-    return along_basis(lines) @ basis(scene.phi_in, lines.shape[-1] - 1).T
+@lru_cache(maxsize=1)  # the gauges and the drive of a run
+def _basis(lines: Lines, scene: Scene) -> Float[np.ndarray, "column time"]:
+    """What the orders of lines are over time."""
+    return basis(scene.phi_in, lines.values.shape[-1] - 1).T
