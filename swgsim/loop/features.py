@@ -94,15 +94,13 @@ def features(recording: Recording, layout: Layout) -> Float[np.ndarray, " featur
 def features_alike(recordings: Sequence[Recording], layout: Layout) -> Float[np.ndarray, "recording feature"]:
     """The feature vectors of recordings of equal length; raises like :func:`features`."""
     # Many runs of a model have the same motion, which decides how values become coefficients.
-    angles = [each.channels["phi_in"] for each in recordings]
-    first = {angle.tobytes(): number for number, angle in reversed(list(enumerate(angles)))}
-    row = {key: number for number, key in enumerate(first)}
-    columns = basis(np.array([angles[number] for number in first.values()]), FITTED)
+    angles, of_recording = np.unique([each.channels["phi_in"] for each in recordings], axis=0, return_inverse=True)
+    columns = basis(angles, FITTED)
     across = columns.swapaxes(-1, -2)
     kept = np.concatenate([np.arange(ORDERS + 1), FITTED + 1 + np.arange(ORDERS)])
     fitting = np.linalg.solve(across @ columns, across)[:, kept]
     values = np.array([_values(each, layout) for each in recordings])
-    found = fitting[[row[angle.tobytes()] for angle in angles]] @ values
+    found = fitting[of_recording.ravel()] @ values
     return found.transpose(0, 2, 1).reshape(len(recordings), -1)
 
 
