@@ -247,13 +247,16 @@ def test_what_a_regularity_tells_beyond_an_effect_may_be_a_second_one(monkeypatc
     assert found.outdone_by == (None if accepted else plain)
 
 
-@pytest.mark.parametrize(("other", "both"), [(-1.0, True), (1.0, False), (0.0, False)])
-def test_effects_that_cancel_are_no_causes(monkeypatch, other, both):
-    """A signature and one that is nearly the opposite, nearly the same, or another thing."""
+@pytest.mark.parametrize(
+    ("other", "more", "both"),
+    [(-1.0, 0.2, True), (-1.0, 1.5, True), (-1.0, 2.0, False), (1.0, 0.2, False), (0.0, 1.0, False)],
+)
+def test_effects_that_cancel_are_no_causes(monkeypatch, other, more, both):
+    """A signature and one that is opposite to it, mostly or for a small part, nearly the same, or another thing."""
     rng = np.random.default_rng(3)
     rows, model = len(FITTED.errors.variance), FITTED.model
     one, another = rng.standard_normal((2, rows))
-    seen = [one, other * one + (0.2 if other else 1.0) * another]
+    seen = [one, other * one + more * another]
     now = replace(FITTED, calibrated=replace(FITTED.calibrated, model=model.plus(Bump(1.0), Wave(1.0))))
     monkeypatch.setattr(steps, "signature", lambda _, number: seen[number - len(model.effects)])
     found = Step(A, (), ()), Step(B, (), ())
@@ -490,7 +493,7 @@ def test_it_is_said_why_an_effect_is_no_cause():
     pair = replace(PAIR, coherence=(Coherence(0.5, 0.0, 0.0), Coherence(0.5, 0.3, 0.7, 0.66)))
     found = Closed(FITTED, FITTED, FITTED, (), (), (), (B, C, light, vague, pair), None, (), (C,), (B,), (light,))
     answer = Answer(UNKNOWN, found, (), (), (), (), ())
-    assert why(B, answer) == "it and another one all but cancel: together they imitate something else"
+    assert why(B, answer) == "it and another one cancel much of one another: together they imitate something else"
     assert why(C, answer).startswith("accepted at first")
     assert why(light, answer).startswith("it brings less than ten times what it leaves")
     assert why(vague, answer) == "operating points, channels and orders leave its size in doubt by 66 %"

@@ -17,8 +17,9 @@ from swgsim.loop.screening import Score
 from swgsim.loop.trial import Trial
 from swgsim.loop.vocabulary import Described
 
-# Two effects cancel if the cosine between what they do is below the negative of this.
-CANCELLED = 0.9
+# Two effects cancel if the cosine between what they do is below the negative of this: so it is of one in a hundred pairs
+# of library effects drawn at random (estimate).
+CANCELLED = 0.5
 # What is left must not reach this part of the fall of the sum of squares that an effect brought.
 LEFT = 0.1
 
@@ -59,10 +60,10 @@ def chosen(effect: Effect) -> tuple[object, ...]:
 
 
 def cancelling(steps: Sequence[Step], now: Fitted) -> tuple[Step, ...]:
-    """Steps whose effects all but cancel those of another one, in a model with all of them.
+    """Steps whose effects cancel much of those of another one, in a model with all of them.
 
     Where the cause is missing in the library, two laws that are alike, one less the other, bend into nearly any law
-    between them; of two causes each adds something of its own. Two of one kind are that kind in a form between theirs.
+    between them; two causes seldom work against one another. Two of one kind are that kind in a form between theirs.
     Where one of them brings no more than the other may miss by an imperfect form, it is that one alone which is none.
     """
     owners = [step for step in steps for _ in step.accepted.effects]

@@ -107,7 +107,7 @@ def why(trial: Trial, answer: Answer, better: Trial | None = None) -> str:
         )
     if trial in answer.closed.cancelling:
         which = "its effects" if len(trial.effects) > 1 else "it and another one"
-        return f"{which} all but cancel: together they imitate something else"
+        return f"{which} cancel much of one another: together they imitate something else"
     if trial in answer.closed.outweighed:
         return "it brings less than ten times what it leaves, which no effect explains: a part of something else"
     if trial in answer.closed.withdrawn:
