@@ -198,9 +198,10 @@ class Effect:
 
 def overrides(effect: Effect, *methods: str) -> bool:
     """Whether an effect has its own version of one of these methods."""
-    return _overrides(type(effect), methods)
+    kind: type = type(effect)
+    return _overrides(kind, methods)
 
 
 @cache
-def _overrides(kind: type[Effect], methods: tuple[str, ...]) -> bool:
+def _overrides(kind: type, methods: tuple[str, ...]) -> bool:
     return any(getattr(kind, method) is not getattr(Effect, method) for method in methods)
