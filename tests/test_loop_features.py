@@ -90,11 +90,13 @@ def test_a_channel_that_one_recording_lacks_is_not_compared():
     assert layout_of([full, short]).channels == ("s1",)
 
 
-def test_a_recording_with_too_few_samples_per_revolution_is_refused():
-    rate = 32.5 * POINTS[0].n_in_rpm / 60
+@pytest.mark.parametrize("dense", [32.5, 4.0])
+def test_a_recording_with_too_few_samples_per_revolution_is_refused(dense):
+    """Also where the orders are all alike at the few angles that there are."""
+    rate = dense * POINTS[0].n_in_rpm / 60
     phi = turning(POINTS[0], 12.0, rate)
     coarse = recorded(signals(lines_of(5), phi), POINTS[0], rate)
-    said = r"recording a: 32\.\d samples per revolution .* at least 33 .*: sample at 11\d\d Hz or more"
+    said = rf"recording a: {dense:.0f}\.\d samples per revolution .* at least 33 .*: sample at 11\d\d Hz or more"
     with pytest.raises(ValueError, match=said):
         features(coarse, LAYOUT)
     with pytest.raises(ValueError, match=said):

@@ -93,14 +93,15 @@ def features(recording: Recording, layout: Layout) -> Float[np.ndarray, " featur
 
 def features_alike(recordings: Sequence[Recording], layout: Layout) -> Float[np.ndarray, "recording feature"]:
     """The feature vectors of recordings of equal length; raises like :func:`features`."""
+    values = np.array([_values(each, layout) for each in recordings])
     # Many runs of a model have the same motion, which decides how values become coefficients.
-    angles, of_recording = np.unique([each.channels["phi_in"] for each in recordings], axis=0, return_inverse=True)
-    columns = basis(angles, FITTED)
+    angles = {each.channels["phi_in"].tobytes(): each.channels["phi_in"] for each in recordings}
+    row = {key: number for number, key in enumerate(angles)}
+    columns = basis(np.array(list(angles.values())), FITTED)
     across = columns.swapaxes(-1, -2)
     kept = np.concatenate([np.arange(ORDERS + 1), FITTED + 1 + np.arange(ORDERS)])
     fitting = np.linalg.solve(across @ columns, across)[:, kept]
-    values = np.array([_values(each, layout) for each in recordings])
-    found = fitting[of_recording.ravel()] @ values
+    found = fitting[[row[each.channels["phi_in"].tobytes()] for each in recordings]] @ values
     return found.transpose(0, 2, 1).reshape(len(recordings), -1)
 
 
@@ -108,7 +109,7 @@ def remainder(recording: Recording, layout: Layout) -> Float[np.ndarray, "channe
     """What the integer orders up to FITTED leave of every channel; raises like :func:`features`."""
     columns = basis(recording.channels["phi_in"], FITTED)
     values = _values(recording, layout)
-    return (values - columns @ _coefficients(columns, values)).T
+    return (values - columns @ np.linalg.solve(columns.T @ columns, columns.T @ values)).T
 
 
 def samples_per_turn(recording: Recording) -> float:
@@ -130,11 +131,3 @@ def _require_dense(recording: Recording) -> None:
 def _values(recording: Recording, layout: Layout) -> Float[np.ndarray, "time channel"]:
     _require_dense(recording)
     return np.array([recording.channels[name] for name in layout.channels]).T
-
-
-def _coefficients(
-    columns: Float[np.ndarray, "*batch time column"], values: Float[np.ndarray, "*batch time channel"]
-) -> Float[np.ndarray, "*batch column channel"]:
-    """Least squares."""
-    across = columns.swapaxes(-1, -2)
-    return np.linalg.solve(across @ columns, across @ values)

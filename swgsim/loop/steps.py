@@ -17,8 +17,8 @@ from swgsim.loop.screening import Score
 from swgsim.loop.trial import Trial
 from swgsim.loop.vocabulary import Described
 
-# Two effects cancel if the cosine between what they do is below the negative of this, as of one in a hundred pairs of
-# library effects drawn at random (estimate).
+# Two effects cancel if the cosine between what they do is below the negative of this, an estimate: of pairs of library
+# effects drawn at random one in a hundred is like that.
 CANCELLED = 0.5
 # What is left must not reach this part of the fall of the sum of squares that an effect brought.
 LEFT = 0.1
