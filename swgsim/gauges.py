@@ -110,6 +110,11 @@ def bridges(gauges: GaugeSet, strain: Complex[np.ndarray, "order 3 load"]) -> Co
     return signals
 
 
+def waves(number: int) -> Complex[np.ndarray, "5 1"]:
+    """What each bridge sees of so many waves around the collar, exp(i number beta): the mean over its grids."""
+    return np.array([[np.exp(1j * number * angles).mean()] for angles in LAYOUT])
+
+
 def offsets(gauges: GaugeSet) -> Float[np.ndarray, "5"]:
     """Zero of each bridge [mV/V]."""
     return np.array(gauges.offset)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from loop_fixtures import POINTS, recorded, turning
 
+from swgsim.gear import OperatingPoint
 from swgsim.loop.between import between
 from swgsim.loop.features import FITTED, ORDERS, Layout, features, features_alike, layout_of, remainder
 
@@ -43,8 +44,9 @@ def test_amplitude_and_phase_of_one_line():
 
 
 def test_recordings_of_equal_length_are_looked_at_together():
-    phi = [turning(point, 3.0, 10_000.0)[:500] for point in POINTS[:3]]
-    several = [recorded(signals(lines_of(seed), each)) for seed, each in enumerate(phi)]
+    """Also those of one motion, such as the first, the third and the last of these."""
+    slow, fast = (turning(OperatingPoint(n, 7.0), 3.0, 10_000.0)[:450] for n in (2000.0, 4000.0))
+    several = [recorded(signals(lines_of(seed), phi)) for seed, phi in enumerate((slow, fast, slow, fast, slow))]
     for one, found in zip(several, features_alike(several, LAYOUT), strict=True):
         np.testing.assert_allclose(found, features(one, LAYOUT), atol=1e-12)
 
@@ -90,17 +92,22 @@ def test_a_channel_that_one_recording_lacks_is_not_compared():
     assert layout_of([full, short]).channels == ("s1",)
 
 
-@pytest.mark.parametrize("dense", [32.5, 4.0])
-def test_a_recording_with_too_few_samples_per_revolution_is_refused(dense):
-    """Also where the orders are all alike at the few angles that there are."""
-    rate = dense * POINTS[0].n_in_rpm / 60
+def test_a_recording_with_too_few_samples_per_revolution_is_refused():
+    rate = 32.5 * POINTS[0].n_in_rpm / 60
     phi = turning(POINTS[0], 12.0, rate)
     coarse = recorded(signals(lines_of(5), phi), POINTS[0], rate)
-    said = rf"recording a: {dense:.0f}\.\d samples per revolution .* at least 33 .*: sample at 11\d\d Hz or more"
+    said = r"recording a: 32\.\d samples per revolution .* at least 33 .*: sample at 11\d\d Hz or more"
     with pytest.raises(ValueError, match=said):
         features(coarse, LAYOUT)
     with pytest.raises(ValueError, match=said):
         between([coarse])
+
+
+def test_so_few_samples_that_orders_are_alike_are_refused_as_such():
+    phi = np.pi / 2 * np.arange(48)
+    coarse = recorded(signals(lines_of(5), phi), POINTS[0], 4 * POINTS[0].n_in_rpm / 60)
+    with pytest.raises(ValueError, match=r"recording a: 4\.0 samples per revolution"):
+        features(coarse, LAYOUT)
 
 
 def test_a_recording_with_just_enough_samples_per_revolution_tells_noise_and_lines_between():

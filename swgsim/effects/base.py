@@ -202,6 +202,6 @@ def overrides(effect: Effect, *methods: str) -> bool:
     return _overrides(kind, methods)
 
 
-@cache
+@cache  # not the function above, as mypy takes no class of effects for hashable
 def _overrides(kind: type, methods: tuple[str, ...]) -> bool:
     return any(getattr(kind, method) is not getattr(Effect, method) for method in methods)

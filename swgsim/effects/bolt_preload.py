@@ -7,7 +7,7 @@ from jaxtyping import Float
 
 from swgsim.effects.base import Effect, Scene
 from swgsim.effects.quantity import size
-from swgsim.gauges import LAYOUT
+from swgsim.gauges import waves
 
 
 @dataclass(frozen=True)
@@ -30,4 +30,4 @@ class BoltPreload(Effect):
 
     def gauge(self, signals: Float[np.ndarray, "5 time"], scene: Scene) -> Float[np.ndarray, "5 time"]:
         """The signals with the offsets of two waves around the collar."""
-        return signals + self.strain * np.array([[np.cos(2 * angles).mean()] for angles in LAYOUT])
+        return signals + self.strain * waves(2).real

@@ -8,10 +8,9 @@ from jaxtyping import Float
 from swgsim.effects.base import Effect, Scene
 from swgsim.effects.frozen import FULL_LOAD
 from swgsim.effects.quantity import choice, phase, size
-from swgsim.gauges import LAYOUT
+from swgsim.gauges import waves
 
-# One wave around the collar as each bridge sees it.
-WAVE = np.array([[np.exp(1j * angles).mean()] for angles in LAYOUT])
+WAVE = waves(1)
 
 
 @dataclass(frozen=True)
