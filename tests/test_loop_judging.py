@@ -197,6 +197,20 @@ def scattered(fitted, factor: float):
     return replace(fitted, scatter=scatter, errors=replace(fitted.errors, base=alone))
 
 
+def behind_the_stray(fitted, stray, effect, rest, own):
+    """A model in which the stray line is free, an effect found behind it, and the line, beside one of the gear's own of
+    `own` times its amplitude.
+    """
+    now = holding(fitted, stray + effect + rest)
+    plain = named(now, STRAY)
+    predicted = own * plain.amplitude * (LAYOUT.order == 5) * np.ones_like(now.calibrated.predicted)
+    measured = replace(
+        now.measured, values=now.measured.values + now.measured.rows(predicted).reshape(now.measured.values.shape)
+    )
+    free = set_free(replace(now, measured=measured, calibrated=replace(now.calibrated, predicted=predicted)), plain)
+    return free, trial(set_free(holding(fitted, stray + rest), plain), effect), plain
+
+
 @pytest.mark.parametrize(
     ("share", "left", "own", "law", "another"),
     [
@@ -217,17 +231,25 @@ def test_what_is_more_than_a_part_of_a_disturbance(fitted, stray, signature, sha
     if left:
         more = columns(Atom(7, f"in {left} alone", "constant"), fitted)[:, 0]
         rest += 30 * more / np.linalg.norm(fitted.whole.whiten(more))
-    now = holding(fitted, stray + effect + rest)
-    plain = named(now, STRAY)
-    predicted = own * plain.amplitude * (LAYOUT.order == 5) * np.ones_like(now.calibrated.predicted)
-    measured = replace(
-        now.measured, values=now.measured.values + now.measured.rows(predicted).reshape(now.measured.values.shape)
-    )
-    free = set_free(replace(now, measured=measured, calibrated=replace(now.calibrated, predicted=predicted)), plain)
-    found = trial(set_free(holding(fitted, stray + rest), plain), effect)
+    free, found, plain = behind_the_stray(fitted, stray, effect, rest, own)
     assert found.explained(free) > 50
     disturbance = replace(plain, atom=replace(plain.atom, law=law))
     assert more_than([disturbance], found, free, 0) == another
+
+
+@pytest.mark.parametrize(("elsewhere", "another"), [(0.1, False), (0.5, True)])
+def test_what_is_hardly_more_than_the_line_of_a_disturbance_is_a_part_of_it(fitted, stray, elsewhere, another):
+    """Also where the gear has no line there: the effect has one itself."""
+    rng = np.random.default_rng(5)
+    line = (LAYOUT.channel == "s2") & (LAYOUT.order == STRAY.order)
+    forms = (rng.standard_normal((len(fitted.measured.situations), len(LAYOUT))) * there for there in (line, ~line))
+    rows = [fitted.measured.rows(form) for form in forms]
+    on_it, beyond = (row / np.linalg.norm(fitted.errors.whiten(row)) for row in rows)
+    effect = 100 * (np.sqrt(1 - elsewhere) * on_it + np.sqrt(elsewhere) * beyond)
+    rest = drawn(fitted.whole, np.random.default_rng(3))
+    free, found, plain = behind_the_stray(fitted, stray, effect, rest, own=0.1)
+    assert found.explained(free) > 50
+    assert more_than([plain], found, free, 0) == another
 
 
 def test_other_errors_of_single_recordings_are_those_it_would_have_been_given(fitted):

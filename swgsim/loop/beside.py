@@ -5,10 +5,12 @@ from dataclasses import replace
 from functools import reduce
 
 import numpy as np
+from jaxtyping import Bool
 
 from swgsim.effects.regularity import LAWS, PATTERNS
 from swgsim.loop.evidence import OUTDONE, OUTDONE_SHARE, Coherence, coherence
 from swgsim.loop.fitted import Fitted
+from swgsim.loop.gaussian import Covariance
 from swgsim.loop.leading import ALPHA
 from swgsim.loop.trial import Trial, gain
 from swgsim.loop.vocabulary import Described, columns, freed, set_free, strongest
@@ -20,7 +22,7 @@ SAME_THING, DWARFED = 0.5, 4.0
 # Regularities that may spoil the agreement of an effect's parts, at most; it keeps so much of its gain if they are
 # another thing.
 COMPANY, ANOTHER_THING = 2, 0.8
-# What is found behind disturbances of single channels acts on others too if this share of its strength is there.
+# What is found behind disturbances of single channels acts elsewhere too if this share of its strength is there.
 ELSEWHERE = 0.25
 
 
@@ -89,8 +91,9 @@ def more_than(apart: Sequence[Described], trial: Trial, now: Fitted, seed: int) 
     """Whether effects found behind disturbances of single channels are more than parts of them.
 
     They are if they act on other channels too; or if the disturbances are larger than anything that the gear has there,
-    and so are no change of its own lines. But where the strongest of what they leave is of such a channel alone, nobody
-    knows what its disturbance is, and where it ends.
+    and so are no change of its own lines. But effects that are hardly anything but the lines of the disturbances cannot
+    be what is behind them. And where the strongest of what they leave is of such a channel alone, nobody knows what its
+    disturbance is, and where it ends.
 
     Parameters
     ----------
@@ -103,7 +106,14 @@ def more_than(apart: Sequence[Described], trial: Trial, now: Fitted, seed: int) 
     """
     if not apart:
         return True
-    if not _elsewhere(trial, apart, now) and not all(_foreign(each, now) for each in apart):
+    layout = now.measured.layout
+    channels = [np.isin(layout.channel, list(PATTERNS[each.atom.pattern])) for each in apart]
+    lines = [mine & (layout.order == each.atom.order) for mine, each in zip(channels, apart, strict=True)]
+    on_others = _elsewhere(trial, now.whole, np.any(channels, axis=0)).all()
+    if not on_others and not all(_foreign(each, now) for each in apart):
+        return False
+    # By the errors alone: where the disturbances are free, they absorb all of their lines.
+    if not _elsewhere(trial, now.errors, np.any(lines, axis=0)).any():
         return False
     left = strongest(trial.with_open_form, generator("more than apart", seed, len(apart)))
     return left.chance > ALPHA or left.atom.pattern not in {each.atom.pattern for each in apart}
@@ -119,10 +129,10 @@ def _foreign(disturbance: Described, now: Fitted) -> bool:
     return bool(disturbance.amplitude * np.abs(law).max() > np.abs(own).max())
 
 
-def _elsewhere(trial: Trial, apart: Sequence[Described], now: Fitted) -> bool:
-    """Whether enough of each effect of a trial is in channels that are not disturbed."""
-    disturbed = [channel for each in apart for channel in PATTERNS[each.atom.pattern]]
-    others = ~np.isin(now.measured.layout.channel, disturbed)
-    there = trial.signature[np.tile(others, len(now.measured))]
-    beyond = np.linalg.norm(now.whole.features(others).whiten(there), axis=0)
-    return bool((beyond**2 > ELSEWHERE * np.linalg.norm(now.whole.whiten(trial.signature), axis=0) ** 2).all())
+def _elsewhere(
+    trial: Trial, errors: Covariance, disturbed: Bool[np.ndarray, " feature"]
+) -> Bool[np.ndarray, " effect"]:
+    """Whether enough of an effect of a trial is in what is not disturbed."""
+    there = trial.signature[np.tile(~disturbed, len(trial.signature) // len(disturbed))]
+    beyond = np.linalg.norm(errors.features(~disturbed).whiten(there), axis=0)
+    return beyond**2 > ELSEWHERE * np.linalg.norm(errors.whiten(trial.signature), axis=0) ** 2
