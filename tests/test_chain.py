@@ -60,6 +60,7 @@ def test_eccentricity_offsets_opposite_gauges_in_opposite_senses() -> None:
     assert abs(change[0]) < 0.01 * abs(change[1])
 
 
+@pytest.mark.end_to_end
 def test_root_crack_changes_all_amplitudes_and_tip_crack_less() -> None:
     healthy = signals()
     root, tip = signals(RootToothCrack(0.01, 0.5)), signals(TipToothCrack(1.0, 0.5))
@@ -82,6 +83,7 @@ def test_warm_grease_mimics_reduced_damping() -> None:
     np.testing.assert_allclose(result.signals[0], result.signals[1], atol=1e-9)
 
 
+@pytest.mark.end_to_end
 def test_shared_work_changes_nothing() -> None:
     runs = [Run(GEAR, p, e) for p in (POINT, OperatingPoint(4000, 7)) for e in ((), (RootToothCrack(0.05, 1.0),))]
     together = simulate(runs, WINDOW, SECTORS)
@@ -91,6 +93,7 @@ def test_shared_work_changes_nothing() -> None:
         assert together.efficiency[i] == pytest.approx(alone.efficiency[0], rel=1e-9)
 
 
+@pytest.mark.end_to_end
 def test_gauge_errors_act_as_they_should() -> None:
     gauges = GEAR.gauges
     run = Run(GEAR, POINT)

@@ -35,6 +35,7 @@ def test_efficiency_of_uniform_rotation_in_closed_form() -> None:
         assert value == pytest.approx(point.T_out / (point.T_out + friction / np.sin(t.alpha_tooth)), rel=1e-6)
 
 
+@pytest.mark.end_to_end
 def test_energy_balance_closes() -> None:
     """Input work is output work, friction heat, and the change of kinetic, elastic energy, along a transient."""
     t = replace(NOMINAL, b2=-1e-3)  # friction that grows less than linearly
@@ -89,11 +90,13 @@ def test_an_error_without_a_lever_brakes_as_a_gear_without_one_does() -> None:
     assert torques.T_wedge == pytest.approx(drive.tan_in * torques.T_stiff)
 
 
+@pytest.mark.end_to_end
 def test_a_steady_state_that_rounding_keeps_from_settling_further_is_one() -> None:
     drive = Drive([NOMINAL], [POINTS[1]])
     np.testing.assert_allclose(steady_state(drive, tolerance=0.0), steady_state(drive), rtol=1e-6, atol=1e-9)
 
 
+@pytest.mark.end_to_end
 def test_steady_state_is_where_a_long_transient_ends() -> None:
     point = POINTS[4]
     # b3 varies over an output revolution: there is a strictly periodic state only without it.

@@ -27,6 +27,7 @@ def runs():
     return pd.DataFrame(rows)
 
 
+@pytest.mark.end_to_end
 def test_pictures_of_the_chain_are_drawn_with_captions():
     drawn = figures.pictures(SUBJECT)
     assert all(p.png[:8] == b"\x89PNG\r\n\x1a\n" and len(p.png) > 10_000 for p in drawn)
