@@ -9,7 +9,7 @@ from chain_fixtures import GEAR
 from fabricated_trials import FITTED, MIMIC, PAIR, A, B, C, Dip, Mimic, tried
 from loop_fixtures import BUMP, Bump, Wave
 
-from swgsim.loop import asking, closed, closing, steps
+from swgsim.loop import answer, asking, closed, closing, steps
 from swgsim.loop.answer import UNKNOWN, Answer, untestable
 from swgsim.loop.asking import Round
 from swgsim.loop.closed import Closed
@@ -286,6 +286,8 @@ def test_where_no_effect_explains_zeros_that_moved_bridges_were_balanced_anew(mo
     found = closing.close(FITTED.measured, FITTED.unit, ())
     assert seen == [1.0, 4.0]
     assert found.before.measured.zeros == found.asked.measured.zeros == 4.0
+    sentence = Answer(answer.NOTHING, found, (), (), (), (), ()).sentence
+    assert "down to their noise if the zeros of the gauges may lie 4 times as far off" in sentence
 
 
 def test_what_a_disturbance_hides_is_sought_before_bridges_count_as_balanced_anew(monkeypatch):

@@ -96,14 +96,25 @@ class Answer:
         """The verdict in one sentence."""
         if self.verdict == NOTHING:
             return (
-                "Nothing is missing: the model explains the recordings down to their noise, and no effect of the "
-                f"library stands out of it ({len(self.absorbed)} of {len(self.closed.scores)} cannot be tested with "
-                "these recordings)."
+                f"Nothing is missing: the model explains the recordings down to their noise{self._balanced}, and no "
+                f"effect of the library stands out of it ({len(self.absorbed)} of {len(self.closed.scores)} cannot be "
+                "tested with these recordings)."
             )
         rest = f"; something unknown is left: {self.unexplained}{self._nearest}" if self.unexplained else ""
         if self.verdict == FOUND:
             return f"The model lacks {' and '.join(self._explanations())}{rest}."
         return f"The model lacks something that is not in the library: {self.unexplained}{self._nearest}."
+
+    @property
+    def _balanced(self) -> str:
+        """What else may be there if the zeros lie where only bridges that were balanced anew have them."""
+        zeros = self.closed.after.measured.zeros
+        if zeros == 1:
+            return ""
+        return (
+            f" if the zeros of the gauges may lie {zeros:g} times as far off as between sessions, as they do where "
+            "bridges were balanced anew (something that shifts them would look the same)"
+        )
 
     @property
     def _nearest(self) -> str:
