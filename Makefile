@@ -38,7 +38,7 @@ help:  ## this list
 
 $(READY): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/pip install --quiet --no-compile --disable-pip-version-check --constraint constraints.txt --editable '.[dev,rocket,dask,slurm,postgresql,embedded]'
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,rocket,dask,slurm,postgresql,embedded]'
 	touch $@
 
 install: $(READY)  ## virtual environment with everything in it

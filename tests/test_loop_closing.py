@@ -286,8 +286,15 @@ def test_where_no_effect_explains_zeros_that_moved_bridges_were_balanced_anew(mo
     found = closing.close(FITTED.measured, FITTED.unit, ())
     assert seen == [1.0, 4.0]
     assert found.before.measured.zeros == found.asked.measured.zeros == 4.0
-    sentence = Answer(answer.NOTHING, found, (), (), (), (), ()).sentence
-    assert "down to their noise if the zeros of the gauges may lie 4 times as far off" in sentence
+
+
+@pytest.mark.parametrize(
+    ("zeros", "said"), [(1.0, "noise, and no effect"), (4.0, "noise, if bridges were balanced anew: ")]
+)
+def test_nothing_is_missing_on_the_condition_under_which_that_holds(zeros, said):
+    now = FITTED.with_zeros(zeros)
+    found = Closed(now, now, now, (), (), (), (), None)
+    assert said in Answer(answer.NOTHING, found, (), (), (), (), ()).sentence
 
 
 def test_what_a_disturbance_hides_is_sought_before_bridges_count_as_balanced_anew(monkeypatch):

@@ -198,8 +198,8 @@ def scattered(fitted, factor: float):
 
 
 def behind_the_stray(fitted, stray, effect, rest, own):
-    """A model in which the stray line is free, an effect found behind it, and the line, beside one of the gear's own of
-    `own` times its amplitude.
+    """Three things: a model in which the stray line is free, and the gear has a line of its own there, `own` times as
+    large; an effect found behind the stray line; and this line as it was described.
     """
     now = holding(fitted, stray + effect + rest)
     plain = named(now, STRAY)
@@ -237,19 +237,45 @@ def test_what_is_more_than_a_part_of_a_disturbance(fitted, stray, signature, sha
     assert more_than([disturbance], found, free, 0) == another
 
 
-@pytest.mark.parametrize(("elsewhere", "another"), [(0.1, False), (0.5, True)])
-def test_what_is_hardly_more_than_the_line_of_a_disturbance_is_a_part_of_it(fitted, stray, elsewhere, another):
-    """Also where the gear has no line there: the effect has one itself."""
-    rng = np.random.default_rng(5)
+@pytest.fixture
+def on_line_and_beyond(fitted, stray):
+    """Signatures of one size: of what goes with the stray line, and of all but it."""
+    form = np.random.default_rng(5).standard_normal((len(fitted.measured.situations), len(LAYOUT)))
     line = (LAYOUT.channel == "s2") & (LAYOUT.order == STRAY.order)
-    forms = (rng.standard_normal((len(fitted.measured.situations), len(LAYOUT))) * there for there in (line, ~line))
-    rows = [fitted.measured.rows(form) for form in forms]
-    on_it, beyond = (row / np.linalg.norm(fitted.errors.whiten(row)) for row in rows)
-    effect = 100 * (np.sqrt(1 - elsewhere) * on_it + np.sqrt(elsewhere) * beyond)
+    rows = stray, fitted.measured.rows(form * ~line)
+    return tuple(100 * row / np.linalg.norm(fitted.errors.whiten(row)) for row in rows)
+
+
+@pytest.mark.parametrize(("elsewhere", "another"), [(0.1, False), (0.5, True)])
+def test_what_is_hardly_more_than_the_line_of_a_disturbance_is_a_part_of_it(
+    fitted, stray, on_line_and_beyond, elsewhere, another
+):
+    """Though the disturbance, which is free, leaves nothing of it to be seen there."""
+    on_line, beyond = on_line_and_beyond
+    effect = np.sqrt(1 - elsewhere) * on_line + np.sqrt(elsewhere) * beyond
     rest = drawn(fitted.whole, np.random.default_rng(3))
-    free, found, plain = behind_the_stray(fitted, stray, effect, rest, own=0.1)
+    free, found, plain = behind_the_stray(fitted, stray, effect, rest, own=1e3)
     assert found.explained(free) > 50
     assert more_than([plain], found, free, 0) == another
+
+
+def test_of_a_pair_one_effect_may_be_the_line_of_a_disturbance(fitted, stray, on_line_and_beyond):
+    on_line, beyond = on_line_and_beyond
+    rest = drawn(fitted.whole, np.random.default_rng(3))
+    free, found, plain = behind_the_stray(fitted, stray, on_line + beyond, rest, own=0.1)
+    for signatures, another in (((on_line, beyond), True), ((on_line, on_line), False)):
+        found.__dict__["signature"] = np.stack(signatures, axis=1)
+        assert more_than([plain], found, free, 0) == another
+
+
+def test_behind_the_only_channel_that_was_recorded_its_own_line_is_nothing(monkeypatch):
+    alone = fitted_to(Layout(("s2",)), np.random.default_rng(1), repeats=2)
+    line = columns(STRAY, alone)[:, 0]
+    line *= 20 / np.linalg.norm(alone.whole.whiten(line))
+    monkeypatch.setattr(evidence, "signature", lambda fitted, number: line)
+    now = holding(alone, line + drawn(alone.whole, np.random.default_rng(3)))
+    plain = named(now, STRAY)
+    assert not more_than([plain], trial(now, line), set_free(now, plain), 0)
 
 
 def test_other_errors_of_single_recordings_are_those_it_would_have_been_given(fitted):

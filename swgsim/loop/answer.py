@@ -96,7 +96,7 @@ class Answer:
         """The verdict in one sentence."""
         if self.verdict == NOTHING:
             return (
-                f"Nothing is missing: the model explains the recordings down to their noise{self._balanced}, and no "
+                f"Nothing is missing: the model explains the recordings down to their noise{self._if_balanced}, and no "
                 f"effect of the library stands out of it ({len(self.absorbed)} of {len(self.closed.scores)} cannot be "
                 "tested with these recordings)."
             )
@@ -106,14 +106,14 @@ class Answer:
         return f"The model lacks something that is not in the library: {self.unexplained}{self._nearest}."
 
     @property
-    def _balanced(self) -> str:
-        """What else may be there if the zeros lie where only bridges that were balanced anew have them."""
+    def _if_balanced(self) -> str:
+        """The condition under which nothing is missing, where zeros had to lie further off than declared."""
         zeros = self.closed.after.measured.zeros
         if zeros == 1:
             return ""
         return (
-            f" if the zeros of the gauges may lie {zeros:g} times as far off as between sessions, as they do where "
-            "bridges were balanced anew (something that shifts them would look the same)"
+            f", if bridges were balanced anew: the zeros of gauges lie up to {zeros:g} times as far off as between two "
+            "sessions, and something that shifts them would look the same"
         )
 
     @property

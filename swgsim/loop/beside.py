@@ -22,7 +22,8 @@ SAME_THING, DWARFED = 0.5, 4.0
 # Regularities that may spoil the agreement of an effect's parts, at most; it keeps so much of its gain if they are
 # another thing.
 COMPANY, ANOTHER_THING = 2, 0.8
-# What is found behind disturbances of single channels acts elsewhere too if this share of its strength is there.
+# What is found behind disturbances of single channels acts elsewhere too, in other channels or other lines than theirs,
+# if more than this share of its sum of squares is there.
 ELSEWHERE = 0.25
 
 
@@ -107,13 +108,14 @@ def more_than(apart: Sequence[Described], trial: Trial, now: Fitted, seed: int) 
     if not apart:
         return True
     layout = now.measured.layout
-    channels = [np.isin(layout.channel, list(PATTERNS[each.atom.pattern])) for each in apart]
-    lines = [mine & (layout.order == each.atom.order) for mine, each in zip(channels, apart, strict=True)]
-    on_others = _elsewhere(trial, now.whole, np.any(channels, axis=0)).all()
+    of_channels = [np.isin(layout.channel, list(PATTERNS[each.atom.pattern])) for each in apart]
+    of_lines = [mine & (layout.order == each.atom.order) for mine, each in zip(of_channels, apart, strict=True)]
+    on_others = _elsewhere(trial, now.whole, np.any(of_channels, axis=0)).all()
     if not on_others and not all(_foreign(each, now) for each in apart):
         return False
-    # By the errors alone: where the disturbances are free, they absorb all of their lines.
-    if not _elsewhere(trial, now.errors, np.any(lines, axis=0)).any():
+    # By the errors alone: a disturbance that is free absorbs what follows its law, and the rest would seem to be all.
+    # Of a pair one is enough, as the line of the other one may have been set apart before both were tried.
+    if not _elsewhere(trial, now.errors, np.any(of_lines, axis=0)).any():
         return False
     left = strongest(trial.with_open_form, generator("more than apart", seed, len(apart)))
     return left.chance > ALPHA or left.atom.pattern not in {each.atom.pattern for each in apart}
@@ -133,6 +135,8 @@ def _elsewhere(
     trial: Trial, errors: Covariance, disturbed: Bool[np.ndarray, " feature"]
 ) -> Bool[np.ndarray, " effect"]:
     """Whether enough of an effect of a trial is in what is not disturbed."""
+    if disturbed.all():
+        return np.zeros(trial.signature.shape[1], bool)
     there = trial.signature[np.tile(~disturbed, len(trial.signature) // len(disturbed))]
     beyond = np.linalg.norm(errors.features(~disturbed).whiten(there), axis=0)
     return beyond**2 > ELSEWHERE * np.linalg.norm(errors.whiten(trial.signature), axis=0) ** 2
