@@ -112,8 +112,8 @@ class Answer:
         if zeros == 1:
             return ""
         return (
-            f", if bridges were balanced anew: the zeros of gauges lie up to {zeros:g} times as far off as between two "
-            "sessions, and something that shifts them would look the same"
+            f", if bridges were balanced anew (zeros of gauges lie up to {zeros:g} times as far off as between two "
+            "sessions; something that shifts them would look the same)"
         )
 
     @property
