@@ -9,7 +9,8 @@ from chain_fixtures import GEAR
 from fabricated_trials import FITTED, MIMIC, PAIR, A, B, C, Dip, Mimic, tried
 from loop_fixtures import BUMP, Bump, Wave
 
-from swgsim.loop import answer, asking, closed, closing, steps
+from swgsim.loop import asking, closed, closing, steps
+from swgsim.loop.answer import NOTHING as NOTHING_MISSING
 from swgsim.loop.answer import UNKNOWN, Answer, untestable
 from swgsim.loop.asking import Round
 from swgsim.loop.closed import Closed
@@ -295,7 +296,7 @@ def test_where_no_effect_explains_zeros_that_moved_bridges_were_balanced_anew(mo
 def test_nothing_is_missing_on_the_condition_under_which_that_holds(zeros, said):
     now = FITTED.with_zeros(zeros)
     found = Closed(now, now, now, (), (), (), (), None)
-    assert said in Answer(answer.NOTHING, found, (), (), (), (), ()).sentence
+    assert said in Answer(NOTHING_MISSING, found, (), (), (), (), ()).sentence
 
 
 def test_what_a_disturbance_hides_is_sought_before_bridges_count_as_balanced_anew(monkeypatch):
