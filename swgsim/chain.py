@@ -169,14 +169,14 @@ def _driven(runs: Sequence[Run]) -> tuple[list[Driven], np.ndarray]:
         raise ValueError(
             "no runs to simulate: the grid is empty; give it gears, classes, variants and operating points"
         )
-    return _distinct([Driven(r.affected_gear.transmission, r.point, r.driving, r.start_angle) for r in runs])
+    return distinct([Driven(r.affected_gear.transmission, r.point, r.driving, r.start_angle) for r in runs])
 
 
 def _gauge_signals(
     runs: Sequence[Run], motion: Motion, of_run: np.ndarray, samples: int, sectors: int
 ) -> Float[np.ndarray, "run 5 time"]:
     """The bridge signals of every run along its motion."""
-    structures, structure_of_run = _distinct([Structure.of(r.affected_gear, r.acting) for r in runs])
+    structures, structure_of_run = distinct([Structure.of(r.affected_gear, r.acting) for r in runs])
     maps = [map_of(structure, sectors) for structure in structures]
     signals = np.empty((len(runs), 5, samples))
     for m in range(len(motion.phi_in)):
@@ -230,8 +230,9 @@ def _as_filtered(
     # The angle goes on from one revolution to the next; what it has beside the mean speed repeats.
     turning = np.array([[each.point.omega_in * (name == "phi_in")] for name in channels])
     repeating = np.array(list(channels.values())) - turning * time
-    denser = resample(repeating, len(dense), axis=1) + turning * dense
-    seen = _as_seen(each, dense, dict(zip(channels, denser, strict=True)), resample(transmitted, len(dense)))
+    denser = resample(np.vstack([repeating, transmitted]), len(dense), axis=1)
+    denser, torque = denser[:-1] + turning * dense, denser[-1]
+    seen = _as_seen(each, dense, dict(zip(channels, denser, strict=True)), torque)
     change = resample(np.array([seen[name] for name in channels]) - denser, len(time), axis=1)
     return {name: channels[name] + more for name, more in zip(channels, change, strict=True)}
 
@@ -255,7 +256,7 @@ def _significant(maps: Sequence[InfluenceMap], T_out: float) -> np.ndarray:
     return np.flatnonzero(size > NEGLIGIBLE * size.max())
 
 
-def _distinct(keys: list) -> tuple[list, np.ndarray]:
+def distinct(keys: list) -> tuple[list, np.ndarray]:
     """The distinct keys in order of appearance, and the index of each key among them."""
     index: dict = {}
     where = np.array([index.setdefault(key, len(index)) for key in keys])

@@ -12,12 +12,13 @@ from swgsim.effects.clipping import Clipping
 from swgsim.effects.root_tooth_crack import RootToothCrack
 from swgsim.effects.zero_offset import ZeroOffset
 from swgsim.gear import OperatingPoint
-from swgsim.loop import refining
+from swgsim.loop import fitting, refining
 from swgsim.loop.fitted import Fitted
-from swgsim.loop.fitting import BENT, fit, unbent
+from swgsim.loop.fitting import BENT, NEAR, fit, unbent
 from swgsim.loop.hypotheses import hypotheses, signatures
 from swgsim.loop.model import Model
 from swgsim.loop.refining import zoom
+from swgsim.loop.scatter import STATED
 from swgsim.loop.screening import Score, screen
 from swgsim.loop.session import Measured
 from swgsim.loop.unit import Unit
@@ -75,6 +76,26 @@ def test_a_unit_that_is_far_from_what_is_declared_and_fits_is_not_bent():
     now = fit(Measured.of(good(repeats=1)), unit)
     assert now.position_of_unit["zero of s1"] == pytest.approx(-10, rel=0.1)
     assert unbent(now) is now
+
+
+def test_a_fit_goes_on_until_the_errors_of_single_recordings_stay(monkeypatch):
+    """The trigger is far better than stated; a guess may be wrong too."""
+    turns = []
+
+    def counted(*given):
+        turns.append(turn(*given))
+        return turns[-1]
+
+    turn = fitting._turn
+    monkeypatch.setattr(fitting, "_turn", counted)
+    measured, unit = Measured.of(good(repeats=3)), Unit(Model(GEAR))
+    found = fit(measured, unit)
+    assert found.scatter.sd["trigger"] < STATED["trigger"] / 10
+    assert turns[-1].scatter.apart(turns[-2].scatter) < NEAR
+    turns.clear()
+    assert fit(measured, unit, position=found.calibrated.position, guess=found.scatter) is turns[0]
+    far = replace(found.scatter, sd={name: 20 * sd for name, sd in found.scatter.sd.items()})
+    assert fit(measured, unit, guess=far).scatter.apart(found.scatter) < NEAR
 
 
 def test_a_proportional_effect_begins_at_its_estimate():

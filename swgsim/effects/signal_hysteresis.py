@@ -1,7 +1,6 @@
 """Imperfection: hysteresis of strain and bond."""
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Float
@@ -37,17 +36,18 @@ class SignalHysteresis(Effect):
     def gauge(self, signals: Float[np.ndarray, "5 time"], scene: Scene) -> Float[np.ndarray, "5 time"]:
         """The signals plus 4 share times the distance of the mean play from its middle line, half the signal."""
         low, high = signals.min(axis=1), signals.max(axis=1)
-        x = (signals - ((low + high) / 2)[:, None]).T
+        x = signals - ((low + high) / 2)[:, None]
         radii = ((high - low) / 2)[:, None] * (np.arange(PLAYS) + 0.5) / PLAYS
-        floor, ceiling = x[:, :, None] - radii, x[:, :, None] + radii
-        held = np.empty_like(floor)
-        play = np.zeros_like(radii)
-        first_turn = min(round(samples_per_turn(scene)), len(x))
+        floor, ceiling = x[:, None] - radii[..., None], x[:, None] + radii[..., None]
+        first_turn = min(round(samples_per_turn(scene)), x.shape[1])
         # While no signal turns back a play rests or is dragged by one end: bounds at once are bounds sample by sample.
-        turning = np.flatnonzero(np.diff(np.sign(np.diff(x, axis=0)), axis=0).any(axis=1)) + 2
-        starts = np.unique([0, 1, first_turn, *turning, len(x)]).tolist()
-        pieces = [slice(*ends) for ends in pairwise(starts)]
-        for piece in (*(p for p in pieces if p.stop <= first_turn), *pieces):
-            held[piece] = np.clip(play, floor[piece], ceiling[piece])
-            play = held[piece.stop - 1]
-        return signals + 4 * self.share * (held.mean(axis=2) - x / 2).T
+        turning = np.flatnonzero(np.diff(np.sign(np.diff(x)), axis=1).any(axis=0)) + 2
+        bounds = np.unique([0, 1, first_turn, *turning, x.shape[1]])
+        ends = bounds[1:]
+        lowest, highest = (np.moveaxis(bound[..., ends - 1], -1, 0) for bound in (floor, ceiling))
+        plays = [np.zeros_like(radii)]
+        for end in (*np.flatnonzero(ends <= first_turn), *range(len(ends))):
+            plays.append(np.minimum(np.maximum(plays[-1], lowest[end]), highest[end]))
+        before = np.repeat(np.stack(plays[-len(ends) - 1 : -1], axis=-1), np.diff(bounds), axis=-1)
+        held = np.minimum(np.maximum(before, floor), ceiling)
+        return signals + 4 * self.share * (held.mean(axis=1) - x / 2)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.chain import SECTORS, Run, simulate_turns
+from swgsim.chain import SECTORS, Run, distinct, simulate_turns
 from swgsim.conditions import Conditions
 from swgsim.effects.base import Effect, overrides
 from swgsim.gear import Gear, OperatingPoint
@@ -68,13 +68,12 @@ def predict(
 ) -> Float[np.ndarray, "model situation feature"]:
     """Features of every situation by every model, all in one go: what runs have in common is computed once."""
     runs = [m.run(s) for m in models for s in situations]
-    keys = [_key(run) for run in runs]
-    distinct = dict(zip(reversed(keys), reversed(runs), strict=True))
-    recordings = simulate_turns(list(distinct.values()), revolutions=1, points=POINTS, sectors=sectors)
+    _, row = distinct([_key(run) for run in runs])
+    _, first = np.unique(row, return_index=True)
+    recordings = simulate_turns([runs[i] for i in first], revolutions=1, points=POINTS, sectors=sectors)
     some = (recordings[i : i + AT_ONCE] for i in range(0, len(recordings), AT_ONCE))
     found = np.concatenate([features_alike(each, layout) for each in some])
-    row = {key: number for number, key in enumerate(distinct)}
-    return found[[row[key] for key in keys]].reshape(len(models), len(situations), len(layout))
+    return found[row].reshape(len(models), len(situations), len(layout))
 
 
 def _key(run: Run) -> tuple:

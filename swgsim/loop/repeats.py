@@ -17,20 +17,21 @@ RATIOS = (-8.0, 6.0)
 
 
 class Told(NamedTuple):
-    """What numbers with noise of covariance V say of errors, kind after kind, that move them by B.
+    """What numbers with noise of covariance V say of errors, kind after kind, that move them by B; each part of the
+    numbers of errors of its own.
 
     Attributes
     ----------
-    K : array (error, error)
+    K : array (part, error, error)
         B' V^-1 B.
-    F : array (error, column)
+    F : array (part, error, column)
         B' V^-1 X of columns X: what else may move these numbers, one standard deviation each, and the residual, last.
     H : array (column, column)
-        X' V^-1 X.
+        X' V^-1 X of all parts together.
     """
 
-    K: Float[np.ndarray, "error error"]
-    F: Float[np.ndarray, "error column"]
+    K: Float[np.ndarray, "part error error"]
+    F: Float[np.ndarray, "part error column"]
     H: Float[np.ndarray, "column column"]
 
 
@@ -60,18 +61,28 @@ def from_repeats(
         Recordings of the same value are repeats of each other.
     known : Scatter
     """
+    contrasts, of_recording = _helmert(groups)
+    if not len(contrasts):
+        return known
     columns = np.concatenate([trends, residual[..., None]], axis=-1)
-    contrasts = []
+    told = _told(directions[of_recording], np.tensordot(contrasts, columns, axes=1), contrasts**2 @ variance)
+    return _likeliest(told, known, len(contrasts))
+
+
+def _helmert(groups: Sequence[object]) -> tuple[Float[np.ndarray, "contrast recording"], list[int]]:
+    """Contrasts of the repeats of each group, independent of each other and of the mean, and the last recording of
+    each.
+    """
+    contrasts, last = [np.empty((0, len(groups)))], []
     for group in dict.fromkeys(groups):
         rows = [i for i, each in enumerate(groups) if each == group]
         for number in range(1, len(rows)):
-            # Helmert contrasts: independent of each other and of the mean.
-            weights = np.zeros(len(residual))
-            weights[rows[:number]] = -1 / np.sqrt(number * (number + 1))
-            weights[rows[number]] = np.sqrt(number / (number + 1))
-            B = directions[rows[number]]
-            contrasts.append(_told(B, np.tensordot(weights, columns, axes=1), weights**2 @ variance))
-    return _likeliest(contrasts, known, len(contrasts)) if contrasts else known
+            weights = np.zeros((1, len(groups)))
+            weights[0, rows[:number]] = -1 / np.sqrt(number * (number + 1))
+            weights[0, rows[number]] = np.sqrt(number / (number + 1))
+            contrasts.append(weights)
+            last.append(rows[number])
+    return np.concatenate(contrasts), last
 
 
 def from_all(
@@ -98,45 +109,40 @@ def from_all(
     """
     common = common.with_columns(trends.reshape(len(residual), -1))
     B = common.whiten(Alone(common.alone.variance, directions).dense)
-    return _likeliest([_told(B, common.whiten(residual)[:, None], np.ones(len(residual)))], known, 0)
+    return _likeliest(_told(B[None], common.whiten(residual)[None, :, None], np.ones((1, len(residual)))), known, 0)
 
 
 def _told(
-    B: Float[np.ndarray, "row error"], X: Float[np.ndarray, "row column"], variance: Float[np.ndarray, " row"]
-) -> Told:
+    B: Float[np.ndarray, "part row error"], X: Float[np.ndarray, "part row column"],
+    variance: Float[np.ndarray, "part row"],
+) -> Told:  # fmt: skip
     """What numbers tell whose noise is independent."""
-    weighted = X / variance[:, None]
-    return Told(B.T @ (B / variance[:, None]), B.T @ weighted, X.T @ weighted)
+    weighted, across = X / variance[..., None], B.transpose(0, 2, 1)
+    return Told(across @ (B / variance[..., None]), across @ weighted, np.tensordot(X, weighted, ((0, 1), (0, 1))))
 
 
-def _likeliest(told: Sequence[Told], known: Scatter, contrasts: int) -> Scatter:
+def _likeliest(told: Told, known: Scatter, contrasts: int) -> Scatter:
     known_sd, precision = np.array(list(known.sd.values())), np.linalg.inv(known.doubt)
     kinds = len(known_sd)
-    H = np.sum([each.H for each in told], axis=0)
-    H[:-1, :-1] += np.eye(len(H) - 1)
+    K, F, H = told
+    H = H + np.diag(np.append(np.ones(len(H) - 1), 0.0))
 
     def cost(log_ratio: np.ndarray) -> tuple[float, np.ndarray]:
         slope = precision @ log_ratio
         total = 0.5 * float(log_ratio @ slope)
-        sd = known_sd * np.exp(log_ratio)
+        s = np.tile(known_sd * np.exp(log_ratio), K.shape[1] // kinds)[:, None]
         # X' (V + B S^2 B')^-1 X of all columns, where S holds the standard deviations.
-        within, halves = H.copy(), []
-        for K, F, _ in told:
-            s = np.tile(sd, len(K) // kinds)[:, None]
-            inner = np.linalg.inv(np.eye(len(s)) + s * K * s.T)
-            half = inner @ (s * F)
-            within -= (s * F).T @ half
-            total -= 0.5 * np.linalg.slogdet(inner)[1]
-            slope = slope + (1 - np.diag(inner)).reshape(-1, kinds).sum(axis=0)
-            halves.append(half)
+        inner = np.linalg.inv(np.eye(len(s)) + s * K * s.T)
+        half = inner @ (s * F)
+        within = H - np.tensordot(s * F, half, ((0, 1), (0, 1)))
+        total -= 0.5 * float(np.linalg.slogdet(inner)[1].sum())
         spread = np.linalg.inv(within[:-1, :-1])
         left = np.append(-spread @ within[:-1, -1], 1.0)
-        total += 0.5 * (float(left @ within @ left) - np.linalg.slogdet(spread)[1])
+        total += 0.5 * float(left @ within @ left - np.linalg.slogdet(spread)[1])
         by = np.outer(left, left)
         by[:-1, :-1] += spread
-        for half in halves:
-            slope = slope - (half @ by * half).sum(axis=1).reshape(-1, kinds).sum(axis=0)
-        return total, slope
+        of_errors = 1 - np.diagonal(inner, axis1=1, axis2=2) - (half @ by * half).sum(axis=-1)
+        return total, slope + of_errors.reshape(-1, kinds).sum(axis=0)
 
     fitted = minimize(
         cost, np.zeros(kinds), jac=True, method="L-BFGS-B", bounds=[RATIOS] * kinds,
