@@ -50,6 +50,18 @@ def test_whitening_makes_the_covariance_the_identity(**shape):
 
 @settings(deadline=None, max_examples=60)
 @given(**SHAPES)
+def test_divergence_is_what_the_wrong_errors_cost_on_average(**shape):
+    """The expected fall of the log-likelihood, per recording."""
+    (one, *_), (other, *_) = (random_covariance(**shape | {"columns": 0, "seed": shape["seed"] + i}) for i in range(2))
+    A, B = (np.diag(each.variance) + each.alone.dense @ each.alone.dense.T for each in (one, other))
+    cost = (np.trace(np.linalg.solve(B, A)) - len(A) + np.linalg.slogdet(B)[1] - np.linalg.slogdet(A)[1]) / 2
+    found = one.alone.divergence(other.alone)
+    assert found == pytest.approx(cost / shape["recordings"], rel=1e-6, abs=1e-6)
+    assert one.alone.divergence(one.alone) == pytest.approx(0, abs=1e-7)
+
+
+@settings(deadline=None, max_examples=60)
+@given(**SHAPES)
 def test_whitening_is_symmetric_in_units_of_the_noise(**shape):
     covariance, dense, _ = random_covariance(**shape)
     rows = len(dense)

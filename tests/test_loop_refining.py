@@ -14,7 +14,7 @@ from swgsim.effects.zero_offset import ZeroOffset
 from swgsim.gear import OperatingPoint
 from swgsim.loop import fitting, refining
 from swgsim.loop.fitted import Fitted
-from swgsim.loop.fitting import BENT, NEAR, fit, unbent
+from swgsim.loop.fitting import BENT, NEAR, TURNS, UNREPEATED, extended, fit, unbent
 from swgsim.loop.hypotheses import hypotheses, signatures
 from swgsim.loop.model import Model
 from swgsim.loop.refining import zoom
@@ -78,24 +78,47 @@ def test_a_unit_that_is_far_from_what_is_declared_and_fits_is_not_bent():
     assert unbent(now) is now
 
 
-def test_a_fit_goes_on_until_the_errors_of_single_recordings_stay(monkeypatch):
-    """The trigger is far better than stated; a guess may be wrong too."""
-    turns = []
+@pytest.fixture(scope="module")
+def found() -> Fitted:
+    """A model fitted to what it made, three times at every point."""
+    return fit(Measured.of(good(repeats=3)), Unit(Model(GEAR)))
 
-    def counted(*given):
-        turns.append(turn(*given))
-        return turns[-1]
 
-    turn = fitting._turn
-    monkeypatch.setattr(fitting, "_turn", counted)
-    measured, unit = Measured.of(good(repeats=3)), Unit(Model(GEAR))
-    found = fit(measured, unit)
+def test_errors_of_single_recordings_are_found_from_any_guess(found):
     assert found.scatter.sd["trigger"] < STATED["trigger"] / 10
-    assert turns[-1].scatter.apart(turns[-2].scatter) < NEAR
-    turns.clear()
-    assert fit(measured, unit, position=found.calibrated.position, guess=found.scatter) is turns[0]
     far = replace(found.scatter, sd={name: 20 * sd for name, sd in found.scatter.sd.items()})
-    assert fit(measured, unit, guess=far).scatter.apart(found.scatter) < NEAR
+    again = fit(found.measured, found.unit, guess=far)
+    assert again.errors.alone.divergence(again.scattering(found.scatter).errors.alone) < NEAR
+    assert not again.errors.alone.divergence(again.scattering(far).errors.alone) < NEAR
+    for name, there in found.calibrated.position.items():
+        assert again.calibrated.position[name] == pytest.approx(there, abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("sizes", "settled", "repeats", "turns"),
+    [
+        ([1.01, 9], True, 3, 1),
+        ([5, 1, 1.01, 9], True, 3, 3),
+        ([5, 1, 5, 1, 5], True, 3, TURNS),
+        ([1] * 9, False, 3, TURNS),
+        ([5, 1, 5, 1], True, 1, UNREPEATED),
+    ],
+)
+def test_a_fit_goes_on_until_the_errors_of_single_recordings_stay(monkeypatch, found, sizes, settled, repeats, turns):
+    """Each turn finds them so many times as large as in the fit that it begins at."""
+    guesses, left = [], iter(sizes)
+
+    def turn(fixed, begin, guess):
+        guesses.append(guess)
+        size = next(left)
+        made = found.scattering(replace(found.scatter, sd={name: size * sd for name, sd in found.scatter.sd.items()}))
+        return replace(made, calibrated=replace(made.calibrated, settled=settled))
+
+    monkeypatch.setattr(fitting, "_turn", turn)
+    extended(replace(found, measured=Measured.of(good(repeats=repeats))), ())
+    assert len(guesses) == turns
+    # Without repeats other models tell nothing of them.
+    assert guesses[0].sd == (found.scatter.sd if repeats > 1 else STATED)
 
 
 def test_a_proportional_effect_begins_at_its_estimate():

@@ -13,7 +13,7 @@ from swgsim.effects.quantity import size
 from swgsim.loop.features import Layout
 from swgsim.loop.hypotheses import Hypothesis, hypotheses
 from swgsim.loop.reporting.remaining import detectable
-from swgsim.loop.screening import DRAWS, Score, best_of_kind, family_wise, screen
+from swgsim.loop.screening import Score, best_of_kind, screen
 
 
 @dataclass(frozen=True)
@@ -69,21 +69,6 @@ def test_far_out_the_chance_is_bonferronis(fitted):
     assert 0 < best.chance < 1e-20
     assert best.chance == pytest.approx(len(signatures) * np.exp(-best.gain / 2), rel=0.01)
     assert scores == sorted(scores, key=lambda s: -s.rank)
-
-
-@pytest.mark.parametrize(("asked", "needed"), [([0], 1), ([1], 10), ([0, 1], 10), (None, 10)])
-def test_no_more_noise_is_drawn_once_what_is_asked_of_is_far_beyond_it(asked, needed):
-    rng, taken = np.random.default_rng(1), []
-
-    def noise():
-        while True:
-            taken.append(rng.standard_normal((2, DRAWS // 10)))
-            yield taken[-1]
-
-    far, near = family_wise(np.array([30.0, 1.0]), np.array([1, 1]), noise(), asked)
-    assert len(taken) == needed
-    assert far < 1e-100
-    assert near > 0.1
 
 
 def test_what_declared_parameters_absorb_is_never_claimed(fitted):

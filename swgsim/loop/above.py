@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Complex, Float
 
-from swgsim.chain import simulate_turns
+from swgsim.chain import distinct, simulate_turns
 from swgsim.effects.regularity import HIGHEST, LAWS, PATTERNS
 from swgsim.loop.between import by_luck
 from swgsim.loop.evidence import FORM_TOLERANCE
@@ -149,10 +149,8 @@ def _modelled(
     model: Model, recordings: Sequence[Recording], channels: Sequence[str], highest: int
 ) -> Complex[np.ndarray, "order channel recording"]:
     """The lines of a model for every recording."""
-    runs = [model.run(Situation(each.point, each.conditions)) for each in recordings]
-    distinct = list(dict.fromkeys(runs))
-    lines = _lines(simulate_turns(distinct, revolutions=1, points=POINTS), channels, highest)
-    return lines[..., [distinct.index(run) for run in runs]]
+    runs, of_recording = distinct([model.run(Situation(each.point, each.conditions)) for each in recordings])
+    return _lines(simulate_turns(runs, revolutions=1, points=POINTS), channels, highest)[..., of_recording]
 
 
 def _lines(

@@ -69,6 +69,17 @@ class Alone:
         """Of the covariance."""
         return float(np.log(self.variance).sum() + 2 * np.log(self._shares[1]).sum())
 
+    def divergence(self, other: "Alone") -> float:
+        """What it costs on average over recordings to take errors like these for the other ones (Kullback and Leibler)
+        [nat]; kinds of error that noise hides, or that do the same, count as little as they tell.
+        """
+        Q, _ = other._shares
+        C = self.C.reshape(self.variance.size, -1)
+        trace = (self.variance / other.variance).sum() - (Q**2 * self.variance[..., None]).sum()
+        trace += (C * other.weigh(C)).sum()
+        excess = trace - self.variance.size + other.log_determinant - self.log_determinant
+        return float(excess) / (2 * len(self.variance))
+
     def made(self, errors: np.ndarray) -> np.ndarray:
         """What errors (recording and kind,), in standard deviations, make of the rows; or each of several."""
         recordings, features, kinds = self.C.shape

@@ -22,9 +22,11 @@ from swgsim.loop.unit import Unit
 # A parameter of a unit that was fitted so many spreads from its declared value was bent by what the model lacks, if a
 # channel is still missed by so many times what is declared of it (mean squares), which is no matter of noise.
 BENT, MISFIT = 5.0, 10.0
-# Turns at most; they end where no standard deviation of an error of single recordings changes by more than this share:
-# an error guessed a fifth too large or small costs the parameters a percent of their precision (estimates).
-TURNS, NEAR = 4, 0.2
+# Turns at most; they end where the errors of single recordings that parameters were fitted beside cost less than this
+# over those estimated then [nat per recording]: one kind that is a third too small or large costs as much (estimates).
+TURNS, NEAR = 4, 0.1
+# Turns where nothing was repeated: what the model lacks passes for such errors then, and more turns go astray with it.
+UNREPEATED = 2
 
 
 def fit(
@@ -52,7 +54,7 @@ def fit(
     held : collection of str
         Parameters of the unit that are not fitted but stay where they begin.
     guess : Scatter, optional
-        Errors of single recordings, where they were estimated with a model that is near.
+        Errors of single recordings that repeats told beside another model.
     """
     begin = dict(position or {})
     start = at(model or unit.model, unit.declared, {name: begin.pop(name) for name in held})
@@ -60,12 +62,14 @@ def fit(
     parameters = parameters | of_effects(start, unit.of_another_structure)
     known = unit.scatter.carried if unit.scatter else Scatter.stated(measured.layout)
     fixed = _Fixed(measured, unit, start, parameters, known, allowed)
-    guess, here = guess or known, at(start, parameters, begin)
-    for _ in range(TURNS):
-        found = _turn(fixed, here, begin, guess)
-        if found.scatter.apart(guess) < NEAR:
+    told = unit.scatter is not None or measured.repeated
+    guess = guess if guess and told else known
+    for _ in range(TURNS if told else UNREPEATED):
+        found = _turn(fixed, begin, guess)
+        near = found.errors.alone.divergence(found.scattering(guess).errors.alone) < NEAR
+        if near and found.calibrated.settled:
             break
-        here, begin, guess = found.model, found.calibrated.position, found.scatter
+        begin, guess = found.calibrated.position, found.scatter
     return found
 
 
@@ -82,11 +86,11 @@ class _Fixed(NamedTuple):
     allowed: Float[np.ndarray, "row column"] | None
 
 
-def _turn(fixed: _Fixed, here: Model, begin: Mapping[str, float], guess: Scatter) -> Fitted:
+def _turn(fixed: _Fixed, begin: Mapping[str, float], guess: Scatter) -> Fitted:
     """Parameters fitted beside guessed errors of single recordings, and these errors estimated anew; how either acts is
-    taken from a model that is near, and parameters begin anywhere [spreads].
+    taken from the model where the parameters begin [spreads].
     """
-    measured, unit = fixed.measured, fixed.unit
+    measured, unit, here = fixed.measured, fixed.unit, at(fixed.start, fixed.parameters, begin)
     noise = unit.inflated(measured.variance)
     moves = scatter.of_recordings(here, measured)
     unsure = unit.left_open(here, measured.situations, measured.layout)
@@ -101,7 +105,7 @@ def _turn(fixed: _Fixed, here: Model, begin: Mapping[str, float], guess: Scatter
     )  # fmt: skip
     residual = values - calibrated.predicted[measured.of_recording]
     trends = scatter.trends(moves, [measured.situations[i] for i in measured.of_recording], measured.layout)
-    if unit.scatter or len(set(measured.repeats)) < len(measured):
+    if unit.scatter or measured.repeated:
         estimated = repeats.from_repeats(residual, noise, moves, trends, measured.repeats, fixed.known)
     else:
         J = measured.rows(calibrated.J).reshape(residual.size, -1)

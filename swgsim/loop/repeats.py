@@ -17,8 +17,8 @@ RATIOS = (-8.0, 6.0)
 
 
 class Told(NamedTuple):
-    """What numbers with noise of covariance V say of errors, kind after kind, that move them by B; each part of the
-    numbers of errors of its own.
+    """What numbers with noise of covariance V say of errors, kind after kind, that move them by B; the numbers come in
+    parts, each with errors of its own.
 
     Attributes
     ----------
@@ -70,19 +70,19 @@ def from_repeats(
 
 
 def _helmert(groups: Sequence[object]) -> tuple[Float[np.ndarray, "contrast recording"], list[int]]:
-    """Contrasts of the repeats of each group, independent of each other and of the mean, and the last recording of
-    each.
+    """Contrasts of the repeats of each group, independent of each other and of the mean, and the recording of each
+    whose directions stand for it.
     """
-    contrasts, last = [np.empty((0, len(groups)))], []
+    contrasts, last = [], []
     for group in dict.fromkeys(groups):
         rows = [i for i, each in enumerate(groups) if each == group]
         for number in range(1, len(rows)):
-            weights = np.zeros((1, len(groups)))
-            weights[0, rows[:number]] = -1 / np.sqrt(number * (number + 1))
-            weights[0, rows[number]] = np.sqrt(number / (number + 1))
+            weights = np.zeros(len(groups))
+            weights[rows[:number]] = -1 / np.sqrt(number * (number + 1))
+            weights[rows[number]] = np.sqrt(number / (number + 1))
             contrasts.append(weights)
             last.append(rows[number])
-    return np.concatenate(contrasts), last
+    return np.reshape(contrasts, (-1, len(groups))), last
 
 
 def from_all(

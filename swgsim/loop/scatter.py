@@ -76,10 +76,6 @@ class Scatter:
         root = np.linalg.cholesky(self.doubt + 1e-12 * np.eye(len(self.doubt)))
         return np.exp(root @ rng.standard_normal((len(root), draws)))
 
-    def apart(self, other: "Scatter") -> float:
-        """Largest logarithm of the ratio of a standard deviation to that of another one of the same channels."""
-        return max(abs(float(np.log(sd / other.sd[name]))) for name, sd in self.sd.items())
-
     def columns(self, directions: Float[np.ndarray, "situation feature kind"]) -> np.ndarray:
         """Directions scaled to one standard deviation."""
         return directions * np.array(list(self.sd.values()))

@@ -188,7 +188,6 @@ def family_wise(
     along: Float[np.ndarray, " direction"],
     freedom: Int[np.ndarray, " hypothesis"],
     noise: Iterable[Float[np.ndarray, "direction draw"]],
-    asked: Sequence[int] | None = None,
 ) -> Float[np.ndarray, " hypothesis"]:
     """Of every hypothesis, how often pure noise gives any of them a score as unlikely.
 
@@ -203,8 +202,6 @@ def family_wise(
         How many directions each has.
     noise : iterable of array (direction, draw)
         What pure noise has along them, without end.
-    asked : sequence of int, optional
-        Of which hypotheses it is asked; no more is drawn once they are far beyond all draws. None: of all.
     """
     used = np.flatnonzero(freedom)
     chances = np.ones(len(freedom))
@@ -212,7 +209,6 @@ def family_wise(
         return chances
     starts = np.concatenate([[0], np.cumsum(freedom[used])[:-1]])
     own = log_tail(np.add.reduceat(along**2, starts), freedom[used])
-    least_far = own.max() if asked is None else own[np.isin(used, asked)].max(initial=-np.inf)
     lowest = np.zeros(0)
     for drawn in noise:
         gains = np.add.reduceat(drawn**2, starts, axis=0)
@@ -221,8 +217,7 @@ def family_wise(
             log_tail(gains[freedom[used] == many].max(axis=0), many) for many in np.unique(freedom[used]).tolist()
         )
         lowest = np.append(lowest, np.min(list(largest), axis=0))
-        far = least_far < FAR * lowest.min()
-        if far or len(lowest) >= DRAWS or (lowest <= own.min()).sum() >= LUCK:
+        if len(lowest) >= DRAWS or (lowest <= own.min()).sum() >= LUCK:
             break
     beaten, none = (lowest[:, None] <= own).sum(axis=0), 1 / (len(lowest) + 1)
     # Far beyond the draws, Bonferroni's bound says more than that no draw came near.

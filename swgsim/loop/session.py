@@ -93,6 +93,11 @@ class Measured:
         """Session and operating point of each recording: those with the same ones are repeats of each other."""
         return [(r.session, r.point) for r in self.recordings]
 
+    @property
+    def repeated(self) -> bool:
+        """Whether any of them are."""
+        return len(set(self.repeats)) < len(self)
+
     def rows(self, of_situation: Float[np.ndarray, "situation feature *column"]) -> np.ndarray:
         """What belongs to situations, as rows (recording, feature), one below the other."""
         whole = of_situation[self.of_recording]

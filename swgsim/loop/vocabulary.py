@@ -133,10 +133,10 @@ def strongest(fitted: Fitted, rng: np.random.Generator) -> Described:
     projected = _Projected.of(fitted)
     freedom = np.array([each.freedom for each in projected.described])
     noise = (projected.along(each) for each in fitted.null(AT_ONCE, rng))
-    ranked = projected.ranked
-    best = projected.described.index(ranked[0])
-    chances = family_wise(projected.along(fitted.weighed), freedom, noise, [best])
-    return replace(ranked[0], chance=float(chances[best]), rivals=other_laws(ranked[0], ranked))
+    chances = family_wise(projected.along(fitted.weighed), freedom, noise)
+    best = projected.ranked[0]
+    chance = float(chances[projected.described.index(best)])
+    return replace(best, chance=chance, rivals=other_laws(best, projected.ranked))
 
 
 def other_laws(best: Described, others: Sequence[Described]) -> tuple[str, ...]:
