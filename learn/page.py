@@ -89,8 +89,11 @@ def others(store: Store, server: str) -> dict[str, str]:
     """Addresses of the runs of all other experiments that have some, by name, such as those of closing the loop."""
     found = store.client.search_experiments(order_by=["name"])
     beside = {each.name: each.experiment_id for each in found if each.experiment_id != store.experiment_id}
-    kept = {name: number for name, number in beside.items() if store.client.search_runs([number], max_results=1)}
-    return {name: _runs(server, number) for name, number in kept.items()}
+    return {name: _runs(server, number) for name, number in beside.items() if _has_runs(store, number)}
+
+
+def _has_runs(store: Store, experiment: str, those: str = "") -> bool:
+    return bool(store.client.search_runs([experiment], those, max_results=1))
 
 
 def _runs(server: str, experiment: str) -> str:
@@ -98,11 +101,14 @@ def _runs(server: str, experiment: str) -> str:
 
 
 def serve(store: Store, host: str, port: int) -> None:
-    """Run MLflow's page for a local store until it is interrupted; with a server, only print the links."""
+    """Run MLflow's page for a local store until it is interrupted; with a server, only print the links. A view that
+    would show no run has none.
+    """
     save_views(store)
     server = f"http://{host}:{port}" if store.folder else store.uri
     for view in VIEWS:
-        print(f"{view.name}: {link(store, server, view)}", flush=True)
+        if _has_runs(store, store.experiment_id, view.filter):
+            print(f"{view.name}: {link(store, server, view)}", flush=True)
     for name, address in others(store, server).items():
         print(f"Experiment {name}: {address}", flush=True)
     if store.folder:

@@ -154,14 +154,17 @@ def test_key_depends_on_what_decides_the_result_only():
     assert identity.job_key(config, "another digest") != key
 
 
-def test_experiments_beside_that_have_runs_have_links_too(tmp_path, monkeypatch, capsys):
+def test_what_has_runs_has_a_link(tmp_path, monkeypatch, capsys):
     store, loop, empty = (tracking.local_store(str(tmp_path), name) for name in (tracking.EXPERIMENT, "loop", "empty"))
     keep(loop, "key", {"noise_floor": 0.8})
     assert empty.experiment_id
     monkeypatch.setattr(page, "run_mlflow", lambda *_: None)
     page.serve(store, "host", 1)
-    *_, last = capsys.readouterr().out.splitlines()
-    assert (
-        last == f"Experiment loop: http://host:1/#/experiments/{loop.experiment_id}/runs?workflowType=machine_learning"
-    )
+    beside = f"http://host:1/#/experiments/{loop.experiment_id}/runs?workflowType=machine_learning"
+    assert capsys.readouterr().out.splitlines() == [f"Experiment loop: {beside}"]
     assert page.others(loop, "http://host:1") == {}
+    keep(store, "key", {"test_score": 4.0}, grid="paper")
+    page.serve(store, "host", 1)
+    *views, last = capsys.readouterr().out.splitlines()
+    assert [line.partition(":")[0] for line in views] == ["Scores", "Sweeps"]
+    assert last == f"Experiment loop: {beside}"
