@@ -78,6 +78,7 @@ THRESHOLDS = {
     "structure": [unit.STRUCTURE, commissioning.ANOTHER, commissioning.WORST, commissioning.LOOSEST],
     "unexplained": missing.UNEXPLAINED,
     "bent": [fitting.BENT, fitting.MISFIT],
+    "turns": [fitting.TURNS, fitting.UNREPEATED, fitting.NEAR],
     "balanced": [fitted.LIKELIER_BALANCED, *fitted.BALANCED],
     "inaccurate": evidence.INACCURATE,
     "luck": missing.LUCK,
