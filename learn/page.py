@@ -101,16 +101,19 @@ def _runs(server: str, experiment: str) -> str:
 
 
 def serve(store: Store, host: str, port: int) -> None:
-    """Run MLflow's page for a local store until it is interrupted; with a server, only print the links. A view that
-    would show no run has none.
+    """Run MLflow's page for a local store until it is interrupted; with a server, only print the links.
+
+    Views that would show no run are left out.
     """
     save_views(store)
     server = f"http://{host}:{port}" if store.folder else store.uri
-    for view in VIEWS:
-        if _has_runs(store, store.experiment_id, view.filter):
-            print(f"{view.name}: {link(store, server, view)}", flush=True)
-    for name, address in others(store, server).items():
-        print(f"Experiment {name}: {address}", flush=True)
+    shown = [view for view in VIEWS if _has_runs(store, store.experiment_id, view.filter)]
+    links = {view.name: link(store, server, view) for view in shown}
+    links |= {f"Experiment {name}": address for name, address in others(store, server).items()}
+    for name, address in links.items():
+        print(f"{name}: {address}", flush=True)
+    if not links:
+        print(f"No runs yet, 'make paper' and 'make loop' keep theirs here: {server}", flush=True)
     if store.folder:
         with until_stopped():
             run_mlflow(store.uri, host, port, "--workers", "1")

@@ -156,9 +156,11 @@ def test_key_depends_on_what_decides_the_result_only():
 
 def test_what_has_runs_has_a_link(tmp_path, monkeypatch, capsys):
     store, loop, empty = (tracking.local_store(str(tmp_path), name) for name in (tracking.EXPERIMENT, "loop", "empty"))
-    keep(loop, "key", {"noise_floor": 0.8})
     assert empty.experiment_id
     monkeypatch.setattr(page, "run_mlflow", lambda *_: None)
+    page.serve(store, "host", 1)
+    assert capsys.readouterr().out.startswith("No runs yet")
+    keep(loop, "key", {"noise_floor": 0.8})
     page.serve(store, "host", 1)
     beside = f"http://host:1/#/experiments/{loop.experiment_id}/runs?workflowType=machine_learning"
     assert capsys.readouterr().out.splitlines() == [f"Experiment loop: {beside}"]

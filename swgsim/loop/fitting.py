@@ -62,9 +62,8 @@ def fit(
     parameters = parameters | of_effects(start, unit.of_another_structure)
     known = unit.scatter.carried if unit.scatter else Scatter.stated(measured.layout)
     fixed = _Fixed(measured, unit, start, parameters, known, allowed)
-    told = unit.scatter is not None or measured.repeated
-    guess = guess if guess and told else known
-    for _ in range(TURNS if told else UNREPEATED):
+    guess = guess if guess and fixed.told else known
+    for _ in range(TURNS if fixed.told else UNREPEATED):
         found = _turn(fixed, begin, guess)
         near = found.errors.alone.divergence(found.scattering(guess).errors.alone) < NEAR
         if near and found.calibrated.settled:
@@ -84,6 +83,11 @@ class _Fixed(NamedTuple):
     parameters: dict[str, Declared]
     known: Scatter
     allowed: Float[np.ndarray, "row column"] | None
+
+    @property
+    def told(self) -> bool:
+        """Whether repeats tell the errors of single recordings, these ones or those of the commissioning."""
+        return self.unit.scatter is not None or self.measured.repeated
 
 
 def _turn(fixed: _Fixed, begin: Mapping[str, float], guess: Scatter) -> Fitted:
@@ -105,7 +109,7 @@ def _turn(fixed: _Fixed, begin: Mapping[str, float], guess: Scatter) -> Fitted:
     )  # fmt: skip
     residual = values - calibrated.predicted[measured.of_recording]
     trends = scatter.trends(moves, [measured.situations[i] for i in measured.of_recording], measured.layout)
-    if unit.scatter or measured.repeated:
+    if fixed.told:
         estimated = repeats.from_repeats(residual, noise, moves, trends, measured.repeats, fixed.known)
     else:
         J = measured.rows(calibrated.J).reshape(residual.size, -1)
