@@ -137,3 +137,10 @@ def test_where_the_flange_sits_is_no_matter_of_the_gauges(sharp: bool) -> None:
     np.testing.assert_allclose(at_brake["T_out"], 70.0)
     for sensor in SENSORS:
         np.testing.assert_allclose(at_brake[sensor], at_gear[sensor], atol=1e-9)
+
+
+def test_where_nothing_is_clipped_other_effects_act_as_without_a_limit() -> None:
+    runs = [Run(GEAR, OperatingPoint(2000, 70), (AxialThrust(0.01), *limit)) for limit in ((), (Clipping(5.0),))]
+    plain, dense = (each.channels for each in simulate_turns(runs, 1, 64, SECTORS))
+    for name, values in plain.items():
+        np.testing.assert_allclose(dense[name], values, rtol=0, atol=1e-9)

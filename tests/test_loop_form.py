@@ -29,6 +29,16 @@ MAPS = 0.01 * (LAYOUT.channel != "T_in")
 LEARNED = np.where((LAYOUT.channel == "T_in") & (LAYOUT.order == 3), 2.0, 0.0)
 
 
+def test_runs_that_are_alike_are_predicted_alike_in_any_order():
+    other = Model(replace(GEAR, gauges=replace(GEAR.gauges, gain=(1.1,) * 5)))
+    found = predict([other, Model(GEAR), other], SITUATIONS[::-1], LAYOUT, sectors=40)
+    alone = predict([Model(GEAR)], SITUATIONS, LAYOUT, sectors=40)[0, ::-1]
+    np.testing.assert_allclose(found[1], alone, rtol=0, atol=1e-10)
+    gain = np.where(LAYOUT.channel == "T_in", 1.0, 1.1)
+    for each in found[[0, 2]]:
+        np.testing.assert_allclose(each, gain * alone, rtol=0, atol=1e-8)
+
+
 def test_every_second_deviation_of_a_map_grows_with_the_load():
     found = form_columns((MAPS, 0 * MAPS), SITUATIONS, 2, LAYOUT, EVEN)
     assert found.shape == (len(SITUATIONS), len(LAYOUT), 2 * 2 * 25)
