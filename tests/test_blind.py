@@ -68,6 +68,7 @@ SAID = {
     "smallest_chance": 1e-3,
     "baselines": {name: ["cam_form"] for name in baselines.BASELINES},
     "error": {"before": 2.0, "after": 1.0, "oracle": 1.0},
+    "log_likelihood": {"before": -2000.0, "after": -600.0, "oracle": -550.0},
     "heldout": {"before": 2.0, "after": 2.0},
     "intervals": [{"name": "cam_form", "true": 1.0, "found": 1.1, "deviation": 0.1}],
     "angles": [{"name": "cam_form", "true": 6.2, "found": 0.1, "deviation": 0.1}],
@@ -337,6 +338,8 @@ def test_what_went_wrong_is_said(case: Sealed, changes: dict, cause: str) -> Non
     judged = Judged(case, {**SAID, **changes})
     assert judged.cause == cause
     assert judged.why.startswith(case.stratum)
+    told = "log-likelihood +1.4e+03, with the true model +1.45e+03" in judged.why
+    assert told == bool(case.effects and not judged.failed)
 
 
 @pytest.mark.parametrize(("orders", "which"), [((10, 3), 1), ((3, 10), 0), ((10,), 0), ((), None)])

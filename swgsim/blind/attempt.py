@@ -75,13 +75,20 @@ def what_was_said(found: Answer, recordings: Sequence[Recording], library: Seque
 
 
 def _against_truth(found: Answer, unit: Unit, case: Sealed, setting: Setting) -> dict[str, Any]:
-    """Errors at unseen points, and whether the truth lies inside the intervals that were given."""
+    """Errors at unseen points, how likely each model makes the recordings, and whether the truth lies inside the
+    intervals that were given.
+    """
     before, after = found.closed.before, found.closed.after
     truth = unseen(case, setting, before.measured.layout)
-    errors = {"before": unseen_error(before, truth), "after": unseen_error(after, truth)}
-    errors["oracle"] = unseen_error(_oracle(before, unit, case), truth)
+    models = {"before": before, "after": after, "oracle": _oracle(before, unit, case)}
     sizes, angles = _intervals(found, case)
-    return {"error": errors, "heldout": heldout(before, after), "intervals": sizes, "angles": angles}
+    return {
+        "error": {name: unseen_error(fitted, truth) for name, fitted in models.items()},
+        "log_likelihood": {name: fitted.log_likelihood for name, fitted in models.items()},
+        "heldout": heldout(before, after),
+        "intervals": sizes,
+        "angles": angles,
+    }
 
 
 def _oracle(before: Fitted, unit: Unit, case: Sealed) -> Fitted:

@@ -194,8 +194,17 @@ class Judged:
             f"{min(r['chances'], default=1.0):.1g}{'' if r['settled'] else ', unsettled'})"
             for r in self.said["rejected"][:2]
         )
-        parts = [f"named {', '.join(self.named) or self.first}", f"scores {scores}", rejected]
+        parts = [f"named {', '.join(self.named) or self.first}", self._likelier, f"scores {scores}", rejected]
         return f"{about}, {self.case.form}: {hidden or 'nothing'} hidden; {'; '.join(part for part in parts if part)}"
+
+    @property
+    def _likelier(self) -> str:
+        """How much likelier the answer makes the recordings, and how much knowing the truth does: where these hardly
+        differ, the recordings do not tell the one from the other.
+        """
+        of = self.said["log_likelihood"]
+        after, oracle = (of[name] - of["before"] for name in ("after", "oracle"))
+        return f"log-likelihood {after:+.3g}, with the true model {oracle:+.3g}" if self.case.effects else ""
 
 
 def _same(one: str, other: str, order: int) -> bool:
