@@ -10,6 +10,7 @@ from swgsim.blind.sealed import Sealed
 from swgsim.blind.strata import NULLS, OUTSIDE_STRATA, PAIR, SINGLE, UNTESTABLE
 from swgsim.effects.regularity import PATTERNS
 from swgsim.loop.answer import NOTHING, UNKNOWN
+from swgsim.loop.sidelines import is_random
 
 # Weights of patterns whose direction is the same differ by less than this.
 ROUNDING = 1e-9
@@ -194,17 +195,19 @@ class Judged:
             f"{min(r['chances'], default=1.0):.1g}{'' if r['settled'] else ', unsettled'})"
             for r in self.said["rejected"][:2]
         )
-        parts = [f"named {', '.join(self.named) or self.first}", self._likelier, f"scores {scores}", rejected]
+        parts = [f"named {', '.join(self.named) or self.first}", self._gains, f"scores {scores}", rejected]
         return f"{about}, {self.case.form}: {hidden or 'nothing'} hidden; {'; '.join(part for part in parts if part)}"
 
     @property
-    def _likelier(self) -> str:
-        """How much likelier the answer makes the recordings, and how much knowing the truth does: where these hardly
-        differ, the recordings do not tell the one from the other.
+    def _gains(self) -> str:
+        """By how much the answer, and a fit that knows the truth, make the recordings likelier: where these hardly
+        differ, little is left that could show the answer to be wrong. An effect counts in the library's form.
         """
+        if not self.case.effects or any(is_random(type(effect)) for effect in self.case.effects):
+            return ""  # what is random between the orders is in neither fit
         of = self.said["log_likelihood"]
         after, oracle = (of[name] - of["before"] for name in ("after", "oracle"))
-        return f"log-likelihood {after:+.3g}, with the true model {oracle:+.3g}" if self.case.effects else ""
+        return f"log-likelihood {after:+,.1f}, with the true model {oracle:+,.1f}"
 
 
 def _same(one: str, other: str, order: int) -> bool:
