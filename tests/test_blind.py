@@ -439,6 +439,17 @@ def test_angles_are_judged_of_what_was_chosen_alike(fitted: Fitted, order: int) 
     assert angles == ([{"name": "cam_form", "true": 1.0, "found": 0.9, "deviation": 0.2}] if order == 3 else [])
 
 
+def test_the_true_model_is_likelier_than_an_answer_that_names_nothing() -> None:
+    hidden = replace(SHORT, effects=(LIBRARY["cam_form"](3, 2e-5, 1.0),), strengths=(3e5,))
+    unit = Unit(Model(GEAR))
+    before = fit(Measured.of(in_question(hidden, SETTING, hidden.acting)), unit)
+    closed = Closed(before, before, before, (), (), (), (), None)
+    said = attempt._against_truth(Answer("nothing_missing", closed, (), (), (), (), ()), unit, hidden, SETTING)
+    likely = said["log_likelihood"]
+    assert likely["before"] == likely["after"] == before.log_likelihood
+    assert likely["oracle"] > before.log_likelihood + 100
+
+
 def test_an_angle_that_may_be_any_is_not_counted() -> None:
     angles = [{"true": 1.0, "found": 1.2, "deviation": deviation} for deviation in (0.2, 0.05, 2.0)]
     covered = score([Judged(HIDDEN, {**SAID, "angles": angles})])["coverage95_of_angles"]
