@@ -12,9 +12,9 @@ from swgsim.effects.base import Scene
 from swgsim.effects.frozen import FULL_LOAD
 from swgsim.effects.library import LIBRARY
 from swgsim.loop.features import ORDERS, Layout
-from swgsim.loop.form import form_columns, largest_lines, lines_of
+from swgsim.loop.form import form_columns, largest_lines, lines_of, sizes_of
 from swgsim.loop.model import Model, Situation, predict
-from swgsim.loop.own_lines import Lines, OwnLines
+from swgsim.loop.own_lines import LAWS, Lines, OwnLines
 from swgsim.loop.unit import STRUCTURE, Unit
 
 LAYOUT = Layout(("T_in", "s0", "s1"))
@@ -27,6 +27,7 @@ EVEN = TORQUE * (np.arange(TORQUE.shape[1]) == 0)
 MISSED = 1e-5
 MAPS = 0.01 * (LAYOUT.channel != "T_in")
 LEARNED = np.where((LAYOUT.channel == "T_in") & (LAYOUT.order == 3), 2.0, 0.0)
+SIZES = sizes_of(MAPS, 3, LEARNED)
 
 
 def test_runs_that_are_alike_are_predicted_alike_in_any_order():
@@ -39,48 +40,55 @@ def test_runs_that_are_alike_are_predicted_alike_in_any_order():
         np.testing.assert_allclose(each, gain * alone, rtol=0, atol=1e-8)
 
 
-def test_every_second_deviation_of_a_map_grows_with_the_load():
-    found = form_columns((MAPS, 0 * MAPS), SITUATIONS, 2, LAYOUT, EVEN)
+def test_half_of_the_deviations_of_a_map_grow_with_the_load():
+    found = form_columns(sizes_of(MAPS, 2, 0 * MAPS), SITUATIONS, LAYOUT, EVEN)
     assert found.shape == (len(SITUATIONS), len(LAYOUT), 2 * 2 * 25)
     assert not found[:, LAYOUT.channel == "T_in"].any()
-    assert found[:, LAYOUT.channel == "s0", ::2].max() == pytest.approx(0.01)
+    constant, with_load = np.split(found, 2, axis=-1)
+    assert constant[:, LAYOUT.channel == "s0"].max() == pytest.approx(0.01)
     load = np.array([point.T_out for point in POINTS]) / FULL_LOAD
-    np.testing.assert_allclose(found[..., 1::2], found[..., ::2] * load[:, None, None], atol=1e-12)
+    np.testing.assert_allclose(with_load, constant * load[:, None, None], atol=1e-12)
 
 
 def test_only_maps_of_gauges_deviate_and_by_a_share_of_their_largest_line():
     predicted = np.random.default_rng(1).normal(size=(len(SITUATIONS), len(LAYOUT)))
-    of_maps, of_learned = Unit(Model(GEAR), structure=0.03).form(predicted, LAYOUT)
+    found = Unit(Model(GEAR), structure=0.03).form(predicted, LAYOUT)
     largest = largest_lines(predicted, LAYOUT)
     assert largest["s0"] == np.abs(LAYOUT.lines(predicted))[:, 1, 1:].max()
     expected = {"T_in": 0.0, "s0": STRUCTURE * largest["s0"], "s1": STRUCTURE * largest["s1"]}
-    np.testing.assert_allclose(of_maps, [expected[name] for name in LAYOUT.channel])
-    assert not of_learned.any()
+    np.testing.assert_allclose(found[:2], [[expected[name] for name in LAYOUT.channel]] * 2)
+    assert not found[2:].any()
+
+
+def test_a_line_that_is_learned_deviates_by_its_map_too_and_by_laws_of_its_own():
+    found = sizes_of(MAPS, 3, 2 * MAPS)
+    np.testing.assert_allclose(found[:3] ** 2, [5 * MAPS**2] * 3)
+    np.testing.assert_allclose(found[3:], [2 * MAPS] * (len(LAWS) - 3))
 
 
 def test_a_deviation_is_the_same_whatever_else_is_asked():
     """What commissioning found at six operating points holds for a question about one of them."""
-    whole, part = (form_columns((MAPS, LEARNED), SITUATIONS[:n], 2, LAYOUT, TORQUE[:n]) for n in (len(SITUATIONS), 1))
+    whole, part = (form_columns(SIZES, SITUATIONS[:n], LAYOUT, TORQUE[:n]) for n in (len(SITUATIONS), 1))
     np.testing.assert_allclose(part, whole[:1])
 
 
 def test_a_line_that_is_learned_follows_load_and_speed_alone():
     """Others stay as they are; a law of load and speed within those that are open is passed exactly."""
-    found = form_columns((0 * MAPS, LEARNED), SITUATIONS, 2, LAYOUT, TORQUE)
+    found = form_columns(sizes_of(0 * MAPS, 2, LEARNED), SITUATIONS, LAYOUT, TORQUE)
     assert not found[:, LEARNED == 0].any()
     own = found[:, np.flatnonzero(LEARNED)[0]]
     load, speed = (np.array([getattr(s.point, name) for s in SITUATIONS]) for name in ("T_out", "n_in_rpm"))
     for law in (1 + 0 * load, 0.3 * load - 1e-3 * speed, load**2 + 1e-3 * load * speed):
         np.testing.assert_allclose(own @ np.linalg.lstsq(own, law)[0], law, atol=1e-8 * np.abs(law).max())
-    assert form_columns((0 * MAPS, 0 * MAPS), SITUATIONS, 2, LAYOUT, TORQUE).shape == (*found.shape[:2], 0)
+    assert form_columns(0 * SIZES, SITUATIONS, LAYOUT, TORQUE).shape == (*found.shape[:2], 0)
 
 
 @pytest.fixture(scope="module")
 def of_form() -> tuple[np.ndarray, Model]:
     """Features that columns make together, and a model that has them as its deviation."""
-    columns = form_columns((MAPS, LEARNED), SITUATIONS, 3, LAYOUT, TORQUE)
+    columns = form_columns(SIZES, SITUATIONS, LAYOUT, TORQUE)
     found = np.random.default_rng(1).normal(size=columns.shape[-1])
-    return columns @ found, Model(GEAR, (), lines_of((MAPS, LEARNED), found, 3, LAYOUT, GEAR.gauges))
+    return columns @ found, Model(GEAR, (), lines_of(SIZES, found, LAYOUT, GEAR.gauges))
 
 
 def test_a_model_has_the_deviation_that_its_columns_make(of_form):

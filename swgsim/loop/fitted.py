@@ -108,9 +108,11 @@ class Fitted:
     @cached_property
     def balanced(self) -> "Fitted":
         """The same with the zeros of gauges as far off as is likeliest; as they are if that is hardly likelier."""
-        wider = [self.with_zeros(times) for times in BALANCED if times > self.measured.zeros]
-        best = max(wider, key=lambda each: each.log_likelihood, default=self)
-        return best if best.log_likelihood > self.log_likelihood + LIKELIER_BALANCED else self
+        zeros, declared = self.measured.zeros, self.measured.zero_columns()
+        further = {times: np.sqrt(times**2 - zeros**2) * declared for times in BALANCED if times > zeros}
+        likely = {t: self.whole.with_columns(more).log_likelihood(self.from_start) for t, more in further.items()}
+        best = max(likely, key=likely.__getitem__, default=zeros)
+        return self.with_zeros(best) if likely and likely[best] > self.log_likelihood + LIKELIER_BALANCED else self
 
     @cached_property
     def residual(self) -> Float[np.ndarray, " row"]:

@@ -16,8 +16,26 @@ from swgsim.loop.model import POINTS, Situation
 from swgsim.loop.own_lines import LAWS, Lines, laws
 from swgsim.recordings import SENSORS
 
-# How far lines may deviate, of maps and of lines that are learned, each an array (feature,).
-Sizes = tuple[Float[np.ndarray, " feature"], Float[np.ndarray, " feature"]]
+# How far lines may deviate by each law (standard deviation).
+Sizes = Float[np.ndarray, "law feature"]
+
+
+def sizes_of(of_maps: Float[np.ndarray, " feature"], powers: int, of_learned: Float[np.ndarray, " feature"]) -> Sizes:
+    """How far lines may deviate.
+
+    Parameters
+    ----------
+    of_maps : array (feature,)
+        By the maps, whose lines are the same at all operating points (A) or grow with the load up to full load (B),
+        with three powers of the load also with its square.
+    powers : int
+        Of the load, by which the maps may deviate.
+    of_learned : array (feature,)
+        Of lines that the model has quite different: by laws of load and speed that together pass nearly everywhere.
+    """
+    found = np.tile(of_learned, (len(LAWS), 1))
+    found[:powers] = np.hypot(found[:powers], of_maps)
+    return found
 
 
 def largest_lines(predicted: Float[np.ndarray, "situation feature"], layout: Layout) -> dict[str, float]:
@@ -40,31 +58,28 @@ def lines_anywhere(
 
 
 def form_columns(
-    sizes: Sizes,
-    situations: Sequence[Situation],
-    powers: int,
-    layout: Layout,
-    torque: Float[np.ndarray, "situation one"],
+    sizes: Sizes, situations: Sequence[Situation], layout: Layout, torque: Float[np.ndarray, "situation one"]
 ) -> Float[np.ndarray, "situation feature column"]:
-    """Deviations of lines, one standard deviation each.
+    """Deviations of lines, one standard deviation each, law by law; none where a size is 0.
 
     Parameters
     ----------
-    sizes : pair of array (feature,)
-        Of the maps, whose lines are the same at all operating points (A) or grow with the load up to full load (B),
-        with three powers of the load also with its square; and of lines that the model has quite different, each by
-        laws of load and speed that together pass nearly everywhere. There is no column where a size is 0.
+    sizes : array (law, feature)
+        By :func:`sizes_of`.
     situations : sequence of Situation
-    powers : int
-        Of the load, by which the maps may deviate.
     layout : Layout
     torque : array (situation, one)
         Features of the output's torque, whose ripple the gauges feel as they do its mean.
     """
-    of_maps, of_learned = sizes
     followed = np.array([_followed(s, each, layout) for s, each in zip(situations, torque, strict=True)])
-    parts = [_columns(of_maps, followed[:, :, :powers]), _columns(of_learned, followed)]
-    return np.concatenate(parts, axis=-1)
+    channels, one = followed.shape[1], followed.shape[-1]
+    law, feature = np.nonzero(sizes)
+    channel, line = np.divmod(feature, one)
+    columns = np.zeros((len(situations), channels, one, len(law)))
+    # What is indexed comes first: (column, situation, one).
+    of_columns = followed[:, channel, law, :, line] * sizes[law, feature][:, None, None]
+    columns[:, channel, :, np.arange(len(law))] = of_columns
+    return columns.reshape(len(situations), len(layout), -1)
 
 
 def _followed(
@@ -79,32 +94,10 @@ def _followed(
     return np.array([by_ripple if name in SENSORS else by_mean for name in layout.channels])
 
 
-def _columns(
-    size: Float[np.ndarray, " feature"], followed: Float[np.ndarray, "situation channel law one one"]
-) -> Float[np.ndarray, "situation feature column"]:
-    """Every feature that has a size, by each law."""
-    situations, channels, followable, one, _ = followed.shape
-    own = np.flatnonzero(size)
-    columns = np.zeros((situations, channels, one, len(own), followable))
-    for column, feature in enumerate(own):
-        channel, line = divmod(int(feature), one)
-        columns[:, channel, :, column] = size[feature] * followed[:, channel, :, :, line].swapaxes(1, 2)
-    return columns.reshape(situations, len(size), -1)
-
-
-def column_counts(sizes: Sizes, powers: int) -> tuple[int, int]:
-    """How many columns of :func:`form_columns` deviations of the maps have, and of lines that are learned."""
-    of_maps, of_learned = sizes
-    return powers * int(np.count_nonzero(of_maps)), len(LAWS) * int(np.count_nonzero(of_learned))
-
-
-def lines_of(sizes: Sizes, found: Float[np.ndarray, " column"], powers: int, layout: Layout, gauges: GaugeSet) -> Lines:
+def lines_of(sizes: Sizes, found: Float[np.ndarray, " column"], layout: Layout, gauges: GaugeSet) -> Lines:
     """What the columns of :func:`form_columns` make together, each as large as it was found by these gauges."""
-    by_law = np.zeros((len(LAWS), len(layout)))
-    of_maps, _ = column_counts(sizes, powers)
-    for size, share, followed in zip(sizes, np.split(found, [of_maps]), (powers, len(LAWS)), strict=True):
-        own = np.flatnonzero(size)
-        by_law[:followed, own] += share.reshape(len(own), followed).T * size[own]
+    by_law = np.zeros_like(sizes)
+    by_law[np.nonzero(sizes)] = sizes[np.nonzero(sizes)] * found
     lines = layout.lines(by_law)
     lie_off = layout.channel[np.any(sizes, axis=0)]
     there = np.flatnonzero(np.isin(layout.channels, lie_off))

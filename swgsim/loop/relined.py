@@ -10,7 +10,7 @@ from scipy.linalg import qr, solve_triangular
 
 from swgsim.loop.fitted import Fitted
 from swgsim.loop.fitting import fit
-from swgsim.loop.form import column_counts, largest_lines, lines_of
+from swgsim.loop.form import largest_lines, lines_of
 from swgsim.loop.own_lines import Lines
 
 # So often at most, until the log-likelihood stays within so much.
@@ -62,12 +62,12 @@ def lines_found(fitted: Fitted, mean: Float[np.ndarray, " direction"]) -> tuple[
     """The lines by which the gear differs from the model, and how many of the directions, the last ones, they are."""
     unit, layout = fitted.unit, fitted.measured.layout
     sizes = unit.form(fitted.calibrated.predicted, layout)
-    form = sum(column_counts(sizes, unit.powers))
+    form = int(np.count_nonzero(sizes))
     gauges = fitted.model.run(fitted.measured.situations[0]).affected_gear.gauges
     before, found = fitted.model.own_lines, mean[len(mean) - form :]
     if before is None or unit.shift is None:
-        return lines_of(sizes, found, unit.powers, layout, gauges), form
-    more = lines_of(sizes, found + unit.shift[len(unit.shift) - form :], unit.powers, layout, gauges)
+        return lines_of(sizes, found, layout, gauges), form
+    more = lines_of(sizes, found + unit.shift[len(unit.shift) - form :], layout, gauges)
     return before.seen_by(gauges).plus(more), form
 
 

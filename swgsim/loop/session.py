@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from swgsim.loop.features import Layout, features, layout_of
 from swgsim.loop.model import Situation
@@ -120,28 +120,54 @@ class Measured:
             Recordings of the same sessions by whose errors these are told; without them there are no others.
         """
         known = known or self
-        hours = np.array([[r.conditions.elapsed / 3600] for r in self.recordings])
-        gauges = [name for name in SENSORS if name in self.layout.channels]
-        zeros = [(self.layout.channel == gauge) & (self.layout.order == 0) for gauge in gauges]
+        layout = self.layout
         columns = []
-        for session in dict.fromkeys(r.session for r in known.recordings):
-            here = np.array([[r.session == session] for r in self.recordings])
+        for session in known.sessions:
+            here = self._here(session)
             for name, sd in OF_SESSION.items():
                 kind, _, channel = name.partition(" of ")
-                own = self.layout.channel == channel
-                mean = own & (self.layout.order == 0)
+                if kind == "zero" and channel in SENSORS:
+                    continue  # which come last
+                own = layout.channel == channel
+                mean = own & (layout.order == 0)
                 moved = {
                     "index": self.turning,
-                    "zero": (self.zeros if channel in gauges else 1.0) * mean[None, :],
+                    "zero": mean[None, :],
                     "gain": own * predicted[self.of_recording],
-                    "drift": hours * mean,
+                    "drift": self._hours * mean,
                 }[kind]
                 if kind == "index" or own.any():
                     columns.append((sd * here * moved).ravel())
+        return np.hstack([np.stack(columns, axis=1), self.zeros * self.zero_columns(known)])
+
+    def zero_columns(self, known: "Measured | None" = None) -> Float[np.ndarray, "row column"]:
+        """Zeros of gauges in every session, and how they wander, one declared standard deviation each."""
+        known = known or self
+        gauges = [gauge for gauge in SENSORS if gauge in self.layout.channels]
+        columns = [np.zeros((self.values.size, 0))]
+        for session in known.sessions:
+            here = self._here(session)
             told = np.array([r.conditions.elapsed / 3600 for r in known.recordings if r.session == session])
-            for path in _walks(told, hours * here):
-                columns += [self.zeros * np.outer(path, zero).ravel() for zero in zeros]
-        return np.stack(columns, axis=1)
+            wandering = _walks(told, self._hours * here)
+            for gauge in gauges:
+                mean = (self.layout.channel == gauge) & (self.layout.order == 0)
+                over = np.vstack([OF_SESSION[f"zero of {gauge}"] * here.T, wandering])
+                columns.append(np.kron(over, mean).T)
+        return np.hstack(columns)
+
+    @property
+    def sessions(self) -> list[str]:
+        """In the order in which they were first recorded."""
+        return list(dict.fromkeys(r.session for r in self.recordings))
+
+    @property
+    def _hours(self) -> Float[np.ndarray, "recording 1"]:
+        """Since the session of each began."""
+        return np.array([[r.conditions.elapsed / 3600] for r in self.recordings])
+
+    def _here(self, session: str) -> Bool[np.ndarray, "recording 1"]:
+        """Whether each is of a session."""
+        return np.array([[r.session == session] for r in self.recordings])
 
 
 def _walks(told: Float[np.ndarray, " one"], hours: Float[np.ndarray, "other 1"]) -> Float[np.ndarray, "path other"]:

@@ -12,7 +12,7 @@ from swgsim.gear import Gear
 from swgsim.loop.calibration import linearised
 from swgsim.loop.declared import ANY_FRICTION, SERIES, Declared, of_unit
 from swgsim.loop.features import Layout
-from swgsim.loop.form import Sizes, form_columns, largest_lines, lines_anywhere
+from swgsim.loop.form import Sizes, form_columns, largest_lines, lines_anywhere, sizes_of
 from swgsim.loop.healthy import FRICTION, of_friction, of_gauges, of_learned
 from swgsim.loop.model import Model, Situation, predict
 from swgsim.loop.scatter import Scatter
@@ -128,7 +128,7 @@ class Unit:
         if self.learned is not None:
             directions.append(of_learned(self.learned, situations, layout))
         torque = predict([_driving(model)], situations, Layout(("T_out",)))[0]
-        directions.append(form_columns(self.form(predicted, layout), situations, self.powers, layout, torque))
+        directions.append(form_columns(self.form(predicted, layout), situations, layout, torque))
         open_ = np.concatenate(directions, axis=-1)
         shift = np.zeros(predicted.shape) if self.shift is None else open_ @ self.shift
         return LeftOpen(predicted, shift, open_ if self.reach is None else open_ @ self.reach, of_parameters)
@@ -137,7 +137,7 @@ class Unit:
         """How far lines may deviate by the maps, and by what of them is learned: the last of the directions."""
         largest = self.largest or largest_lines(predicted, layout)
         of_maps = STRUCTURE * np.array([largest.get(channel, 0.0) for channel in layout.channel])
-        return of_maps, np.zeros(len(layout)) if self.learned is None else self.learned
+        return sizes_of(of_maps, self.powers, np.zeros(len(layout)) if self.learned is None else self.learned)
 
     def open_of(
         self, signature: Float[np.ndarray, "situation feature"], layout: Layout
