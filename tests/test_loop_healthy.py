@@ -12,7 +12,7 @@ from swgsim.loop import healthy
 from swgsim.loop.declared import of_unit
 from swgsim.loop.features import ORDERS, Layout
 from swgsim.loop.model import Model, Situation
-from swgsim.loop.session import KEPT, OF_SESSION, WANDER, Measured
+from swgsim.loop.session import KEPT, OF_SESSION, WANDER, WIDER, Measured
 
 LAYOUT = Layout(("T_in", "s0", "s1"))
 NAMES = [name for name in OF_SESSION if name == "index" or name.partition(" of ")[2] in LAYOUT.channels]
@@ -102,17 +102,24 @@ def test_zeros_of_a_session_wander_as_a_random_walk_of_that_session(predicted):
     assert (np.diag(found)[hours > 0] > 0).all()
 
 
-def test_zeros_of_bridges_balanced_anew_lie_and_wander_further_and_nothing_else_does(predicted):
+def test_zeros_of_bridges_balanced_anew_lie_further_off_and_wander_a_little_more_and_nothing_else_does(predicted):
     measured = silent(LAYOUT, predicted)
-    columns, wide = (each.session_columns(predicted) for each in (measured, replace(measured, zeros=4.0)))
-    further = ((wide / np.where(columns == 0, 1.0, columns)) > 2).any(axis=0)
-    mean_of_a_gauge = np.tile((LAYOUT.order == 0) & (LAYOUT.channel != "T_in"), len(measured))
-    assert not columns[np.ix_(~mean_of_a_gauge, further)].any()
-    np.testing.assert_allclose(wide, columns * np.where(further, 4.0, 1.0))
-    walks = columns.shape[1] - 2 * len(NAMES)
+    wide = replace(measured, zeros=16.0)
+    columns, wider = (each.session_columns(predicted) for each in (measured, wide))
+    others, zeros = 2 * len(OTHERS), 2 * len(ZEROS)
+    walks = columns.shape[1] - others - zeros
     assert walks > 0
-    assert further.sum() == walks + 2 * len(ZEROS)
-    assert replace(measured, zeros=4.0).further("0", [], predicted[:0]).zeros == 4.0
+    np.testing.assert_allclose(wider, columns * np.repeat([1.0, 16.0, WIDER], [others, zeros, walks]))
+    not_a_mean_of_a_gauge = np.tile((LAYOUT.order > 0) | (LAYOUT.channel == "T_in"), len(measured))
+    assert not columns[not_a_mean_of_a_gauge, others:].any()
+    assert wide.further("0", [], predicted[:0]).zeros == 16.0
+
+
+def test_what_zeros_have_further_off_adds_up_with_what_they_have(predicted):
+    measured = replace(silent(LAYOUT, predicted), zeros=2.0)
+    now, wider = (each.session_columns(predicted) for each in (measured, replace(measured, zeros=8.0)))
+    more = measured.further_zeros(8.0)
+    np.testing.assert_allclose(now @ now.T + more @ more.T, wider @ wider.T, atol=1e-12)
 
 
 def test_what_is_told_of_a_walk_holds_at_other_times_of_that_session(predicted):
@@ -126,10 +133,9 @@ def test_what_is_told_of_a_walk_holds_at_other_times_of_that_session(predicted):
     found = further.session_columns(further.values, measured).reshape(*further.values.shape, -1)[:, mean]
     np.testing.assert_allclose(found[:-1], told, atol=1e-12)
     # From the last recording on, its zero is the best guess.
-    zeros = further.zero_columns(measured).reshape(*further.values.shape, -1)[:, mean]
-    np.testing.assert_allclose(zeros[-1], zeros[-2], atol=1e-12)
-    walks = np.ptp(zeros, axis=0) > 0
-    assert zeros[-1, walks].any()
+    zeros = slice(2 * len(OTHERS), None)
+    np.testing.assert_allclose(found[-1, zeros], found[-2, zeros], atol=1e-12)
+    assert np.ptp(found[:, zeros], axis=0).any()
 
 
 def test_a_session_has_gains_and_drifts_of_its_own(predicted):

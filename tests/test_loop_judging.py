@@ -7,6 +7,7 @@ import pytest
 from chain_fixtures import GEAR
 from loop_fixtures import BUMP, Bump, drawn, fitted_to, holding
 
+from swgsim.conditions import Conditions
 from swgsim.effects.regularity import OF_TIME
 from swgsim.loop import evidence, vocabulary
 from swgsim.loop import trial as trial_module
@@ -326,12 +327,28 @@ def of_zeros():
 def test_bridges_that_were_balanced_anew_are_told_by_their_zeros(of_zeros):
     calm = of_zeros(0.004, -0.006, 0.002, -0.004, 0.005)
     assert calm.balanced is calm
-    hardly = of_zeros(0.009, -0.011, 0.008, -0.01, 0.009)
+    hardly = of_zeros(0.008, -0.01, 0.008, -0.009, 0.009)
     assert 0 < hardly.with_zeros(2.0).log_likelihood - hardly.log_likelihood < LIKELIER_BALANCED
     assert hardly.balanced is hardly
     anew = of_zeros(0.03, -0.045, 0.015, -0.03, 0.04)
     assert anew.balanced.measured.zeros in (4.0, 8.0)
     assert anew.balanced.balanced is anew.balanced
+
+
+def test_a_zero_that_moves_during_a_session_is_no_matter_of_balancing():
+    """As where the temperature moves it; balancing moves it once."""
+    hours = np.linspace(0, 0.5, 6)
+    fitted = fitted_to(GAUGES, np.random.default_rng(1), open_=0)
+    recordings = [
+        replace(each, conditions=Conditions(elapsed=3600 * at))
+        for each, at in zip(fitted.measured.recordings, hours, strict=True)
+    ]
+    measured = replace(fitted.measured, recordings=tuple(recordings), variance=1e-6 * fitted.measured.variance)
+    errors = Covariance(Alone.white(measured.variance), measured.session_columns(fitted.calibrated.predicted))
+    fitted = replace(fitted, measured=measured, errors=errors)
+    zeros = np.where(GAUGES.order == 0, np.repeat([0.04, -0.03, 0.05, -0.04, 0.03], len(GAUGES) // 5), 0.0)
+    still, moving, calm = (holding(fitted, np.outer(by, zeros).ravel()) for by in (1 + 0 * hours, 2 * hours, 0 * hours))
+    assert gained(moving, calm)[1] > 10 * gained(still, calm)[1]
 
 
 def test_an_effect_must_explain_zeros_better_than_bridges_balanced_anew_do(of_zeros):

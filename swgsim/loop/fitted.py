@@ -101,17 +101,16 @@ class Fitted:
         """The same with the zeros of gauges so many times as far off as declared."""
         if times == self.measured.zeros:
             return self
-        measured = replace(self.measured, zeros=times)
-        errors = Covariance(self.errors.alone, measured.session_columns(self.calibrated.predicted))
-        return replace(self, measured=measured, errors=errors)
+        errors = replace(self.errors, G=np.hstack([self.errors.G, self.measured.further_zeros(times)]))
+        return replace(self, measured=replace(self.measured, zeros=times), errors=errors)
 
     @cached_property
     def balanced(self) -> "Fitted":
         """The same with the zeros of gauges as far off as is likeliest; as they are if that is hardly likelier."""
-        zeros, declared = self.measured.zeros, self.measured.zero_columns()
-        further = {times: np.sqrt(times**2 - zeros**2) * declared for times in BALANCED if times > zeros}
-        likely = {t: self.whole.with_columns(more).log_likelihood(self.from_start) for t, more in further.items()}
-        best = max(likely, key=likely.__getitem__, default=zeros)
+        measured, whole, r = self.measured, self.whole, self.from_start
+        further = {times: measured.further_zeros(times) for times in BALANCED if times > measured.zeros}
+        likely = {times: whole.with_columns(columns).log_likelihood(r) for times, columns in further.items()}
+        best = max(likely, key=likely.__getitem__, default=measured.zeros)
         return self.with_zeros(best) if likely and likely[best] > self.log_likelihood + LIKELIER_BALANCED else self
 
     @cached_property

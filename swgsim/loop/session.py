@@ -29,6 +29,9 @@ OF_SESSION = {
 # Beside its drift the zero of a gauge wanders at random, as in a room that is not quite steady [mV/V per square root of
 # an hour, an estimate]. What so large a part of the variance is made of is kept; the rest is as of single recordings.
 WANDER, KEPT = 0.001, 0.95
+# Zeros that lie further off may wander more too, but at most so many times: balancing anew moves them once (an
+# estimate, of noisy benches).
+WIDER = 4.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,22 +141,28 @@ class Measured:
                 }[kind]
                 if kind == "index" or own.any():
                     columns.append((sd * here * moved).ravel())
-        return np.hstack([np.stack(columns, axis=1), self.zeros * self.zero_columns(known)])
+        zeros, walks = self._zeros(known)
+        return np.hstack([np.stack(columns, axis=1), self.zeros * zeros, _wandering(self.zeros) * walks])
 
-    def zero_columns(self, known: "Measured | None" = None) -> Float[np.ndarray, "row column"]:
-        """Zeros of gauges in every session, and how they wander, one declared standard deviation each."""
-        known = known or self
+    def further_zeros(self, times: float) -> Float[np.ndarray, "row column"]:
+        """What zeros of gauges so many times as far off as declared have beyond those of :meth:`session_columns`."""
+        zeros, walks = self._zeros(self)
+        wandering = _wandering(times) ** 2 - _wandering(self.zeros) ** 2
+        return np.hstack([np.sqrt(times**2 - self.zeros**2) * zeros, np.sqrt(wandering) * walks])
+
+    def _zeros(self, known: "Measured") -> tuple[Float[np.ndarray, "row zero"], Float[np.ndarray, "row path"]]:
+        """Zeros of gauges in every session, and the paths by which they wander, one standard deviation each."""
         gauges = [gauge for gauge in SENSORS if gauge in self.layout.channels]
-        columns = [np.zeros((self.values.size, 0))]
+        zeros, walks = [np.zeros((self.values.size, 0))], [np.zeros((self.values.size, 0))]
         for session in known.sessions:
             here = self._here(session)
             told = np.array([r.conditions.elapsed / 3600 for r in known.recordings if r.session == session])
-            wandering = _walks(told, self._hours * here)
+            paths = _walks(told, self._hours * here)
             for gauge in gauges:
                 mean = (self.layout.channel == gauge) & (self.layout.order == 0)
-                over = np.vstack([OF_SESSION[f"zero of {gauge}"] * here.T, wandering])
-                columns.append(np.kron(over, mean).T)
-        return np.hstack(columns)
+                zeros.append(OF_SESSION[f"zero of {gauge}"] * np.outer(here, mean).reshape(-1, 1))
+                walks.append(np.kron(paths, mean).T)
+        return np.hstack(zeros), np.hstack(walks)
 
     @property
     def sessions(self) -> list[str]:
@@ -168,6 +177,11 @@ class Measured:
     def _here(self, session: str) -> Bool[np.ndarray, "recording 1"]:
         """Whether each is of a session."""
         return np.array([[r.session == session] for r in self.recordings])
+
+
+def _wandering(zeros: float) -> float:
+    """So many times as far as declared do the zeros of gauges wander that may lie so many times as far off."""
+    return min(zeros, WIDER)
 
 
 def _walks(told: Float[np.ndarray, " one"], hours: Float[np.ndarray, "other 1"]) -> Float[np.ndarray, "path other"]:
