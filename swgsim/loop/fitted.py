@@ -101,8 +101,9 @@ class Fitted:
         """The same with the zeros of gauges so many times as far off as declared."""
         if times == self.measured.zeros:
             return self
-        errors = replace(self.errors, G=np.hstack([self.errors.G, self.measured.further_zeros(times)]))
-        return replace(self, measured=replace(self.measured, zeros=times), errors=errors)
+        measured = replace(self.measured, zeros=times)
+        errors = replace(self.errors, G=measured.session_columns(self.calibrated.predicted))
+        return replace(self, measured=measured, errors=errors)
 
     @cached_property
     def balanced(self) -> "Fitted":
