@@ -351,6 +351,12 @@ def test_a_zero_that_moves_during_a_session_is_no_matter_of_balancing():
     assert gained(moving, calm)[1] > 10 * gained(still, calm)[1]
 
 
+def test_bridges_balanced_anew_are_as_unlikely_beside_an_effect_as_beside_nothing(of_zeros):
+    anew, named = of_zeros(0.03, -0.045, 0.015, -0.03, 0.04), of_zeros(0.0, 0.0, 0.0, 0.0, 0.0)
+    over = named.log_likelihood - anew.balanced.log_likelihood
+    assert gained(anew, named)[1] == pytest.approx(over + LIKELIER_BALANCED)
+
+
 def test_an_effect_must_explain_zeros_better_than_bridges_balanced_anew_do(of_zeros):
     """An effect that would move two of five gauges, and leave three where they were, or where they are as far off."""
     for rest, pays in ((0.004, True), (0.04, False)):

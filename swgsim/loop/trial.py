@@ -20,7 +20,7 @@ from swgsim.loop.evidence import (
     open_form,
     signature,
 )
-from swgsim.loop.fitted import Fitted
+from swgsim.loop.fitted import LIKELIER_BALANCED, Fitted
 from swgsim.loop.fitting import extended
 from swgsim.loop.gaussian import as_squares
 from swgsim.loop.screening import Score
@@ -185,8 +185,12 @@ def gained(now: Fitted, fitted: Fitted) -> tuple[Float[np.ndarray, " point"], fl
 
 
 def _gain_over(without: Fitted, fitted: Fitted) -> tuple[Float[np.ndarray, " point"], float]:
-    """Log-likelihood of each operating point left out, and of all together, that one fit has over another."""
-    return fitted.predictive - without.predictive, fitted.log_likelihood - without.log_likelihood
+    """Log-likelihood of each operating point left out, and of all together, that one fit has over another.
+
+    Bridges balanced anew are as unlikely beside an effect as they are beside nothing.
+    """
+    anew = LIKELIER_BALANCED if without.measured.zeros > fitted.measured.zeros else 0.0
+    return fitted.predictive - without.predictive, fitted.log_likelihood - without.log_likelihood + anew
 
 
 def _as_likely_before(now: Fitted, fitted: Fitted) -> Fitted:
