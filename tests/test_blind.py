@@ -250,6 +250,16 @@ def test_the_zero_of_a_session_is_expected_where_nothing_was_recorded(fitted: Fi
     assert np.abs(change[:, layout.channel == "s1"]).max() < 1e-3
 
 
+def test_zeros_of_bridges_balanced_anew_are_expected_there_too(fitted: Fitted) -> None:
+    layout = fitted.measured.layout
+    off = 0.06 * ((layout.channel == "s1") & (layout.order == 0))
+    anew = fitted.with_zeros(16.0)
+    moved = replace(anew, measured=replace(anew.measured, values=anew.measured.values + off))
+    change = expected(moved) - expected(anew)
+    assert change[:, off > 0] == pytest.approx(0.06, rel=0.2)
+    assert np.abs(change[:, layout.channel == "s2"]).max() < 2e-3
+
+
 def test_what_is_unseen_has_the_flanges_of_the_session_in_question() -> None:
     sure = replace(SETTING, bench=replace(SETTING.bench, flange_in_bias=0.0, flange_out_bias=0.0))
     layout = Layout(("T_in", "T_out", "s1"))

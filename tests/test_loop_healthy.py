@@ -12,7 +12,7 @@ from swgsim.loop import healthy
 from swgsim.loop.declared import of_unit
 from swgsim.loop.features import ORDERS, Layout
 from swgsim.loop.model import Model, Situation
-from swgsim.loop.session import KEPT, OF_SESSION, WANDER, WIDER, Measured
+from swgsim.loop.session import KEPT, MOST_WANDER, OF_SESSION, WANDER, Measured
 
 LAYOUT = Layout(("T_in", "s0", "s1"))
 NAMES = [name for name in OF_SESSION if name == "index" or name.partition(" of ")[2] in LAYOUT.channels]
@@ -109,7 +109,7 @@ def test_zeros_of_bridges_balanced_anew_lie_further_off_and_wander_a_little_more
     others, zeros = 2 * len(OTHERS), 2 * len(ZEROS)
     walks = columns.shape[1] - others - zeros
     assert walks > 0
-    np.testing.assert_allclose(wider, columns * np.repeat([1.0, 16.0, WIDER], [others, zeros, walks]))
+    np.testing.assert_allclose(wider, columns * np.repeat([1.0, 16.0, MOST_WANDER], [others, zeros, walks]))
     not_a_mean_of_a_gauge = np.tile((LAYOUT.order > 0) | (LAYOUT.channel == "T_in"), len(measured))
     assert not columns[not_a_mean_of_a_gauge, others:].any()
     assert wide.further("0", [], predicted[:0]).zeros == 16.0

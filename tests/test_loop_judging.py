@@ -14,7 +14,7 @@ from swgsim.loop import trial as trial_module
 from swgsim.loop.alone import Alone
 from swgsim.loop.beside import beside_unknown, in_company, more_than, outdone
 from swgsim.loop.features import Layout
-from swgsim.loop.fitted import LIKELIER_BALANCED
+from swgsim.loop.fitted import LIKELIER_BALANCED, Fitted
 from swgsim.loop.gaussian import Covariance, as_squares
 from swgsim.loop.model import Model
 from swgsim.loop.scatter import Scatter
@@ -319,7 +319,9 @@ def of_zeros():
 
     def moved(*zeros: float):
         residual = np.tile(np.where(GAUGES.order == 0, np.repeat(zeros, len(GAUGES) // 5), 0.0), len(measured))
-        return holding(fitted, residual + drawn(Covariance(errors.alone, errors.G[:, :0]), np.random.default_rng(2)))
+        residual += drawn(Covariance(errors.alone, errors.G[:, :0]), np.random.default_rng(2))
+        held = holding(fitted, residual)
+        return replace(held, errors=replace(errors, G=held.measured.session_columns(held.calibrated.predicted)))
 
     return moved
 
@@ -332,6 +334,8 @@ def test_bridges_that_were_balanced_anew_are_told_by_their_zeros(of_zeros):
     assert hardly.balanced is hardly
     anew = of_zeros(0.03, -0.045, 0.015, -0.03, 0.04)
     assert anew.balanced.measured.zeros in (4.0, 8.0)
+    further = anew.whole.with_columns(anew.measured.further_zeros(anew.balanced.measured.zeros))
+    assert anew.balanced.log_likelihood == pytest.approx(further.log_likelihood(anew.residual))
     assert anew.balanced.balanced is anew.balanced
 
 
@@ -355,6 +359,22 @@ def test_bridges_balanced_anew_are_as_unlikely_beside_an_effect_as_beside_nothin
     anew, named = of_zeros(0.03, -0.045, 0.015, -0.03, 0.04), of_zeros(0.0, 0.0, 0.0, 0.0, 0.0)
     over = named.log_likelihood - anew.balanced.log_likelihood
     assert gained(anew, named)[1] == pytest.approx(over + LIKELIER_BALANCED)
+
+
+def test_bridges_balanced_anew_stand_for_the_model_before_only_where_that_is_likelier_by_their_odds(
+    of_zeros, monkeypatch
+):
+    calm = of_zeros(0.0, 0.0, 0.0, 0.0, 0.0)
+
+    def likely(by: float, fitted: Fitted = calm) -> Fitted:
+        found = replace(fitted)
+        vars(found).update(log_likelihood=by, predictive=np.zeros(1))
+        return found
+
+    now, scattered = likely(0.0), likely(10.5)
+    vars(now)["balanced"] = likely(12.0, calm.with_zeros(4.0))
+    monkeypatch.setattr(Fitted, "scattering", lambda *_: scattered)
+    assert gained(now, likely(30.0))[1] == 30.0 - 10.5
 
 
 def test_an_effect_must_explain_zeros_better_than_bridges_balanced_anew_do(of_zeros):

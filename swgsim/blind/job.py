@@ -70,7 +70,7 @@ THRESHOLDS = {
     "cancelled": steps.CANCELLED,
     "left": steps.LEFT,
     "of_session": session.OF_SESSION,
-    "wandering": [session.WANDER, session.KEPT],
+    "wandering": [session.WANDER, session.KEPT, session.MOST_WANDER],
     "visible": screening.VISIBLE,
     "set_apart": asking.SET_APART,
     "wide": vocabulary.WIDE,

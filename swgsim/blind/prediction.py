@@ -35,7 +35,7 @@ def expected(fitted: Fitted) -> Float[np.ndarray, "situation feature"]:
     the gear and of their session, of which there is one.
     """
     measured = fitted.measured
-    (session,) = {recording.session for recording in measured.recordings}
+    (session,) = measured.sessions
     situations = (*measured.situations, *UNSEEN)
     unsure = fitted.unit.left_open(fitted.model, situations, measured.layout, fitted.parameters)
     predicted, shift, left_open, J = (part[-len(UNSEEN) :] for part in unsure)

@@ -98,7 +98,10 @@ class Fitted:
         return replace(self, scatter=scatter, errors=replace(self.errors, base=alone))
 
     def with_zeros(self, times: float) -> "Fitted":
-        """The same with the zeros of gauges so many times as far off as declared."""
+        """The same with the zeros of gauges so many times as far off as declared.
+
+        The columns keep their order, by which predictions know them.
+        """
         if times == self.measured.zeros:
             return self
         measured = replace(self.measured, zeros=times)
@@ -108,11 +111,12 @@ class Fitted:
     @cached_property
     def balanced(self) -> "Fitted":
         """The same with the zeros of gauges as far off as is likeliest; as they are if that is hardly likelier."""
-        measured, whole, r = self.measured, self.whole, self.from_start
-        further = {times: measured.further_zeros(times) for times in BALANCED if times > measured.zeros}
-        likely = {times: whole.with_columns(columns).log_likelihood(r) for times, columns in further.items()}
-        best = max(likely, key=likely.__getitem__, default=measured.zeros)
-        return self.with_zeros(best) if likely and likely[best] > self.log_likelihood + LIKELIER_BALANCED else self
+        likely = {self.measured.zeros: self.log_likelihood + LIKELIER_BALANCED}
+        for times in BALANCED:
+            if times > self.measured.zeros:
+                wider = self.whole.with_columns(self.measured.further_zeros(times))
+                likely[times] = wider.log_likelihood(self.from_start)
+        return self.with_zeros(max(likely, key=likely.__getitem__))
 
     @cached_property
     def residual(self) -> Float[np.ndarray, " row"]:

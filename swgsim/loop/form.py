@@ -97,7 +97,8 @@ def _followed(
 def lines_of(sizes: Sizes, found: Float[np.ndarray, " column"], layout: Layout, gauges: GaugeSet) -> Lines:
     """What the columns of :func:`form_columns` make together, each as large as it was found by these gauges."""
     by_law = np.zeros_like(sizes)
-    by_law[np.nonzero(sizes)] = sizes[np.nonzero(sizes)] * found
+    own = sizes != 0
+    by_law[own] = sizes[own] * found
     lines = layout.lines(by_law)
     lie_off = layout.channel[np.any(sizes, axis=0)]
     there = np.flatnonzero(np.isin(layout.channels, lie_off))

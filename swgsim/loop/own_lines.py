@@ -14,7 +14,7 @@ from swgsim.gear import OperatingPoint
 from swgsim.loop.features import along_basis, basis
 from swgsim.recordings import SENSORS
 
-# What lines may follow over operating points, of load and speed in units of full ones.
+# What lines may follow over operating points, of load and speed in units of full ones; powers of the load come first.
 LAWS: tuple[Callable[[np.ndarray, float], np.ndarray | float], ...] = (
     lambda load, speed: 1.0,
     lambda load, speed: load,

@@ -29,9 +29,9 @@ OF_SESSION = {
 # Beside its drift the zero of a gauge wanders at random, as in a room that is not quite steady [mV/V per square root of
 # an hour, an estimate]. What so large a part of the variance is made of is kept; the rest is as of single recordings.
 WANDER, KEPT = 0.001, 0.95
-# Zeros that lie further off may wander more too, but at most so many times: balancing anew moves them once (an
-# estimate, of noisy benches).
-WIDER = 4.0
+# Zeros that lie further off may wander more too, but at most so many times as declared, as on a noisy bench (an
+# estimate): balancing moves them once.
+MOST_WANDER = 4.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,8 @@ class Measured:
     variance : array (recording, feature)
         Of the noise.
     zeros : float
-        So many times as far as declared may the zeros of gauges lie, as where the bridges were balanced anew.
+        So many times as far as declared may the zeros of gauges lie, as where the bridges were balanced anew, and up to
+        MOST_WANDER times as much may they wander.
     """
 
     recordings: tuple[Recording, ...]
@@ -90,6 +91,11 @@ class Measured:
     def turning(self) -> Float[np.ndarray, "recording feature"]:
         """Change of what was recorded by a radian of the angle; a model's lines may lie a little elsewhere."""
         return self.layout.turning(self.values)
+
+    @property
+    def sessions(self) -> list[str]:
+        """In the order in which they were first recorded."""
+        return list(dict.fromkeys(r.session for r in self.recordings))
 
     @property
     def repeats(self) -> list[object]:
@@ -145,7 +151,9 @@ class Measured:
         return np.hstack([np.stack(columns, axis=1), self.zeros * zeros, _wandering(self.zeros) * walks])
 
     def further_zeros(self, times: float) -> Float[np.ndarray, "row column"]:
-        """What zeros of gauges so many times as far off as declared have beyond those of :meth:`session_columns`."""
+        """What zeros of gauges so many times as far off as declared, no nearer than now, have beyond those of
+        :meth:`session_columns`.
+        """
         zeros, walks = self._zeros(self)
         wandering = _wandering(times) ** 2 - _wandering(self.zeros) ** 2
         return np.hstack([np.sqrt(times**2 - self.zeros**2) * zeros, np.sqrt(wandering) * walks])
@@ -164,12 +172,7 @@ class Measured:
                 walks.append(np.kron(paths, mean).T)
         return np.hstack(zeros), np.hstack(walks)
 
-    @property
-    def sessions(self) -> list[str]:
-        """In the order in which they were first recorded."""
-        return list(dict.fromkeys(r.session for r in self.recordings))
-
-    @property
+    @cached_property
     def _hours(self) -> Float[np.ndarray, "recording 1"]:
         """Since the session of each began."""
         return np.array([[r.conditions.elapsed / 3600] for r in self.recordings])
@@ -181,7 +184,7 @@ class Measured:
 
 def _wandering(zeros: float) -> float:
     """So many times as far as declared do the zeros of gauges wander that may lie so many times as far off."""
-    return min(zeros, WIDER)
+    return min(zeros, MOST_WANDER)
 
 
 def _walks(told: Float[np.ndarray, " one"], hours: Float[np.ndarray, "other 1"]) -> Float[np.ndarray, "path other"]:

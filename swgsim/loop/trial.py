@@ -59,7 +59,8 @@ class Trial:
         Of the log-likelihood of each operating point left out, over a model whose single recordings may err as much;
         the form of the effects is as open as their parts ask for, within the tolerance.
     evidence : float
-        Of the log-likelihood of all recordings together, over the same, parameters being open within their spreads. It
+        Of the log-likelihood of all recordings together, over the same, parameters being open within their spreads; and
+        the odds against bridges balanced anew, where the model before needs them. It
         also counts what every operating point shows alike, such as a zero beyond its spread, which the others tell
         already.
     coherence : tuple of Coherence
@@ -185,12 +186,13 @@ def gained(now: Fitted, fitted: Fitted) -> tuple[Float[np.ndarray, " point"], fl
 
 
 def _gain_over(without: Fitted, fitted: Fitted) -> tuple[Float[np.ndarray, " point"], float]:
-    """Log-likelihood of each operating point left out, and of all together, that one fit has over another.
+    """Log-likelihood of each operating point left out, and of all together, that one fit has over another."""
+    return fitted.predictive - without.predictive, fitted.log_likelihood - _counted(without, fitted.measured.zeros)
 
-    Bridges balanced anew are as unlikely beside an effect as they are beside nothing.
-    """
-    anew = LIKELIER_BALANCED if without.measured.zeros > fitted.measured.zeros else 0.0
-    return fitted.predictive - without.predictive, fitted.log_likelihood - without.log_likelihood + anew
+
+def _counted(fitted: Fitted, zeros: float) -> float:
+    """Log-likelihood, less the odds against bridges balanced anew where zeros may lie further off than these."""
+    return fitted.log_likelihood - LIKELIER_BALANCED * (fitted.measured.zeros > zeros)
 
 
 def _as_likely_before(now: Fitted, fitted: Fitted) -> Fitted:
@@ -200,7 +202,8 @@ def _as_likely_before(now: Fitted, fitted: Fitted) -> Fitted:
     it; so the model before has them as large, if that makes it likelier. What moves the zeros of several gauges,
     bridges that were balanced anew explain too.
     """
-    return max((now, now.scattering(fitted.scatter), now.balanced), key=lambda each: each.log_likelihood)
+    before = (now, now.scattering(fitted.scatter), now.balanced)
+    return max(before, key=lambda each: _counted(each, now.measured.zeros))
 
 
 def widened(fitted: Fitted, first: int, coherences: Sequence[Coherence]) -> dict[str, float]:

@@ -121,7 +121,7 @@ def _recordings(measured: Measured) -> dict[str, Any]:
     return {
         "count": len(measured),
         "gear": measured.recordings[0].gear,
-        "sessions": len(dict.fromkeys(recording.session for recording in measured.recordings)),
+        "sessions": len(measured.sessions),
         "operating_points": [{"n_in_rpm": float(p.n_in_rpm), "T_out_nm": float(p.T_out)} for p in points],
         "repeats": {"fewest": min(groups), "most": max(groups)},
     }
