@@ -137,8 +137,7 @@ class Measured:
                 kind, _, channel = name.partition(" of ")
                 if kind == "zero" and channel in SENSORS:
                     continue  # which come last
-                own = layout.channel == channel
-                mean = own & (layout.order == 0)
+                own, mean = layout.channel == channel, self._mean_of(channel)
                 moved = {
                     "index": self.turning,
                     "zero": mean[None, :],
@@ -167,7 +166,7 @@ class Measured:
             told = np.array([r.conditions.elapsed / 3600 for r in known.recordings if r.session == session])
             paths = _walks(told, self._hours * here)
             for gauge in gauges:
-                mean = (self.layout.channel == gauge) & (self.layout.order == 0)
+                mean = self._mean_of(gauge)
                 zeros.append(OF_SESSION[f"zero of {gauge}"] * np.outer(here, mean).reshape(-1, 1))
                 walks.append(np.kron(paths, mean).T)
         return np.hstack(zeros), np.hstack(walks)
@@ -176,6 +175,10 @@ class Measured:
     def _hours(self) -> Float[np.ndarray, "recording 1"]:
         """Since the session of each began."""
         return np.array([[r.conditions.elapsed / 3600] for r in self.recordings])
+
+    def _mean_of(self, channel: str) -> Bool[np.ndarray, " feature"]:
+        """Which feature is the mean of a channel."""
+        return (self.layout.channel == channel) & (self.layout.order == 0)
 
     def _here(self, session: str) -> Bool[np.ndarray, "recording 1"]:
         """Whether each is of a session."""
