@@ -4,79 +4,51 @@ import inspect
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from textwrap import wrap
 
 import numpy as np
 from jaxtyping import Float
 from matplotlib.colors import LogNorm
 
 from swgsim import style
-from swgsim.chain import Run, simulate_turns
-from swgsim.conditions import Conditions
-from swgsim.effects.base import PLACES, Effect
+from swgsim.effect_signature import ELSEWHERE, LEAST, ORDERS, OWN, REVOLUTIONS, SHOWN, USUAL, Signature, signatures
+from swgsim.effects.base import PLACES
 from swgsim.effects.library import SEARCHED
 from swgsim.effects.quantity import quantities, size_of
 from swgsim.files import write_text
-from swgsim.gear import Gear, OperatingPoint
+from swgsim.gear import Gear
 from swgsim.loop.sidelines import has_sidelines, is_random
-from swgsim.recording import Recording
-
-POINTS = (OperatingPoint(2000.0, 70.0), OperatingPoint(2000.0, 7.0), OperatingPoint(4000.0, 70.0))
-# Warm and late, so that effects of temperature and time show.
-CONDITIONS = Conditions(temperature=35.0, elapsed=3600.0)
-SHOWN = ("n_in", "T_in", "T_out", "s0", "s1", "s2", "s3", "s4")
-REVOLUTIONS, SAMPLES, ORDERS = 12, 64, 12
-# Changes below this share of a channel's largest line are rounding.
-LEAST = 1e-6
 
 
-def typical(kind: type[Effect]) -> Effect:
-    """An effect of typical size; choices and positions are their first or default values."""
-    values = {name: quantity.typical for name, quantity in quantities(kind).items()}
-    if values.get("sensor") == 0:
-        values["sensor"] = 1
-    return kind(**values)
-
-
-def spectrum(recording: Recording) -> Float[np.ndarray, "channel line"]:
-    """Amplitudes over time at twelfths of an order, which are nearly those over the angle."""
-    values = np.array([recording.channels[name] for name in SHOWN])
-    lines = 2 * np.abs(np.fft.rfft(values, axis=1)) / values.shape[1]
-    lines[:, 0] /= 2
-    return lines[:, : REVOLUTIONS * ORDERS + 1]
-
-
-def changes(effects: Sequence[Effect], gear: Gear) -> Float[np.ndarray, "effect point channel line"]:
-    """What each effect changes, as a share of the channel's largest line without it."""
-    acting: list[tuple[Effect, ...]] = [(), *((effect,) for effect in effects)]
-    runs = [Run(gear, point, each, conditions=CONDITIONS) for each in acting for point in POINTS]
-    recordings = simulate_turns(runs, REVOLUTIONS, SAMPLES)
-    values = np.array([[r.channels[name] for name in SHOWN] for r in recordings])
-    found = values.reshape(len(effects) + 1, len(POINTS), len(SHOWN), -1)
-    difference = np.fft.rfft(found[1:] - found[0], axis=-1) * 2 / found.shape[-1]
-    size = np.array([spectrum(recording)[:, 1:].max(axis=1) for recording in recordings[: len(POINTS)]])
-    return np.abs(difference[..., : REVOLUTIONS * ORDERS + 1]) / size[None, :, :, None]
-
-
-def picture(place: str, kinds: Sequence[type[Effect]], shares: Float[np.ndarray, "effect channel half"]) -> bytes:
+def picture(found: Sequence[Signature]) -> bytes:
     """One panel per effect: what it changes, over channels and orders, on a logarithmic scale."""
-    columns = 4
-    rows = int(np.ceil(len(kinds) / columns))
-    drawing = style.figure(11, 0.8 + 1.8 * rows)
+    columns = min(4, len(found))
+    rows = int(np.ceil(len(found) / columns))
+    drawing = style.figure(1.4 + 2.4 * columns, 0.8 + 2.0 * rows)
     axes = drawing.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
-    for axis in axes.flat[len(kinds) :]:
+    for axis in axes.flat[len(found) :]:
         axis.set_axis_off()
-    for axis, kind, share in zip(axes.flat, kinds, shares, strict=False):
+    for axis, signature in zip(axes.flat, found, strict=False):
         image = axis.imshow(
-            np.maximum(share, LEAST), norm=LogNorm(LEAST, 1), aspect="auto", interpolation="nearest",
-            extent=(-0.25, ORDERS + 0.25, len(SHOWN) - 0.5, -0.5),
+            np.maximum(half_orders(signature.share[0]), LEAST), norm=LogNorm(LEAST, 1), aspect="auto",
+            interpolation="nearest", extent=(-0.25, ORDERS + 0.25, len(SHOWN) - 0.5, -0.5),
         )  # fmt: skip
-        axis.set_title(kind.title(), fontsize=9, loc="left")
+        axis.set_title(title(signature), fontsize=8, loc="left")
         axis.set_yticks(range(len(SHOWN)), SHOWN, fontsize=7)
         axis.set_xticks(range(0, ORDERS + 1, 2))
-    for axis in axes[-1]:
+    for axis in axes.flat[max(len(found) - columns, 0) : len(found)]:
+        axis.tick_params(labelbottom=True)
         axis.set_xlabel("order")
-    drawing.colorbar(image, ax=axes, label="change, share of the channel's largest line")
+    drawing.colorbar(image, ax=axes, label="change, share of\nthe channel's largest line")
     return style.png(drawing)
+
+
+def title(signature: Signature) -> str:
+    """Name of the effect, how it grows, and where it is shown unless that is the usual place."""
+    load, speed = signature.growth
+    grows = f"10 x load: {load}, 2 x speed: {speed}"
+    at = [] if signature.setting == USUAL else wrap(f"at {signature.setting}", 40)
+    return "\n".join([signature.kind.title(), *at, grows])
 
 
 def half_orders(share: Float[np.ndarray, "*batch line"]) -> Float[np.ndarray, "*batch half"]:
@@ -86,37 +58,34 @@ def half_orders(share: Float[np.ndarray, "*batch line"]) -> Float[np.ndarray, "*
     return np.stack([share[..., max(h - step // 2, 0) : h + step // 2 + 1].max(axis=-1) for h in halves], axis=-1)
 
 
-def rows(kinds: Sequence[type[Effect]], shares: Float[np.ndarray, "effect point channel line"]) -> list[str]:
-    """One row of a table per effect: its sizes, and how its largest change goes with load and speed."""
-    found = []
-    for kind, share in zip(kinds, shares, strict=True):
-        declared = quantities(kind)
-        name = size_of(kind)
-        size = declared[name]
-        inner = ", ".join(other for other in declared if other != name) or "-"
-        largest = np.unravel_index(share[0].argmax(), share[0].shape)
-        top, light, fast = (float(each[largest]) for each in share)
-        load, speed = (f"{top / light:.2g}" if light > LEAST else "-", f"{fast / top:.2g}" if top > LEAST else "-")
-        where = f"{SHOWN[largest[0]]}, order {largest[1] / REVOLUTIONS:.3g}" if top > LEAST else "none here"
-        says = (inspect.getdoc(kind) or "").split("\n\n")[0].replace("\n", " ")
-        found.append(
-            f"| `{kind.name()}` | {says} | {name} {size.low:g} to {size.high:g} {size.unit}, typically "
-            f"{size.typical:.2g} | {inner} | {where} | {top:.1e} | {load} | {speed} |"
-        )
-    return found
+def row(signature: Signature) -> str:
+    """A row of the table: sizes, the largest change, how it goes with load and speed, and the pattern over gauges."""
+    kind = signature.kind
+    declared = quantities(kind)
+    name = size_of(kind)
+    size = declared[name]
+    inner = ", ".join(other for other in declared if other != name) or "-"
+    channel, line = signature.where
+    # A bar as in |T| would end the cell.
+    says = (inspect.getdoc(kind) or "").split("\n\n")[0].replace("\n", " ").replace("|", "\\|")
+    cells = (
+        f"`{kind.name()}`", says, f"{name} {size.low:g} to {size.high:g} {size.unit}, typically {size.typical:.2g}",
+        inner, f"{SHOWN[channel]}, order {line / REVOLUTIONS:.3g}", f"{signature.top[0]:.1e}", *signature.growth,
+        signature.over_gauges,
+    )  # fmt: skip
+    return f"| {' | '.join(cells)} |"
 
 
 def page(folder: Path) -> None:
     """Write ``effects.md`` and a picture for every place."""
     text = [HEAD]
     for place in PLACES:
-        kinds = [kind for kind in SEARCHED if kind.place == place]
-        shares = changes([typical(kind) for kind in kinds], Gear())
+        found = signatures([kind for kind in SEARCHED if kind.place == place], Gear())
         file = folder / "effects" / f"{place.replace(' ', '_')}.png"
         file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_bytes(picture(place, kinds, half_orders(shares[:, 0])))
-        text += [f"## {place.capitalize()}", f"![Effects of place {place}](effects/{file.name})", HEADER]
-        text[-1] = "\n".join([HEADER, *rows(kinds, shares)])
+        file.write_bytes(picture(found))
+        text += [f"## {place.capitalize()}", f"![Effects of place {place}](effects/{file.name})"]
+        text.append("\n".join([HEADER, *map(row, found)]))
     write_text(folder / "effects.md", "\n\n".join(text) + "\n")
 
 
@@ -126,14 +95,22 @@ HEAD = f"""# The library of effects
 
 Made by `make docs` from the code: {len(SEARCHED)} effects, by the place of the chain at which they act. A loop
 searches all of them but {", ".join(UNTESTED)}, whose phase is another one in every recording. The pictures show what
-an effect of typical size changes at 2000 rpm and 70 N m (the gear at 35 degC, an hour into the session), by channel
-and order, as a share of the channel's largest line. Choices (an order, a gauge) are at their default or first value.
-Load and speed say by what factor the largest change grows from 7 to 70 N m and from 2000 to 4000 rpm; the share is of
-a line that may itself grow. The full physics, signature and source of every effect are in its docstring in
-`swgsim/effects/`; rows such as SE20 are those of [physics.md](physics.md)."""
+an effect of typical size changes at {USUAL} (the gear at 35 degC, an hour into the session), by channel
+and order, as a share of the channel's largest line other than the mean. Choices (an order, a gauge) are at their
+default or first value. What changes nothing there is shown elsewhere, as its panel says:
+
+{chr(10).join(f"- `{kind.name()}` at {each}: {each.reason}." for kind, each in ELSEWHERE.items())}
+
+The factors, in table and panels, are those by which the largest change grows, in the unit of its channel, from a tenth
+of the load to the load shown and from the speed shown to twice that: "-" where a tenth of the load leaves no change,
+0 where twice the speed leaves none (a hum of the mains is at another order then). The last column names the pattern of
+the line that changes most over the gauges, by sign and phase, in the words by which a loop describes what it cannot
+explain (`swgsim/effects/regularity.py`); "several patterns" where no single one has {OWN:.0%} of its power. The full
+physics, signature and source of every effect are in its docstring in `swgsim/effects/`; rows such as SE20 are those of
+[physics.md](physics.md)."""
 HEADER = (
-    "| effect | physics | size | inner parameters | largest change | share | 70 / 7 N m | 4000 / 2000 rpm |\n"
-    "|---|---|---|---|---|---|---|---|"
+    "| effect | physics | size | inner parameters | largest change | share | 10 x load | 2 x speed | over gauges |\n"
+    "|---|---|---|---|---|---|---|---|---|"
 )
 
 if __name__ == "__main__":

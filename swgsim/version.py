@@ -14,6 +14,7 @@ SHOWING = (
     "convergence.py",
     "direct.py",
     "effect_gallery.py",
+    "effect_signature.py",
     "examples.py",
     "figures.py",
     "finding.py",
