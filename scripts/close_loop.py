@@ -50,7 +50,7 @@ def record(config: Mapping[str, Any], outcome: Outcome) -> None:
 def metrics(said: Mapping[str, Any]) -> dict[str, float]:
     """The figures of a report that are known: errors [%], sizes of the effects, seconds."""
     error = said["error"]
-    found = {f"error_{when}_{what}": error[when][what] for when in ("before", "after") for what in ("fit", "heldout")}
+    found = {f"error_{when}_{what}": value for when in ("before", "after") for what, value in error[when].items()}
     found |= {"noise_floor": error["noise_floor"], "effects": len(said["effects"]), "seconds": said["seconds"]}
     for effect in said["effects"]:
         name = effect["name"].replace(":", ".")

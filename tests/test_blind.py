@@ -64,6 +64,7 @@ SAID = {
     "rejected": [],
     "unknown": [],
     "absorbed": [],
+    "seen_from": {"cam_form": 1e-6},
     "scores": [["cam_form", 100.0, 1e-3]],
     "smallest_chance": 1e-3,
     "baselines": {name: ["cam_form"] for name in baselines.BASELINES},

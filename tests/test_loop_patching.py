@@ -1,6 +1,7 @@
 """A regularity joins the model where it holds at every operating point, and not by a law of its session."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from swgsim.effects.regularity import OF_TIME
 from swgsim.loop import patching
 from swgsim.loop.closed import Closed
 from swgsim.loop.declared import Declared
-from swgsim.loop.errors import errors, of_points_left_out
+from swgsim.loop.errors import Errors, of_points_left_out, rms
 from swgsim.loop.features import Layout
 from swgsim.loop.fitted import Fitted
 from swgsim.loop.vocabulary import Atom, Described, columns
@@ -67,6 +68,15 @@ def test_one_that_doubles_the_error_at_an_operating_point_is_not(
     for times, added in ((1.5, True), (2.5, False)):
         errors = {True: np.array([1.0, 1, times, 1, 1, 1]), False: np.ones(6)}
         monkeypatch.setattr(patching, "of_points_left_out", lambda now, errors=errors: errors[bool(now.parameters)])
+        assert is_added(fitted, np.ones(6)) == added
+
+
+def test_one_that_makes_the_error_of_all_points_larger_is_not(fitted: Fitted, monkeypatch: pytest.MonkeyPatch) -> None:
+    for times, added in ((1.04, True), (1.06, False)):
+        monkeypatch.setattr(patching, "relative", lambda _, error, larger=times: larger if error == "with it" else 1.0)
+        monkeypatch.setattr(
+            patching, "Errors", lambda now, _: SimpleNamespace(heldout="with it" if now.parameters else "without")
+        )
         assert is_added(fitted, np.ones(6)) == added
 
 
@@ -127,7 +137,7 @@ def test_what_a_whole_session_has_off_is_no_error_of_the_model(fitted: Fitted) -
     zero = np.tile(LAYOUT.order == 0, len(fitted.measured)).astype(float)[:, None]
     noise = np.sqrt(fitted.errors.variance) * np.random.default_rng(3).standard_normal(len(zero))
     off = replace(fitted, errors=replace(fitted.errors, G=100 * zero))
-    found, quiet = (errors(held, held) for held in (holding(off, noise + 150 * zero[:, 0]), holding(off, noise)))
+    found, quiet = (Errors(held, held) for held in (holding(off, noise + 150 * zero[:, 0]), holding(off, noise)))
     np.testing.assert_allclose(found.fit, quiet.fit, rtol=1e-2)
     np.testing.assert_allclose(found.heldout, quiet.heldout, rtol=1e-2)
     np.testing.assert_array_less(found.heldout, 10)
@@ -138,7 +148,12 @@ def test_what_a_model_lacks_is_an_error_though_a_nuisance_could_hide_it(fitted: 
     line = columns(ATOM, fitted)[:, :1]
     before = holding(replace(fitted, errors=replace(fitted.errors, G=30 * line)), 50 * line[:, 0])
     best = patching.extended(before, ())
-    s2, shown = LAYOUT.channels.index("s2"), errors(holding(before, 50 * line[:, 0]), holding(best, 0 * line[:, 0]))
-    assert errors(before, before).heldout[s2] < 0.05 * shown.fit[s2]
-    assert errors(before, best).heldout[s2] == pytest.approx(shown.fit[s2], rel=0.15)
-    assert errors(best, best).heldout[s2] < 0.05 * shown.fit[s2]
+    shown = of_s2(Errors(holding(before, 50 * line[:, 0]), holding(best, 0 * line[:, 0])).fit)
+    assert of_s2(Errors(before, before).heldout) < 0.05 * shown
+    assert of_s2(Errors(before, best).heldout) == pytest.approx(shown, rel=0.15)
+    assert of_s2(Errors(best, best).heldout) < 0.05 * shown
+
+
+def of_s2(error: np.ndarray) -> float:
+    """Of all recordings."""
+    return rms(error[:, LAYOUT.channels.index("s2")])

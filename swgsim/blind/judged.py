@@ -8,6 +8,8 @@ from typing import Any
 from swgsim.blind.families import family
 from swgsim.blind.sealed import Sealed
 from swgsim.blind.strata import NULLS, OUTSIDE_STRATA, PAIR, SINGLE, UNTESTABLE
+from swgsim.effects.base import Effect
+from swgsim.effects.quantity import beyond_nothing
 from swgsim.effects.regularity import PATTERNS
 from swgsim.loop.answer import NOTHING, UNKNOWN
 from swgsim.loop.sidelines import is_random
@@ -105,6 +107,18 @@ class Judged:
     def none_of_the_above(self) -> bool:
         """Whether the answer is that something is missing that is in no library."""
         return self.first == "unknown"
+
+    @property
+    def told_untestable(self) -> bool:
+        """Whether the answer says that the recordings do not show what is hidden, at its size or at all."""
+        return all(
+            type(effect).name() in self.said["absorbed"] or abs(beyond_nothing(effect)) < self._seen_from(effect)
+            for effect in self.case.effects
+        )
+
+    def _seen_from(self, effect: Effect) -> float:
+        """The smallest size of an effect that would have been seen, as the answer has it; 0 if it says nothing of it."""
+        return float(self.said["seen_from"].get(type(effect).name(), 0.0))
 
     @property
     def nearest(self) -> str:

@@ -46,6 +46,7 @@ def score(cases: Sequence[Judged]) -> dict[str, Any]:
         "absorbed_named_as_such": rate(
             [set(case.case.names) <= set(case.said["absorbed"]) for case in untestable if not case.failed]
         ),
+        "untestable_told": rate([case.told_untestable for case in untestable if not case.failed]),
         "false_effect_on_untestable": rate([bool(set(case.named) - set(case.case.names)) for case in untestable]),
         "after_over_oracle_median": median([case.over("after", "oracle") for case in known if not case.failed]),
         "after_over_before_median": median([case.over("after", "before") for case in known if not case.failed]),

@@ -21,7 +21,8 @@ OF_LOOP = {
     "coverage95": "95 % intervals cover",
     "coverage95_of_angles": "... those of angles",
     "look_alikes_named": "look-alikes named",
-    "absorbed_named_as_such": "untestable named as such",
+    "absorbed_named_as_such": "untestable: of no size",
+    "untestable_told": "... or not of its size",
 }
 
 

@@ -138,5 +138,11 @@ def size_of(kind: type) -> str:
     return next(name for name, quantity in quantities(kind).items() if quantity.role is Role.SIZE)
 
 
+def beyond_nothing(effect: object) -> float:
+    """How far the size of an effect lies from the one that changes nothing, in its unit; of either sign."""
+    name = size_of(type(effect))
+    return float(getattr(effect, name) - quantities(type(effect))[name].nothing)
+
+
 def _parameter(quantity: Quantity, default: Any = MISSING) -> Field:
     return field(default=default, metadata={"quantity": quantity})

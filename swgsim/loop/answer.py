@@ -27,6 +27,8 @@ from swgsim.turning import forget
 MOST_ABOVE = 3
 # A known effect that explains less of what is left is not near it.
 LEAST_EXPLAINED = 0.1
+# Effects that cannot be decided, named in the sentence at most; the report has them all.
+MOST_NAMED = 6
 NOTHING, FOUND, UNKNOWN = "nothing_missing", "effect_found", "unknown_effect"
 
 
@@ -97,8 +99,7 @@ class Answer:
         if self.verdict == NOTHING:
             return (
                 f"Nothing is missing: the model explains the recordings down to their noise{self._if_balanced}, and no "
-                f"effect of the library stands out of it ({len(self.absorbed)} of {len(self.closed.scores)} cannot be "
-                "tested with these recordings)."
+                f"effect of the library stands out of it{self._undecided}."
             )
         rest = f"; something unknown is left: {self.unexplained}{self._nearest}" if self.unexplained else ""
         if self.verdict == FOUND:
@@ -115,6 +116,15 @@ class Answer:
             f", if bridges were balanced anew (zeros of gauges lie up to {zeros:g} times as far off as between two "
             "sessions; something that shifts them would look the same)"
         )
+
+    @property
+    def _undecided(self) -> str:
+        """What nothing can be said of, as these recordings absorb it."""
+        if not self.absorbed:
+            return ""
+        names = [score.hypothesis.kind.title() for score in self.absorbed]
+        more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
+        return f"; cannot be decided, as these recordings absorb them: {', '.join(names[:MOST_NAMED])}{more}"
 
     @property
     def _nearest(self) -> str:

@@ -1,65 +1,102 @@
-"""Error of a model per channel: on what it was fitted to, on operating points left out, and the floor of repeats.
+"""Errors of a model on what it was fitted to and on what was left out, and the noise floor of repeats.
 
 Zeros and gains of sessions, and what is left open of the gear, are no error of a model. They are taken out, where the
 other operating points tell that the best model has them, of this model and of that before it, which would hide in them
 what it lacks.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Float
 
 from swgsim.loop.fitted import Fitted
+from swgsim.loop.gaussian import Expected
 from swgsim.loop.session import Measured
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Errors:
-    """Root mean square over all order lines and recordings, one figure per channel, in its unit.
+    """Errors of a model in every recording and channel, root mean square of the signal, in the channel's unit.
 
     Attributes
     ----------
-    fit : array (channel,)
-    heldout : array (channel,)
-        Of every operating point, by the model fitted to the other points.
+    fitted : Fitted
+    best : Fitted
+        Of which the nuisance is taken that is no error.
     """
 
-    fit: Float[np.ndarray, " channel"]
-    heldout: Float[np.ndarray, " channel"]
+    fitted: Fitted
+    best: Fitted
 
+    @cached_property
+    def fit(self) -> Float[np.ndarray, "recording channel"]:
+        """Of what the model was fitted to."""
+        return self._of(self.fitted.residual)
 
-def errors(fitted: Fitted, best: Fitted) -> Errors:
-    """Errors of a model on the recordings it was fitted to, without the nuisance that the best one finds."""
-    fit = per_channel(fitted.measured, fitted.residual - best.nuisance)
-    return Errors(fit, per_channel(fitted.measured, _left_out(fitted) - best.nuisance))
+    @cached_property
+    def repeats(self) -> Float[np.ndarray, "recording channel"]:
+        """Of the first repeats of all operating points by the model fitted to the others, of the second, and so on; NaN
+        where an operating point was recorded once.
+        """
+        return self._of(_left_out(self.fitted, self.fitted.told_by_others(self.fitted.measured.repeat_rows())))
+
+    @cached_property
+    def heldout(self) -> Float[np.ndarray, "recording channel"]:
+        """Of every operating point by the model fitted to the others; NaN if there is one only."""
+        return self._of(_left_out(self.fitted, self.fitted.by_others))
+
+    def _of(self, missed: Float[np.ndarray, " row"]) -> Float[np.ndarray, "recording channel"]:
+        return per_recording(self.fitted.measured, missed - self.best.nuisance)
 
 
 def of_points_left_out(fitted: Fitted) -> Float[np.ndarray, " point"]:
     """Root mean square error of every operating point, by the model fitted to the others, in units of the noise."""
-    weighed = _left_out(fitted) ** 2 / fitted.errors.variance
+    weighed = _left_out(fitted, fitted.by_others) ** 2 / fitted.errors.variance
     return np.array([np.sqrt(weighed[block].mean()) for block in fitted.measured.point_rows()])
 
 
-def _left_out(fitted: Fitted) -> Float[np.ndarray, " row"]:
-    """Errors of every operating point by the model fitted to the others; NaN where there is one only."""
+def _left_out(fitted: Fitted, told: Sequence[tuple[np.ndarray, Expected]]) -> Float[np.ndarray, " row"]:
+    """Errors of every block of rows by the model fitted to all others; NaN in no block."""
     missed = np.full(len(fitted.residual), np.nan)
-    for block, expected in fitted.by_others:
+    for block, expected in told:
         parameters = expected.common[len(expected.common) - len(fitted.parameters) :]
         missed[block] = fitted.from_start[block] - fitted.J[block] @ parameters
     return missed
 
 
-def noise_floor(measured: Measured) -> Float[np.ndarray, " channel"]:
-    """What repeats of the same operating point differ by; NaN where nothing was repeated."""
-    deviations, freedom = np.zeros(measured.values.shape), 0
+def repeat_noise(measured: Measured) -> Float[np.ndarray, "recording feature"] | None:
+    """What repeats of the same operating point differ by, as large as noise is by which they do; None where nothing was
+    repeated.
+    """
+    if not measured.spare:
+        return None
+    deviations = np.zeros(measured.values.shape)
     for group in dict.fromkeys(measured.repeats):
         rows = [i for i, each in enumerate(measured.repeats) if each == group]
         deviations[rows] = measured.values[rows] - measured.values[rows].mean(axis=0)
-        freedom += len(rows) - 1
-    if not freedom:
-        return np.full(len(measured.layout.channels), np.nan)
-    return per_channel(measured, deviations.ravel()) * np.sqrt(len(measured) / freedom)
+    return deviations * np.sqrt(len(measured) / measured.spare)
+
+
+def noise_floor(measured: Measured) -> Float[np.ndarray, " channel"]:
+    """Root mean square of what repeats differ by; NaN where nothing was repeated."""
+    noise = repeat_noise(measured)
+    return per_channel(measured, np.full(measured.values.size, np.nan) if noise is None else noise.ravel())
+
+
+def relative(measured: Measured, error: Float[np.ndarray, "*recording channel"]) -> float:
+    """Root mean square over channels, and recordings that have an error, of errors as shares of the channel's own root
+    mean square; NaN where none is known.
+    """
+    return rms(error / per_channel(measured, measured.values.ravel()))
+
+
+def rms(error: np.ndarray) -> float:
+    """Root mean square of what is known; NaN where nothing is."""
+    known = error[np.isfinite(error)]
+    return float(np.sqrt(np.mean(known**2))) if known.size else np.nan
 
 
 def size(measured: Measured) -> Float[np.ndarray, " channel"]:
@@ -70,6 +107,11 @@ def size(measured: Measured) -> Float[np.ndarray, " channel"]:
 
 def per_channel(measured: Measured, rows: Float[np.ndarray, " row"]) -> Float[np.ndarray, " channel"]:
     """Root mean square over recordings of the signal that feature rows stand for."""
+    return np.sqrt((per_recording(measured, rows) ** 2).mean(axis=0))
+
+
+def per_recording(measured: Measured, rows: Float[np.ndarray, " row"]) -> Float[np.ndarray, "recording channel"]:
+    """Root mean square of the signal that feature rows stand for."""
     squares = (rows.reshape(measured.values.shape) ** 2) * np.where(measured.layout.order == 0, 1.0, 0.5)
     channels = squares.reshape(len(measured), len(measured.layout.channels), -1)
-    return np.sqrt(channels.sum(axis=2).mean(axis=0))
+    return np.sqrt(channels.sum(axis=2))

@@ -13,10 +13,12 @@ from matplotlib.figure import Figure
 
 from swgsim import style
 from swgsim.loop.answer import Answer
+from swgsim.loop.errors import repeat_noise
 from swgsim.loop.features import ORDERS, basis
 from swgsim.loop.fitted import Fitted
 from swgsim.loop.leading import ALPHA
 from swgsim.loop.reporting.numbers import NORMAL
+from swgsim.loop.reporting.sizes import WHAT
 from swgsim.loop.session import Measured
 from swgsim.recording import CHANNELS
 from swgsim.recordings import SENSORS
@@ -59,8 +61,9 @@ def pictures(answer: Answer, report: Mapping[str, Any]) -> dict[str, tuple[style
         ),
         "errors": (
             "Error before and after",
-            "Of what was fitted and of operating points left out, channel by channel, as a share of the channel's root "
-            "mean square. The black lines are the noise floor by repeats, below which no model comes but by luck.",
+            "Of what was fitted, of repeats left out and of operating points left out, channel by channel, as a share "
+            "of the channel's root mean square. The black lines are the noise floor by repeats, below which no model "
+            "comes but by luck.",
             errors(report),
         ),
     }
@@ -161,12 +164,8 @@ def lines(measured: Measured, rows: Float[np.ndarray, "recording feature"]) -> F
 
 def repeat_lines(measured: Measured) -> Float[np.ndarray, "channel order"] | None:
     """What repeats differ by in every order line; None where nothing was repeated."""
-    deviations, freedom = np.zeros(measured.values.shape), 0
-    for group in dict.fromkeys(measured.repeats):
-        rows = [i for i, each in enumerate(measured.repeats) if each == group]
-        deviations[rows] = measured.values[rows] - measured.values[rows].mean(axis=0)
-        freedom += len(rows) - 1
-    return lines(measured, deviations) * np.sqrt(len(measured) / freedom) if freedom else None
+    noise = repeat_noise(measured)
+    return None if noise is None else lines(measured, noise)
 
 
 def scores(report: Mapping[str, Any]) -> Figure:
@@ -194,12 +193,12 @@ def scores(report: Mapping[str, Any]) -> Figure:
 
 
 def errors(report: Mapping[str, Any]) -> Figure:
-    """Error of every channel before and after, fitted and held out, with the noise floor as a line."""
+    """Error of every channel before and after, of what was fitted and left out, with the noise floor as a line."""
     per_channel = report["error"]["per_channel"]
-    picture = style.figure(11, 3.8)
-    panels = picture.subplots(1, 2, sharey=True)
-    titles = {"fit": "operating points that were fitted", "heldout": "operating points left out"}
-    for axes, (what, title) in zip(panels, titles.items(), strict=True):
+    picture = style.figure(12, 3.8)
+    panels = picture.subplots(1, len(WHAT), sharey=True)
+    titles = ("recordings that were fitted", "repeats left out", "operating points left out")
+    for axes, what, title in zip(panels, WHAT, titles, strict=True):
         for i, each in enumerate(per_channel.values()):
             share = 100 / each["root_mean_square"]
             for when, colour, side in (("before", BEFORE, -0.2), ("after", AFTER, 0.2)):
@@ -211,8 +210,8 @@ def errors(report: Mapping[str, Any]) -> Figure:
                 height = share * each["noise_floor"]
                 axes.hlines(height, i - 0.45, i + 0.45, color=FLOOR, linewidth=2, label=label)
         if all(each["before"][what] is None for each in per_channel.values()):
-            axes.text(0.5, 0.5, "one operating point only: none to leave out", ha="center", transform=axes.transAxes)
-        axes.set_xticks(range(len(per_channel)), list(per_channel))
+            axes.text(0.5, 0.5, "only one: none to leave out", ha="center", transform=axes.transAxes)
+        axes.set_xticks(range(len(per_channel)), list(per_channel), fontsize=8)
         style.label(axes, "", "error [% of the root mean square]" if what == "fit" else "", title)
         axes.set_yscale("log")
     picture.legend(*panels[0].get_legend_handles_labels(), ncols=3, loc="outside upper center")

@@ -1,6 +1,6 @@
 """A model as fitted to recordings: its parameters, the errors of single recordings, and what stays unexplained."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -152,8 +152,10 @@ class Fitted:
     def by_others(self) -> list[tuple[np.ndarray, Expected]]:
         """The rows of every operating point (a mask) and what all the others say of them; none if there is one only."""
         blocks = self.measured.point_rows()
-        if len(blocks) == 1:
-            return []
+        return self.told_by_others(blocks) if len(blocks) > 1 else []
+
+    def told_by_others(self, blocks: Sequence[np.ndarray]) -> list[tuple[np.ndarray, Expected]]:
+        """Each of these blocks of rows (a mask) and what all rows outside it say of it."""
         return list(zip(blocks, self.whole.left_out(self.from_start, blocks), strict=True))
 
     @cached_property

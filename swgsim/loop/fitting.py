@@ -87,7 +87,7 @@ class _Fixed(NamedTuple):
     @property
     def told(self) -> bool:
         """Whether repeats tell the errors of single recordings, these ones or those of the commissioning."""
-        return self.unit.scatter is not None or self.measured.repeated
+        return self.unit.scatter is not None or self.measured.spare > 0
 
 
 def _turn(fixed: _Fixed, begin: Mapping[str, float], guess: Scatter) -> Fitted:

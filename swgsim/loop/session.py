@@ -103,9 +103,9 @@ class Measured:
         return [(r.session, r.point) for r in self.recordings]
 
     @property
-    def repeated(self) -> bool:
-        """Whether any of them are."""
-        return len(set(self.repeats)) < len(self)
+    def spare(self) -> int:
+        """Recordings beyond the first one of each: what they differ by tells noise, and 0 where nothing is repeated."""
+        return len(self) - len(set(self.repeats))
 
     def rows(self, of_situation: Float[np.ndarray, "situation feature *column"]) -> np.ndarray:
         """What belongs to situations, as rows (recording, feature), one below the other."""
@@ -116,6 +116,12 @@ class Measured:
         """The rows of every operating point, as masks."""
         points = [r.point for r in self.recordings]
         return [np.repeat([p == point for p in points], len(self.layout)) for point in dict.fromkeys(points)]
+
+    def repeat_rows(self) -> list[np.ndarray]:
+        """The rows of the first repeats of all that is repeated, of the second ones, and so on, as masks."""
+        of = self.repeats
+        number = np.array([of[:i].count(each) if of.count(each) > 1 else -1 for i, each in enumerate(of)])
+        return [np.repeat(number == n, len(self.layout)) for n in range(number.max() + 1)]
 
     def session_columns(
         self, predicted: Float[np.ndarray, "situation feature"], known: "Measured | None" = None

@@ -8,11 +8,11 @@ from swgsim.effects.quantity import Role, quantities
 from swgsim.effects.text import path_of
 from swgsim.loop.answer import Answer
 from swgsim.loop.declared import name_of
-from swgsim.loop.errors import errors
+from swgsim.loop.errors import Errors
 from swgsim.loop.evidence import LEAST_GAIN, NO_SIZE
 from swgsim.loop.gaussian import as_squares
 from swgsim.loop.reporting.numbers import estimate, number, probability
-from swgsim.loop.reporting.sizes import Sizes
+from swgsim.loop.reporting.sizes import overall
 from swgsim.loop.sidelines import Sideline
 from swgsim.loop.steps import Step, chosen
 from swgsim.loop.trial import LEAST_EVIDENCE, LIKELIER, Trial
@@ -72,7 +72,7 @@ def of_line(line: Sideline) -> dict[str, Any]:
     }
 
 
-def rejected(answer: Answer, sizes: Sizes) -> list[dict[str, Any]]:
+def rejected(answer: Answer) -> list[dict[str, Any]]:
     """Effects that were fitted but not added."""
     steps = answer.closed.steps
     # What was put off in one step may be found, or be a rival, in a later one.
@@ -90,11 +90,17 @@ def rejected(answer: Answer, sizes: Sizes) -> list[dict[str, Any]]:
     return [
         {
             "name": name,
-            "heldout_error": sizes.overall(errors(trial.fitted.strict, trial.fitted.strict).heldout),
+            "heldout_error": _heldout(trial),
             "why": why(trial, answer, better),
         }
         for name, (trial, better) in tried.items()
     ]
+
+
+def _heldout(trial: Trial) -> float | None:
+    """Error of operating points left out by a model with what was tried."""
+    fitted = trial.fitted.strict
+    return overall(fitted.measured, Errors(fitted, fitted).heldout)
 
 
 def why(trial: Trial, answer: Answer, better: Trial | None = None) -> str:

@@ -15,7 +15,7 @@ from swgsim.loop.fitted import Fitted
 from swgsim.loop.reporting.effects import accepted, of_line, rejected
 from swgsim.loop.reporting.numbers import estimate
 from swgsim.loop.reporting.remaining import absorbed, detectable, next_experiment, scored, unknown, untried
-from swgsim.loop.reporting.sizes import Sizes, error
+from swgsim.loop.reporting.sizes import error, named
 from swgsim.loop.session import Measured
 from swgsim.loop.unit import UNHEARD
 from swgsim.recording import CHANNELS
@@ -44,18 +44,16 @@ def report(
     """
     before, after = answer.closed.before, answer.closed.after
     measured = before.measured
-    sizes = Sizes.of(measured)
-    floor = noise_floor(measured)
     unheard = _orders(before, before.unit.inflation, UNHEARD / 2)
     less_certain = _orders(before, before.unit.inflation, 1.0)
     return {
         "verdict": answer.verdict,
         "sentence": answer.sentence,
-        "noise_floor": sizes.named(floor),
+        "noise_floor": named(measured, noise_floor(measured)),
         "calibrated": calibrated(after),
         "effects": [*accepted(answer), *(of_line(line) for line in answer.lines)],
-        "rejected": rejected(answer, sizes),
-        "error": error(before, after, floor, sizes),
+        "rejected": rejected(answer),
+        "error": error(before, after),
         "unknown": unknown(answer),
         "next_experiment": next_experiment(experiments, answer),
         "moved": moved(before, after),
