@@ -95,11 +95,6 @@ def size_of(effect: Effect) -> str:
     return name
 
 
-def without(effect: Effect) -> Effect:
-    name = size_of(effect)
-    return replace(effect, **{name: quantities(type(effect))[name].nothing})
-
-
 @pytest.fixture(scope="module")
 def recordings() -> Mapping[Key, Recording]:
     """Every effect at every operating point, late in a warm session and, once, in a fresh one; all in one go."""
@@ -107,8 +102,6 @@ def recordings() -> Mapping[Key, Recording]:
     for name, effects in {"healthy": (), **{n: (effect,) for n, effect in (NAMED | VARIANTS).items()}}.items():
         for point, conditions in ((IDLE, LATE), (LOADED, LATE), (FAST, LATE), (LOADED, FRESH)):
             runs[name, point, conditions] = Run(GEAR, point, effects, conditions=conditions)
-    for name, effect in NAMED.items():
-        runs["no " + name, LOADED, LATE] = Run(GEAR, LOADED, (without(effect),), conditions=LATE)
     runs["leading", FAST, LATE] = Run(GEAR, FAST, (FilterMismatch(1, -20e-6),))
     runs["backwards", FAST, LATE] = Run(GEAR, FAST, (ChannelSkew(-50e-6),))
     return dict(zip(runs, simulate_turns(list(runs.values()), TURNS, POINTS, SECTORS), strict=True))
@@ -152,14 +145,6 @@ def lag(recordings: Recordings, name: str, k: int, point: OperatingPoint = LOADE
 
 def test_every_effect_names_its_place_and_one_size() -> None:
     assert all(effect.place in PLACES and size_of(effect) for effect in EFFECTS)
-
-
-@pytest.mark.parametrize("name", NAMED)
-def test_nothing_of_an_effect_changes_nothing(recordings: Recordings, name: str) -> None:
-    there, none = recordings[name, LOADED, LATE], recordings["no " + name, LOADED, LATE]
-    healthy = recordings["healthy", LOADED, LATE]
-    assert all(np.allclose(none.channels[c], healthy.channels[c], rtol=0, atol=1e-12) for c in healthy.channels)
-    assert any(np.abs(there.channels[c] - healthy.channels[c]).max() > 1e-5 for c in healthy.channels)
 
 
 @pytest.mark.parametrize("effect", EFFECTS, ids=list(NAMED))
