@@ -14,14 +14,16 @@ from swgsim.defects.defect import Defect
 from swgsim.effects.base import Effect
 from swgsim.effects.library import SEARCHED, listed, named
 from swgsim.effects.text import as_text, sized
+from swgsim.faults import FAULTS
 from swgsim.files import require_writable, write_json, write_text
 from swgsim.intake.file_defect import read_for
-from swgsim.intake.read import read_recordings
+from swgsim.intake.read import read_recordings, require_usable
 from swgsim.loop.angle_zero import from_zero, require_same_zero, zero_defects, zero_of
-from swgsim.loop.answer import Answer, answer
+from swgsim.loop.answer import NOTHING, Answer, answer
 from swgsim.loop.commissioning import commission
 from swgsim.loop.experiment import next_experiments
 from swgsim.loop.features import COMPARED
+from swgsim.loop.gauge_order import order_defects
 from swgsim.loop.model import Model
 from swgsim.loop.page import figure, page
 from swgsim.loop.reporting.report import report
@@ -85,7 +87,9 @@ def run(config: Mapping[str, Any]) -> Outcome:
         zero = zero_of(healthy, unit.model)
         recordings, healthy = from_zero(recordings, zero), from_zero(healthy, zero)
         require_same_zero(Path(config["recordings"]), recordings, unit.model)
-        defects = (*defects, *more)
+        order = order_defects(recordings, healthy)
+        require_usable(Path(config["recordings"]), order)
+        defects = (*defects, *more, *order)
         unit = commission(Measured.of(healthy), unit)
     defects = (*defects, *zero_defects(recordings, zero))
     found = answer(recordings, unit, kinds, known=between, seed=config["seed"])
@@ -127,16 +131,30 @@ def lines(said: Mapping[str, Any]) -> list[str]:
         said["sentence"],
         f"error before   {_both(error['before'])}",
         f"error after    {_both(error['after'])}",
-        f"noise floor    {_percent(error['noise_floor'])}",
+        f"noise floor    {_percent(error['noise_floor'])}{_between(error['noise_floor_ci95'])}",
         f"effect found   {' and '.join(found) or 'none'}",
     ]
+    if said["verdict"] == NOTHING:
+        shown.append(f"would be seen  {_smallest(said['detectable'])}; all others are in the report")
     if "hidden" in said:
         shown.append(f"effect hidden  {said['hidden']}")
     return shown
 
 
+def _smallest(detectable: Mapping[str, Mapping[str, Any]]) -> str:
+    """The smallest size of each of the five faults that would have been seen."""
+    seen = {words(name): detectable[name] for name in FAULTS if name in detectable}
+    known = {name: each for name, each in seen.items() if each["value"] is not None}
+    return ", ".join(f"{name} ({_parameter(each['parameter'], each)})" for name, each in known.items()) or "no fault"
+
+
 def _both(error: Mapping[str, float | None]) -> str:
-    return f"{_percent(error['fit'])}, at operating points left out {_percent(error['heldout'])}"
+    left_out = {"repeats": error["repeats"], "operating points": error["heldout"]}
+    return ", ".join([_percent(error["fit"]), *(f"of {name} left out {_percent(e)}" for name, e in left_out.items())])
+
+
+def _between(interval: Sequence[float] | None) -> str:
+    return "" if interval is None else f" (95 %: {figure(interval[0])} to {figure(interval[1])})"
 
 
 def _percent(value: float | None) -> str:
