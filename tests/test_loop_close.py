@@ -7,18 +7,20 @@ import numpy as np
 import pytest
 from chain_fixtures import GEAR
 
+from swgsim import faults
 from swgsim.acquisition import Window
 from swgsim.bench import Bench
 from swgsim.chain import simulate_turns
 from swgsim.conditions import Conditions
 from swgsim.effects import Effect
 from swgsim.effects.library import LIBRARY
+from swgsim.effects.quantity import Role, beyond_nothing, quantities
 from swgsim.effects.regularity import Regularity
 from swgsim.gear import Gear, OperatingPoint
 from swgsim.loop.closed import Closed
 from swgsim.loop.closing import close
 from swgsim.loop.commissioning import _drive_alone, commission
-from swgsim.loop.declared import at
+from swgsim.loop.declared import at, name_of
 from swgsim.loop.fitting import fit
 from swgsim.loop.leading import ALPHA
 from swgsim.loop.model import Model
@@ -36,6 +38,9 @@ POINTS = tuple(OperatingPoint(n, T) for n in (2000.0, 4000.0) for T in (7.0, 70.
 PLAN = Sessions(POINTS, repeats=2, revolutions=6, warming=0.0, unsteady=0.0, thermometer=0.0)
 ECCENTRIC = LIBRARY["eccentric_wave_generator"](10e-6, 1.0)
 WARM = LIBRARY["warm_grease"](8.0)
+FAULTS = tuple(
+    make(size, 1.0) for make, size in zip(faults.FAULTS.values(), (0.8, 0.9, 50e-6, 0.03, 0.75), strict=True)
+)
 NAMES = ("eccentric_wave_generator", "warm_grease", "reduced_damping", "zero_offset")
 SEARCHED = [LIBRARY[name] for name in NAMES]
 
@@ -204,6 +209,22 @@ def test_an_effect_of_a_hundredth_of_its_bounds_is_found(unit):
     assert closed.steps[0].accepted.merit > 10
     assert found.name() == "coning"
     assert found.share == pytest.approx(0.005, rel=0.3)
+
+
+@pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: type(fault).name())
+def test_a_sick_gear_is_told_its_sickness_with_size_and_place(unit, fault):
+    """Each of the paper's five among all of them, at sizes that its variants have."""
+    closed = close(recorded((fault,), seed=2), unit, list(map(type, FAULTS)))
+    (found,) = accepted(closed)
+    assert type(found) is type(fault)
+    number = len(unit.model.effects)
+    for name, q in quantities(type(fault)).items():
+        off = abs(getattr(found, name) - getattr(fault, name))
+        if q.role is Role.SIZE:
+            assert off < 3 * closed.deviation[name_of(found, number, name)]
+            assert off < 0.2 * abs(beyond_nothing(fault))
+        elif q.role is Role.ANGLE:
+            assert off < 2 * np.pi / SECTORS
 
 
 def test_warm_grease_and_reduced_damping_are_rivals(unit):

@@ -9,9 +9,10 @@ from swgsim.loop.asking import Round, ask, ask_behind, ask_imperfect
 from swgsim.loop.closed import Closed
 from swgsim.loop.evidence import signature
 from swgsim.loop.fitted import Fitted
-from swgsim.loop.fitting import extended, fit
+from swgsim.loop.fitting import extended, fit, unbent
 from swgsim.loop.leading import ALPHA, screened
 from swgsim.loop.screening import Score
+from swgsim.loop.seen import at_sizes_seen
 from swgsim.loop.session import Measured
 from swgsim.loop.steps import Step, cancelling, causes, contradicted, joined, outweighed, with_rivals
 from swgsim.loop.trial import Trial, seen
@@ -73,7 +74,7 @@ def close(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed
         after=_together(end),
         asked=end.now,
         steps=_beside_rivals(end, unknown),
-        scores=forward.scores[0],
+        scores=at_sizes_seen(forward.scores[0], unbent(first)),
         left=end.scores[-1],
         rejected=end.last.trials,
         outdone_by=end.last.outdone_by,

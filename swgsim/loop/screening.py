@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float, Int
 
-from swgsim.effects.quantity import quantities
+from swgsim.effects.quantity import Quantity, quantities
 from swgsim.loop.fitted import Fitted
 from swgsim.loop.gaussian import as_squares
 from swgsim.loop.hypotheses import Hypothesis
@@ -78,11 +78,26 @@ class Score:
         return SEEN * self.deviation
 
     @property
+    def smallest(self) -> float:
+        """The parameter at that size, on the side of the typical one."""
+        quantity = self._quantity
+        return quantity.nothing + float(np.copysign(self.detectable, quantity.typical - quantity.nothing))
+
+    @property
+    def typical(self) -> float:
+        """The typical size."""
+        return abs(self._quantity.typical - self._quantity.nothing)
+
+    @property
     def absorbed(self) -> bool:
         """Whether no size within the bounds would be seen."""
-        quantity = quantities(self.hypothesis.kind)[self.hypothesis.size]
+        quantity = self._quantity
         largest = max(quantity.high - quantity.nothing, quantity.nothing - quantity.low)
         return self.visible < VISIBLE or self.detectable > largest
+
+    @property
+    def _quantity(self) -> Quantity:
+        return quantities(self.hypothesis.kind)[self.hypothesis.size]
 
 
 def screen(

@@ -4,8 +4,6 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
-import numpy as np
-
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities
 from swgsim.effects.text import entries, path_of
@@ -117,13 +115,12 @@ def detectable(score: Score) -> dict[str, Any]:
     bounds would.
     """
     q = quantities(score.hypothesis.kind)[score.hypothesis.size]
-    smallest = q.nothing + float(np.copysign(score.detectable, q.typical - q.nothing))
     return {
         "parameter": score.hypothesis.size,
-        "value": number(smallest) if q.low <= smallest <= q.high else None,
+        "value": number(score.smallest) if q.low <= score.smallest <= q.high else None,
         "typical": float(q.typical),
         "unit": q.unit,
-        "typical_would_be_seen": bool(score.detectable <= abs(q.typical - q.nothing)),
+        "typical_would_be_seen": bool(score.detectable <= score.typical),
     }
 
 
