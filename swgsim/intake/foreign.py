@@ -11,10 +11,9 @@ from jaxtyping import Float
 from swgsim.intake.csv_table import read_table
 from swgsim.intake.file_defect import FileDefect, shown
 from swgsim.intake.limits import require_expansion, require_readable, require_rows
+from swgsim.intake.mat_elements import NUMBERS
+from swgsim.intake.mat_variables import variables
 from swgsim.intake.recording_file import numbers
-
-# Classes of MATLAB that are numbers.
-NUMERIC = ("double", "single", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)))
 
 Columns = dict[str, Float[np.ndarray, " time"]]
 
@@ -64,20 +63,20 @@ def _read_matlab(path: Path, name: str, wanted: Sequence[str]) -> Columns:
                     raise FileDefect(name, "a link or a struct", "a variable with numbers", column=column)
             require_expansion(path, name, sum(file[column].size or 0 for column in wanted))
             return {column: numbers(file[column], name, column) for column in wanted}
-    from scipy.io import loadmat, whosmat
+    from scipy.io import loadmat
 
     # Shapes first: what is compressed may be far larger than the file.
-    variables = whosmat(path)
-    names = [variable for variable, _, _ in variables]
+    there = variables(path, name)
+    names = [variable.name for variable in there]
     _require_present(name, wanted, names)
     sizes = []
-    for variable, shape, kind in variables:
+    for variable, shape, kind in there:
         if variable in wanted and names.count(variable) > 1:
             raise FileDefect(name, f"{names.count(variable)} variables of this name", "one", column=variable)
-        if variable in wanted and kind not in NUMERIC:
+        if variable in wanted and kind not in NUMBERS.values():
             raise FileDefect(name, f"{shown(kind)} of shape {shown(shape)}", "real numbers", column=variable)
         if variable in wanted:
-            sizes.append(prod(int(length) for length in shape))
+            sizes.append(prod(shape))
             require_rows(name, sizes[-1])
     require_expansion(path, name, sum(sizes))
     content = loadmat(path, variable_names=list(wanted))

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.checks import require, require_known
+from swgsim.checks import require, require_known, require_one_of
 from swgsim.intake.file_defect import shown
 from swgsim.intake.plain_file import described, require_names
 from swgsim.intake.units import FACTORS, STRAIN, bridge_factor
@@ -63,8 +63,7 @@ class ColumnSource:
             raise ValueError(f"zero_rad of {self.channel} is {self.zero_rad:g}: only phi_in has one, leave it out")
         if self.unit == STRAIN:
             require(self.channel, "gauge_factor", self.gauge_factor, low=0.5, high=300)
-            if self.active_arms not in (1, 2, 4):
-                raise ValueError(f"active_arms of {self.channel} is {self.active_arms!r}, must be 1, 2 or 4")
+            require_one_of(self.channel, "active_arms", self.active_arms, (1, 2, 4))
 
     @property
     def factor(self) -> float:
