@@ -11,7 +11,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from close_loop import record
 
+from learn import tracking
+from swgsim import settings
 from swgsim.acquisition import Window
 from swgsim.bench import Bench
 from swgsim.chain import simulate_turns
@@ -19,6 +22,7 @@ from swgsim.conditions import Conditions
 from swgsim.effects.base import Effect
 from swgsim.effects.eccentric_wave_generator import EccentricWaveGenerator
 from swgsim.effects.library import SEARCHED as LIBRARY_SEARCHED
+from swgsim.effects.library import named
 from swgsim.effects.load_sharing import LoadSharing
 from swgsim.effects.reduced_damping import ReducedDamping
 from swgsim.effects.text import from_text
@@ -146,6 +150,40 @@ def test_effects_are_given_back_as_they_were_found(folders, sick):
     }
 
 
+def test_the_answer_is_kept_as_a_run(folders, sick, tmp_path):
+    record(choices(folders, "sick") | {"source": None, "tracking": {"name": "local", "folder": str(tmp_path)}}, sick)
+    store = tracking.local_store(str(tmp_path), "loop")
+    (run,) = store.client.search_runs([store.experiment_id])
+    said, kept = sick.report, run.data
+    assert (run.info.run_name, run.info.status) == (said["verdict"], "FINISHED")
+    assert (kept.tags["verdict"], kept.tags["sentence"]) == (said["verdict"], said["sentence"])
+    assert kept.params["recordings"] == str(folders / "sick")
+    for when in ("before", "after"):
+        assert kept.metrics[f"error_{when}_heldout"] == said["error"][when]["heldout"]
+    assert kept.metrics["eccentric_wave_generator/r"] == said["effects"][0]["parameters"]["r"]["value"]
+    figures = {each.path for each in store.client.list_artifacts(run.info.run_id, "figures")}
+    assert figures == {f"figures/{name}.png" for name in sick.figures}
+    assert len(tracking.table_of(store, run.info.run_id, "tables/scores.parquet")) == len(said["scores"])
+
+
+def test_an_effect_of_a_user_is_found_and_may_then_be_declared(folders, tmp_path, monkeypatch):
+    """The one that docs/recording.md shows, hidden and searched by its import path."""
+    docs = (CONF.parent / "docs" / "recording.md").read_text(encoding="utf-8")
+    shown = re.search(r"```python\n# my_bench\.py\n(.*?)```", docs, re.DOTALL)
+    assert shown is not None
+    (tmp_path / "my_bench.py").write_text(shown[1])
+    monkeypatch.syspath_prepend(tmp_path)
+    softening = named("my_bench:Softening")
+    write_folder(folders / "soft", recorded(softening(0.02), seed=5))
+    (effect,) = job.run(choices(folders, "soft", library=["my_bench:Softening"])).report["effects"]
+    share = effect["parameters"]["share"]
+    assert effect["name"] == "my_bench:Softening"
+    assert share["ci95"][0] < 0.02 < share["ci95"][1]
+    written = str(folders / "soft-answer" / "effects.yaml")
+    assert settings.effects(written) == (softening(share["value"]),)
+    assert job.run(choices(folders, "soft", effects=written)).report["verdict"] == NOTHING
+
+
 def test_nothing_is_missing_in_a_sound_gear(folders, capsys):
     said = job.run(choices(folders, "sound")).report
     printed = capsys.readouterr().out.splitlines()
@@ -156,7 +194,9 @@ def test_nothing_is_missing_in_a_sound_gear(folders, capsys):
         "error after",
         "noise floor",
         "effect found",
+        "would be seen",
     ]
+    assert "eccentric wave generator (r " in printed[-1]
     assert said["detectable"]["eccentric_wave_generator"]["value"] < HIDDEN.r
     assert said["error"]["before"] == said["error"]["after"]
 

@@ -117,7 +117,7 @@ class Judged:
         )
 
     def _seen_from(self, effect: Effect) -> float:
-        """The smallest size of an effect that would have been seen, as the answer has it; 0 if it says nothing of it."""
+        """The smallest size of an effect that would have been seen, as the answer has it; 0 if it does not say."""
         return float(self.said["seen_from"].get(type(effect).name(), 0.0))
 
     @property
