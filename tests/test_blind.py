@@ -5,6 +5,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -27,7 +28,7 @@ from swgsim.blind.outside import OUTSIDE
 from swgsim.blind.prediction import expected, unseen_error
 from swgsim.blind.score import score, worst
 from swgsim.blind.sealed import Sealed, as_json, from_json
-from swgsim.blind.strata import CYCLE, FULL, NULLS, SINGLE, plans, searched
+from swgsim.blind.strata import CYCLE, FULL, NULLS, SINGLE, UNTESTABLE, plans, searched
 from swgsim.blind.strength import sized, strengths
 from swgsim.chain import Run, simulate_turns
 from swgsim.conditions import Conditions
@@ -489,6 +490,23 @@ def test_of_one_operating_point_there_is_no_error_held_out() -> None:
     cases = [Judged(HIDDEN, {**SAID, "heldout": {"before": before, "after": after}}) for before, after in heldout]
     found = score(cases)["worse_where_recorded"]
     assert (found["value"], found["count"]) == (0.5, 2)
+
+
+@pytest.mark.parametrize(
+    ("said", "told"),
+    [
+        ({"seen_from": {"cam_form": 3e-6}}, True),
+        ({"seen_from": {"cam_form": 1e-6}}, False),
+        ({"seen_from": {"cam_form": None}}, True),  # of no size
+        ({"seen_from": {}}, False),
+        ({"seen_from": {}, "absorbed": ["cam_form"]}, True),
+    ],
+)
+def test_what_is_untestable_is_told_if_it_would_not_have_been_seen(said: dict[str, Any], told: bool) -> None:
+    """A cam form of 2 um."""
+    case = Judged(replace(HIDDEN, stratum=UNTESTABLE), {**SAID, **said})
+    assert case.told_untestable == told
+    assert score([case])["untestable_told"]["value"] == told
 
 
 def _words(folder: Path) -> list[str]:

@@ -21,6 +21,7 @@ from swgsim.chain import simulate_turns
 from swgsim.conditions import Conditions
 from swgsim.effects.base import Effect
 from swgsim.effects.eccentric_wave_generator import EccentricWaveGenerator
+from swgsim.effects.gauge_gain import GaugeGain
 from swgsim.effects.library import SEARCHED as LIBRARY_SEARCHED
 from swgsim.effects.library import named
 from swgsim.effects.load_sharing import LoadSharing
@@ -184,6 +185,17 @@ def test_an_effect_of_a_user_is_found_and_may_then_be_declared(folders, tmp_path
     assert job.run(choices(folders, "soft", effects=written)).report["verdict"] == NOTHING
 
 
+def test_gauges_that_are_exchanged_against_the_commissioning_are_refused(folders):
+    exchanged = [
+        replace(each, channels={**each.channels, "s1": each.channels["s3"], "s3": each.channels["s1"]})
+        for each in recorded(GaugeGain(1, 0.01), seed=3)
+    ]
+    write_folder(folders / "exchanged", exchanged)
+    write_folder(folders / "own", recorded(GaugeGain(1, 0.01), seed=1))
+    with pytest.raises(ValueError, match=r"exchanged: .*\n- refuse: .* s1 s3: .*swap their columns"):
+        job.run(choices(folders, "exchanged", commissioning=str(folders / "own")))
+
+
 def test_nothing_is_missing_in_a_sound_gear(folders, capsys):
     said = job.run(choices(folders, "sound")).report
     printed = capsys.readouterr().out.splitlines()
@@ -197,6 +209,8 @@ def test_nothing_is_missing_in_a_sound_gear(folders, capsys):
         "would be seen",
     ]
     assert "eccentric wave generator (r " in printed[-1]
+    undecided = [each["name"].replace("_", " ") for each in said["absorbed"]]
+    assert not undecided or f"cannot be decided, as these recordings absorb them: {undecided[0]}" in printed[0]
     assert said["detectable"]["eccentric_wave_generator"]["value"] < HIDDEN.r
     assert said["error"]["before"] == said["error"]["after"]
 

@@ -1,7 +1,6 @@
 """A regularity joins the model where it holds at every operating point, and not by a law of its session."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -71,13 +70,21 @@ def test_one_that_doubles_the_error_at_an_operating_point_is_not(
         assert is_added(fitted, np.ones(6)) == added
 
 
-def test_one_that_makes_the_error_of_all_points_larger_is_not(fitted: Fitted, monkeypatch: pytest.MonkeyPatch) -> None:
-    for times, added in ((1.04, True), (1.06, False)):
-        monkeypatch.setattr(patching, "relative", lambda _, error, larger=times: larger if error == "with it" else 1.0)
-        monkeypatch.setattr(
-            patching, "Errors", lambda now, _: SimpleNamespace(heldout="with it" if now.parameters else "without")
-        )
-        assert is_added(fitted, np.ones(6)) == added
+@pytest.mark.parametrize(("was", "now", "holds"), [(1.0, 1.04, True), (1.0, 1.06, False), (1.04, 1.06, False)])
+def test_one_that_makes_the_error_of_all_points_larger_than_without_any_is_not(
+    fitted: Fitted, monkeypatch: pytest.MonkeyPatch, was: float, now: float, holds: bool
+) -> None:
+    """Than without patches it is 1, and with those before it as it was."""
+    before = holding(fitted, 20 * columns(ATOM, fitted)[:, 0] + drawn(fitted.errors, np.random.default_rng(2)))
+    found, after = holding(fitted, 0.9 * before.residual), patching.extended(before, ())
+    figures = {1.0: found, was: before, now: after}
+    errors = {figure: Errors(each, after).heldout for figure, each in figures.items()}
+
+    def relative(_: object, error: np.ndarray) -> float:
+        return next(figure for figure, each in errors.items() if np.array_equal(each, error))
+
+    monkeypatch.setattr(patching, "relative", relative)
+    assert patching._holds(before if was == 1.0 else found, before, after) == holds
 
 
 def test_one_that_may_as_well_follow_the_time_is_not(fitted: Fitted) -> None:

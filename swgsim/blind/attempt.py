@@ -21,6 +21,7 @@ from swgsim.loop.declared import name_of
 from swgsim.loop.evidence import signature
 from swgsim.loop.fitted import Fitted
 from swgsim.loop.fitting import fit
+from swgsim.loop.reporting.numbers import number
 from swgsim.loop.reporting.sizes import heldout
 from swgsim.loop.sidelines import is_random
 from swgsim.loop.steps import chosen
@@ -68,7 +69,7 @@ def what_was_said(found: Answer, recordings: Sequence[Recording], library: Seque
         ],
         "unknown": [[each.atom.order, each.atom.pattern, each.atom.law] for each in found.unknown],
         "absorbed": [score.hypothesis.kind.name() for score in found.absorbed],
-        "seen_from": {score.hypothesis.kind.name(): score.detectable for score in closed.scores},
+        "seen_from": {score.hypothesis.kind.name(): number(score.detectable) for score in closed.scores},
         "scores": [[s.hypothesis.kind.name(), s.gain, s.chance] for s in closed.scores[:6]],
         "smallest_chance": min((s.chance for s in closed.scores), default=1.0),
         "baselines": named_by_baselines(closed.before, library),

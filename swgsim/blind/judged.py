@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from swgsim.blind.families import family
 from swgsim.blind.sealed import Sealed
 from swgsim.blind.strata import NULLS, OUTSIDE_STRATA, PAIR, SINGLE, UNTESTABLE
@@ -117,8 +119,12 @@ class Judged:
         )
 
     def _seen_from(self, effect: Effect) -> float:
-        """The smallest size of an effect that would have been seen, as the answer has it; 0 if it does not say."""
-        return float(self.said["seen_from"].get(type(effect).name(), 0.0))
+        """The smallest size of an effect that would have been seen, as the answer has it; 0 if it does not say.
+
+        Infinite where it would not have been seen of any size.
+        """
+        size = self.said["seen_from"].get(type(effect).name(), 0.0)
+        return np.inf if size is None else float(size)
 
     @property
     def nearest(self) -> str:

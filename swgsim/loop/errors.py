@@ -34,22 +34,23 @@ class Errors:
     @cached_property
     def fit(self) -> Float[np.ndarray, "recording channel"]:
         """Of what the model was fitted to."""
-        return self._of(self.fitted.residual)
+        return self._of(self.fitted.residual, self.best.nuisance)
 
     @cached_property
     def repeats(self) -> Float[np.ndarray, "recording channel"]:
-        """Of the first repeats of all operating points by the model fitted to the others, of the second, and so on; NaN
-        where an operating point was recorded once.
-        """
-        return self._of(_left_out(self.fitted, self.fitted.told_by_others(self.fitted.measured.repeat_rows())))
+        """Of every recording by the model fitted to all others, its repeats among them; NaN where it has none."""
+        nuisance = self.best.nuisance_by(self.best.by_other_recordings)
+        return self._of(_left_out(self.fitted, self.fitted.by_other_recordings), nuisance)
 
     @cached_property
     def heldout(self) -> Float[np.ndarray, "recording channel"]:
         """Of every operating point by the model fitted to the others; NaN if there is one only."""
-        return self._of(_left_out(self.fitted, self.fitted.by_others))
+        return self._of(_left_out(self.fitted, self.fitted.by_others), self.best.nuisance)
 
-    def _of(self, missed: Float[np.ndarray, " row"]) -> Float[np.ndarray, "recording channel"]:
-        return per_recording(self.fitted.measured, missed - self.best.nuisance)
+    def _of(
+        self, missed: Float[np.ndarray, " row"], nuisance: Float[np.ndarray, " row"]
+    ) -> Float[np.ndarray, "recording channel"]:
+        return per_recording(self.fitted.measured, missed - nuisance)
 
 
 def of_points_left_out(fitted: Fitted) -> Float[np.ndarray, " point"]:

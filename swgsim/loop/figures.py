@@ -210,7 +210,7 @@ def errors(report: Mapping[str, Any]) -> Figure:
                 height = share * each["noise_floor"]
                 axes.hlines(height, i - 0.45, i + 0.45, color=FLOOR, linewidth=2, label=label)
         if all(each["before"][what] is None for each in per_channel.values()):
-            axes.text(0.5, 0.5, "only one: none to leave out", ha="center", transform=axes.transAxes)
+            axes.text(0.5, 0.5, "nothing that can be left out", ha="center", transform=axes.transAxes)
         axes.set_xticks(range(len(per_channel)), list(per_channel), fontsize=8)
         style.label(axes, "", "error [% of the root mean square]" if what == "fit" else "", title)
         axes.set_yscale("log")

@@ -152,10 +152,14 @@ class Fitted:
     def by_others(self) -> list[tuple[np.ndarray, Expected]]:
         """The rows of every operating point (a mask) and what all the others say of them; none if there is one only."""
         blocks = self.measured.point_rows()
-        return self.told_by_others(blocks) if len(blocks) > 1 else []
+        return self._told(blocks) if len(blocks) > 1 else []
 
-    def told_by_others(self, blocks: Sequence[np.ndarray]) -> list[tuple[np.ndarray, Expected]]:
-        """Each of these blocks of rows (a mask) and what all rows outside it say of it."""
+    @cached_property
+    def by_other_recordings(self) -> list[tuple[np.ndarray, Expected]]:
+        """The same of every recording that has repeats."""
+        return self._told(self.measured.repeat_rows())
+
+    def _told(self, blocks: Sequence[np.ndarray]) -> list[tuple[np.ndarray, Expected]]:
         return list(zip(blocks, self.whole.left_out(self.from_start, blocks), strict=True))
 
     @cached_property
@@ -163,8 +167,12 @@ class Fitted:
         """What all that is open beside the fitted parameters makes of every operating point, as all the others tell it:
         zeros and gains of sessions, the gear, effects found earlier; nothing if there is one point only.
         """
+        return self.nuisance_by(self.by_others)
+
+    def nuisance_by(self, told: Sequence[tuple[np.ndarray, Expected]]) -> Float[np.ndarray, " row"]:
+        """The same of other blocks of rows, as all rows outside each tell it; nothing in no block."""
         made, columns = np.zeros(len(self.residual)), self.of_nuisances.columns
-        for block, expected in self.by_others:
+        for block, expected in told:
             made[block] = columns[block] @ expected.common[: columns.shape[1]]
         return made
 

@@ -25,14 +25,15 @@ def patched(closed: Closed) -> Closed:
     session parts in the next. Nor is one that takes away what an effect was found for. Of laws that explain it alike
     the simplest is taken: a root, a line and a square through two loads lie far apart between them.
     """
-    if len(closed.after.predictive) < 2:
+    found = closed.after
+    if len(found.predictive) < 2:
         return closed  # no operating point can be left out
     for each in closed.unknown:
         if each.rivals and {each.atom.law, *each.rivals} & {OF_TEMPERATURE, OF_TIME}:
             continue
         simplest = min((each.atom.law, *each.rivals), key=list(LAWS).index)
         fitted = extended(closed.after, [replace(each.effect, law=simplest)])
-        if fitted.calibrated.settled and _spares(closed.after, fitted) and _holds(closed.after, fitted):
+        if fitted.calibrated.settled and _spares(closed.after, fitted) and _holds(found, closed.after, fitted):
             closed = replace(closed, after=fitted)
     return closed
 
@@ -43,11 +44,13 @@ def _spares(before: Fitted, after: Fitted) -> bool:
     return all(abs(beyond_nothing(now)) >= KEPT * abs(beyond_nothing(was)) for was, now in both)
 
 
-def _holds(before: Fitted, after: Fitted) -> bool:
-    """Whether it pays on operating points left out, and makes none of them clearly worse, nor all together."""
+def _holds(found: Fitted, before: Fitted, after: Fitted) -> bool:
+    """Whether it pays on operating points left out, makes none of them clearly worse, and all together not worse than
+    without any patch.
+    """
     gains, _ = gained(before, after)
     pays = gains.sum() > LEAST_GAIN and gains.min() > -LEAST_GAIN
     if not pays or (of_points_left_out(after) > WORSE * of_points_left_out(before)).any():
         return False
-    now, was = (relative(after.measured, Errors(fitted, after).heldout) for fitted in (after, before))
+    now, was = (relative(after.measured, Errors(fitted, after).heldout) for fitted in (after, found))
     return now <= WORSE_TOGETHER * was

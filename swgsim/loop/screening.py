@@ -84,9 +84,14 @@ class Score:
         return quantity.nothing + float(np.copysign(self.detectable, quantity.typical - quantity.nothing))
 
     @property
-    def typical(self) -> float:
-        """The typical size."""
-        return abs(self._quantity.typical - self._quantity.nothing)
+    def within_bounds(self) -> bool:
+        """Whether the parameter may have that value."""
+        return self._quantity.low <= self.smallest <= self._quantity.high
+
+    @property
+    def shown(self) -> float:
+        """The size at which the signature was taken."""
+        return abs(self.hypothesis.typical - self._quantity.nothing)
 
     @property
     def absorbed(self) -> bool:

@@ -9,7 +9,8 @@ from swgsim.loop.fitted import Fitted
 from swgsim.loop.hypotheses import signatures
 from swgsim.loop.screening import SEEN, Score, rank
 
-# Share of a signature beside the declared parameters below which it is taken again at the size that would be seen.
+# Share of a signature beside the declared parameters below which it is taken again at the size that would be seen; that
+# of an effect with a threshold is in any case.
 MOSTLY_ABSORBED = 0.1
 
 
@@ -18,12 +19,13 @@ def at_sizes_seen(scores: Sequence[Score], fitted: Fitted) -> tuple[Score, ...]:
 
     A signature is taken at typical size. Of a fifth less stiffness a declared stiffness does not absorb quite all, as
     neither acts in a straight line; of a thirtieth it does. Where half the size leaves a quarter to be seen, as of a
-    curve, the geometric mean of a size and of the one that would be seen by the signature there is the right one.
+    curve, the geometric mean of a size and of the one that would be seen by the signature there is the right one. Of
+    clipping nothing is seen below its threshold.
     """
     there = [
         replace(score.hypothesis, reference=score.smallest)
         for score in scores
-        if score.visible < MOSTLY_ABSORBED and not score.absorbed
+        if score.within_bounds and (score.visible < MOSTLY_ABSORBED or score.hypothesis.kind.sharp)
     ]
     if not there:
         return tuple(scores)
@@ -33,6 +35,6 @@ def at_sizes_seen(scores: Sequence[Score], fitted: Fitted) -> tuple[Score, ...]:
 
 
 def _between(score: Score, deviation: float) -> Score:
-    """With the mean of both deviations; the typical size is known to be seen, unless it is smaller yet."""
-    most = max(score.deviation, score.typical / SEEN)
+    """With the mean of both deviations; the size of the signature is known to be seen, unless it is smaller yet."""
+    most = max(score.deviation, score.shown / SEEN)
     return replace(score, deviation=min(float(np.sqrt(score.deviation * deviation)), most))

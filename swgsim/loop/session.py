@@ -118,10 +118,9 @@ class Measured:
         return [np.repeat([p == point for p in points], len(self.layout)) for point in dict.fromkeys(points)]
 
     def repeat_rows(self) -> list[np.ndarray]:
-        """The rows of the first repeats of all that is repeated, of the second ones, and so on, as masks."""
-        of = self.repeats
-        number = np.array([of[:i].count(each) if of.count(each) > 1 else -1 for i, each in enumerate(of)])
-        return [np.repeat(number == n, len(self.layout)) for n in range(number.max() + 1)]
+        """The rows of every recording that has repeats, as masks."""
+        repeated = [i for i, each in enumerate(self.repeats) if self.repeats.count(each) > 1]
+        return [np.repeat(np.arange(len(self)) == i, len(self.layout)) for i in repeated]
 
     def session_columns(
         self, predicted: Float[np.ndarray, "situation feature"], known: "Measured | None" = None

@@ -17,6 +17,8 @@ UNIT = "% of the root mean square of each channel, root mean square over the cha
 # What errors are of: all that was fitted, repeats left out, operating points left out.
 WHAT = ("fit", "repeats", "heldout")
 CONFIDENCE, RESAMPLES = 0.95, 2000
+# Operating points of which a bootstrap says something; of three or four its intervals are far too narrow.
+FEWEST = 5
 TAILS = np.array([(1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2])
 
 
@@ -44,14 +46,15 @@ def error(before: Fitted, after: Fitted) -> dict[str, Any]:
     found = {name: {what: getattr(each, what) for what in WHAT} for name, each in both.items()}
     said = {name: {what: overall(measured, each) for what, each in of.items()} for name, of in found.items()}
     noise, points = overall(measured, floor), _points(measured)
+    interval = _of_floor(noise, measured.spare)
     return {
         **said,
         "after_over_before": {
             what: _ratio(found["after"][what] / scale, found["before"][what] / scale, points) for what in WHAT
         },
-        "explained": {what: _explained(said["before"][what], said["after"][what], noise) for what in WHAT},
+        "explained": {what: _explained(said["before"][what], said["after"][what], noise, interval) for what in WHAT},
         "noise_floor": noise,
-        "noise_floor_ci95": _of_floor(noise, measured.spare),
+        "noise_floor_ci95": interval,
         "unit": UNIT,
         "per_channel": {
             channel: {
@@ -77,7 +80,7 @@ def _ratio(
     points: Int[np.ndarray, " recording"],
 ) -> dict[str, Any]:
     """What errors are to those before, with the interval of a bootstrap over operating points, as what a model lacks is
-    the same in all recordings of one; no interval where there is one only.
+    the same in all recordings of one; no interval of a few of them, nor where nothing was added.
     """
     known = np.isfinite(before).all(axis=1)
     squares = np.array(
@@ -89,15 +92,17 @@ def _ratio(
     if not len(squares) or not squares[:, 1].any():
         return {"value": None, "ci95": None}
     value, interval = float(np.sqrt(np.divide(*squares.sum(axis=0)))), None
-    if len(squares) > 1:
+    if len(squares) >= FEWEST and (after != before)[known].any():
         drawn = generator("bootstrap of an error").integers(len(squares), size=(RESAMPLES, len(squares)))
         interval = np.quantile(np.sqrt(np.divide(*squares[drawn].sum(axis=1).T)), TAILS).tolist()
     return {"value": value, "ci95": interval}
 
 
-def _explained(before: float | None, after: float | None, floor: float | None) -> float | None:
-    """Share of the squared error beyond noise that is gone; None where there was none beyond it."""
-    if before is None or after is None or floor is None or before <= floor:
+def _explained(
+    before: float | None, after: float | None, floor: float | None, interval: list[float] | None
+) -> float | None:
+    """Share of the squared error beyond noise that is gone; None where there was none clearly beyond it."""
+    if before is None or after is None or floor is None or interval is None or before <= interval[1]:
         return None
     return (before**2 - after**2) / (before**2 - floor**2)
 
