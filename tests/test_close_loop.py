@@ -31,10 +31,11 @@ from swgsim.effects.thermal_growth import ThermalGrowth
 from swgsim.gear import OperatingPoint
 from swgsim.intake.folder import write_folder
 from swgsim.loop import job, model
-from swgsim.loop.answer import NOTHING, Answer, answer
+from swgsim.loop.answer import MOST_NAMED, NOTHING, Answer, answer
 from swgsim.loop.experiment import RECORDINGS, SEPARATED, next_experiments
 from swgsim.loop.reporting.remaining import next_experiment
 from swgsim.loop.reporting.report import report
+from swgsim.loop.screening import Score
 from swgsim.loop.session import Measured
 from swgsim.loop.unit import UNHEARD, Unit
 from swgsim.loop.unnamed import Unnamed
@@ -209,8 +210,6 @@ def test_nothing_is_missing_in_a_sound_gear(folders, capsys):
         "would be seen",
     ]
     assert "eccentric wave generator (r " in printed[-1]
-    undecided = [each["name"].replace("_", " ") for each in said["absorbed"]]
-    assert not undecided or f"cannot be decided, as these recordings absorb them: {undecided[0]}" in printed[0]
     assert said["detectable"]["eccentric_wave_generator"]["value"] < HIDDEN.r
     assert said["error"]["before"] == said["error"]["after"]
 
@@ -229,6 +228,20 @@ def test_what_is_not_listened_to_is_said(found):
     deaf = replace(before, unit=replace(before.unit, inflation=heard))
     said = report(replace(found, closed=replace(found.closed, before=deaf)), ())
     assert (said["unheard"], said["less_certain"]) == (["T_out"], {"s1": [4]})
+
+
+def test_what_cannot_be_decided_is_named_where_nothing_is_missing(found):
+    scores = found.closed.scores
+
+    def ends(*absorbed: Score) -> str:
+        return replace(found, verdict=NOTHING, absorbed=absorbed).sentence.partition(" stands out of it")[2]
+
+    titles = [score.hypothesis.kind.title() for score in scores]
+    beginning = "; cannot be decided, as these recordings absorb them: "
+    assert ends() == "."
+    assert ends(*scores[:2]) == f"{beginning}{titles[0]}, {titles[1]}."
+    many = scores[:1] * (MOST_NAMED + 3)
+    assert ends(*many) == f"{beginning}{', '.join(titles[:1] * MOST_NAMED)} and 3 more."
 
 
 def test_next_experiment_is_named_where_one_helps(found):

@@ -1,8 +1,8 @@
 """Errors of a model on what it was fitted to and on what was left out, and the noise floor of repeats.
 
 Zeros and gains of sessions, and what is left open of the gear, are no error of a model. They are taken out, where the
-other operating points tell that the best model has them, of this model and of that before it, which would hide in them
-what it lacks.
+other operating points, or recordings, tell that the best model has them, of this model and of that before it, which
+would hide in them what it lacks.
 """
 
 from collections.abc import Sequence
