@@ -71,7 +71,7 @@ transfer: data  ## beyond the paper: networks, transfer to gears never seen, rep
 	$(BIN)/python scripts/transfer_report.py grid=$(GEARS) paper_grid=$(GRID) started=$(STARTED)
 	@echo "open report/transfer.html; 'make ui' shows the runs"
 
-loop: $(READY)  ## closing the loop once, from nothing: record, hide an effect, find it; loop/answer/page.html (30 s)
+loop: $(READY)  ## closing the loop once, from nothing: record, hide an effect, find it; loop/answer/page.html (45 s)
 	@set -e; rm -rf loop; \
 	$(BIN)/python scripts/record.py out=loop/commissioning seed=1 sessions.name=commissioning; \
 	$(BIN)/python scripts/record.py out=loop/recordings seed=2 'hidden=[{eccentric_wave_generator: {r: 1.0e-5, theta: 1.0}}]'; \
