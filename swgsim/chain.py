@@ -6,7 +6,6 @@ from functools import cached_property, lru_cache, reduce
 
 import numpy as np
 from jaxtyping import Float
-from scipy.signal import resample
 from threadpoolctl import threadpool_limits
 
 from swgsim.acquisition import Window
@@ -17,6 +16,7 @@ from swgsim.influence import InfluenceMap, harmonics
 from swgsim.motion import Motion, run
 from swgsim.recording import Recording
 from swgsim.recordings import SENSORS
+from swgsim.seeing import Ideal, all_as_seen, as_seen
 from swgsim.structure import Structure, map_of
 from swgsim.turning import Driven, one_turn, settled
 
@@ -24,9 +24,6 @@ SECTORS = 100
 
 # Orders of an influence map below this share of the largest one are left out.
 NEGLIGIBLE = 1e-8
-# Where effects make corners, so many samples are taken for each one that is kept: an error of order lines below a tenth
-# of the noise of a recording.
-DENSER = 8
 
 
 @dataclass(frozen=True)
@@ -123,7 +120,7 @@ def simulate(runs: Sequence[Run], window: Window, sectors: int = SECTORS) -> Sim
     signals = _gauge_signals(runs, motion, of_run, window.samples, sectors)
     ideal = Simulation(signals, motion, of_run)
     seen = {
-        i: _as_seen(each, window.time, channels_of(ideal, i, window.samples), motion.T_out[of_run[i], : window.samples])
+        i: as_seen(_before_effects(each, window.time, ideal, i))
         for i, each in enumerate(runs)
         if any(overrides(effect, "gauge", "acquisition") for effect in each.acting)
     }
@@ -153,14 +150,19 @@ def simulate_turns(runs: Sequence[Run], revolutions: int, points: int, sectors: 
     signals = np.tile(_gauge_signals(runs, motion, of_run, points, sectors), revolutions)
     simulation = Simulation(signals, motion.repeated(revolutions), of_run)
     steps = np.arange(revolutions * points) / points
-    recordings = []
-    for i, each in enumerate(runs):
-        time = steps * 2 * np.pi / each.point.omega_in
-        as_seen = _as_filtered if any(effect.sharp for effect in each.acting) else _as_seen
-        transmitted = simulation.motion.T_out[of_run[i], : len(steps)]
-        seen = as_seen(each, time, channels_of(simulation, i, len(steps)), transmitted)
-        recordings.append(Recording(f"{i + 1}", f"{each.gear.number}", "1", each.point, 1, time, seen, each.conditions))
-    return recordings
+    times = [steps * 2 * np.pi / each.point.omega_in for each in runs]
+    ideal = [_before_effects(*each, simulation, i) for i, each in enumerate(zip(runs, times, strict=True))]
+    return [
+        Recording(f"{i}", f"{each.gear.number}", "1", each.point, 1, time, seen, each.conditions)
+        for i, (each, time, seen) in enumerate(zip(runs, times, all_as_seen(ideal), strict=True), 1)
+    ]
+
+
+def _before_effects(each: Run, time: Float[np.ndarray, " time"], simulation: Simulation, i: int) -> Ideal:
+    """A run of a simulation as it is before effects act on gauges and acquisition."""
+    channels = channels_of(simulation, i, len(time))
+    transmitted = simulation.motion.T_out[simulation.of_run[i], : len(time)]
+    return Ideal(each.acting, Scene(time, channels["phi_in"], transmitted, each.point, each.conditions), channels)
 
 
 def _driven(runs: Sequence[Run]) -> tuple[list[Driven], np.ndarray]:
@@ -198,43 +200,6 @@ def channels_of(simulation: Simulation, i: int, samples: int) -> dict[str, np.nd
         "T_out": motion.T_flange[m, :samples].copy(),
         **dict(zip(SENSORS, simulation.signals[i, :, :samples], strict=True)),
     }
-
-
-def _as_seen(
-    each: Run,
-    time: Float[np.ndarray, " time"],
-    channels: Mapping[str, np.ndarray],
-    transmitted: Float[np.ndarray, " time"],
-) -> Mapping[str, np.ndarray]:
-    """The channels with what the effects make of gauges and acquisition, where the gear transmits a torque [N m]."""
-    scene = Scene(time, channels["phi_in"], transmitted, each.point, each.conditions)
-    signals = np.array([channels[sensor] for sensor in SENSORS])
-    for effect in each.acting:
-        signals = effect.gauge(signals, scene)
-    channels = {**channels, **dict(zip(SENSORS, signals, strict=True))}
-    for effect in each.acting:
-        channels = effect.acquisition(channels, scene)
-    return channels
-
-
-def _as_filtered(
-    each: Run,
-    time: Float[np.ndarray, " time"],
-    channels: Mapping[str, np.ndarray],
-    transmitted: Float[np.ndarray, " time"],
-) -> Mapping[str, np.ndarray]:
-    """The same of whole revolutions, sampled so densely that corners lie where they are; what the effects change is
-    filtered before samples are taken, else the high orders of a corner would pass for low ones.
-    """
-    dense = np.linspace(0, time[1] * len(time), DENSER * len(time), endpoint=False)
-    # The angle goes on from one revolution to the next; what it has beside the mean speed repeats.
-    turning = np.array([[each.point.omega_in * (name == "phi_in")] for name in channels])
-    repeating = np.array(list(channels.values())) - turning * time
-    denser = resample(np.vstack([repeating, transmitted]), len(dense), axis=1)
-    denser, torque = denser[:-1] + turning * dense, denser[-1]
-    seen = _as_seen(each, dense, dict(zip(channels, denser, strict=True)), torque)
-    change = resample(np.array([seen[name] for name in channels]) - denser, len(time), axis=1)
-    return {name: channels[name] + more for name, more in zip(channels, change, strict=True)}
 
 
 def evaluate(

@@ -95,10 +95,10 @@ class OwnLines(Effect):
     def gauge(self, signals: Float[np.ndarray, "5 time"], scene: Scene) -> Float[np.ndarray, "5 time"]:
         """The bridge signals with their lines."""
         bridges, along = _of_gauges(self.lines, self.gauges, self.lobes)
-        waves = along @ _basis(self.lines, scene)
+        waves = along @ self._basis(scene)
         seen = signals.copy()
         # The structure follows the torque at once, and so its ripple.
-        seen[bridges] += (waves * laws(scene.T_out, scene.point.n_in_rpm)[:, None]).sum(axis=0)
+        seen[bridges] += np.einsum("lbt,lt->bt", waves, laws(scene.T_out, scene.point.n_in_rpm))
         return seen
 
     def acquisition(
@@ -106,8 +106,12 @@ class OwnLines(Effect):
     ) -> Mapping[str, Float[np.ndarray, " time"]]:
         """The channels of the drive with their lines."""
         drive, along = _of_drive(self.lines, scene.point)
-        waves = along @ _basis(self.lines, scene)
+        waves = along @ self._basis(scene)
         return {**channels, **{name: channels[name] + wave for name, wave in zip(drive, waves, strict=True)}}
+
+    def _basis(self, scene: Scene) -> Float[np.ndarray, "column time"]:
+        """What the orders of the lines are over time."""
+        return _orders(scene.phi_in.tobytes(), self.lines.values.shape[-1] - 1)
 
 
 # What is asked for in every run of a fit.
@@ -136,7 +140,8 @@ def _of(lines: Lines, names: Sequence[str]) -> Complex[np.ndarray, "law channel 
     return lines.values[:, [lines.channels.index(name) for name in names]]
 
 
-@lru_cache(maxsize=1)  # the gauges and the drive of a run
-def _basis(lines: Lines, scene: Scene) -> Float[np.ndarray, "column time"]:
-    """What the orders of lines are over time."""
-    return basis(scene.phi_in, lines.values.shape[-1] - 1).T
+# Motions are shared by runs that differ in gauges and acquisition, of which a fit has many; 100 kB each at most.
+@lru_cache(maxsize=256)
+def _orders(angles: bytes, orders: int) -> Float[np.ndarray, "column time"]:
+    """What the orders up to one are over time; the angles [rad] are what identifies a motion."""
+    return np.ascontiguousarray(basis(np.frombuffer(angles), orders).T)
