@@ -21,6 +21,7 @@ from swgsim.chain import simulate_turns
 from swgsim.conditions import Conditions
 from swgsim.effects.base import Effect
 from swgsim.effects.eccentric_wave_generator import EccentricWaveGenerator
+from swgsim.effects.fixed_frequency import FixedFrequency
 from swgsim.effects.gauge_gain import GaugeGain
 from swgsim.effects.library import SEARCHED as LIBRARY_SEARCHED
 from swgsim.effects.library import named
@@ -33,6 +34,7 @@ from swgsim.intake.folder import write_folder
 from swgsim.loop import job, model
 from swgsim.loop.answer import MOST_NAMED, NOTHING, Answer, answer
 from swgsim.loop.experiment import RECORDINGS, SEPARATED, next_experiments
+from swgsim.loop.line_parts import Part
 from swgsim.loop.reporting.remaining import next_experiment
 from swgsim.loop.reporting.report import report
 from swgsim.loop.screening import Score
@@ -264,7 +266,7 @@ def test_next_experiment_is_named_where_one_helps(found):
     assert "no recording on the bench tells reduced damping" in str(helpless)
     assert next_experiments(replace(found, absorbed=())) == ()
     # What is unknown in a gear never commissioned may be what it has always had.
-    hum = Unnamed("frequency", 50.0, 1e-3, "s0", chance=1e-9, explained=100.0, reach=0.1, noise=10.0)
+    hum = Unnamed("frequency", 50.0, 1e-9, 100.0, 0.1, 10.0, (Part(FixedFrequency(1e-3), ()),))
     assert next_experiment((), found) is None
     assert "commissioning=FOLDER" in next_experiment((), replace(found, unnamed=(hum,)))["words"]
 

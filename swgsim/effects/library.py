@@ -27,9 +27,11 @@ from swgsim.effects.eccentric_wave_generator import EccentricWaveGenerator
 from swgsim.effects.elastic_hysteresis import ElasticHysteresis
 from swgsim.effects.encoder_eccentricity import EncoderEccentricity
 from swgsim.effects.filter_mismatch import FilterMismatch
+from swgsim.effects.fixed_frequency import FixedFrequency
 from swgsim.effects.flange_gain import FlangeGain
 from swgsim.effects.flange_zero import FlangeZero
 from swgsim.effects.flank_friction import FlankFriction
+from swgsim.effects.fractional_order import FractionalOrder
 from swgsim.effects.gauge_direction import GaugeDirection
 from swgsim.effects.gauge_factor_temperature import GaugeFactorTemperature
 from swgsim.effects.gauge_gain import GaugeGain
@@ -159,7 +161,14 @@ SEARCHED: tuple[type[Effect], ...] = (
     SubOrders,
 )
 # Effects that vary from one recording to the next, stand for several others, or have no cause.
-OTHERS: tuple[type[Effect], ...] = (OutputPosition, ParameterScatter, Regularity, RunIn)
+OTHERS: tuple[type[Effect], ...] = (
+    FixedFrequency,
+    FractionalOrder,
+    OutputPosition,
+    ParameterScatter,
+    Regularity,
+    RunIn,
+)
 LIBRARY: Mapping[str, type[Effect]] = {kind.name(): kind for kind in (*SEARCHED, *OTHERS)}
 
 

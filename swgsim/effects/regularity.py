@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Complex, Float
 
 from swgsim.checks import require_known
 from swgsim.conditions import Conditions
@@ -85,6 +85,11 @@ class Regularity(Effect):
     ) -> Mapping[str, Float[np.ndarray, " time"]]:
         """The channels with the order on those of the pattern."""
         amplitude = self.amplitude * LAWS[self.law](scene.point, scene.conditions)
-        turn = amplitude * np.exp(1j * (self.order * scene.phi_in - self.phase))
-        waves = {name: channels[name] + (weight * turn).real for name, weight in PATTERNS[self.pattern].items()}
-        return {**channels, **waves}
+        return with_wave(channels, self.pattern, amplitude * np.exp(1j * (self.order * scene.phi_in - self.phase)))
+
+
+def with_wave(
+    channels: Mapping[str, Float[np.ndarray, " time"]], pattern: str, turn: Complex[np.ndarray, " time"]
+) -> Mapping[str, Float[np.ndarray, " time"]]:
+    """The channels with a wave on those of a pattern."""
+    return {**channels, **{name: channels[name] + (weight * turn).real for name, weight in PATTERNS[pattern].items()}}

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from swgsim.effects.base import Effect
+from swgsim.effects.line_between import LineBetween
 from swgsim.effects.regularity import Regularity
 from swgsim.effects.text import in_words
 from swgsim.loop.above import above
@@ -81,6 +82,11 @@ class Answer:
         """The physical effects that were found."""
         chain = (effect for effect in self.added if not isinstance(effect, Regularity))
         return (*chain, *(line.effect for line in self.lines))
+
+    @property
+    def bare_lines(self) -> tuple[LineBetween, ...]:
+        """The lines between the orders that none explains, as effects that a model can be given."""
+        return tuple(part.effect for line in self.unnamed for part in line.parts)
 
     @property
     def unexplained(self) -> str:

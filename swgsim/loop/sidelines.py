@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
+from jaxtyping import Float
 from scipy.stats import chi2
 
 from swgsim.effects.base import Effect
@@ -114,12 +115,10 @@ def _judged(effect: Effect, spectra: Sequence[Between], tried: int) -> Sideline:
     noise, luck = by_luck(gain.sum(), numbers, rest.sum(), beside.sum())
     explained = float(gain.sum() - noise * freedom.sum())
     gain, size = gain / noise, size / noise
-    # Power of the effect beyond the noise, in units of its typical size squared.
-    share = float(max(gain.sum() - freedom.sum(), 0.0) / max(size.sum(), 1e-300))
-    expected = freedom + share * size
-    spread = 2 * freedom + 4 * share * size + (2 * TOLERANCE * share * size) ** 2
+    share, expected, variance = by_law(gain, freedom, size)
     used = freedom > 0
-    agrees = float(chi2.sf((((gain - expected) ** 2) / np.maximum(spread, 1e-12))[used].sum(), max(used.sum() - 1, 1)))
+    squares = (gain - expected)[used] ** 2 / variance[used]
+    agrees = float(chi2.sf(squares.sum(), max(used.sum() - 1, 1)))
     chance = float(min(1.0, tried * luck))
     estimate = float(np.clip(getattr(effect, name) * np.sqrt(share), declared[name].low, declared[name].high))
     deviation = float(abs(getattr(effect, name)) / np.sqrt(max(size.sum(), 1e-300)))
@@ -128,6 +127,26 @@ def _judged(effect: Effect, spectra: Sequence[Between], tried: int) -> Sideline:
     return Sideline(
         replace(effect, **{name: estimate}), float(gain.sum()), int(freedom.sum()), chance, deviation, agrees, explained
     )
+
+
+def by_law(
+    gain: Float[np.ndarray, " recording"],
+    freedom: Float[np.ndarray, " recording"],
+    size: Float[np.ndarray, " recording"],
+) -> tuple[float, Float[np.ndarray, " recording"], Float[np.ndarray, " recording"]]:
+    """Power of an effect beyond the noise in units of its own size squared, and the gain that its law, good to
+    TOLERANCE, expects of every recording: mean and variance.
+
+    Parameters
+    ----------
+    gain, freedom : array (recording,)
+        Sum of squares that it explains, in units of the noise, by so many numbers.
+    size : array (recording,)
+        What it would bring at its own size.
+    """
+    share = float(max(gain.sum() - freedom.sum(), 0.0) / max(size.sum(), 1e-300))
+    brought = share * size
+    return share, freedom + brought, 2 * freedom + 4 * brought + (2 * TOLERANCE * brought) ** 2
 
 
 def _zoomed(best: Sideline, spectra: Sequence[Between], tried: int) -> Sideline:

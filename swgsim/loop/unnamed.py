@@ -2,51 +2,23 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.effects.base import Effect, Scene
-from swgsim.effects.quantity import random_phase, size
+from swgsim.effects.fixed_frequency import HIGHEST, FixedFrequency
+from swgsim.effects.fractional_order import FractionalOrder
+from swgsim.effects.line_between import LineBetween
 from swgsim.loop.between import BESIDE, Between, by_luck
 from swgsim.loop.features import FITTED
-from swgsim.recordings import SENSORS
+from swgsim.loop.line_parts import Part, line_parts
 
 KINDS = ("order", "frequency")
 # Times that the distance of the places that are tried is halved.
 ZOOMS = 3
 # Lines to either side that may hold a part of a line between them.
 SPILLED = 1
-
-
-@dataclass(frozen=True)
-class Line(Effect):
-    """A line in one gauge, with another phase in every recording.
-
-    Attributes
-    ----------
-    sensor : str
-    kind : str
-        Of :data:`KINDS`.
-    where : float
-        Order [-] or frequency [Hz].
-    amplitude : float
-        [mV/V]
-    phase : float
-        [rad]
-    """
-
-    sensor: str
-    kind: str
-    where: float
-    amplitude: float = size(unit="mV/V", low=0, high=1, typical=1.0)
-    phase: float = random_phase()
-
-    def gauge(self, signals: Float[np.ndarray, "5 time"], scene: Scene) -> Float[np.ndarray, "5 time"]:
-        """The signals with the line on one of them."""
-        angle = self.where * (scene.phi_in if self.kind == "order" else 2 * np.pi * scene.time)
-        mine = np.array([sensor == self.sensor for sensor in SENSORS])
-        return signals + mine[:, None] * self.amplitude * np.cos(angle + self.phase)
 
 
 @dataclass(frozen=True)
@@ -59,10 +31,6 @@ class Unnamed:
         Of :data:`KINDS`: an order of the wave generator, or a frequency.
     at : float
         Where it lies [-] or [Hz].
-    amplitude : float
-        Root mean square over the recordings of its amplitude in the gauge where it is largest [mV/V].
-    gauge : str
-        That gauge.
     chance : float
         Of as much by noise anywhere.
     explained : float
@@ -71,21 +39,27 @@ class Unnamed:
         To which its place is known.
     noise : float
         Sum of squares that the noise beside it makes of its numbers, in units of the floor.
+    parts : tuple of Part
+        Its pattern over the gauges and its law; several if no pattern explains it.
     """
 
     kind: str
     at: float
-    amplitude: float
-    gauge: str
     chance: float
     explained: float
     reach: float
     noise: float
+    parts: tuple[Part, ...] = ()
 
-    def effects(self, gauges: Sequence[str]) -> list[Effect]:
+    def effects(self, gauges: Sequence[str]) -> list[LineBetween]:
         """Whatever it may be in these gauges, its place being known to its reach."""
         places = self.at + self.reach * np.array([-1.0, 0.0, 1.0])
-        return [Line(gauge, self.kind, float(place), 1.0) for gauge in gauges for place in places]
+        return [line for place in places.tolist() for line in self._in(gauges, place)]
+
+    def told(self, spectra: Sequence[Between], level: float) -> "Unnamed":
+        """The line with its parts, where a gauge is a false one with this probability."""
+        make = partial(_line, self.kind, self.at)
+        return replace(self, parts=line_parts(make, self.explained, spectra, level))
 
     def refined(self, spectra: Sequence[Between]) -> "Unnamed":
         """The line where it explains most, no longer at a place of the grid, between two of which it loses half."""
@@ -96,15 +70,24 @@ class Unnamed:
         return found
 
     def _at(self, place: float, spectra: Sequence[Between]) -> "Unnamed":
-        held = sum(each.held([Line(gauge, self.kind, place, 1.0) for gauge in each.gauges]) for each in spectra)
+        held = sum(each.held(self._in(each.gauges, place)) for each in spectra)
         return replace(self, at=place, explained=float(held - self.noise))
+
+    def _in(self, gauges: Sequence[str], place: float) -> list[LineBetween]:
+        """The line at a place, of its own in each of these gauges."""
+        return [_line(self.kind, place, f"in {gauge} alone") for gauge in gauges]
 
     def __str__(self) -> str:
         where = f"order {self.at:.2f}" if self.kind == "order" else f"{self.at:.1f} Hz"
-        return (
-            f"a line at {where} with another phase in every recording, amplitude {self.amplitude:.3g} mV/V in "
-            f"{self.gauge}, where it is largest"
-        )
+        many = f"in {len(self.parts)} gauges of no common phase, most of it " if len(self.parts) > 1 else ""
+        return f"a line at {where} with another phase in every recording, {many}{self.parts[0]}"
+
+
+def _line(kind: str, place: float, pattern: str) -> LineBetween:
+    """A line of a size at which it is easily told from rounding."""
+    if kind == "order":
+        return FractionalOrder(1.0, pattern=pattern, order=place)
+    return FixedFrequency(1.0, pattern=pattern, frequency=min(place, HIGHEST))
 
 
 def unnamed(spectra: Sequence[Between], level: float) -> Unnamed | None:
@@ -119,7 +102,7 @@ def unnamed(spectra: Sequence[Between], level: float) -> Unnamed | None:
     """
     found = [line for kind in KINDS for line in _best(spectra, kind, level)] if spectra else []
     best = max(found, key=lambda line: line.explained, default=None)
-    return best.refined(spectra) if best else None
+    return best.refined(spectra).told(spectra, level) if best else None
 
 
 def _best(spectra: Sequence[Between], kind: str, level: float) -> list[Unnamed]:
@@ -129,7 +112,7 @@ def _best(spectra: Sequence[Between], kind: str, level: float) -> list[Unnamed]:
     """
     steps = [each.step if kind == "frequency" else 1 / each.revolutions for each in spectra]
     end = FITTED * max(1.0 if kind == "order" else each.revolutions * each.step for each in spectra)
-    grid = np.arange(min(steps), end, min(steps) / 2)
+    grid = np.arange(min(steps), min(end, HIGHEST), min(steps) / 2)
     gain, freedom, rest, beside, seen = np.zeros((5, len(grid)))
     for each, step in zip(spectra, steps, strict=True):
         line = np.round(grid / step).astype(int) - 1
@@ -152,15 +135,8 @@ def _best(spectra: Sequence[Between], kind: str, level: float) -> list[Unnamed]:
     most = int(np.argmax(explained))
     if chances[most] > level:
         return []
-    best = tried[most]
-    amplitude = _amplitudes(spectra, [round(grid[best] / step) - 1 for step in steps])
-    largest = int(np.argmax(amplitude))
-    return [
-        Unnamed(
-            kind, float(grid[best]), float(amplitude[largest]), spectra[0].gauges[largest], float(chances[most]),
-            float(explained[most]), min(steps) / 2, float(by_noise[most]),
-        )
-    ]  # fmt: skip
+    known = float(chances[most]), float(explained[most]), min(steps) / 2, float(by_noise[most])
+    return [Unnamed(kind, float(grid[tried[most]]), *known)]
 
 
 def _beside(lines: Float[np.ndarray, " line"]) -> Float[np.ndarray, " line"]:
@@ -168,13 +144,3 @@ def _beside(lines: Float[np.ndarray, " line"]) -> Float[np.ndarray, " line"]:
     window = np.ones(2 * BESIDE + 1)
     window[BESIDE - SPILLED : BESIDE + SPILLED + 1] = 0
     return np.convolve(np.pad(lines, BESIDE), window, "valid")
-
-
-def _amplitudes(spectra: Sequence[Between], lines: Sequence[int]) -> Float[np.ndarray, " gauge"]:
-    """Amplitude of a line in every gauge [mV/V], root mean square over the recordings that show it."""
-    squares = [
-        4 * np.maximum(each.power[:, line] - 2, 0) / each.scale[:, line] ** 2
-        for each, line in zip(spectra, lines, strict=True)
-        if 0 <= line < len(each.clear) and each.clear[line]
-    ]
-    return np.sqrt(np.mean(squares, axis=0))

@@ -1,7 +1,6 @@
 """What remains open: the unknown, what cannot be tested, what would have been seen, and what to record next."""
 
 from collections.abc import Sequence
-from dataclasses import asdict
 from typing import Any
 
 from swgsim.effects.base import Effect
@@ -13,6 +12,7 @@ from swgsim.loop.reporting.effects import names, why
 from swgsim.loop.reporting.numbers import number
 from swgsim.loop.screening import Score
 from swgsim.loop.sidelines import acts_on_signals, is_random
+from swgsim.loop.unnamed import Unnamed
 from swgsim.loop.vocabulary import Atom, Described
 
 
@@ -22,14 +22,16 @@ def unknown(answer: Answer) -> dict[str, Any] | None:
         return None
     patches = {Atom(patch.order, patch.pattern, patch.law) for patch in answer.patches}
     atoms = [_described(each) | {"added": each.atom in patches} for each in answer.unknown]
+    lines = [_line(each) for each in answer.unnamed]
+    first = next(iter(atoms or (part for line in lines for part in line["parts"])), {"pattern": None, "law": None})
     return {
         "words": answer.unexplained,
         "orders": sorted({each["order"] for each in atoms}),
-        "pattern": atoms[0]["pattern"] if atoms else None,
-        "law": atoms[0]["law"] if atoms else None,
+        "pattern": first["pattern"],
+        "law": first["law"],
         "regularities": atoms,
-        "lines": [asdict(line) | {"words": str(line)} for line in answer.unnamed],
-        "effects": entries([each.effect for each in answer.unknown]),
+        "lines": lines,
+        "effects": entries([*(each.effect for each in answer.unknown), *answer.bare_lines]),
         "added": entries(answer.patches),
         "nearest": _nearest(answer),
     }
@@ -52,6 +54,26 @@ def _described(each: Described) -> dict[str, Any]:
         "amplitude": number(each.amplitude),
         "phase": number(each.phase),
         "chance": number(each.chance),
+    }
+
+
+def _line(line: Unnamed) -> dict[str, Any]:
+    return {
+        "words": str(line),
+        "kind": line.kind,
+        "at": number(line.at),
+        "reach": number(line.reach),
+        "chance": number(line.chance),
+        "parts": [
+            {
+                "words": str(part),
+                "pattern": part.effect.pattern,
+                "law": part.effect.law,
+                "rivals": list(part.rivals),
+                "amplitude": number(part.effect.amplitude),
+            }
+            for part in line.parts
+        ],
     }
 
 
