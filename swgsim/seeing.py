@@ -47,10 +47,10 @@ def as_seen(ideal: Ideal) -> Mapping[str, Float[np.ndarray, " time"]]:
 
 
 def all_as_seen(turns: Sequence[Ideal]) -> list[Mapping[str, Float[np.ndarray, " time"]]]:
-    """The same of runs of whole revolutions of as many samples; corners lie where they are.
+    """The same of many runs of whole revolutions, all of as many samples, with corners where they belong.
 
-    With an effect that makes some, a run is sampled so densely that they do, and what the effects change is filtered
-    before samples are taken, else the high orders of a corner would pass for low ones.
+    A run with an effect that makes corners is sampled so densely that they lie where they belong, and what its effects
+    change is filtered before samples are taken, else the high orders of a corner would pass for low ones.
     """
     sharp = [ideal for ideal in turns if any(effect.sharp for effect in ideal.effects)]
     some = (sharp[i : i + AT_ONCE] for i in range(0, len(sharp), AT_ONCE))
@@ -59,7 +59,7 @@ def all_as_seen(turns: Sequence[Ideal]) -> list[Mapping[str, Float[np.ndarray, "
 
 
 def _filtered(turns: Sequence[Ideal]) -> Iterator[Mapping[str, Float[np.ndarray, " time"]]]:
-    """Those that have corners."""
+    """The channels of runs with corners, from signals that were sampled densely and filtered."""
     names, samples = list(turns[0].channels), len(turns[0].scene.time)
     time = np.array([ideal.scene.time for ideal in turns])
     dense = np.arange(DENSER * samples) / DENSER * time[:, 1:2]

@@ -22,6 +22,7 @@ from swgsim.effects.signal_hysteresis import SignalHysteresis
 from swgsim.gear import OperatingPoint
 from swgsim.loop.features import Layout, features
 from swgsim.recordings import SENSORS
+from swgsim.seeing import AT_ONCE
 
 POINT = OperatingPoint(2000, 39)
 WINDOW = Window()
@@ -129,3 +130,15 @@ def test_where_nothing_is_clipped_other_effects_act_as_without_a_limit() -> None
     plain, dense = (each.channels for each in simulate_turns(runs, 1, 64, SECTORS))
     for name, values in plain.items():
         np.testing.assert_allclose(dense[name], values, rtol=0, atol=1e-9)
+
+
+def test_many_runs_are_seen_as_each_of_them_alone() -> None:
+    """More with corners than are filtered at once, among others without."""
+    limits = [[Clipping(0.1 + 0.005 * i)] * (i % 3 > 0) for i in range(2 * AT_ONCE)]
+    runs = [Run(GEAR, OperatingPoint(2000, 60 + i % 2), tuple(limit)) for i, limit in enumerate(limits)]
+    assert sum(map(bool, limits)) > AT_ONCE
+    together = simulate_turns(runs, 1, 64, SECTORS)
+    for run, among in list(zip(runs, together, strict=True))[::9]:
+        (alone,) = simulate_turns([run], 1, 64, SECTORS)
+        for name, values in alone.channels.items():
+            np.testing.assert_allclose(among.channels[name], values, rtol=0, atol=1e-12)

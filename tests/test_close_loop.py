@@ -21,7 +21,7 @@ from swgsim.chain import simulate_turns
 from swgsim.conditions import Conditions
 from swgsim.effects.base import Effect
 from swgsim.effects.eccentric_wave_generator import EccentricWaveGenerator
-from swgsim.effects.fixed_frequency import FixedFrequency
+from swgsim.effects.fractional_order import FractionalOrder
 from swgsim.effects.gauge_gain import GaugeGain
 from swgsim.effects.library import SEARCHED as LIBRARY_SEARCHED
 from swgsim.effects.library import named
@@ -45,6 +45,11 @@ from swgsim.recording import Recording
 from swgsim.settings import gear
 from swgsim.virtual_bench import Instruments, Sessions, record_sessions
 
+PARTS = (
+    Part(FractionalOrder(2e-3, pattern="in s2 alone", order=5.37), ("proportional to the load",)),
+    Part(FractionalOrder(1e-3, pattern="in s0 alone", order=5.37), ()),
+)
+WHISTLE = Unnamed("order", 5.37, 1e-9, 100.0, 0.01, 10.0, PARTS)
 pytestmark = pytest.mark.end_to_end
 CONF = Path(__file__).parent.parent / "conf"
 GEAR = yaml.safe_load((CONF / "gear" / "gear1.yaml").read_text())
@@ -266,9 +271,25 @@ def test_next_experiment_is_named_where_one_helps(found):
     assert "no recording on the bench tells reduced damping" in str(helpless)
     assert next_experiments(replace(found, absorbed=())) == ()
     # What is unknown in a gear never commissioned may be what it has always had.
-    hum = Unnamed("frequency", 50.0, 1e-9, 100.0, 0.1, 10.0, (Part(FixedFrequency(1e-3), ()),))
     assert next_experiment((), found) is None
-    assert "commissioning=FOLDER" in next_experiment((), replace(found, unnamed=(hum,)))["words"]
+    assert "commissioning=FOLDER" in next_experiment((), replace(found, unnamed=(WHISTLE,)))["words"]
+
+
+def test_lines_that_nothing_explains_are_reported_and_given_back_as_effects(found, tmp_path):
+    """With the declared effects of their kind; the strongest part leads."""
+    whistling = replace(found, unnamed=(WHISTLE,))
+    said = report(whistling, [LoadSharing], (), (), 1.0)
+    unknown = said["unknown"]
+    assert (unknown["orders"], unknown["pattern"], unknown["law"]) == ([5.37], "in s2 alone", "constant")
+    (line,) = unknown["lines"]
+    assert (line["kind"], line["at"], line["parts"][0]["rivals"]) == ("order", 5.37, ["proportional to the load"])
+    assert line["words"] in unknown["words"]
+    assert unknown["effects"] == [
+        {"fractional_order": {"amplitude": a, "phase": 0.0, "pattern": p, "law": "constant", "order": 5.37}}
+        for a, p in ((2e-3, "in s2 alone"), (1e-3, "in s0 alone"))
+    ]
+    job.write(tmp_path, whistling, said)
+    assert from_text((tmp_path / "effects.yaml").read_text(), "answer") == tuple(p.effect for p in WHISTLE.parts)
 
 
 def test_recordings_that_do_not_belong_together_are_refused(folders, tmp_path):

@@ -9,14 +9,16 @@ from sideline_fixtures import measured
 
 from swgsim.conditions import Conditions
 from swgsim.effects.base import Effect, Scene
-from swgsim.effects.fixed_frequency import HIGHEST, FixedFrequency
+from swgsim.effects.fixed_frequency import FixedFrequency
 from swgsim.effects.fractional_order import FractionalOrder
 from swgsim.effects.library import LIBRARY
-from swgsim.effects.line_between import LineBetween
+from swgsim.effects.line_between import GAUGE_PATTERNS, LineBetween
 from swgsim.effects.text import as_text, from_text
 from swgsim.loop.between import between
+from swgsim.loop.line_parts import distinct_patterns
 from swgsim.loop.lines import search
 from swgsim.loop.unnamed import Unnamed
+from swgsim.recordings import SENSORS
 
 KINDS = [LIBRARY["bearing_cage"], LIBRARY["mains_hum"]]
 ROUND = "one wave that turns with the wave generator (or three against it)"
@@ -52,7 +54,7 @@ def test_pattern_law_and_size_are_told(name):
 
 @pytest.mark.parametrize("name", LINES)
 def test_what_is_told_can_be_declared(name):
-    """Written, read and given back, nothing of it is left; nor with the line that was hidden."""
+    """Written, read and given back, nothing of it is found again; nor with the line that was hidden."""
     (line,) = found((LINES[name],), 2)
     told = from_text(as_text([part.effect for part in line.parts]), "answer")
     assert told == tuple(part.effect for part in line.parts)
@@ -60,12 +62,47 @@ def test_what_is_told_can_be_declared(name):
         assert found((LINES[name],), 2, known=declared) == ()
 
 
-def test_gauges_of_no_common_phase_are_told_one_by_one():
-    loud, quiet = (FractionalOrder(a, 0.0, f"in {s} alone", order=5.37) for a, s in ((5e-3, "s3"), (2e-3, "s0")))
-    (line,) = found((loud, quiet), 3)
+@pytest.mark.parametrize("quieter", [2.5, 10.0])
+def test_gauges_of_no_common_phase_are_told_one_by_one(quieter):
+    """A line in one is no noise beside that of another."""
+    sizes = {"s3": 2e-2, "s0": 2e-2 / quieter}
+    hidden = tuple(FractionalOrder(size, 0.0, f"in {sensor} alone", order=5.37) for sensor, size in sizes.items())
+    (line,) = found(hidden, 3)
     assert [part.effect.pattern for part in line.parts] == ["in s3 alone", "in s0 alone"]
-    assert [part.effect.amplitude for part in line.parts] == pytest.approx([5e-3, 2e-3], rel=0.2)
-    assert "in 2 gauges of no common phase, most of it in s3 alone" in str(line)
+    assert [part.effect.amplitude for part in line.parts] == pytest.approx(list(sizes.values()), rel=0.1)
+    assert "in s3, constant, amplitude" in str(line)
+    assert str(line).endswith("; smaller, and in no simple pattern with it, in s0")
+    assert found(hidden, 3, known=tuple(part.effect for part in line.parts)) == ()
+
+
+def test_a_gauge_beside_a_pattern_is_told_too():
+    opposite, beside = LINES["by load"], FractionalOrder(4e-4, 0.0, "in s0 alone", order=5.37)
+    (line,) = found((opposite, beside), 8)
+    assert [part.effect.pattern for part in line.parts] == [opposite.pattern, "in s0 alone"]
+
+
+def test_patterns_are_those_that_the_recorded_gauges_tell_apart():
+    assert distinct_patterns(SENSORS) == list(GAUGE_PATTERNS)
+    assert distinct_patterns(["s1", "s3"]) == [
+        "opposite in s1 and s3", "in s1 alone", "in s3 alone", "the same in s1 to s4",
+    ]  # fmt: skip
+
+
+def test_a_gauge_that_was_not_recorded_hides_no_pattern():
+    recordings = measured((FractionalOrder(1e-3, order=5.37),), 6)
+    without = [replace(r, channels={n: v for n, v in r.channels.items() if n != "s4"}) for r in recordings]
+    (line,) = search(between(without), KINDS, 0.005).unnamed
+    assert [part.effect.pattern for part in line.parts] == ["the same in all gauges"]
+
+
+@pytest.mark.end_to_end
+@pytest.mark.parametrize("line", [FractionalOrder(3e-2, order=5.3712), FixedFrequency(3e-2, frequency=217.3)])
+def test_what_is_told_can_be_declared_of_long_recordings(line):
+    """Their lines lie closer together than a hundredth of what is searched."""
+    spectra = between(measured((line,), 7, POINTS[:4], revolutions=120))
+    (told,) = search(spectra, KINDS, 0.005).unnamed
+    for declared in ([part.effect for part in told.parts], [line]):
+        assert search(spectra, KINDS, 0.005, declared).unnamed == ()
 
 
 def test_one_operating_point_tells_no_law():
@@ -96,5 +133,5 @@ def test_bad_lines_are_refused():
     with pytest.raises(ValueError, match="unknown choice 'cubic' of law of fixed frequency; choose from"):
         FixedFrequency(1e-3, law="cubic")
     with pytest.raises(ValueError, match="frequency"):
-        FixedFrequency(1e-3, frequency=2 * HIGHEST)
+        FixedFrequency(1e-3, frequency=5000.0)
     assert issubclass(FractionalOrder, LineBetween)

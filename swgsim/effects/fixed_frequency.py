@@ -9,8 +9,6 @@ from swgsim.effects.base import Scene
 from swgsim.effects.line_between import LineBetween
 from swgsim.effects.quantity import shape
 
-HIGHEST = 4000.0
-
 
 @dataclass(frozen=True)
 class FixedFrequency(LineBetween):
@@ -25,7 +23,7 @@ class FixedFrequency(LineBetween):
         [Hz], from 0 to 4000.
     """
 
-    frequency: float = shape(25.0, unit="Hz", low=0, high=HIGHEST, points=4001)
+    frequency: float = shape(25.0, unit="Hz", low=0, high=4000, points=4001)
 
     def angle(self, scene: Scene) -> Float[np.ndarray, " time"]:
         """How far the line has turned since the trigger [rad]."""

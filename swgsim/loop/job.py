@@ -112,9 +112,9 @@ def write(folder: Path, found: Answer, said: Mapping[str, Any]) -> dict[str, "Fi
 
     drawn = pictures(found, said)
     html = page(said, [picture for picture, _ in drawn.values()])
-    between = (*found.known, *(line.effect for line in found.lines), *found.bare_lines)
+    beside = (*found.known, *(line.effect for line in found.lines), *found.bare_lines)
     write_json(folder / "report.json", said)
-    write_text(folder / "effects.yaml", as_text((*found.closed.after.model.effects, *between)))
+    write_text(folder / "effects.yaml", as_text((*found.closed.after.model.effects, *beside)))
     write_text(folder / "page.html", html)
     return {name: each for name, (_, each) in drawn.items()}
 

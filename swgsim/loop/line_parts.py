@@ -34,29 +34,46 @@ class Part:
         return f"{self.effect.pattern}, {law}, amplitude {self.effect.amplitude:.3g} mV/V"
 
 
-def line_parts(
-    line: Callable[[str], LineBetween], explained: float, spectra: Sequence[Between], level: float
-) -> tuple[Part, ...]:
-    """The line in the pattern that explains it; if none does, in every gauge that shows it, the strongest first.
+def line_parts(line: Callable[[str], LineBetween], spectra: Sequence[Between], level: float) -> tuple[Part, ...]:
+    """The line in the pattern that explains most of it, and in every further gauge that shows it; in every gauge by
+    itself if that explains clearly more than the pattern does. The strongest comes first.
 
     Parameters
     ----------
     line : callable
         Pattern to the line in it.
-    explained : float
-        Sum of squares that it explains in all gauges, of any size and phase in each.
     spectra : sequence of Between
         Which show it.
     level : float
         Probability of a false gauge.
     """
-    gauges = set(spectra[0].gauges)
-    shown = [_Shown.of(line(name), spectra) for name, pattern in GAUGE_PATTERNS.items() if set(pattern) <= gauges]
-    best = max(shown, key=lambda each: each.explained)
-    if explained <= (1 + OUTDONE_SHARE) * best.explained + OUTDONE:
-        return (best.part(spectra),)
-    alone = [each for each in shown if len(GAUGE_PATTERNS[each.line.pattern]) == 1 and each.chance <= level]
-    return tuple(each.part(spectra) for each in sorted(alone or [best], key=lambda each: -each.explained))
+    gauges = spectra[0].gauges
+    patterns = [_Shown.of(line(name), spectra) for name in distinct_patterns(gauges)]
+    best = max(patterns, key=lambda each: each.explained)
+    alone = {gauge: _alone(gauge, line, spectra) for gauge in gauges}
+    within = [gauge for gauge in gauges if gauge in GAUGE_PATTERNS[best.line.pattern]]
+    apart = sum(alone[gauge].explained for gauge in within)
+    together = apart <= (1 + OUTDONE_SHARE) * best.explained + OUTDONE
+    further = [each for gauge, each in alone.items() if each.chance <= level and not (together and gauge in within)]
+    found = [best, *further] if together or not further else further
+    return tuple(each.part() for each in sorted(found, key=lambda each: -each.explained))
+
+
+def distinct_patterns(gauges: Sequence[str]) -> list[str]:
+    """The patterns that these gauges tell from each other; first those of which every gauge is among them."""
+    found: dict[tuple, str] = {}
+    for name, pattern in sorted(GAUGE_PATTERNS.items(), key=lambda each: not set(each[1]) <= set(gauges)):
+        weights = [pattern.get(gauge, 0) for gauge in gauges]
+        turn = next((weight for weight in weights if weight), None)
+        if turn is not None:
+            found.setdefault(tuple(weight / turn for weight in weights), name)
+    return list(found.values())
+
+
+def _alone(gauge: str, line: Callable[[str], LineBetween], spectra: Sequence[Between]) -> "_Shown":
+    """The line in one gauge, where those of the others are no noise beside it."""
+    others = [line(f"in {other} alone") for other in spectra[0].gauges if other != gauge]
+    return _Shown.of(line(f"in {gauge} alone"), [each.without(others) for each in spectra] if others else spectra)
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +83,7 @@ class _Shown:
     """
 
     line: LineBetween
+    spectra: Sequence[Between]
     gain: Float[np.ndarray, " recording"]
     freedom: Float[np.ndarray, " recording"]
     size: Float[np.ndarray, " recording"]
@@ -77,24 +95,25 @@ class _Shown:
         """Of a line whose law is constant."""
         gain, freedom, size, rest, beside = np.array([each.explained(line) for each in spectra]).T
         noise, chance = by_luck(gain.sum(), max(freedom.sum(), 1.0), rest.sum(), beside.sum())
-        return cls(line, gain / noise, freedom, size / noise, float(gain.sum() - noise * freedom.sum()), float(chance))
+        explained = float(gain.sum() - noise * freedom.sum())
+        return cls(line, spectra, gain / noise, freedom, size / noise, explained, float(chance))
 
-    def part(self, spectra: Sequence[Between]) -> Part:
+    def part(self) -> Part:
         """The line by the simplest of the laws that explain it best."""
-        likely = {name: each for name in LAWS if (each := self._by(name, spectra))}
+        likely = {name: self._by(name) for name in LAWS}
         best = max(log_likelihood for log_likelihood, _ in likely.values())
         law, *rivals = [name for name, (log_likelihood, _) in likely.items() if best - log_likelihood < LEAST_GAIN]
-        highest = quantities(type(self.line))["amplitude"].high
-        amplitude = min(self.line.amplitude * likely[law][1], highest)
-        return Part(replace(self.line, law=law, amplitude=float(amplitude)), tuple(rivals))
+        return Part(replace(self.line, law=law, amplitude=likely[law][1]), tuple(rivals))
 
-    def _by(self, law: str, spectra: Sequence[Between]) -> tuple[float, float] | None:
-        """Log-likelihood of a law and factor on the size by it; None for one that has no line in any recording."""
-        factors = np.array([LAWS[law](each.scene.point, each.scene.conditions) for each in spectra])
-        size = self.size * factors**2
-        if not size.any():
-            return None
-        share, expected, variance = by_law(self.gain, self.freedom, size)
+    def _by(self, law: str) -> tuple[float, float]:
+        """Log-likelihood of a law, and the amplitude by it; where that would lie beyond its bounds, only a constant is
+        left.
+        """
+        factors = np.array([LAWS[law](each.scene.point, each.scene.conditions) for each in self.spectra])
+        share, expected, variance = by_law(self.gain, self.freedom, self.size * factors**2)
+        amplitude, highest = self.line.amplitude * float(np.sqrt(share)), quantities(type(self.line))["amplitude"].high
+        if law != "constant" and (amplitude > highest or not factors.any()):
+            return -np.inf, 0.0
         used = self.freedom > 0
         squares = (self.gain - expected)[used] ** 2 / variance[used]
-        return -0.5 * float((squares + np.log(variance[used])).sum()), float(np.sqrt(share))
+        return -0.5 * float((squares + np.log(variance[used])).sum()), min(amplitude, highest)

@@ -140,7 +140,7 @@ def _of(lines: Lines, names: Sequence[str]) -> Complex[np.ndarray, "law channel 
     return lines.values[:, [lines.channels.index(name) for name in names]]
 
 
-# Motions are shared by runs that differ in gauges and acquisition, of which a fit has many; 100 kB each at most.
+# Motions are shared by runs that differ in gauges and acquisition, of which a fit has many; 135 kB each at most.
 @lru_cache(maxsize=256)
 def _orders(angles: bytes, orders: int) -> Float[np.ndarray, "column time"]:
     """What the orders up to one are over time; the angles [rad] are what identifies a motion."""

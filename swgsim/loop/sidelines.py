@@ -86,9 +86,15 @@ def ranked(spectra: Sequence[Between], kinds: Iterable[type[Effect]]) -> list[Si
 
 
 def nearby(effect: Effect, spectra: Sequence[Between]) -> list[Effect]:
-    """An effect and its neighbours: where its line lies is known to a part of the last zoom."""
-    reaches = {name: _spacing(quantities(type(effect))[name], spectra) / 2**ZOOMS for name in _searched(effect)}
-    return [effect, *(each for name, reach in reaches.items() for each in _around(effect, name, reach))]
+    """An effect and its neighbours: where its line lies is known to a part of the last zoom, which begins at the
+    distance of two lines or at that of the values that were tried.
+    """
+    found = [effect]
+    for name in _searched(effect):
+        quantity = quantities(type(effect))[name]
+        for spacing in {_apart(quantity, spectra), _spacing(quantity, spectra)}:
+            found += _around(effect, name, spacing / 2**ZOOMS)
+    return found
 
 
 def has_sidelines(kind: type[Effect]) -> bool:
@@ -134,8 +140,10 @@ def by_law(
     freedom: Float[np.ndarray, " recording"],
     size: Float[np.ndarray, " recording"],
 ) -> tuple[float, Float[np.ndarray, " recording"], Float[np.ndarray, " recording"]]:
-    """Power of an effect beyond the noise in units of its own size squared, and the gain that its law, good to
-    TOLERANCE, expects of every recording: mean and variance.
+    """What an effect's law, good to TOLERANCE, makes of its gains.
+
+    The power of the effect beyond the noise, in units of its own size squared, so that the law as a whole fits; and
+    what is expected of every recording's gain then: mean and variance.
 
     Parameters
     ----------
@@ -173,10 +181,14 @@ def _tried(quantity: Quantity, spectra: Sequence[Between]) -> tuple[float, ...]:
 
 
 def _spacing(quantity: Quantity, spectra: Sequence[Between]) -> float:
-    """Distance of the values that are tried: no more than that of two lines of the finest spectrum."""
+    """Distance of the values that are tried: that of two lines, or as many as can be."""
+    return max(_apart(quantity, spectra), (quantity.high - quantity.low) / MOST_TRIED)
+
+
+def _apart(quantity: Quantity, spectra: Sequence[Between]) -> float:
+    """Distance that is declared, and no more than that of two lines of the finest spectrum."""
     declared = (quantity.high - quantity.low) / (quantity.points - 1)
-    finest = min(each.step if quantity.unit == "Hz" else 1 / each.revolutions for each in spectra)
-    return max(min(declared, finest), (quantity.high - quantity.low) / MOST_TRIED)
+    return min(declared, min(each.step if quantity.unit == "Hz" else 1 / each.revolutions for each in spectra))
 
 
 def _around(effect: Effect, name: str, reach: float) -> list[Effect]:

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.effects.fixed_frequency import HIGHEST, FixedFrequency
+from swgsim.effects.fixed_frequency import FixedFrequency
 from swgsim.effects.fractional_order import FractionalOrder
 from swgsim.effects.line_between import LineBetween
 from swgsim.loop.between import BESIDE, Between, by_luck
@@ -59,7 +59,7 @@ class Unnamed:
     def told(self, spectra: Sequence[Between], level: float) -> "Unnamed":
         """The line with its parts, where a gauge is a false one with this probability."""
         make = partial(_line, self.kind, self.at)
-        return replace(self, parts=line_parts(make, self.explained, spectra, level))
+        return replace(self, parts=line_parts(make, spectra, level))
 
     def refined(self, spectra: Sequence[Between]) -> "Unnamed":
         """The line where it explains most, no longer at a place of the grid, between two of which it loses half."""
@@ -79,15 +79,22 @@ class Unnamed:
 
     def __str__(self) -> str:
         where = f"order {self.at:.2f}" if self.kind == "order" else f"{self.at:.1f} Hz"
-        many = f"in {len(self.parts)} gauges of no common phase, most of it " if len(self.parts) > 1 else ""
-        return f"a line at {where} with another phase in every recording, {many}{self.parts[0]}"
+        return f"a line at {where} with another phase in every recording{self._of_parts}"
+
+    @property
+    def _of_parts(self) -> str:
+        if len(self.parts) < 2:
+            return "".join(f", {part}" for part in self.parts)
+        first, *others = (f"{part}".replace(" alone", "", 1) for part in self.parts)
+        further = " and ".join(each.partition(",")[0] for each in others)
+        return f", {first}; smaller, and in no simple pattern with it, {further}"
 
 
 def _line(kind: str, place: float, pattern: str) -> LineBetween:
     """A line of a size at which it is easily told from rounding."""
     if kind == "order":
         return FractionalOrder(1.0, pattern=pattern, order=place)
-    return FixedFrequency(1.0, pattern=pattern, frequency=min(place, HIGHEST))
+    return FixedFrequency(1.0, pattern=pattern, frequency=place)
 
 
 def unnamed(spectra: Sequence[Between], level: float) -> Unnamed | None:
@@ -112,7 +119,7 @@ def _best(spectra: Sequence[Between], kind: str, level: float) -> list[Unnamed]:
     """
     steps = [each.step if kind == "frequency" else 1 / each.revolutions for each in spectra]
     end = FITTED * max(1.0 if kind == "order" else each.revolutions * each.step for each in spectra)
-    grid = np.arange(min(steps), min(end, HIGHEST), min(steps) / 2)
+    grid = np.arange(min(steps), end, min(steps) / 2)
     gain, freedom, rest, beside, seen = np.zeros((5, len(grid)))
     for each, step in zip(spectra, steps, strict=True):
         line = np.round(grid / step).astype(int) - 1

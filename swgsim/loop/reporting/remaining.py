@@ -17,18 +17,23 @@ from swgsim.loop.vocabulary import Atom, Described
 
 
 def unknown(answer: Answer) -> dict[str, Any] | None:
-    """What no effect of the library explains, in words and numbers, and as effects that can be added."""
+    """What no effect of the library explains, in words and numbers, and as effects that can be added.
+
+    ``orders`` are those of regularities and of lines between them, ``pattern`` and ``law`` those of the first
+    regularity, or of the first line if there is none.
+    """
     if not answer.unexplained:
         return None
     patches = {Atom(patch.order, patch.pattern, patch.law) for patch in answer.patches}
     atoms = [_described(each) | {"added": each.atom in patches} for each in answer.unknown]
     lines = [_line(each) for each in answer.unnamed]
-    first = next(iter(atoms or (part for line in lines for part in line["parts"])), {"pattern": None, "law": None})
+    leading = next(iter(atoms or (line["parts"][0] for line in lines)), {"pattern": None, "law": None})
+    orders = {each["order"] for each in atoms} | {line["at"] for line in lines if line["kind"] == "order"}
     return {
         "words": answer.unexplained,
-        "orders": sorted({each["order"] for each in atoms}),
-        "pattern": first["pattern"],
-        "law": first["law"],
+        "orders": sorted(orders),
+        "pattern": leading["pattern"],
+        "law": leading["law"],
         "regularities": atoms,
         "lines": lines,
         "effects": entries([*(each.effect for each in answer.unknown), *answer.bare_lines]),
