@@ -26,7 +26,7 @@ class Clipping(Effect):
 
     place = "acquisition"
     sharp = True
-    level: float = size(unit="mV/V", low=0.01, high=10, typical=0.25, nothing=10, further=(0.2, 0.15, 0.1))
+    level: float = size(unit="mV/V", low=0.01, high=10, typical=0.25, nothing=10, further=(0.2, 0.15, 0.1), scale=0.1)
 
     def acquisition(
         self, channels: Mapping[str, Float[np.ndarray, " time"]], scene: Scene

@@ -46,6 +46,8 @@ class Quantity:
         Of a size: those that a search tries beside the typical one, where their signatures are of another shape.
     of_structure : bool
         Of a shape: it is the typical one, unless the gear's structure is found to be another one than the model's.
+    scale : float
+        Of a size: what signals do over a hundredth of it is linear; nearly always so over its whole span.
     """
 
     role: Role
@@ -58,6 +60,7 @@ class Quantity:
     among: tuple[float, ...] = ()
     further: tuple[float, ...] = ()
     of_structure: bool = False
+    scale: float = np.inf
 
     def open(self, another_structure: bool) -> bool:
         """Whether a search may choose a value of its own, of a gear of the model's structure or of another one."""
@@ -87,10 +90,17 @@ class Quantity:
 
 
 def size(
-    *, unit: str, low: float, high: float, typical: float, nothing: float = 0.0, further: tuple[float, ...] = ()
+    *,
+    unit: str,
+    low: float,
+    high: float,
+    typical: float,
+    nothing: float = 0.0,
+    further: tuple[float, ...] = (),
+    scale: float = np.inf,
 ) -> Any:
     """How much of the effect there is; every effect has one."""
-    return _parameter(Quantity(Role.SIZE, unit, low, high, typical, nothing, further=further))
+    return _parameter(Quantity(Role.SIZE, unit, low, high, typical, nothing, further=further, scale=scale))
 
 
 def phase(default: float = 0.0) -> Any:

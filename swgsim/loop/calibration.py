@@ -19,7 +19,7 @@ SETTLED, STEPS, LONGEST = 0.05, 24, 5.0
 LITTLE, MUCH = 0.25, 0.75
 # A line that is no gear's.
 NOWHERE = 1e9
-# Difference for the derivatives, in spreads; small against a nonlinearity, large against rounding.
+# Difference for the derivatives, in spreads or scales; small against a nonlinearity, large against rounding.
 DIFFERENCE = 0.01
 
 
@@ -50,14 +50,13 @@ def linearised(
     model: Model, parameters: Mapping[str, Declared], situations: Sequence[Situation], layout: Layout
 ) -> tuple[Float[np.ndarray, "situation feature"], Float[np.ndarray, "situation feature parameter"]]:
     """Prediction of a model, and its change by one spread of each parameter."""
-    models, signs = [model], []
+    models, moved = [model], []
     for parameter in parameters.values():
-        value = parameter.value(model)
-        sign = 1 if value + DIFFERENCE * parameter.sd <= parameter.high else -1
-        signs.append(sign)
-        models.append(parameter.at(model, value + sign * DIFFERENCE * parameter.sd))
+        value, by = parameter.value(model), DIFFERENCE * min(1.0, parameter.scale / parameter.sd)
+        moved.append(by if value + by * parameter.sd <= parameter.high else -by)
+        models.append(parameter.at(model, value + moved[-1] * parameter.sd))
     found = predict(models, situations, layout)
-    changes = (found[1:] - found[0]) / (DIFFERENCE * np.array(signs)[:, None, None])
+    changes = (found[1:] - found[0]) / np.array(moved)[:, None, None]
     return found[0], np.moveaxis(changes, 0, -1)
 
 

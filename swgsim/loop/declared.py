@@ -41,6 +41,8 @@ class Declared:
         The model with the parameter set to a value.
     low, high : float
         Its bounds.
+    scale : float
+        What features do over a hundredth of it is linear, if that is less than the standard deviation.
     """
 
     unit: str
@@ -49,6 +51,7 @@ class Declared:
     moved: Callable[[Model, float], Model]
     low: float = -np.inf
     high: float = np.inf
+    scale: float = np.inf
 
     def at(self, model: Model, value: float) -> Model:
         """The model with the parameter at a value, or at the bound that is nearest."""
@@ -171,7 +174,7 @@ def of_effects(model: Model, another_structure: bool = False) -> dict[str, Decla
             # A size is free; where a position or a shape is not seen at all it stays near where the search left it.
             sd = span if quantity.role in (Role.SIZE, Role.PHASE) else span / 20
             found[name_of(effect, number, name)] = Declared(
-                quantity.unit, sd, _reader(number, name), _mover(number, name), **bounds
+                quantity.unit, sd, _reader(number, name), _mover(number, name), **bounds, scale=quantity.scale
             )
     return found
 
