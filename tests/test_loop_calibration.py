@@ -8,14 +8,15 @@ from chain_fixtures import GEAR
 from loop_fixtures import POINTS, Bump
 
 from swgsim.conditions import Conditions
+from swgsim.effects.clipping import Clipping
 from swgsim.gauges import LIMITS
 from swgsim.gear import W0_LIMITS
 from swgsim.loop.alone import Alone
-from swgsim.loop.calibration import DIFFERENCE, calibrate
-from swgsim.loop.declared import MOST, Declared, at, of_unit
+from swgsim.loop.calibration import DIFFERENCE, calibrate, linearised
+from swgsim.loop.declared import MOST, Declared, at, of_effects, of_unit
 from swgsim.loop.features import Layout
 from swgsim.loop.gaussian import Covariance
-from swgsim.loop.model import Model, Situation
+from swgsim.loop.model import Model, Situation, predict
 
 LAYOUT = Layout(("s0", "s1"))
 SITUATIONS = tuple(Situation(point, Conditions()) for point in POINTS)
@@ -39,6 +40,18 @@ def predicting(monkeypatch, formula) -> None:
         "swgsim.loop.calibration.predict",
         lambda models, situations, layout: np.array([formula(*(e.height for e in m.effects)) for m in models]),
     )
+
+
+@pytest.mark.parametrize("level", [0.12, 0.2, 0.25])
+def test_the_derivative_by_the_level_of_clipping_is_the_one_there(level):
+    """Its span reaches to 10 mV/V, and what is cut lies within some hundredths of one."""
+    model = Model(GEAR, (Clipping(level),))
+    ((name, parameter),) = of_effects(model).items()
+    J = linearised(model, {name: parameter}, SITUATIONS, LAYOUT)[1][..., 0]
+    near = 1e-4
+    above, below = predict([parameter.at(model, level + by) for by in (near, -near)], SITUATIONS, LAYOUT)
+    expected = (above - below) / (2 * near) * parameter.sd
+    assert np.linalg.norm(J - expected) < 0.05 * np.linalg.norm(expected)
 
 
 def fitted(parameters, measured, *, noise=0.01, **more):
