@@ -34,6 +34,11 @@ class Ideal:
     scene: Scene
     channels: Mapping[str, Float[np.ndarray, " time"]]
 
+    @property
+    def sharp(self) -> bool:
+        """Whether effects make corners."""
+        return any(effect.sharp for effect in self.effects)
+
 
 def as_seen(ideal: Ideal) -> Mapping[str, Float[np.ndarray, " time"]]:
     """The channels with what the effects make of gauges and acquisition."""
@@ -52,10 +57,10 @@ def all_as_seen(turns: Sequence[Ideal]) -> list[Mapping[str, Float[np.ndarray, "
     A run with an effect that makes corners is sampled so densely that they lie where they belong, and what its effects
     change is filtered before samples are taken, else the high orders of a corner would pass for low ones.
     """
-    sharp = [ideal for ideal in turns if any(effect.sharp for effect in ideal.effects)]
+    sharp = [ideal for ideal in turns if ideal.sharp]
     some = (sharp[i : i + AT_ONCE] for i in range(0, len(sharp), AT_ONCE))
     filtered = (found for each in some for found in _filtered(each))
-    return [next(filtered) if any(effect.sharp for effect in ideal.effects) else as_seen(ideal) for ideal in turns]
+    return [next(filtered) if ideal.sharp else as_seen(ideal) for ideal in turns]
 
 
 def _filtered(turns: Sequence[Ideal]) -> Iterator[Mapping[str, Float[np.ndarray, " time"]]]:

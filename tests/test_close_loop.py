@@ -21,10 +21,10 @@ from swgsim.chain import simulate_turns
 from swgsim.conditions import Conditions
 from swgsim.effects.base import Effect
 from swgsim.effects.eccentric_wave_generator import EccentricWaveGenerator
-from swgsim.effects.fractional_order import FractionalOrder
 from swgsim.effects.gauge_gain import GaugeGain
 from swgsim.effects.library import SEARCHED as LIBRARY_SEARCHED
 from swgsim.effects.library import named
+from swgsim.effects.line_between import FractionalOrder
 from swgsim.effects.load_sharing import LoadSharing
 from swgsim.effects.reduced_damping import ReducedDamping
 from swgsim.effects.text import from_text

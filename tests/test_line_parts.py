@@ -9,10 +9,8 @@ from sideline_fixtures import measured
 
 from swgsim.conditions import Conditions
 from swgsim.effects.base import Effect, Scene
-from swgsim.effects.fixed_frequency import FixedFrequency
-from swgsim.effects.fractional_order import FractionalOrder
 from swgsim.effects.library import LIBRARY
-from swgsim.effects.line_between import GAUGE_PATTERNS, LineBetween
+from swgsim.effects.line_between import GAUGE_PATTERNS, FixedFrequency, FractionalOrder
 from swgsim.effects.text import as_text, from_text
 from swgsim.loop.between import between
 from swgsim.loop.line_parts import distinct_patterns
@@ -134,4 +132,3 @@ def test_bad_lines_are_refused():
         FixedFrequency(1e-3, law="cubic")
     with pytest.raises(ValueError, match="frequency"):
         FixedFrequency(1e-3, frequency=5000.0)
-    assert issubclass(FractionalOrder, LineBetween)

@@ -27,11 +27,9 @@ from swgsim.effects.eccentric_wave_generator import EccentricWaveGenerator
 from swgsim.effects.elastic_hysteresis import ElasticHysteresis
 from swgsim.effects.encoder_eccentricity import EncoderEccentricity
 from swgsim.effects.filter_mismatch import FilterMismatch
-from swgsim.effects.fixed_frequency import FixedFrequency
 from swgsim.effects.flange_gain import FlangeGain
 from swgsim.effects.flange_zero import FlangeZero
 from swgsim.effects.flank_friction import FlankFriction
-from swgsim.effects.fractional_order import FractionalOrder
 from swgsim.effects.gauge_direction import GaugeDirection
 from swgsim.effects.gauge_factor_temperature import GaugeFactorTemperature
 from swgsim.effects.gauge_gain import GaugeGain
@@ -41,6 +39,7 @@ from swgsim.effects.grease_temperature import GreaseTemperature
 from swgsim.effects.input_friction import InputFriction
 from swgsim.effects.input_unbalance import InputUnbalance
 from swgsim.effects.kinematic_error_order import KinematicErrorOrder
+from swgsim.effects.line_between import FixedFrequency, FractionalOrder
 from swgsim.effects.load_dependent_friction import LoadDependentFriction
 from swgsim.effects.load_sharing import LoadSharing
 from swgsim.effects.load_torque_ripple import LoadTorqueRipple

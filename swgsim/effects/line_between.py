@@ -1,5 +1,9 @@
-"""What no physical effect explains between the integer orders, as an effect all the same: one line, pattern and law."""
+"""What no physical effect explains between the integer orders, as an effect all the same: one line, pattern and law.
 
+It is what a loop that was closed gives back where no effect of the library fits; it names no cause.
+"""
+
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -8,7 +12,7 @@ from jaxtyping import Float
 
 from swgsim.checks import require_known
 from swgsim.effects.base import Effect, Scene
-from swgsim.effects.quantity import random_phase, size
+from swgsim.effects.quantity import random_phase, shape, size
 from swgsim.effects.regularity import LAWS, PATTERNS, with_wave
 from swgsim.recordings import SENSORS
 
@@ -16,7 +20,7 @@ GAUGE_PATTERNS = {name: pattern for name, pattern in PATTERNS.items() if set(pat
 
 
 @dataclass(frozen=True)
-class LineBetween(Effect):
+class LineBetween(Effect, ABC):
     """A line in the gauges, with another phase in every recording; where it lies, a subclass says.
 
     Attributes
@@ -42,9 +46,9 @@ class LineBetween(Effect):
         require_known(f"pattern of {self.title()}", [self.pattern], GAUGE_PATTERNS)
         require_known(f"law of {self.title()}", [self.law], LAWS)
 
+    @abstractmethod
     def angle(self, scene: Scene) -> Float[np.ndarray, " time"]:
         """How far the line has turned [rad]."""
-        raise NotImplementedError
 
     def acquisition(
         self, channels: Mapping[str, Float[np.ndarray, " time"]], scene: Scene
@@ -52,3 +56,41 @@ class LineBetween(Effect):
         """The channels with the line on the gauges of the pattern."""
         amplitude = self.amplitude * LAWS[self.law](scene.point, scene.conditions)
         return with_wave(channels, self.pattern, amplitude * np.exp(1j * (self.angle(scene) - self.phase)))
+
+
+@dataclass(frozen=True)
+class FractionalOrder(LineBetween):
+    """A line that turns with the wave generator, such as of a bearing or a gearbox in front of it that nobody declared.
+
+    Signature: as its parameters say. Typical: a hundredth of order 2.
+
+    Attributes
+    ----------
+    order : float
+        Per revolution of the wave generator, from 0 to 50.
+    """
+
+    order: float = shape(0.5, unit="-", low=0, high=50, points=501)
+
+    def angle(self, scene: Scene) -> Float[np.ndarray, " time"]:
+        """How far the line has turned [rad]."""
+        return self.order * scene.phi_in
+
+
+@dataclass(frozen=True)
+class FixedFrequency(LineBetween):
+    """A line that keeps its frequency at all speeds, such as of a resonance, a converter or a machine nearby.
+
+    Signature: as its parameters say. Typical: a hundredth of order 2.
+
+    Attributes
+    ----------
+    frequency : float
+        [Hz], from 0 to 4000.
+    """
+
+    frequency: float = shape(25.0, unit="Hz", low=0, high=4000, points=4001)
+
+    def angle(self, scene: Scene) -> Float[np.ndarray, " time"]:
+        """How far the line has turned since the trigger [rad]."""
+        return 2 * np.pi * self.frequency * scene.time

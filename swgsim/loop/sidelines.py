@@ -92,7 +92,7 @@ def nearby(effect: Effect, spectra: Sequence[Between]) -> list[Effect]:
     found = [effect]
     for name in _searched(effect):
         quantity = quantities(type(effect))[name]
-        for spacing in {_apart(quantity, spectra), _spacing(quantity, spectra)}:
+        for spacing in sorted({_apart(quantity, spectra), _spacing(quantity, spectra)}):
             found += _around(effect, name, spacing / 2**ZOOMS)
     return found
 

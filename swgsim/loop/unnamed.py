@@ -7,9 +7,7 @@ from functools import partial
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.effects.fixed_frequency import FixedFrequency
-from swgsim.effects.fractional_order import FractionalOrder
-from swgsim.effects.line_between import LineBetween
+from swgsim.effects.line_between import FixedFrequency, FractionalOrder, LineBetween
 from swgsim.loop.between import BESIDE, Between, by_luck
 from swgsim.loop.features import FITTED
 from swgsim.loop.line_parts import Part, line_parts
