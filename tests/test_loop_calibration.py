@@ -152,6 +152,15 @@ def test_a_step_uphill_is_halved(monkeypatch, A, sd):
     assert found.settled or sd > 100
 
 
+def test_a_curved_valley_is_followed(monkeypatch):
+    """Where heights must go together (Rosenbrock), cut steps of Gauss-Newton go ahead as little as up."""
+    along, across = np.ones((len(SITUATIONS), 1)) * [1.0, 0.0], np.ones((len(SITUATIONS), 1)) * [0.0, 1.0]
+    predicting(monkeypatch, lambda x, y: x * along + 20 * (y - x**2) * across)
+    found = fitted({"x": height(0), "y": height(1)}, 1.0 * along, position={"x": -1.0, "y": 1.0})
+    assert found.settled
+    assert [e.height for e in found.model.effects] == pytest.approx([1.0, 1.0], abs=0.01)
+
+
 def test_a_step_to_where_nothing_turns_steadily_is_halved(monkeypatch, A):
     """As one of stiffness and inertia together may be, far from the gear."""
     out = []

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
-from scipy.optimize import lsq_linear
+from scipy.optimize import brentq, lsq_linear
 
 from swgsim.loop.declared import Declared, at
 from swgsim.loop.features import Layout
@@ -15,7 +15,8 @@ from swgsim.loop.model import Model, Situation, predict
 # Gauss-Newton: fall of the cost below which it rests, and at most so many steps, each of at most so many spreads.
 SETTLED, STEPS, LONGEST = 0.05, 24, 5.0
 # The next steps are half as long where the cost fell by less than the first share of what was expected, as the model is
-# not linear, and twice as long where it fell by more than the second.
+# not linear, and twice as long where it fell by more than the second. What makes them shorter is damping, which bends
+# them along curved valleys.
 LITTLE, MUCH = 0.25, 0.75
 # A line that is no gear's.
 NOWHERE = 1e9
@@ -110,19 +111,18 @@ def calibrate(
     for _ in range(STEPS):
         columns = errors.whiten(J[of_recording].reshape(-1, len(here)))
         curvature, slope = columns.T @ columns + np.eye(len(here)), columns.T @ r - here
-        step = _step(curvature, slope, here, low, high)
-        step *= length * min(1.0, LONGEST / max(float(np.abs(step).max()), 1e-12))
         # What still misses by many times what is declared tells its parameters no better than that.
         little = SETTLED * max(1.0, cost / len(r))
         while True:
+            step = _step(curvature + _damping(curvature, slope, length) * np.eye(len(here)), slope, here, low, high)
+            step *= min(1.0, LONGEST / max(float(np.abs(step).max()), 1e-12))
             expected = float(step @ (2 * slope - curvature @ step))
             there = model_at(here + step)
             predicted_there = _predicted(there, situations, layout)
             r_there, cost_there = missed(predicted_there, here + step)
             if cost_there <= cost or not expected >= little:  # nor is it a number
                 break
-            # The step led uphill, as the model is not linear, or to where nothing turns steadily: half of it.
-            step, length = step / 2, length / 2
+            length /= 2  # uphill, as the model is not linear, or where nothing turns steadily
         fell = cost - cost_there
         settled = bool(fell < little * length or expected < little)
         if fell >= 0:
@@ -153,11 +153,23 @@ def _bounds(start: Model, parameters: Mapping[str, Declared]) -> tuple[np.ndarra
     return np.array(low), np.array(high)
 
 
+def _damping(
+    curvature: Float[np.ndarray, "parameter parameter"], slope: Float[np.ndarray, " parameter"], share: float
+) -> float:
+    """What makes the step of Gauss-Newton, at a damping of nothing, so many times as long (Levenberg, Marquardt)."""
+    if share == 1:
+        return 0.0
+    along, V = np.linalg.eigh(curvature)
+    b = V.T @ slope
+    full = share * float(np.linalg.norm(b / along))
+    return float(brentq(lambda by: np.linalg.norm(b / (along + by)) - full, 0.0, float(along[-1]) / share))
+
+
 def _step(
     curvature: Float[np.ndarray, "parameter parameter"], slope: Float[np.ndarray, " parameter"],
     here: Float[np.ndarray, " parameter"], low: Float[np.ndarray, " parameter"], high: Float[np.ndarray, " parameter"],
 ) -> Float[np.ndarray, " parameter"]:  # fmt: skip
-    """The Gauss-Newton step within the bounds; a parameter at its bound leaves the others free to follow."""
+    """The step to the least cost within the bounds; a parameter at its bound leaves the others free to follow."""
     free = np.linalg.solve(curvature, slope)
     if np.all((here + free >= low) & (here + free <= high)):
         return free
