@@ -38,6 +38,7 @@ def fit(
     allowed: Float[np.ndarray, "row column"] | None = None,
     held: Collection[str] = (),
     guess: Scatter | None = None,
+    turns: int = TURNS,
 ) -> Fitted:
     """Fit what is not known, and estimate the errors of single recordings, in turns.
 
@@ -55,6 +56,8 @@ def fit(
         Parameters of the unit that are not fitted but stay where they begin.
     guess : Scatter, optional
         Errors of single recordings that repeats told beside another model.
+    turns : int
+        At most so many.
     """
     begin = dict(position or {})
     start = at(model or unit.model, unit.declared, {name: begin.pop(name) for name in held})
@@ -63,7 +66,7 @@ def fit(
     known = unit.scatter.carried if unit.scatter else Scatter.stated(measured.layout)
     fixed = _Fixed(measured, unit, start, parameters, known, allowed)
     guess = guess if guess and fixed.told else known
-    for _ in range(TURNS if fixed.told else UNREPEATED):
+    for _ in range(turns if fixed.told else min(turns, UNREPEATED)):
         found = _turn(fixed, begin, guess)
         near = found.errors.alone.divergence(found.scattering(guess).errors.alone) < NEAR
         if near and found.calibrated.settled:
@@ -137,10 +140,19 @@ def unbent(now: Fitted) -> Fitted:
     return replace(now, calibrated=Calibrated(start, dict.fromkeys(now.parameters, 0.0), *declared, settled=True))
 
 
-def extended(now: Fitted, added: Sequence[Effect]) -> Fitted:
+def extended(now: Fitted, added: Sequence[Effect], turns: int = TURNS) -> Fitted:
     """A fit with further effects, which are fitted along; those it has begin where they were found."""
     # Parameters of effects are counted from where the effects are, so only the unit's keep their position.
     return fit(
         now.measured, now.unit, now.unit.model.plus(*now.added, *added),
-        position=now.position_of_unit, allowed=now.allowed, guess=now.scatter,
+        position=now.position_of_unit, allowed=now.allowed, guess=now.scatter, turns=turns,
     )  # fmt: skip
+
+
+def begun_closed(now: Fitted, added: Sequence[Effect]) -> Fitted:
+    """The same, where what earlier effects leave open of their form is so only once all have moved without it.
+
+    Else it may hold them where they lay without the further ones, which then contradict themselves.
+    """
+    closed = extended(now.strict, added, turns=1)
+    return extended(replace(closed, allowed=now.allowed, scatter=now.scatter), ())
