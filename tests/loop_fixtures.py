@@ -14,7 +14,7 @@ from swgsim.gear import OperatingPoint
 from swgsim.loop.alone import Alone
 from swgsim.loop.calibration import Calibrated
 from swgsim.loop.features import Layout
-from swgsim.loop.fitted import Fitted
+from swgsim.loop.fitted import Allowed, Fitted
 from swgsim.loop.gaussian import Covariance
 from swgsim.loop.hypotheses import Hypothesis
 from swgsim.loop.model import Model
@@ -103,6 +103,7 @@ def fitted_to(
         errors,
         directions,
         np.zeros(rows),
+        Allowed.nothing(rows),
     )
 
 

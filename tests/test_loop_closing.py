@@ -173,7 +173,7 @@ def test_all_that_was_found_is_fitted_once_more_in_its_own_form(monkeypatch, set
     given = []
 
     def extended(now, added):
-        given.append((now.allowed.shape[1], added))
+        given.append((now.allowed.columns.shape[1], added))
         model = replace(now.model, effects=(*now.model.effects, Bump(1.0)))
         return replace(now, calibrated=replace(now.calibrated, model=model, settled=settled))
 
@@ -184,7 +184,7 @@ def test_all_that_was_found_is_fitted_once_more_in_its_own_form(monkeypatch, set
     found = closing._together(end)
     assert given == [(2, ())]
     assert (found.calibrated is FITTED.calibrated) == (not (settled and left))
-    assert found.allowed is None
+    assert not found.allowed.columns.shape[1]
     assert found.open.shape == FITTED.open.shape
     closing._together(end._replace(steps=end.steps[:1]))
     assert len(given) == 1
@@ -200,11 +200,11 @@ def test_how_well_parts_agree_is_asked_with_all_effects_in_the_model(monkeypatch
     found, free = {1: Coherence(1.0, 0.1, 0.3), 2: Coherence(1.0, 0.2, 0.0)}, []
 
     def coherence(now, number):
-        free.append(now.allowed.shape[1])
+        free.append(now.allowed.columns.shape[1])
         return found[number]
 
     def doubt(now, number, others):
-        free.append(now.allowed.shape[1])
+        free.append(now.allowed.columns.shape[1])
         (other,) = others
         assert {number, other} == {1, 2}
         return 2 * others[other].form_error
@@ -215,9 +215,11 @@ def test_how_well_parts_agree_is_asked_with_all_effects_in_the_model(monkeypatch
     now = Closed(declared, declared, declared, (first, second), (), (), (), None, (disturbance,))
     assert [each.doubt for each in now.coherence] == pytest.approx([0.5, 0.2])
     assert free == [4, 2, 2, 2]
-    monkeypatch.setattr(
-        closed, "widened", lambda now, first, each: {"free": now.allowed.shape[1], "first": first, "of": len(each)}
-    )
+
+    def widened(now, first, each):
+        return {"free": now.allowed.columns.shape[1], "first": first, "of": len(each)}
+
+    monkeypatch.setattr(closed, "widened", widened)
     assert now.deviation == {"free": 2, "first": 1, "of": 2}
 
 

@@ -316,12 +316,12 @@ def test_what_was_open_before_stays_open_and_each_of_two_effects_has_its_own_for
     assert evidence.open_as_found(held, [exact]) is held
     two = replace(held, calibrated=replace(held.calibrated, model=Model(GEAR, (Bump(1.0), Bump(2.0)))))
     opened = evidence.open_as_found(two, [exact, off])
-    np.testing.assert_array_equal(opened.allowed[:, :3], earlier)
-    parts, found = 0.1 * evidence.parts(two, evidence.signature(two, 1)), opened.allowed[:, 3:]
+    np.testing.assert_array_equal(opened.allowed.columns[:, :3], earlier)
+    parts, found = 0.1 * evidence.parts(two, evidence.signature(two, 1)), opened.allowed.columns[:, 3:]
     # As few columns as say the same.
     np.testing.assert_allclose(found @ found.T, parts @ parts.T, atol=1e-3)
     assert found.shape[1] < parts.shape[1]
-    assert opened.strict.allowed is None
+    assert not opened.strict.allowed.columns.shape[1]
 
 
 def test_what_is_open_of_the_unit_is_the_same_whatever_effects_leave_open(planted):
@@ -334,7 +334,7 @@ def test_what_is_open_of_the_unit_is_the_same_whatever_effects_leave_open(plante
     fitted = replace(fitted, calibrated=calibrated, parameters=parameters)
     more = [rng.standard_normal((len(whole), columns)) for columns in (3, 2)]
     opened = fitted.allowing(more[0]).allowing(more[1])
-    every = [fitted.errors.columns, fitted.open, opened.allowed, opened.J]
+    every = [fitted.errors.columns, fitted.open, opened.allowed.columns, opened.J]
     np.testing.assert_array_equal(opened.whole.columns, np.hstack(every))
     for each, columns in ((opened, every), (opened.strict, [*every[:2], every[3]])):
         anew = Covariance(fitted.errors.alone, np.hstack(columns))

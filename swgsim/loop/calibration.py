@@ -113,9 +113,9 @@ def calibrate(
         curvature, slope = columns.T @ columns + np.eye(len(here)), columns.T @ r - here
         # What still misses by many times what is declared tells its parameters no better than that.
         little = SETTLED * max(1.0, cost / len(r))
+        room = low - here, high - here
         while True:
-            step = _step(curvature + _damping(curvature, slope, length) * np.eye(len(here)), slope, here, low, high)
-            step *= min(1.0, LONGEST / max(float(np.abs(step).max()), 1e-12))
+            step = _step(curvature, slope, room, length)
             expected = float(step @ (2 * slope - curvature @ step))
             there = model_at(here + step)
             predicted_there = _predicted(there, situations, layout)
@@ -153,26 +153,34 @@ def _bounds(start: Model, parameters: Mapping[str, Declared]) -> tuple[np.ndarra
     return np.array(low), np.array(high)
 
 
-def _damping(
-    curvature: Float[np.ndarray, "parameter parameter"], slope: Float[np.ndarray, " parameter"], share: float
-) -> float:
-    """What makes the step of Gauss-Newton, at a damping of nothing, so many times as long (Levenberg, Marquardt)."""
-    if share == 1:
-        return 0.0
-    along, V = np.linalg.eigh(curvature)
-    b = V.T @ slope
-    full = share * float(np.linalg.norm(b / along))
-    return float(brentq(lambda by: np.linalg.norm(b / (along + by)) - full, 0.0, float(along[-1]) / share))
-
-
 def _step(
-    curvature: Float[np.ndarray, "parameter parameter"], slope: Float[np.ndarray, " parameter"],
-    here: Float[np.ndarray, " parameter"], low: Float[np.ndarray, " parameter"], high: Float[np.ndarray, " parameter"],
-) -> Float[np.ndarray, " parameter"]:  # fmt: skip
+    curvature: Float[np.ndarray, "parameter parameter"],
+    slope: Float[np.ndarray, " parameter"],
+    room: tuple[Float[np.ndarray, " parameter"], Float[np.ndarray, " parameter"]],
+    share: float,
+) -> Float[np.ndarray, " parameter"]:
+    """The step of Gauss-Newton, damped to a share of its length and of the longest (Levenberg, Marquardt)."""
+
+    def damped(by: float) -> Float[np.ndarray, " parameter"]:
+        return _least(curvature + by * np.eye(len(slope)), slope, room)
+
+    full = damped(0.0)
+    size = float(np.abs(full).max())
+    longest = share * min(size, LONGEST)
+    if size <= longest:
+        return full
+    most = 2 * float(np.linalg.norm(slope)) / longest  # makes it half as long, or less
+    return damped(brentq(lambda by: float(np.abs(damped(by)).max()) - longest, 0.0, most, rtol=1e-3))
+
+
+def _least(
+    curvature: Float[np.ndarray, "parameter parameter"],
+    slope: Float[np.ndarray, " parameter"],
+    room: tuple[Float[np.ndarray, " parameter"], Float[np.ndarray, " parameter"]],
+) -> Float[np.ndarray, " parameter"]:
     """The step to the least cost within the bounds; a parameter at its bound leaves the others free to follow."""
     free = np.linalg.solve(curvature, slope)
-    if np.all((here + free >= low) & (here + free <= high)):
+    if np.all((room[0] <= free) & (free <= room[1])):
         return free
     root = np.linalg.cholesky(curvature).T
-    room = (low - here - 1e-12, high - here + 1e-12)
-    return lsq_linear(root, np.linalg.solve(root.T, slope), bounds=room).x
+    return lsq_linear(root, np.linalg.solve(root.T, slope), bounds=(room[0] - 1e-12, room[1] + 1e-12)).x

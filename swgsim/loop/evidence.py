@@ -144,7 +144,7 @@ def _of_structure(fitted: Fitted, number: int, signed: Float[np.ndarray, " row"]
 def open_form(fitted: Fitted, added: int) -> Fitted:
     """A fit with the form of the effects that were added last open within the tolerance."""
     count = len(fitted.model.effects)
-    return fitted.allowing(np.hstack([allowance(fitted, number) for number in range(count - added, count)]))
+    return fitted.allowing_forms(np.hstack([allowance(fitted, number) for number in range(count - added, count)]))
 
 
 def coherence(fitted: Fitted, number: int) -> Coherence:

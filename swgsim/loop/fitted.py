@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
@@ -18,6 +19,31 @@ from swgsim.loop.unit import Unit
 
 # Where bridges were balanced anew their zeros lie so many times as far as declared, if that is likelier by so much.
 BALANCED, LIKELIER_BALANCED = (2.0, 4.0, 8.0, 16.0), 3.0
+
+
+class Allowed(NamedTuple):
+    """What is open beside the unit, one standard deviation each.
+
+    Attributes
+    ----------
+    free : array (row, regularity)
+        Regularities that were set free, and imperfect forms without which an effect is not seen.
+    forms : array (row, form)
+        By what effects found earlier may differ from the library's form.
+    """
+
+    free: Float[np.ndarray, "row regularity"]
+    forms: Float[np.ndarray, "row form"]
+
+    @classmethod
+    def nothing(cls, rows: int) -> "Allowed":
+        """So many rows without columns."""
+        return cls(np.zeros((rows, 0)), np.zeros((rows, 0)))
+
+    @property
+    def columns(self) -> Float[np.ndarray, "row column"]:
+        """All of them."""
+        return np.hstack(self)
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,8 +64,7 @@ class Fitted:
         What the unit leaves open beside the fitted parameters (:meth:`Unit.left_open`), one standard deviation each.
     offset : array (row,)
         Where commissioning found the recordings beside the model, by what is not in it: frictions, lags, zeros.
-    allowed : array (row, column) or None
-        What the form of effects found earlier leaves open too, and regularities that were set free.
+    allowed : Allowed
     """
 
     measured: Measured
@@ -50,7 +75,7 @@ class Fitted:
     errors: Covariance
     open: Float[np.ndarray, "row direction"]
     offset: Float[np.ndarray, " row"]
-    allowed: Float[np.ndarray, "row column"] | None = None
+    allowed: Allowed
 
     @property
     def model(self) -> Model:
@@ -75,18 +100,31 @@ class Fitted:
     @property
     def strict(self) -> "Fitted":
         """The same without what effects and regularities found earlier leave open, for predictions."""
-        return self if self.allowed is None else self._with_allowed(None)
+        return self._with_allowed(Allowed.nothing(len(self.offset)))
+
+    @property
+    def closed(self) -> "Fitted":
+        """The same with the form of effects closed, for a fit that may move them."""
+        return self._with_allowed(self.allowed._replace(forms=self.allowed.forms[:, :0]))
 
     def allowing(self, columns: Float[np.ndarray, "row column"]) -> "Fitted":
         """The same with more left open, one standard deviation each, also when effects are added to it; other columns
         may stand for these, as few as noise leaves different.
         """
-        columns = without_what_noise_hides(columns, self.errors.variance)
-        if not columns.shape[1]:
-            return self
-        return self._with_allowed(columns if self.allowed is None else np.hstack([self.allowed, columns]))
+        return self._with_allowed(self.allowed._replace(free=self._with_more(self.allowed.free, columns)))
 
-    def _with_allowed(self, allowed: Float[np.ndarray, "row column"] | None) -> "Fitted":
+    def allowing_forms(self, columns: Float[np.ndarray, "row column"]) -> "Fitted":
+        """The same of the form of effects."""
+        return self._with_allowed(self.allowed._replace(forms=self._with_more(self.allowed.forms, columns)))
+
+    def _with_more(
+        self, known: Float[np.ndarray, "row known"], columns: Float[np.ndarray, "row column"]
+    ) -> Float[np.ndarray, "row all"]:
+        return np.hstack([known, without_what_noise_hides(columns, self.errors.variance)])
+
+    def _with_allowed(self, allowed: Allowed) -> "Fitted":
+        if [columns.shape for columns in allowed] == [columns.shape for columns in self.allowed]:
+            return self  # columns come, or go all at once
         found = replace(self, allowed=allowed)
         vars(found)["of_unit"] = self.of_unit  # the same, and most of what there is to compute
         return found
@@ -136,7 +174,7 @@ class Fitted:
     @property
     def of_nuisances(self) -> Covariance:
         """All errors, with everything open beside the fitted parameters."""
-        return self.of_unit if self.allowed is None else self.of_unit.with_columns(self.allowed)
+        return self.of_unit.with_columns(self.allowed.columns)
 
     @cached_property
     def whole(self) -> Covariance:

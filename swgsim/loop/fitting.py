@@ -5,14 +5,13 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float
 
 from swgsim.effects.base import Effect
 from swgsim.loop import repeats, scatter
 from swgsim.loop.alone import Alone
 from swgsim.loop.calibration import Calibrated, calibrate, linearised
 from swgsim.loop.declared import Declared, at, of_effects
-from swgsim.loop.fitted import Fitted
+from swgsim.loop.fitted import Allowed, Fitted
 from swgsim.loop.gaussian import Covariance
 from swgsim.loop.model import Model
 from swgsim.loop.scatter import Scatter
@@ -35,7 +34,7 @@ def fit(
     model: Model | None = None,
     *,
     position: Mapping[str, float] | None = None,
-    allowed: Float[np.ndarray, "row column"] | None = None,
+    allowed: Allowed | None = None,
     held: Collection[str] = (),
     guess: Scatter | None = None,
     turns: int = TURNS,
@@ -50,21 +49,20 @@ def fit(
         The unit's with further effects, which are fitted along.
     position : mapping, optional
         Where parameters begin, in spreads.
-    allowed : array (row, column), optional
-        What effects and regularities found earlier leave open, one standard deviation each.
+    allowed : Allowed, optional
     held : collection of str
         Parameters of the unit that are not fitted but stay where they begin.
     guess : Scatter, optional
         Errors of single recordings that repeats told beside another model.
     turns : int
-        At most so many.
+        So many at most; where nothing was repeated, fewer.
     """
     begin = dict(position or {})
     start = at(model or unit.model, unit.declared, {name: begin.pop(name) for name in held})
     parameters = {} if unit.commissioned else {name: p for name, p in unit.declared.items() if name not in held}
     parameters = parameters | of_effects(start, unit.of_another_structure)
     known = unit.scatter.carried if unit.scatter else Scatter.stated(measured.layout)
-    fixed = _Fixed(measured, unit, start, parameters, known, allowed)
+    fixed = _Fixed(measured, unit, start, parameters, known, allowed or Allowed.nothing(measured.values.size))
     guess = guess if guess and fixed.told else known
     for _ in range(turns if fixed.told else min(turns, UNREPEATED)):
         found = _turn(fixed, begin, guess)
@@ -85,7 +83,7 @@ class _Fixed(NamedTuple):
     start: Model
     parameters: dict[str, Declared]
     known: Scatter
-    allowed: Float[np.ndarray, "row column"] | None
+    allowed: Allowed
 
     @property
     def told(self) -> bool:
@@ -102,7 +100,7 @@ def _turn(fixed: _Fixed, begin: Mapping[str, float], guess: Scatter) -> Fitted:
     moves = scatter.of_recordings(here, measured)
     unsure = unit.left_open(here, measured.situations, measured.layout)
     offset, left = measured.rows(unsure.shift), measured.rows(unsure.columns)
-    more = left if fixed.allowed is None else np.hstack([left, fixed.allowed])
+    more = np.hstack([left, *fixed.allowed])
     of_sessions = measured.session_columns(unsure.predicted)
     values = measured.values - offset.reshape(measured.values.shape)
     calibrated = calibrate(
@@ -140,19 +138,18 @@ def unbent(now: Fitted) -> Fitted:
     return replace(now, calibrated=Calibrated(start, dict.fromkeys(now.parameters, 0.0), *declared, settled=True))
 
 
-def extended(now: Fitted, added: Sequence[Effect], turns: int = TURNS) -> Fitted:
-    """A fit with further effects, which are fitted along; those it has begin where they were found."""
-    # Parameters of effects are counted from where the effects are, so only the unit's keep their position.
-    return fit(
-        now.measured, now.unit, now.unit.model.plus(*now.added, *added),
-        position=now.position_of_unit, allowed=now.allowed, guess=now.scatter, turns=turns,
-    )  # fmt: skip
+def extended(now: Fitted, added: Sequence[Effect]) -> Fitted:
+    """A fit with further effects, which are fitted along; those it has begin where they were found.
 
-
-def begun_closed(now: Fitted, added: Sequence[Effect]) -> Fitted:
-    """The same, where what earlier effects leave open of their form is so only once all have moved without it.
-
-    Else it may hold them where they lay without the further ones, which then contradict themselves.
+    What is left open of their form is so only once all have moved without: else it would hold them where they lay
+    without the further ones, which then contradict themselves.
     """
-    closed = extended(now.strict, added, turns=1)
-    return extended(replace(closed, allowed=now.allowed, scatter=now.scatter), ())
+    model = now.unit.model.plus(*now.added, *added)
+    # Parameters of effects are counted from where the effects are, so only the unit's keep their position.
+    position = now.position_of_unit
+    if added and now.allowed.forms.any():
+        ahead = fit(
+            now.measured, now.unit, model, position=position, allowed=now.closed.allowed, guess=now.scatter, turns=1
+        )
+        position = ahead.calibrated.position
+    return fit(now.measured, now.unit, model, position=position, allowed=now.allowed, guess=now.scatter)

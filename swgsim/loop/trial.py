@@ -21,7 +21,7 @@ from swgsim.loop.evidence import (
     signature,
 )
 from swgsim.loop.fitted import LIKELIER_BALANCED, Fitted
-from swgsim.loop.fitting import begun_closed, extended
+from swgsim.loop.fitting import extended
 from swgsim.loop.gaussian import as_squares
 from swgsim.loop.screening import Score
 from swgsim.loop.shapes import over_shapes
@@ -165,7 +165,7 @@ def tried(now: Fitted, score: Score, added: tuple[Effect, ...], start: Fitted) -
         The same model where the fit begins.
     """
     known = len(now.model.effects)
-    fitted = begun_closed(start, added) if start.added else extended(start, added)
+    fitted = extended(start, added)
     effects = fitted.model.effects[known:]
     found = tuple(coherence(fitted, known + number) for number in range(len(added)))
     opened = open_as_found(fitted, found)
