@@ -161,6 +161,21 @@ def test_a_curved_valley_is_followed(monkeypatch):
     assert [e.height for e in found.model.effects] == pytest.approx([1.0, 1.0], abs=0.01)
 
 
+def test_a_shorter_step_is_shorter_where_the_longest_was_cut_or_bounded_too(monkeypatch, A):
+    """Else the same place is asked again."""
+    asked = []
+
+    def formula(x, y):
+        asked.append((x, y))
+        return A[..., 0] * np.arctan(x)
+
+    predicting(monkeypatch, formula)
+    for low in (-np.inf, -40.0):
+        asked.clear()
+        fitted({"x": height(0, sd=30, low=low)}, A[..., 0] * np.arctan(0.3), noise=1e-3, position={"x": 2.0})
+        assert max(np.unique(asked, axis=0, return_counts=True)[1]) <= 2  # a place, and with its slopes
+
+
 def test_a_step_to_where_nothing_turns_steadily_is_halved(monkeypatch, A):
     """As one of stiffness and inertia together may be, far from the gear."""
     out = []
