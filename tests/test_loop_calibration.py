@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from chain_fixtures import GEAR
 from loop_fixtures import POINTS, Bump
+from scipy.optimize import nnls
 
 from swgsim.conditions import Conditions
 from swgsim.effects.clipping import Clipping
@@ -17,6 +18,7 @@ from swgsim.loop.declared import MOST, Declared, at, of_effects, of_unit
 from swgsim.loop.features import Layout
 from swgsim.loop.gaussian import Covariance
 from swgsim.loop.model import Model, Situation, predict
+from swgsim.seeds import generator
 
 LAYOUT = Layout(("s0", "s1"))
 SITUATIONS = tuple(Situation(point, Conditions()) for point in POINTS)
@@ -221,6 +223,29 @@ def test_beside_a_bound_the_others_are_at_their_best(monkeypatch, A):
     left = measured - A[..., 0]
     expected = float((A[..., 1] * left).sum() / (A[..., 1] ** 2).sum())
     assert found.model.effects[1].height == pytest.approx(expected, rel=0.01)
+
+
+def test_many_bounds_of_parameters_that_matter_quite_differently_take_one_step(monkeypatch):
+    """As of a gear that was not commissioned; beside them, its least cost is that of non-negative least squares."""
+    many = 40
+    rng = generator("many bounds")
+    slopes = rng.normal(size=(len(SITUATIONS), len(LAYOUT), many)) * 10 ** rng.uniform(-3, 4, many)
+    measured = slopes @ np.maximum(rng.uniform(-1, 1, many), 0) + rng.normal(size=slopes.shape[:2])
+    monkeypatch.setattr("test_loop_calibration.START", Model(GEAR, (Bump(0.0),) * many))
+    asked = []
+
+    def predict(models, *_):
+        asked.append(len(models))
+        return np.array([slopes @ [e.height for e in m.effects] for m in models])
+
+    monkeypatch.setattr("swgsim.loop.calibration.predict", predict)
+    found = fitted({str(i): height(i, low=0.0) for i in range(many)}, measured, noise=1.0)
+    there = np.array(list(found.position.values()))
+    rows = np.vstack([slopes.reshape(-1, many), np.eye(many)])
+    aim = np.concatenate([measured.ravel(), np.zeros(many)])
+    _, least = nnls(rows, aim)
+    assert np.linalg.norm(rows @ there - aim) == pytest.approx(least, rel=1e-5)
+    assert asked == [many + 1, 1, many + 1, 1]  # the second step tells that there is no way further
 
 
 def test_a_model_without_parameters_is_only_predicted(monkeypatch, A):

@@ -183,4 +183,5 @@ def _least(
     if np.all((room[0] <= free) & (free <= room[1])):
         return free
     root = np.linalg.cholesky(curvature).T
-    return lsq_linear(root, np.linalg.solve(root.T, slope), bounds=(room[0] - 1e-12, room[1] + 1e-12)).x
+    bounds = room[0] - 1e-12, room[1] + 1e-12
+    return lsq_linear(root, np.linalg.solve(root.T, slope), bounds, method="bvls").x
