@@ -97,8 +97,9 @@ Made by `make docs` from the code: {len(SEARCHED)} effects, by the place of the 
 searches all of them but {", ".join(UNTESTED)}, whose phase is another one in every recording and
 which makes no line between the orders to tell it by. The pictures show what an effect of typical size changes at
 {USUAL} (the gear at 35 degC, an hour into the session), by channel and order, as a share of the channel's largest
-line other than the mean. Choices such as an order are at their default or first value; a gauge is s1, or all of them where that is the default. The unit "-" is that of a pure number.
-What changes nothing there is shown elsewhere, as its panel says:
+line other than the mean. Choices such as an order are at their default or first value; a gauge is s1, or all of
+them where that is the default. The unit "-" is that of a pure number. What changes nothing there is shown elsewhere,
+as its panel says:
 
 {chr(10).join(f"- `{kind.name()}` at {each}: {each.reason}." for kind, each in ELSEWHERE.items())}
 
