@@ -139,6 +139,10 @@ class Gear:
             )
 
 
+# Catalogue limits of SHG-17-100: maximum input speed [rpm] and momentary peak torque [N m].
+HIGHEST = {"n_in_rpm": 7300.0, "T_out": 143.0}
+
+
 @dataclass(frozen=True)
 class OperatingPoint:
     """Imposed speed and load.
@@ -155,9 +159,8 @@ class OperatingPoint:
     T_out: float
 
     def __post_init__(self) -> None:
-        # Catalogue limits of SHG-17-100: maximum input speed and momentary peak torque.
-        require("the operating point", "n_in_rpm", self.n_in_rpm, low=10, high=7300)
-        require("the operating point", "T_out", self.T_out, low=0, high=143)
+        require("the operating point", "n_in_rpm", self.n_in_rpm, low=10, high=HIGHEST["n_in_rpm"])
+        require("the operating point", "T_out", self.T_out, low=0, high=HIGHEST["T_out"])
 
     @property
     def omega_in(self) -> float:

@@ -16,8 +16,8 @@ from omegaconf import OmegaConf
 
 from swgsim.acquisition import Window
 from swgsim.bench import Bench
-from swgsim.blind import attempt, baselines, job
-from swgsim.blind.altered import STRAY_CHANNELS, Alteration, Altered, StrayOrder, resized
+from swgsim.blind import attempt, baselines, drawing, job
+from swgsim.blind.altered import Alteration, Altered, StrayOrder, resized
 from swgsim.blind.baselines import Task
 from swgsim.blind.bench import Setting, in_question, unit_of, unseen
 from swgsim.blind.drawing import drawn_inner
@@ -28,7 +28,7 @@ from swgsim.blind.outside import OUTSIDE
 from swgsim.blind.prediction import expected, unseen_error
 from swgsim.blind.score import score, worst
 from swgsim.blind.sealed import Sealed, as_json, from_json
-from swgsim.blind.strata import CYCLE, FULL, NULLS, SINGLE, UNTESTABLE, plans, searched
+from swgsim.blind.strata import CYCLE, FULL, NULLS, SINGLE, UNTESTABLE, Plan, plans, searched
 from swgsim.blind.strength import sized, strengths
 from swgsim.chain import Run, simulate_turns
 from swgsim.conditions import Conditions
@@ -47,6 +47,7 @@ from swgsim.loop.hypotheses import Hypothesis
 from swgsim.loop.model import Model, predict
 from swgsim.loop.session import Measured
 from swgsim.loop.unit import Unit
+from swgsim.recordings import SENSORS
 from swgsim.seeds import generator
 
 pytestmark = pytest.mark.end_to_end
@@ -121,6 +122,24 @@ def test_every_stratum_sees_every_strength() -> None:
         assert len(set(strengths)) == 4
 
 
+@pytest.mark.parametrize(("stratum", "planned"), [("written", OUTSIDE[:1]), ("pair", SETTING.library[:2])])
+def test_what_cannot_be_seen_gives_way_to_another_of_its_stratum(
+    monkeypatch: pytest.MonkeyPatch, stratum: str, planned: tuple[type, ...]
+) -> None:
+    """To none that the library has where something written is hidden, and to none that is planned anyway."""
+    for name in ("unit_known", "in_question", "fit", "likeness"):
+        monkeypatch.setattr(drawing, name, lambda *_: (0.0, ""))
+    monkeypatch.setattr(drawing.Measured, "of", lambda *_: None)
+    for number in range(10):
+        seen = iter([1.0, *[3000.0] * len(planned)])
+        monkeypatch.setattr(drawing, "sized", lambda effect, *_: (effect, next(seen)))  # noqa: B023
+        plan = Plan(number, stratum, FULL, True, 3000.0, "mesh", planned)
+        first, *others = map(type, drawing.draw(plan, SETTING).effects)
+        assert first in (OUTSIDE if stratum == "written" else SETTING.library)
+        assert first not in planned
+        assert tuple(others) == tuple(planned[1:])
+
+
 def test_the_law_of_the_load_scales_the_size() -> None:
     effect = LIBRARY["cam_form"](3, 2e-6, 1.0)
     altered = Altered(effect, Alteration(exponent=0.2))
@@ -175,7 +194,7 @@ def test_effects_from_outside_are_what_they_say_of_themselves(kind: type) -> Non
 
 def test_a_stray_order_is_in_one_channel() -> None:
     runs = [Run(GEAR, POINTS[0], effects) for effects in ((), (StrayOrder(3, 5, 1e-3, 0.4),))]
-    layout = Layout(STRAY_CHANNELS)
+    layout = Layout(SENSORS)
     seen = np.array([features(r, layout) for r in simulate_turns(runs, 1, 64, 60)])
     lines = layout.lines(seen[1] - seen[0])
     assert abs(lines[3, 5]) == pytest.approx(1e-3)
@@ -293,6 +312,19 @@ def test_baselines_name_what_stands_out(name: str) -> None:
     assert baselines.BASELINES[name](task)[0] == task.found[7].kind.name()
 
 
+def test_baselines_name_nothing_that_no_channel_shows() -> None:
+    task = _task(None)
+    nothing = np.zeros_like(task.signatures[0])
+    unseen_ = task._replace(signatures=[nothing] * len(task.found), fitted=_task(7).fitted)
+    assert baselines.correlation(unseen_) == []
+
+
+def test_baselines_name_nothing_of_a_library_without_a_signature(fitted: Fitted) -> None:
+    """The phase of a hum is another one in every recording."""
+    named = baselines.named_by_baselines(fitted, (LIBRARY["mains_hum"],))
+    assert named == {key: [] for key in baselines.BASELINES}
+
+
 @pytest.mark.parametrize("name", ["calibration_only", "correlation", "bic_forward"])
 def test_baselines_name_nothing_in_noise(name: str) -> None:
     assert baselines.BASELINES[name](_task(None)) == []
@@ -336,6 +368,12 @@ def test_a_family_holds_effects_of_the_library_and_no_effect_twice() -> None:
             "form rejected, the right one nearest",
         ),
         (replace(CASE, stratum="easy null"), {}, "false effect"),
+        (replace(HIDDEN, stratum=UNTESTABLE), {}, RIGHT),
+        (
+            replace(HIDDEN, stratum=UNTESTABLE),
+            {"accepted": [["cam_form"], ["coning"]], "rivals": [[], []]},
+            "false effect",
+        ),
         (replace(CASE, stratum="hard null"), {"accepted": [], "rivals": [], "verdict": "nothing_missing"}, RIGHT),
         (replace(HIDDEN, stratum="taken out"), {}, "known effect named for an unknown one"),
         (replace(HIDDEN, stratum="taken out", likeness=0.95), {}, "look-alike named for an unknown effect"),
@@ -412,14 +450,16 @@ def test_the_score_counts_what_it_says() -> None:
         Judged(replace(HIDDEN, strengths=(60.0,)), {**SAID, **quiet}),
         Judged(null, {**SAID, **quiet}),
         Judged(null, SAID),
+        Judged(null, {"failure": "it broke"}),
         Judged(written, {**SAID, **unknown, "unknown": [[1, "in s4 alone", "constant"]]}),
         Judged(written, {**SAID, **dict.fromkeys(INTERVALS, ({"true": 1.0, "found": 2.0, "deviation": 0.1},))}),
         Judged(HIDDEN, {"failure": "it broke"}),
     ]
     found = score(cases)
-    assert found["cases"] == 8
-    assert found["failures"] == 1
-    assert (found["false_effect_rate"]["value"], found["nulls"]) == (0.5, 2)
+    assert found["cases"] == 9
+    assert found["failures"] == 2
+    # A null without an answer names nothing false, nor does it count for that.
+    assert (found["false_effect_rate"]["value"], found["nulls"]) == (0.5, 3)
     # The weak one is none that has to be found; a failure is.
     assert (found["right_first"]["value"], found["right_first"]["count"]) == (pytest.approx(1 / 3), 3)
     assert found["mean_set_size"] == 1.5
@@ -434,7 +474,7 @@ def test_the_score_counts_what_it_says() -> None:
     assert [found[kind]["value"] for kind in ("coverage95", "coverage95_of_angles")] == [2 / 3, 2 / 3]
     assert found["baselines"]["correlation"]["false_effect_rate"]["value"] == 1
     assert found["confusion"]["cam_form"] == {"cam_form": 1, "coning": 1, "nothing": 1, "failure": 1}
-    assert [case.failed for case in worst(cases)] == [True, False, False, False]
+    assert [case.failed for case in worst(cases)] == [True, True, False, False, False]
     assert (found["seconds_max"], found["seconds_median"]) == (7.0, 5.0)
     json.dumps(found, allow_nan=False)
 

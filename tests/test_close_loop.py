@@ -314,6 +314,12 @@ def test_a_message_about_a_file_says_of_which_folder(folders, tmp_path):
             job.run(choices(folders, "sick", commissioning=str(tmp_path / folder)))
 
 
+@pytest.mark.parametrize("name", ["regularity", "fractional_order", "fixed_frequency"])
+def test_what_a_loop_writes_for_the_unknown_is_not_searched_for(name):
+    with pytest.raises(ValueError, match=f"{name} cannot be searched for"):
+        job.library({"searched": ["cam_form", name], "library": []})
+
+
 @pytest.mark.parametrize("searched", ["cam_form, gauge_gain", ["cam_form", "gauge_gain"]])
 @pytest.mark.parametrize("library", ["reduced_damping", ["reduced_damping"]])
 def test_names_are_a_list_or_a_text_with_commas(searched, library):

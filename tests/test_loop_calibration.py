@@ -11,7 +11,7 @@ from scipy.optimize import nnls
 from swgsim.conditions import Conditions
 from swgsim.effects.clipping import Clipping
 from swgsim.gauges import LIMITS
-from swgsim.gear import W0_LIMITS
+from swgsim.gear import W0_LIMITS, KinematicError
 from swgsim.loop.alone import Alone
 from swgsim.loop.calibration import DIFFERENCE, calibrate, linearised
 from swgsim.loop.declared import MOST, Declared, at, of_effects, of_unit
@@ -278,3 +278,21 @@ def test_no_fit_makes_a_parameter_of_the_gear_that_cannot_be():
     far = ("k1", "b0", "b1", "mu", "J_in", "J_out")
     moved = at(model, {name: of_unit(GEAR)[name] for name in far}, dict.fromkeys(far, 1e3)).gear.transmission
     assert [getattr(moved, name) / getattr(GEAR.transmission, name) for name in far] == pytest.approx([MOST] * len(far))
+
+
+@pytest.mark.parametrize("name", ["b0", "b1", "mu"])
+def test_what_a_gear_file_says_is_nothing_cannot_be_fitted_within_a_share_of_it(name):
+    gear = replace(GEAR, transmission=replace(GEAR.transmission, **{name: 0.0}))
+    with pytest.raises(ValueError, match=f"{name} of the gear is 0 .*must be more than 0.*give an estimate"):
+        of_unit(gear)
+
+
+def test_parts_of_the_kinematic_error_are_called_what_they_are():
+    """A sin(order phi + phase) is a sine where its phase is 0."""
+    errors = (KinematicError(2, 1e-4, 0.0), KinematicError(4, 1e-4, np.pi / 2))
+    model = Model(replace(GEAR, transmission=replace(GEAR.transmission, kinematic_error=errors)))
+    found = {name: p.value(model) for name, p in of_unit(model.gear).items() if name.startswith("kinematic error")}
+    assert found == pytest.approx({
+        "kinematic error 2 sine": 1e-4, "kinematic error 2 cosine": 0.0,
+        "kinematic error 4 sine": 0.0, "kinematic error 4 cosine": 1e-4,
+    }, abs=1e-12)  # fmt: skip

@@ -62,7 +62,9 @@ def test_separation_is_what_all_recordings_together_leave_of_the_difference(monk
     monkeypatch.setattr(experiment, "predict", lambda models, *_: np.array([moved]))
     monkeypatch.setattr(experiment.scatter, "directions", lambda _, situations, __: single[-len(situations) :])
     scatter = replace(fitted.scatter, sd={"one": 0.5, "other": 2.0})
-    further = experiment._Further.of(replace(fitted, scatter=scatter), [Model(GEAR)])
+    free = rng.standard_normal((measured.values.size, 1))  # a disturbance that was set apart tells nothing
+    fitted = replace(fitted, scatter=scatter, allowed=fitted.allowed._replace(free=free))
+    further = experiment._Further.of(fitted, [Model(GEAR)])
     found = further.separations(recordings)[4, 0]
 
     new = len(measured.situations) + 4
@@ -71,7 +73,7 @@ def test_separation_is_what_all_recordings_together_leave_of_the_difference(monk
     shared = of_session.reshape(60, len(layout), -1)[4]
     to_come = shared @ shared.T + (alone @ alone.T + np.diag(np.median(measured.variance, axis=0))) / recordings
     errors = fitted.errors
-    dense = block_diag(np.diag(errors.variance) + errors.columns @ errors.columns.T, to_come)
+    dense = block_diag(np.diag(errors.variance) + errors.columns @ errors.columns.T + free @ free.T, to_come)
     C = np.vstack([measured.rows(directions[: len(measured.situations)]), directions[new]])
     d = np.concatenate([measured.rows(moved[: len(measured.situations)]), moved[new]])
     assert found == pytest.approx(d @ np.linalg.solve(dense + C @ C.T, d), rel=1e-8)

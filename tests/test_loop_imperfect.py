@@ -59,6 +59,15 @@ def test_a_bare_regularity_gets_no_name():
     assert closed.unknown[0].atom.order == 3
 
 
+@pytest.mark.end_to_end
+def test_no_form_is_sought_of_effects_without_a_signature():
+    """The phase of a hum is another one in every recording."""
+    plain = Regularity(3, 2e-2, 1.0, "opposite in s1 and s3", "proportional to the load")
+    closed = close(recorded((plain,), 3), UNIT, (LIBRARY["mains_hum"],))
+    assert not closed.steps
+    assert closed.unknown
+
+
 @pytest.mark.parametrize(
     ("described", "commissioned", "all_told", "best", "tried"),
     [

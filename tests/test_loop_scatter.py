@@ -194,6 +194,14 @@ def test_the_beat_is_order_2_of_the_kinematic_error_in_any_phase():
     assert np.abs(cosine[2]) == pytest.approx(t.k1 / np.tan(t.alpha_tooth) ** 2, rel=0.5)
 
 
+def test_errors_are_known_at_the_limits_of_load_and_speed():
+    """Where no gear may be loaded or driven any further, they are told from below."""
+    most, less = (Situation(OperatingPoint(*at), Conditions()) for at in ((7300.0, 143.0), (7290.0, 142.8)))
+    at_most, at_less = directions(Model(GEAR), [most, less], LAYOUT)
+    scale = np.abs(at_less).max(axis=0)
+    np.testing.assert_allclose(at_most / scale, at_less / scale, atol=0.02)
+
+
 def test_the_trigger_turns_what_was_recorded_and_all_else_what_the_model_says():
     """A line whose phase the model misses is turned by the trigger all the same."""
     recordings = silent(POINTS[:2], repeats=2)

@@ -10,6 +10,7 @@ from swgsim.conditions import Conditions
 from swgsim.effects.base import Effect, Scene
 from swgsim.effects.quantity import choice, phase, quantities, size, size_of
 from swgsim.gear import OperatingPoint
+from swgsim.recordings import SENSORS
 
 # A size that is nothing only so many times beyond its typical value is a level that something reaches.
 LEVEL = 10.0
@@ -74,18 +75,14 @@ def resized(effect: Effect, factor: float) -> Effect:
     return replace(effect, **{name: float(np.clip(value, q.low, q.high))})
 
 
-# An order of a torque is what a ripple of the motor or the load is; in one gauge alone it is nobody's.
-STRAY_CHANNELS = ("s0", "s1", "s2", "s3", "s4")
-
-
 @dataclass(frozen=True)
 class StrayOrder(Effect):
-    """An order in one channel that has nothing to do with anything else.
+    """An order in one gauge that has nothing to do with anything else; in a torque it would be what a ripple is.
 
     Attributes
     ----------
     channel : int
-        Of :data:`STRAY_CHANNELS`.
+        Of :data:`swgsim.recordings.SENSORS`.
     order : int
     amplitude : float
         In the channel's unit.
@@ -94,7 +91,7 @@ class StrayOrder(Effect):
     """
 
     place = "acquisition"
-    channel: int = choice(low=0, high=len(STRAY_CHANNELS) - 1)
+    channel: int = choice(low=0, high=len(SENSORS) - 1)
     order: int = choice(low=1, high=12)
     amplitude: float = size(unit="-", low=0, high=1, typical=1e-3)
     phase: float = phase()
@@ -103,5 +100,5 @@ class StrayOrder(Effect):
         self, channels: Mapping[str, Float[np.ndarray, " time"]], scene: Scene
     ) -> Mapping[str, Float[np.ndarray, " time"]]:
         """The channels with the wave on one of them."""
-        name = STRAY_CHANNELS[self.channel]
+        name = SENSORS[self.channel]
         return {**channels, name: channels[name] + self.amplitude * np.cos(self.order * scene.phi_in + self.phase)}

@@ -32,14 +32,14 @@ from swgsim.recording import Recording
 
 def attempt(case: Sealed, setting: Setting) -> dict[str, Any]:
     """What the loop says of a case, and how far it is from the truth where nothing was recorded."""
-    began = time.perf_counter(), time.process_time()
+    began = time.perf_counter()
     unit = unit_known(case, setting)
     ready = time.perf_counter()
     recordings, library = in_question(case, setting, case.acting), setting.given(case)
     asked = time.perf_counter(), time.process_time()
     found = answer(recordings, unit, library, seed=case.number)
     seconds = {
-        "preparing": ready - began[0],
+        "preparing": ready - began,
         "loop": time.perf_counter() - asked[0],
         "loop_of_one_core": time.process_time() - asked[1],
     }

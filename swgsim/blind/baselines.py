@@ -11,7 +11,7 @@ from swgsim.loop.closing import MOST_STEPS
 from swgsim.loop.fitted import Fitted
 from swgsim.loop.hypotheses import Hypothesis, hypotheses, signatures
 from swgsim.loop.leading import ALPHA
-from swgsim.loop.tail import log_tail
+from swgsim.loop.tail import surprise
 from swgsim.singular import svd
 
 
@@ -26,6 +26,8 @@ class Task(NamedTuple):
 def named_by_baselines(fitted: Fitted, kinds: Sequence[type[Effect]]) -> dict[str, list[str]]:
     """Names that every baseline gives, the first one first."""
     found = list(hypotheses(kinds))
+    if not found:
+        return {name: [] for name in BASELINES}
     task = Task(found, signatures(found, fitted.model, fitted.measured), fitted)
     return {name: list(dict.fromkeys(method(task))) for name, method in BASELINES.items()}
 
@@ -40,9 +42,8 @@ def correlation(task: Task) -> list[str]:
     white, r = task.fitted.errors.whiten, task.fitted.errors.whiten(task.fitted.residual)
     best, name, tried = 0.0, [], len(task.found)
     for hypothesis, signature in zip(task.found, task.signatures, strict=True):
-        basis = np.linalg.qr(white(signature))[0]
-        gain = float(((basis.T @ r) ** 2).sum())
-        rank = -2 * float(log_tail(gain, basis.shape[1]))
+        basis = _basis(white(signature))
+        rank = surprise(float(((basis.T @ r) ** 2).sum()), basis.shape[1])
         if rank > best and rank > -2 * np.log(ALPHA / tried):
             best, name = rank, [hypothesis.kind.name()]
     return name

@@ -4,10 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from swgsim.blind.altered import STRAY_CHANNELS, Alteration, Altered, StrayOrder
+from swgsim.blind.altered import Alteration, Altered, StrayOrder
 from swgsim.blind.bench import Setting, commissioning, in_question
+from swgsim.blind.outside import OUTSIDE
 from swgsim.blind.sealed import Sealed
-from swgsim.blind.strata import HARD_NULL, OUTSIDE_STRATA, TAKEN_OUT, UNTESTABLE, Plan, searched
+from swgsim.blind.strata import HARD_NULL, OUTSIDE_STRATA, TAKEN_OUT, UNTESTABLE, WRITTEN, Plan, searched
 from swgsim.blind.strength import likeness, sized
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities, size_of
@@ -18,6 +19,7 @@ from swgsim.loop.fitting import fit
 from swgsim.loop.model import Model, predict
 from swgsim.loop.session import Measured
 from swgsim.loop.unit import Unit
+from swgsim.recordings import SENSORS
 from swgsim.seeds import generator, seed_hash
 
 # How far laws are off the library's: by this power of the load, or with sizes that vary by this share over operating
@@ -63,12 +65,13 @@ def draw(plan: Plan, setting: Setting) -> Sealed:
     drawn: list[Effect] = []
     found: list[float] = []
     invisible: list[str] = []
-    spares = [setting.library[i] for i in rng.permutation(len(setting.library))]
+    others = OUTSIDE if plan.stratum == WRITTEN else setting.library
+    spares = [others[i] for i in rng.permutation(len(others))]
     for kind in plan.kinds:
         effect, strength = _sized(kind, plan, fitted, case, rng)
         while strength < VISIBLE and plan.stratum != UNTESTABLE and spares:
             spare = spares.pop()
-            if not searched(spare) or spare in (kind, *map(type, drawn)):
+            if not searched(spare) or spare in (*plan.kinds, *map(type, drawn)):
                 continue
             invisible.append(effect.name())
             effect, strength = _sized(spare, plan, fitted, case, rng)
@@ -130,9 +133,9 @@ def _stray(effect: Effect, fitted: Fitted, rng: np.random.Generator) -> StrayOrd
     change = measured.rows(seen[1] - seen[0])
     sizes = dict(zip(measured.layout.channels, per_channel(measured, change), strict=True))
     white = (change.reshape(measured.values.shape) ** 2 / measured.variance).sum(axis=0)
-    heard = {c: float(white[measured.layout.channel == c].sum()) for c in sizes if c in STRAY_CHANNELS}
+    heard = {c: float(white[measured.layout.channel == c].sum()) for c in sizes if c in SENSORS}
     channel = max(heard, key=lambda name: heard[name])
     amplitude = rng.uniform(*STRAY) * np.sqrt(2) * float(sizes[channel])
-    number = STRAY_CHANNELS.index(channel)
+    number = SENSORS.index(channel)
     bound = quantities(StrayOrder)[size_of(StrayOrder)].high
     return StrayOrder(number, int(rng.integers(3, 12)), float(min(amplitude, bound)), float(rng.uniform(0, 2 * np.pi)))

@@ -18,13 +18,13 @@ from swgsim.blind.attempt import attempt
 from swgsim.blind.bench import Setting
 from swgsim.blind.drawing import draw
 from swgsim.blind.judged import Judged
-from swgsim.blind.score import score
+from swgsim.blind.score import account, score
 from swgsim.blind.sealed import SHORT, as_json, from_json
 from swgsim.blind.strata import DETECTABLE, plans
 from swgsim.blind.table import table
 from swgsim.compute import Engine
 from swgsim.effects.library import SEARCHED, listed, named
-from swgsim.files import sole_maker, write_json, write_text
+from swgsim.files import replacing, sole_maker, write_json, write_text
 from swgsim.loop import (
     above,
     answer,
@@ -126,7 +126,7 @@ def run(config: Mapping[str, Any]) -> dict[str, Any]:
         "code": key["code"],
         "thresholds": THRESHOLDS,
         **score(cases),
-        "all": [{"number": c.case.number, "cause": c.cause, "why": c.why} for c in cases],
+        "all": [account(case) for case in cases],
     }
     write_json(report / "blind.json", found)
     _draw_figure(report, cases, found)
@@ -230,7 +230,6 @@ def _digest(path: Path) -> str:
 
 def _draw_figure(report: Path, cases: Sequence[Judged], found: Mapping[str, Any]) -> None:
     from swgsim.blind.figure import picture
-    from swgsim.files import replacing
 
     with replacing(report / "blind.png") as aside:
         aside.write_bytes(picture(cases, found))

@@ -178,7 +178,7 @@ class Judged:
         if self.said["lines"] and not self.said["accepted"]:
             return "false line between the orders"
         if self.named:
-            return RIGHT if self.right_in_set and not self.null else "false effect"
+            return RIGHT if self.right_in_set and set(self.named) <= set(self.case.names) else "false effect"
         return RIGHT if self.said["verdict"] == NOTHING else "false alarm: something unknown"
 
     def _outside(self) -> str:

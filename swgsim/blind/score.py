@@ -30,8 +30,8 @@ def score(cases: Sequence[Judged]) -> dict[str, Any]:
         "nulls": len(nulls),
         "detectable": len(known),
         "outside": len(outside),
-        "false_effect_rate": rate([bool(case.named) for case in nulls]),
-        "false_alarm_rate": rate([case.first != "nothing" for case in nulls]),
+        "false_effect_rate": rate([bool(case.named) for case in nulls if not case.failed]),
+        "false_alarm_rate": rate([case.first != "nothing" for case in nulls if not case.failed]),
         "chances_of_nulls": sorted(case.said["smallest_chance"] for case in nulls if not case.failed),
         "right_first": rate([case.right_first for case in known]),
         "right_family_first": rate([case.right_family_first for case in known]),
@@ -39,7 +39,7 @@ def score(cases: Sequence[Judged]) -> dict[str, Any]:
         "right_or_nearest": rate([case.right_first or case.nearest in case.case.names for case in known]),
         "both_of_a_pair": rate([case.right_in_set for case in known if case.case.stratum == PAIR]),
         "mean_set_size": float(np.mean([case.set_size for case in known if case.named] or [0.0])),
-        "false_extra_effect": rate([bool(set(case.named) - set(case.case.names)) for case in hidden]),
+        "false_extra_effect": rate([_false(case) for case in hidden if not case.failed]),
         "none_of_the_above_recall": rate([case.none_of_the_above for case in told_apart]),
         "look_alikes_named": rate([bool(case.named) for case in outside if case.look_alike]),
         "unknown_described": _described(told_apart),
@@ -47,7 +47,7 @@ def score(cases: Sequence[Judged]) -> dict[str, Any]:
             [set(case.case.names) <= set(case.said["absorbed"]) for case in untestable if not case.failed]
         ),
         "untestable_told": rate([case.told_untestable for case in untestable if not case.failed]),
-        "false_effect_on_untestable": rate([bool(set(case.named) - set(case.case.names)) for case in untestable]),
+        "false_effect_on_untestable": rate([_false(case) for case in untestable if not case.failed]),
         "after_over_oracle_median": median([case.over("after", "oracle") for case in known if not case.failed]),
         "after_over_before_median": median([case.over("after", "before") for case in known if not case.failed]),
         "worse_than_before": rate([case.worse for case in answered]),
@@ -65,7 +65,7 @@ def score(cases: Sequence[Judged]) -> dict[str, Any]:
         "by_strength": _by_strength(cases),
         "confusion": _confusion(cases),
         "causes": dict(Counter(case.cause for case in cases).most_common()),
-        "worst": [_account(case) for case in worst(cases)],
+        "worst": [account(case) for case in worst(cases)],
     }
 
 
@@ -79,7 +79,12 @@ def worst(cases: Sequence[Judged]) -> list[Judged]:
     return sorted(wrong, key=shame, reverse=True)[:WORST]
 
 
-def _account(case: Judged) -> dict[str, Any]:
+def _false(case: Judged) -> bool:
+    """Whether something was named that is not hidden."""
+    return bool(set(case.named) - set(case.case.names))
+
+
+def account(case: Judged) -> dict[str, Any]:
     return {"number": case.case.number, "cause": case.cause, "why": case.why}
 
 
@@ -111,12 +116,10 @@ def _baseline(name: str, cases: Sequence[Judged]) -> dict[str, Any]:
         "mean_set_size": float(np.mean([len(named) for _, named in known if named] or [0])),
         "none_of_the_above_recall": rate([not case.said["baselines"][name] for case in apart]),
     } | (
-        {"after_over_oracle_median": median([c.over("before", "oracle") for c, _ in known])} if not _names(name) else {}
+        {"after_over_oracle_median": median([c.over("before", "oracle") for c, _ in known])}
+        if name == "calibration_only"
+        else {}
     )
-
-
-def _names(name: str) -> bool:
-    return name != "calibration_only"
 
 
 def _by_strength(cases: Sequence[Judged]) -> Mapping[str, Any]:

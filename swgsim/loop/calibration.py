@@ -81,7 +81,7 @@ def calibrate(
         What is fitted, with its spread.
     measured : array (recording, feature)
     errors : Covariance
-        Noise and errors of single recordings, rows (recording, feature).
+        All errors and what is open beside the parameters, rows (recording, feature).
     situations : sequence of Situation
     of_recording : array (recording,)
         Which situation belongs to each recording.

@@ -21,6 +21,10 @@ SHARE = 0.5
 SERIES, ANY_FRICTION = 0.1, 0.5
 # Of a gauge's gain and of the wave generator's stroke in a series, as a share; an estimate.
 STRAINED = 0.01
+# Of each part of the kinematic error [rad], of a gauge's zero [mV/V], of its position and direction [rad]; estimates.
+ERROR_PART, ZERO, PLACED = 0.3e-4, 0.02, 0.01
+# A position or shape of an effect that is not seen at all stays within its range over this; an estimate.
+NEAR = 20.0
 # Below this share of its nominal value, a stiffness, a friction or the stroke of the wave generator is that of no gear;
 # nor is a stiffness, a friction or what belongs to the bench beyond so many times it.
 LEAST, MOST = 0.05, 5.0
@@ -78,6 +82,11 @@ def _of_transmission(name: str, unit: str, sd: float, low: float = -np.inf, high
 
 def _of_size(name: str, unit: str, nominal: float, spread: float) -> Declared:
     """A stiffness, friction or the like, whose spread is a share of it."""
+    if not nominal > 0:
+        raise ValueError(
+            f"{name} of the gear is {nominal:g} {unit}, must be more than 0 for a loop, which looks for it within a "
+            "share of that: give an estimate in the gear file"
+        )
     return _of_transmission(name, unit, spread * nominal, LEAST * nominal, MOST * nominal)
 
 
@@ -91,7 +100,7 @@ def _of_gauge(name: str, sensor: int, unit: str, sd: float) -> Declared:
 
 
 def _of_kinematic_error(order: int, part: str, sd: float) -> Declared:
-    """Cosine or sine part of one order: amplitude and phase, but linear."""
+    """Sine or cosine part of one order of A sin(order phi + phase): amplitude and phase, but linear."""
 
     def phasor(gear: Gear) -> complex:
         terms = [term for term in gear.transmission.kinematic_error if term.order == order]
@@ -99,12 +108,12 @@ def _of_kinematic_error(order: int, part: str, sd: float) -> Declared:
 
     def moved(gear: Gear, to: float) -> Gear:
         now = phasor(gear)
-        sought = complex(to, now.imag) if part == "cosine" else complex(now.real, to)
+        sought = complex(to, now.imag) if part == "sine" else complex(now.real, to)
         term = KinematicError(order, float(abs(sought)), float(np.angle(sought)))
         others = tuple(each for each in gear.transmission.kinematic_error if each.order != order)
         return replace(gear, transmission=replace(gear.transmission, kinematic_error=(*others, term)))
 
-    return _of_gear("rad", sd, lambda gear: phasor(gear).real if part == "cosine" else phasor(gear).imag, moved)
+    return _of_gear("rad", sd, lambda gear: phasor(gear).real if part == "sine" else phasor(gear).imag, moved)
 
 
 def of_unit(gear: Gear, friction: float = SERIES) -> dict[str, Declared]:
@@ -141,13 +150,13 @@ def of_unit(gear: Gear, friction: float = SERIES) -> dict[str, Declared]:
         ),
     }
     for term in t.kinematic_error:
-        for part in ("cosine", "sine"):
-            found[f"kinematic error {term.order} {part}"] = _of_kinematic_error(term.order, part, 0.3e-4)
+        for part in ("sine", "cosine"):
+            found[f"kinematic error {term.order} {part}"] = _of_kinematic_error(term.order, part, ERROR_PART)
     for sensor in range(5):
         found[f"gain of s{sensor}"] = _of_gauge("gain", sensor, "-", STRAINED)
-        found[f"zero of s{sensor}"] = _of_gauge("offset", sensor, "mV/V", 0.02)
-        found[f"position of s{sensor}"] = _of_gauge("position", sensor, "rad", 0.01)
-        found[f"grid angle of s{sensor}"] = _of_gauge("grid_angle", sensor, "rad", 0.01)
+        found[f"zero of s{sensor}"] = _of_gauge("offset", sensor, "mV/V", ZERO)
+        found[f"position of s{sensor}"] = _of_gauge("position", sensor, "rad", PLACED)
+        found[f"grid angle of s{sensor}"] = _of_gauge("grid_angle", sensor, "rad", PLACED)
     return found
 
 
@@ -172,7 +181,7 @@ def of_effects(model: Model, another_structure: bool = False) -> dict[str, Decla
             span = 2 * np.pi if angular else quantity.high - quantity.low
             bounds = {} if angular else {"low": quantity.low, "high": quantity.high}
             # A size is free; where a position or a shape is not seen at all it stays near where the search left it.
-            sd = span if quantity.role in (Role.SIZE, Role.PHASE) else span / 20
+            sd = span if quantity.role in (Role.SIZE, Role.PHASE) else span / NEAR
             found[name_of(effect, number, name)] = Declared(
                 quantity.unit, sd, _reader(number, name), _mover(number, name), **bounds, scale=quantity.scale
             )

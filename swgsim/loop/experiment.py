@@ -147,8 +147,8 @@ class _Further:
         predicted, directions = _directions(fitted, situations)
         seen = predict(truths, situations, measured.layout) - predicted
         differences = np.moveaxis(seen, 0, -1)
-        # A difference within the tolerance of form told nothing, so far.
-        errors = fitted.errors
+        # A difference that what was set free absorbs, or within the tolerance of form, told nothing so far.
+        errors = fitted.errors.with_columns(fitted.allowed.free)
         for number in _added(fitted):
             errors = errors.with_columns(without_what_noise_hides(allowance(fitted, number), errors.variance))
         C = errors.whiten(measured.rows(directions[:count]))

@@ -103,6 +103,8 @@ def hypotheses(kinds: Iterable[type[Effect]], another_structure: bool = False) -
 
 def signatures(found: Sequence[Hypothesis], model: Model, measured: Measured) -> list[Float[np.ndarray, "row column"]]:
     """How typical sizes of all hypotheses change the features of all recordings, by the chain itself."""
+    if not found:
+        return []
     effects = [effect for hypothesis in found for effect in hypothesis.columns]
     models = [model, *(model.plus(effect) for effect in effects)]
     predicted = predict(models, measured.situations, measured.layout)

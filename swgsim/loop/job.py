@@ -13,6 +13,8 @@ from swgsim import settings, truth
 from swgsim.defects.defect import Defect
 from swgsim.effects.base import Effect
 from swgsim.effects.library import SEARCHED, listed, named
+from swgsim.effects.line_between import LineBetween
+from swgsim.effects.regularity import Regularity
 from swgsim.effects.text import as_text, sized
 from swgsim.faults import FAULTS
 from swgsim.files import require_writable, write_json, write_text
@@ -101,9 +103,22 @@ def run(config: Mapping[str, Any]) -> Outcome:
 
 
 def library(config: Mapping[str, Any]) -> tuple[type[Effect], ...]:
-    """The effects that are searched for: those named, or all of the library, and further ones from outside."""
+    """The effects that are searched for: those named, or all of the library, and further ones from outside.
+
+    Raises
+    ------
+    ValueError
+        If one is none that can be, or cannot be searched for.
+    """
     searched = SEARCHED if config["searched"] is None else tuple(map(named, listed(config["searched"])))
-    return tuple(dict.fromkeys((*searched, *map(named, listed(config["library"])))))
+    kinds = tuple(dict.fromkeys((*searched, *map(named, listed(config["library"])))))
+    nameless = [kind.name() for kind in kinds if issubclass(kind, (Regularity, LineBetween))]
+    if nameless:
+        raise ValueError(
+            f"{', '.join(nameless)} cannot be searched for: a loop writes it where no effect explains the recordings; "
+            "leave it out of searched= and library="
+        )
+    return kinds
 
 
 def write(folder: Path, found: Answer, said: Mapping[str, Any]) -> dict[str, "Figure"]:

@@ -25,9 +25,9 @@ def page(report: Mapping[str, Any], pictures: Sequence[style.Picture]) -> str:
 def figure(value: float | None, digits: int = 3) -> str:
     """A number as people read it.
 
-    >>> figure(0.00012345), figure(None), figure(4810.8)
-    ('0.000123', 'not known', '4811')
+    >>> figure(0.00012345), figure(None), figure(4810.8), figure(999.7)
+    ('0.000123', 'not known', '4811', '1000')
     """
     if value is None:
         return "not known"
-    return f"{value:.0f}" if 10**digits <= abs(value) < 1e6 else f"{value:.{digits}g}"
+    return f"{value:.0f}" if 10**digits - 0.5 <= abs(value) < 1e6 else f"{value:.{digits}g}"

@@ -9,6 +9,7 @@ from jaxtyping import Float
 from swgsim.effects import ParameterScatter
 from swgsim.effects.frozen import FULL_LOAD
 from swgsim.effects.kinematic_error_order import KinematicErrorOrder
+from swgsim.gear import HIGHEST
 from swgsim.loop.features import Layout
 from swgsim.loop.model import Model, Situation, predict
 from swgsim.loop.session import Measured
@@ -93,12 +94,17 @@ def directions(
 ) -> Float[np.ndarray, "situation feature kind"]:
     """How the features of each situation move with a unit of every error."""
 
-    def at(situation: Situation, **changes: float) -> Situation:
-        return replace(situation, point=replace(situation.point, **changes))
-
     def shifted(name: str) -> list[Situation]:
-        return [at(s, **{name: getattr(s.point, name) * (1 + STEP)}) for s in situations]
+        values = [getattr(s.point, name) * (1 + by) for s, by in zip(situations, steps[name], strict=True)]
+        return [
+            replace(s, point=replace(s.point, **{name: value})) for s, value in zip(situations, values, strict=True)
+        ]
 
+    # Downwards where a step upwards leads beyond what a gear may bear.
+    steps = {
+        name: np.array([STEP if getattr(s.point, name) * (1 + STEP) <= most else -STEP for s in situations])
+        for name, most in HIGHEST.items()
+    }
     t = model.gear.transmission
     viscous = model.plus(ParameterScatter(1 + STEP, 1.0))
     dry = replace(model, gear=replace(model.gear, transmission=replace(t, b0=t.b0 * (1 + STEP))))
@@ -107,12 +113,16 @@ def directions(
     every = predict([model, viscous, dry, *beats], [*situations, *shifted("T_out"), *shifted("n_in_rpm")], layout)
     here, loaded, faster = np.split(every, 3, axis=1)
     base, *others = here
-    moved = {"load": loaded[0], "speed": faster[0]}
-    moved |= dict(zip(("viscous friction", "dry friction", "beat, cosine", "beat, sine"), others, strict=True))
+    slopes = {
+        "load": (loaded[0] - base) / steps["T_out"][:, None],
+        "speed": (faster[0] - base) / steps["n_in_rpm"][:, None],
+    }
+    for kind, there in zip(("viscous friction", "dry friction", "beat, cosine", "beat, sine"), others, strict=True):
+        slopes[kind] = (there - base) / (BEAT_STEP if "beat" in kind else STEP)
     found = []
     for kind in kinds(layout):
-        if kind in moved:
-            found.append((moved[kind] - base) / (BEAT_STEP if "beat" in kind else STEP))
+        if kind in slopes:
+            found.append(slopes[kind])
         elif kind == "trigger":
             found.append(layout.turning(base))
         else:

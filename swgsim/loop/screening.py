@@ -30,9 +30,9 @@ NEGLIGIBLE = 1e-6
 DRAWS, AT_ONCE, LUCK = 1000, 100, 20
 # A logarithm of a probability this many times that of the most unlikely draw is far beyond them.
 FAR = 2.0
-# Deviations at which a size is seen with 80 % power at the level of one in a hundred of the whole library: of its 300
-# hypotheses one goes beyond 4.15 of them by luck so often, and a size 0.84 beyond that does four times in five.
-SEEN = 5.0
+# Deviations at which a size stands out (:data:`swgsim.loop.leading.ALPHA`) with 80 % power: of the library's 300
+# hypotheses one goes beyond 4.31 of them by luck so often, and a size 0.84 beyond that does four times in five.
+SEEN = 5.15
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ class Score:
 
     @property
     def detectable(self) -> float:
-        """Smallest size that would be seen with 80 % power at the level of one in a hundred of the whole library."""
+        """Smallest size that would stand out with 80 % power."""
         return SEEN * self.deviation
 
     @property
