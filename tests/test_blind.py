@@ -313,10 +313,9 @@ def test_baselines_name_what_stands_out(name: str) -> None:
 
 
 def test_baselines_name_nothing_that_no_channel_shows() -> None:
-    task = _task(None)
+    task = _task(7)
     nothing = np.zeros_like(task.signatures[0])
-    unseen_ = task._replace(signatures=[nothing] * len(task.found), fitted=_task(7).fitted)
-    assert baselines.correlation(unseen_) == []
+    assert baselines.correlation(task._replace(signatures=[nothing] * len(task.found))) == []
 
 
 def test_baselines_name_nothing_of_a_library_without_a_signature(fitted: Fitted) -> None:

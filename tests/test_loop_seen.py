@@ -6,11 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from loop_fixtures import fitted_to
+from scipy.stats import norm
 
 from swgsim.effects.reduced_stiffness import ReducedStiffness
 from swgsim.loop import seen
 from swgsim.loop.features import Layout
 from swgsim.loop.hypotheses import Hypothesis
+from swgsim.loop.leading import ALPHA
 from swgsim.loop.screening import SEEN, Score
 
 FITTED = fitted_to(Layout(("s1",)), np.random.default_rng(1))
@@ -70,3 +72,8 @@ def test_the_other_figures_of_a_score_stay(asked):
     assert replace(found, deviation=0.0) == replace(
         scored(Hypothesis(ReducedStiffness, (), 1), lambda _: 0.0, 0.01), deviation=0.0
     )
+
+
+def test_a_size_that_is_seen_stands_out_four_times_in_five():
+    """Of three hundred hypotheses at the level at which effects are accepted."""
+    assert pytest.approx(norm.isf(ALPHA / 300 / 2) + norm.isf(0.2), abs=0.01) == SEEN

@@ -101,6 +101,11 @@ class Judged:
         return family(self.first) in {family(name) for name in self.case.names}
 
     @property
+    def false(self) -> bool:
+        """Whether something is named that is not hidden."""
+        return not set(self.named) <= set(self.case.names)
+
+    @property
     def right_in_set(self) -> bool:
         """Whether all that is hidden is in the set."""
         return set(self.case.names) <= self.in_set
@@ -178,7 +183,7 @@ class Judged:
         if self.said["lines"] and not self.said["accepted"]:
             return "false line between the orders"
         if self.named:
-            return RIGHT if self.right_in_set and set(self.named) <= set(self.case.names) else "false effect"
+            return RIGHT if self.right_in_set and not self.false else "false effect"
         return RIGHT if self.said["verdict"] == NOTHING else "false alarm: something unknown"
 
     def _outside(self) -> str:
@@ -192,7 +197,7 @@ class Judged:
         if self.right_first:
             if not self.right_in_set:
                 return "second effect missed"
-            return RIGHT if set(self.named) <= set(self.case.names) else "right, with a false extra effect"
+            return RIGHT if not self.false else "right, with a false extra effect"
         if self.first == "nothing":
             return "missed" if self.case.detectable else "too weak"
         if self.first == "unknown":

@@ -39,7 +39,7 @@ def score(cases: Sequence[Judged]) -> dict[str, Any]:
         "right_or_nearest": rate([case.right_first or case.nearest in case.case.names for case in known]),
         "both_of_a_pair": rate([case.right_in_set for case in known if case.case.stratum == PAIR]),
         "mean_set_size": float(np.mean([case.set_size for case in known if case.named] or [0.0])),
-        "false_extra_effect": rate([_false(case) for case in hidden if not case.failed]),
+        "false_extra_effect": rate([case.false for case in hidden if not case.failed]),
         "none_of_the_above_recall": rate([case.none_of_the_above for case in told_apart]),
         "look_alikes_named": rate([bool(case.named) for case in outside if case.look_alike]),
         "unknown_described": _described(told_apart),
@@ -47,7 +47,7 @@ def score(cases: Sequence[Judged]) -> dict[str, Any]:
             [set(case.case.names) <= set(case.said["absorbed"]) for case in untestable if not case.failed]
         ),
         "untestable_told": rate([case.told_untestable for case in untestable if not case.failed]),
-        "false_effect_on_untestable": rate([_false(case) for case in untestable if not case.failed]),
+        "false_effect_on_untestable": rate([case.false for case in untestable if not case.failed]),
         "after_over_oracle_median": median([case.over("after", "oracle") for case in known if not case.failed]),
         "after_over_before_median": median([case.over("after", "before") for case in known if not case.failed]),
         "worse_than_before": rate([case.worse for case in answered]),
@@ -79,12 +79,8 @@ def worst(cases: Sequence[Judged]) -> list[Judged]:
     return sorted(wrong, key=shame, reverse=True)[:WORST]
 
 
-def _false(case: Judged) -> bool:
-    """Whether something was named that is not hidden."""
-    return bool(set(case.named) - set(case.case.names))
-
-
 def account(case: Judged) -> dict[str, Any]:
+    """What went wrong in a case, if anything."""
     return {"number": case.case.number, "cause": case.cause, "why": case.why}
 
 

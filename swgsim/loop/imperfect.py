@@ -109,8 +109,6 @@ def _imperfections(fitted: Fitted, signature: Float[np.ndarray, " row"]) -> Floa
 def _screened(fitted: Fitted, kinds: Sequence[type[Effect]]) -> list[Opened]:
     """The likeliest hypothesis of every kind of those that are absorbed in their own form, the likeliest first."""
     found = offered(fitted, kinds)
-    if not found:
-        return []
     signed = dict(zip(found, signatures(found, fitted.model, fitted.measured), strict=True))
     r = fitted.whole.whiten(fitted.from_start)
     scores = [score for score in rank(found, list(signed.values()), fitted) if 0 < score.visible < ABSORBED]

@@ -166,6 +166,8 @@ class Projected(NamedTuple):
 
 def _all_projected(signatures: Sequence[Float[np.ndarray, "row _"]], fitted: Fitted) -> list[Projected]:
     """All signatures without what is declared absorbs of them."""
+    if not signatures:
+        return []
     stacked = np.hstack(list(signatures))
     ends = np.cumsum([s.shape[1] for s in signatures])[:-1]
     white, alone = (np.split(errors.whiten(stacked), ends, axis=1) for errors in (fitted.whole, fitted.errors))
