@@ -104,6 +104,7 @@ lint: $(READY)  ## style and types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+	$(BIN)/lint-imports
 
 fuzz: $(READY)  ## every reader on spoiled files, SECONDS=300 in all (docs/reliability.md)
 	OMP_NUM_THREADS=1 ARROW_DEFAULT_MEMORY_POOL=system $(BIN)/python scripts/fuzz.py --seconds $(or $(SECONDS),300)

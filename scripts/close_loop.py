@@ -10,8 +10,8 @@ from misspelt import answered
 from omegaconf import DictConfig
 
 from swgsim.common.configured import plain
+from swgsim.common.outcome import Outcome
 from swgsim.identification.report import close_loop as of_gauges
-from swgsim.identification.report.close_loop import Outcome
 from swgsim.joint import close_joint_loop as of_joint
 
 EXPERIMENT = "loop"

@@ -13,6 +13,7 @@ from swgsim.blind.bench import Setting, in_question, unseen
 from swgsim.blind.drawing import unit_known
 from swgsim.blind.prediction import unseen_error
 from swgsim.blind.sealed import Sealed
+from swgsim.common.numbers import number
 from swgsim.effects import text
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities, size_of
@@ -25,7 +26,6 @@ from swgsim.identification.fit.priors import name_of
 from swgsim.identification.fit.unit import Unit
 from swgsim.identification.interharmonics.named_interharmonics import is_random
 from swgsim.identification.report.answer import Answer, answer
-from swgsim.identification.report.numbers import number
 from swgsim.identification.report.prediction_errors import heldout
 from swgsim.recordings.recording import Recording
 

@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
+from swgsim.common.chi2_logsf import surprise
 from swgsim.common.singular import svd
 from swgsim.effects.base import Effect
-from swgsim.identification.covariance.chi2_logsf import surprise
 from swgsim.identification.decide.stepwise_selection import MOST_STEPS
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.search.hypotheses import Hypothesis, hypotheses, signatures

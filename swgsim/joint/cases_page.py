@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from swgsim.common.html import environment
-from swgsim.identification.report.answer_page import figure
+from swgsim.common.numbers import figure
 from swgsim.joint.joint_page import capital
 
 

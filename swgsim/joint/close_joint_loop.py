@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from swgsim.common.files import replacing, require_writable, write_json, write_text
+from swgsim.common.numbers import figure
+from swgsim.common.outcome import Outcome
 from swgsim.effects.library import listed, named
 from swgsim.effects.text import as_text
-from swgsim.identification.report.answer_page import figure
-from swgsim.identification.report.close_loop import Outcome
 from swgsim.joint.days import days
 from swgsim.joint.intake.read import JointFiles, read_joints
 from swgsim.joint.intake.source import JointSource

@@ -5,7 +5,7 @@ from typing import Any
 
 from swgsim.common import style
 from swgsim.common.html import environment
-from swgsim.identification.report.answer_page import figure
+from swgsim.common.numbers import figure
 
 
 def page(said: Mapping[str, Any], pictures: Sequence[style.Picture]) -> str:

@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.ndimage import median_filter
 
-from swgsim.identification.covariance.chi2_logsf import log_tail
+from swgsim.common.chi2_logsf import log_tail
 from swgsim.joint.regression import Table
 
 # Lines per wave that the longest recording resolves, and the highest order, if the gear ratio does not say more.

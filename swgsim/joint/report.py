@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from swgsim.common.outcome import FOUND, NOTHING, UNKNOWN
 from swgsim.effects.quantity import Role, quantities
-from swgsim.identification.report.answer import FOUND, NOTHING, UNKNOWN
 from swgsim.joint.days import Days
 from swgsim.joint.effects.position_friction import PositionFriction
 from swgsim.joint.effects.ripple import Ripple

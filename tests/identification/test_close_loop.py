@@ -17,6 +17,7 @@ from learn import tracking
 from swgsim.bench.scatter import Bench
 from swgsim.bench.virtual_bench import Instruments, Sessions, record_sessions
 from swgsim.chain.chain import simulate_turns
+from swgsim.common.outcome import NOTHING
 from swgsim.effects.base import Effect
 from swgsim.effects.eccentric_wave_generator import EccentricWaveGenerator
 from swgsim.effects.gauge_gain import GaugeGain
@@ -36,7 +37,7 @@ from swgsim.identification.fit.unit import UNHEARD, Unit
 from swgsim.identification.interharmonics.line_pattern import Part
 from swgsim.identification.interharmonics.unattributed_lines import Unnamed
 from swgsim.identification.report import close_loop as job
-from swgsim.identification.report.answer import MOST_NAMED, NOTHING, Answer, answer
+from swgsim.identification.report.answer import MOST_NAMED, Answer, answer
 from swgsim.identification.report.next_experiment import RECORDINGS, SEPARATED, next_experiments
 from swgsim.identification.report.open_questions import next_experiment
 from swgsim.identification.report.report_fields import report

@@ -9,6 +9,7 @@ from chain_fixtures import GEAR
 from fabricated_trials import FITTED, MIMIC, PAIR, A, B, C, Dip, Mimic, tried
 from loop_fixtures import BUMP, Bump, Wave
 
+from swgsim.common.outcome import UNKNOWN
 from swgsim.identification.covariance.low_rank_covariance import as_squares
 from swgsim.identification.data.model import Model
 from swgsim.identification.decide import accepted as steps
@@ -23,7 +24,7 @@ from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.form_error import FORM_TOLERANCE, Coherence
 from swgsim.identification.report import found as effects
 from swgsim.identification.report.answer import NOTHING as NOTHING_MISSING
-from swgsim.identification.report.answer import UNKNOWN, Answer, untestable
+from swgsim.identification.report.answer import Answer, untestable
 from swgsim.identification.report.found import why
 from swgsim.identification.report.open_questions import unknown
 from swgsim.identification.search.regularities import Atom, Described

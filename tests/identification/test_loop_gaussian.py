@@ -8,7 +8,7 @@ from scipy.linalg import block_diag
 from scipy.special import log_ndtr
 from scipy.stats import multivariate_normal
 
-from swgsim.identification.covariance.chi2_logsf import log_tail
+from swgsim.common.chi2_logsf import log_tail
 from swgsim.identification.covariance.low_rank_covariance import HIDDEN, Covariance, without_what_noise_hides
 from swgsim.identification.covariance.recording_covariance import Alone
 

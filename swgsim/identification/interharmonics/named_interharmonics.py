@@ -10,9 +10,9 @@ import numpy as np
 from jaxtyping import Float
 from scipy.stats import chi2
 
+from swgsim.common.chi2_logsf import surprise
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Quantity, Role, quantities, size_of
-from swgsim.identification.covariance.chi2_logsf import surprise
 from swgsim.identification.interharmonics.interharmonic_spectrum import Between, by_luck
 
 # A line's size may differ from its law over load and speed by this share.

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from swgsim.common.outcome import FOUND, NOTHING, UNKNOWN
 from swgsim.effects.base import Effect
 from swgsim.effects.line_between import LineBetween
 from swgsim.effects.regularity import Regularity
@@ -30,7 +31,6 @@ MOST_ABOVE = 3
 LEAST_EXPLAINED = 0.1
 # Effects that cannot be decided, named in the sentence at most; the report has them all.
 MOST_NAMED = 6
-NOTHING, FOUND, UNKNOWN = "nothing_missing", "effect_found", "unknown_effect"
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,7 +17,7 @@ from swgsim.identification.fit.errors import repeat_noise
 from swgsim.identification.data.features import ORDERS, basis
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.search.shortlist import ALPHA
-from swgsim.identification.report.numbers import NORMAL
+from swgsim.common.numbers import NORMAL
 from swgsim.identification.report.prediction_errors import WHAT
 from swgsim.identification.data.measured import Measured
 from swgsim.recordings.recording import CHANNELS

@@ -5,6 +5,7 @@ from typing import Any
 
 from swgsim.common import style
 from swgsim.common.html import environment
+from swgsim.common.numbers import figure
 
 
 def page(report: Mapping[str, Any], pictures: Sequence[style.Picture]) -> str:
@@ -20,14 +21,3 @@ def page(report: Mapping[str, Any], pictures: Sequence[style.Picture]) -> str:
     templates.filters["words"] = style.words
     templates.filters["figure"] = figure
     return templates.get_template("identification/report/answer_page.html.jinja").render(report=report, pictures=pictures)
-
-
-def figure(value: float | None, digits: int = 3) -> str:
-    """A number as people read it.
-
-    >>> figure(0.00012345), figure(None), figure(4810.8), figure(999.7)
-    ('0.000123', 'not known', '4811', '1000')
-    """
-    if value is None:
-        return "not known"
-    return f"{value:.0f}" if 10**digits - 0.5 <= abs(value) < 1e6 else f"{value:.{digits}g}"

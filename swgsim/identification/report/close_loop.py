@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from threadpoolctl import threadpool_limits
 
+from swgsim.common.outcome import NOTHING, Outcome
 from swgsim.jobs import settings
 from swgsim.bench import truth
 from swgsim.recordings.checks.defect import Defect
@@ -22,13 +23,15 @@ from swgsim.common.files import require_writable, write_json, write_text
 from swgsim.recordings.files.file_defect import read_for
 from swgsim.recordings.read import read_recordings, require_usable
 from swgsim.identification.data.angle_zero import from_zero, require_same_zero, zero_defects, zero_of
-from swgsim.identification.report.answer import NOTHING, Answer, answer
+from swgsim.identification.report.answer import Answer, answer
+from swgsim.common.outcome import NOTHING
 from swgsim.identification.commissioning.commissioning import commission
 from swgsim.identification.report.next_experiment import next_experiments
 from swgsim.identification.data.features import COMPARED
 from swgsim.identification.data.gauge_order import order_defects
 from swgsim.identification.data.model import Model
-from swgsim.identification.report.answer_page import figure, page
+from swgsim.identification.report.answer_page import page
+from swgsim.common.numbers import figure
 from swgsim.identification.report.report_fields import report
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.interharmonics.named_interharmonics import has_sidelines
@@ -38,25 +41,6 @@ from swgsim.common.style import words
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-
-@dataclass(frozen=True, eq=False)
-class Outcome:
-    """What closing the loop on a folder gave.
-
-    Attributes
-    ----------
-    report : mapping
-        ``report.json``.
-    figures : mapping
-        The pictures of the page by name.
-    digest : str
-        Of the recordings.
-    """
-
-    report: Mapping[str, Any]
-    figures: Mapping[str, "Figure"]
-    digest: str
 
 
 @threadpool_limits.wrap(limits=1)  # so that bytes do not depend on the cores, nor seconds on who else uses them

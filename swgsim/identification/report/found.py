@@ -11,7 +11,7 @@ from swgsim.identification.fit.priors import name_of
 from swgsim.identification.fit.errors import Errors
 from swgsim.identification.fit.form_error import LEAST_GAIN, NO_SIZE
 from swgsim.identification.covariance.low_rank_covariance import as_squares
-from swgsim.identification.report.numbers import estimate, number, probability
+from swgsim.common.numbers import estimate, number, probability
 from swgsim.identification.report.prediction_errors import overall
 from swgsim.identification.interharmonics.named_interharmonics import Sideline
 from swgsim.identification.decide.accepted import Step, chosen

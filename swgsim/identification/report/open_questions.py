@@ -9,7 +9,7 @@ from swgsim.effects.text import entries, path_of
 from swgsim.identification.report.answer import Answer
 from swgsim.identification.report.next_experiment import Experiment
 from swgsim.identification.report.found import names, why
-from swgsim.identification.report.numbers import number
+from swgsim.common.numbers import number
 from swgsim.identification.search.screening import Score
 from swgsim.identification.interharmonics.named_interharmonics import acts_on_signals, is_random
 from swgsim.identification.interharmonics.unattributed_lines import Unnamed

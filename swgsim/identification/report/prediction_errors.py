@@ -8,7 +8,7 @@ from scipy.stats import chi2
 
 from swgsim.identification.fit.errors import Errors, noise_floor, per_channel, relative, rms
 from swgsim.identification.fit.fitted import Fitted
-from swgsim.identification.report.numbers import number
+from swgsim.common.numbers import number
 from swgsim.identification.data.measured import Measured
 from swgsim.recordings.recording import CHANNELS
 from swgsim.common.seeds import generator

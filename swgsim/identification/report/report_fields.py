@@ -13,7 +13,7 @@ from swgsim.identification.fit.errors import noise_floor
 from swgsim.identification.report.next_experiment import Experiment
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.report.found import accepted, of_line, rejected
-from swgsim.identification.report.numbers import estimate
+from swgsim.common.numbers import estimate
 from swgsim.identification.report.open_questions import absorbed, detectable, next_experiment, scored, unknown, untried
 from swgsim.identification.report.prediction_errors import error, named
 from swgsim.identification.data.measured import Measured

@@ -11,10 +11,10 @@ from itertools import groupby, product
 import numpy as np
 from jaxtyping import Bool, Complex, Float
 
+from swgsim.common.chi2_logsf import surprise
 from swgsim.common.seeds import generator
 from swgsim.effects.quantity import quantities
 from swgsim.effects.regularity import LAWS, PATTERNS, Regularity
-from swgsim.identification.covariance.chi2_logsf import surprise
 from swgsim.identification.covariance.low_rank_covariance import as_squares
 from swgsim.identification.data.features import ORDERS, Layout
 from swgsim.identification.fit.fitted import Fitted

@@ -12,9 +12,9 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float, Int
 
+from swgsim.common.chi2_logsf import log_tail, surprise
 from swgsim.common.singular import svd
 from swgsim.effects.quantity import Quantity, quantities
-from swgsim.identification.covariance.chi2_logsf import log_tail, surprise
 from swgsim.identification.covariance.low_rank_covariance import as_squares
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.search.hypotheses import Hypothesis

@@ -5,7 +5,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from swgsim.common import style
-from swgsim.identification.report.numbers import NORMAL
+from swgsim.common.numbers import NORMAL
 from swgsim.joint.days import OF_SPEED, Days, rising
 from swgsim.joint.figures.parts import face, pieces, session_key, sessions, short, tables, unit
 from swgsim.joint.judged import Judged

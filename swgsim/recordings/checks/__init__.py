@@ -1,1 +1,1 @@
-"""What the numbers of recordings show of a test bench: defects are reported, never silently mended."""
+"""Checks for defects that a test bench leaves in its recordings: they are reported, never silently corrected."""

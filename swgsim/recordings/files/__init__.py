@@ -1,1 +1,1 @@
-"""Recordings in: a folder, a file, or the files of other makers, checked on the way."""
+"""Readers: folders with a manifest, HDF5, MATLAB, Parquet and CSV with a column map; limits against hostile files."""

@@ -27,3 +27,14 @@ def estimate(value: float, deviation: float, unit: str, low: float = -np.inf, hi
     """A value with its interval, which ends where the parameter's bounds are."""
     interval = [max(value - NORMAL * deviation, low), min(value + NORMAL * deviation, high)]
     return {"value": number(value), "ci95": [number(end) for end in interval], "unit": unit}
+
+
+def figure(value: float | None, digits: int = 3) -> str:
+    """A number as people read it.
+
+    >>> figure(0.00012345), figure(None), figure(4810.8), figure(999.7)
+    ('0.000123', 'not known', '4811', '1000')
+    """
+    if value is None:
+        return "not known"
+    return f"{value:.0f}" if 10**digits - 0.5 <= abs(value) < 1e6 else f"{value:.{digits}g}"
