@@ -104,6 +104,7 @@ lint: $(READY)  ## style and types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+	$(BIN)/lint-imports
 
 fuzz: $(READY)  ## every reader on spoiled files, SECONDS=300 in all (docs/reliability.md)
 	OMP_NUM_THREADS=1 ARROW_DEFAULT_MEMORY_POOL=system $(BIN)/python scripts/fuzz.py --seconds $(or $(SECONDS),300)
@@ -122,11 +123,11 @@ benchmark: $(READY)  ## the chain against the obvious ways of doing the same
 	$(BIN)/python scripts/benchmark.py
 
 convergence: $(READY)  ## gauge signals against the mesh of the flex spline
-	$(BIN)/python -m swgsim.convergence
+	$(BIN)/python -m swgsim.studies.convergence
 
 docs: $(READY)  ## the picture of the README and the page of the effects
-	$(BIN)/python -m swgsim.flexspline_figures docs/flexspline.png
-	$(BIN)/python -m swgsim.effect_gallery docs
+	$(BIN)/python -m swgsim.studies.flexspline_figures docs/flexspline.png
+	$(BIN)/python -m swgsim.studies.effect_gallery docs
 
 ui: $(READY)  ## the runs in the MLflow page, on this machine only
 	$(BIN)/python scripts/ui.py

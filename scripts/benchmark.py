@@ -8,10 +8,11 @@ import numpy as np
 from misspelt import answered
 from omegaconf import DictConfig
 
-from learn import training_benchmark
-from swgsim import benchmark, settings
-from swgsim.configured import plain
-from swgsim.files import write_json
+from learn.methods import training_benchmark
+from swgsim.common.configured import plain
+from swgsim.common.files import write_json
+from swgsim.jobs import settings
+from swgsim.studies import benchmark
 
 
 @hydra.main(version_base="1.3", config_path="../conf", config_name="benchmark")

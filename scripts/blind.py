@@ -4,8 +4,8 @@ import hydra
 from misspelt import answered
 from omegaconf import DictConfig
 
-from swgsim.blind.job import run
-from swgsim.configured import plain
+from swgsim.blind.blind_study import run
+from swgsim.common.configured import plain
 
 
 @hydra.main(version_base="1.3", config_path="../conf", config_name="blind")

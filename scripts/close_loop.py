@@ -9,10 +9,10 @@ import hydra
 from misspelt import answered
 from omegaconf import DictConfig
 
-from swgsim.configured import plain
-from swgsim.joint import job as of_joint
-from swgsim.loop import job as of_gauges
-from swgsim.loop.job import Outcome
+from swgsim.common.configured import plain
+from swgsim.common.outcome import Outcome
+from swgsim.identification.report import close_loop as of_gauges
+from swgsim.joint import close_joint_loop as of_joint
 
 EXPERIMENT = "loop"
 # What is asked of recordings of a robot joint, and of no others; and of gauges only.
@@ -34,7 +34,8 @@ def record(config: Mapping[str, Any], outcome: Outcome) -> None:
     """Keep the answer as an MLflow run."""
     import pandas as pd
 
-    from learn import settings, tracking
+    from learn import tracking
+    from learn.jobs import settings
 
     said = outcome.report
     store = settings.store({**config["tracking"], "experiment": EXPERIMENT})

@@ -4,7 +4,7 @@ import hydra
 from misspelt import answered
 from omegaconf import DictConfig
 
-from swgsim.configured import plain
+from swgsim.common.configured import plain
 
 
 @hydra.main(version_base="1.3", config_path="../conf", config_name="embedded")

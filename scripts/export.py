@@ -4,13 +4,13 @@ import hydra
 from misspelt import answered
 from omegaconf import DictConfig
 
-from swgsim.configured import plain
+from swgsim.common.configured import plain
 
 
 @hydra.main(version_base="1.3", config_path="../conf", config_name="export")
 def main(config: DictConfig) -> None:
     """Resolve the configuration and run the job."""
-    from learn.embedded.job import run
+    from learn.embedded.export_job import run
 
     run(plain(config))
 

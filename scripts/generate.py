@@ -4,8 +4,8 @@ import hydra
 from misspelt import answered
 from omegaconf import DictConfig
 
-from swgsim.configured import plain
-from swgsim.generation import run
+from swgsim.common.configured import plain
+from swgsim.jobs.generate_data_set import run
 
 
 @hydra.main(version_base="1.3", config_path="../conf", config_name="generate")

@@ -42,7 +42,7 @@ def main() -> None:
         cells = [f"{row[f'{stage}_ms']:.2f}" for stage in STAGES]
         print(f"| {row['recordings']} | {row['gib']:.2f} | {' | '.join(cells)} | {row['peak_mib']:.0f} |", flush=True)
         rows.append(row)
-    from swgsim.files import write_json
+    from swgsim.common.files import write_json
 
     write_json(chosen.report / "large.json", {"limit_mib": LIMIT // 2**20, "rows": rows})
     draw(rows, chosen.report / "large.png")
@@ -89,11 +89,11 @@ def learnt(path: Path) -> dict[str, float]:
     """Seconds to make the inputs of a data set and to train a convolutional network on them once over."""
     import torch  # noqa: F401  (before the clock starts)
 
-    from learn.job import learning_set_of
-    from learn.neural import convolutional_network
-    from learn.signals import Signals
-    from swgsim import storage
-    from swgsim.dataset import usage
+    from learn.inputs.signals import Signals
+    from learn.jobs.train_job import learning_set_of
+    from learn.methods.neural import convolutional_network
+    from swgsim.dataset.dataset import usage
+    from swgsim.storage import storage
 
     began = time.perf_counter()
     data = learning_set_of(path, storage.digest(path), Signals("residual"))
@@ -107,7 +107,7 @@ def draw(rows: list[dict[str, Any]], path: Path) -> None:
     """Cost per recording, and memory, over the size of the data set."""
     from matplotlib.figure import Figure
 
-    from swgsim.files import replacing
+    from swgsim.common.files import replacing
 
     figure = Figure(figsize=(9, 3.6), layout="constrained")
     cost, memory = figure.subplots(1, 2)

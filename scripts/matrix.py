@@ -20,7 +20,7 @@ import numpy as np
 from same_numbers import beyond, compared, table
 from tqdm import tqdm
 
-from swgsim.files import write_json
+from swgsim.common.files import write_json
 
 ROOT = Path(__file__).parents[1]
 LIBRARIES = ("numpy", "scipy", "pandas")  # not scikit-learn: its versions deal grouped folds differently
@@ -100,9 +100,9 @@ def gathered(work: Path) -> dict[str, np.ndarray]:
     """Signals, facts, features and metrics of the data sets and runs in a folder."""
     from scale import composed
 
-    from learn import settings
+    from learn.jobs import settings
     from learn.tracking import finished_runs, local_store
-    from swgsim import storage
+    from swgsim.storage import storage
 
     numbers = {}
     for condition in CONDITIONS:

@@ -4,8 +4,8 @@ import hydra
 from misspelt import answered
 from omegaconf import DictConfig
 
-from swgsim.configured import plain
-from swgsim.record_job import run
+from swgsim.common.configured import plain
+from swgsim.jobs.record_on_bench import run
 
 
 @hydra.main(version_base="1.3", config_path="../conf", config_name="record")

@@ -12,9 +12,10 @@ from statistics import median
 from hydra import compose, initialize_config_dir
 from omegaconf import OmegaConf
 
-from swgsim import generation, settings
-from swgsim.compute import Engine
-from swgsim.dataset import generate
+from swgsim.common.compute import Engine
+from swgsim.dataset.dataset import generate
+from swgsim.jobs import generate_data_set as generation
+from swgsim.jobs import settings
 
 TASKS = 400
 CONF = Path(__file__).parents[1] / "conf"
@@ -98,7 +99,7 @@ def data_set(config: dict, engine: Engine) -> tuple[float, float]:
 
 def unit_costs(grid: str, classifiers: list[str]) -> None:
     """Of one recording and of one job, on one core."""
-    from learn import job  # with torch, which the workers need not load
+    from learn.jobs import train_job as job  # with torch, which the workers need not load
 
     with tempfile.TemporaryDirectory() as folder:
         where = f"data={folder}"

@@ -8,14 +8,14 @@ import hydra
 from misspelt import answered
 from omegaconf import DictConfig
 
-from swgsim.configured import plain
+from swgsim.common.configured import plain
 
 
 def run(config: Mapping[str, Any]) -> None:
     """Study every undeclared effect and write ``sim_to_real.html`` and ``sim_to_real.json``."""
     from sim_to_real_study import STUDY, study_all
 
-    from learn import settings
+    from learn.jobs import settings
     from learn.sim_to_real.report import write
 
     store = settings.store({**config["tracking"], "experiment": STUDY})

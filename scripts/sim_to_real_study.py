@@ -13,30 +13,33 @@ from typing import Any
 import pandas as pd
 from threadpoolctl import threadpool_limits
 
-from learn import identity, tracking
+from learn import tracking
+from learn.jobs import identity
 from learn.sim_to_real import judging
 from learn.sim_to_real.finished import Finished
 from learn.sim_to_real.judging import Pair, judged
 from learn.sim_to_real.scores import scores
-from swgsim import generation, settings, storage
-from swgsim.acquisition import Window
-from swgsim.bench import Bench
-from swgsim.compute import Engine
+from swgsim.bench.scatter import Bench
+from swgsim.bench.virtual_bench import Sessions, record_sessions
+from swgsim.common.compute import Engine
+from swgsim.common.version import code_version
 from swgsim.effects import text
 from swgsim.effects.base import Effect
 from swgsim.effects.library import SEARCHED, listed, named
-from swgsim.gear import Gear, OperatingPoint
-from swgsim.loop import job as loop_job
-from swgsim.loop.answer import answer
-from swgsim.loop.commissioning import commission
-from swgsim.loop.model import Model
-from swgsim.loop.reporting.report import report
-from swgsim.loop.session import Measured
-from swgsim.loop.unit import Unit
-from swgsim.population import Population
-from swgsim.recording import Recording
-from swgsim.version import code_version
-from swgsim.virtual_bench import Sessions, record_sessions
+from swgsim.gear.acquisition import Window
+from swgsim.gear.gear import Gear, OperatingPoint
+from swgsim.gear.population import Population
+from swgsim.identification.commissioning.commissioning import commission
+from swgsim.identification.data.measured import Measured
+from swgsim.identification.data.model import Model
+from swgsim.identification.fit.unit import Unit
+from swgsim.identification.report import close_loop as loop_job
+from swgsim.identification.report.answer import answer
+from swgsim.identification.report.report_fields import report
+from swgsim.jobs import generate_data_set as generation
+from swgsim.jobs import settings
+from swgsim.recordings.recording import Recording
+from swgsim.storage import storage
 
 STUDY = "sim_to_real"
 
@@ -69,7 +72,7 @@ def key(config: Mapping[str, Any], name: str) -> str:
     without = ("undeclared", "data", "out", "workers", "tracking")
     decisive = {each: value for each, value in config.items() if each not in without}
     digest = hashlib.sha256(json.dumps([name, config["undeclared"][name], decisive], sort_keys=True).encode())
-    digest.update(f"{code_version('loop', 'virtual_bench.py')} {identity.code_version()}".encode())
+    digest.update(f"{code_version('identification')} {identity.code_version()}".encode())
     for source in (Path(__file__), Path(judging.__file__)):
         digest.update(source.read_bytes())
     return digest.hexdigest()[:16]

@@ -4,13 +4,13 @@ import hydra
 from misspelt import answered
 from omegaconf import DictConfig
 
-from swgsim.configured import plain
+from swgsim.common.configured import plain
 
 
 @hydra.main(version_base="1.3", config_path="../conf", config_name="train")
 def main(config: DictConfig) -> float:
     """One job of ``conf/train.yaml``; its test score [%]."""
-    from learn.job import run
+    from learn.jobs.train_job import run
 
     return run(plain(config))["test_score"]
 

@@ -4,13 +4,13 @@ import hydra
 from misspelt import answered
 from omegaconf import DictConfig
 
-from swgsim.configured import plain
+from swgsim.common.configured import plain
 
 
 @hydra.main(version_base="1.3", config_path="../conf", config_name="transfer_report")
 def main(config: DictConfig) -> None:
     """Resolve the configuration and write the report."""
-    from learn.transfer_report.job import run
+    from learn.transfer_report.transfer_study import run
 
     run(plain(config))
 

@@ -8,8 +8,8 @@ from omegaconf import DictConfig, OmegaConf
 @hydra.main(version_base="1.3", config_path="../conf", config_name="ui")
 def main(config: DictConfig) -> None:
     """Serve until interrupted."""
-    from learn.page import serve
-    from learn.settings import store
+    from learn.jobs.settings import store
+    from learn.tracking.ui import serve
 
     serve(store(OmegaConf.to_container(config.tracking)), config.host, config.port)  # type: ignore[arg-type]
 

@@ -8,7 +8,7 @@ from omegaconf import DictConfig, OmegaConf
 @hydra.main(version_base="1.3", config_path="../conf", config_name="upload")
 def main(config: DictConfig) -> None:
     """Upload what the server lacks."""
-    from learn.settings import store
+    from learn.jobs.settings import store
     from learn.tracking import upload
     from learn.tracking.store import lost
 

@@ -7,13 +7,13 @@ from functools import cache
 import numpy as np
 from chain_fixtures import GEAR, SECTORS
 
-from swgsim.chain import Run, simulate_turns
-from swgsim.conditions import Conditions
+from swgsim.chain.chain import Run, simulate_turns
+from swgsim.common.seeds import generator
 from swgsim.effects import Effect
-from swgsim.gear import Gear, OperatingPoint
-from swgsim.recording import Recording
-from swgsim.recordings import SENSORS
-from swgsim.seeds import generator
+from swgsim.gear.conditions import Conditions
+from swgsim.gear.gear import Gear, OperatingPoint
+from swgsim.recordings.recording import Recording
+from swgsim.storage.gauge_set import SENSORS
 
 POINTS = tuple(OperatingPoint(n, T) for n in (2000, 4000) for T in (7, 39, 70))
 NOISE = 1e-3  # mV/V

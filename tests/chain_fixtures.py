@@ -5,13 +5,13 @@ from functools import cache
 
 import numpy as np
 
-from swgsim.acquisition import Window
-from swgsim.faults import Variants
-from swgsim.flexspline import FlexSpline, solve_flex_spline
-from swgsim.gear import Gear, OperatingPoint
-from swgsim.grid import Grid
-from swgsim.influence import InfluenceMap, influence_map
-from swgsim.plan import Plan
+from swgsim.chain.influence import InfluenceMap, influence_map
+from swgsim.dataset.faults import Variants
+from swgsim.dataset.grid import Grid
+from swgsim.dataset.plan import Plan
+from swgsim.flexspline.flexspline import FlexSpline, solve_flex_spline
+from swgsim.gear.acquisition import Window
+from swgsim.gear.gear import Gear, OperatingPoint
 
 GEAR = Gear()
 SECTORS = 60

@@ -12,9 +12,9 @@ import pandas as pd
 import pytest
 from fabricated import recordings
 
-from learn.evaluation import fit
-from learn.features import Selection
-from swgsim.recordings import CLASSES, Recordings
+from learn.evaluation.evaluate import fit
+from learn.inputs.features import Selection
+from swgsim.storage.gauge_set import CLASSES, Recordings
 
 needs_compiler = pytest.mark.skipif(shutil.which("gcc") is None, reason="no gcc on this machine")
 SELECTION = Selection(

@@ -5,8 +5,8 @@ from itertools import product
 
 import numpy as np
 
-from swgsim.recordings import CLASSES, Recordings, facts
-from swgsim.seeds import generator
+from swgsim.common.seeds import generator
+from swgsim.storage.gauge_set import CLASSES, Recordings, facts
 
 RATE = 10_000.0
 SPEEDS, LOADS = (2000.0, 4000.0), (7.0, 39.0)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from swgsim.seeds import generator
+from swgsim.common.seeds import generator
 
 CONF = Path(__file__).parents[1] / "conf" / "sources"
 KINOVA, UR = CONF / "kinova_gen3.yaml", CONF / "ur10e.yaml"

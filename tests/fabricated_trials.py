@@ -5,11 +5,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from loop_fixtures import BUMP, WAVE, Bump, Wave, fitted_to
 
-from swgsim.loop.evidence import Coherence
-from swgsim.loop.features import Layout
-from swgsim.loop.hypotheses import Hypothesis
-from swgsim.loop.screening import Score
-from swgsim.loop.trial import Trial
+from swgsim.identification.data.features import Layout
+from swgsim.identification.decide.candidate import Trial
+from swgsim.identification.fit.form_error import Coherence
+from swgsim.identification.search.hypotheses import Hypothesis
+from swgsim.identification.search.screening import Score
 
 FITTED = fitted_to(Layout(("T_in", "s1")), np.random.default_rng(1))
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.signal import cont2discrete, lfilter
 
+from swgsim.common.seeds import generator
 from swgsim.joint.recording import JointRecording
-from swgsim.seeds import generator
 
 SPEEDS = (0.05, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0)
 # The filter of the torque sensor is solved on a grid so many times as fine as the recording's.

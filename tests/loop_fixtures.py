@@ -7,21 +7,21 @@ from itertools import product
 import numpy as np
 from chain_fixtures import GEAR
 
-from swgsim.conditions import Conditions
 from swgsim.effects import Effect
 from swgsim.effects.quantity import phase, size
-from swgsim.gear import OperatingPoint
-from swgsim.loop.alone import Alone
-from swgsim.loop.calibration import Calibrated
-from swgsim.loop.features import Layout
-from swgsim.loop.fitted import Allowed, Fitted
-from swgsim.loop.gaussian import Covariance
-from swgsim.loop.hypotheses import Hypothesis
-from swgsim.loop.model import Model
-from swgsim.loop.scatter import Scatter
-from swgsim.loop.session import Measured
-from swgsim.loop.unit import Unit
-from swgsim.recording import Recording
+from swgsim.gear.conditions import Conditions
+from swgsim.gear.gear import OperatingPoint
+from swgsim.identification.covariance.low_rank_covariance import Covariance
+from swgsim.identification.covariance.recording_covariance import Alone
+from swgsim.identification.covariance.scatter import Scatter
+from swgsim.identification.data.features import Layout
+from swgsim.identification.data.measured import Measured
+from swgsim.identification.data.model import Model
+from swgsim.identification.fit.fitted import Allowed, Fitted
+from swgsim.identification.fit.map_fit import Calibrated
+from swgsim.identification.fit.unit import Unit
+from swgsim.identification.search.hypotheses import Hypothesis
+from swgsim.recordings.recording import Recording
 
 POINTS = tuple(OperatingPoint(n, T) for n in (2000.0, 4000.0) for T in (7.0, 39.0, 70.0))
 

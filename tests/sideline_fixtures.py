@@ -4,10 +4,10 @@ import numpy as np
 from loop_fixtures import POINTS, recorded, turning
 from scipy.signal import lfilter
 
+from swgsim.common.seeds import generator
 from swgsim.effects.base import Effect, Scene
-from swgsim.recording import Recording
-from swgsim.recordings import SENSORS
-from swgsim.seeds import generator
+from swgsim.recordings.recording import Recording
+from swgsim.storage.gauge_set import SENSORS
 
 NOISE = 1e-3
 

@@ -7,10 +7,10 @@ from jaxtyping import Complex, Float, Int
 
 from learn.embedded.front import Front, operating_points
 from learn.embedded.source import array, number, pairs, values
-from learn.references import healthy_reference
-from swgsim.checks import require
-from swgsim.orders import whole_revolutions
-from swgsim.recordings import Recordings
+from learn.inputs.references import healthy_reference
+from swgsim.common.checks import require
+from swgsim.storage.gauge_set import Recordings
+from swgsim.storage.orders import whole_revolutions
 
 HEAD = """/* The healthy gear, written by its commissioning. */
 #include <math.h>

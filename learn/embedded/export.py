@@ -10,9 +10,9 @@ from learn.embedded import forest, network
 from learn.embedded.commissioning import gear_source
 from learn.embedded.front import front
 from learn.embedded.source import Macros, macros
-from learn.inputs import Representation
-from swgsim.files import remedied
-from swgsim.recordings import Recordings
+from learn.inputs.inputs import Representation
+from swgsim.common.files import remedied
+from swgsim.storage.gauge_set import Recordings
 
 SOURCES = Path(__file__).parent / "c"
 NUMBERS = ("float", "int16", "int8")

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from learn.embedded.trade import Part
-from swgsim import style
+from swgsim.common import style
 
 COLOURS = ("#000000", "#0072B2", "#E69F00", "#56B4E9", "#D55E00", "#009E73", "#CC79A7", "#7F7F7F")
 MARKERS = {"float": "o", "int16": "s", "int8": "^"}

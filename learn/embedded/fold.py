@@ -13,13 +13,13 @@ from jaxtyping import Float
 from learn.embedded.export import export_c
 from learn.embedded.machines import HOST
 from learn.embedded.proof import Agreement, agreement, said_by, together
-from learn.evaluation import fit
-from learn.inputs import SPECIMEN, Layout, Representation
-from learn.job import BLOCK, learning_set_of
-from learn.splits import Splitting
-from swgsim import storage
-from swgsim.checks import require_known
-from swgsim.recordings import Recordings
+from learn.evaluation.evaluate import fit
+from learn.inputs.inputs import SPECIMEN, Layout, Representation
+from learn.jobs.train_job import BLOCK, learning_set_of
+from learn.protocols.splits import Splitting
+from swgsim.common.checks import require_known
+from swgsim.storage import storage
+from swgsim.storage.gauge_set import Recordings
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,8 @@ import numpy as np
 from jaxtyping import Float, Int, Int16
 
 from learn.embedded.source import Macros, array
-from learn.flat_forest import FlatForest, flatten
-from swgsim.checks import require_known
+from learn.methods.flat_forest import FlatForest, flatten
+from swgsim.common.checks import require_known
 
 # How thresholds are kept, and the vote of a leaf that is sure.
 KINDS = {"float": ("float", 2**16 - 1), "int16": ("int16_t", 2**8 - 1)}

@@ -9,13 +9,13 @@ import pandas as pd
 from jaxtyping import Complex, Float
 
 from learn.embedded.source import Macros, values
-from learn.features import Selection, signal_quantities
-from learn.harmonics import RIPPLE_ORDERS, SMALLEST_RIPPLE, WAVE_NUMBERS, Harmonics
-from learn.inputs import Representation
-from learn.references import HEALTHY, healthy_reference
-from learn.residuals import BENCH, ERRORS, healthy_lines, leakage
-from learn.signals import Signals
-from swgsim.recordings import SENSORS, Recordings
+from learn.inputs.features import Selection, signal_quantities
+from learn.inputs.harmonics import RIPPLE_ORDERS, SMALLEST_RIPPLE, WAVE_NUMBERS, Harmonics
+from learn.inputs.inputs import Representation
+from learn.inputs.references import HEALTHY, healthy_reference
+from learn.inputs.residuals import BENCH, ERRORS, healthy_lines, leakage
+from learn.inputs.signals import Signals
+from swgsim.storage.gauge_set import SENSORS, Recordings
 
 COMMON = ("swg.h", "window.c", "decide.c", "lines.h", "lines.c")
 
@@ -125,7 +125,7 @@ def _of_residual(representation: Harmonics | Signals, file: str, columns: int, o
 
 
 def _healthy_lines(references: Recordings, orders: int, acquisitions: int | None) -> Healthy:
-    """The healthy lines and their change with each error, of :func:`learn.residuals.residual`."""
+    """The healthy lines and their change with each error, of :func:`learn.inputs.residuals.residual`."""
     rows = references.table.index.get_indexer(operating_points(references).index)
     asked = references.where(rows)  # a recording of each point as a sample, for which the healthy lines are asked
     asked = replace(asked, table=asked.table.assign(reference=False))

@@ -12,8 +12,8 @@ import numpy as np
 from jaxtyping import Float
 
 from learn.embedded.proof import Agreement
-from learn.neural import NeuralClassifier
-from swgsim.files import replacing
+from learn.methods.neural import NeuralClassifier
+from swgsim.common.files import replacing
 
 if TYPE_CHECKING:
     from onnx import ModelProto
@@ -99,7 +99,7 @@ def _estimator(model: Any) -> "ModelProto":
 
 
 def _asinh(scope: Any, operator: Any, container: Any) -> None:
-    """The node for :func:`learn.strong.compression`, the only function in the project's pipelines."""
+    """The node for :func:`learn.methods.strong.compression`, the only function in the project's pipelines."""
     function = operator.raw_operator.func
     if function is not np.arcsinh:
         raise ValueError(f"the function {function} of a pipeline cannot be said in ONNX: only np.arcsinh can")

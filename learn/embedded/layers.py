@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from jaxtyping import Float
 
-from learn.neural import NeuralClassifier
+from learn.methods.neural import NeuralClassifier
 
 if TYPE_CHECKING:
-    from learn.networks import Network
+    from learn.methods.networks import Network
 
 
 @dataclass(frozen=True)

@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from learn import settings
 from learn.embedded.fold import Fold, folds, judged
 from learn.embedded.machines import CORTEX_M4, CORTEX_M7, HOST_SANITIZED, Machine, build, missing
 from learn.embedded.proof import agreement, operations, together
 from learn.embedded.running import Decisions, decide
 from learn.embedded.sizes import sizes
-from learn.inputs import SPECIMEN, Layout
-from learn.levels import NewGears
-from learn.splits import LeaveOneGearOut
+from learn.inputs.inputs import SPECIMEN, Layout
+from learn.jobs import settings
+from learn.protocols.levels import NewGears
+from learn.protocols.splits import LeaveOneGearOut
 
 MICROCONTROLLERS = (CORTEX_M4, CORTEX_M7)
 

@@ -12,7 +12,7 @@ from jaxtyping import Float
 
 from learn.embedded.machines import Machine, build
 from learn.embedded.running import Decisions, decide
-from swgsim.recordings import Recordings
+from swgsim.storage.gauge_set import Recordings
 
 FACTS = ["n_in_rpm", "T_out_nm", "efficiency", "temperature_c"]
 

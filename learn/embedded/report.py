@@ -13,18 +13,18 @@ from typing import Any
 from threadpoolctl import threadpool_limits
 from tqdm import tqdm
 
-from learn import identity, settings
 from learn.embedded.figure import drawn
 from learn.embedded.machines import HOST, missing, require_tools
 from learn.embedded.outcome import MICROCONTROLLERS, outcome
 from learn.embedded.table import errors_of, variants_of
 from learn.embedded.text import markdown
 from learn.embedded.trade import Part, recommend
-from swgsim import storage
-from swgsim.compute import Engine
-from swgsim.files import replacing, write_json, write_text
-from swgsim.seeds import generator
-from swgsim.style import png
+from learn.jobs import identity, settings
+from swgsim.common.compute import Engine
+from swgsim.common.files import replacing, write_json, write_text
+from swgsim.common.seeds import generator
+from swgsim.common.style import png
+from swgsim.storage import storage
 
 log = logging.getLogger(__name__)
 
@@ -34,7 +34,7 @@ PRESENTATION = (
     "text.py",
     "figure.py",
     "trade.py",
-    "job.py",
+    "export_job.py",
     "gateway.py",
 )  # no result depends on them
 

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from learn.bootstrap import hierarchical_bootstrap, mean_error
 from learn.embedded.proof import Agreement
-from learn.inputs import SPECIMEN
-from swgsim.seeds import generator
+from learn.evaluation.bootstrap import hierarchical_bootstrap, mean_error
+from learn.inputs.inputs import SPECIMEN
+from swgsim.common.seeds import generator
 
 # C files by what they are for; other names are those of the compiler's libraries.
 FEATURES = ("window", "decide", "lines", "residual", "harmonics", "signal", "selection")

@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from learn.bootstrap import difference_to, hierarchical_bootstrap
 from learn.embedded.proof import FAITHFUL
-from learn.inputs import SPECIMEN
+from learn.evaluation.bootstrap import difference_to, hierarchical_bootstrap
+from learn.inputs.inputs import SPECIMEN
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ def recommend(
     variants : DataFrame
         Of :func:`learn.embedded.table.variants_of`, with flash and instructions.
     errors : DataFrame
-        Errors [%] of each variant (column) on gears never seen, as :func:`learn.bootstrap.hierarchical_bootstrap`
+        Errors [%] of each variant (column) on gears never seen, as :func:`bootstrap.hierarchical_bootstrap`
         takes them.
     part : Part
     rng : Generator

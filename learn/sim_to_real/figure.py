@@ -8,7 +8,7 @@ import numpy as np
 from learn.sim_to_real.finished import Finished
 from learn.sim_to_real.judging import DAYS, MODELS
 from learn.sim_to_real.verdicts import row_of
-from swgsim.style import Picture, figure, label, png, words
+from swgsim.common.style import Picture, figure, label, png, words
 
 COLOURS = {"before": "#D55E00", "after": "#0072B2", "oracle": "#000000"}
 LEGEND = {"before": "before the loop", "after": "after the loop", "oracle": "effect known"}

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from learn import settings
-from learn.evaluation import evaluate
-from learn.inputs import LearningSet
-from learn.splits import Split
-from swgsim import storage
-from swgsim.recordings import Recordings
+from learn.evaluation.evaluate import evaluate
+from learn.inputs.inputs import LearningSet
+from learn.jobs import settings
+from learn.protocols.splits import Split
+from swgsim.storage import storage
+from swgsim.storage.gauge_set import Recordings
 
 MODELS = ("before", "after", "oracle")  # without the effect, with what the loop found, with the true effect
 # The day on which the healthy references were recorded: before the effect came, or with it.

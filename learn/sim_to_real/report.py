@@ -10,9 +10,9 @@ from learn.sim_to_real.figure import picture
 from learn.sim_to_real.finished import Finished
 from learn.sim_to_real.judging import COMMISSIONING, DAYS, MODELS
 from learn.sim_to_real.verdicts import named, row_of, why, worth
-from swgsim.files import write_json, write_text
-from swgsim.page import environment
-from swgsim.style import words
+from swgsim.common.files import write_json, write_text
+from swgsim.common.html import environment
+from swgsim.common.style import words
 
 SCORES = ("accuracy", "false_alarms", "gain")
 
@@ -23,7 +23,7 @@ def write(finished: Sequence[Finished], folder: Path) -> None:
     methods = said["methods"]
     templates = environment("learn")
     templates.filters["words"] = words
-    html = templates.get_template("sim_to_real/page.html.jinja").render(
+    html = templates.get_template("sim_to_real/sim_to_real_page.html.jinja").render(
         said=said, days=DAYS, models=MODELS, pictures=[picture(finished, method) for method in methods]
     )
     write_json(folder / "sim_to_real.json", said)

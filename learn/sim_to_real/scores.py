@@ -5,10 +5,10 @@ from typing import cast
 import numpy as np
 import pandas as pd
 
-from learn.bootstrap import LEVEL, resampled_means, specimens
-from learn.inputs import SPECIMEN
+from learn.evaluation.bootstrap import LEVEL, resampled_means, specimens
+from learn.inputs.inputs import SPECIMEN
 from learn.sim_to_real.judging import MODELS
-from swgsim.seeds import generator
+from swgsim.common.seeds import generator
 
 RESAMPLES = 2000
 

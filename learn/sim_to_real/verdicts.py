@@ -6,7 +6,7 @@ from typing import Any
 import pandas as pd
 
 from learn.sim_to_real.finished import Finished
-from swgsim.style import words
+from swgsim.common.style import words
 
 # Share of the oracle's gain that counts as all of it.
 RECOVERED = 0.8

@@ -7,7 +7,7 @@ os.environ.setdefault("MLFLOW_HTTP_REQUEST_MAX_RETRIES", "2")  # a lost server i
 os.environ.setdefault("MLFLOW_HTTP_REQUEST_TIMEOUT", "20")  # [s]
 os.environ.setdefault("MLFLOW_ENABLE_ARTIFACTS_PROGRESS_BAR", "false")  # one for every table of a report
 
-from learn.tracking.job import Results, job_run
+from learn.tracking.job_run import Results, job_run
 from learn.tracking.queries import finished_metrics, finished_runs, table_of
 from learn.tracking.store import EXPERIMENT, ServerAway, Store, local_store, server_store
 from learn.tracking.sweeps import SWEEP, close_sweep, find_sweep, open_sweep

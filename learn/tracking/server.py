@@ -10,7 +10,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from learn.tracking.postgresql import database
-from swgsim.files import sole_maker
+from swgsim.common.files import sole_maker
 
 SECONDS_TO_STOP = 20
 

@@ -9,7 +9,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from swgsim.files import replacing
+from swgsim.common.files import replacing
 
 if TYPE_CHECKING:
     from mlflow import MlflowClient

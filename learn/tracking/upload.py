@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from learn.tracking.store import Store
 from learn.tracking.sweeps import close_sweep, find_sweep
-from swgsim.files import sole_maker
+from swgsim.common.files import sole_maker
 
 if TYPE_CHECKING:
     from mlflow.entities import Run

@@ -6,9 +6,9 @@ import numpy as np
 import pandas as pd
 
 from learn.transfer_report import curve_figures, figures
-from learn.transfer_report.page import Section, Table
 from learn.transfer_report.results import FOREST, FROM_SCRATCH, ORACLE_OF_SESSION, ZeroShot, best_adapted, figure
 from learn.transfer_report.sentences import FORGETTING_GOAL, number, of_row
+from learn.transfer_report.transfer_page import Section, Table
 
 
 def transfer(

@@ -13,16 +13,16 @@ import yaml
 from jaxtyping import Float, Int
 from threadpoolctl import threadpool_limits
 
-from learn import settings
-from learn.importance import Predictor, grouped_permutation
-from learn.inputs import OPERATING_POINT
-from learn.job import learning_set_of
-from learn.levels import NewGears
+from learn.evaluation.importance import Predictor, grouped_permutation
+from learn.inputs.inputs import OPERATING_POINT
+from learn.jobs import settings
+from learn.jobs.train_job import learning_set_of
+from learn.protocols.levels import NewGears
 from learn.tracking import Store
 from learn.transfer_report.sentences import listed
-from swgsim import storage
-from swgsim.seeds import generator
-from swgsim.style import words
+from swgsim.common.seeds import generator
+from swgsim.common.style import words
+from swgsim.storage import storage
 
 EFFICIENCY, RIPPLE, OFFSETS, SHAPE, POINT = (
     "efficiency",
@@ -158,7 +158,7 @@ def importance(refitted: Refitted, groups: Mapping[str, Sequence[int]], repeats:
     Returns
     -------
     DataFrame
-        Of :func:`learn.importance.grouped_permutation`.
+        Of :func:`learn.evaluation.importance.grouped_permutation`.
     """
     parts = []
     for label in PHYSICS:

@@ -87,7 +87,7 @@ def cnn_fit(benchmark: Path, recordings: int) -> dict[str, Any]:
     if "training" in kept:
         found: dict[str, Any] = kept["training"]
     else:
-        from learn.training_benchmark import measure
+        from learn.methods.training_benchmark import measure
 
         found = measure(recordings=min(recordings, RECORDINGS))
     return found

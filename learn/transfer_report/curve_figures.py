@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from learn.transfer_report.line_ends import GREY, End, name_ends
-from swgsim import style
+from swgsim.common import style
 
 FORESTS = ("random forest", "rf", "extra trees")  # begin the names of these classifiers
 FROM_SCRATCH = "from scratch"

@@ -10,10 +10,10 @@ from typing import Any
 import pandas as pd
 import yaml
 
-from learn import settings
+from learn.jobs import settings
 from learn.tracking import Store
 from learn.transfer_report import runs as runs_of
-from swgsim import storage
+from swgsim.storage import storage
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from learn.transfer_report import curve_figures, map_figures
-from swgsim import style
+from swgsim.common import style
 
 
 class Words(NamedTuple):

@@ -5,11 +5,11 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
-from swgsim import style
+from swgsim.common import style
 
 
 def importance_map(importance: pd.DataFrame) -> style.Picture:
-    """Drop of recall per group and class, from :func:`learn.importance.grouped_permutation`."""
+    """Drop of recall per group and class, from :func:`learn.evaluation.importance.grouped_permutation`."""
     return style.Picture(
         "Which features carry which class",
         "Points of recall that a class loses when the features of one row are exchanged between recordings of the same "
@@ -41,7 +41,7 @@ def _importance(importance: pd.DataFrame) -> bytes:
 
 
 def cell_recall(recall: pd.DataFrame) -> style.Picture:
-    """Share recognised per operating point and class, from :func:`learn.detection.recall_by_cell`."""
+    """Share recognised per operating point and class, from :func:`learn.evaluation.detection.recall_by_cell`."""
     rows = [f"{speed:g} rpm, {load:g} N m" for speed, load in recall.index]
     picture = style.figure(8.4, 0.42 * len(recall) + 1.6)
     axes = picture.add_subplot()

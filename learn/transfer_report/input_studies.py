@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import pandas as pd
 
-from learn.bootstrap import specimens
+from learn.evaluation.bootstrap import specimens
 from learn.transfer_report.results import difference, with_intervals
 from learn.transfer_report.runs import by_method, paired
 from learn.transfer_report.sentences import of_row

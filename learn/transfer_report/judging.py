@@ -3,12 +3,12 @@
 import numpy as np
 import pandas as pd
 
-from learn.decisions import class_numbers, probabilities
-from learn.detection import detected as taken_for_a_fault
-from learn.detection import detection_table
-from learn.fault_size import UNITS
-from learn.selective import conformal_threshold, prediction_sets, set_figures
-from swgsim.style import words
+from learn.evaluation.decisions import class_numbers, probabilities
+from learn.evaluation.detection import detected as taken_for_a_fault
+from learn.evaluation.detection import detection_table
+from learn.evaluation.selective import conformal_threshold, prediction_sets, set_figures
+from learn.protocols.fault_size import UNITS
+from swgsim.common.style import words
 
 
 def found_sizes(predictions: pd.DataFrame) -> list[tuple[str, ...]]:

@@ -8,10 +8,10 @@ import pandas as pd
 from jaxtyping import Bool
 from matplotlib.axes import Axes
 
-from learn.decisions import truth
-from learn.detection_curve import FOUND, detection
-from learn.fault_size import SIZES, size
-from swgsim import style
+from learn.evaluation.decisions import truth
+from learn.evaluation.detection_curve import FOUND, detection
+from learn.protocols.fault_size import SIZES, size
+from swgsim.common import style
 
 # A class to the name of its fault's size, its unit, and the factor to that unit.
 SIZE_AXES: Mapping[str, tuple[str, str, float]] = {
@@ -34,7 +34,7 @@ def pod_curves(predictions: pd.DataFrame, hits: Bool[np.ndarray, " row"]) -> sty
     ----------
     predictions : DataFrame
     hits : array (row,) of bool
-        :func:`learn.detection.detected` or :func:`learn.detection.identified` of these predictions.
+        :func:`detection.detected` or :func:`detection.identified` of these predictions.
     """
     labels = [label for label in SIZES if (truth(predictions) == label).any()]
     columns = min(3, len(labels))
@@ -90,8 +90,8 @@ def _few_ticks(axes: Axes, low: float, high: float) -> None:
 
 
 def reliability_diagram(tables: Mapping[str, pd.DataFrame]) -> style.Picture:
-    """Accuracy against confidence; one table of :func:`learn.calibration.reliability` per method."""
-    from learn.calibration import expected_calibration_error
+    """Accuracy against confidence; one table of :func:`probability_calibration.reliability` per method."""
+    from learn.evaluation.probability_calibration import expected_calibration_error
 
     picture = style.figure(6, 5.2 + 0.22 * len(tables))
     axes = picture.add_subplot()
@@ -113,8 +113,8 @@ def reliability_diagram(tables: Mapping[str, pd.DataFrame]) -> style.Picture:
 
 
 def risk_coverage_curves(curves: Mapping[str, pd.DataFrame]) -> style.Picture:
-    """Errors against share decided; one curve of :func:`learn.selective.risk_coverage` per method."""
-    from learn.selective import area_under_risk, coverage_at
+    """Errors against share decided; one curve of :func:`learn.evaluation.selective.risk_coverage` per method."""
+    from learn.evaluation.selective import area_under_risk, coverage_at
 
     picture = style.figure(6.6, 4.2 + 0.22 * len(curves))
     axes = picture.add_subplot()
@@ -143,7 +143,7 @@ def difference_forest(comparison: pd.DataFrame, by_gear: pd.DataFrame, reference
     Parameters
     ----------
     comparison : DataFrame
-        Of :func:`learn.bootstrap.paired_comparison`.
+        Of :func:`learn.evaluation.bootstrap.paired_comparison`.
     by_gear : DataFrame
         Differences of every gear (rows) for each method (columns) [points].
     reference : str

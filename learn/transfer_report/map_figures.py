@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from learn.transfer_report.curve_figures import FROM_SCRATCH, parts_of, require_rows
 from learn.transfer_report.line_ends import GREY
-from swgsim import style
+from swgsim.common import style
 
 GAIN, LOSS = "#0072B2", "#D55E00"
 WITH, WITHOUT = "#0072B2", "#E69F00"

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from learn.bootstrap import specimens
+from learn.evaluation.bootstrap import specimens
 from learn.transfer_report.results import difference, row_of, with_intervals
 from learn.transfer_report.runs import method_of, paired
 

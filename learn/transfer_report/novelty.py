@@ -7,11 +7,11 @@ from typing import cast
 import numpy as np
 import pandas as pd
 
-from learn.references import HEALTHY
-from learn.selective import gear_novelty, novelty_auroc, novelty_left_out
+from learn.evaluation.selective import gear_novelty, novelty_auroc, novelty_left_out
+from learn.inputs.references import HEALTHY
 from learn.transfer_report.results import finite
-from swgsim import storage
-from swgsim.orders import lines_of
+from swgsim.storage import storage
+from swgsim.storage.orders import lines_of
 
 BLOCK = 1024  # recordings in memory at a time
 ORDERS = 4  # those of the kinematic error and of the ellipse's deflection, which differ between gears

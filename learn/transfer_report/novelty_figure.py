@@ -1,7 +1,7 @@
 """Picture of how unlike the others gears are, and whether it goes along with the error on them."""
 
 from learn.transfer_report.novelty import Novelty
-from swgsim import style
+from swgsim.common import style
 
 USUAL, FOREIGN = "#0072B2", "#D55E00"
 

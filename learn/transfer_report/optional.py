@@ -6,7 +6,7 @@ import pandas as pd
 
 from learn.transfer_report import adapted, input_studies, map_study, sections, studies
 from learn.transfer_report.evidence import Evidence
-from learn.transfer_report.page import Section
+from learn.transfer_report.transfer_page import Section
 
 
 def no_reference(

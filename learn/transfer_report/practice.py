@@ -6,24 +6,24 @@ import numpy as np
 import pandas as pd
 from jaxtyping import Float, Int
 
-from learn.calibration import (
+from learn.evaluation.decisions import class_numbers, probabilities
+from learn.evaluation.detection import detected, false_alarm_rate, recall_by_cell, worst_cell
+from learn.evaluation.probability_calibration import (
     expected_calibration_error,
     negative_log_likelihood,
     reliability,
     tempered_by_others,
 )
-from learn.decisions import class_numbers, probabilities
-from learn.detection import detected, false_alarm_rate, recall_by_cell, worst_cell
-from learn.selective import area_under_risk, coverage_at, risk_coverage
+from learn.evaluation.selective import area_under_risk, coverage_at, risk_coverage
 from learn.transfer_report import heat_figures
 from learn.transfer_report import judging_figures as figures
 from learn.transfer_report.carried import Carried, costliest, lines_said, physics_checked
 from learn.transfer_report.judging import conformal, found_sizes
 from learn.transfer_report.novelty import FEWEST_GEARS, Novelty
 from learn.transfer_report.novelty_figure import novelty_beside_error
-from learn.transfer_report.page import Listed, Section, Table
 from learn.transfer_report.sentences import number
-from swgsim.style import words
+from learn.transfer_report.transfer_page import Listed, Section, Table
+from swgsim.common.style import words
 
 NOMINAL = 0.9
 

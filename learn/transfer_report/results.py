@@ -7,7 +7,7 @@ from typing import cast
 import numpy as np
 import pandas as pd
 
-from learn.bootstrap import (
+from learn.evaluation.bootstrap import (
     SPECIMEN,
     difference_to,
     gear_errors,
@@ -17,7 +17,7 @@ from learn.bootstrap import (
     ratio_to,
 )
 from learn.transfer_report.runs import paired
-from swgsim.seeds import generator
+from swgsim.common.seeds import generator
 
 FOREST = "random forest on Selection 1"  # the paper's best on Selection 1, depth 7
 ORACLE, ORACLE_OF_SESSION = "oracle", "oracle that knows the session"

@@ -7,12 +7,12 @@ from typing import cast
 
 import pandas as pd
 
-from learn.identity import code_version
-from learn.inputs import OPERATING_POINT, SPECIMEN
+from learn.inputs.inputs import OPERATING_POINT, SPECIMEN
+from learn.jobs.identity import code_version
 from learn.tracking import Store, finished_runs, table_of
+from swgsim.common.style import words
 from swgsim.oracle.columns import KNOWN
-from swgsim.recordings import CLASSES
-from swgsim.style import words
+from swgsim.storage.gauge_set import CLASSES
 
 os.environ.setdefault("MLFLOW_ENABLE_ARTIFACTS_PROGRESS_BAR", "false")
 
@@ -152,7 +152,7 @@ def tables(store: Store, runs: pd.DataFrame, name: str) -> dict[str, pd.DataFram
 
 
 def paired(specimens: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
-    """Errors of methods side by side: :data:`learn.bootstrap.SPECIMEN` and one column per method [%].
+    """Errors of methods side by side: :data:`learn.evaluation.bootstrap.SPECIMEN` and one column per method [%].
 
     Parameters
     ----------

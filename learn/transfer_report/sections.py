@@ -8,11 +8,11 @@ import pandas as pd
 from learn.transfer_report import figures, map_figures, size_figures
 from learn.transfer_report.input_studies import INPUTS, NETWORKS
 from learn.transfer_report.judging_figures import difference_forest
-from learn.transfer_report.page import Section, Table
 from learn.transfer_report.results import FOREST, ORACLE, ZeroShot, least, row_of
 from learn.transfer_report.runs import CLASSIFIERS
 from learn.transfer_report.sentences import DISTURBED_GOAL, listed, number, of_row
 from learn.transfer_report.studies import best_disturbed
+from learn.transfer_report.transfer_page import Section, Table
 
 METHODS: Mapping[str, str] = {short: CLASSIFIERS[name] for name, short in NETWORKS.items()}
 

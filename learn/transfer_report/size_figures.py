@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from learn.transfer_report.curve_figures import require_rows
 from learn.transfer_report.line_ends import GREY, End, name_ends
-from swgsim import style
+from swgsim.common import style
 
 
 def against_size(sizes: pd.DataFrame) -> Figure:

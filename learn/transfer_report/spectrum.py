@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from learn.report import require_same_code
-from learn.residuals import healthy_lines
-from swgsim import storage
-from swgsim.style import words
+from learn.inputs.residuals import healthy_lines
+from learn.paper.paper_page import require_same_code
+from swgsim.common.style import words
+from swgsim.storage import storage
 
 BLOCK = 1024  # recordings in memory at a time
 ORDERS = 12

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 
 import pandas as pd
 
-from learn.evaluation import metric_key
-from learn.paper import paper_table
+from learn.evaluation.evaluate import metric_key
+from learn.paper.published_tables import paper_table
 from learn.transfer_report.runs import CLASSIFIERS, by_method
-from swgsim.style import words
+from swgsim.common.style import words
 
 PAPER_FOREST = "random forest on Selection 3"  # the paper's best in Table X
 # Size, along the axis, and what tells lines apart, of the paper's two classifiers whose robustness it asks about.

@@ -12,7 +12,7 @@ from omegaconf import DictConfig
 
 
 class EngineLauncher(Launcher):
-    """That of ``conf/hydra/launcher/engine.yaml``; its parameters are those of :meth:`swgsim.compute.Engine.of`."""
+    """That of ``conf/hydra/launcher/engine.yaml``; its parameters are those of :meth:`Engine.of`."""
 
     def __init__(self, **chosen: Any) -> None:
         self._chosen = chosen
@@ -25,8 +25,8 @@ class EngineLauncher(Launcher):
         """Do the jobs; one that fails is told of by Hydra when all are done."""
         from hydra_plugins.hydra_joblib_launcher._core import execute_job
 
-        from learn.identity import code_version
-        from swgsim.compute import Engine
+        from learn.jobs.identity import code_version
+        from swgsim.common.compute import Engine
 
         configure_log(self._config.hydra.hydra_logging, self._config.hydra.verbose)
         Path(self._config.hydra.sweep.dir).mkdir(parents=True, exist_ok=True)

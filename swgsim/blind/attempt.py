@@ -13,21 +13,21 @@ from swgsim.blind.bench import Setting, in_question, unseen
 from swgsim.blind.drawing import unit_known
 from swgsim.blind.prediction import unseen_error
 from swgsim.blind.sealed import Sealed
+from swgsim.common.numbers import number
 from swgsim.effects import text
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities, size_of
-from swgsim.loop.answer import Answer, answer
-from swgsim.loop.declared import name_of
-from swgsim.loop.evidence import signature
-from swgsim.loop.fitted import Fitted
-from swgsim.loop.fitting import fit
-from swgsim.loop.reporting.numbers import number
-from swgsim.loop.reporting.sizes import heldout
-from swgsim.loop.sidelines import is_random
-from swgsim.loop.steps import chosen
-from swgsim.loop.trial import Trial
-from swgsim.loop.unit import Unit
-from swgsim.recording import Recording
+from swgsim.identification.decide.accepted import chosen
+from swgsim.identification.decide.candidate import Trial
+from swgsim.identification.fit.fitted import Fitted
+from swgsim.identification.fit.fitting import fit
+from swgsim.identification.fit.form_error import signature
+from swgsim.identification.fit.priors import name_of
+from swgsim.identification.fit.unit import Unit
+from swgsim.identification.interharmonics.named_interharmonics import is_random
+from swgsim.identification.report.answer import Answer, answer
+from swgsim.identification.report.prediction_errors import heldout
+from swgsim.recordings.recording import Recording
 
 
 def attempt(case: Sealed, setting: Setting) -> dict[str, Any]:

@@ -6,13 +6,13 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
+from swgsim.common.chi2_logsf import surprise
+from swgsim.common.singular import svd
 from swgsim.effects.base import Effect
-from swgsim.loop.closing import MOST_STEPS
-from swgsim.loop.fitted import Fitted
-from swgsim.loop.hypotheses import Hypothesis, hypotheses, signatures
-from swgsim.loop.leading import ALPHA
-from swgsim.loop.tail import surprise
-from swgsim.singular import svd
+from swgsim.identification.decide.stepwise_selection import MOST_STEPS
+from swgsim.identification.fit.fitted import Fitted
+from swgsim.identification.search.hypotheses import Hypothesis, hypotheses, signatures
+from swgsim.identification.search.shortlist import ALPHA
 
 
 class Task(NamedTuple):

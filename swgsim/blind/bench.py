@@ -6,24 +6,24 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.acquisition import Window
-from swgsim.bench import Bench
+from swgsim.bench.scatter import Bench
+from swgsim.bench.virtual_bench import Instruments, Sessions, biases_of, record_sessions
 from swgsim.blind.sealed import Sealed
 from swgsim.blind.strata import FULL
-from swgsim.chain import Run, simulate_turns
-from swgsim.conditions import Conditions
+from swgsim.chain.chain import Run, simulate_turns
+from swgsim.common.seeds import generator
 from swgsim.effects import OutputPosition
 from swgsim.effects.base import Effect
-from swgsim.gear import Gear, OperatingPoint
-from swgsim.loop.declared import of_unit
-from swgsim.loop.features import Layout, features
-from swgsim.loop.model import POINTS, Model, Situation
-from swgsim.population import Population
-from swgsim.recording import Recording
-from swgsim.seeds import generator
-from swgsim.virtual_bench import Instruments, Sessions, biases_of, record_sessions
+from swgsim.gear.acquisition import Window
+from swgsim.gear.conditions import Conditions
+from swgsim.gear.gear import Gear, OperatingPoint
+from swgsim.gear.population import Population
+from swgsim.identification.data.features import Layout, features
+from swgsim.identification.data.model import POINTS, Model, Situation
+from swgsim.identification.fit.priors import of_unit
+from swgsim.recordings.recording import Recording
 
-# Spread of the units: somewhat inside of what the loop declares for a series (swgsim.loop.declared).
+# Spread of the units: somewhat inside of what the loop declares for a series (swgsim.identification.fit.priors).
 SERIES = Population(
     1, b1_ratio=(0.9, 1.1), k1_ratio=(0.9, 1.1), b0_ratio=(0.92, 1.08), mu_ratio=(0.92, 1.08), w0_ratio=(0.99, 1.01),
     gain=0.01, offset=0.01, position=0.005, grid_angle=0.005, kinematic_error=(1.0, 1.0),

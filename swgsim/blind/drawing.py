@@ -10,17 +10,17 @@ from swgsim.blind.outside import OUTSIDE
 from swgsim.blind.sealed import Sealed
 from swgsim.blind.strata import HARD_NULL, OUTSIDE_STRATA, TAKEN_OUT, UNTESTABLE, WRITTEN, Plan, searched
 from swgsim.blind.strength import likeness, sized
+from swgsim.common.seeds import generator, seed_hash
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities, size_of
-from swgsim.loop.commissioning import commission
-from swgsim.loop.errors import per_channel
-from swgsim.loop.fitted import Fitted
-from swgsim.loop.fitting import fit
-from swgsim.loop.model import Model, predict
-from swgsim.loop.session import Measured
-from swgsim.loop.unit import Unit
-from swgsim.recordings import SENSORS
-from swgsim.seeds import generator, seed_hash
+from swgsim.identification.commissioning.commissioning import commission
+from swgsim.identification.data.measured import Measured
+from swgsim.identification.data.model import Model, predict
+from swgsim.identification.fit.errors import per_channel
+from swgsim.identification.fit.fitted import Fitted
+from swgsim.identification.fit.fitting import fit
+from swgsim.identification.fit.unit import Unit
+from swgsim.storage.gauge_set import SENSORS
 
 # How far laws are off the library's: by this power of the load, or with sizes that vary by this share over operating
 # points; estimates, within what the loop tolerates of a form (evidence.FORM_TOLERANCE).

@@ -7,7 +7,7 @@ import numpy as np
 
 from swgsim.blind.judged import Judged
 from swgsim.blind.table import ROWS
-from swgsim.style import figure, label, png
+from swgsim.common.style import figure, label, png
 
 COLOURS = ("#000000", "#999999", "#0072B2", "#E69F00", "#009E73")
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import binomtest
 
-from swgsim.seeds import generator
+from swgsim.common.seeds import generator
 
 CONFIDENCE = 0.95
 RESAMPLES = 2000

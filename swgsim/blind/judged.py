@@ -10,11 +10,11 @@ import numpy as np
 from swgsim.blind.families import family
 from swgsim.blind.sealed import Sealed
 from swgsim.blind.strata import NULLS, OUTSIDE_STRATA, PAIR, SINGLE, UNTESTABLE
+from swgsim.common.outcome import NOTHING, UNKNOWN
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import beyond_nothing
 from swgsim.effects.regularity import PATTERNS
-from swgsim.loop.answer import NOTHING, UNKNOWN
-from swgsim.loop.sidelines import is_random
+from swgsim.identification.interharmonics.named_interharmonics import is_random
 
 # Weights of patterns whose direction is the same differ by less than this.
 ROUNDING = 1e-9

@@ -15,7 +15,7 @@ from jaxtyping import Float
 from swgsim.effects.base import Effect, Scene
 from swgsim.effects.frozen import FULL_LOAD, FULL_SPEED
 from swgsim.effects.quantity import phase, size
-from swgsim.loop.vocabulary import Atom
+from swgsim.identification.search.regularities import Atom
 
 # Places of s1 to s4 around the collar [rad].
 PLACES = np.array([0.0, 0.5, 1.0, 1.5]) * np.pi

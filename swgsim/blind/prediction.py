@@ -8,8 +8,8 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.blind.bench import UNSEEN
-from swgsim.loop.errors import size
-from swgsim.loop.fitted import Fitted
+from swgsim.identification.fit.errors import size
+from swgsim.identification.fit.fitted import Fitted
 
 # Speed is what the motor's control makes of it; its ripple is nobody's aim.
 JUDGED = ("T_in", "T_out", "s0", "s1", "s2", "s3", "s4")

@@ -10,7 +10,7 @@ from swgsim.blind.baselines import BASELINES
 from swgsim.blind.intervals import median, rate
 from swgsim.blind.judged import RIGHT, Judged
 from swgsim.blind.strata import PAIR, SINGLE, UNTESTABLE
-from swgsim.loop.reporting.numbers import NORMAL
+from swgsim.common.numbers import NORMAL
 
 WORST = 5
 

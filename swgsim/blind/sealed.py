@@ -9,7 +9,7 @@ from swgsim.blind.outside import Outside
 from swgsim.blind.strata import DETECTABLE
 from swgsim.effects import text
 from swgsim.effects.base import Effect
-from swgsim.gear import OperatingPoint
+from swgsim.gear.gear import OperatingPoint
 
 # What was planned to be detectable counts as that with this share of the strength too: a size stops at its bounds, and
 # is sought to a few per cent only, beside parameters that are fitted.

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from itertools import product
 
 from swgsim.blind.outside import OUTSIDE
+from swgsim.common.seeds import generator
 from swgsim.effects.base import Effect
-from swgsim.gear import OperatingPoint
-from swgsim.loop.sidelines import has_sidelines, is_random
-from swgsim.seeds import generator
+from swgsim.gear.gear import OperatingPoint
+from swgsim.identification.interharmonics.named_interharmonics import has_sidelines, is_random
 
 EASY_NULL, HARD_NULL, SINGLE, PAIR, TAKEN_OUT, WRITTEN, UNTESTABLE = (
     "easy null", "hard null", "single", "pair", "taken out", "written", "untestable",

@@ -8,12 +8,12 @@ from scipy.optimize import brentq
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Quantity, quantities, size_of
-from swgsim.loop.between import between
-from swgsim.loop.calibration import calibrate
-from swgsim.loop.fitted import Fitted
-from swgsim.loop.hypotheses import hypotheses, signatures
-from swgsim.loop.model import predict
-from swgsim.loop.sidelines import is_random
+from swgsim.identification.data.model import predict
+from swgsim.identification.fit.fitted import Fitted
+from swgsim.identification.fit.map_fit import calibrate
+from swgsim.identification.interharmonics.interharmonic_spectrum import between
+from swgsim.identification.interharmonics.named_interharmonics import is_random
+from swgsim.identification.search.hypotheses import hypotheses, signatures
 
 # Shares of the way from nothing to the bound at which the strength is tried, and how far at most.
 FARTHEST, COARSE, FINE = 0.9, 13, 5

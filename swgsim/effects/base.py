@@ -9,9 +9,9 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.conditions import Conditions
 from swgsim.effects.quantity import Role, quantities
-from swgsim.gear import Gear, OperatingPoint
+from swgsim.gear.conditions import Conditions
+from swgsim.gear.gear import Gear, OperatingPoint
 
 PLACES = ("gear", "drive", "wave generator", "mesh", "structure", "gauge", "acquisition")
 
@@ -192,7 +192,7 @@ class Effect:
     def acquisition(
         self, channels: Mapping[str, Float[np.ndarray, " time"]], scene: Scene
     ) -> Mapping[str, Float[np.ndarray, " time"]]:
-        """Every recorded channel by its name (:data:`swgsim.recording.CHANNELS`), in its unit."""
+        """Every recorded channel by its name (:data:`swgsim.recordings.recording.CHANNELS`), in its unit."""
         return channels
 
 

@@ -2,12 +2,12 @@
 
 from dataclasses import dataclass
 
-from swgsim.conditions import Conditions
 from swgsim.effects.base import Effect
 from swgsim.effects.load_dependent_friction import RATED
 from swgsim.effects.quantity import size
 from swgsim.effects.seal_friction import SealFriction
-from swgsim.gear import OperatingPoint
+from swgsim.gear.conditions import Conditions
+from swgsim.gear.gear import OperatingPoint
 
 
 @dataclass(frozen=True)

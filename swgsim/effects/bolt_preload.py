@@ -7,7 +7,7 @@ from jaxtyping import Float
 
 from swgsim.effects.base import Effect, Scene
 from swgsim.effects.quantity import size
-from swgsim.gauges import waves
+from swgsim.flexspline.gauges import waves
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from swgsim.effects.base import Effect
 from swgsim.effects.one_gauge import ALL, weights
 from swgsim.effects.quantity import choice, size
-from swgsim.gear import Gear
+from swgsim.gear.gear import Gear
 
 
 @dataclass(frozen=True)

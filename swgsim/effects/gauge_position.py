@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from swgsim.effects.base import Effect
 from swgsim.effects.one_gauge import with_gauge
 from swgsim.effects.quantity import choice, size
-from swgsim.gear import Gear
+from swgsim.gear.gear import Gear
 
 
 @dataclass(frozen=True)

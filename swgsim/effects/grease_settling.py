@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 from math import exp, log1p
 
-from swgsim.conditions import Conditions
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import shape, size
 from swgsim.effects.warm_grease import WarmGrease
-from swgsim.gear import OperatingPoint
+from swgsim.gear.conditions import Conditions
+from swgsim.gear.gear import OperatingPoint
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import choice, phase, size
-from swgsim.gear import Gear, KinematicError
+from swgsim.gear.gear import Gear, KinematicError
 
 
 @dataclass(frozen=True)

@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 
-from swgsim.conditions import Conditions
 from swgsim.effects.base import Effect
 from swgsim.effects.flank_friction import FlankFriction
 from swgsim.effects.quantity import size
-from swgsim.gear import OperatingPoint
+from swgsim.gear.conditions import Conditions
+from swgsim.gear.gear import OperatingPoint
 
 # Rated torque of a size 17, ratio 100 gear [N m], at which mu holds.
 RATED = 31.0

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from swgsim.conditions import Conditions
 from swgsim.effects.base import Effect, Extra, Instant
 from swgsim.effects.quantity import choice, phase, size
-from swgsim.gear import OperatingPoint
+from swgsim.gear.conditions import Conditions
+from swgsim.gear.gear import OperatingPoint
 
 
 @dataclass(frozen=True)

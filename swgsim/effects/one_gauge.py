@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.gear import Gear
+from swgsim.gear.gear import Gear
 
 # In place of the number of a gauge: all of them.
 ALL = 5
@@ -18,7 +18,7 @@ def weights(sensor: int) -> Float[np.ndarray, "5 1"]:
 
 
 def with_gauge(gear: Gear, sensor: int, **changes: float) -> Gear:
-    """The gear with new values of named properties of :class:`swgsim.gauges.GaugeSet` for one sensor."""
+    """The gear with new values of named properties of :class:`swgsim.flexspline.gauges.GaugeSet` for one sensor."""
     new: dict[str, Any] = {
         name: tuple(value if s == sensor else old for s, old in enumerate(getattr(gear.gauges, name)))
         for name, value in changes.items()

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from swgsim.checks import require, require_integer, require_one_of
+from swgsim.common.checks import require, require_integer, require_one_of
 
 
 class Role(Enum):

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Complex, Float
 
-from swgsim.checks import require_known
-from swgsim.conditions import Conditions
+from swgsim.common.checks import require_known
 from swgsim.effects.base import Effect, Scene
 from swgsim.effects.frozen import FULL_LOAD, FULL_SPEED
 from swgsim.effects.quantity import choice, phase, size
-from swgsim.gear import OperatingPoint
+from swgsim.gear.conditions import Conditions
+from swgsim.gear.gear import OperatingPoint
 
 # Gauges s1 to s4 sit a quarter turn apart; a pattern of m waves travels around them.
 PATTERNS: Mapping[str, Mapping[str, complex]] = {

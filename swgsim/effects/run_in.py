@@ -5,7 +5,7 @@ from math import exp
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import size
-from swgsim.gear import Gear
+from swgsim.gear.gear import Gear
 
 # Time constants [h] (physics.md AG1, AG2) and the share of k1 and b1 that is lost in the end. The losses follow from
 # Fig. 4, -20 % of the measured stiffness after 10 h, and from Table II, +10 % of efficiency after 250 h (relative, mean

@@ -6,7 +6,7 @@ import numpy as np
 
 from swgsim.effects.base import Effect, Extra, Instant
 from swgsim.effects.quantity import choice, phase, size
-from swgsim.gear import Transmission
+from swgsim.gear.gear import Transmission
 
 # Inertia that the drive moves along [kg m^2]: that of the default gear.
 J_IN = Transmission().J_in

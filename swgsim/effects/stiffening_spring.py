@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import size
-from swgsim.gear import Gear
+from swgsim.gear.gear import Gear
 
 
 @dataclass(frozen=True)

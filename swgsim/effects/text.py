@@ -16,11 +16,11 @@ from typing import Any
 import numpy as np
 import yaml
 
+from swgsim.common.plain_yaml import PlainLoader, plain
 from swgsim.effects.base import Effect
 from swgsim.effects.library import LIBRARY, named
 from swgsim.effects.one_gauge import ALL
 from swgsim.effects.quantity import Role, quantities, size_of
-from swgsim.plain_yaml import PlainLoader, plain
 
 EXAMPLE = "{eccentric_wave_generator: {r: 1.0e-5, theta: 1.0}}"
 

@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 
-from swgsim.conditions import Conditions
 from swgsim.effects.base import Effect
 from swgsim.effects.frozen import ScaledDisplacement
 from swgsim.effects.quantity import size
-from swgsim.gear import OperatingPoint
+from swgsim.gear.conditions import Conditions
+from swgsim.gear.gear import OperatingPoint
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from jaxtyping import Float
 from swgsim.effects.base import Effect, Scene
 from swgsim.effects.frozen import FULL_LOAD
 from swgsim.effects.quantity import choice, phase, size
-from swgsim.gauges import waves
+from swgsim.flexspline.gauges import waves
 
 WAVE = waves(1)
 

@@ -5,7 +5,7 @@ from math import exp
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import shape, size
-from swgsim.gear import Gear
+from swgsim.gear.gear import Gear
 
 
 @dataclass(frozen=True)

@@ -9,11 +9,11 @@ from typing import Any
 
 from tqdm import tqdm
 
-from swgsim.compute import Engine
-from swgsim.files import replacing, write_json, write_text
-from swgsim.joint import job
+from swgsim.common.compute import Engine
+from swgsim.common.files import replacing, write_json, write_text
+from swgsim.common.version import code_version
+from swgsim.joint import close_joint_loop as job
 from swgsim.joint.cases_page import page, tables
-from swgsim.version import code_version
 
 # Pictures of the documentation.
 LADDER, REASONS = ("ladder",), ("waves", "unexplained", "friction")
@@ -105,7 +105,9 @@ def ladders(said: Mapping[str, Mapping[str, Any]], missing: Mapping[str, str]) -
 
 def _key(case: Mapping[str, Any]) -> str:
     """What an answer depends on: the choices, the source, the files and the code."""
-    made = hashlib.sha256(json.dumps(dict(case), sort_keys=True).encode() + code_version("joint", "loop").encode())
+    made = hashlib.sha256(
+        json.dumps(dict(case), sort_keys=True).encode() + code_version("joint", "identification").encode()
+    )
     for file in (
         job.source_path(case["source"]),
         *sorted(p for p in Path(case["recordings"]).rglob("*") if p.is_file()),

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from swgsim.joint.page import capital
-from swgsim.loop.page import figure
-from swgsim.page import environment
+from swgsim.common.html import environment
+from swgsim.common.numbers import figure
+from swgsim.joint.joint_page import capital
 
 
 def page(said: Mapping[str, Mapping[str, Any]], missing: Mapping[str, str], folders: Mapping[str, Path]) -> str:

@@ -6,8 +6,8 @@ import numpy as np
 from jaxtyping import Float
 from scipy.ndimage import median_filter
 
+from swgsim.common.chi2_logsf import log_tail
 from swgsim.joint.regression import Table
-from swgsim.loop.tail import log_tail
 
 # Lines per wave that the longest recording resolves, and the highest order, if the gear ratio does not say more.
 FINENESS, HIGHEST = 4, 2500

@@ -8,9 +8,9 @@ import numpy as np
 from jaxtyping import Float, Int
 from scipy.stats import t
 
+from swgsim.common.singular import svd
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.term import Term
-from swgsim.singular import svd
 
 # Stretch of a recording whose errors are taken to be independent of those of the next one [s].
 STRETCH = 1.0

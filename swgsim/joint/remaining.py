@@ -7,9 +7,9 @@ from itertools import combinations
 import numpy as np
 from scipy.signal import find_peaks, periodogram
 
+from swgsim.common.seeds import generator
 from swgsim.joint.coherence import foretold
 from swgsim.joint.regression import Fit, Table, rms
-from swgsim.seeds import generator
 
 # Speeds that vary by less than this share are steady.
 STEADY = 0.1

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from swgsim.common.outcome import FOUND, NOTHING, UNKNOWN
 from swgsim.effects.quantity import Role, quantities
 from swgsim.joint.days import Days
 from swgsim.joint.effects.position_friction import PositionFriction
@@ -16,7 +17,6 @@ from swgsim.joint.regression import Fit, rms
 from swgsim.joint.remaining import RemainingLine
 from swgsim.joint.term import Term
 from swgsim.joint.waves import SLOW
-from swgsim.loop.answer import FOUND, NOTHING, UNKNOWN
 
 # Probability below which sessions differ in friction.
 DIFFERENT = 0.02

@@ -1,1 +1,12 @@
-"""The classifier that knows the gear, the faults and the statistics of the bench: the least error there can be."""
+"""Bayes' classifier that knows gear, faults and the statistics of the bench: the least error that is possible.
+
+Imports ``dataset``, ``jobs`` and rooms below these.
+"""
+
+from swgsim.oracle.cells import Resolution
+from swgsim.oracle.columns import KNOWN
+
+__all__ = [
+    "KNOWN",
+    "Resolution",
+]

@@ -9,8 +9,8 @@ import numpy as np
 from jaxtyping import Float
 from scipy.interpolate import KroghInterpolator
 
-from swgsim.checks import require_integer
-from swgsim.faults import FAULTS, WITHOUT_POSITION, Variant
+from swgsim.common.checks import require_integer
+from swgsim.dataset.faults import FAULTS, WITHOUT_POSITION, Variant
 
 # A uniform distribution of width 1 has this standard deviation.
 UNIFORM = 1 / sqrt(12)

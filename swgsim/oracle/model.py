@@ -11,18 +11,18 @@ from itertools import chain, product
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.bench import Bench
-from swgsim.chain import Run
+from swgsim.bench.scatter import Bench
+from swgsim.chain.chain import Run
+from swgsim.common.seeds import generator, seed_hash
+from swgsim.dataset.faults import FAULTS, Variant
+from swgsim.dataset.grid import Case
+from swgsim.dataset.plan import Plan
+from swgsim.dataset.simulate_cases import record
 from swgsim.effects import Effect, ParameterScatter
-from swgsim.faults import FAULTS, Variant
-from swgsim.gear import Gear, OperatingPoint
-from swgsim.grid import Case
+from swgsim.gear.gear import Gear, OperatingPoint
 from swgsim.oracle.cells import Cells, Partition, Resolution
-from swgsim.orders import lines_of
-from swgsim.plan import Plan
-from swgsim.record import record
-from swgsim.recordings import Recordings
-from swgsim.seeds import generator, seed_hash
+from swgsim.storage.gauge_set import Recordings
+from swgsim.storage.orders import lines_of
 
 # Highest order that the oracle looks at.
 ORDERS = 12

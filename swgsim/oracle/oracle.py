@@ -8,14 +8,14 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.bench import Session
-from swgsim.gear import Gear
+from swgsim.bench.scatter import Session
+from swgsim.common.seeds import generator
+from swgsim.dataset.plan import Plan
+from swgsim.gear.gear import Gear
 from swgsim.oracle.model import ORDERS, Expectation, bench_of, observations
 from swgsim.oracle.point import PointModel
-from swgsim.orders import whole_revolutions
-from swgsim.plan import Plan
-from swgsim.recordings import CLASSES, SENSORS, Recordings
-from swgsim.seeds import generator
+from swgsim.storage.gauge_set import CLASSES, SENSORS, Recordings
+from swgsim.storage.orders import whole_revolutions
 
 # Where the logarithm of the efficiency and the temperature stand in an observation.
 EFFICIENCY, TEMPERATURE = -2, -1

@@ -11,7 +11,7 @@ from scipy.linalg import cholesky, solve_triangular
 from scipy.special import logsumexp
 
 from swgsim.oracle.cells import Cells
-from swgsim.recordings import CLASSES
+from swgsim.storage.gauge_set import CLASSES
 
 
 @dataclass(frozen=True)

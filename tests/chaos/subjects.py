@@ -15,9 +15,12 @@ from fabricated import recordings
 from hydra import compose, initialize_config_dir
 from omegaconf import OmegaConf
 
-from learn import job, page, tracking  # noqa: F401
-from swgsim import generation, storage
-from swgsim import plan as plans
+from learn import tracking
+from learn.jobs import train_job  # noqa: F401
+from learn.tracking import ui  # noqa: F401
+from swgsim.dataset import plan as plans
+from swgsim.jobs import generate_data_set as generation
+from swgsim.storage import storage
 
 ROOT = Path(__file__).parents[2]
 GRID = ("grid=small", "condition=disturbed")  # which makes the clean data set first

@@ -10,16 +10,17 @@ from scipy.io import savemat
 from sklearn.ensemble import HistGradientBoostingClassifier, RandomForestClassifier
 from sklearn.neural_network import MLPClassifier
 
-from learn import models, neural
-from swgsim import storage
-from swgsim.conditions import Conditions
+from learn.evaluation import models
+from learn.methods import neural
+from swgsim.bench.truth import write_sealed
 from swgsim.effects import text
-from swgsim.gear import OperatingPoint
-from swgsim.intake.folder import write_folder
-from swgsim.intake.recording_file import write_file
-from swgsim.recording import Recording
-from swgsim.recordings import COLUMNS, Recordings, facts
-from swgsim.truth import write_sealed
+from swgsim.gear.conditions import Conditions
+from swgsim.gear.gear import OperatingPoint
+from swgsim.recordings.files.folder import write_folder
+from swgsim.recordings.files.recording_file import write_file
+from swgsim.recordings.recording import Recording
+from swgsim.storage import storage
+from swgsim.storage.gauge_set import COLUMNS, Recordings, facts
 
 CONF = Path(__file__).parents[2] / "conf" / "sources"
 ROWS = 24

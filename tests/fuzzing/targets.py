@@ -11,16 +11,16 @@ import numpy as np
 from fuzzing import seeds
 from fuzzing.mutation import BINARY, TEXT, Way
 from fuzzing.wrapping import GZIPPED, PLAIN, SEALED, ZIPPED, Wrapping
-from learn import models
-from swgsim import storage
+from learn.evaluation import models
+from swgsim.bench.truth import SEAL
 from swgsim.effects import text
-from swgsim.intake.folder import read_folder
-from swgsim.intake.recording_file import read_file
-from swgsim.intake.source_map import read_map
-from swgsim.intake.sources import read_mapped
+from swgsim.identification.report.close_loop import _hidden
 from swgsim.joint.intake.read import read_joints
-from swgsim.loop.job import _hidden
-from swgsim.truth import SEAL
+from swgsim.recordings.files.folder import read_folder
+from swgsim.recordings.files.recording_file import read_file
+from swgsim.recordings.files.source_map import read_map
+from swgsim.recordings.files.sources import read_mapped
+from swgsim.storage import storage
 
 
 class Target(NamedTuple):

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from swgsim.storage import SEAL_SIZE, SEAL_START
+from swgsim.storage.storage import SEAL_SIZE, SEAL_START
 
 Change = Callable[[bytes], bytes]
 LARGEST_INSIDE = 2**24
@@ -27,7 +27,7 @@ def _plain(content: bytes, change: Change, rng: np.random.Generator) -> bytes:
 
 
 def sealed(body: bytes) -> bytes:
-    """A file with the seal of :mod:`swgsim.storage` around any bytes, as anybody can write it."""
+    """A file with the seal of :mod:`swgsim.storage.storage` around any bytes, as anybody can write it."""
     seal = SEAL_START + hashlib.sha256(body).hexdigest().encode() + b"\n"
     return seal.ljust(SEAL_SIZE, b" ") + body
 

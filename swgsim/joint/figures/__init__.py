@@ -5,7 +5,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from swgsim import style
+from swgsim.common import style
 from swgsim.joint.days import Days
 from swgsim.joint.figures.friction import friction
 from swgsim.joint.figures.rungs import rungs

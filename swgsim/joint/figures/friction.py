@@ -4,13 +4,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from swgsim import style
+from swgsim.common import style
+from swgsim.common.numbers import NORMAL
 from swgsim.joint.days import OF_SPEED, Days, rising
 from swgsim.joint.figures.parts import face, pieces, session_key, sessions, short, tables, unit
 from swgsim.joint.judged import Judged
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.textbook import Zero
-from swgsim.loop.reporting.numbers import NORMAL
 
 # Below, a probability rests on assumptions that nobody can check.
 SMALL = 1e-6

@@ -5,7 +5,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from swgsim import style
+from swgsim.common import style
 from swgsim.joint.figures.parts import AFTER, FLOOR, GREY
 
 

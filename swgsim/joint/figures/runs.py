@@ -6,7 +6,7 @@ from typing import Any
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from swgsim import style
+from swgsim.common import style
 from swgsim.joint.figures.parts import AFTER, BEFORE, FLOOR, dot, face, logarithmic, steady
 from swgsim.joint.judged import Judged
 

@@ -5,7 +5,7 @@ from jaxtyping import Float
 from matplotlib.figure import Figure
 from scipy.signal import welch
 
-from swgsim import style
+from swgsim.common import style
 from swgsim.joint.figures.parts import AFTER, BEFORE, FLOOR, logarithmic, unit
 from swgsim.joint.judged import Judged
 from swgsim.joint.regression import Table

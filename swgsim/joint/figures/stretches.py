@@ -5,7 +5,7 @@ from jaxtyping import Float
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from swgsim import style
+from swgsim.common import style
 from swgsim.joint.effects.ripple import Ripple
 from swgsim.joint.figures.parts import AFTER, BEFORE, FLOOR, SHORT, one_way, unit
 from swgsim.joint.judged import Judged

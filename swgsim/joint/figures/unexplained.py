@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from scipy.signal import find_peaks, periodogram
 
-from swgsim import style
+from swgsim.common import style
 from swgsim.joint.figures.parts import one_way, tables, unit
 from swgsim.joint.judged import Judged
 from swgsim.joint.remaining import RemainingLine

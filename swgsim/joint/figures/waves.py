@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from swgsim import style
+from swgsim.common import style
 from swgsim.joint.effects.inertia_ripple import InertiaRipple
 from swgsim.joint.effects.ripple import Ripple
 from swgsim.joint.figures.parts import face, logarithmic, pieces, session_key, sessions, tables, unit

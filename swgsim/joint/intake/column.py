@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from math import pi
 
-from swgsim.checks import require_known
+from swgsim.common.checks import require_known
 from swgsim.joint.intake.units import FACTORS
 from swgsim.joint.recording import SIGNALS
 

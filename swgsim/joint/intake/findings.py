@@ -5,7 +5,6 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from swgsim.defects.defect import Defect
 from swgsim.joint.intake.rows import row_findings
 from swgsim.joint.intake.run import Run
 from swgsim.joint.intake.signals import signal_findings
@@ -13,6 +12,7 @@ from swgsim.joint.intake.start import start_findings
 from swgsim.joint.intake.thresholds import LEAST_MOVED
 from swgsim.joint.intake.velocity import velocity_findings
 from swgsim.joint.recording import PREDICTED, JointRecording
+from swgsim.recordings.checks.defect import Defect
 
 
 def moving_findings(run: Run, recording: JointRecording) -> Iterator[Defect]:

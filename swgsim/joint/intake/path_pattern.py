@@ -5,8 +5,8 @@ Arrow, take a time in proportion to the text, refuse expressions that would need
 references and no look-around; so an expression from anybody can be tried on the path of any file.
 """
 
-from swgsim.checks import require_known
-from swgsim.intake.file_defect import FileDefect, shown
+from swgsim.common.checks import require_known
+from swgsim.recordings.files.file_defect import FileDefect, shown
 
 GROUPS = ("session", "run", "joint")
 # What RE2 compiles grows with the expression; those of the shipped sources have less than 150 characters.

@@ -6,9 +6,9 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import NamedTuple
 
-from swgsim.intake.file_defect import FileDefect
-from swgsim.intake.limits import inside, require_file_count
 from swgsim.joint.intake.source import JointSource
+from swgsim.recordings.files.file_defect import FileDefect
+from swgsim.recordings.files.limits import inside, require_file_count
 
 ENDINGS = (".csv", ".csv.gz", ".parquet", ".mat")
 # Folders and files that are looked at to find those that are meant.

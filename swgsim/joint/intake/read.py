@@ -7,8 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-from swgsim.defects.defect import Defect
-from swgsim.intake.file_defect import FileDefect, shown
 from swgsim.joint.intake.clock import measured_rates, usual_rates
 from swgsim.joint.intake.findings import at_rest_findings, copy_findings, moving_findings, unsaid_findings
 from swgsim.joint.intake.places import places
@@ -20,6 +18,8 @@ from swgsim.joint.intake.source_file import read_source
 from swgsim.joint.intake.unusable import unusable
 from swgsim.joint.intake.wrapping import wrap_findings
 from swgsim.joint.recording import JointRecording
+from swgsim.recordings.checks.defect import Defect
+from swgsim.recordings.files.file_defect import FileDefect, shown
 
 
 @dataclass(frozen=True)

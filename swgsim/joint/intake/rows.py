@@ -6,8 +6,6 @@ import numpy as np
 from jaxtyping import Bool
 from scipy.ndimage import maximum_filter1d
 
-from swgsim.defects.channel import runs
-from swgsim.defects.defect import Defect, Severity
 from swgsim.joint.intake.run import Run
 from swgsim.joint.intake.thresholds import (
     GAP,
@@ -21,6 +19,8 @@ from swgsim.joint.intake.thresholds import (
     SHORT_STEP,
 )
 from swgsim.joint.recording import PREDICTED, JointRecording
+from swgsim.recordings.checks.channel import runs
+from swgsim.recordings.checks.defect import Defect, Severity
 
 
 def gap_findings(run: Run) -> Iterator[Defect]:

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.intake.file_defect import FileDefect, shown
 from swgsim.joint.intake.column import Column
 from swgsim.joint.intake.path_pattern import said_by
 from swgsim.joint.intake.source import JointColumns, JointSource
 from swgsim.joint.intake.table import Columns, read_table
+from swgsim.recordings.files.file_defect import FileDefect, shown
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,12 +4,12 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from swgsim.defects.defect import Defect
 from swgsim.joint.intake.mistakes import mistake
 from swgsim.joint.intake.motion import Way, way
 from swgsim.joint.intake.run import Run
 from swgsim.joint.intake.source import JointSource
 from swgsim.joint.intake.thresholds import FEWEST_FOR_MEDIAN, LEAST_MOVED, SCALE_REFUSES, SCALE_WARNS
+from swgsim.recordings.checks.defect import Defect
 
 
 def clock_findings(run: Run, rate: float | None) -> Iterator[Defect]:

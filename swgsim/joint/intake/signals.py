@@ -5,8 +5,6 @@ from collections.abc import Iterator
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.defects.channel import runs
-from swgsim.defects.defect import Defect, Severity
 from swgsim.joint.intake.rows import repeated
 from swgsim.joint.intake.run import Run
 from swgsim.joint.intake.thresholds import (
@@ -21,6 +19,8 @@ from swgsim.joint.intake.thresholds import (
     LEAST_MOVED,
 )
 from swgsim.joint.recording import PREDICTED, JointRecording
+from swgsim.recordings.checks.channel import runs
+from swgsim.recordings.checks.defect import Defect, Severity
 
 
 def signal_findings(run: Run, recording: JointRecording) -> Iterator[Defect]:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from swgsim.checks import require, require_integer
+from swgsim.common.checks import require, require_integer
 from swgsim.joint.intake.column import Column
 from swgsim.joint.intake.path_pattern import require_pattern
 

@@ -4,10 +4,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from swgsim.defects.defect import Defect
 from swgsim.joint.intake.run import Run
 from swgsim.joint.intake.thresholds import LEAST_MOVED, START_BLOCKS, START_OFF, START_SCATTER, STEADY
 from swgsim.joint.recording import JointRecording
+from swgsim.recordings.checks.defect import Defect
 
 
 def start_findings(run: Run, recording: JointRecording) -> Iterator[Defect]:

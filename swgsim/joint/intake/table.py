@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.intake.facts import NUMBER
-from swgsim.intake.file_defect import FileDefect, shown
-from swgsim.intake.foreign import read_columns
-from swgsim.intake.limits import MOST_ROWS, most_expanded, require_readable
+from swgsim.recordings.files.facts import NUMBER
+from swgsim.recordings.files.file_defect import FileDefect, shown
+from swgsim.recordings.files.foreign import read_columns
+from swgsim.recordings.files.limits import MOST_ROWS, most_expanded, require_readable
 
 # Six joints with five signals of 20 characters have 600; a line without end is no table.
 LONGEST_LINE = 100_000
@@ -42,7 +42,7 @@ def read_table(path: Path, name: str, wanted: Sequence[str | int], header: bool)
     Raises
     ------
     FileDefect
-        If the file is damaged, decompresses to more than :func:`swgsim.intake.limits.most_expanded` allows, or a column
+        If the file is damaged, decompresses to more than :func:`limits.most_expanded` allows, or a column
         is not there or holds no numbers.
     """
     require_readable(path)

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from math import pi
 
-from swgsim.intake.units import FACTORS as OF_CHANNELS
+from swgsim.recordings.files.units import FACTORS as OF_CHANNELS
 
 # From the unit of a column to that of the signal (swgsim/joint/recording.py), by the signal's unit.
 FACTORS: Mapping[str, Mapping[str, float]] = {

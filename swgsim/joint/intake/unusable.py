@@ -4,11 +4,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from swgsim.defects.defect import Defect
-from swgsim.intake.assembly import no_numbers, standing
-from swgsim.intake.limits import LARGEST_NUMBER
 from swgsim.joint.intake.run import Run
 from swgsim.joint.intake.thresholds import FEWEST_SAMPLES
+from swgsim.recordings.checks.defect import Defect
+from swgsim.recordings.files.assembly import no_numbers, standing
+from swgsim.recordings.files.limits import LARGEST_NUMBER
 
 
 def unusable(run: Run) -> Iterator[Defect]:

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from swgsim.defects.defect import Defect, Severity
 from swgsim.joint.intake.run import Run
 from swgsim.joint.intake.thresholds import (
     APART_REFUSES,
@@ -16,6 +15,7 @@ from swgsim.joint.intake.thresholds import (
     SET_SHARE,
 )
 from swgsim.joint.recording import JointRecording
+from swgsim.recordings.checks.defect import Defect, Severity
 
 
 def velocity_findings(run: Run, recording: JointRecording) -> Iterator[Defect]:

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from swgsim.defects.defect import Defect
 from swgsim.joint.intake.run import Run
 from swgsim.joint.intake.thresholds import FEWEST_SAMPLES, WRAP_STEP, WRAPPED
+from swgsim.recordings.checks.defect import Defect
 
 
 def wrap_findings(run: Run) -> Iterator[Defect]:

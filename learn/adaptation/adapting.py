@@ -1,0 +1,102 @@
+"""Transfer judged: a source model for each fold of gears, adapted to every gear left out with shots drawn for it."""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from learn.adaptation.transfer import Adaptation, Labelled
+from learn.inputs.inputs import SPECIMEN, LearningSet
+from learn.protocols.levels import Episode, Target
+from swgsim.common.seeds import seed_hash
+
+SourceModel = Callable[[Any, Any], Any]  # of rows and class names, a model trained on them
+
+
+@dataclass(frozen=True)
+class Adapted:
+    """How adapted models did.
+
+    Attributes
+    ----------
+    specimens : DataFrame
+        ``gear``, ``label``, ``variant``, ``shots``, ``error``, the share of wrong decisions over the operating
+        points and draws [%], and ``unadapted``, that of the source model.
+    gears : DataFrame
+        ``gear``, ``shots``, ``error`` and ``unadapted`` on the gear [%] and ``forgotten``, the accuracy on source gears
+        lost by adapting [points].
+    """
+
+    specimens: pd.DataFrame
+    gears: pd.DataFrame
+
+    def mean_error(self) -> float:
+        """Over gears and numbers of shots [%]."""
+        return float(self.gears["error"].mean())
+
+    def metrics(self) -> dict[str, float]:
+        """Mean over the gears for each number of shots, to three decimals, under names that MLflow accepts."""
+        means = self.gears.groupby("shots")[["error", "unadapted", "forgotten"]].mean()
+        each = {f"{name}/{shots}_shots": value for name, column in means.items() for shots, value in column.items()}
+        return {name: round(value, 3) for name, value in {"test_score": 100 - self.mean_error(), **each}.items()}
+
+
+def adapt_and_judge(
+    data: LearningSet,
+    episodes: Iterable[Episode],
+    source_model: SourceModel,
+    adaptation: Adaptation,
+    shots: Sequence[int],
+    draws: int,
+) -> Adapted:
+    """Adapt to every target of every episode, at each number of shots and each draw of them, and judge.
+
+    Parameters
+    ----------
+    data : LearningSet
+    episodes : iterable of Episode
+    source_model : callable
+    adaptation : Adaptation
+    shots : sequence of int
+        Numbers K of labelled variants per class; 0 for methods of level Z2, which are run once.
+    draws : int
+        Draws of the shots; the same for all methods.
+    """
+    y = data.table["label"].astype(str).to_numpy()
+    specimens, gears = [], []
+    for episode in episodes:
+        kept = Labelled(np.asarray(data.features[episode.source]), y[episode.source])
+        model = source_model(*kept)
+        before = _accuracy(model, data, y, episode.kept_out)
+        for target in episode.targets:
+            unadapted = 100.0 * (model.predict(data.features[target.judged]) != y[target.judged])
+            for number in shots:
+                judged, forgotten = [], []
+                for draw in range(draws if number else 1):
+                    adapted = _adapted(data, y, model, kept, target, adaptation, number, draw)
+                    judged.append(adapted.predict(data.features[target.judged]) != y[target.judged])
+                    forgotten.append(before - _accuracy(adapted, data, y, episode.kept_out))
+                error = 100 * np.mean(judged, axis=0)
+                facts = data.table.iloc[target.judged][list(SPECIMEN)]
+                specimens.append(facts.assign(label=y[target.judged], shots=number, error=error, unadapted=unadapted))
+                gears.append((target.gear, number, error.mean(), unadapted.mean(), float(np.mean(forgotten))))
+    each = pd.concat(specimens).groupby([*SPECIMEN, "shots"])[["error", "unadapted"]].mean()
+    names = ["gear", "shots", "error", "unadapted", "forgotten"]
+    return Adapted(each.reset_index(), pd.DataFrame(gears, columns=names))
+
+
+def _adapted(
+    data: LearningSet, y: np.ndarray, model: Any, kept: Labelled, target: Target, adaptation: Adaptation,
+    number: int, draw: int,
+) -> Any:  # fmt: skip
+    rows = target.shots(data.table, number, draw)
+    unlabelled = np.asarray(data.features[target.unlabelled[: 0 if number else None]])
+    seed = seed_hash("adaptation", target.gear, number, draw) % 2**31
+    return adaptation.adapt(model, kept, Labelled(np.asarray(data.features[rows]), y[rows]), unlabelled, seed)
+
+
+def _accuracy(model: Any, data: LearningSet, y: np.ndarray, rows: np.ndarray) -> float:
+    """Share of right decisions [%]; NaN without rows."""
+    return 100 * float(np.mean(model.predict(data.features[rows]) == y[rows])) if len(rows) else float("nan")

@@ -1,0 +1,9 @@
+"""Scores with intervals: confusion, calibration of probabilities, detection curves, abstention, bootstrap over gears.
+
+Imports ``inputs``, ``methods`` and ``protocols``.
+"""
+
+import lazy_loader
+
+# A name is imported when it is used, so that a sweep of forests does not wait for PyTorch.
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

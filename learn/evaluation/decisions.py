@@ -1,0 +1,51 @@
+"""What a method says about every judged recording, read from its table of predictions.
+
+A table of predictions has one row per judged recording: ``gear``, ``label``, ``variant``, ``severity`` (NaN when
+healthy), ``n_in_rpm``, ``T_out_nm`` and one column per class with its predicted probability.
+"""
+
+import numpy as np
+import pandas as pd
+from jaxtyping import Float, Int
+
+from swgsim.storage.gauge_set import CLASSES
+
+
+def probabilities(predictions: pd.DataFrame) -> Float[np.ndarray, "row class"]:
+    """The predicted probability of every class, in the order of :data:`swgsim.storage.gauge_set.CLASSES`.
+
+    Raises
+    ------
+    ValueError
+        If a probability is not finite; it names the first such row.
+    """
+    values = predictions[list(CLASSES)].to_numpy(dtype=float)
+    bad = np.flatnonzero(~np.isfinite(values).all(axis=1))
+    if len(bad):
+        raise ValueError(f"row {bad[0]}: probabilities {values[bad[0]]}, every class needs a finite one")
+    return values
+
+
+def decisions(predictions: pd.DataFrame) -> np.ndarray:
+    """The class name with the highest probability for every row."""
+    return np.array(CLASSES)[probabilities(predictions).argmax(axis=1)]
+
+
+def truth(predictions: pd.DataFrame) -> np.ndarray:
+    """The true class name of every row."""
+    return np.array(predictions["label"], dtype=str)
+
+
+def class_numbers(predictions: pd.DataFrame) -> Int[np.ndarray, " row"]:
+    """The true class of every row as its place in :data:`swgsim.storage.gauge_set.CLASSES`.
+
+    Raises
+    ------
+    ValueError
+        If a label is not one of the classes.
+    """
+    numbers = pd.Index(CLASSES).get_indexer(pd.Index(truth(predictions)))
+    if (numbers < 0).any():
+        unknown = truth(predictions)[numbers.argmin()]
+        raise ValueError(f"unknown class {unknown!r}; choose from {', '.join(CLASSES)}")
+    return numbers

@@ -1,0 +1,149 @@
+"""One evaluation for every method: fit and score on each split."""
+
+import time
+import warnings
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from jaxtyping import Float, Int
+
+from learn.inputs.inputs import OPERATING_POINT, SPECIMEN
+from learn.inputs.rows import Inputs
+from learn.methods.classical import Classifier
+from learn.protocols.splits import Split
+
+FACTS = [*SPECIMEN, "severity", *OPERATING_POINT]
+
+
+@dataclass(frozen=True)
+class SplitScore:
+    """Accuracy on the two sides of a split [%], time to fit [s], and whether the optimiser came to its end."""
+
+    name: str
+    train: float
+    test: float
+    fit_seconds: float
+    converged: bool
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Scores of one method.
+
+    Attributes
+    ----------
+    scores : tuple of SplitScore
+        One per split.
+    classes : tuple of str
+        Names of the classes in the order in which the data set has them, which is that of the confusion matrix.
+    confusion : array (true, predicted)
+        Number of tested rows, summed over the splits.
+    tested : array (test,)
+        Their row numbers, split by split.
+    probabilities : array (test, class)
+        What the method says of them; a method without probabilities is certain.
+    """
+
+    scores: tuple[SplitScore, ...]
+    classes: tuple[str, ...]
+    confusion: Int[np.ndarray, "true predicted"]
+    tested: Int[np.ndarray, " test"]
+    probabilities: Float[np.ndarray, "test class"]
+
+    def predictions(self, table: pd.DataFrame) -> pd.DataFrame:
+        """Facts of the tested rows of the data set's table, and one column per class with its probability."""
+        facts = table.loc[self.tested, FACTS].reset_index(names="row")
+        said = pd.DataFrame(self.probabilities.astype("f4"), columns=list(self.classes))
+        return facts.assign(label=facts["label"].astype(str)).join(said)
+
+    def recall(self) -> Mapping[str, float]:
+        """Share of the tested rows of each class that were recognised [%]; classes that were tested only."""
+        tested = self.confusion.sum(axis=1)
+        return {
+            name: 100 * float(self.confusion[i, i] / tested[i]) for i, name in enumerate(self.classes) if tested[i] > 0
+        }
+
+    def metrics(self) -> dict[str, float]:
+        """All figures, to three decimals, under names that MLflow accepts; scores are averages over splits [%]."""
+        recall = self.recall()
+        exact = {
+            "train_score": float(np.mean([s.train for s in self.scores])),
+            "test_score": float(np.mean([s.test for s in self.scores])),
+            "balanced_accuracy": float(np.mean(list(recall.values()))),
+            "fit_seconds": sum(s.fit_seconds for s in self.scores),
+            "converged": float(all(s.converged for s in self.scores)),
+            **{f"test/{metric_key(s.name)}": s.test for s in self.scores},
+            **{f"recall/{name}": value for name, value in recall.items()},
+        }
+        return {name: round(value, 3) for name, value in exact.items()}
+
+
+def metric_key(split: str) -> str:
+    """The name of a split in the spelling of metrics, where neither ``,`` nor ``>`` may stand.
+
+    >>> metric_key("1,2->3")
+    '1_2_to_3'
+    """
+    return split.replace(",", "_").replace("->", "_to_").replace(" ", "_")
+
+
+def evaluate(
+    features: Inputs,
+    labels: np.ndarray,
+    splits: Iterable[Split],
+    method: Callable[[], Classifier],
+) -> Evaluation:
+    """Train a fresh `method` on the training rows of every split and score it on both sides.
+
+    Parameters
+    ----------
+    features : array (row, feature)
+    labels : array (row,)
+        Class names.
+    splits : iterable of Split
+    method : callable
+        Makes an untrained classifier.
+    """
+    classes = pd.Index(pd.unique(labels))
+    confusion = np.zeros((len(classes), len(classes)), dtype=np.int64)
+    scores, tested, said = [], [], []
+    for split in splits:
+        classifier = method()
+        start = time.perf_counter()
+        converged = fit(classifier, features[split.train], labels[split.train])
+        seconds = time.perf_counter() - start
+        probabilities = _probabilities(classifier, features[split.test], classes)
+        truth = classes.get_indexer(labels[split.test])
+        predicted = probabilities.argmax(axis=1)
+        np.add.at(confusion, (truth, predicted), 1)
+        train_score = np.mean(classifier.predict(features[split.train]) == labels[split.train])
+        test_score = np.mean(predicted == truth)
+        scores.append(SplitScore(split.name, 100 * float(train_score), 100 * float(test_score), seconds, converged))
+        tested.append(split.test)
+        said.append(probabilities)
+    return Evaluation(tuple(scores), tuple(map(str, classes)), confusion, np.concatenate(tested), np.concatenate(said))
+
+
+def _probabilities(classifier: Classifier, X: Inputs, classes: pd.Index) -> Float[np.ndarray, "row class"]:
+    """Probability of every class; 1 for the class that a method without probabilities names."""
+    result = np.zeros((len(X), len(classes)))
+    if hasattr(classifier, "predict_proba") and hasattr(classifier, "classes_"):
+        result[:, classes.get_indexer(pd.Index(classifier.classes_))] = classifier.predict_proba(X)
+    else:
+        result[np.arange(len(X)), classes.get_indexer(pd.Index(classifier.predict(X)))] = 1
+    return result
+
+
+def fit(classifier: Classifier, features: Inputs, labels: np.ndarray) -> bool:
+    """Fit, and say whether the optimiser came to its end; one that stops at its bound is no warning here."""
+    from sklearn.exceptions import ConvergenceWarning
+
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", ConvergenceWarning)
+        classifier.fit(features, labels)
+    for other in caught:
+        if not issubclass(other.category, ConvergenceWarning):
+            warnings.warn_explicit(other.message, other.category, other.filename, other.lineno)
+    return not any(issubclass(each.category, ConvergenceWarning) for each in caught)

@@ -1,0 +1,81 @@
+"""Trained models on disk, so that every adaptation of a source model starts from the same one.
+
+Networks are kept by :mod:`methods.neural`, scikit-learn's estimators by skops; neither runs code when read.
+"""
+
+import hashlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from learn.evaluation.evaluate import fit
+from learn.methods import neural
+from learn.methods.archive import require_plain
+from swgsim.common.files import replacing, sole_maker
+
+# Types beyond skops' own list that may be in a file: parts of estimators that hold arrays and numbers.
+TRUSTED = [
+    "aeon.transformations.collection.convolution_based._minirocket.MiniRocket",
+    "learn.methods.rocket.MiniRocket",
+    "sklearn.ensemble._hist_gradient_boosting.predictor.TreePredictor",
+    "sklearn.neural_network._stochastic_optimizers.AdamOptimizer",
+    "sklearn.tree._tree.Tree",
+]
+
+
+def save(model: Any, path: Path) -> None:
+    """Keep a trained classifier; the file is complete or absent."""
+    if isinstance(model, neural.NeuralClassifier):
+        neural.save(model, path)
+        return
+    import skops.io
+
+    with replacing(path) as aside:
+        skops.io.dump(model, aside)
+
+
+def load(path: Path, device: str = "auto") -> Any:
+    """A classifier that :func:`save` has kept; a network comes on the named device.
+
+    Raises
+    ------
+    ValueError
+        If the file is damaged, a pickle, or holds types that are none of a classifier's; it names the file.
+    """
+    if path.suffix == neural.SUFFIX:
+        return neural.load(path, device)
+    import skops.io
+
+    try:
+        require_plain(path)
+        return skops.io.load(path, trusted=TRUSTED)
+    except Exception as error:  # skops raises what zip, JSON and NumPy raise
+        raise ValueError(
+            f"{path}: not a model of this project, or damaged ({error}); remove it to train anew"
+        ) from error
+
+
+def trained(folder: Path, identity: str, model: Any, X: np.ndarray, y: np.ndarray) -> Any:
+    """The model trained on these rows: read from the folder if it is there, else trained and kept.
+
+    Parameters
+    ----------
+    folder : Path
+    identity : str
+        All that decides on the result beside the rows: configuration, code, libraries.
+    model : classifier
+        Untrained.
+    X, y : array (row, column), array (row,)
+    """
+    digest = hashlib.sha256(identity.encode())
+    digest.update(np.ascontiguousarray(X).data)
+    digest.update("\x1f".join(map(str, y)).encode())
+    is_network = isinstance(model, neural.NeuralClassifier)
+    path = folder / f"{digest.hexdigest()[:24]}{neural.SUFFIX if is_network else '.skops'}"
+    # Jobs of a sweep that adapt the same source model start at the same time; the first one trains it.
+    with sole_maker(path, wait=True):
+        if not path.exists():
+            fit(model, X, y)
+            save(model, path)
+    return load(path, model.device if is_network else "auto")

@@ -1,0 +1,53 @@
+"""Inputs beside the signal: efficiency and operating point."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from jaxtyping import Float
+
+from learn.inputs.residuals import HealthyLines
+
+
+@dataclass(frozen=True)
+class Side:
+    """Inputs beside the signal.
+
+    Attributes
+    ----------
+    efficiency : bool
+        Change of the efficiency against the healthy reference: its logarithm, the signed fourth root of it (eq. 9 kept
+        with its sign), and the change of viscous loss that would explain it. Without a reference: the logarithm itself.
+    operating_point : bool
+        Speed, load, and the temperature (with a reference: against the reference's), where it was recorded.
+    reference : bool
+        Whether the healthy acquisitions of the gear are known (level Z1); without them it is level Z0.
+    """
+
+    efficiency: bool = True
+    operating_point: bool = True
+    reference: bool = True
+
+    def columns(self, healthy: HealthyLines) -> dict[str, Float[np.ndarray, " sample"]]:
+        """Named columns, one value per sample."""
+        table = healthy.table
+        speed, load = table["n_in_rpm"].to_numpy(), table["T_out_nm"].to_numpy()
+        eta = table["efficiency"].to_numpy()
+        columns = {}
+        if self.efficiency and self.reference:
+            change = np.log(eta / healthy.eta_healthy)
+            columns["log eta_rel"] = change
+            columns["root of log eta_rel"] = np.sign(change) * np.abs(change) ** 0.25
+            # T_in N = T_out / eta: the change of the loss torque at the output over the speed is one of b1.
+            columns["viscous loss"] = (1 / eta - 1 / healthy.eta_healthy) * load / (speed * np.pi / 30)  # N m s
+        elif self.efficiency:
+            columns["log eta"] = np.log(eta)
+        if self.operating_point:
+            columns |= operating_point(table, self.reference * healthy.temperature_healthy)
+        return columns
+
+
+def operating_point(table: pd.DataFrame, temperature: Float[np.ndarray, " sample"]) -> dict[str, np.ndarray]:
+    """Speed [rpm], load [N m], and temperature against that given [K]; 0 where it was not recorded."""
+    difference = np.nan_to_num(table["temperature_c"].to_numpy() - temperature)
+    return {"speed": table["n_in_rpm"].to_numpy(), "load": table["T_out_nm"].to_numpy(), "temperature": difference}

@@ -1,0 +1,72 @@
+"""Signals as inputs: one revolution of the gauges, raw, differenced or relative to the healthy gear."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from learn.inputs.auxiliary_inputs import Side
+from learn.inputs.inputs import Layout, LearningSet
+from learn.inputs.residuals import ERRORS, healthy_lines, require_acquisitions, residual
+from swgsim.common.checks import require_integer
+from swgsim.storage.gauge_set import SENSORS, Recordings
+from swgsim.storage.orders import revolution
+
+CHANNELS = {"raw": SENSORS, "differenced": ("ds13", "ds24"), "residual": SENSORS}
+
+
+@dataclass(frozen=True)
+class Signals:
+    """One revolution of the wave generator, averaged over those of the window, as a signal over its angle.
+
+    Attributes
+    ----------
+    name : {"raw", "differenced", "residual"}
+        Five gauges; s1 - s3 and s2 - s4 (eq. 8); or five gauges relative to the healthy reference
+        (:func:`learn.inputs.residuals.residual`).
+    points : int
+        Angles.
+    orders : int
+        Highest order that the signal keeps.
+    efficiency, operating_point, reference : bool
+        As in :class:`learn.inputs.auxiliary_inputs.Side`.
+    acquisitions : int or None
+        Reference acquisitions to use at each operating point; None for all.
+
+    Raises
+    ------
+    ValueError
+        If a value is not one of the choices or out of its limits, or the residual is asked for without a reference.
+    """
+
+    name: str
+    points: int = 64
+    orders: int = 24
+    efficiency: bool = True
+    operating_point: bool = True
+    reference: bool = True
+    acquisitions: int | None = None
+
+    def __post_init__(self) -> None:
+        if self.name not in CHANNELS:
+            raise ValueError(f"unknown signal {self.name!r}; choose from {', '.join(CHANNELS)}")
+        if self.name == "residual" and not self.reference:
+            raise ValueError("features=residual is relative to a healthy reference: reference=true, or features=raw")
+        require_integer(self.name, "points", self.points, low=8, high=4096)
+        require_integer(self.name, "orders", self.orders, low=1, high=self.points // 2 - 1)
+        require_acquisitions(self.name, self.acquisitions)
+
+    def learning_set(self, blocks: Iterable[Recordings]) -> LearningSet:
+        """The signals of all samples, with the side inputs behind."""
+        healthy = healthy_lines(blocks, self.orders, self.acquisitions)
+        side = Side(self.efficiency, self.operating_point, self.reference).columns(healthy)
+        lines = healthy.lines
+        if self.name == "differenced":
+            lines = lines[:, 1:3] - lines[:, 3:5]  # eq. 8
+        elif self.name == "residual":
+            lines, errors = residual(healthy)
+            side |= dict(zip(ERRORS, errors.T, strict=True))
+        signal = revolution(lines, self.points)
+        names = [f"{channel}({point}/{self.points})" for channel in CHANNELS[self.name] for point in range(self.points)]
+        features = np.column_stack([signal.reshape(len(signal), -1), *side.values()])
+        return LearningSet(features, healthy.table, (*names, *side), Layout(signal.shape[1], self.points))

@@ -1,0 +1,54 @@
+"""What makes two jobs the same: their configuration, their data and the code that judges it."""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from swgsim.storage import orders
+
+# Parts of a configuration that no result depends on.
+WHEREABOUTS = ("data", "models", "tracking", "workers", "compute", "scheduler")
+# The rooms that the score of a job depends on.
+DECISIVE_ROOMS = ("adaptation", "evaluation", "inputs", "jobs", "methods", "protocols")
+
+
+def decisive(config: Mapping[str, Any]) -> dict[str, Any]:
+    """The part of a configuration that results depend on."""
+    return {key: value for key, value in config.items() if key not in WHEREABOUTS}
+
+
+def job_key(config: Mapping[str, Any], data_digest: str) -> str:
+    """Sixteen hexadecimal digits that change when the result of a job may change."""
+    text = json.dumps([decisive(config), data_digest, code_version()], sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+@cache
+def code_version() -> str:
+    """Digest of the sources of this package that scores depend on, and of the libraries below it."""
+    digest = hashlib.sha256()
+    for library in ("numpy", "scipy", "pandas", "scikit-learn", "torch"):
+        digest.update(f"{library} {version(library)}".encode())
+    folder = Path(__file__).parents[1]
+    sources = (source for room in DECISIVE_ROOMS for source in sorted((folder / room).rglob("*.py")))
+    # The one module of swgsim that is no part of a recording's making, which the data set's own version covers.
+    for source in [*sources, Path(orders.__file__)]:
+        digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def flat(config: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    """A nested configuration as one level of dotted names; ``name`` stands for its group.
+
+    >>> flat({"grid": "small", "classifier": {"name": "rf", "trees": 100}})
+    {'grid': 'small', 'classifier': 'rf', 'classifier.trees': 100}
+    """
+    result: dict[str, Any] = {}
+    for key, value in config.items():
+        name = prefix.removesuffix(".") if prefix and key == "name" else prefix + key
+        result |= flat(value, f"{name}.") if isinstance(value, Mapping) else {name: value}
+    return result

@@ -1,0 +1,128 @@
+"""From configuration to objects, in one place: an unknown choice is answered with the list of choices."""
+
+import inspect
+from collections.abc import Callable, Mapping
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from learn.inputs.features import Selection
+from learn.inputs.harmonics import Harmonics
+from learn.inputs.inputs import NO_SIGNAL, Layout, Representation
+from learn.inputs.lines import ResidualLines
+from learn.inputs.signals import Signals
+from learn.methods import classical, neural, strong
+from learn.methods.rocket import MiniRocket
+from learn.protocols.harder_splits import LeaveOperatingPointOut, LeaveSeverityOut
+from learn.protocols.levels import NewGears
+from learn.protocols.splits import GroupedFolds, LeaveOneGearOut, RandomFolds, Splitting
+from learn.tracking import Store, local_store, server_store
+
+if TYPE_CHECKING:
+    from learn.adaptation.transfer import Adaptation
+
+NO_OPTIONS = ("name", "trials", "shots")  # of a file in conf: what is not for the object itself
+
+T = TypeVar("T")
+Config = Mapping[str, Any]
+
+REPRESENTATIONS: Mapping[str, Callable[..., Representation]] = {
+    **dict.fromkeys(("raw", "differenced", "residual"), Signals),
+    "lines": ResidualLines,
+    "harmonics": Harmonics,
+}
+CLASSIFIERS: Mapping[str, Callable[..., classical.Classifier]] = {
+    "mlp": classical.multi_layer_perceptron,
+    "svm": classical.support_vector_machine,
+    "rf": classical.random_forest,
+    "knn": classical.nearest_neighbours,
+    "nb": classical.naive_bayes,
+    "logistic_regression": strong.logistic_regression,
+    "gradient_boosting": strong.gradient_boosting,
+    "extra_trees": strong.extra_trees,
+    "minirocket": MiniRocket,
+    "perceptron": neural.neural_perceptron,
+    "cnn": neural.convolutional_network,
+}
+PROTOCOLS: Mapping[str, Callable[..., Splitting]] = {
+    "random_folds": RandomFolds,
+    "grouped_folds": GroupedFolds,
+    "leave_one_gear_out": LeaveOneGearOut,
+    "new_gears": NewGears,
+    "leave_severity_out": LeaveSeverityOut,
+    "leave_operating_point_out": LeaveOperatingPointOut,
+}
+STORES: Mapping[str, Callable[..., Store]] = {"local": local_store, "server": server_store}
+
+
+def representation(config: Config) -> Representation:
+    """What methods see, of ``conf/features``; a name that is none of the known ones is a selection of one's own."""
+    name = str(config.get("name"))
+    return _configured(f"features {name}", REPRESENTATIONS.get(name, Selection), config)()
+
+
+def protocol(config: Config) -> Splitting:
+    """The protocol of ``conf/protocol``."""
+    return _chosen("protocol", PROTOCOLS, config)()
+
+
+def classifier(config: Config, layout: Layout = NO_SIGNAL) -> Callable[..., classical.Classifier]:
+    """A maker of untrained classifiers of ``conf/classifier``; it takes options in place of those configured.
+
+    Methods that know signals are told where in a row the signal is.
+    """
+    make = _chosen("classifier", CLASSIFIERS, config)
+    knows_signals = "channels" in inspect.signature(make).parameters
+    return partial(make, **layout._asdict()) if knows_signals else make
+
+
+def adaptation(config: Config) -> Callable[..., "Adaptation"]:
+    """A maker of the adaptation of ``conf/adaptation``; it takes options in place of those configured."""
+    from learn.adaptation.adaptations import ADAPTATIONS  # with torch, which takes seconds
+
+    return _chosen("adaptation", ADAPTATIONS, config)
+
+
+def trials(config: Config) -> list[dict[str, Any]]:
+    """The options that are tried on development gears, ``trials`` of a method's file; one empty trial for none."""
+    return [dict(options) for options in config.get("trials") or [{}]]
+
+
+def store(config: Config) -> Store:
+    """The MLflow store of ``conf/tracking``."""
+    return _chosen("tracking", STORES, config)()
+
+
+def data_set(config: Config) -> Path:
+    """The data set that ``data``, ``grid`` and ``condition`` name.
+
+    Raises
+    ------
+    ValueError
+        If there is no such file; it names the data sets that exist and the command that makes this one.
+    """
+    folder = Path(config["data"])
+    path = folder / f"{config['grid']}-{config['condition']}.h5"
+    if not path.is_file():
+        there = ", ".join(sorted(p.stem for p in folder.glob("*-*.h5"))) or "none"
+        raise ValueError(
+            f"no data set {path}; data sets in {folder}: {there}. Make it with "
+            f"'python scripts/generate.py grid={config['grid']} condition={config['condition']}'"
+        )
+    return path
+
+
+def _chosen(kind: str, choices: Mapping[str, Callable[..., T]], config: Config) -> Callable[..., T]:
+    name = str(config.get("name"))
+    if name not in choices:
+        raise ValueError(f"unknown {kind} {name!r}; choose from {', '.join(choices)}")
+    options = {key: value for key, value in config.items() if key not in NO_OPTIONS}
+    return _configured(f"{kind} {name}", choices[name], options)
+
+
+def _configured(kind: str, factory: Callable[..., T], options: Config) -> Callable[..., T]:
+    known = inspect.signature(factory).parameters
+    for option in options:
+        if option not in known:
+            raise ValueError(f"unknown option {option!r} of {kind}; choose from {', '.join(known) or 'none'}")
+    return partial(factory, **options)

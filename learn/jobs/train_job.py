@@ -1,0 +1,89 @@
+"""One job: a method on a representation of a data set under a protocol, kept as one MLflow run."""
+
+import logging
+from collections.abc import Mapping
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from threadpoolctl import threadpool_limits
+from tqdm import tqdm
+
+from learn import tracking
+from learn.inputs.inputs import LearningSet, Representation, beside_foreign, gear_by_gear
+from learn.jobs import few_shot, identity, settings, zero_shot
+from swgsim.storage import storage
+
+log = logging.getLogger(__name__)
+
+BLOCK = 1024  # recordings in memory at a time
+LARGE = 100_000  # recordings from which on their inputs lie in a file
+
+
+@lru_cache(maxsize=4)
+def learning_set_of(path: Path, digest: str, representation: Representation) -> LearningSet:
+    """The inputs of a data set; computed once per process while the file's digest stays the same."""
+    recordings, blocks = storage.shape(path)[0], storage.blocks(path, BLOCK)
+    if recordings < LARGE:
+        return representation.learning_set(blocks)
+    with tqdm(total=recordings, desc="inputs", unit=" recordings") as bar:
+        return gear_by_gear(blocks, representation, path.parent, bar.update)
+
+
+def run(config: Mapping[str, Any]) -> dict[str, float]:
+    """Do the job that a resolved configuration of ``conf/train.yaml`` describes, unless its result is there already.
+
+    Returns
+    -------
+    dict
+        The metrics: scores [%] and the time to fit [s], as :meth:`learn.evaluation.Evaluation.metrics` and
+        :meth:`Adapted.metrics` name them; and ``trial/1`` and so on, the scores of the options that were
+        tried on development gears.
+
+    Raises
+    ------
+    ValueError
+        If a choice is unknown, with the list of choices, or the data set does not exist, with the command to make it.
+    """
+    chosen = {group: config[group]["name"] for group in ("grid", "condition")}  # what is in them, the data set holds
+    config = {**config, **chosen}
+    representation = settings.representation(config["features"])
+    settings.protocol(config["protocol"])
+    settings.classifier(config["classifier"])
+    if config["adaptation"]["name"] != "none":
+        settings.adaptation(config["adaptation"])
+    paths = [settings.data_set(config)]
+    if config["target"]:
+        grid, _, condition = config["target"].rpartition("-")
+        paths.append(settings.data_set({**config, "grid": grid, "condition": condition}))
+    digests = [storage.digest(path) for path in paths]
+    digest = digests[0] if len(digests) == 1 else "+".join(digests)
+    store = settings.store(config["tracking"])
+
+    parameters = identity.flat(identity.decisive(config))
+    name = run_name(config, parameters)
+    key = identity.job_key(config, digest)
+    done = tracking.finished_metrics(store, key)
+    if done:
+        log.info("%s: done before, test score %.2f %%", name, done["test_score"])
+        return done
+
+    tags = {"data_digest": digest, "code_version": identity.code_version()}
+    # One thread to a job: jobs run side by side, and threads of several would wait for each other.
+    with threadpool_limits(1), tracking.job_run(store, name, key, parameters, config, tags) as record:
+        data, *foreign = [learning_set_of(*each, representation) for each in zip(paths, digests, strict=True)]
+        for gears in foreign:
+            data = beside_foreign(data, gears)
+        judge = zero_shot if config["adaptation"]["name"] == "none" else few_shot
+        metrics, figures, tables = judge.results(config, data)
+        record.record(metrics, figures, tables)
+    log.info("%s: test score %.2f %%", name, metrics["test_score"])
+    return metrics
+
+
+def run_name(config: Mapping[str, Any], parameters: Mapping[str, Any]) -> str:
+    """Name of a job's run: study, method and inputs, and the options of the method."""
+    groups = ["study", "classifier", "features", "protocol"]
+    groups += ["adaptation"] if parameters["adaptation"] != "none" else []
+    options = [f"{k}={v}" for k, v in config["classifier"].items() if k not in ("name", "seed", "trials")]
+    return " ".join([*(str(parameters[group]) for group in groups), *options])

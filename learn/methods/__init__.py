@@ -1,0 +1,9 @@
+"""Classifiers with the contract of scikit-learn: classical ones, forests, networks, and how networks are trained.
+
+Imports ``inputs``.
+"""
+
+import lazy_loader
+
+# A name is imported when it is used, so that a sweep of forests does not wait for PyTorch.
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

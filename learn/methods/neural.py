@@ -1,0 +1,222 @@
+"""Neural networks as classifiers with scikit-learn's contract, and the files that keep them.
+
+PyTorch is imported where it is needed, because the command line scripts import this module for its factories.
+"""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from jaxtyping import Float
+
+from learn.inputs.rows import Inputs, Rows, as_tensor, chunks
+from learn.methods.archive import require_plain
+from swgsim.common.files import replacing
+from swgsim.common.seeds import generator
+
+if TYPE_CHECKING:
+    from torch import Tensor
+
+    from learn.methods.networks import Architecture, Network
+    from learn.methods.training import Recipe
+
+SUFFIX = ".pt"  # of the files
+# Rows from which the scaling is taken, at most: more would not change it, and may be too many for the memory.
+SCALED = 30_000
+
+
+@dataclass(eq=False)
+class NeuralClassifier:
+    """A network with the recipe to train it.
+
+    Attributes
+    ----------
+    architecture : Architecture
+    recipe : Recipe
+    seed : int
+        Of the initial weights and of training.
+    device : str
+        ``auto``, ``cpu`` or ``cuda``.
+    classes_ : array (class,)
+        Names of the classes, sorted, in the order of the columns of :meth:`predict_proba`; after :meth:`fit`.
+    network_ : Network
+        After :meth:`fit`.
+    """
+
+    architecture: "Architecture"
+    recipe: "Recipe"
+    seed: int = 0
+    device: str = "auto"
+    classes_: np.ndarray = field(init=False, repr=False)
+    network_: "Network" = field(init=False, repr=False)
+
+    def fit(self, X: Inputs, y: np.ndarray) -> "NeuralClassifier":
+        """Train a new network on rows and their class names; scaling is taken from these rows too.
+
+        Raises
+        ------
+        ValueError
+            If a number is not finite, or there is one class only.
+        """
+        import torch
+
+        from learn.methods.training import choose_device, train
+
+        _require_finite(X)
+        classes, numbers = np.unique(y, return_inverse=True)
+        if len(classes) < 2:
+            raise ValueError(f"the rows are of {len(classes)} class ({', '.join(map(str, classes))}), 2 are needed")
+        network = self.architecture.network(X.shape[1], len(classes), self.seed)
+        network.set_scaling(self._some(X))
+        network.to(choose_device(self.device))
+        train(network, X if isinstance(X, Rows) else as_tensor(X), torch.from_numpy(numbers), self.recipe, self.seed)
+        self.classes_, self.network_ = classes, network
+        return self
+
+    def predict_proba(self, X: Inputs) -> Float[np.ndarray, "row class"]:
+        """Probability of each class of ``classes_``.
+
+        Raises
+        ------
+        ValueError
+            If a number is not finite, the columns are not those of training, or there was no training.
+        """
+        import torch
+
+        from learn.methods.training import one_thread
+
+        if not hasattr(self, "network_"):
+            raise ValueError("this neural classifier is not trained: call fit first, or load one")
+        _require_finite(X)
+        centre = self.network_.centre
+        if X.shape[1] != len(centre):
+            raise ValueError(f"rows have {X.shape[1]} columns, the network was trained with {len(centre)}")
+        self.network_.eval()
+        with torch.inference_mode(), one_thread():
+            logits = [self.network_(as_tensor(rows).to(centre.device)) for rows in chunks(X)]
+            return np.asarray(torch.cat(logits).cpu().double().softmax(dim=1).numpy())
+
+    def predict(self, X: Inputs) -> np.ndarray:
+        """The most probable class of each row."""
+        most_probable = self.predict_proba(X).argmax(axis=1)
+        return self.classes_[most_probable]
+
+    def _some(self, X: Inputs) -> Float[np.ndarray, "some column"]:
+        """All rows, or of too many a choice, drawn."""
+        if len(X) <= SCALED:
+            return np.asarray(X)
+        return np.asarray(X[np.sort(generator("scaling", self.seed).choice(len(X), SCALED, replace=False))])
+
+    def with_network(self, network: "Network") -> "NeuralClassifier":
+        """The same classifier with another network for the same classes, such as one trained further."""
+        other = replace(self)
+        other.classes_, other.network_ = self.classes_, network
+        return other
+
+
+def neural_perceptron(
+    channels: int = 0, points: int = 0, periodic: bool = True, layers: int = 2, neurons: int = 256,
+    dropout: float = 0.4, epochs: int = 20, batch: int = 256, rate: float = 2e-3, decay: float = 0.1, seed: int = 0,
+    device: str = "auto",
+) -> NeuralClassifier:  # fmt: skip
+    """A perceptron; see :func:`learn.methods.networks.perceptron` and :class:`learn.methods.training.Recipe`."""
+    from learn.methods.networks import Architecture
+    from learn.methods.training import Recipe
+
+    signal = {"channels": channels, "points": points, "periodic": periodic}
+    options = {**signal, "layers": layers, "neurons": neurons, "dropout": dropout}
+    return NeuralClassifier(Architecture("perceptron", options), Recipe(epochs, batch, rate, decay), seed, device)
+
+
+def convolutional_network(
+    channels: int, points: int, periodic: bool = True, width: int = 32, dropout: float = 0.3,
+    epochs: int = 15, batch: int = 256, rate: float = 3e-3, decay: float = 1e-2, seed: int = 0, device: str = "auto",
+) -> NeuralClassifier:  # fmt: skip
+    """Convolutions over the angle; see :func:`networks.convolutional` and :class:`training.Recipe`."""
+    from learn.methods.networks import Architecture
+    from learn.methods.training import Recipe
+
+    signal = {"channels": channels, "points": points, "periodic": periodic}
+    options = {**signal, "width": width, "dropout": dropout}
+    return NeuralClassifier(Architecture("convolutional", options), Recipe(epochs, batch, rate, decay), seed, device)
+
+
+def save(model: NeuralClassifier, path: Path) -> None:
+    """Write a trained classifier, weights, scaling and class names included."""
+    import torch
+
+    content = {
+        "architecture": {"kind": model.architecture.kind, "options": dict(model.architecture.options)},
+        "columns": len(model.network_.centre),
+        "classes": [str(name) for name in model.classes_],
+        "recipe": asdict(model.recipe),
+        "seed": model.seed,
+        "state": {name: value.cpu() for name, value in model.network_.state_dict().items()},
+    }
+    # Through an open file, because PyTorch would otherwise write the name of the file into it.
+    with replacing(path) as aside, aside.open("wb") as raw:
+        torch.save(content, raw)
+
+
+def load(path: Path, device: str = "auto") -> NeuralClassifier:
+    """Read a classifier that :func:`save` has written; nothing in the file is executed.
+
+    Raises
+    ------
+    ValueError
+        If the file is anything else.
+    """
+    import torch
+
+    from learn.methods.networks import Architecture
+    from learn.methods.training import Recipe, choose_device
+
+    try:
+        content = _content(path)
+        architecture = Architecture(**content["architecture"])
+        model = NeuralClassifier(architecture, Recipe(**content["recipe"]), content["seed"], device)
+        model.classes_ = np.array(content["classes"])
+        with torch.device("meta"):  # without memory: a small file may speak of a large network
+            model.network_ = architecture.network(content["columns"], len(model.classes_), model.seed)
+        _require_state(content["state"], model.network_.state_dict())
+        model.network_.load_state_dict(content["state"], assign=True)
+    except Exception as error:  # PyTorch raises what zip, pickle and its own parts raise
+        raise ValueError(
+            f"{path} is no neural classifier: give a file that learn.methods.neural.save has written"
+        ) from error
+    model.network_.to(choose_device(device)).eval()
+    return model
+
+
+def _content(path: Path) -> Mapping[str, Any]:
+    """What the archive holds; a bare pickle, which is no archive, is not read, nor is one whose sums do not agree."""
+    import torch
+
+    require_plain(path)
+    with path.open("rb") as raw:
+        content: Mapping[str, Any] = torch.load(raw, map_location="cpu", weights_only=True)
+    return content
+
+
+def _require_state(given: Mapping[str, "Tensor"], needed: Mapping[str, "Tensor"]) -> None:
+    """Raise unless all numbers are there, of the types and shapes that are needed, and finite."""
+    for name, like in needed.items():
+        value = given[name]
+        if value.dtype != like.dtype or value.shape != like.shape or not value.is_contiguous():
+            raise ValueError(f"{name} is {value.dtype} of shape {tuple(value.shape)}, must be {tuple(like.shape)}")
+        if not value.isfinite().all():
+            raise ValueError(f"{name} has numbers that are not finite")
+
+
+def _require_finite(X: Inputs) -> None:
+    start = 0
+    for rows in chunks(X):
+        bad = np.argwhere(~np.isfinite(rows))
+        if len(bad):
+            row, column = bad[0]
+            raise ValueError(
+                f"column {column} of row {start + row} is {rows[row, column]}: leave out or fill in what is missing"
+            )
+        start += len(rows)

@@ -1,0 +1,108 @@
+"""MiniRocket: thousands of fixed convolutions of the signal, pooled, and a ridge classifier on them (by aeon)."""
+
+import warnings
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+
+from learn.inputs.rows import Inputs
+from learn.methods.strong import compression
+from swgsim.common.checks import require_integer
+
+SHORTEST = 9  # points: the length of MiniRocket's kernels
+STRENGTHS = np.logspace(-1, 5, 7)  # of the ridge; the classifier chooses by leave-one-out on its training rows
+
+
+@dataclass
+class MiniRocket:
+    """MiniRocket on the signal of each row, beside its side inputs.
+
+    Attributes
+    ----------
+    channels, points : int
+        Each row begins with so many channels of so many points; side inputs follow.
+    periodic : bool
+        Whether the points of a channel are alike and share a scale.
+    kernels : int
+        Features that the convolutions make.
+    seed : int
+
+    Raises
+    ------
+    ValueError
+        If the signal is missing or shorter than a kernel, or aeon is not installed.
+    """
+
+    channels: int
+    points: int
+    periodic: bool = True
+    kernels: int = 1008
+    seed: int = 0
+    classes_: np.ndarray = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        require_integer("MiniRocket", "kernels", self.kernels, low=84, high=1_000_000)
+        if self.channels < 1 or self.points < SHORTEST:
+            raise ValueError(
+                f"MiniRocket needs a signal of at least {SHORTEST} points, found {self.channels} channels of "
+                f"{self.points}: take features=raw, differenced or residual"
+            )
+
+    def fit(self, X: Inputs, y: np.ndarray) -> "MiniRocket":
+        """Learn from rows and class names."""
+        from sklearn.linear_model import LogisticRegression, RidgeClassifierCV
+        from sklearn.preprocessing import StandardScaler
+
+        signal, side = self._split(X)
+        # One scale for all rows: what differs between windows stays in them.
+        alike = (0, 2) if self.periodic else 0
+        self._centre = signal.mean(axis=alike, keepdims=True)
+        self._scale = signal.std(axis=alike, keepdims=True) + np.finfo(np.float32).tiny
+        self._rocket = _transformer(self.kernels, self.seed)
+        convolved = self._convolved(signal, fit=True)
+        self._of_rocket = StandardScaler().fit(convolved)
+        self._of_side = compression().fit(side) if side.size else None
+        features = self._joined(convolved, side)
+        self._ridge = RidgeClassifierCV(STRENGTHS).fit(features, y)
+        self._probability = LogisticRegression().fit(self._ridge.decision_function(features), y)
+        self.classes_ = self._probability.classes_
+        return self
+
+    def predict_proba(self, X: Inputs) -> Float[np.ndarray, "row class"]:
+        """Probability of each class: a logistic regression on the ridge's decision values."""
+        signal, side = self._split(X)
+        features = self._joined(self._convolved(signal), side)
+        return self._probability.predict_proba(self._ridge.decision_function(features))
+
+    def predict(self, X: Inputs) -> np.ndarray:
+        """The class name of each row."""
+        return self.classes_[self.predict_proba(X).argmax(axis=1)]
+
+    def _split(self, X: Inputs) -> tuple[np.ndarray, np.ndarray]:
+        X = np.asarray(X)
+        columns = self.channels * self.points
+        signal = X[:, :columns].reshape(len(X), self.channels, self.points)
+        return signal.astype(np.float32), X[:, columns:]
+
+    def _convolved(self, signal: np.ndarray, fit: bool = False) -> np.ndarray:
+        scaled = (signal - self._centre) / self._scale
+        with warnings.catch_warnings():
+            # A recording like its reference has a residual of zeros, which is as it should be.
+            warnings.filterwarnings(
+                "ignore", message="Data seen by instance of MiniRocket has one or more case/channel"
+            )
+            return self._rocket.fit_transform(scaled) if fit else self._rocket.transform(scaled)
+
+    def _joined(self, convolved: np.ndarray, side: np.ndarray) -> np.ndarray:
+        parts = [self._of_rocket.transform(convolved)]
+        return np.hstack([*parts, self._of_side.transform(side)] if self._of_side else parts)
+
+
+def _transformer(kernels: int, seed: int) -> Any:
+    try:
+        from aeon.transformations.collection.convolution_based import MiniRocket as Transformer
+    except ImportError as error:
+        raise ValueError("classifier=minirocket needs the library aeon: pip install 'swg-workbench[rocket]'") from error
+    return Transformer(n_kernels=kernels, random_state=seed, n_jobs=1)

@@ -1,0 +1,144 @@
+"""One training loop for every network, from scratch and for transfer."""
+
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from math import ceil
+
+import torch
+from jaxtyping import Float, Int
+from torch import Tensor, nn
+
+from learn.inputs.rows import Rows, as_tensor
+from learn.methods.networks import Network, seeded
+from swgsim.common.checks import require, require_integer
+from swgsim.common.seeds import generator, seed_hash
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """How long and how fast a network learns.
+
+    Attributes
+    ----------
+    epochs : int
+        Passes through all rows.
+    batch : int
+        Rows per step, at most.
+    rate, decay : float
+        Highest learning rate of the cycle, and weight decay of AdamW.
+    """
+
+    epochs: int = 15
+    batch: int = 256
+    rate: float = 3e-3
+    decay: float = 1e-2
+
+    def __post_init__(self) -> None:
+        owner = "the recipe"
+        require_integer(owner, "epochs", self.epochs, low=1, high=100_000)
+        require_integer(owner, "batch", self.batch, low=2, high=1_000_000)
+        require(owner, "rate", self.rate, low=1e-9, high=10)
+        require(owner, "decay", self.decay, low=0, high=10)
+
+
+def train(
+    network: Network, X: Float[Tensor, "row column"] | Rows, y: Int[Tensor, " row"], recipe: Recipe, seed: int,
+    *, parameters: Iterable[nn.Parameter] | None = None, penalty: Callable[[Network], Tensor] | None = None,
+    frozen_statistics: bool = False,
+) -> None:  # fmt: skip
+    """Fit a network in place with AdamW on the cross entropy, for a fixed budget, and leave it ready to predict.
+
+    There is no early stopping: rows of the target gear must not decide when to stop, and rows to decide on from the
+    source gears would be lost to training.
+
+    Parameters
+    ----------
+    network : Network
+        On the device on which it is to be trained.
+    X, y : tensor
+        Rows and numbers of their classes, on any device. Rows in a file are read batch by batch.
+    recipe : Recipe
+    seed : int
+        Of the order of the rows and of dropout.
+    parameters : iterable of Parameter, optional
+        What is trained, such as ``network.head.parameters()``; otherwise everything.
+    penalty : callable, optional
+        Added to the loss in each step, such as a distance to the weights before fine-tuning.
+    frozen_statistics : bool
+        Whether batch normalisation keeps the mean and variance that it has, which few rows would spoil.
+
+    Raises
+    ------
+    ValueError
+        If there is no row, or the loss ends as no finite number.
+    """
+    if not len(X):
+        raise ValueError("there are 0 rows to train on, at least 1 is needed")
+    device = network.centre.device
+    batch, y = _reader(X, device), y.to(device)
+    trained = list(network.parameters() if parameters is None else parameters)
+    steps = ceil(len(X) / recipe.batch)
+    optimiser = torch.optim.AdamW(trained, lr=recipe.rate, weight_decay=recipe.decay, fused=True)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, recipe.rate, total_steps=recipe.epochs * steps)
+    order = generator("order of the rows", seed)
+    network.train()
+    if frozen_statistics:
+        for module in network.modules():
+            if isinstance(module, nn.modules.batchnorm._BatchNorm):
+                module.eval()
+    with one_thread(), seeded(seed_hash("training", seed), device):
+        for _ in range(recipe.epochs):
+            # Batches of equal size, to one row: a small rest would unsettle batch normalisation.
+            for rows in torch.from_numpy(order.permutation(len(X))).to(device).tensor_split(steps):
+                loss = nn.functional.cross_entropy(network(batch(rows)), y.index_select(0, rows))
+                if penalty is not None:
+                    loss = loss + penalty(network)
+                optimiser.zero_grad()
+                loss.backward(inputs=trained)  # nothing is computed for weights that stay
+                optimiser.step()
+                schedule.step()
+    network.eval()
+    if not torch.isfinite(loss):
+        raise ValueError(f"training ended with a loss of {loss.item()}: lower the rate, which is {recipe.rate:g}")
+
+
+def _reader(X: Float[Tensor, "row column"] | Rows, device: torch.device) -> Callable[[Tensor], Tensor]:
+    """What gives the rows of a batch, on a device."""
+    if isinstance(X, Rows):
+        return lambda rows: as_tensor(X[rows.cpu().numpy()]).to(device)
+    there = X.to(device)
+    return lambda rows: there.index_select(0, rows)
+
+
+def choose_device(device: str) -> torch.device:
+    """The named device; ``auto`` is the accelerator if there is one, else the processor.
+
+    Raises
+    ------
+    ValueError
+        If PyTorch knows no such device, or finds none.
+    """
+    found = torch.cuda.is_available()
+    try:
+        chosen = torch.device("cuda" if found else "cpu") if device == "auto" else torch.device(device)
+    except RuntimeError as error:
+        raise ValueError(f"unknown device {device!r}; choose from auto, cpu, cuda") from error
+    if chosen.type not in ("cpu", "cuda") or (chosen.type == "cuda" and not found):
+        raise ValueError(f"device {device!r} is not there for PyTorch; choose auto or cpu")
+    return chosen
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """One thread of PyTorch inside, as many as before outside.
+
+    Sweeps run jobs side by side, and two threads beside a busy core are several times slower than one. Also the order
+    of sums, and with it the last digit of every weight, does not depend on the number of cores.
+    """
+    before = torch.get_num_threads()
+    torch.set_num_threads(1)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(before)

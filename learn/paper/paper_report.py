@@ -1,0 +1,200 @@
+"""The report of the paper's tables from data sets and runs: what it rests on is found, and both files are written."""
+
+import json
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import yaml
+
+from learn.jobs import settings
+from learn.paper import figures as learning_figures
+from learn.paper import paper_page as report
+from learn.paper.choices import choices
+from learn.paper.claims import table_claims
+from learn.paper.feature_claims import SPECTRUM, feature_claims, features_of
+from learn.paper.published_tables import PROTOCOLS, compare, random_beside_grouped
+from swgsim.common.files import write_text
+from swgsim.common.style import Picture
+from swgsim.jobs import settings as chain_settings
+from swgsim.storage import storage
+from swgsim.storage.gauge_set import Recordings
+from swgsim.studies import figures as chain_figures
+from swgsim.studies.claims import chain_claims
+from swgsim.studies.examples import FIGURE_POINT, Subject
+
+BLOCK = 1024  # recordings in memory at a time
+CONFUSIONS = (
+    ("table7", "selection_3"),
+    ("table8", "selection_1"),
+    ("table8", "selection_3"),
+    ("table10", "selection_3"),
+)
+
+
+@dataclass(frozen=True)
+class DataSets:
+    """The clean and the disturbed data set of a grid.
+
+    Attributes
+    ----------
+    paths, digests : mapping
+        By condition.
+    code : str
+        That made both.
+    made : mapping
+        What is known of the generation of each.
+    said : mapping
+        The configuration of each.
+    """
+
+    paths: Mapping[str, Path]
+    digests: Mapping[str, str]
+    code: str
+    made: Mapping[str, Mapping[str, Any]]
+    said: Mapping[str, Mapping[str, Any]]
+
+    @property
+    def disturbance(self) -> Mapping[str, Any]:
+        """Parameters of eq. (10)."""
+        return self.said["disturbed"]["condition"]["disturbance"]
+
+
+def run(config: Mapping[str, Any]) -> dict[str, float]:
+    """Write ``index.html`` and ``report.json``, as a resolved ``conf/report.yaml`` says.
+
+    Returns
+    -------
+    dict
+        Number of claims that hold, and the seconds that the report took.
+
+    Raises
+    ------
+    ValueError
+        If a data set or the run of a cell of the tables is missing, with the command to make it.
+    """
+    began = time.time()
+    written = report_of(config, began)
+    folder = Path(config["out"])
+    folder.mkdir(parents=True, exist_ok=True)
+    write_text(folder / "report.json", written.json())
+    write_text(folder / "index.html", written.html())
+    held = sum(finding.holds for finding in written.findings)
+    print(f"{folder / 'index.html'}: {held} of {len(written.findings)} claims hold; {time.time() - began:.1f} s")
+    return {"claims_that_hold": held, "seconds": time.time() - began}
+
+
+def report_of(config: Mapping[str, Any], began: float) -> report.Report:
+    """All that the report says; raises like :func:`run`.
+
+    Parameters
+    ----------
+    config : mapping
+    began : float
+        Unix time at which the report began.
+    """
+    grid = config["grid"]["name"]
+    sets = data_sets(config["data"], grid)
+    store = settings.store(config["tracking"])
+    runs = report.runs_of_tables(store, grid, sets.digests)
+    tables = {name: report.complete(compare(name, runs), name, grid) for name in PROTOCOLS}
+    subject = subject_of(sets.said["clean"])
+    blocks = list(storage.blocks(sets.paths["clean"], BLOCK))
+    features = features_of(blocks)
+    findings = [
+        *chain_claims(subject),
+        *feature_claims(features),
+        *table_claims(tables, features, sets.disturbance["amplitude"]),
+    ]
+    disturbed = next(storage.blocks(sets.paths["disturbed"], BLOCK))
+    pictures = _pictures(subject, blocks[0], disturbed, runs)
+    steps = _steps(sets, runs, began)
+    confusions = [report.confusion(store, sets.digests, study, chosen) for study, chosen in CONFUSIONS]
+    decided, statistics = _choices(sets, subject), report.statistics(blocks)
+    seconds, seconds_are = _seconds(config["started"], steps)
+    return report.Report(
+        grid=grid,
+        dataset={key: sets.made["clean"][key] for key in report.DATASET},
+        tables=tables,
+        folds={name: random_beside_grouped(name, runs) for name in ("table7", "table8")},
+        findings=findings,
+        choices=decided,
+        statistics=statistics,
+        pictures=pictures,
+        confusions=confusions,
+        seconds=seconds,
+        seconds_are=seconds_are,
+        steps=steps,
+        versions=report.versions(sets.code, sets.digests),
+    )
+
+
+def data_sets(data: str, grid: str) -> DataSets:
+    """Both data sets of a grid in a folder.
+
+    Raises
+    ------
+    ValueError
+        If one is missing, with the command to make it, or if they are of different code.
+    """
+    paths = {
+        condition: settings.data_set({"data": data, "grid": grid, "condition": condition})
+        for condition in ("clean", "disturbed")
+    }
+    codes = {condition: storage.attributes(path)["swgsim"] for condition, path in paths.items()}
+    report.require_same_code(codes, grid)
+    return DataSets(
+        paths=paths,
+        digests={condition: storage.digest(path) for condition, path in paths.items()},
+        code=codes["clean"],
+        made={c: json.loads(path.with_suffix(".json").read_text()) for c, path in paths.items()},
+        said={c: yaml.safe_load(storage.attributes(path)["configuration"]) for c, path in paths.items()},
+    )
+
+
+def subject_of(config: Mapping[str, Any]) -> Subject:
+    """The gears, window and mesh of a data set, at the paper's operating points."""
+    plan = chain_settings.plan(config)
+    return Subject(plan.gears, window=plan.window, sectors=plan.sectors)
+
+
+def example_rows(table: pd.DataFrame) -> pd.Series:
+    """Which healthy recordings are at the figures' operating point."""
+    at_point = (table["n_in_rpm"] == FIGURE_POINT.n_in_rpm) & (table["T_out_nm"] == FIGURE_POINT.T_out)
+    return at_point & (table["label"] == "healthy")
+
+
+def _pictures(subject: Subject, clean: Recordings, disturbed: Recordings, runs: pd.DataFrame) -> list[Picture]:
+    """Those of the chain, then those of learning, with the same recordings of both data sets."""
+    healthy = example_rows(clean.table)
+    return [
+        *chain_figures.pictures(subject),
+        *learning_figures.pictures(
+            subject.examples, FIGURE_POINT.n_in_rpm, clean.where(healthy), disturbed.where(healthy), runs
+        ),
+    ]  # fmt: skip
+
+
+def _choices(sets: DataSets, subject: Subject) -> list[tuple[str, str]]:
+    """What was decided where the paper is silent."""
+    catalogue = chain_figures.catalogue_comparison(subject)
+    return choices(sets.said["clean"], sets.disturbance, catalogue, SPECTRUM.orders, SPECTRUM.floor)
+
+
+def _steps(sets: DataSets, runs: pd.DataFrame, began: float) -> dict[str, float]:
+    """Seconds of single steps."""
+    return {
+        "generation": sum(each["seconds"] for each in sets.made.values()),
+        "fitting of the classifiers, on all cores": runs["fit_seconds"].sum() / sets.made["clean"]["cores"],
+        "report": time.time() - began,
+    }
+
+
+def _seconds(started: float | None, steps: Mapping[str, float]) -> tuple[float, str]:
+    """Seconds of the whole, and what they are."""
+    if started:
+        return time.time() - started, "on the clock, from the start of make paper"
+    return sum(steps.values()), "the steps added up"

@@ -1,0 +1,25 @@
+"""The simulation chain (Fig. 2): equations of motion (eq. 1 to 7), influence maps of the structure, gauge signals.
+
+Imports ``effects``, ``gear``, ``recordings`` and rooms below these.
+"""
+
+from swgsim.chain.chain import SECTORS, Run, Simulation, channels_of, simulate, simulate_turns
+from swgsim.chain.direct import DirectSolver
+from swgsim.chain.dynamics import Drive
+from swgsim.chain.influence import InfluenceMap, influence_map
+from swgsim.chain.motion import Motion, steady_state
+
+__all__ = [
+    "SECTORS",
+    "DirectSolver",
+    "Drive",
+    "InfluenceMap",
+    "Motion",
+    "Run",
+    "Simulation",
+    "channels_of",
+    "influence_map",
+    "simulate",
+    "simulate_turns",
+    "steady_state",
+]

@@ -1,0 +1,228 @@
+"""The simulation chain (Fig. 2): input/output model, flex spline and gauges in a row, for many runs at once."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache, reduce
+
+import numpy as np
+from jaxtyping import Float
+from threadpoolctl import threadpool_limits
+
+from swgsim.chain.influence import InfluenceMap, harmonics
+from swgsim.chain.motion import Motion, run
+from swgsim.chain.signal_path import Ideal, all_as_seen, as_seen
+from swgsim.chain.steady_state_cache import Driven, one_turn, settled
+from swgsim.chain.structure import Structure, map_of
+from swgsim.effects.base import Effect, Scene, overrides
+from swgsim.gear.acquisition import Window
+from swgsim.gear.conditions import Conditions
+from swgsim.gear.gear import Gear, OperatingPoint
+from swgsim.recordings.recording import Recording
+from swgsim.storage.gauge_set import SENSORS
+
+SECTORS = 100
+
+# Orders of an influence map below this share of the largest one are left out.
+NEGLIGIBLE = 1e-8
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run of the chain.
+
+    Attributes
+    ----------
+    gear : Gear
+    point : OperatingPoint
+    effects : tuple of Effect
+    start_angle : float
+        Wave-generator angle at which the window opens [rad].
+    conditions : Conditions
+    """
+
+    gear: Gear
+    point: OperatingPoint
+    effects: tuple[Effect, ...] = ()
+    start_angle: float = 0.0
+    conditions: Conditions = field(default_factory=Conditions)
+
+    @cached_property
+    def acting(self) -> tuple[Effect, ...]:
+        """The effects as they are at the operating point and under the conditions of the run."""
+        return tuple(effect.at(self.point, self.conditions) for effect in self.effects)
+
+    @cached_property
+    def driving(self) -> tuple[Effect, ...]:
+        """Those of them that add torques."""
+        return tuple(effect for effect in self.acting if overrides(effect, "drive"))
+
+    @cached_property
+    def affected_gear(self) -> Gear:
+        """The gear with the parameters that the effects change."""
+        changing = tuple(effect for effect in self.acting if overrides(effect, "gear"))
+        return _affected(self.gear, changing) if changing else self.gear
+
+
+@lru_cache(maxsize=4096)
+def _affected(gear: Gear, effects: tuple[Effect, ...]) -> Gear:
+    """A gear with what effects change of it: the same in many runs."""
+    return reduce(lambda gear, effect: effect.gear(gear), effects, gear)
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """What the chain puts out.
+
+    Attributes
+    ----------
+    signals : array (run, sensor, time)
+        [mV/V].
+    motion : Motion
+        Of the distinct motions.
+    of_run : array (run,)
+        Which motion belongs to each run.
+    seen : mapping
+        Of the runs whose effects act on gauges or acquisition: number of the run to all its channels.
+    """
+
+    signals: Float[np.ndarray, "run 5 time"]
+    motion: Motion
+    of_run: np.ndarray
+    seen: Mapping[int, Mapping[str, np.ndarray]] = field(default_factory=dict)
+
+    @property
+    def efficiency(self) -> Float[np.ndarray, " run"]:
+        """P_out / P_in over whole revolutions."""
+        return self.motion.efficiency[self.of_run]
+
+
+@threadpool_limits.wrap(limits=1)
+def simulate(runs: Sequence[Run], window: Window, sectors: int = SECTORS) -> Simulation:
+    """Simulate many runs; what runs have in common is computed once.
+
+    One thread: the matrices are small, and the result must not depend on the number of cores.
+
+    Parameters
+    ----------
+    runs : sequence of Run
+    window : Window
+    sectors : int
+        Sectors of the flex spline's truss, even.
+
+    Returns
+    -------
+    Simulation
+        Ideal signals: noise, quantisation and disturbance are for the acquisition.
+    """
+    driven, of_run = _driven(runs)
+    drive, state = settled(driven)
+    motion = run(drive, state, 1 / window.rate, window.samples)
+    signals = _gauge_signals(runs, motion, of_run, window.samples, sectors)
+    ideal = Simulation(signals, motion, of_run)
+    seen = {
+        i: as_seen(_before_effects(each, window.time, ideal, i))
+        for i, each in enumerate(runs)
+        if any(overrides(effect, "gauge", "acquisition") for effect in each.acting)
+    }
+    for i, channels in seen.items():
+        signals[i] = [channels[sensor] for sensor in SENSORS]
+    return Simulation(signals, motion, of_run, seen)
+
+
+@threadpool_limits.wrap(limits=1)
+def simulate_turns(runs: Sequence[Run], revolutions: int, points: int, sectors: int = SECTORS) -> list[Recording]:
+    """Recordings of whole revolutions of the wave generator in the steady state.
+
+    One revolution is found, unless it is remembered, and repeated; effects on gauges and acquisition then act on
+    all of them in time.
+
+    Parameters
+    ----------
+    runs : sequence of Run
+    revolutions : int
+    points : int
+        Samples per revolution.
+    sectors : int
+        Sectors of the flex spline's truss, even.
+    """
+    driven, of_run = _driven(runs)
+    motion = one_turn(driven, points)
+    signals = np.tile(_gauge_signals(runs, motion, of_run, points, sectors), revolutions)
+    simulation = Simulation(signals, motion.repeated(revolutions), of_run)
+    steps = np.arange(revolutions * points) / points
+    times = [steps * 2 * np.pi / each.point.omega_in for each in runs]
+    ideal = [_before_effects(*each, simulation, i) for i, each in enumerate(zip(runs, times, strict=True))]
+    return [
+        Recording(f"{i}", f"{each.gear.number}", "1", each.point, 1, time, seen, each.conditions)
+        for i, (each, time, seen) in enumerate(zip(runs, times, all_as_seen(ideal), strict=True), 1)
+    ]
+
+
+def _before_effects(each: Run, time: Float[np.ndarray, " time"], simulation: Simulation, i: int) -> Ideal:
+    """A run of a simulation as it is before effects act on gauges and acquisition."""
+    channels = channels_of(simulation, i, len(time))
+    transmitted = simulation.motion.T_out[simulation.of_run[i], : len(time)]
+    return Ideal(each.acting, Scene(time, channels["phi_in"], transmitted, each.point, each.conditions), channels)
+
+
+def _driven(runs: Sequence[Run]) -> tuple[list[Driven], np.ndarray]:
+    """The distinct motions, and which of them belongs to each run."""
+    if not runs:
+        raise ValueError(
+            "no runs to simulate: the grid is empty; give it gears, classes, variants and operating points"
+        )
+    return distinct([Driven(r.affected_gear.transmission, r.point, r.driving, r.start_angle) for r in runs])
+
+
+def _gauge_signals(
+    runs: Sequence[Run], motion: Motion, of_run: np.ndarray, samples: int, sectors: int
+) -> Float[np.ndarray, "run 5 time"]:
+    """The bridge signals of every run along its motion."""
+    structures, structure_of_run = distinct([Structure.of(r.affected_gear, r.acting) for r in runs])
+    maps = [map_of(structure, sectors) for structure in structures]
+    signals = np.empty((len(runs), 5, samples))
+    for m in range(len(motion.phi_in)):
+        rows = np.flatnonzero(of_run == m)
+        angle, torque = motion.phi_in[m, :samples], motion.T_out[m, :samples]
+        signals[rows] = evaluate([maps[s] for s in structure_of_run[rows]], angle, torque)
+    return signals
+
+
+def channels_of(simulation: Simulation, i: int, samples: int) -> dict[str, np.ndarray]:
+    """All channels of a run."""
+    if i in simulation.seen:
+        return {name: values[:samples].copy() for name, values in simulation.seen[i].items()}
+    motion, m = simulation.motion, simulation.of_run[i]
+    return {
+        "phi_in": motion.phi_in[m, :samples].copy(),
+        "n_in": motion.omega_in[m, :samples] * 60 / (2 * np.pi),
+        "T_in": motion.T_in[m, :samples].copy(),
+        "T_out": motion.T_flange[m, :samples].copy(),
+        **dict(zip(SENSORS, simulation.signals[i, :, :samples], strict=True)),
+    }
+
+
+def evaluate(
+    maps: Sequence[InfluenceMap], psi: Float[np.ndarray, " time"], T_out: Float[np.ndarray, " time"]
+) -> Float[np.ndarray, "map 5 time"]:
+    """The signals of several structures along one motion, s = A(psi) + T_out B(psi)."""
+    kept = _significant(maps, np.abs(T_out).max())
+    turns = harmonics(psi, kept)
+    real = np.concatenate([turns.real, -turns.imag])
+    coefficients = np.array([m.coefficients[..., kept] for m in maps])
+    weights = np.concatenate([coefficients.real, coefficients.imag], axis=-1)
+    A, B = np.moveaxis((weights.reshape(-1, len(real)) @ real).reshape(*weights.shape[:-1], -1), 1, 0)
+    return A + T_out * B
+
+
+def _significant(maps: Sequence[InfluenceMap], T_out: float) -> np.ndarray:
+    """The orders that matter relative to the largest signal; sound gears have even ones only, and few of them."""
+    size = (np.array([m.largest for m in maps]).max(axis=0) * [[1.0], [T_out]]).max(axis=0)
+    return np.flatnonzero(size > NEGLIGIBLE * size.max())
+
+
+def distinct(keys: list) -> tuple[list, np.ndarray]:
+    """The distinct keys in order of appearance, and the index of each key among them."""
+    index: dict = {}
+    where = np.array([index.setdefault(key, len(index)) for key in keys])
+    return list(index), where

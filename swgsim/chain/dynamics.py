@@ -1,0 +1,216 @@
+"""Dynamic input/output model of the gear, eqs. (1)-(6), batched over runs.
+
+Frame. The flex spline is clamped, so phi_in is the angle of the wave generator relative to the flex spline (the angle
+the gauges see) and phi_out that of the circular spline, the output. Eqs. (3) and (6) are written for angles relative to
+the circular spline, phi_in - phi_out and -phi_out. The equations of motion follow by virtual work of T_stiff on
+Delta phi_k and of T_fric on phi_b; as phi_err is a function of phi_in, its slope is part of the input's lever, unless a
+gear's error_lever is not 1 but 0, as in equations that are found in print:
+
+    J_in  phi_in''  = T_motor - (tan(alpha_in) + error_lever dphi_err/dphi_in) T_stiff
+    J_out phi_out'' = T_out - T_load,   T_out = T_stiff / tan(alpha_tooth) - T_fric / sin(alpha_tooth)
+
+Effects may add to T_stiff, T_fric and T_load, brake the input, or drive it beside the speed control.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+
+import numpy as np
+from jaxtyping import Complex, Float
+
+from swgsim.effects.base import Effect, Extra, Instant, overrides
+from swgsim.gear.gear import OperatingPoint, Transmission
+
+# Friction changes its sign smoothly below this sliding speed [rad/s], far under that of any operating point.
+SLIDING_SPEED = 1e-3
+
+PHI_IN, OMEGA_IN, PHI_OUT, OMEGA_OUT, SPEED_ERROR = range(5)
+# Of runs at one instant, or at several times (time, run).
+State = Float[np.ndarray, "5 *any run"]
+
+
+@dataclass(frozen=True)
+class Torques:
+    """Torques [N m] and sliding speed [rad/s], each an array (run,), or (time, run); a steady load may stay (run,).
+
+    ``T_motor`` drives the input, ``T_wedge`` brakes it: the wave generator and losses beside it. ``T_in`` is what a
+    torque flange feels that has a share of J_in, the rotor's, before it. ``T_out`` is what the gear transmits, and
+    ``T_flange`` what a flange feels that has a share of J_out before it.
+    """
+
+    T_motor: Float[np.ndarray, "*any run"]
+    T_in: Float[np.ndarray, "*any run"]
+    T_wedge: Float[np.ndarray, "*any run"]
+    T_stiff: Float[np.ndarray, "*any run"]
+    T_fric: Float[np.ndarray, "*any run"]
+    T_out: Float[np.ndarray, "*any run"]
+    T_flange: Float[np.ndarray, "*any run"]
+    T_load: Float[np.ndarray, "*constant run"]
+    sliding: Float[np.ndarray, "*any run"]
+
+
+class Drive:
+    """The equations of motion of many runs at once.
+
+    The rows of the state are phi_in, omega_in, phi_out, omega_out and the integral of the speed error that the speed
+    control of the input keeps.
+
+    Parameters
+    ----------
+    transmissions, points : sequences of equal length
+        One gear and one operating point per run.
+    effects : sequence of tuples of Effect, optional
+        What acts on the drive of each run.
+    """
+
+    def __init__(
+        self,
+        transmissions: Sequence[Transmission],
+        points: Sequence[OperatingPoint],
+        effects: Sequence[tuple[Effect, ...]] = (),
+    ) -> None:
+        if not transmissions or len(transmissions) != len(points):
+            raise ValueError(
+                f"{len(transmissions)} gears and {len(points)} operating points: expected one each per run"
+            )
+        self.transmissions, self.points = tuple(transmissions), tuple(points)
+        numbers = [f.name for f in fields(Transmission) if f.name != "kinematic_error"]
+        self.p = p = {name: np.array([getattr(t, name) for t in transmissions], float) for name in numbers}
+        self.omega = np.array([point.omega_in for point in points])
+        self.T_load = np.array([point.T_out for point in points])
+        self.sin_t, self.cos_t, self.tan_t = (f(p["alpha_tooth"]) for f in (np.sin, np.cos, np.tan))
+        self.tan_in = 1 / ((p["N"] + 1) * self.tan_t)  # eq. (4)
+        rate = 2 * np.pi * p["control_frequency"]
+        self.gain_p, self.gain_i = 2 * p["control_damping"] * rate * p["J_in"], rate**2 * p["J_in"]
+        self.error = self._error_amplitudes()
+        self.effects = tuple(effects) or ((),) * len(self)
+        acting = [(i, effect) for i, own in enumerate(self.effects) for effect in own if overrides(effect, "drive")]
+        distinct = dict.fromkeys(effect for _, effect in acting)
+        self.acting = [(effect, _together(sorted({i for i, each in acting if each == effect}))) for effect in distinct]
+
+    def _error_amplitudes(self) -> dict[int, Complex[np.ndarray, " run"]]:
+        """Amplitude and phase of the kinematic error per order, in the unit of the twist."""
+        amplitudes: dict[int, np.ndarray] = {}
+        for i, transmission in enumerate(self.transmissions):
+            for term in transmission.kinematic_error:
+                row = amplitudes.setdefault(term.order, np.zeros(len(self), complex))
+                row[i] += term.amplitude / self.tan_t[i] * np.exp(1j * term.phase)
+        return amplitudes
+
+    def __len__(self) -> int:
+        return len(self.omega)
+
+    @property
+    def period(self) -> Float[np.ndarray, " run"]:
+        """Time of one revolution of the wave generator [s]."""
+        return 2 * np.pi / self.omega
+
+    def repeated(self, times: int) -> "Drive":
+        """Every run so many times, one after another."""
+        several = [run for run in range(len(self)) for _ in range(times)]
+        transmissions, points = [self.transmissions[run] for run in several], [self.points[run] for run in several]
+        return Drive(transmissions, points, [self.effects[run] for run in several])
+
+    def phi_err(self, phi_in: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Kinematic error [rad] in the unit of the twist, where e at the output is e / tan(alpha), and its slope."""
+        error, slope = np.zeros_like(phi_in), np.zeros_like(phi_in)
+        turns = {1: np.exp(1j * phi_in)}
+        for order, amplitude in self.error.items():
+            term = amplitude * _power(turns, order)
+            error += term.imag
+            slope += order * term.real
+        return error, slope
+
+    def torques(self, state: State) -> Torques:
+        """All torques: eqs. (2), (3), (5), (6) and the control law."""
+        phi_in, omega_in, phi_out, omega_out, speed_error = state
+        p = self.p
+        # Eq. (3) with phi_in - phi_out and -phi_out in place of phi_in and phi_out.
+        phi_err, slope = self.phi_err(phi_in)
+        twist = self.tan_in * phi_in - phi_out / self.tan_t + phi_err
+        T_stiff = (p["k1"] + p["k2"] * twist * twist) * twist
+        sliding = omega_out / self.sin_t
+        twist_rate = (self.tan_in + slope) * omega_in - omega_out / self.tan_t
+        extra = self.extra(Instant(phi_in, omega_in, phi_out, omega_out, twist, twist_rate, T_stiff, sliding))
+        T_stiff = T_stiff + extra.T_stiff
+        sense = np.tanh(sliding / SLIDING_SPEED)
+        friction = (p["b1"] + p["b2"] * sliding * sliding) * sliding
+        friction += sense * (p["b0"] + p["b3"] * np.sin(p["theta_b"] - phi_out)) + extra.T_fric
+        # The massless tooth is in equilibrium, T_stiff = F_n sin(alpha) + T_fric cos(alpha), on the driving flank.
+        F_n = np.abs(T_stiff - friction * self.cos_t) / (self.sin_t + p["mu"] * sense * self.cos_t)
+        T_fric = friction + p["mu"] * sense * F_n
+        T_out = T_stiff / self.tan_t - T_fric / self.sin_t
+        T_motor = self.gain_p * (self.omega - omega_in) + self.gain_i * speed_error + extra.T_motor
+        T_wedge = (self.tan_in + p["error_lever"] * slope) * T_stiff + extra.T_loss
+        T_in = T_motor - p["rotor_share"] * (T_motor - T_wedge)
+        T_load = self.T_load + extra.T_load
+        T_flange = T_out - p["load_share"] * (T_out - T_load)
+        return Torques(T_motor, T_in, T_wedge, T_stiff, T_fric, T_out, T_flange, T_load, sliding)
+
+    def extra(self, now: Instant) -> Extra:
+        """What all effects together add."""
+        if not self.acting:
+            return Extra()
+        instants, total = np.stack(now), np.zeros((len(Extra._fields), *now.phi_in.shape))
+        for effect, runs in self.acting:
+            added = effect.drive(Instant(*instants[..., runs]))
+            for row, torque in zip(total, added, strict=True):
+                if isinstance(torque, np.ndarray) or torque:
+                    row[..., runs] += torque
+        return Extra(*total)
+
+    def derivative(self, state: State, torques: Torques) -> State:
+        """Eq. (1)."""
+        rate = np.empty_like(state)
+        rate[PHI_IN] = state[OMEGA_IN]
+        rate[OMEGA_IN] = (torques.T_motor - torques.T_wedge) / self.p["J_in"]
+        rate[PHI_OUT] = state[OMEGA_OUT]
+        rate[OMEGA_OUT] = (torques.T_out - torques.T_load) / self.p["J_out"]
+        rate[SPEED_ERROR] = self.omega - state[OMEGA_IN]
+        return rate
+
+    def step(self, state: State, torques: Torques, dt: Float[np.ndarray, " run"]) -> State:
+        """One step of the classical Runge-Kutta method of order 4; ``torques`` are those at ``state``."""
+        k1 = self.derivative(state, torques)
+        middle = state + 0.5 * dt * k1
+        k2 = self.derivative(middle, self.torques(middle))
+        middle = state + 0.5 * dt * k2
+        k3 = self.derivative(middle, self.torques(middle))
+        end = state + dt * k3
+        k4 = self.derivative(end, self.torques(end))
+        return state + dt / 6 * (k1 + 2 * (k2 + k3) + k4)
+
+    @property
+    def resonance(self) -> Float[np.ndarray, " run"]:
+        """Natural frequency of input and output against the gear's stiffness at the load [Hz]."""
+        _, _, phi_out, _, _ = self.at_rest_in_rotating_frame()
+        twist = -phi_out / self.tan_t + self.phi_err(np.zeros_like(phi_out))[0]
+        stiffness = (self.p["k1"] + 3 * self.p["k2"] * twist**2) / self.tan_t**2
+        reflected = (self.p["N"] + 1) ** 2 * self.p["J_in"]
+        return np.sqrt(stiffness * (1 / reflected + 1 / self.p["J_out"])) / (2 * np.pi)
+
+    def at_rest_in_rotating_frame(self) -> State:
+        """Uniform rotation with the load in equilibrium, phi_in = 0: the start of the search for the steady state."""
+        p, speed = self.p, self.omega / (self.p["N"] + 1)
+        sliding = speed / self.sin_t
+        friction = (p["b1"] + p["b2"] * sliding**2) * sliding + p["b0"] + p["b3"] * np.sin(p["theta_b"])
+        T_fric = (friction + p["mu"] * self.T_load / self.cos_t) / (1 - p["mu"] * self.tan_t)
+        T_stiff = self.tan_t * (self.T_load + T_fric / self.sin_t)
+        twist = T_stiff / p["k1"]
+        for _ in range(8):
+            twist -= ((p["k1"] + p["k2"] * twist**2) * twist - T_stiff) / (p["k1"] + 3 * p["k2"] * twist**2)
+        phi_out = self.tan_t * (self.phi_err(np.zeros_like(twist))[0] - twist)
+        return np.stack([0 * twist, self.omega, phi_out, speed, self.tan_in * T_stiff / self.gain_i])
+
+
+def _power(known: dict[int, np.ndarray], order: int) -> np.ndarray:
+    """An integer power by repeated multiplication (a complex power is much slower); keeps what it finds."""
+    if order not in known:
+        known[order] = _power(known, order // 2) * _power(known, order - order // 2)
+    return known[order]
+
+
+def _together(runs: list[int]) -> slice | np.ndarray:
+    """Runs of a batch; as a slice, which copies nothing, where no other run lies between them."""
+    first, last = runs[0], runs[-1]
+    return slice(first, last + 1) if last - first == len(runs) - 1 else np.array(runs)

@@ -1,0 +1,211 @@
+"""Influence maps: a gauge signal as a periodic function of the wave-generator angle, s(psi, T) = A(psi) + T B(psi).
+
+For one structure the truss is linear, so its answer to the wave generator (A) and to a unit output torque (B) is
+computed once over the angle and a recording is the evaluation of both along phi_in(t) and T_out(t).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+from jaxtyping import Complex, Float, Int
+from scipy import linalg
+
+from swgsim.effects.base import Crack, Effect, overrides
+from swgsim.flexspline.cyclic import order_weights, orders
+from swgsim.flexspline.flexspline import BAND, TEETH, WAVE_GENERATOR, FlexSpline, gauge_response
+from swgsim.flexspline.gauges import GaugeSet, offsets
+from swgsim.gear.gear import WaveGenerator
+
+# Highest order per wave-generator revolution that the maps keep, and the angles at which they are sampled.
+ORDERS = 120
+ANGLES = 256
+PSI = 2 * np.pi / ANGLES * np.arange(ANGLES)
+
+# Points per sector at which the tooth forces are sampled; odd, so that one is at the node.
+SUBDIVISION = 5
+
+
+@dataclass(frozen=True)
+class InfluenceMap:
+    """Fourier coefficients of A [mV/V] and B [mV/V per N m] over the wave-generator angle.
+
+    Attributes
+    ----------
+    coefficients : array (2, sensor, order)
+        For A and B; the signal is the real part of sum_k c_k exp(i k psi).
+    """
+
+    coefficients: Complex[np.ndarray, "2 5 order"]
+
+    @cached_property
+    def largest(self) -> Float[np.ndarray, "2 order"]:
+        """The largest coefficient of all sensors."""
+        return np.abs(self.coefficients).max(axis=1)
+
+    def __call__(self, psi: Float[np.ndarray, " time"]) -> Float[np.ndarray, "2 5 time"]:
+        """A and B at given angles [rad]."""
+        return (self.coefficients @ harmonics(psi, np.arange(self.coefficients.shape[-1]))).real
+
+
+def harmonics(psi: Float[np.ndarray, " time"], orders: Int[np.ndarray, " order"]) -> Complex[np.ndarray, "order time"]:
+    """exp(i k psi) for ascending orders k, by repeated multiplication."""
+    turns = np.empty((len(orders), len(psi)), complex)
+    steps = np.diff(orders, prepend=0)
+    powers = {step: np.exp(1j * step * psi) for step in set(steps.tolist())}
+    before: np.ndarray | float = 1.0
+    for turn, step in zip(turns, steps.tolist(), strict=True):
+        before = np.multiply(before, powers[step], out=turn)
+    return turns
+
+
+def ellipse(
+    wave_generator: WaveGenerator, radius: float, psi: Float[np.ndarray, " psi"], theta: Float[np.ndarray, " theta"]
+) -> Float[np.ndarray, "psi theta"]:
+    """Radial displacement [m] of the sleeve by the elliptical wave generator whose major axis is at psi.
+
+    The semi-axes are radius +- w0; the mean is taken off, as the rim bends without stretching.
+    """
+    a, b = radius + wave_generator.w0, radius - wave_generator.w0
+
+    def polar(x: np.ndarray) -> np.ndarray:
+        return a * b / np.sqrt((a**2 + b**2) / 2 - (a**2 - b**2) / 2 * np.cos(2 * x))
+
+    mean = polar(np.linspace(0, 2 * np.pi, 64, endpoint=False)).mean()
+    return polar(theta - psi[:, None]) - mean
+
+
+def fine_angles(sectors: int) -> Float[np.ndarray, " theta"]:
+    """Angles [rad] around the circumference, SUBDIVISION to a sector, centred on its nodes."""
+    inside = (np.arange(SUBDIVISION) - SUBDIVISION // 2) / SUBDIVISION
+    return (2 * np.pi / sectors * (np.arange(sectors)[:, None] + inside)).ravel()
+
+
+@lru_cache(maxsize=16)
+def _sampled_ellipse(wave_generator: WaveGenerator, radius: float, sectors: int) -> Float[np.ndarray, "psi theta"]:
+    """The ellipse at the angles at which maps are sampled; the same for all structures of a gear."""
+    return ellipse(wave_generator, radius, PSI, fine_angles(sectors))
+
+
+@lru_cache(maxsize=4096)
+def lobes(wave_generator: WaveGenerator, radius: float, effects: tuple[Effect, ...]) -> complex:
+    """How effects change the two lobes, as order 2 of the displacement that turns with the wave generator: the size is
+    their stroke, in that of the ideal ellipse, and half of the angle [rad] is how far they are ahead.
+    """
+    psi, theta = (np.linspace(0, 2 * np.pi, points, endpoint=False) for points in (16, 64))
+    ideal = displacement = ellipse(wave_generator, radius, psi, theta)
+    for effect in effects:
+        displacement = effect.wave_generator(displacement, psi, theta)
+    turning = np.exp(2j * (theta - psi[:, None]))
+    return complex((displacement * turning).mean() / (ideal * turning).mean())
+
+
+def boundary_conditions(
+    flex: FlexSpline,
+    displacement: Float[np.ndarray, "psi theta"],
+    effects: Sequence[Effect],
+    psi: Float[np.ndarray, " psi"],
+) -> tuple[Float[np.ndarray, "psi sector"], Float[np.ndarray, "psi sector"]]:
+    """Imposed radial displacement [m] and tangential tooth force per output torque [N/(N m)] of each sector.
+
+    The load sharing follows the local engagement depth, which is the imposed displacement where it points outwards:
+    for the ideal gear F ~ cos 2 theta over +-45 degrees of each lobe. A sector takes the force over its width, so that
+    the signals do not ripple with the passing of nodes.
+
+    Parameters
+    ----------
+    flex : FlexSpline
+    displacement : array (psi, theta)
+        By the ideal wave generator, at :func:`fine_angles` [m].
+    effects : sequence of Effect
+    psi : array (psi,)
+        Wave-generator angles relative to the flex spline [rad].
+    """
+    theta = fine_angles(flex.sector.count)
+    for effect in effects:
+        displacement = effect.wave_generator(displacement, psi, theta)
+    depth = displacement
+    for effect in effects:
+        depth = effect.engaged(depth, psi, theta)
+    share = np.maximum(depth, 0)
+    for effect in effects:
+        share = effect.mesh(share, psi, theta)
+    whole = share.sum(axis=1, keepdims=True)
+    for effect in effects:
+        share = effect.carried(share, psi, theta)
+    of_sectors = share.reshape(len(psi), flex.sector.count, SUBDIVISION).sum(axis=2)
+    at_nodes = displacement[:, SUBDIVISION // 2 :: SUBDIVISION]
+    return at_nodes, of_sectors / (whole * flex.tooth_radius)
+
+
+def influence_map(
+    flex: FlexSpline, wave_generator: WaveGenerator, gauges: GaugeSet, effects: Sequence[Effect] = ()
+) -> InfluenceMap:
+    """The influence map of one structure.
+
+    Parameters
+    ----------
+    flex : FlexSpline
+    wave_generator : WaveGenerator
+    gauges : GaugeSet
+    effects : sequence of Effect
+        Those that touch wave generator, mesh or structure.
+    """
+    loading = tuple(effect for effect in effects if overrides(effect, "wave_generator", "engaged", "mesh", "carried"))
+    amplitudes = _load_amplitudes(flex, wave_generator, loading)
+    response = gauge_response(flex, gauges)
+    cracks = [crack for effect in effects for crack in effect.cracks()]
+    values = np.stack([
+        (amplitude @ response[:, :, load]).real + _cracked(flex, response, amplitude, load, cracks)
+        for load, amplitude in zip((WAVE_GENERATOR, TEETH), amplitudes, strict=True)
+    ])  # fmt: skip
+    values[0] += offsets(gauges)
+    coefficients = np.fft.rfft(values, axis=1)[:, : ORDERS + 1] / ANGLES
+    coefficients[:, 1:] *= 2
+    return InfluenceMap(np.swapaxes(coefficients, 1, 2))
+
+
+@lru_cache(maxsize=64)
+def _load_amplitudes(
+    flex: FlexSpline, wave_generator: WaveGenerator, effects: tuple[Effect, ...]
+) -> Complex[np.ndarray, "2 psi order"]:
+    """Circumferential orders of the displacement [m] that the wave generator imposes, and of the force of the teeth per
+    output torque [N/(N m)]; the same for all gauges that see it.
+    """
+    sectors = flex.sector.count
+    displacement = _sampled_ellipse(wave_generator, flex.sector.hat.radius, sectors)
+    loads = boundary_conditions(flex, displacement, effects, PSI)
+    return np.stack([np.fft.rfft(load, axis=1) for load in loads]) / sectors * order_weights(sectors)
+
+
+def _cracked(
+    flex: FlexSpline,
+    response: Complex[np.ndarray, "order 5 load"],
+    amplitude: Complex[np.ndarray, "psi order"],
+    load: int,
+    cracks: Sequence[Crack],
+) -> Float[np.ndarray, "psi 5"] | float:
+    """What the cracks add to the signals under one load.
+
+    A crack takes the stiffness D from the columns of nodes on its two sides. With the compliance C between these nodes
+    and their displacements u0 in the sound structure, u = (1 - C D)^-1 u0 and D u are the forces that act on the sound
+    structure in place of the crack (Woodbury: no new factorisation).
+    """
+    if not cracks:
+        return 0.0
+    sector = flex.sector
+    columns = np.array([(gap, gap + 1) for gap in (sector.gap(crack.angle) for crack in cracks)]).ravel()
+    turns = np.exp(1j * sector.pitch * np.outer(columns, orders(sector.count)))
+    loss = linalg.block_diag(*[(1 - remaining_stiffness(crack, flex)) * flex.crossing_stiffness for crack in cracks])
+    sound = np.concatenate([((amplitude * turn) @ flex.fields[:, flex.band, load]).real for turn in turns], axis=1)
+    compliance = np.block([[flex.band_compliance[(i - j) % sector.count] for j in columns] for i in columns])
+    forces = loss @ np.linalg.solve(np.eye(len(loss)) - compliance @ loss, sound.T)
+    signal = np.fft.irfft(response[:, :, BAND:], sector.count, axis=0)[-columns % sector.count]
+    return np.tensordot(forces.reshape(*signal.shape[::2], -1), signal, axes=((0, 1), (0, 2)))
+
+
+def remaining_stiffness(crack: Crack, flex: FlexSpline) -> float:
+    """Remaining stiffness of the bars across a crack: one tooth pitch of their length is weakened."""
+    tooth_pitch = 2 * np.pi / flex.sector.hat.teeth
+    return flex.sector.pitch / (flex.sector.pitch + (1 / crack.stiffness_ratio - 1) * tooth_pitch)

@@ -1,0 +1,85 @@
+"""What effects on gauges and acquisition make of the channels of runs."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+from scipy.signal import resample
+
+from swgsim.effects.base import Effect, Scene
+from swgsim.storage.gauge_set import SENSORS
+
+# Where effects make corners, so many samples are taken for each one that is kept: an error of order lines below a tenth
+# of the noise of a recording.
+DENSER = 8
+# Runs that are sampled so densely at once: as many as a cache of the processor holds.
+AT_ONCE = 32
+
+
+@dataclass(frozen=True, eq=False)
+class Ideal:
+    """The channels of a run before effects act on gauges and acquisition.
+
+    Attributes
+    ----------
+    effects : tuple of Effect
+        As they act in the run.
+    scene : Scene
+    channels : mapping
+        All of them, arrays (time,).
+    """
+
+    effects: tuple[Effect, ...]
+    scene: Scene
+    channels: Mapping[str, Float[np.ndarray, " time"]]
+
+    @property
+    def sharp(self) -> bool:
+        """Whether effects make corners."""
+        return any(effect.sharp for effect in self.effects)
+
+
+def as_seen(ideal: Ideal) -> Mapping[str, Float[np.ndarray, " time"]]:
+    """The channels with what the effects make of gauges and acquisition."""
+    signals = np.array([ideal.channels[sensor] for sensor in SENSORS])
+    for effect in ideal.effects:
+        signals = effect.gauge(signals, ideal.scene)
+    channels: Mapping[str, np.ndarray] = {**ideal.channels, **dict(zip(SENSORS, signals, strict=True))}
+    for effect in ideal.effects:
+        channels = effect.acquisition(channels, ideal.scene)
+    return channels
+
+
+def all_as_seen(turns: Sequence[Ideal]) -> list[Mapping[str, Float[np.ndarray, " time"]]]:
+    """The same of many runs of whole revolutions, all of as many samples, with corners where they belong.
+
+    A run with an effect that makes corners is sampled so densely that they lie where they belong, and what its effects
+    change is filtered before samples are taken, else the high orders of a corner would pass for low ones.
+    """
+    sharp = [ideal for ideal in turns if ideal.sharp]
+    some = (sharp[i : i + AT_ONCE] for i in range(0, len(sharp), AT_ONCE))
+    filtered = (found for each in some for found in _filtered(each))
+    return [next(filtered) if ideal.sharp else as_seen(ideal) for ideal in turns]
+
+
+def _filtered(turns: Sequence[Ideal]) -> Iterator[Mapping[str, Float[np.ndarray, " time"]]]:
+    """The channels of runs with corners, from signals that were sampled densely and filtered."""
+    names, samples = list(turns[0].channels), len(turns[0].scene.time)
+    time = np.array([ideal.scene.time for ideal in turns])
+    dense = np.arange(DENSER * samples) / DENSER * time[:, 1:2]
+    # The angle goes on from one revolution to the next; what it has beside the mean speed repeats.
+    turning = np.array([[ideal.scene.point.omega_in * (name == "phi_in") for name in names] for ideal in turns])
+    ideals = np.array([[ideal.channels[name] for name in names] for ideal in turns])
+    torques = np.array([[ideal.scene.T_out] for ideal in turns])
+    repeating = np.concatenate([ideals - turning[..., None] * time[:, None], torques], axis=1)
+    denser = resample(repeating, DENSER * samples, axis=-1)
+    denser, torques = denser[:, :-1] + turning[..., None] * dense[:, None], denser[:, -1]
+    seen = np.empty_like(denser)
+    for number, ideal in enumerate(turns):
+        channels = dict(zip(names, denser[number], strict=True))
+        scene = replace(ideal.scene, time=dense[number], phi_in=channels["phi_in"], T_out=torques[number])
+        found = as_seen(replace(ideal, scene=scene, channels=channels))
+        seen[number] = [found[name] for name in names]
+    changed = ideals + resample(seen - denser, samples, axis=-1)
+    return (dict(zip(names, each, strict=True)) for each in changed)

@@ -1,0 +1,79 @@
+"""One revolution in the steady state, remembered: fitting a model asks for the same motions again and again."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from swgsim.chain.dynamics import Drive, State
+from swgsim.chain.harmonic_balance import one_revolution
+from swgsim.chain.motion import Motion, advance, revolve, steady_state
+from swgsim.effects.base import Effect
+from swgsim.gear.gear import OperatingPoint, Transmission
+
+# Motions that are remembered at most, 3 kB each.
+MOST = 20_000
+
+
+class Driven(NamedTuple):
+    """All that a motion depends on; ``start_angle`` is that of the wave generator at its beginning [rad]."""
+
+    transmission: Transmission
+    point: OperatingPoint
+    effects: tuple[Effect, ...]
+    start_angle: float
+
+
+_remembered: dict[tuple[Driven, int], tuple[np.ndarray, ...]] = {}
+
+
+def forget() -> None:
+    """Begin anew, so that what follows depends in no digit on what was asked before.
+
+    Motions that are computed together are corrected until the last of them has settled.
+    """
+    _remembered.clear()
+
+
+def settled(driven: Sequence[Driven]) -> tuple[Drive, State]:
+    """The drive of some motions, and their state where they begin."""
+    drive, start = _drive(driven)
+    state = steady_state(drive)
+    return drive, advance(drive, state, start) if start.any() else state
+
+
+def one_turn(driven: Sequence[Driven], points: int) -> Motion:
+    """One revolution of the wave generator of each, in so many even steps of time.
+
+    Parameters
+    ----------
+    driven : sequence of Driven
+    points : int
+    """
+    new = [each for each in driven if (each, points) not in _remembered]
+    if len(_remembered) + len(new) > MOST:
+        forget()
+        new = list(driven)
+    if new:
+        found, balanced = one_revolution(*_drive(new), points)
+        # Too far from linear, as close to a resonance that is hardly damped.
+        left = [each for each, known in zip(new, balanced, strict=True) if not known]
+        integrated = revolve(*settled(left), points) if left else None
+        _remember(new, found)
+        if integrated:
+            _remember(left, integrated)
+    return Motion(*(np.stack(part) for part in zip(*(_remembered[each, points] for each in driven), strict=True)))
+
+
+def _drive(driven: Sequence[Driven]) -> tuple[Drive, np.ndarray]:
+    """The drive of some motions, and the angles where they begin."""
+    transmissions, points, effects, start = zip(*driven, strict=True)
+    return Drive(transmissions, points, effects), np.array(start)
+
+
+def _remember(driven: Sequence[Driven], found: Motion) -> None:
+    dt = np.broadcast_to(found.dt, len(driven))
+    of_runs = found.phi_in, found.omega_in, found.omega_out, found.T_in, found.T_out, found.T_flange, dt
+    rows = zip(*of_runs, strict=True)
+    points = found.phi_in.shape[1] - 1
+    _remembered.update(zip([(each, points) for each in driven], rows, strict=True))

@@ -1,0 +1,64 @@
+"""Influence maps of structures, remembered: a second question to the same gear finds them made.
+
+An effect that follows temperature or speed scales the imposed displacement by another factor in every recording. Maps
+are smooth in the factor, so those of factors close to one another are interpolated between the same few.
+"""
+
+from collections.abc import Sequence
+from functools import lru_cache
+from math import prod
+from typing import NamedTuple
+
+import numpy as np
+from scipy.interpolate import BarycentricInterpolator
+
+from swgsim.chain.influence import InfluenceMap, influence_map
+from swgsim.effects.base import Effect, overrides
+from swgsim.effects.frozen import ScaledDisplacement
+from swgsim.effects.quantity import quantities
+from swgsim.flexspline.flexspline import solve_flex_spline
+from swgsim.flexspline.gauges import GaugeSet
+from swgsim.flexspline.silk_hat import SilkHat
+from swgsim.gear.gear import Gear, WaveGenerator
+
+# Distance of the factors whose maps are computed, and how many around one are interpolated: right to 1e-8 mV/V.
+STEP, AROUND = 0.01, np.arange(-1, 3)
+
+
+class Structure(NamedTuple):
+    """All that an influence map depends on, but for the mesh."""
+
+    hat: SilkHat
+    alpha_tooth: float
+    wave_generator: WaveGenerator
+    gauges: GaugeSet
+    effects: tuple[Effect, ...]
+
+    @classmethod
+    def of(cls, gear: Gear, effects: Sequence[Effect]) -> "Structure":
+        """Of a gear, with those of some effects that touch it."""
+        places = ("wave_generator", "engaged", "mesh", "carried", "cracks")
+        touching = tuple(effect for effect in effects if overrides(effect, *places))
+        return cls(gear.flex_spline, gear.transmission.alpha_tooth, gear.wave_generator, gear.gauges, touching)
+
+
+def map_of(structure: Structure, sectors: int) -> InfluenceMap:
+    """The influence map of a structure, of so many sectors."""
+    effects = structure.effects
+    scaling = [number for number, effect in enumerate(effects) if isinstance(effect, ScaledDisplacement)]
+    in_a_row = scaling == list(range(scaling[0], scaling[-1] + 1)) if scaling else False
+    factor = prod(effect.factor for effect in effects if isinstance(effect, ScaledDisplacement))
+    nodes = (np.floor(factor / STEP) + AROUND) * STEP
+    bounds = quantities(ScaledDisplacement)["factor"]
+    if not in_a_row or nodes[0] < bounds.low or nodes[-1] > bounds.high:
+        return _computed(structure, sectors)
+    before, after = effects[: scaling[0]], effects[scaling[-1] + 1 :]
+    scaled = (structure._replace(effects=(*before, ScaledDisplacement(float(node)), *after)) for node in nodes)
+    maps = [_computed(each, sectors).coefficients for each in scaled]
+    return InfluenceMap(BarycentricInterpolator(nodes, maps)(factor))
+
+
+@lru_cache(maxsize=512)
+def _computed(structure: Structure, sectors: int) -> InfluenceMap:
+    flex = solve_flex_spline(structure.hat, structure.alpha_tooth, sectors)
+    return influence_map(flex, structure.wave_generator, structure.gauges, structure.effects)

@@ -1,0 +1,147 @@
+"""A Dask cluster whose workers have the code, the libraries and the folder of the process that hands out tasks."""
+
+import logging
+import os
+import platform
+import socket
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import chdir, contextmanager
+from importlib import import_module
+from importlib.metadata import version
+from itertools import islice
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from swgsim.common.version import code_version, rooms
+
+if TYPE_CHECKING:
+    from distributed import Client, Future, Worker
+
+PRESENCE = 10  # s, within which a scheduler answers, and has a first worker
+ANSWER = 60  # s, within which all workers do
+REMEDY = "install this project there as it is here, and start it anew"
+
+
+class Place(NamedTuple):
+    """What a process has that results depend on, and the folder in which it works."""
+
+    installed: str
+    folder: str
+
+
+def here(beside: Callable[[], str]) -> Place:
+    """That of this process, with what results depend on beside this package."""
+    libraries = ", ".join(f"{name} {version(name)}" for name in ("numpy", "scipy", "h5py"))
+    code = code_version(*rooms())
+    installed = f"swgsim {code}, Python {platform.python_version()}, {libraries} {beside()}"
+    return Place(installed.rstrip(), os.getcwd())
+
+
+def results(
+    scheduler: str, function: Callable[..., Any], tasks: Iterable[tuple], beside: Callable[[], str]
+) -> Iterator[Any]:
+    """What a function gives for every task; see :meth:`swgsim.common.compute.Engine.results`.
+
+    Joblib's way to Dask keeps to the workers of its first moment, and does all tasks itself if there is but one.
+    """
+    with _connected(scheduler, beside) as client:
+        from distributed import as_completed
+
+        place, left = here(beside), enumerate(tasks)
+        numbers: dict[Any, int] = {}  # of the tasks that are handed out
+        done: dict[int, Any] = {}
+
+        def more() -> Iterator["Future"]:
+            """As many as make two for every worker that is there now; one waits for a worker where there is none."""
+            most = max(2 * len(client.ncores()) - len(numbers), 0 if numbers else 1)
+            for number, task in islice(left, most):
+                future = client.submit(task_of_another, place, beside, function, task, pure=False)
+                numbers[future.key] = number
+                yield future
+
+        running, said = as_completed(list(more()), loop=client.loop), 0
+        for future in running:
+            done[numbers.pop(future.key)] = future.result()
+            running.update(list(more()))
+            while said in done:
+                yield done.pop(said)
+                said += 1
+
+
+@contextmanager
+def _connected(scheduler: str, beside: Callable[[], str]) -> Iterator["Client"]:
+    """A client of the cluster; what Dask says of one that is absent, not fit or lost becomes one sentence.
+
+    Raises
+    ------
+    ValueError
+    """
+    try:
+        import dask
+        from distributed import CancelledError, Client, KilledWorker
+        from distributed.comm import CommClosedError
+    except ImportError:
+        raise ValueError("compute=dask needs Dask: pip install 'swg-workbench[dask]', or use compute=local") from None
+    logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # pages of what is said below in a sentence
+    try:
+        client = Client(scheduler, timeout=PRESENCE, set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise ValueError(
+            f"no Dask scheduler answers at scheduler={scheduler} ({error}): start it with 'dask scheduler', correct "
+            "the address, or use compute=local"
+        ) from None
+    with client, dask.config.set({"distributed.admin.large-graph-warning-threshold": "1GiB"}):  # of the oracle's tasks
+        _require_fit(client, scheduler, beside)
+        try:
+            yield client
+        except (CancelledError, CommClosedError):
+            raise ValueError(
+                f"the Dask scheduler at {scheduler} was lost; what had been done is kept: start it again, or use "
+                "compute=local, and give the same command"
+            ) from None
+        except KilledWorker as error:
+            raise ValueError(
+                f"one task killed several workers of {scheduler}, perhaps it needs more memory: {error}"
+            ) from None
+
+
+def _require_fit(client: "Client", scheduler: str, beside: Callable[[], str]) -> None:
+    """Raise a ValueError unless there are workers, and all of them and the scheduler can do the tasks.
+
+    Dask would wait for ever where there is no worker, and where one or the scheduler cannot import what it is sent.
+    """
+    own = here(beside)
+    try:
+        client.wait_for_workers(1, timeout=PRESENCE)
+        client.sync(client.run_on_scheduler, import_module, __name__, callback_timeout=ANSWER)
+        client.sync(client.run, import_module, __name__, callback_timeout=ANSWER)
+        found = client.sync(client.run, _fitness, own.folder, beside, callback_timeout=ANSWER)
+    except TimeoutError:
+        raise ValueError(
+            f"{scheduler} has no worker, or one that does not answer within {ANSWER} s: start them with "
+            f"'dask worker {scheduler} --nthreads 1'"
+        ) from None
+    except ImportError as error:
+        raise ValueError(f"{scheduler} or a worker of it cannot import swgsim ({error}): {REMEDY}") from None
+    for worker, (installed, sees_folder, threads) in found.items():
+        _require_same(f"worker {worker} of {scheduler}", installed, own.installed)
+        if not sees_folder:
+            raise ValueError(f"worker {worker} of {scheduler} has no folder {own.folder}: work in one that all share")
+        if threads > 1:
+            raise ValueError(f"worker {worker} of {scheduler} has {threads} threads, must have 1: add --nthreads 1")
+
+
+def _require_same(worker: str, installed: str, expected: str) -> None:
+    if installed != expected:
+        raise ValueError(f"{worker} has {installed}, must have {expected}: {REMEDY}")
+
+
+def _fitness(folder: str, beside: Callable[[], str], dask_worker: "Worker") -> tuple[str, bool, int]:
+    """What a worker has installed, whether it sees a folder, and its threads."""
+    return here(beside).installed, os.path.isdir(folder), dask_worker.state.nthreads
+
+
+def task_of_another(place: Place, beside: Callable[[], str], function: Callable[..., Any], task: tuple) -> Any:
+    """Do a task on a worker, which may have joined after the others were looked at, as in the place it comes from."""
+    _require_same(f"a worker on {socket.gethostname()}", here(beside).installed, place.installed)
+    with chdir(place.folder):
+        return function(*task)

@@ -1,0 +1,41 @@
+"""Which code made a result."""
+
+import hashlib
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+
+from swgsim.common.checks import require_known
+
+# The rooms that make recordings; all others show, check or question what these make.
+MAKING = ("bench", "chain", "common", "dataset", "effects", "flexspline", "gear", "storage")
+
+
+PACKAGE = Path(__file__).parents[1]
+
+
+def rooms() -> list[str]:
+    """The names of the rooms, the subpackages of swgsim."""
+    return sorted(path.parent.name for path in PACKAGE.glob("*/__init__.py"))
+
+
+@cache
+def code_version(*also: str) -> str:
+    """Version of the package, with a digest of the sources that recordings depend on, and of other rooms.
+
+    Parameters
+    ----------
+    also : str
+        Further rooms of swgsim, such as "identification".
+
+    Raises
+    ------
+    ValueError
+        If there is no such room; it lists the choices.
+    """
+    require_known("code_version", also, rooms())
+    digest = hashlib.sha256()
+    for room in sorted({*MAKING, *also}):
+        for source in sorted((PACKAGE / room).rglob("*.py")):
+            digest.update(source.read_bytes())
+    return f"{version('swg-workbench')}+{digest.hexdigest()[:12]}"

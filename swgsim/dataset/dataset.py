@@ -1,0 +1,164 @@
+"""Data sets on disk: generated block by block, in parallel, resumable, the same bytes whatever happened on the way.
+
+Every block is one part, a file of recordings like the data set itself. When all parts are there they are joined to one
+file. Where a run was killed, the next one keeps the parts that are whole and of the same plan, and makes the others.
+"""
+
+import os
+import resource
+import shutil
+import socket
+from collections.abc import Callable, Generator, Iterator
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from swgsim.bench.disturbance import Disturbance
+from swgsim.common.compute import Engine
+from swgsim.common.files import sole_maker
+from swgsim.common.seeds import generator
+from swgsim.dataset.grid import Case
+from swgsim.dataset.plan import Plan, block_size, provenance
+from swgsim.dataset.simulate_cases import record
+from swgsim.storage import storage
+from swgsim.storage.gauge_set import Recordings
+
+
+@dataclass(frozen=True)
+class Usage:
+    """Memory that a process has needed so far."""
+
+    process: str
+    peak_memory_mib: float
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part that is there now.
+
+    Attributes
+    ----------
+    rows : int
+        Its recordings.
+    flaw : str
+        Why the file that a killed run left had to be made again; empty where it had not.
+    usage : Usage
+    """
+
+    rows: int
+    flaw: str
+    usage: Usage
+
+
+def usage() -> Usage:
+    """That of this process."""
+    return Usage(f"{socket.gethostname()} {os.getpid()}", resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
+
+
+def generate(plan: Plan, path: Path, engine: Engine, progress: Callable[[int], object]) -> float:
+    """Generate a data set; one process at a time may (:func:`swgsim.common.files.sole_maker`).
+
+    Parameters
+    ----------
+    plan : Plan
+    path : Path
+        The file to make.
+    engine : Engine
+        What makes the blocks; the file is the same for any. Its workers need to see the folder of ``path``.
+    progress : callable
+        Called with the number of recordings whenever that many more are done.
+
+    Returns
+    -------
+    float
+        Peak memory of all processes together [MiB].
+    """
+    parts = path.with_name(f".{path.name}.parts")
+    files = [parts / f"{number:06d}.h5" for number in range(plan.block_count)]
+    tasks = ((plan, cases, file) for cases, file in zip(plan.blocks(), files, strict=True))
+    peak: dict[str, float] = {}
+
+    def made() -> Generator[Recordings, None, None]:
+        """The parts in their order: they are joined while the workers make the next ones."""
+        for part, file in zip(engine.results(_part, tasks, len(files)), files, strict=True):
+            if part.flaw:
+                print(f"{part.flaw}; it has been made again")
+            peak[part.usage.process] = max(part.usage.peak_memory_mib, peak.get(part.usage.process, 0))
+            progress(part.rows)
+            yield _read(plan, file)
+
+    try:
+        with closing(made()) as blocks:
+            storage.write(path, blocks, len(plan))
+    except BaseException:
+        # Workers of this machine were ended while they wrote; those of a cluster finish their parts.
+        for left in parts.glob(".*.tmp") if engine.scheduler is None else ():
+            left.unlink(missing_ok=True)
+        raise
+    shutil.rmtree(parts, ignore_errors=True)  # where a worker of a killed run may be at its last part
+    own = usage()
+    peak[own.process] = own.peak_memory_mib
+    return sum(peak.values())
+
+
+def disturb(source: Path, path: Path, disturbance: Disturbance, configuration: str, progress: Callable) -> None:
+    """Make the disturbed data set from the clean one: its recordings plus eq. (10).
+
+    Parameters
+    ----------
+    source, path : Path
+        The clean file and the one to make.
+    disturbance : Disturbance
+        Drawn anew for every recording, from its seed.
+    configuration : str
+        The choices that the made file says it is of.
+    progress : callable
+        Called with the number of recordings whenever that many more are done.
+    """
+    rows, sensors, samples = storage.shape(source)
+
+    def disturbed() -> Iterator[Recordings]:
+        for block in storage.blocks(source, block_size(samples)):
+            time = np.arange(samples) / block.rate
+            added = np.stack([
+                disturbance.draw(generator("disturbance", seed), sensors, n_in_rpm, time)
+                for seed, n_in_rpm in zip(block.table["seed"], block.table["n_in_rpm"], strict=True)
+            ])  # fmt: skip
+            signals = (block.signals + added).astype("f4")
+            yield Recordings(signals, block.table, block.rate, provenance(configuration))
+            progress(len(block))
+
+    storage.write(path, disturbed(), rows)
+
+
+def _part(plan: Plan, cases: list[Case], file: Path) -> Part:
+    """Simulate one block and keep it, unless that is done."""
+    flaw = _flaw(plan, cases, file) if file.exists() else ""
+    if flaw or not file.exists():
+        with threadpool_limits(1):  # so that the bytes do not depend on the number of cores
+            recordings = record(plan, cases)
+        with sole_maker(file, wait=True):  # A worker of a killed run may be at this very part.
+            storage.write(file, [recordings], len(recordings))
+    return Part(len(cases), flaw, usage())
+
+
+def _read(plan: Plan, file: Path) -> Recordings:
+    """A part, which a worker of a killed run with another plan may have replaced meanwhile."""
+    part = storage.read(file)
+    if not plan.attributes.items() <= part.attributes.items():
+        raise ValueError(f"{file}: made by other choices or code")
+    return part
+
+
+def _flaw(plan: Plan, cases: list[Case], file: Path) -> str:
+    """Why a part that was found is not what the plan says; empty if it is."""
+    try:
+        part = _read(plan, file)
+    except ValueError as damage:
+        return str(damage)
+    if part.signals.shape[2] != plan.window.samples or list(part.table["seed"]) != [case.seed for case in cases]:
+        return f"{file}: not the recordings that belong there"
+    return ""

@@ -1,0 +1,117 @@
+"""The five fault classes of Table I as effects, and their variants (Table V) as declared severities and positions."""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from swgsim.common.checks import require_integer, require_known
+from swgsim.effects import (
+    EccentricWaveGenerator,
+    Effect,
+    ReducedDamping,
+    ReducedStiffness,
+    RootToothCrack,
+    TipToothCrack,
+)
+from swgsim.storage.gauge_set import CLASSES
+
+# A class name to its effect at (severity, position).
+FAULTS: Mapping[str, Callable[[float, float], Effect]] = {
+    "reduced_damping": lambda severity, _: ReducedDamping(severity),
+    "reduced_stiffness": lambda severity, _: ReducedStiffness(severity),
+    "eccentric_wave_generator": EccentricWaveGenerator,
+    "root_tooth_crack": RootToothCrack,
+    "tip_tooth_crack": TipToothCrack,
+}
+WITHOUT_POSITION = ("reduced_damping", "reduced_stiffness")
+
+
+@dataclass(frozen=True)
+class Variant:
+    """One variant of a class.
+
+    Attributes
+    ----------
+    label : str
+    number : int
+    severity : float
+        The effect's own size, NaN when healthy.
+    position : float
+        Angle around the flex spline [rad], NaN where the class has none.
+    effects : tuple of Effect
+    """
+
+    label: str
+    number: int
+    severity: float
+    position: float
+    effects: tuple[Effect, ...]
+
+
+@dataclass(frozen=True)
+class Variants:
+    """How the variants of every class are made.
+
+    Attributes
+    ----------
+    count : int
+        Variants per class.
+    positions : int
+        Equally spaced circumferential positions; times the number of severities this must give ``count``.
+    severities : mapping
+        Class to levels. Classes without a position take ``count`` values evenly from the first to the last.
+    drawn : bool
+        Whether severities (between the extremes) and positions are drawn continuously instead.
+    """
+
+    count: int
+    positions: int
+    severities: Mapping[str, tuple[float, ...]]
+    drawn: bool = False
+
+    def __post_init__(self) -> None:
+        require_integer("the grid", "variants", self.count, low=1, high=1_000_000)
+        require_integer("the grid", "positions", self.positions, low=1, high=100_000)
+        if not isinstance(self.drawn, bool):
+            raise ValueError(f"drawn of the grid is {self.drawn!r}, must be true or false")
+        unknown = set(self.severities) ^ set(FAULTS)
+        if unknown:
+            raise ValueError(
+                f"severities for {sorted(self.severities)}, expected one list for each of {sorted(FAULTS)}"
+            )
+        for label, levels in self.severities.items():
+            if not levels:
+                raise ValueError(f"{label}: no severities, give at least one")
+            located = label not in WITHOUT_POSITION
+            if located and not self.drawn and len(levels) * self.positions != self.count:
+                raise ValueError(
+                    f"{label}: {len(levels)} severities x {self.positions} positions do not make {self.count} variants"
+                )
+            for level in levels:
+                FAULTS[label](level, 0.0)
+
+    def of(self, label: str, rng: np.random.Generator) -> Iterator[Variant]:
+        """The variants of one class; ``rng`` is used only where they are drawn.
+
+        Raises
+        ------
+        ValueError
+            If the class is unknown; it lists the classes.
+        """
+        require_known("the classes", [label], CLASSES)
+        for number in range(self.count):
+            if label == "healthy":
+                yield Variant(label, number, np.nan, np.nan, ())
+                continue
+            levels = self.severities[label]
+            located = label not in WITHOUT_POSITION
+            if self.drawn:
+                severity, position = rng.uniform(min(levels), max(levels)), rng.uniform(0, 2 * np.pi)
+            elif located:
+                severity = levels[number // self.positions]
+                position = 2 * np.pi * (number % self.positions) / self.positions
+            else:
+                severity, position = np.linspace(levels[0], levels[-1], self.count)[number], np.nan
+            effect = FAULTS[label](float(severity), float(position))
+            yield Variant(label, number, float(severity), float(position) if located else np.nan, (effect,))

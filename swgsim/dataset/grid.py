@@ -1,0 +1,93 @@
+"""Grids: which gear runs with which variant of which class at which operating point."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from swgsim.chain.chain import Run
+from swgsim.common.checks import require, require_integer, require_known
+from swgsim.common.seeds import generator, seed_hash
+from swgsim.dataset.faults import Variant, Variants
+from swgsim.effects import ParameterScatter
+from swgsim.gear.gear import Gear, OperatingPoint
+from swgsim.storage.gauge_set import CLASSES
+
+
+@dataclass(frozen=True)
+class Case:
+    """One planned recording.
+
+    Attributes
+    ----------
+    run : Run
+    variant : Variant
+    reference : bool
+        Whether it is a separate healthy acquisition that serves as the gear's reference.
+    seed : int
+        Of every random draw that belongs to this recording.
+    """
+
+    run: Run
+    variant: Variant
+    reference: bool
+    seed: int
+
+
+@dataclass(frozen=True)
+class Grid:
+    """The grid of a data set.
+
+    Attributes
+    ----------
+    points : tuple of OperatingPoint
+    variants : Variants
+    classes : tuple of str
+    references : int
+        Healthy reference acquisitions per gear and operating point.
+    scatter : float
+        Relative standard deviation of b1 and k1 from one recording to the next; 0 in the paper's grid, where all
+        healthy recordings of a gear are the same.
+    seed : int
+    """
+
+    points: tuple[OperatingPoint, ...]
+    variants: Variants
+    classes: tuple[str, ...] = CLASSES
+    references: int = 20
+    scatter: float = 0.0
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        if not self.points or not self.classes:
+            raise ValueError(f"{len(self.points)} operating points x {len(self.classes)} classes: the grid is empty")
+        require_known("the classes", self.classes, CLASSES)
+        for name, values in (("operating points", self.points), ("classes", self.classes)):
+            if len(set(values)) < len(values):
+                raise ValueError(f"{name} of the grid repeat: {values}; name each once")
+        require_integer("the grid", "references", self.references, low=1, high=10_000)
+        require_integer("the grid", "seed", self.seed, low=0, high=2**63)
+        require("the grid", "scatter", self.scatter, low=0, high=0.05)
+
+    def cases(self, gear: Gear) -> Iterator[Case]:
+        """All planned recordings of one gear: the references, then class by class."""
+        healthy = Variant("healthy", 0, np.nan, np.nan, ())
+        for number in range(self.references):
+            yield from self._at_all_points(gear, healthy, number, reference=True)
+        for label in self.classes:
+            for variant in self.variants.of(label, generator("variants", self.seed, gear.number, label)):
+                yield from self._at_all_points(gear, variant, variant.number, reference=False)
+
+    def count(self) -> int:
+        """Recordings per gear."""
+        return len(self.points) * (self.references + len(self.classes) * self.variants.count)
+
+    def _at_all_points(self, gear: Gear, variant: Variant, number: int, *, reference: bool) -> Iterator[Case]:
+        for point in self.points:
+            kind = "reference" if reference else variant.label
+            seed = seed_hash("recording", self.seed, gear.number, kind, number, point.n_in_rpm, point.T_out)
+            effects = variant.effects
+            if self.scatter:
+                b1_ratio, k1_ratio = np.clip(generator("scatter", seed).normal(1, self.scatter, 2), 0.8, 1.2)
+                effects = (*effects, ParameterScatter(float(b1_ratio), float(k1_ratio)))
+            yield Case(Run(gear, point, effects), variant, reference, seed)

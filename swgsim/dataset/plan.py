@@ -1,0 +1,84 @@
+"""The plan of a data set: all that determines its recordings, in blocks of bounded size."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import islice
+from math import ceil
+
+from swgsim.bench.scatter import Bench
+from swgsim.chain.chain import SECTORS
+from swgsim.common.version import code_version
+from swgsim.dataset.grid import Case, Grid
+from swgsim.effects.base import Effect
+from swgsim.gear.acquisition import Window
+from swgsim.gear.gear import Gear
+
+# Recordings per block: bounds the memory whatever the size of the grid, and splits the paper's grid evenly over cores.
+BLOCK = 1140
+# Samples up to which a block holds that many recordings; of longer windows it holds fewer.
+BLOCK_SAMPLES = 600
+
+
+@dataclass(frozen=True)
+class Plan:
+    """All that determines the recordings of a data set.
+
+    Attributes
+    ----------
+    gears : tuple of Gear
+    grid : Grid
+    window : Window
+    bench : Bench or None
+        The imperfections of a real test bench, if any.
+    sectors : int
+        Sectors of the flex spline's truss.
+    effects : tuple of Effect
+        What every run of every gear is under, beside its fault; part of what the gears are declared to be.
+    configuration : str
+        The choices as text; kept in the file.
+    """
+
+    gears: tuple[Gear, ...]
+    grid: Grid
+    window: Window
+    bench: Bench | None = None
+    sectors: int = SECTORS
+    effects: tuple[Effect, ...] = ()
+    configuration: str = ""
+
+    def __post_init__(self) -> None:
+        numbers = [gear.number for gear in self.gears]
+        if not numbers:
+            raise ValueError("no gears: the grid is empty, choose at least one")
+        if len(set(numbers)) < len(numbers):
+            raise ValueError(f"gear numbers {numbers} are not distinct: every gear needs a number of its own")
+
+    def __len__(self) -> int:
+        return len(self.gears) * self.grid.count()
+
+    @property
+    def attributes(self) -> dict[str, str]:
+        """What the file says of itself; parts of a killed run are used only where it is the same."""
+        return provenance(self.configuration)
+
+    @property
+    def block_count(self) -> int:
+        """Number of blocks; a block holds recordings of one gear."""
+        return len(self.gears) * ceil(self.grid.count() / block_size(self.window.samples))
+
+    def blocks(self) -> Iterator[list[Case]]:
+        """The planned recordings, block by block."""
+        for gear in self.gears:
+            cases = self.grid.cases(gear)
+            while block := list(islice(cases, block_size(self.window.samples))):
+                yield block
+
+
+def block_size(samples: int) -> int:
+    """Recordings per block of a window of so many samples."""
+    return max(1, min(BLOCK, BLOCK * BLOCK_SAMPLES // samples))
+
+
+def provenance(configuration: str) -> dict[str, str]:
+    """Configuration and version of the code, as attributes of a file."""
+    return {"configuration": configuration, "swgsim": code_version()}

@@ -1,0 +1,1 @@
+"""Commissioning: what healthy recordings show of a gear, and where they contradict the model."""

@@ -1,0 +1,176 @@
+"""A unit as recordings of its healthy state show it."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from swgsim.chain.steady_state_cache import forget
+from swgsim.identification.commissioning.lack_of_fit import beyond_noise, foreign_ripple, require_own, unexplained
+from swgsim.identification.commissioning.relinearisation import (
+    about_its_lines,
+    again,
+    largest_of,
+    lines_found,
+    posterior,
+    triangle,
+)
+from swgsim.identification.covariance.influence_map_error import largest_lines
+from swgsim.identification.data.features import Layout
+from swgsim.identification.data.measured import Measured
+from swgsim.identification.fit.fitted import Fitted
+from swgsim.identification.fit.fitting import fit
+from swgsim.identification.fit.unit import STRUCTURE, UNHEARD, Unit
+from swgsim.storage.gauge_set import SENSORS
+
+# Lines that are missed are learned. A gauge's may lie off by this share of the largest line of all gauges: in a bridge
+# of many arms lines cancel that are large in each. Those of speed and torques, of which the equations of motion make
+# the most, are learned while no more than this share of their channel's ripple is missed; else it is none of this gear.
+LOOSEST, ALIEN = 0.6, 0.5
+# Where the gauges' lines lie off by more than this share, twice what the mesh of the truss makes, it is another
+# structure; signatures of effects are not known to be wrong by more than the last one (an estimate).
+ANOTHER, WORST = 2 * STRUCTURE, 0.3
+# So often at most the drive alone is fitted, until the fit has come to rest; and so often lines of gauges are learned.
+DRIVES, TIMES = 4, 2
+
+
+def commission(measured: Measured, unit: Unit) -> Unit:
+    """The unit with what recordings of its healthy state say about it.
+
+    Raises
+    ------
+    ValueError
+        If the model does not describe the healthy gear.
+    """
+    forget()
+    fitted, unheard = _listening(measured, replace(unit, seen_healthy=True))
+    require_own(measured, fitted.missed)
+    beyond = beyond_noise(measured, fitted.missed)
+    if beyond.max() > 1:
+        fitted = about_its_lines(again(fitted, inflation=beyond * unheard))
+    root, mean = posterior(fitted)
+    # Declared effects stay as they were found: later fits have parameters of their own for them.
+    own = [name in fitted.unit.declared for name in fitted.parameters]
+    kept = np.flatnonzero([*own, *[True] * fitted.open.shape[1]])
+    reach, shift = triangle(root[kept].T).T, mean[kept]
+    # Lines go into the model, so that effects on the signals act on them too.
+    lines, form = lines_found(fitted, mean)
+    shift[len(shift) - form :] = 0.0
+    model, nominal = replace(fitted.model, own_lines=lines), fitted.unit.model.gear
+    return replace(
+        fitted.unit, model=model, structure=_structure(fitted), reach=reach, shift=shift, scatter=fitted.scatter,
+        nominal=nominal, largest=largest_of(fitted), healthy=measured.recordings,
+    )  # fmt: skip
+
+
+def _listening(measured: Measured, unit: Unit) -> tuple[Fitted, Float[np.ndarray, " feature"]]:
+    """The fit that does not listen to ripple of speed and torques that is none of this gear, and by which factor the
+    variance of every line is larger for that.
+    """
+    unheard = np.ones(len(measured.layout))
+    while True:
+        drive, foreign = _drive_alone(measured, unit), np.zeros(len(unheard), bool)
+        if drive is not None:
+            foreign[_of_drive(measured)] = foreign_ripple(drive.measured, drive.missed, ALIEN)
+        if not foreign.any():
+            fitted = _as_it_is(measured, unit, drive)
+            foreign = foreign_ripple(measured, fitted.missed)
+        foreign &= unheard == 1
+        if not foreign.any():
+            return fitted, unheard
+        unheard = np.where(foreign, UNHEARD, unheard)
+        unit = replace(unit, inflation=unheard)
+
+
+def _as_it_is(measured: Measured, unit: Unit, drive: Fitted | None) -> Fitted:
+    """The fit to recordings of the healthy gear, whatever drive and structure it has.
+
+    Which lines of speed and torques lie off, these alone tell; which of the gauges do is told twice, as those that were
+    missed have led the parameters astray before, the first time beside the drive as speed and torques have it.
+    """
+    position: Mapping[str, float] = {}
+    held: list[str] = []
+    of_drive = np.zeros(len(measured.layout))
+    if drive is not None:
+        position, held = drive.calibrated.position, _well_told(drive)
+        if drive.unit.learned is not None:
+            of_drive[_of_drive(measured)] = drive.unit.learned
+    fitted = fit(measured, _given(unit, of_drive), position=position, held=held)
+    for _ in range(TIMES):
+        learned = np.where(_of_drive(measured), of_drive, _lie_off(fitted))
+        position = {**position, **fitted.calibrated.position}
+        fitted = fit(measured, _given(unit, learned), position=position)
+        if not learned.any():
+            break
+    return about_its_lines(fitted)
+
+
+def _given(unit: Unit, learned: Float[np.ndarray, " feature"]) -> Unit:
+    """The unit with lines that lie so far off."""
+    return replace(unit, learned=learned) if learned.any() else unit
+
+
+def _well_told(drive: Fitted) -> list[str]:
+    """The unit's parameters that speed and torques alone tell to less than half a spread."""
+    if not drive.calibrated.settled:
+        return []
+    return [name for name, parameter in drive.declared.items() if drive.deviation[name] < parameter.sd / 2]
+
+
+def _drive_alone(measured: Measured, unit: Unit) -> Fitted | None:
+    """The fit to speed and torques alone, with those of their lines learned that are missed.
+
+    Gauges on quite another flex spline would lead the drive astray, and other equations of motion the gauges. Of the
+    lines ripple is learned first: while it is missed it leads friction astray, which is for the means to tell.
+    """
+    heard = _of_drive(measured)
+    if not heard.any():
+        return None
+    drive = tuple(name for name in measured.layout.channels if name not in SENSORS)
+    alone = Measured(measured.recordings, Layout(drive), measured.values[:, heard], measured.variance[:, heard])
+    unit = replace(unit, inflation=None if unit.inflation is None else unit.inflation[heard])
+    fitted = fit(alone, unit)
+    for _ in range(DRIVES - 1):
+        if fitted.calibrated.settled:
+            break
+        fitted = fit(alone, unit, position=fitted.calibrated.position)
+    ripple = alone.layout.order > 0
+    for sought in (ripple, np.ones_like(ripple)):
+        learned = _lie_off(fitted) * sought
+        fitted = again(fitted, learned=learned) if learned.any() else fitted
+    return fitted
+
+
+def _of_drive(measured: Measured) -> Bool[np.ndarray, " feature"]:
+    """The features of speed and torques."""
+    return ~np.isin(measured.layout.channel, SENSORS)
+
+
+def _lie_off(fitted: Fitted) -> Float[np.ndarray, " feature"]:
+    """How far lines lie off that are missed, or were before."""
+    measured, layout = fitted.measured, fitted.measured.layout
+    sought = beyond_noise(measured, fitted.missed) > 1
+    if fitted.unit.learned is not None:
+        sought |= fitted.unit.learned > 0
+    off = np.sqrt((fitted.residual.reshape(measured.values.shape) ** 2).mean(axis=0)) * sought
+    largest = largest_lines(fitted.calibrated.predicted, layout)
+    missed = unexplained(measured, fitted.missed)
+    for channel in layout.channels:
+        own = layout.channel == channel
+        if channel in largest:
+            off[own] = np.minimum(off[own], LOOSEST * max(largest.values()))
+        elif missed[channel] > ALIEN:
+            off[own] = 0.0
+    return off
+
+
+def _structure(fitted: Fitted) -> float:
+    """How well the model knows what acts on the structure: as well as it has the lines of s1 to s4, which sit alike."""
+    layout, learned, largest = fitted.measured.layout, fitted.unit.learned, largest_of(fitted)
+    alike = [name for name in layout.channels if name in SENSORS[1:]]
+    if learned is None or not alike:
+        return STRUCTURE
+    off = np.mean([learned[layout.channel == name] for name in alike], axis=0)
+    share = float(np.linalg.norm(off)) / max(largest.values())
+    return min(share, WORST) if share > ANOTHER else STRUCTURE

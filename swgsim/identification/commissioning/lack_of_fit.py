@@ -1,0 +1,84 @@
+"""What the model misses of a healthy gear: what is none of this gear, and what counts as uncertain from then on."""
+
+import numpy as np
+from jaxtyping import Bool, Float
+from scipy.stats import chi2, false_discovery_control
+
+from swgsim.identification.data.measured import Measured
+from swgsim.identification.fit.fitting import MISFIT
+from swgsim.storage.gauge_set import SENSORS
+
+# Share of a channel's ripple that the model may leave unexplained of a healthy gear; with more it is not its own, if a
+# line of it is also missed by more than MISFIT: a ripple that is hardly more than noise may well be.
+UNEXPLAINED = 0.1
+# Of the lines that are said to be missed, the share that may be luck.
+LUCK = 0.05
+
+
+def beyond_noise(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> Float[np.ndarray, " feature"]:
+    """How much larger the variance of every line is than noise and declared spreads make it; 1 where that is luck.
+
+    What the model misses is alike in all repeats of an operating point, and part of it in all recordings, which must
+    not pass for as many witnesses; and it misses as much of each of the gauges s1 to s4, which sit alike.
+
+    Parameters
+    ----------
+    measured : Measured
+    missed : array (recording, feature)
+        In standard deviations of what is declared.
+    """
+    layout = measured.layout
+    single, common = missed**2, len(missed) * missed.mean(axis=0) ** 2
+    repeats = len(measured) / len(measured.point_rows())
+    alike = np.array(["s1 to s4" if name in SENSORS[1:] else name for name in layout.channel])
+    every = dict.fromkeys(zip(alike, layout.order, strict=True))
+    lines = [(alike == channel) & (layout.order == order) for channel, order in every]
+    by_single = [chi2.sf(single[:, line].sum(), single[:, line].size) for line in lines]
+    in_common = [chi2.sf(common[line].sum(), line.sum()) for line in lines]
+    missed_by = false_discovery_control([*by_single, *in_common]).reshape(2, -1) < LUCK
+    beyond = np.ones(len(layout))
+    for line, by_one, by_all in zip(lines, *missed_by, strict=True):
+        if by_one:
+            beyond[line] = 1 + repeats * (single[:, line].mean() - 1)
+        if by_all:
+            beyond[line] = np.maximum(beyond[line], common[line].mean())
+    return beyond
+
+
+def unexplained(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> dict[str, float]:
+    """Share of every channel's ripple that the model leaves unexplained, beyond noise; 0 where that is hardly more."""
+    layout = measured.layout
+    square = (missed**2).mean(axis=0)
+    left = np.maximum(square - 1, 0) * measured.variance.mean(axis=0)
+    power = (measured.values**2).mean(axis=0)
+    shares = {}
+    for channel in layout.channels:
+        ripple = (layout.channel == channel) & (layout.order > 0)
+        more = square[ripple].max() > MISFIT
+        shares[channel] = float(np.sqrt(left[ripple].sum() / power[ripple].sum())) if more else 0.0
+    return shares
+
+
+def foreign_ripple(
+    measured: Measured, missed: Float[np.ndarray, "recording feature"], most: float = UNEXPLAINED
+) -> Bool[np.ndarray, " feature"]:
+    """Ripple of speed and torques that is not the model's, as where the torque is that of the brake: features of it.
+
+    So it is where more than a share of it is unexplained.
+    """
+    layout, shares = measured.layout, unexplained(measured, missed)
+    drive = [name for name, share in shares.items() if name not in SENSORS and share > most]
+    return np.isin(layout.channel, drive) & (layout.order > 0)
+
+
+def require_own(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> None:
+    """Refuse a healthy gear of which the model leaves more than UNEXPLAINED of a channel's ripple, beyond noise."""
+    shares = unexplained(measured, missed)
+    poor = sorted(((share, name) for name, share in shares.items() if share > UNEXPLAINED), reverse=True)
+    if poor:
+        differ = ", ".join(f"{name} ({100 * share:.0f} %)" for share, name in poor)
+        raise ValueError(
+            f"the model cannot be commissioned on these recordings: it leaves {differ} of the ripple unexplained, at "
+            f"most {100 * UNEXPLAINED:.0f} % may be. Correct the gear file (load inertia J_out, "
+            "speed control), the zero of the angle or a channel that is none of this gear, or leave that channel out"
+        )

@@ -1,0 +1,81 @@
+"""A fit to a healthy gear, linearised about the lines that it finds where the model has them quite different."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+from scipy.linalg import qr, solve_triangular
+
+from swgsim.identification.covariance.influence_map_error import largest_lines, lines_of
+from swgsim.identification.data.unit_lines import Lines
+from swgsim.identification.fit.fitted import Fitted
+from swgsim.identification.fit.fitting import fit
+
+# So often at most, until the log-likelihood stays within so much.
+ROUNDS, AT_REST = 6, 1.0
+
+
+def about_its_lines(fitted: Fitted) -> Fitted:
+    """The fit linearised about the lines that it finds, where the model has them quite different.
+
+    Trigger, gains, lags and temperatures act on the whole of a line, of which the model may have a small part.
+    """
+    if fitted.unit.learned is None:
+        return fitted
+    largest = largest_of(fitted)
+    for _ in range(ROUNDS):
+        _, mean = posterior(fitted)
+        lines, form = lines_found(fitted, mean)
+        # What the lines are declared to be is still counted from the model alone.
+        back = np.append(np.zeros(fitted.open.shape[1] - form), -mean[len(mean) - form :])
+        model = replace(fitted.unit.model, own_lines=lines)
+        before, fitted = fitted, again(fitted, model=model, shift=back, largest=largest)
+        if abs(fitted.log_likelihood - before.log_likelihood) < AT_REST:
+            break
+    return fitted
+
+
+def posterior(fitted: Fitted) -> tuple[Float[np.ndarray, "direction direction"], Float[np.ndarray, " direction"]]:
+    """What recordings tell of the parameters, and of all else that is open: a root of its covariance, and its mean, in
+    spreads.
+
+    By orthogonal triangles, as what is told to a millionth of a spread would be lost in its square.
+    """
+    columns = np.hstack([fitted.J, fitted.open])
+    white = fitted.errors.whiten(columns)
+    unity = np.eye(columns.shape[1])
+    root = solve_triangular(triangle(np.vstack([white, unity])), unity)
+    mean = root @ (root.T @ (white.T @ fitted.errors.whiten(fitted.from_start[:, None])[:, 0]))
+    # The parameters themselves stay where the fit has them; all else takes up the rest.
+    mean[: fitted.J.shape[1]] -= np.array(list(fitted.calibrated.position.values()))
+    return root, mean
+
+
+def triangle(A: Float[np.ndarray, "row column"]) -> Float[np.ndarray, "column column"]:
+    """Upper triangular R with R' R = A' A."""
+    return np.asarray(qr(A, mode="r")[0])[: A.shape[1]]
+
+
+def lines_found(fitted: Fitted, mean: Float[np.ndarray, " direction"]) -> tuple[Lines, int]:
+    """The lines by which the gear differs from the model, and how many of the directions, the last ones, they are."""
+    unit, layout = fitted.unit, fitted.measured.layout
+    sizes = unit.form(fitted.calibrated.predicted, layout)
+    form = int(np.count_nonzero(sizes))
+    gauges = fitted.model.run(fitted.measured.situations[0]).affected_gear.gauges
+    before, found = fitted.model.own_lines, mean[len(mean) - form :]
+    if before is None or unit.shift is None:
+        return lines_of(sizes, found, layout, gauges), form
+    more = lines_of(sizes, found + unit.shift[len(unit.shift) - form :], layout, gauges)
+    return before.seen_by(gauges).plus(more), form
+
+
+def largest_of(fitted: Fitted) -> Mapping[str, float]:
+    """The largest line of each gauge by the model alone, by which deviations of the maps are counted."""
+    return fitted.unit.largest or largest_lines(fitted.calibrated.predicted, fitted.measured.layout)
+
+
+def again(fitted: Fitted, **changes: Any) -> Fitted:
+    """A fit to a unit of which other things are declared, from where the parameters were found."""
+    return fit(fitted.measured, replace(fitted.unit, **changes), position=fitted.calibrated.position)

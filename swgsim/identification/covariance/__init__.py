@@ -1,0 +1,1 @@
+"""Covariances of recordings: noise, scatter between sessions, errors of the influence map, kept as low-rank factors."""

@@ -1,0 +1,175 @@
+"""A residual with errors of known kinds: those of single recordings, and ones that recordings share.
+
+The covariance of a residual is A + G G^T. A holds the errors of every recording by itself, and maybe some of the
+others. The columns of G are errors of whole sessions (zero of a bridge, index of the angle) and directions in which
+declared parameters may lie, each scaled to one standard deviation. A residual, a signature and a prediction are all
+weighed with its inverse square root, so that what a declared parameter can absorb costs nothing and counts for nothing.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Bool, Float
+from scipy.linalg import cho_solve, cholesky, solve_triangular
+
+from swgsim.identification.covariance.recording_covariance import Alone
+
+# Common errors are left out where they make a variance larger than noise makes it by no more than this share.
+HIDDEN = 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class Covariance:
+    """A + G G^T, where A may be such a sum too: what is known of A serves all that are built on it.
+
+    Attributes
+    ----------
+    base : Alone or Covariance
+        A: errors of single recordings, and maybe some common ones.
+    G : array (row, column)
+        Common errors, or more of them, one standard deviation each.
+    """
+
+    base: "Alone | Covariance"
+    G: Float[np.ndarray, "row column"]
+
+    @property
+    def alone(self) -> Alone:
+        """Errors of single recordings."""
+        return self.base if isinstance(self.base, Alone) else self.base.alone
+
+    @property
+    def columns(self) -> Float[np.ndarray, "row column"]:
+        """All common errors, one standard deviation each."""
+        return self.G if isinstance(self.base, Alone) else np.hstack([self.base.columns, self.G])
+
+    @property
+    def variance(self) -> Float[np.ndarray, " row"]:
+        """Of the independent errors."""
+        return self.alone.variance.ravel()
+
+    @cached_property
+    def _weighed(self) -> Float[np.ndarray, "row column"]:
+        """A^-1 G."""
+        return self.base.weigh(self.G)
+
+    @cached_property
+    def _L(self) -> Float[np.ndarray, "column column"]:
+        """Lower triangular, L L' = 1 + G' A^-1 G: several times smaller than G."""
+        return cholesky(np.eye(self.G.shape[1]) + self.G.T @ self._weighed, lower=True)
+
+    @cached_property
+    def _raised(self) -> Float[np.ndarray, "column column"]:
+        """1 + L'."""
+        return np.eye(len(self._L)) + self._L.T
+
+    def whiten(self, X: np.ndarray) -> np.ndarray:
+        """W X with W covariance W' = 1, for an array (row,) or (row, column).
+
+        W = A^-1/2 (1 - G K G' A^-1) with K = (L (1 + L'))^-1, as W' W = (A + G G')^-1 then.
+        """
+        along = solve_triangular(self._L, self._weighed.T @ X, lower=True)
+        return self.base.whiten(X - self.G @ solve_triangular(self._raised, along))
+
+    def whiten_in_place(self, r: Float[np.ndarray, " row"]) -> Float[np.ndarray, " row"]:
+        """W r with W covariance W' = 1, where W is symmetric in units of the independent errors: as near to them as can
+        be, so that each number still tells of its row. Slower than :meth:`whiten`.
+        """
+        deviation = np.sqrt(self.variance)
+        scaled = np.hstack([self.alone.dense, self.columns]) / deviation[:, None]
+        eigenvalues, V = np.linalg.eigh(scaled.T @ scaled)
+        root = np.sqrt(1 + np.maximum(eigenvalues, 0))  # what rounding makes of them shrinks nothing
+        return r / deviation - scaled @ (V @ (V.T @ (scaled.T @ (r / deviation)) / (root * (1 + root))))
+
+    def weigh(self, X: np.ndarray) -> np.ndarray:
+        """P X with P the inverse of the covariance, for an array (row,) or (row, column)."""
+        return self.base.weigh(X) - self._weighed @ self._mean(X)
+
+    def precision(self, block: Bool[np.ndarray, " row"]) -> Float[np.ndarray, "block block"]:
+        """The block of P of some of the rows: of their distribution where all the others are known."""
+        common = solve_triangular(self._L, self._weighed[block].T, lower=True)
+        return self.base.precision(block) - common.T @ common
+
+    def with_columns(self, G: Float[np.ndarray, "row more"]) -> "Covariance":
+        """The covariance with further common errors."""
+        return Covariance(self, G) if G.shape[1] else self
+
+    @property
+    def log_determinant(self) -> float:
+        """Of the covariance."""
+        return self.base.log_determinant + 2 * float(np.log(np.diag(self._L)).sum())
+
+    def log_likelihood(self, r: Float[np.ndarray, " row"]) -> float:
+        """Of a residual, without the constant."""
+        white = self.whiten(r)
+        return -0.5 * (float(white @ white) + self.log_determinant)
+
+    def common_mean(self, X: np.ndarray) -> np.ndarray:
+        """The common errors (column,) that a residual (row,) tells, or each of several, in standard deviations."""
+        mean = self._mean(X)
+        return (
+            mean if isinstance(self.base, Alone) else np.concatenate([self.base.common_mean(X - self.G @ mean), mean])
+        )
+
+    def _mean(self, X: np.ndarray) -> np.ndarray:
+        """Those of G."""
+        return cho_solve((self._L, True), self._weighed.T @ X)
+
+    def features(self, chosen: Bool[np.ndarray, " feature"]) -> "Covariance":
+        """The covariance of some of the features."""
+        rows = np.tile(chosen, len(self.alone.variance))
+        return Covariance(self.base.features(chosen), self.G[rows])
+
+    def left_out(self, r: Float[np.ndarray, " row"], blocks: Sequence[Bool[np.ndarray, " row"]]) -> list["Expected"]:
+        """The rows of each block as all the other rows predict them.
+
+        With the precision P of all rows these miss r by (P_bb)^-1 (P r)_b, with the covariance (P_bb)^-1.
+        """
+        weighed = self.weigh(r)
+        return [self._left_out(r, weighed[block], block) for block in blocks]
+
+    def _left_out(
+        self, r: Float[np.ndarray, " row"], weighed: Float[np.ndarray, " block"], block: Bool[np.ndarray, " row"]
+    ) -> "Expected":
+        L = cholesky(self.precision(block), lower=True)
+        white = solve_triangular(L, weighed, lower=True)
+        missed = solve_triangular(L, white, lower=True, trans=1)
+        expected = np.array(r, copy=True)
+        expected[block] -= missed  # which tells no more than the others do
+        return Expected(missed, float(np.log(np.diag(L)).sum() - 0.5 * white @ white), self.common_mean(expected))
+
+
+def as_squares(log_likelihood: float) -> float:
+    """A gain of log-likelihood as a fall of a sum of squares: a log-likelihood is minus half of one."""
+    return 2 * log_likelihood
+
+
+def without_what_noise_hides(
+    columns: Float[np.ndarray, "row column"], variance: Float[np.ndarray, " row"]
+) -> Float[np.ndarray, "row fewer"]:
+    """As few common errors as have the same covariance, within a small share of the noise's.
+
+    Parameters
+    ----------
+    columns : array (row, column)
+        Common errors, one standard deviation each.
+    variance : array (row,)
+        Of the noise.
+    """
+    scaled = columns / np.sqrt(variance)[:, None]
+    share, V = np.linalg.eigh(scaled.T @ scaled)
+    kept = share > HIDDEN
+    return columns if kept.all() else columns @ V[:, kept]
+
+
+class Expected(NamedTuple):
+    """How rows were missed by what the others expected of them, the log-likelihood of that, and the common errors that
+    the others tell, in standard deviations.
+    """
+
+    missed: Float[np.ndarray, " block"]
+    log_likelihood: float
+    common: Float[np.ndarray, " column"]

@@ -1,0 +1,161 @@
+"""How large the errors of single recordings are: repeats tell it, or all recordings where nothing was ever repeated."""
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float
+from scipy.optimize import minimize
+
+from swgsim.identification.covariance.low_rank_covariance import Covariance
+from swgsim.identification.covariance.recording_covariance import Alone
+from swgsim.identification.covariance.scatter import DOUBT, Scatter
+
+# Logarithms of the ratio to the known one between which a standard deviation is sought: 7 and 5 times as far as the
+# stated one is doubted, so they only keep the search from numbers too small or large to compute with (estimates).
+RATIOS = (-8.0, 6.0)
+
+
+class Told(NamedTuple):
+    """What numbers with noise of covariance V say of errors, kind after kind, that move them by B; the numbers come in
+    parts, each with errors of its own.
+
+    Attributes
+    ----------
+    K : array (part, error, error)
+        B' V^-1 B.
+    F : array (part, error, column)
+        B' V^-1 X of columns X: what else may move these numbers, one standard deviation each, and the residual, last.
+    H : array (column, column)
+        X' V^-1 X of all parts together.
+    """
+
+    K: Float[np.ndarray, "part error error"]
+    F: Float[np.ndarray, "part error column"]
+    H: Float[np.ndarray, "column column"]
+
+
+def from_repeats(
+    residual: Float[np.ndarray, "recording feature"],
+    variance: Float[np.ndarray, "recording feature"],
+    directions: Float[np.ndarray, "recording feature kind"],
+    trends: Float[np.ndarray, "recording feature column"],
+    groups: Sequence[object],
+    known: Scatter,
+) -> Scatter:
+    """The standard deviations that the repeats within each group are likeliest with, given what was known before.
+
+    What all recordings have in common, or follows temperature, time or load, may be what the model lacks, and tells
+    nothing of them (restricted likelihood).
+
+    Parameters
+    ----------
+    residual : array (recording, feature)
+        Measured less predicted.
+    variance : array (recording, feature)
+        Of the white noise.
+    directions : array (recording, feature, kind)
+    trends : array (recording, feature, column)
+        Errors that are none of single recordings, one standard deviation each.
+    groups : sequence
+        Recordings of the same value are repeats of each other.
+    known : Scatter
+    """
+    contrasts, of_recording = _helmert(groups)
+    if not len(contrasts):
+        return known
+    columns = np.concatenate([trends, residual[..., None]], axis=-1)
+    told = _told(directions[of_recording], np.tensordot(contrasts, columns, axes=1), contrasts**2 @ variance)
+    return _likeliest(told, known, len(contrasts))
+
+
+def _helmert(groups: Sequence[object]) -> tuple[Float[np.ndarray, "contrast recording"], list[int]]:
+    """Contrasts of the repeats of each group, independent of each other and of the mean, and the recording of each
+    whose directions stand for it.
+    """
+    contrasts, last = [], []
+    for group in dict.fromkeys(groups):
+        rows = [i for i, each in enumerate(groups) if each == group]
+        for number in range(1, len(rows)):
+            weights = np.zeros(len(groups))
+            weights[rows[:number]] = -1 / np.sqrt(number * (number + 1))
+            weights[rows[number]] = np.sqrt(number / (number + 1))
+            contrasts.append(weights)
+            last.append(rows[number])
+    return np.reshape(contrasts, (-1, len(groups))), last
+
+
+def from_all(
+    residual: Float[np.ndarray, " row"],
+    common: Covariance,
+    directions: Float[np.ndarray, "recording feature kind"],
+    trends: Float[np.ndarray, "recording feature column"],
+    known: Scatter,
+) -> Scatter:
+    """The standard deviations that all recordings are likeliest with, given what was known before.
+
+    For recordings of which none is repeated. What the model lacks can pass for scatter here, and so weighs less.
+
+    Parameters
+    ----------
+    residual : array (row,)
+        Measured less predicted where the spreads begin; rows (recording, feature).
+    common : Covariance
+        All other errors, those of fitted parameters among them (restricted likelihood).
+    directions : array (recording, feature, kind)
+    trends : array (recording, feature, column)
+        Errors that are none of single recordings, one standard deviation each.
+    known : Scatter
+    """
+    common = common.with_columns(trends.reshape(len(residual), -1))
+    B = common.whiten(Alone(common.alone.variance, directions).dense)
+    return _likeliest(_told(B[None], common.whiten(residual)[None, :, None], np.ones((1, len(residual)))), known, 0)
+
+
+def _told(
+    B: Float[np.ndarray, "part row error"], X: Float[np.ndarray, "part row column"],
+    variance: Float[np.ndarray, "part row"],
+) -> Told:  # fmt: skip
+    """What numbers tell whose noise is independent."""
+    weighted, across = X / variance[..., None], B.transpose(0, 2, 1)
+    return Told(across @ (B / variance[..., None]), across @ weighted, np.tensordot(X, weighted, ((0, 1), (0, 1))))
+
+
+def _likeliest(told: Told, known: Scatter, contrasts: int) -> Scatter:
+    known_sd, precision = np.array(list(known.sd.values())), np.linalg.inv(known.doubt)
+    kinds = len(known_sd)
+    K, F, H = told
+    H = H + np.diag(np.append(np.ones(len(H) - 1), 0.0))
+
+    def cost(log_ratio: np.ndarray) -> tuple[float, np.ndarray]:
+        slope = precision @ log_ratio
+        total = 0.5 * float(log_ratio @ slope)
+        s = np.tile(known_sd * np.exp(log_ratio), K.shape[1] // kinds)[:, None]
+        # X' (V + B S^2 B')^-1 X of all columns, where S holds the standard deviations.
+        inner = np.linalg.inv(np.eye(len(s)) + s * K * s.T)
+        half = inner @ (s * F)
+        within = H - np.tensordot(s * F, half, ((0, 1), (0, 1)))
+        total -= 0.5 * float(np.linalg.slogdet(inner)[1].sum())
+        spread = np.linalg.inv(within[:-1, :-1])
+        left = np.append(-spread @ within[:-1, -1], 1.0)
+        total += 0.5 * float(left @ within @ left - np.linalg.slogdet(spread)[1])
+        by = np.outer(left, left)
+        by[:-1, :-1] += spread
+        of_errors = 1 - np.diagonal(inner, axis1=1, axis2=2) - (half @ by * half).sum(axis=-1)
+        return total, slope + of_errors.reshape(-1, kinds).sum(axis=0)
+
+    fitted = minimize(
+        cost, np.zeros(kinds), jac=True, method="L-BFGS-B", bounds=[RATIOS] * kinds,
+        options={"ftol": 1e-14, "gtol": 1e-6, "maxiter": 500},
+    )  # fmt: skip
+    sd = dict(zip(known.sd, (known_sd * np.exp(fitted.x)).tolist(), strict=True))
+    return Scatter(sd, known.repeats + contrasts, _doubt(lambda x: cost(x)[1], fitted.x))
+
+
+def _doubt(slope: Callable[[np.ndarray], np.ndarray], x: Float[np.ndarray, " kind"]) -> Float[np.ndarray, "kind kind"]:
+    """Inverse of the curvature (Laplace), which is at least that of what was stated."""
+    step = 1e-3
+    moved = step * np.eye(len(x))
+    curvature = np.array([(slope(x + by) - slope(x - by)) / (2 * step) for by in moved])
+    values, vectors = np.linalg.eigh((curvature + curvature.T) / 2)
+    return (vectors / np.maximum(values, 1 / DOUBT**2)) @ vectors.T

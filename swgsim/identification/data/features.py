@@ -1,0 +1,133 @@
+"""What the loop looks at: order lines of every channel over the angle of the wave generator.
+
+A recording becomes one vector: channel by channel the mean, the cosine parts and the sine parts of the orders 1 to
+ORDERS, fitted by least squares over all its samples. So neither the speed ripple nor a window that ends within a
+revolution matters, and a phase belongs to the angle, not to the time.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Complex, Float
+
+from swgsim.recordings.recording import Recording
+
+# Highest order that is compared, and highest that is fitted beside it so that it does not leak.
+ORDERS = 12
+FITTED = 16
+# Fewest samples per revolution that tell all these orders from each other.
+DENSE = 2 * FITTED + 1
+# The angle itself is what all other channels are plotted against.
+COMPARED = ("n_in", "T_in", "T_out", "s0", "s1", "s2", "s3", "s4")
+
+
+@dataclass(frozen=True)
+class Layout:
+    """What each number of a feature vector is.
+
+    Attributes
+    ----------
+    channels : tuple of str
+    """
+
+    channels: tuple[str, ...]
+
+    def __len__(self) -> int:
+        return len(self.channels) * (2 * ORDERS + 1)
+
+    @property
+    def channel(self) -> np.ndarray:
+        """Channel of each feature."""
+        return np.repeat(np.array(self.channels), 2 * ORDERS + 1)
+
+    @property
+    def order(self) -> np.ndarray:
+        """Order of each feature."""
+        one = np.concatenate([[0], np.arange(1, ORDERS + 1), np.arange(1, ORDERS + 1)])
+        return np.tile(one, len(self.channels))
+
+    def lines(self, features: Float[np.ndarray, "*batch feature"]) -> Complex[np.ndarray, "*batch channel order"]:
+        """Complex order lines of feature vectors; signal = Re(sum of lines[k] exp(i k phi))."""
+        parts = features.reshape(*features.shape[:-1], len(self.channels), 2 * ORDERS + 1)
+        lines = parts[..., : ORDERS + 1].astype(complex)
+        lines[..., 1:] -= 1j * parts[..., ORDERS + 1 :]
+        return lines
+
+    def vector(self, lines: Complex[np.ndarray, "*batch channel order"]) -> Float[np.ndarray, "*batch feature"]:
+        """Feature vectors of complex order lines."""
+        parts = along_basis(lines)
+        return parts.reshape(*parts.shape[:-2], -1)
+
+    def turning(self, features: Float[np.ndarray, "*batch feature"]) -> Float[np.ndarray, "*batch feature"]:
+        """Change of feature vectors by a radian by which the angle is taken too low."""
+        return self.vector(1j * np.arange(ORDERS + 1) * self.lines(features))
+
+
+def layout_of(recordings: Sequence[Recording]) -> Layout:
+    """The channels that all recordings have."""
+    return Layout(tuple(name for name in COMPARED if all(name in r.channels for r in recordings)))
+
+
+def basis(phi: Float[np.ndarray, "*batch time"], orders: int) -> Float[np.ndarray, "*batch time column"]:
+    """One, then cosines, then sines of the orders 1 to `orders`."""
+    turns = np.multiply.accumulate(np.repeat(np.exp(1j * phi)[..., None], orders, axis=-1), axis=-1)
+    return np.concatenate([np.ones((*phi.shape, 1)), turns.real, turns.imag], axis=-1)
+
+
+def along_basis(lines: Complex[np.ndarray, "*batch order"]) -> Float[np.ndarray, "*batch column"]:
+    """What complex order lines have along the columns of :func:`basis`; a mean is real."""
+    return np.concatenate([lines.real, -lines.imag[..., 1:]], axis=-1)
+
+
+def features(recording: Recording, layout: Layout) -> Float[np.ndarray, " feature"]:
+    """The feature vector of a recording.
+
+    Raises
+    ------
+    ValueError
+        If a revolution has too few samples for the orders that are fitted.
+    """
+    return features_alike([recording], layout)[0]
+
+
+def features_alike(recordings: Sequence[Recording], layout: Layout) -> Float[np.ndarray, "recording feature"]:
+    """The feature vectors of recordings of equal length; raises like :func:`features`."""
+    values = np.array([_values(each, layout) for each in recordings])
+    # Many runs of a model have the same motion, which decides how values become coefficients.
+    angles = {each.channels["phi_in"].tobytes(): each.channels["phi_in"] for each in recordings}
+    row = {key: number for number, key in enumerate(angles)}
+    columns = basis(np.array(list(angles.values())), FITTED)
+    across = columns.swapaxes(-1, -2)
+    kept = np.concatenate([np.arange(ORDERS + 1), FITTED + 1 + np.arange(ORDERS)])
+    fitting = np.linalg.solve(across @ columns, across)[:, kept]
+    found = fitting[[row[each.channels["phi_in"].tobytes()] for each in recordings]] @ values
+    return found.transpose(0, 2, 1).reshape(len(recordings), -1)
+
+
+def remainder(recording: Recording, layout: Layout) -> Float[np.ndarray, "channel time"]:
+    """What the integer orders up to FITTED leave of every channel; raises like :func:`features`."""
+    columns = basis(recording.channels["phi_in"], FITTED)
+    values = _values(recording, layout)
+    return (values - columns @ np.linalg.solve(columns.T @ columns, columns.T @ values)).T
+
+
+def samples_per_turn(recording: Recording) -> float:
+    """Samples per revolution of the wave generator."""
+    angle = recording.channels["phi_in"]
+    return 2 * np.pi * (len(angle) - 1) / abs(float(angle[-1] - angle[0]))
+
+
+def _require_dense(recording: Recording) -> None:
+    dense = samples_per_turn(recording)
+    if dense < DENSE:
+        enough = np.ceil(recording.rate * (DENSE + 1) / dense)
+        raise ValueError(
+            f"recording {recording.name}: {dense:.1f} samples per revolution of the wave generator, at least {DENSE} "
+            f"are needed to see the orders up to {FITTED}: sample at {enough:.0f} Hz or more, or leave this speed out"
+        )
+
+
+def _values(recording: Recording, layout: Layout) -> Float[np.ndarray, "time channel"]:
+    _require_dense(recording)
+    return np.array([recording.channels[name] for name in layout.channels]).T

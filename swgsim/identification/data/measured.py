@@ -1,0 +1,204 @@
+"""What was measured, made ready for the loop: features, situations, noise, and the errors that recordings share."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from swgsim.identification.data.features import Layout, features, layout_of
+from swgsim.identification.data.model import Situation
+from swgsim.identification.data.noise import floors, variance
+from swgsim.recordings.recording import Recording
+from swgsim.storage.gauge_set import SENSORS
+
+# Errors of a whole session, as standard deviations: zeros [N m, mV/V], gains, drifts of a zero [mV/V per hour], the
+# index of the angle [rad]. Zeros of gauges as by 5 K at 1 uV/V per K; gains as of flanges of class 0.2, and of
+# amplifiers that hold 0.03 % from day to day; drifts are an estimate for one that warms up.
+OF_SESSION = {
+    "zero of T_in": 0.003,
+    "zero of T_out": 0.2,
+    "gain of T_in": 0.002,
+    "gain of T_out": 0.002,
+    "index": 0.02,
+    **{f"zero of s{sensor}": 0.005 for sensor in range(5)},
+    **{f"gain of s{sensor}": 0.0003 for sensor in range(5)},
+    **{f"drift of s{sensor}": 0.002 for sensor in range(5)},
+}
+# Beside its drift the zero of a gauge wanders at random, as in a room that is not quite steady [mV/V per square root of
+# an hour, an estimate]. What so large a part of the variance is made of is kept; the rest is as of single recordings.
+WANDER, KEPT = 0.001, 0.95
+# Zeros that lie further off may wander more too, but at most so many times as declared, as on a noisy bench (an
+# estimate): balancing moves them once.
+MOST_WANDER = 4.0
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """Recordings as the loop sees them.
+
+    Attributes
+    ----------
+    recordings : tuple of Recording
+    layout : Layout
+    values : array (recording, feature)
+    variance : array (recording, feature)
+        Of the noise.
+    zeros : float
+        So many times as far as declared may the zeros of gauges lie, as where the bridges were balanced anew, and up to
+        MOST_WANDER times as much may they wander.
+    """
+
+    recordings: tuple[Recording, ...]
+    layout: Layout
+    values: Float[np.ndarray, "recording feature"]
+    variance: Float[np.ndarray, "recording feature"]
+    zeros: float = 1.0
+
+    @classmethod
+    def of(cls, recordings: Sequence[Recording]) -> "Measured":
+        """From recordings, with the channels that all of them have."""
+        layout = layout_of(recordings)
+        values = np.array([features(recording, layout) for recording in recordings])
+        noise = variance(recordings, layout, floors(recordings, layout))
+        return cls(tuple(recordings), layout, values, noise)
+
+    def __len__(self) -> int:
+        return len(self.recordings)
+
+    def further(
+        self, session: str, situations: Sequence[Situation], predicted: Float[np.ndarray, "situation feature"]
+    ) -> "Measured":
+        """What recordings yet to be made in a session are predicted to be, without noise."""
+        recordings = tuple(
+            Recording(f"planned {i}", "", session, each.point, 1, np.empty(0), {}, each.conditions)
+            for i, each in enumerate(situations)
+        )
+        return Measured(recordings, self.layout, predicted, 0 * predicted, self.zeros)
+
+    @cached_property
+    def situations(self) -> tuple[Situation, ...]:
+        """Distinct operating points and conditions."""
+        return tuple(dict.fromkeys(Situation(r.point, r.conditions) for r in self.recordings))
+
+    @cached_property
+    def of_recording(self) -> np.ndarray:
+        """Situation of each recording."""
+        return np.array([self.situations.index(Situation(r.point, r.conditions)) for r in self.recordings])
+
+    @cached_property
+    def turning(self) -> Float[np.ndarray, "recording feature"]:
+        """Change of what was recorded by a radian of the angle; a model's lines may lie a little elsewhere."""
+        return self.layout.turning(self.values)
+
+    @property
+    def sessions(self) -> list[str]:
+        """In the order in which they were first recorded."""
+        return list(dict.fromkeys(r.session for r in self.recordings))
+
+    @property
+    def repeats(self) -> list[object]:
+        """Session and operating point of each recording: those with the same ones are repeats of each other."""
+        return [(r.session, r.point) for r in self.recordings]
+
+    @property
+    def spare(self) -> int:
+        """Recordings beyond the first one of each: what they differ by tells noise, and 0 where nothing is repeated."""
+        return len(self) - len(set(self.repeats))
+
+    def rows(self, of_situation: Float[np.ndarray, "situation feature *column"]) -> np.ndarray:
+        """What belongs to situations, as rows (recording, feature), one below the other."""
+        whole = of_situation[self.of_recording]
+        return whole.reshape(whole.shape[0] * whole.shape[1], *whole.shape[2:])
+
+    def point_rows(self) -> list[np.ndarray]:
+        """The rows of every operating point, as masks."""
+        points = [r.point for r in self.recordings]
+        return [np.repeat([p == point for p in points], len(self.layout)) for point in dict.fromkeys(points)]
+
+    def repeat_rows(self) -> list[np.ndarray]:
+        """The rows of every recording that has repeats, as masks."""
+        repeated = [i for i, each in enumerate(self.repeats) if self.repeats.count(each) > 1]
+        return [np.repeat(np.arange(len(self)) == i, len(self.layout)) for i in repeated]
+
+    def session_columns(
+        self, predicted: Float[np.ndarray, "situation feature"], known: "Measured | None" = None
+    ) -> Float[np.ndarray, "row column"]:
+        """Errors that all recordings of a session share, one standard deviation each.
+
+        Parameters
+        ----------
+        predicted : array (situation, feature)
+        known : Measured, optional
+            Recordings of the same sessions by whose errors these are told; without them there are no others.
+        """
+        known = known or self
+        layout = self.layout
+        columns = []
+        for session in known.sessions:
+            here = self._here(session)
+            for name, sd in OF_SESSION.items():
+                kind, _, channel = name.partition(" of ")
+                if kind == "zero" and channel in SENSORS:
+                    continue  # which come last
+                own, mean = layout.channel == channel, self._mean_of(channel)
+                moved = {
+                    "index": self.turning,
+                    "zero": mean[None, :],
+                    "gain": own * predicted[self.of_recording],
+                    "drift": self._hours * mean,
+                }[kind]
+                if kind == "index" or own.any():
+                    columns.append((sd * here * moved).ravel())
+        zeros, walks = self._zeros(known)
+        return np.hstack([np.stack(columns, axis=1), self.zeros * zeros, _wandering(self.zeros) * walks])
+
+    def further_zeros(self, times: float) -> Float[np.ndarray, "row column"]:
+        """What zeros of gauges so many times as far off as declared, no nearer than now, have beyond those of
+        :meth:`session_columns`.
+        """
+        zeros, walks = self._zeros(self)
+        wandering = _wandering(times) ** 2 - _wandering(self.zeros) ** 2
+        return np.hstack([np.sqrt(times**2 - self.zeros**2) * zeros, np.sqrt(wandering) * walks])
+
+    def _zeros(self, known: "Measured") -> tuple[Float[np.ndarray, "row zero"], Float[np.ndarray, "row path"]]:
+        """Zeros of gauges in every session, and the paths by which they wander, one standard deviation each."""
+        gauges = [gauge for gauge in SENSORS if gauge in self.layout.channels]
+        zeros, walks = [np.zeros((self.values.size, 0))], [np.zeros((self.values.size, 0))]
+        for session in known.sessions:
+            here = self._here(session)
+            told = np.array([r.conditions.elapsed / 3600 for r in known.recordings if r.session == session])
+            paths = _walks(told, self._hours * here)
+            for gauge in gauges:
+                mean = self._mean_of(gauge)
+                zeros.append(OF_SESSION[f"zero of {gauge}"] * np.outer(here, mean).reshape(-1, 1))
+                walks.append(np.kron(paths, mean).T)
+        return np.hstack(zeros), np.hstack(walks)
+
+    @cached_property
+    def _hours(self) -> Float[np.ndarray, "recording 1"]:
+        """Since the session of each began."""
+        return np.array([[r.conditions.elapsed / 3600] for r in self.recordings])
+
+    def _mean_of(self, channel: str) -> Bool[np.ndarray, " feature"]:
+        """Which feature is the mean of a channel."""
+        return (self.layout.channel == channel) & (self.layout.order == 0)
+
+    def _here(self, session: str) -> Bool[np.ndarray, "recording 1"]:
+        """Whether each is of a session."""
+        return np.array([[r.session == session] for r in self.recordings])
+
+
+def _wandering(zeros: float) -> float:
+    """So many times as far as declared do the zeros of gauges wander that may lie so many times as far off."""
+    return min(zeros, MOST_WANDER)
+
+
+def _walks(told: Float[np.ndarray, " one"], hours: Float[np.ndarray, "other 1"]) -> Float[np.ndarray, "path other"]:
+    """The paths of which a random walk is made up as it is told at some times (Karhunen-Loeve), at other times."""
+    values, vectors = np.linalg.eigh(np.minimum.outer(told, told))
+    largest = np.argsort(-values)
+    beyond = np.cumsum(values[largest]) - values[largest] > KEPT * values.sum()
+    kept = largest[~beyond & (values[largest] > 0)]
+    return WANDER * (np.minimum(told, hours) @ (vectors[:, kept] / np.sqrt(values[kept]))).T

@@ -1,0 +1,83 @@
+"""The gauge chain as a forward model: features of recordings from a gear, effects and the conditions of each one."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.chain.chain import SECTORS, Run, distinct, simulate_turns
+from swgsim.gear.conditions import Conditions
+from swgsim.effects.base import Effect, overrides
+from swgsim.gear.gear import Gear, OperatingPoint
+from swgsim.chain.influence import lobes
+from swgsim.identification.data.features import Layout, features_alike
+from swgsim.identification.data.unit_lines import Lines, OwnLines
+
+# Samples per revolution; the highest order that is fitted needs more than twice its number.
+POINTS = 64
+# Recordings whose features are found at once: as many as a cache of the processor holds.
+AT_ONCE = 64
+
+
+@dataclass(frozen=True)
+class Situation:
+    """An operating point and the conditions under which something was recorded there."""
+
+    point: OperatingPoint
+    conditions: Conditions
+
+
+@dataclass(frozen=True)
+class Model:
+    """A gear with the effects that are known of it.
+
+    Attributes
+    ----------
+    gear : Gear
+    effects : tuple of Effect
+    own_lines : Lines or None
+        Where the lines of this gear lie off the chain's, as commissioning found them.
+    """
+
+    gear: Gear
+    effects: tuple[Effect, ...] = ()
+    own_lines: Lines | None = None
+
+    def run(self, situation: Situation) -> Run:
+        """The run of the chain in a situation."""
+        run = Run(self.gear, situation.point, self.effects, conditions=situation.conditions)
+        if self.own_lines is None:
+            return run
+        gear = run.affected_gear
+        moving = tuple(effect for effect in run.acting if overrides(effect, "wave_generator"))
+        stroke = lobes(gear.wave_generator, gear.flex_spline.radius, moving) if moving else 1.0
+        return replace(run, effects=(OwnLines(self.own_lines, gear.gauges, stroke), *self.effects))
+
+    def plus(self, *effects: Effect) -> "Model":
+        """The model with more effects."""
+        return replace(self, effects=(*self.effects, *effects))
+
+    def without(self, number: int) -> "Model":
+        """The model without one of its effects."""
+        return replace(self, effects=self.effects[:number] + self.effects[number + 1 :])
+
+
+def predict(
+    models: Sequence[Model], situations: Sequence[Situation], layout: Layout, sectors: int = SECTORS
+) -> Float[np.ndarray, "model situation feature"]:
+    """Features of every situation by every model, all in one go: what runs have in common is computed once."""
+    runs = [m.run(s) for m in models for s in situations]
+    _, row = distinct([_key(run) for run in runs])
+    _, first = np.unique(row, return_index=True)
+    recordings = simulate_turns([runs[i] for i in first], revolutions=1, points=POINTS, sectors=sectors)
+    some = (recordings[i : i + AT_ONCE] for i in range(0, len(recordings), AT_ONCE))
+    found = np.concatenate([features_alike(each, layout) for each in some])
+    return found[row].reshape(len(models), len(situations), len(layout))
+
+
+def _key(run: Run) -> tuple:
+    """All that a run of the chain depends on; the conditions only where an effect looks at them while recording."""
+    acting = run.acting
+    seeing = any(overrides(e, "gauge", "acquisition") for e in acting if not isinstance(e, OwnLines))
+    return run.gear, acting, run.point, run.conditions if seeing else None

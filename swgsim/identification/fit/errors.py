@@ -1,0 +1,118 @@
+"""Errors of a model on what it was fitted to and on what was left out, and the noise floor of repeats.
+
+Zeros and gains of sessions, and what is left open of the gear, are no error of a model. They are taken out, where the
+other operating points, or recordings, tell that the best model has them, of this model and of that before it, which
+would hide in them what it lacks.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.identification.covariance.low_rank_covariance import Expected
+from swgsim.identification.data.measured import Measured
+from swgsim.identification.fit.fitted import Fitted
+
+
+@dataclass(frozen=True, eq=False)
+class Errors:
+    """Errors of a model in every recording and channel, root mean square of the signal, in the channel's unit.
+
+    Attributes
+    ----------
+    fitted : Fitted
+    best : Fitted
+        Of which the nuisance is taken that is no error.
+    """
+
+    fitted: Fitted
+    best: Fitted
+
+    @cached_property
+    def fit(self) -> Float[np.ndarray, "recording channel"]:
+        """Of what the model was fitted to."""
+        return self._of(self.fitted.residual, self.best.nuisance)
+
+    @cached_property
+    def repeats(self) -> Float[np.ndarray, "recording channel"]:
+        """Of every recording by the model fitted to all others, its repeats among them; NaN where it has none."""
+        nuisance = self.best.nuisance_by(self.best.by_other_recordings)
+        return self._of(_left_out(self.fitted, self.fitted.by_other_recordings), nuisance)
+
+    @cached_property
+    def heldout(self) -> Float[np.ndarray, "recording channel"]:
+        """Of every operating point by the model fitted to the others; NaN if there is one only."""
+        return self._of(_left_out(self.fitted, self.fitted.by_others), self.best.nuisance)
+
+    def _of(
+        self, missed: Float[np.ndarray, " row"], nuisance: Float[np.ndarray, " row"]
+    ) -> Float[np.ndarray, "recording channel"]:
+        return per_recording(self.fitted.measured, missed - nuisance)
+
+
+def of_points_left_out(fitted: Fitted) -> Float[np.ndarray, " point"]:
+    """Root mean square error of every operating point, by the model fitted to the others, in units of the noise."""
+    weighed = _left_out(fitted, fitted.by_others) ** 2 / fitted.errors.variance
+    return np.array([np.sqrt(weighed[block].mean()) for block in fitted.measured.point_rows()])
+
+
+def _left_out(fitted: Fitted, told: Sequence[tuple[np.ndarray, Expected]]) -> Float[np.ndarray, " row"]:
+    """Errors of every block of rows by the model fitted to all others; NaN in no block."""
+    missed = np.full(len(fitted.residual), np.nan)
+    for block, expected in told:
+        parameters = expected.common[len(expected.common) - len(fitted.parameters) :]
+        missed[block] = fitted.from_start[block] - fitted.J[block] @ parameters
+    return missed
+
+
+def repeat_noise(measured: Measured) -> Float[np.ndarray, "recording feature"] | None:
+    """What repeats of the same operating point differ by, as large as noise is by which they do; None where nothing was
+    repeated.
+    """
+    if not measured.spare:
+        return None
+    deviations = np.zeros(measured.values.shape)
+    for group in dict.fromkeys(measured.repeats):
+        rows = [i for i, each in enumerate(measured.repeats) if each == group]
+        deviations[rows] = measured.values[rows] - measured.values[rows].mean(axis=0)
+    return deviations * np.sqrt(len(measured) / measured.spare)
+
+
+def noise_floor(measured: Measured) -> Float[np.ndarray, " channel"]:
+    """Root mean square of what repeats differ by; NaN where nothing was repeated."""
+    noise = repeat_noise(measured)
+    return per_channel(measured, np.full(measured.values.size, np.nan) if noise is None else noise.ravel())
+
+
+def relative(measured: Measured, error: Float[np.ndarray, "*recording channel"]) -> float:
+    """Root mean square over channels, and recordings that have an error, of errors as shares of the channel's own root
+    mean square; NaN where none is known.
+    """
+    return rms(error / per_channel(measured, measured.values.ravel()))
+
+
+def rms(error: np.ndarray) -> float:
+    """Root mean square of what is known; NaN where nothing is."""
+    known = error[np.isfinite(error)]
+    return float(np.sqrt(np.mean(known**2))) if known.size else np.nan
+
+
+def size(measured: Measured) -> Float[np.ndarray, " channel"]:
+    """How much there is to explain: the ripple of every channel, without its mean."""
+    ripple = measured.values * (measured.layout.order > 0)
+    return per_channel(measured, ripple.ravel())
+
+
+def per_channel(measured: Measured, rows: Float[np.ndarray, " row"]) -> Float[np.ndarray, " channel"]:
+    """Root mean square over recordings of the signal that feature rows stand for."""
+    return np.sqrt((per_recording(measured, rows) ** 2).mean(axis=0))
+
+
+def per_recording(measured: Measured, rows: Float[np.ndarray, " row"]) -> Float[np.ndarray, "recording channel"]:
+    """Root mean square of the signal that feature rows stand for."""
+    squares = (rows.reshape(measured.values.shape) ** 2) * np.where(measured.layout.order == 0, 1.0, 0.5)
+    channels = squares.reshape(len(measured), len(measured.layout.channels), -1)
+    return np.sqrt(channels.sum(axis=2))

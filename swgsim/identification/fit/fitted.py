@@ -1,0 +1,266 @@
+"""A model as fitted to recordings: its parameters, the errors of single recordings, and what stays unexplained."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.effects.base import Effect
+from swgsim.identification.covariance.low_rank_covariance import Covariance, Expected, without_what_noise_hides
+from swgsim.identification.covariance.scatter import Scatter
+from swgsim.identification.data.measured import Measured
+from swgsim.identification.data.model import Model
+from swgsim.identification.fit.map_fit import Calibrated
+from swgsim.identification.fit.priors import Declared
+from swgsim.identification.fit.unit import Unit
+
+# Where bridges were balanced anew their zeros lie so many times as far as declared, if that is likelier by so much.
+BALANCED, LIKELIER_BALANCED = (2.0, 4.0, 8.0, 16.0), 3.0
+
+
+class Allowed(NamedTuple):
+    """What is open beside the unit, one standard deviation each.
+
+    Attributes
+    ----------
+    free : array (row, regularity)
+        Regularities that were set free, and imperfect forms without which an effect is not seen.
+    forms : array (row, form)
+        By what effects found earlier may differ from the library's form.
+    """
+
+    free: Float[np.ndarray, "row regularity"]
+    forms: Float[np.ndarray, "row form"]
+
+    @classmethod
+    def nothing(cls, rows: int) -> "Allowed":
+        """So many rows without columns."""
+        return cls(np.zeros((rows, 0)), np.zeros((rows, 0)))
+
+    @property
+    def columns(self) -> Float[np.ndarray, "row column"]:
+        """All of them."""
+        return np.hstack(self)
+
+
+@dataclass(frozen=True, eq=False)
+class Fitted:
+    """A model calibrated to what was measured.
+
+    Attributes
+    ----------
+    measured : Measured
+    unit : Unit
+    parameters : mapping
+        What was fitted, with its spread.
+    calibrated : Calibrated
+    scatter : Scatter
+    errors : Covariance
+        Noise, errors of single recordings and of sessions; rows (recording, feature).
+    open : array (row, direction)
+        What the unit leaves open beside the fitted parameters (:meth:`Unit.left_open`), one standard deviation each.
+    offset : array (row,)
+        Where commissioning found the recordings beside the model, by what is not in it: frictions, lags, zeros.
+    allowed : Allowed
+    """
+
+    measured: Measured
+    unit: Unit
+    parameters: dict[str, Declared]
+    calibrated: Calibrated
+    scatter: Scatter
+    errors: Covariance
+    open: Float[np.ndarray, "row direction"]
+    offset: Float[np.ndarray, " row"]
+    allowed: Allowed
+
+    @property
+    def model(self) -> Model:
+        """The model at its likeliest parameters."""
+        return self.calibrated.model
+
+    @property
+    def added(self) -> tuple[Effect, ...]:
+        """The effects that the model has beyond the unit's."""
+        return self.model.effects[len(self.unit.model.effects) :]
+
+    @property
+    def declared(self) -> dict[str, Declared]:
+        """The fitted parameters that are the unit's own; none once it is commissioned."""
+        return {name: parameter for name, parameter in self.parameters.items() if ": " not in name}
+
+    @property
+    def position_of_unit(self) -> dict[str, float]:
+        """Deviation of the unit's parameters from their declared values, in spreads."""
+        return {name: self.calibrated.position[name] for name in self.declared}
+
+    @property
+    def strict(self) -> "Fitted":
+        """The same without what effects and regularities found earlier leave open, for predictions."""
+        return self._with_allowed(Allowed.nothing(len(self.offset)))
+
+    @property
+    def closed(self) -> "Fitted":
+        """The same with the form of effects closed, for a fit that may move them."""
+        return self._with_allowed(self.allowed._replace(forms=self.allowed.forms[:, :0]))
+
+    def allowing(self, columns: Float[np.ndarray, "row column"]) -> "Fitted":
+        """The same with more left open, one standard deviation each, also when effects are added to it; other columns
+        may stand for these, as few as noise leaves different.
+        """
+        return self._with_allowed(self.allowed._replace(free=self._with_more(self.allowed.free, columns)))
+
+    def allowing_forms(self, columns: Float[np.ndarray, "row column"]) -> "Fitted":
+        """The same of the form of effects."""
+        return self._with_allowed(self.allowed._replace(forms=self._with_more(self.allowed.forms, columns)))
+
+    def _with_more(
+        self, known: Float[np.ndarray, "row known"], columns: Float[np.ndarray, "row column"]
+    ) -> Float[np.ndarray, "row all"]:
+        return np.hstack([known, without_what_noise_hides(columns, self.errors.variance)])
+
+    def _with_allowed(self, allowed: Allowed) -> "Fitted":
+        if [columns.shape for columns in allowed] == [columns.shape for columns in self.allowed]:
+            return self  # columns come, or go all at once
+        found = replace(self, allowed=allowed)
+        vars(found)["of_unit"] = self.of_unit  # the same, and most of what there is to compute
+        return found
+
+    def scattering(self, scatter: Scatter) -> "Fitted":
+        """The same with other errors of single recordings."""
+        ratio = np.array(list(scatter.sd.values())) / np.array(list(self.scatter.sd.values()))
+        alone = replace(self.errors.alone, C=self.errors.alone.C * ratio)
+        return replace(self, scatter=scatter, errors=replace(self.errors, base=alone))
+
+    def with_zeros(self, times: float) -> "Fitted":
+        """The same with the zeros of gauges so many times as far off as declared.
+
+        The columns keep their order, by which predictions know them.
+        """
+        if times == self.measured.zeros:
+            return self
+        measured = replace(self.measured, zeros=times)
+        errors = replace(self.errors, G=measured.session_columns(self.calibrated.predicted))
+        return replace(self, measured=measured, errors=errors)
+
+    @cached_property
+    def balanced(self) -> "Fitted":
+        """The same with the zeros of gauges as far off as is likeliest; as they are if that is hardly likelier."""
+        likely = {self.measured.zeros: self.log_likelihood + LIKELIER_BALANCED}
+        for times in BALANCED:
+            if times > self.measured.zeros:
+                wider = self.whole.with_columns(self.measured.further_zeros(times))
+                likely[times] = wider.log_likelihood(self.from_start)
+        return self.with_zeros(max(likely, key=likely.__getitem__))
+
+    @cached_property
+    def residual(self) -> Float[np.ndarray, " row"]:
+        """Measured less predicted at the likeliest parameters."""
+        return self.measured.values.ravel() - self.offset - self.measured.rows(self.calibrated.predicted)
+
+    @cached_property
+    def J(self) -> Float[np.ndarray, "row parameter"]:
+        """Change by one spread of each fitted parameter."""
+        return self.measured.rows(self.calibrated.J).reshape(len(self.errors.variance), len(self.parameters))
+
+    @cached_property
+    def of_unit(self) -> Covariance:
+        """All errors, with what the unit leaves open."""
+        return self.errors.with_columns(self.open)
+
+    @property
+    def of_nuisances(self) -> Covariance:
+        """All errors, with everything open beside the fitted parameters."""
+        return self.of_unit.with_columns(self.allowed.columns)
+
+    @cached_property
+    def whole(self) -> Covariance:
+        """All errors, with everything open that the model does not know exactly."""
+        return self.of_nuisances.with_columns(self.J)
+
+    @property
+    def from_start(self) -> Float[np.ndarray, " row"]:
+        """Residual of the linearised model at the values where the spreads begin: what :attr:`whole` describes."""
+        return self.residual + self.J @ np.array(list(self.calibrated.position.values()))
+
+    @cached_property
+    def by_others(self) -> list[tuple[np.ndarray, Expected]]:
+        """The rows of every operating point (a mask) and what all the others say of them; none if there is one only."""
+        blocks = self.measured.point_rows()
+        return self._told(blocks) if len(blocks) > 1 else []
+
+    @cached_property
+    def by_other_recordings(self) -> list[tuple[np.ndarray, Expected]]:
+        """The same of every recording that has repeats."""
+        return self._told(self.measured.repeat_rows())
+
+    def _told(self, blocks: Sequence[np.ndarray]) -> list[tuple[np.ndarray, Expected]]:
+        return list(zip(blocks, self.whole.left_out(self.from_start, blocks), strict=True))
+
+    @cached_property
+    def nuisance(self) -> Float[np.ndarray, " row"]:
+        """What all that is open beside the fitted parameters makes of every operating point, as all the others tell it:
+        zeros and gains of sessions, the gear, effects found earlier; nothing if there is one point only.
+        """
+        return self.nuisance_by(self.by_others)
+
+    def nuisance_by(self, told: Sequence[tuple[np.ndarray, Expected]]) -> Float[np.ndarray, " row"]:
+        """The same of other blocks of rows, as all rows outside each tell it; nothing in no block."""
+        made, columns = np.zeros(len(self.residual)), self.of_nuisances.columns
+        for block, expected in told:
+            made[block] = columns[block] @ expected.common[: columns.shape[1]]
+        return made
+
+    @property
+    def missed(self) -> Float[np.ndarray, "recording feature"]:
+        """Residual weighed by what is declared of it, in standard deviations."""
+        return self.whole.whiten_in_place(self.from_start).reshape(self.measured.values.shape)
+
+    @property
+    def misfit(self) -> dict[str, float]:
+        """Mean square of every channel's residual in units of what is declared of it: 1 where the model is right."""
+        layout = self.measured.layout
+        square = (self.missed**2).mean(axis=0)
+        return {channel: float(square[layout.channel == channel].mean()) for channel in layout.channels}
+
+    @cached_property
+    def deviation(self) -> dict[str, float]:
+        """Standard deviation of each fitted parameter, in its unit."""
+        # The form tolerance of an effect is no doubt about its own size.
+        columns = self.of_unit.whiten(self.J)
+        covariance = np.linalg.inv(columns.T @ columns + np.eye(columns.shape[1]))
+        spread = np.sqrt(np.diag(covariance)).tolist()
+        return {name: s * p.sd for (name, p), s in zip(self.parameters.items(), spread, strict=True)}
+
+    @cached_property
+    def weighed(self) -> Float[np.ndarray, " row"]:
+        """Residual of the linearised model, weighed by the inverse of its covariance."""
+        return self.whole.weigh(self.from_start)
+
+    def null(self, draws: int, rng: np.random.Generator) -> Iterator[Float[np.ndarray, "row draw"]]:
+        """What pure noise makes of :attr:`weighed`, so many draws at a time, without end.
+
+        The errors of single recordings are in each draw as large as their estimate leaves them; all others are as
+        declared.
+        """
+        alone, G = self.whole.alone, self.whole.columns
+        deviation = np.sqrt(self.whole.variance)[:, None]
+        while True:
+            factors = np.tile(self.scatter.drawn(rng, draws), (len(self.measured), 1))
+            noise = deviation * rng.standard_normal((len(G), draws))
+            single = alone.made(factors * rng.standard_normal(factors.shape))
+            yield self.whole.weigh(noise + single + G @ rng.standard_normal((G.shape[1], draws)))
+
+    @cached_property
+    def log_likelihood(self) -> float:
+        """Of all recordings together, everything that is not known exactly being open within its spread."""
+        return self.whole.log_likelihood(self.from_start)
+
+    @cached_property
+    def predictive(self) -> Float[np.ndarray, " point"]:
+        """Log-likelihood of every operating point as predicted from all the others; of all if there is one only."""
+        expected = [expected.log_likelihood for _, expected in self.by_others]
+        return np.array(expected or [self.log_likelihood])

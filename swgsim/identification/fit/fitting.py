@@ -1,0 +1,155 @@
+"""Fit of what is not known of a model to recordings, in turns with the errors of single recordings."""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from swgsim.effects.base import Effect
+from swgsim.identification.covariance import repeats, scatter
+from swgsim.identification.covariance.low_rank_covariance import Covariance
+from swgsim.identification.covariance.recording_covariance import Alone
+from swgsim.identification.covariance.scatter import Scatter
+from swgsim.identification.data.measured import Measured
+from swgsim.identification.data.model import Model
+from swgsim.identification.fit.fitted import Allowed, Fitted
+from swgsim.identification.fit.map_fit import Calibrated, calibrate, linearised
+from swgsim.identification.fit.priors import Declared, at, of_effects
+from swgsim.identification.fit.unit import Unit
+
+# A parameter of a unit that was fitted so many spreads from its declared value was bent by what the model lacks, if a
+# channel is still missed by so many times what is declared of it (mean squares), which is no matter of noise.
+BENT, MISFIT = 5.0, 10.0
+# Turns at most; they end where the errors of single recordings that parameters were fitted beside cost less than this
+# over those estimated then [nat per recording]: one kind that is a third too small or large costs as much (estimates).
+TURNS, NEAR = 4, 0.1
+# Turns where nothing was repeated: what the model lacks passes for such errors then, and more turns go astray with it.
+UNREPEATED = 2
+
+
+def fit(
+    measured: Measured,
+    unit: Unit,
+    model: Model | None = None,
+    *,
+    position: Mapping[str, float] | None = None,
+    allowed: Allowed | None = None,
+    held: Collection[str] = (),
+    guess: Scatter | None = None,
+    turns: int = TURNS,
+) -> Fitted:
+    """Fit what is not known, and estimate the errors of single recordings, in turns.
+
+    Parameters
+    ----------
+    measured : Measured
+    unit : Unit
+    model : Model, optional
+        The unit's with further effects, which are fitted along.
+    position : mapping, optional
+        Where parameters begin, in spreads.
+    allowed : Allowed, optional
+    held : collection of str
+        Parameters of the unit that are not fitted but stay where they begin.
+    guess : Scatter, optional
+        Errors of single recordings that repeats told beside another model.
+    turns : int
+        So many at most; where nothing was repeated, fewer.
+    """
+    begin = dict(position or {})
+    start = at(model or unit.model, unit.declared, {name: begin.pop(name) for name in held})
+    parameters = {} if unit.commissioned else {name: p for name, p in unit.declared.items() if name not in held}
+    parameters = parameters | of_effects(start, unit.of_another_structure)
+    known = unit.scatter.carried if unit.scatter else Scatter.stated(measured.layout)
+    fixed = _Fixed(measured, unit, start, parameters, known, allowed or Allowed.nothing(measured.values.size))
+    guess = guess if guess and fixed.told else known
+    for _ in range(turns if fixed.told else min(turns, UNREPEATED)):
+        found = _turn(fixed, begin, guess)
+        near = found.errors.alone.divergence(found.scattering(guess).errors.alone) < NEAR
+        if near and found.calibrated.settled:
+            break
+        begin, guess = found.calibrated.position, found.scatter
+    return found
+
+
+class _Fixed(NamedTuple):
+    """What is the same in all turns of a fit: ``start`` is its model where parameters are counted from, ``known`` the
+    errors of single recordings as they were known before it.
+    """
+
+    measured: Measured
+    unit: Unit
+    start: Model
+    parameters: dict[str, Declared]
+    known: Scatter
+    allowed: Allowed
+
+    @property
+    def told(self) -> bool:
+        """Whether repeats tell the errors of single recordings, these ones or those of the commissioning."""
+        return self.unit.scatter is not None or self.measured.spare > 0
+
+
+def _turn(fixed: _Fixed, begin: Mapping[str, float], guess: Scatter) -> Fitted:
+    """Parameters fitted beside guessed errors of single recordings, and these errors estimated anew; how either acts is
+    taken from the model where the parameters begin [spreads].
+    """
+    measured, unit, here = fixed.measured, fixed.unit, at(fixed.start, fixed.parameters, begin)
+    noise = unit.inflated(measured.variance)
+    moves = scatter.of_recordings(here, measured)
+    unsure = unit.left_open(here, measured.situations, measured.layout)
+    offset, left = measured.rows(unsure.shift), measured.rows(unsure.columns)
+    more = np.hstack([left, *fixed.allowed])
+    of_sessions = measured.session_columns(unsure.predicted)
+    values = measured.values - offset.reshape(measured.values.shape)
+    calibrated = calibrate(
+        fixed.start, fixed.parameters, values,
+        Covariance(Alone(noise, guess.columns(moves)), of_sessions).with_columns(more),
+        measured.situations, measured.of_recording, measured.layout, begin,
+    )  # fmt: skip
+    residual = values - calibrated.predicted[measured.of_recording]
+    trends = scatter.trends(moves, [measured.situations[i] for i in measured.of_recording], measured.layout)
+    if fixed.told:
+        estimated = repeats.from_repeats(residual, noise, moves, trends, measured.repeats, fixed.known)
+    else:
+        J = measured.rows(calibrated.J).reshape(residual.size, -1)
+        common = Covariance(Alone.white(noise), np.hstack([of_sessions, more, J]))
+        from_start = residual.ravel() + J @ np.array(list(calibrated.position.values()))
+        estimated = repeats.from_all(from_start, common, moves, trends, fixed.known)
+    errors = Covariance(Alone(noise, estimated.columns(moves)), of_sessions)
+    return Fitted(
+        measured, unit, fixed.parameters, calibrated, estimated,
+        errors=errors, open=left, offset=offset, allowed=fixed.allowed,
+    )  # fmt: skip
+
+
+def unbent(now: Fitted) -> Fitted:
+    """A fit, for the search of effects: at the declared values of the unit if it was bent beyond belief without them.
+
+    Beside a bent model, an effect that is far from linear, such as clipping, looks quite unlike what it is. The errors
+    of single recordings stay as they were estimated with it.
+    """
+    bent = max((abs(by) for by in now.position_of_unit.values()), default=0.0) > BENT
+    if not bent or max(now.misfit.values()) < MISFIT:
+        return now
+    start = now.unit.model.plus(*now.added)
+    declared = linearised(start, now.parameters, now.measured.situations, now.measured.layout)
+    return replace(now, calibrated=Calibrated(start, dict.fromkeys(now.parameters, 0.0), *declared, settled=True))
+
+
+def extended(now: Fitted, added: Sequence[Effect]) -> Fitted:
+    """A fit with further effects, which are fitted along; those it has begin where they were found.
+
+    What is left open of their form is so only once all have moved without: else it would hold them where they lay
+    without the further ones, which then contradict themselves.
+    """
+    model = now.unit.model.plus(*now.added, *added)
+    # Parameters of effects are counted from where the effects are, so only the unit's keep their position.
+    position = now.position_of_unit
+    if added and now.allowed.forms.any():
+        ahead = fit(
+            now.measured, now.unit, model, position=position, allowed=now.closed.allowed, guess=now.scatter, turns=1
+        )
+        position = ahead.calibrated.position
+    return fit(now.measured, now.unit, model, position=position, allowed=now.allowed, guess=now.scatter)

@@ -1,0 +1,187 @@
+"""Fit of the parameters that a model declares, as likely as their spread allows."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+from scipy.optimize import brentq, lsq_linear
+
+from swgsim.identification.covariance.low_rank_covariance import Covariance
+from swgsim.identification.data.features import Layout
+from swgsim.identification.data.model import Model, Situation, predict
+from swgsim.identification.fit.priors import Declared, at
+
+# Gauss-Newton: fall of the cost below which it rests, and at most so many steps, each of at most so many spreads.
+SETTLED, STEPS, LONGEST = 0.05, 24, 5.0
+# The next steps are half as long where the cost fell by less than the first share of what was expected, as the model is
+# not linear, and twice as long where it fell by more than the second. What makes them shorter is damping, which bends
+# them along curved valleys.
+LITTLE, MUCH = 0.25, 0.75
+# A line that is no gear's.
+NOWHERE = 1e9
+# Difference for the derivatives, in spreads or scales; small against a nonlinearity, large against rounding.
+DIFFERENCE = 0.01
+
+
+@dataclass(frozen=True)
+class Calibrated:
+    """A model at its likeliest parameters.
+
+    Attributes
+    ----------
+    model : Model
+    position : mapping
+        Parameter to its deviation from where the fit began, in units of its spread.
+    predicted : array (situation, feature)
+    J : array (situation, feature, parameter)
+        Change by one spread of each parameter.
+    settled : bool
+        Whether the fit came to rest.
+    """
+
+    model: Model
+    position: dict[str, float]
+    predicted: Float[np.ndarray, "situation feature"]
+    J: Float[np.ndarray, "situation feature parameter"]
+    settled: bool
+
+
+def linearised(
+    model: Model, parameters: Mapping[str, Declared], situations: Sequence[Situation], layout: Layout
+) -> tuple[Float[np.ndarray, "situation feature"], Float[np.ndarray, "situation feature parameter"]]:
+    """Prediction of a model, and its change by one spread of each parameter."""
+    models, moved = [model], []
+    for parameter in parameters.values():
+        value, by = parameter.value(model), DIFFERENCE * min(1.0, parameter.scale / parameter.sd)
+        moved.append(by if value + by * parameter.sd <= parameter.high else -by)
+        models.append(parameter.at(model, value + moved[-1] * parameter.sd))
+    found = predict(models, situations, layout)
+    changes = (found[1:] - found[0]) / np.array(moved)[:, None, None]
+    return found[0], np.moveaxis(changes, 0, -1)
+
+
+def calibrate(
+    start: Model,
+    parameters: Mapping[str, Declared],
+    measured: Float[np.ndarray, "recording feature"],
+    errors: Covariance,
+    situations: Sequence[Situation],
+    of_recording: np.ndarray,
+    layout: Layout,
+    position: Mapping[str, float] | None = None,
+) -> Calibrated:
+    """The likeliest parameters of a model.
+
+    Parameters
+    ----------
+    start : Model
+        Where the spreads are counted from.
+    parameters : mapping
+        What is fitted, with its spread.
+    measured : array (recording, feature)
+    errors : Covariance
+        All errors and what is open beside the parameters, rows (recording, feature).
+    situations : sequence of Situation
+    of_recording : array (recording,)
+        Which situation belongs to each recording.
+    layout : Layout
+    position : mapping, optional
+        Where to begin, in spreads.
+    """
+    names = list(parameters)
+    if not names:
+        return Calibrated(start, {}, *linearised(start, parameters, situations, layout), True)
+    low, high = _bounds(start, parameters)
+    here = np.clip([(position or {}).get(name, 0.0) for name in names], low, high)
+
+    def model_at(there: Float[np.ndarray, " parameter"]) -> Model:
+        return at(start, parameters, dict(zip(names, there.tolist(), strict=True)))
+
+    def missed(
+        predicted: Float[np.ndarray, "situation feature"], there: Float[np.ndarray, " parameter"]
+    ) -> tuple[Float[np.ndarray, " row"], float]:
+        r = errors.whiten((measured - predicted[of_recording]).ravel())
+        return r, float(r @ r + there @ there)
+
+    model = model_at(here)
+    predicted, J = linearised(model, parameters, situations, layout)
+    r, cost = missed(predicted, here)
+    length, settled = 1.0, False
+    for _ in range(STEPS):
+        columns = errors.whiten(J[of_recording].reshape(-1, len(here)))
+        curvature, slope = columns.T @ columns + np.eye(len(here)), columns.T @ r - here
+        # What still misses by many times what is declared tells its parameters no better than that.
+        little = SETTLED * max(1.0, cost / len(r))
+        room = low - here, high - here
+        while True:
+            step = _step(curvature, slope, room, length)
+            expected = float(step @ (2 * slope - curvature @ step))
+            there = model_at(here + step)
+            predicted_there = _predicted(there, situations, layout)
+            r_there, cost_there = missed(predicted_there, here + step)
+            if cost_there <= cost or not expected >= little:  # nor is it a number
+                break
+            length /= 2  # uphill, as the model is not linear, or where nothing turns steadily
+        fell = cost - cost_there
+        settled = bool(fell < little * length or expected < little)
+        if fell >= 0:
+            model, here, predicted, r, cost = there, here + step, predicted_there, r_there, cost_there
+        if settled or not fell >= 0:
+            break
+        length *= 0.5 if fell < LITTLE * expected else 2.0 if fell > MUCH * expected and length < 1 else 1.0
+        try:
+            J = linearised(model, parameters, situations, layout)[1]
+        except RuntimeError:  # hardly anything turns steadily there
+            settled = False
+            break
+    return Calibrated(model, dict(zip(names, here.tolist(), strict=True)), predicted, J, settled)
+
+
+def _predicted(model: Model, situations: Sequence[Situation], layout: Layout) -> Float[np.ndarray, "situation feature"]:
+    """What a model predicts; worse than anything where it has no steady state."""
+    try:
+        return predict([model], situations, layout)[0]
+    except RuntimeError:
+        return np.full((len(situations), len(layout)), NOWHERE)
+
+
+def _bounds(start: Model, parameters: Mapping[str, Declared]) -> tuple[np.ndarray, np.ndarray]:
+    """Bounds of the parameters, in spreads about where the fit began."""
+    low = [(p.low - p.value(start)) / p.sd for p in parameters.values()]
+    high = [(p.high - p.value(start)) / p.sd for p in parameters.values()]
+    return np.array(low), np.array(high)
+
+
+def _step(
+    curvature: Float[np.ndarray, "parameter parameter"],
+    slope: Float[np.ndarray, " parameter"],
+    room: tuple[Float[np.ndarray, " parameter"], Float[np.ndarray, " parameter"]],
+    share: float,
+) -> Float[np.ndarray, " parameter"]:
+    """The step of Gauss-Newton, damped to a share of its length and of the longest (Levenberg, Marquardt)."""
+
+    def damped(by: float) -> Float[np.ndarray, " parameter"]:
+        return _least(curvature + by * np.eye(len(slope)), slope, room)
+
+    full = damped(0.0)
+    size = float(np.abs(full).max())
+    longest = share * min(size, LONGEST)
+    if size <= longest:
+        return full
+    most = 2 * float(np.linalg.norm(slope)) / longest  # makes it half as long, or less
+    return damped(brentq(lambda by: float(np.abs(damped(by)).max()) - longest, 0.0, most, rtol=1e-3))
+
+
+def _least(
+    curvature: Float[np.ndarray, "parameter parameter"],
+    slope: Float[np.ndarray, " parameter"],
+    room: tuple[Float[np.ndarray, " parameter"], Float[np.ndarray, " parameter"]],
+) -> Float[np.ndarray, " parameter"]:
+    """The step to the least cost within the bounds; a parameter at its bound leaves the others free to follow."""
+    free = np.linalg.solve(curvature, slope)
+    if np.all((room[0] <= free) & (free <= room[1])):
+        return free
+    root = np.linalg.cholesky(curvature).T
+    bounds = room[0] - 1e-12, room[1] + 1e-12
+    return lsq_linear(root, np.linalg.solve(root.T, slope), bounds, method="bvls").x

@@ -1,0 +1,272 @@
+"""The spectrum of recordings between the integer orders, in units of the noise."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Bool, Complex, Float
+from scipy.stats import f
+
+from swgsim.common.singular import svd
+from swgsim.effects.base import Effect, Scene
+from swgsim.effects.quantity import Role, quantities
+from swgsim.identification.data.features import FITTED, Layout, basis
+from swgsim.identification.data.noise import GUARD, Floor, floors, step_of
+from swgsim.recordings.recording import CHANNELS, Recording
+from swgsim.storage.gauge_set import SENSORS
+
+# Share of a pattern that must lie between the orders, and of its largest direction; less is rounding.
+SEEN = 1e-3
+# Samples per revolution at which patterns are computed; more than twice the orders that are fitted.
+SAMPLES = 48
+# The noise beside a line is that of so many lines of the spectrum to either side.
+BESIDE = 6
+# The noise beside a line is what was estimated of all lines together, as so many numbers would say it.
+ALL_TOGETHER = 20
+# Orders close to which circular spline and flex spline beat: 2 in the torque, which lobes make 0 and 4 in gauges.
+BEATING = (0, 2, 4)
+# Part of a direction that a line must hold to be one of its lines.
+HELD = 0.05
+
+# Of one line, or of many.
+Sums = float | Float[np.ndarray, "*line"]
+
+
+class Explained(NamedTuple):
+    """What an effect explains of one recording.
+
+    ``gain``, a sum of squares in units of the noise, by so many numbers of ``freedom``; at its own size it would bring
+    ``size``. ``rest`` is the sum of squares of what is left beside its lines, in ``beside`` numbers.
+    """
+
+    gain: float
+    freedom: int
+    size: float
+    rest: float
+    beside: float
+
+
+@dataclass(frozen=True, eq=False)
+class Between:
+    """The spectrum between the orders of one recording, every gauge in units of its noise.
+
+    Attributes
+    ----------
+    scene : Scene
+    gauges : tuple of str
+    scale : array (gauge, line)
+        What turns a line of the spectrum into units of the noise.
+    orders : array (time, column)
+        Orthonormal basis of the orders that were fitted, with a drift and beats.
+    revolutions : float
+        Of the wave generator, as measured: line k lies at the order k / revolutions.
+    clear : array (line,)
+        Lines that no integer order leaks into.
+    left : array (number,)
+        Real and imaginary parts of all lines of what the orders leave; 0 where they leak.
+    taken : array (number, direction)
+        Orthonormal directions of what was taken out: the ends of slow noise, and what was found already.
+    """
+
+    scene: Scene
+    gauges: tuple[str, ...]
+    scale: Float[np.ndarray, "gauge line"]
+    orders: Float[np.ndarray, "time column"]
+    revolutions: float
+    clear: Bool[np.ndarray, " line"]
+    left: Float[np.ndarray, " number"]
+    taken: Float[np.ndarray, "number direction"]
+
+    @classmethod
+    def of(cls, recording: Recording, gauges: tuple[str, ...], noise: Sequence[Floor], N: int | None) -> "Between":
+        """Of a recording whose gauges have these floors, of a gear of this ratio."""
+        step = max(1, int(recording.rate * 60 / recording.point.n_in_rpm / SAMPLES))
+        length = len(recording.time) // step * step
+        # Patterns are narrow-band: fewer samples hold them as well.
+        scene = scene_of(recording, slice(0, length, step))
+        angle = scene.phi_in
+        revolutions = abs(float(angle[-1] - angle[0])) / (2 * np.pi) * len(angle) / (len(angle) - 1)
+        # The mean, and lines beyond the orders that were fitted, say nothing.
+        lines = np.arange(1, int(np.ceil(FITTED * revolutions)))
+        frequency = lines * recording.rate / length
+        rounding = [_rounding(recording.channels[gauge], floor) for gauge, floor in zip(gauges, noise, strict=True)]
+        variance = [floor.at(frequency) / (2 * length) + own for floor, own in zip(noise, rounding, strict=True)]
+        order = lines / revolutions
+        clear = np.abs(order - np.round(order)) * revolutions > GUARD
+        scale = 1 / np.sqrt(np.maximum(variance, 1e-300))
+        bare = cls(
+            scene,
+            gauges,
+            scale,
+            np.linalg.qr(ordinary(scene, N))[0],
+            revolutions,
+            clear,
+            np.zeros(2 * scale.size),
+            np.empty((2 * scale.size, 0)),
+        )
+        whole = scene_of(recording)
+        signals = [np.array([recording.channels[gauge] for gauge in gauges]), *_ends(whole, noise)]
+        beside = _without(np.array(signals), np.linalg.qr(ordinary(whole, N))[0])
+        left, *ends = bare._numbers(bare._lines(beside[..., :length]))
+        # Each is of another gauge, in units of its own noise.
+        return replace(bare, left=left)._taking(np.transpose([end / np.linalg.norm(end) for end in ends]))
+
+    @property
+    def step(self) -> float:
+        """Distance of two lines of the spectrum [Hz]."""
+        time = self.scene.time
+        return 1 / (len(time) * (time[1] - time[0]))
+
+    @property
+    def power(self) -> Float[np.ndarray, "gauge line"]:
+        """Sum of squares of every line; of noise, 2 on average where it is clear."""
+        return (self.left**2).reshape(2, *self.scale.shape).sum(axis=0)
+
+    def pattern(self, effect: Effect) -> Float[np.ndarray, "column number"]:
+        """What an effect can look like, whatever its random phases; a direction that the orders took is left out."""
+        seen = shapes(effect, self.scene, self.gauges)
+        lines = self._lines(seen)
+        between = self._numbers(lines - (seen @ self.orders) @ self._of_orders * self.scale)
+        between = between - (between @ self.taken) @ self.taken.T
+        whole = np.linalg.norm(lines, axis=(-2, -1)).max()
+        return between if np.linalg.norm(between, axis=-1).max() > SEEN * whole else np.zeros_like(between)
+
+    def explained(self, effect: Effect) -> Explained:
+        """What an effect explains of this recording."""
+        pattern = self.pattern(effect)
+        U = _directions(pattern)
+        along = U.T @ self.left
+        holds = (U**2).sum(axis=1).reshape(-1, self.scale.shape[1]).sum(axis=0) > HELD
+        near = np.convolve(holds, np.ones(2 * BESIDE + 1), "same") > 0
+        beside = np.tile(near & self.clear, 2 * len(self.gauges))
+        rest = (self.left - U @ along)[beside]
+        count = beside.sum() - (U[beside] ** 2).sum() - (self.taken[beside] ** 2).sum()
+        size = float((pattern[0] ** 2).sum())
+        return Explained(float(along @ along), U.shape[1], size, float(rest @ rest), float(count))
+
+    def held(self, effects: Sequence[Effect]) -> float:
+        """Sum of squares of what these effects may have put there."""
+        along = self._span(effects).T @ self.left
+        return float(along @ along)
+
+    def without(self, effects: Sequence[Effect]) -> "Between":
+        """The spectrum without anything that these effects may have put there."""
+        return self._taking(self._span(effects))
+
+    def _span(self, effects: Sequence[Effect]) -> Float[np.ndarray, "number rank"]:
+        return _directions(np.concatenate([self.pattern(effect) for effect in effects]))
+
+    def _taking(self, U: Float[np.ndarray, "number direction"]) -> "Between":
+        return replace(self, left=self.left - U @ (U.T @ self.left), taken=np.hstack([self.taken, U]))
+
+    @cached_property
+    def _of_orders(self) -> Complex[np.ndarray, "column line"]:
+        """Spectrum of the basis of the orders: to take them out of a spectrum costs less than another transform."""
+        return _spectrum(self.orders.T)[:, : self.scale.shape[1]]
+
+    def _numbers(self, lines: Complex[np.ndarray, "column gauge line"]) -> Float[np.ndarray, "column number"]:
+        """Clear lines of a spectrum in units of the noise, real parts before imaginary ones."""
+        flat = (lines * self.clear).reshape(len(lines), -1)
+        return np.concatenate([flat.real, flat.imag], axis=-1)
+
+    def _lines(self, signals: Float[np.ndarray, "column gauge time"]) -> Complex[np.ndarray, "column gauge line"]:
+        """The spectrum of signals in units of the noise; a gauge that is silent costs nothing."""
+        lines = np.zeros((*signals.shape[:2], self.scale.shape[1]), complex)
+        loud = signals.any(axis=(0, 2))
+        lines[:, loud] = _spectrum(signals[:, loud])[..., : lines.shape[2]] * self.scale[loud]
+        return lines
+
+
+def between(recordings: Sequence[Recording], N: int | None = None) -> list[Between]:
+    """What lies between the orders of every recording; nothing if they have no gauge in common.
+
+    Parameters
+    ----------
+    recordings : sequence of Recording
+    N : int, optional
+        Ratio of their gear, whose circular spline beats with its flex spline; None: nothing does.
+    """
+    gauges = tuple(sensor for sensor in SENSORS if all(sensor in r.channels for r in recordings))
+    noise = floors(recordings, Layout(gauges)) if gauges else []
+    return [Between.of(recording, gauges, noise, N) for recording in recordings] if gauges else []
+
+
+def by_luck(gain: Sums, freedom: Sums, rest: Sums, beside: Sums) -> tuple[Sums, Sums]:
+    """The noise at a line, in units of the floor, and the probability that it explains as much as the line does.
+
+    The floor holds for the whole spectrum; beside a line the noise may be higher, and is never taken for lower. Given
+    are sums over recordings of what :class:`Explained` holds.
+    """
+    noise = np.maximum(1.0, (rest + ALL_TOGETHER) / (beside + ALL_TOGETHER))
+    return noise, f.sf(gain / noise / freedom, freedom, beside + ALL_TOGETHER)
+
+
+def scene_of(recording: Recording, samples: slice = slice(None)) -> Scene:
+    """What effects see of a recording, its time from 0."""
+    angle = recording.channels["phi_in"][samples]
+    load = recording.channels.get("T_out")
+    held = np.full(len(angle), float(recording.point.T_out)) if load is None else load[samples]
+    time = recording.time[samples] - recording.time[0]
+    return Scene(time, angle, held, recording.point, recording.conditions)
+
+
+def ordinary(scene: Scene, N: int | None = None) -> Float[np.ndarray, "time column"]:
+    """The orders that are fitted; a straight line over time, whose ends would leak into the whole spectrum; and, of a
+    gear of ratio N, what turns with its circular spline, close to some of them.
+    """
+    time, phi = scene.time, scene.phi_in
+    beats = [] if N is None else [phi * abs(order - 2 / (N + 1)) for order in BEATING]
+    waves = [wave(angle) for angle in beats for wave in (np.cos, np.sin)]
+    return np.column_stack([basis(phi, FITTED), (time - time.mean()) / float(np.ptp(time)), *waves])
+
+
+def shapes(effect: Effect, scene: Scene, gauges: tuple[str, ...]) -> Float[np.ndarray, "variant gauge time"]:
+    """What an effect can put on silent gauges: sums of these, whatever its random phases."""
+    random = [name for name, q in quantities(type(effect)).items() if q.role is Role.RANDOM]
+    phases = [dict.fromkeys(random, 0.0)]
+    phases += [{n: np.pi if n == name else 0.0 for n in random} for name in random[1:]]
+    phases += [{n: np.pi / 2 if n == name else 0.0 for n in random} for name in random]
+    return np.array([_alone(replace(effect, **each), scene, gauges) for each in phases])
+
+
+def _alone(effect: Effect, scene: Scene, gauges: tuple[str, ...]) -> Float[np.ndarray, "gauge time"]:
+    """What an effect puts on silent gauges."""
+    effect = effect.at(scene.point, scene.conditions)
+    signals = effect.gauge(np.zeros((len(SENSORS), len(scene.time))), scene)
+    others = dict.fromkeys(CHANNELS, np.zeros(len(scene.time)))
+    channels = effect.acquisition(others | dict(zip(SENSORS, signals, strict=True)), scene)
+    return np.array([channels[gauge] for gauge in gauges])
+
+
+def _ends(scene: Scene, noise: Sequence[Floor]) -> Float[np.ndarray, "gauge gauge time"]:
+    """What the ends of a recording make of slow noise, gauge by gauge.
+
+    A spectrum goes on at the end where it began, so the step from the one to the other rings in all its lines, alike,
+    and would pass for a line between them. It dies away as the noise forgets; without it the lines are independent.
+    """
+    fading = [np.exp(-2 * np.pi * floor.corner * scene.time) for floor in noise]
+    return np.eye(len(noise))[:, :, None] * np.array(fading)[:, None]
+
+
+def _spectrum(signals: Float[np.ndarray, "*any time"]) -> Complex[np.ndarray, "*any line"]:
+    """Lines from the first one on."""
+    return np.fft.rfft(signals, axis=-1)[..., 1:] / signals.shape[-1]
+
+
+def _without(signals: Float[np.ndarray, "*any time"], Q: Float[np.ndarray, "time column"]) -> np.ndarray:
+    """Signals without their part along orthonormal columns."""
+    return signals - (signals @ Q) @ Q.T
+
+
+def _rounding(values: Float[np.ndarray, " time"], noise: Floor) -> float:
+    """Variance of the lines that rounding by a converter makes, of half a step at most; noise makes it noise too."""
+    step = step_of(values)
+    return step**2 / 32 if np.sqrt(noise.white) < step / 2 else 0.0
+
+
+def _directions(pattern: Float[np.ndarray, "column number"]) -> Float[np.ndarray, "number rank"]:
+    """Orthonormal directions of a pattern."""
+    U, s, _ = svd(pattern.T)
+    return U[:, s > SEEN * s[0]] if s[0] > 0 else U[:, :0]

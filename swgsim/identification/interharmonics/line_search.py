@@ -1,0 +1,138 @@
+"""What lies between the orders: effects with a name and lines without one, the strongest first, and recordings without
+them. A strong line leaks into the orders, and there would pass for something else in every recording.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.common.singular import svd
+from swgsim.effects.base import Effect
+from swgsim.identification.fit.form_error import OUTDONE, OUTDONE_SHARE
+from swgsim.identification.interharmonics.interharmonic_spectrum import Between, ordinary, scene_of, shapes
+from swgsim.identification.interharmonics.named_interharmonics import Sideline, nearby, ranked
+from swgsim.identification.interharmonics.unattributed_lines import Unnamed, unnamed
+from swgsim.recordings.recording import Recording
+from swgsim.storage.gauge_set import SENSORS
+
+# Lines that are found at most, with a name or without.
+MOST = 4
+# Shapes below this share of the largest one are rounding; above the other one they are seen as well as it.
+ROUNDING, WELL_SEEN = 1e-3, 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class LinesBetween:
+    """What was found between the orders.
+
+    Attributes
+    ----------
+    named : tuple of Sideline
+    unnamed : tuple of Unnamed
+    left : tuple of Between
+        The spectra without it.
+    effects : tuple of Effect
+        All that it may have put on the signals.
+    """
+
+    named: tuple[Sideline, ...]
+    unnamed: tuple[Unnamed, ...]
+    left: tuple[Between, ...]
+    effects: tuple[Effect, ...]
+
+    def taking_out(self, effects: Sequence[Effect]) -> "LinesBetween":
+        """The same without what these effects may have put there."""
+        return replace(self, left=tuple(each.without(effects) for each in self.left), effects=(*self.effects, *effects))
+
+
+def search(
+    spectra: Sequence[Between], kinds: Iterable[type[Effect]], level: float, known: Sequence[Effect] = ()
+) -> LinesBetween:
+    """Lines between the orders, one after the other as long as one is too unlikely to be luck.
+
+    Parameters
+    ----------
+    spectra : sequence of Between
+        Of all recordings.
+    kinds : iterable of effect classes
+    level : float
+        Probability of a false one.
+    known : sequence of Effect
+        Declared effects, which are taken out first.
+    """
+    found = LinesBetween((), (), tuple(spectra), ())
+    for effect in known if spectra else ():
+        found = found.taking_out(nearby(effect, spectra))
+    sought = list(kinds)
+    while len(found.named) + len(found.unnamed) < MOST:
+        likely = ranked(found.left, sought)
+        best = next((line for line in likely[:1] if line.chance <= level and line.holds), None)
+        bare = unnamed(found.left, level)
+        if bare and (best is None or bare.explained > (1 + OUTDONE_SHARE) * best.explained + OUTDONE):
+            coupled = (line for line in likely if line.chance <= level and line.holds and _in_parts(line))
+            best = next((line for line in coupled if _explains(line, bare, found.left)), None)
+        if best:
+            found = replace(found, named=(*found.named, best)).taking_out(_near(best, spectra))
+            sought = [kind for kind in sought if _in_parts(best) or kind is not type(best.effect)]
+        elif bare:
+            found = replace(found, unnamed=(*found.unnamed, bare)).taking_out(bare.effects(spectra[0].gauges))
+        else:
+            break
+    return found
+
+
+def _in_parts(line: Sideline) -> bool:
+    """Whether its place tells the cause, and not how it is spread over the gauges."""
+    return len(line.effect.parts()) > 1
+
+
+def _explains(line: Sideline, bare: Unnamed, left: Sequence[Between]) -> bool:
+    """Whether the parts of an effect, each of any size, explain what a line without a name does."""
+    explained = sum(each.held(_near(line, left)) for each in left) - bare.noise
+    return bare.explained <= (1 + OUTDONE_SHARE) * explained + OUTDONE
+
+
+def _near(line: Sideline, spectra: Sequence[Between]) -> list[Effect]:
+    """All that may be there where an effect is."""
+    return [part for each in nearby(line.effect, spectra) for part in each.parts()]
+
+
+def cleaned(recording: Recording, effects: Sequence[Effect], N: int | None = None) -> Recording:
+    """A recording without what effects between the orders may have put on its gauges.
+
+    Parameters
+    ----------
+    recording : Recording
+    effects : sequence of Effect
+        Their sizes and random phases mean nothing.
+    N : int, optional
+        Ratio of the gear, as :func:`~swgsim.identification.interharmonics.interharmonic_spectrum.between` was given it.
+    """
+    scene, channels = scene_of(recording), recording.channels
+    gauges = tuple(sensor for sensor in SENSORS if sensor in channels)
+    seen = np.concatenate([shapes(effect, scene, gauges) for effect in effects])
+    orders = ordinary(scene, N)
+    clean = {name: channels[name] - _part(channels[name], seen[:, i].T, orders) for i, name in enumerate(gauges)}
+    return replace(recording, channels={**channels, **clean})
+
+
+def _part(
+    signal: Float[np.ndarray, " time"], seen: Float[np.ndarray, "time shape"], orders: Float[np.ndarray, "time column"]
+) -> Float[np.ndarray, " time"]:
+    """The part of a signal that shapes explain beside the orders.
+
+    Shapes that the orders nearly hold, such as those of order 12.01, or that nearly hold one another, are told apart by
+    noise alone: least squares would give them any size. None is taken to be larger than those that are seen well are.
+    """
+    Q = np.linalg.qr(orders)[0]
+    left, beside = (each - Q @ (Q.T @ each) for each in (signal, seen))
+    U, s, V = svd(beside)
+    shown = s > ROUNDING * max(float(s[0]), 1e-300)
+    U, s, V = U[:, shown], s[shown], V[shown]
+    along = U.T @ left
+    noise = (left @ left - along @ along) / (len(left) - orders.shape[1] - len(s))
+    well = s > WELL_SEEN * s[:1]
+    power = np.mean((along[well] / s[well]) ** 2) if len(s) else 1.0
+    return seen @ (V.T @ (along * s / (s**2 + noise / max(power, 1e-300))))

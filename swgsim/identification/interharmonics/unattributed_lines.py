@@ -1,0 +1,151 @@
+"""Lines between the integer orders that no effect of the library explains: at one order, or at one frequency."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.effects.line_between import FixedFrequency, FractionalOrder, LineBetween
+from swgsim.identification.data.features import FITTED
+from swgsim.identification.interharmonics.interharmonic_spectrum import BESIDE, Between, by_luck
+from swgsim.identification.interharmonics.line_pattern import Part, line_parts
+
+KINDS = ("order", "frequency")
+# Times that the distance of the places that are tried is halved.
+ZOOMS = 3
+# Lines to either side that may hold a part of a line between them.
+SPILLED = 1
+
+
+@dataclass(frozen=True)
+class Unnamed:
+    """A line that stands out of the noise.
+
+    Attributes
+    ----------
+    kind : str
+        Of :data:`KINDS`: an order of the wave generator, or a frequency.
+    at : float
+        Where it lies [-] or [Hz].
+    chance : float
+        Of as much by noise anywhere.
+    explained : float
+        Sum of squares that it explains beyond the noise beside it, in units of the floor.
+    reach : float
+        To which its place is known.
+    noise : float
+        Sum of squares that the noise beside it makes of its numbers, in units of the floor.
+    parts : tuple of Part
+        Its pattern over the gauges and its law; several if no pattern explains it.
+    """
+
+    kind: str
+    at: float
+    chance: float
+    explained: float
+    reach: float
+    noise: float
+    parts: tuple[Part, ...] = ()
+
+    def effects(self, gauges: Sequence[str]) -> list[LineBetween]:
+        """Whatever it may be in these gauges, its place being known to its reach."""
+        places = self.at + self.reach * np.array([-1.0, 0.0, 1.0])
+        return [line for place in places.tolist() for line in self._in(gauges, place)]
+
+    def told(self, spectra: Sequence[Between], level: float) -> "Unnamed":
+        """The line with its parts, where a gauge is a false one with this probability."""
+        make = partial(_line, self.kind, self.at)
+        return replace(self, parts=line_parts(make, spectra, level))
+
+    def refined(self, spectra: Sequence[Between]) -> "Unnamed":
+        """The line where it explains most, no longer at a place of the grid, between two of which it loses half."""
+        found = self
+        for _ in range(ZOOMS):
+            near = [found._at(float(found.at + found.reach * step), spectra) for step in (-1.0, -0.5, 0.0, 0.5, 1.0)]
+            found = replace(max(near, key=lambda line: line.explained), reach=found.reach / 2)
+        return found
+
+    def _at(self, place: float, spectra: Sequence[Between]) -> "Unnamed":
+        held = sum(each.held(self._in(each.gauges, place)) for each in spectra)
+        return replace(self, at=place, explained=float(held - self.noise))
+
+    def _in(self, gauges: Sequence[str], place: float) -> list[LineBetween]:
+        """The line at a place, of its own in each of these gauges."""
+        return [_line(self.kind, place, f"in {gauge} alone") for gauge in gauges]
+
+    def __str__(self) -> str:
+        where = f"order {self.at:.2f}" if self.kind == "order" else f"{self.at:.1f} Hz"
+        return f"a line at {where} with another phase in every recording{self._of_parts}"
+
+    @property
+    def _of_parts(self) -> str:
+        if len(self.parts) < 2:
+            return "".join(f", {part}" for part in self.parts)
+        first, *others = (f"{part}".replace(" alone", "", 1) for part in self.parts)
+        further = " and ".join(each.partition(",")[0] for each in others)
+        return f", {first}; smaller, and in no simple pattern with it, {further}"
+
+
+def _line(kind: str, place: float, pattern: str) -> LineBetween:
+    """A line of a size at which it is easily told from rounding."""
+    if kind == "order":
+        return FractionalOrder(1.0, pattern=pattern, order=place)
+    return FixedFrequency(1.0, pattern=pattern, frequency=place)
+
+
+def unnamed(spectra: Sequence[Between], level: float) -> Unnamed | None:
+    """Of the lines that are too unlikely to be luck, the one that explains most, if there is any.
+
+    Parameters
+    ----------
+    spectra : sequence of Between
+        Without what is explained.
+    level : float
+        Probability of a false one.
+    """
+    found = [line for kind in KINDS for line in _best(spectra, kind, level)] if spectra else []
+    best = max(found, key=lambda line: line.explained, default=None)
+    return best.refined(spectra).told(spectra, level) if best else None
+
+
+def _best(spectra: Sequence[Between], kind: str, level: float) -> list[Unnamed]:
+    """The best line at one order, or at one frequency; none if all may be luck, or no place is clear in most.
+
+    The noise beside a line holds what leaks from it, so it tells that a strong line is none, and not which is stronger.
+    """
+    steps = [each.step if kind == "frequency" else 1 / each.revolutions for each in spectra]
+    end = FITTED * max(1.0 if kind == "order" else each.revolutions * each.step for each in spectra)
+    grid = np.arange(min(steps), end, min(steps) / 2)
+    gain, freedom, rest, beside, seen = np.zeros((5, len(grid)))
+    for each, step in zip(spectra, steps, strict=True):
+        line = np.round(grid / step).astype(int) - 1
+        there = (line >= 0) & (line < len(each.clear))
+        there[there] = each.clear[line[there]]
+        power, numbers = each.power.sum(axis=0), 2.0 * len(each.gauges) * each.clear
+        gain[there] += power[line[there]]
+        freedom[there] += numbers[line[there]]
+        rest[there] += _beside(power)[line[there]]
+        beside[there] += _beside(numbers)[line[there]]
+        seen += there
+    tried = np.flatnonzero(seen > len(spectra) / 2)
+    if not len(tried):
+        return []
+    gain, freedom, rest, beside = (each[tried] for each in (gain, freedom, rest, beside))
+    noise, luck = by_luck(gain, freedom, rest, beside)
+    chances = np.minimum(1.0, len(tried) * len(KINDS) * luck)
+    by_noise = noise * freedom
+    explained = np.where(chances <= level, gain - by_noise, -np.inf)
+    most = int(np.argmax(explained))
+    if chances[most] > level:
+        return []
+    known = float(chances[most]), float(explained[most]), min(steps) / 2, float(by_noise[most])
+    return [Unnamed(kind, float(grid[tried[most]]), *known)]
+
+
+def _beside(lines: Float[np.ndarray, " line"]) -> Float[np.ndarray, " line"]:
+    """Sum over the lines to both sides of each, without those that may hold a part of it."""
+    window = np.ones(2 * BESIDE + 1)
+    window[BESIDE - SPILLED : BESIDE + SPILLED + 1] = 0
+    return np.convolve(np.pad(lines, BESIDE), window, "valid")

@@ -1,0 +1,238 @@
+"""Pictures of the answer: the residual before and after, the scores, the errors, the parameters.
+
+All curves are of the chain at the printed parameters; a commissioned gear's include the lines that commissioning found.
+What the recordings say of zeros and gains of a session, and of what is left open of the gear, is taken out.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+from matplotlib.figure import Figure
+
+from swgsim.common import style
+from swgsim.identification.report.answer import Answer
+from swgsim.identification.fit.errors import repeat_noise
+from swgsim.identification.data.features import ORDERS, basis
+from swgsim.identification.fit.fitted import Fitted
+from swgsim.identification.search.shortlist import ALPHA
+from swgsim.common.numbers import NORMAL
+from swgsim.identification.report.prediction_errors import WHAT
+from swgsim.identification.data.measured import Measured
+from swgsim.recordings.recording import CHANNELS
+from swgsim.storage.gauge_set import SENSORS
+
+BEFORE, AFTER, FLOOR, GREY = "#D55E00", "#0072B2", "#000000", "#bbbbbb"
+POINTS = 360
+
+
+def pictures(answer: Answer, report: Mapping[str, Any]) -> dict[str, tuple[style.Picture, Figure]]:
+    """All pictures by their names.
+
+    Parameters
+    ----------
+    answer : Answer
+    report : mapping
+        As :func:`swgsim.identification.report.report_fields.report` makes it.
+    """
+    drawn = {
+        "residual_over_angle": (
+            "Residual over one revolution of the wave generator",
+            "Measured less predicted, the mean of the repeats at the operating point where the model without the found "
+            "effects is wrong most; zeros of the session and what is left open of the gear are taken out. Look at "
+            "orange turning into blue: what is left should lie within the grey band, two standard deviations of what "
+            "noise and the errors of single recordings do to it.",
+            over_angle(answer),
+        ),
+        "residual_spectrum": (
+            "Residual over the orders of the wave generator",
+            "Root mean square over all recordings of every order line. Where blue is down at the black line, the noise "
+            "floor by repeats, the model explains all that can be explained; order 0 is the mean of the channel.",
+            spectrum(answer),
+        ),
+        "scores": (
+            "Score of every effect of the library in the first search",
+            "How much of the residual's sum of squares, in units of the noise, an effect of this kind would explain "
+            "beside the declared parameters. Orange: more than luck in a search of this extent. Grey: absorbed, these "
+            "recordings cannot show it. A long bar alone proves nothing: neighbours imitate one another, and only the "
+            "effect that also predicts operating points left out is accepted.",
+            scores(report),
+        ),
+        "errors": (
+            "Error before and after",
+            "Of what was fitted, of repeats left out and of operating points left out, channel by channel, as a share "
+            "of the channel's root mean square. The black lines are the noise floor by repeats, below which no model "
+            "comes but by luck.",
+            errors(report),
+        ),
+    }
+    if answer.closed.after.declared:
+        drawn["parameters"] = (
+            "Declared parameters",
+            "Deviation from the nominal value in units of the spread over a series, with intervals that hold the true "
+            "value in 95 of 100 cases. Names in orange moved by more than two standard deviations when the effect was "
+            "added: calibration had bent them to hide what was missing.",
+            parameters(answer, report),
+        )
+    return {
+        name: (style.Picture(title, caption, style.png(figure)), figure)
+        for name, (title, caption, figure) in drawn.items()
+    }
+
+
+def over_angle(answer: Answer) -> Figure:
+    """Residual of every gauge over the angle, before and after; of the other channels if there is no gauge."""
+    before, after = answer.closed.before, answer.closed.after
+    measured = before.measured
+    channels = measured.layout.channels
+    shown = [i for i, name in enumerate(channels) if name in SENSORS] or list(range(len(channels)))
+    rows = worst(before, after)
+    psi = np.linspace(0, 2 * np.pi, POINTS)
+    noise = _of_mean(before, rows)
+    picture = style.figure(11, 2.1 * len(shown))
+    all_axes = np.atleast_1d(picture.subplots(len(shown), 1, sharex=True))
+    for axes, i in zip(all_axes, shown, strict=True):
+        band = 2 * np.linalg.norm(basis(psi, ORDERS) @ _of_channel(noise, i), axis=1)
+        axes.fill_between(np.rad2deg(psi), -band, band, color="#dddddd", label="noise")
+        for fitted, colour, name in ((before, BEFORE, "before"), (after, AFTER, "after")):
+            mean = (fitted.residual - after.nuisance).reshape(measured.values.shape)[rows].mean(axis=0)
+            axes.plot(np.rad2deg(psi), basis(psi, ORDERS) @ _of_channel(mean, i), color=colour, label=name)
+        style.label(axes, "", f"{channels[i]} [{CHANNELS[channels[i]].unit}]")
+    point = measured.recordings[rows[0]].point
+    all_axes[0].set_title(f"{point.n_in_rpm:g} rpm, {point.T_out:g} N m", loc="left", fontsize=10)
+    all_axes[-1].set_xlabel("angle of the wave generator [degrees]")
+    all_axes[-1].set_xticks(range(0, 361, 45))
+    picture.legend(*all_axes[0].get_legend_handles_labels(), ncols=3, loc="outside upper center")
+    return picture
+
+
+def worst(fitted: Fitted, after: Fitted) -> list[int]:
+    """The recordings of the operating point at which a model is wrong most, in units of the noise."""
+    measured = fitted.measured
+    white = ((fitted.residual - after.nuisance) / np.sqrt(fitted.errors.variance)).reshape(measured.values.shape)
+    gauges = np.isin(measured.layout.channel, SENSORS)
+    size = (white[:, gauges if gauges.any() else slice(None)] ** 2).sum(axis=1)
+    points = [recording.point for recording in measured.recordings]
+    groups = [[i for i, each in enumerate(points) if each == point] for point in dict.fromkeys(points)]
+    return max(groups, key=lambda rows: float(size[rows].mean()))
+
+
+def _of_mean(fitted: Fitted, rows: Sequence[int]) -> Float[np.ndarray, "feature column"]:
+    """Errors of the mean of some recordings that are theirs alone, one standard deviation each."""
+    measured = fitted.measured
+    white = np.diag(np.sqrt(measured.variance[rows].mean(axis=0) / len(rows)))
+    return np.hstack([white, *fitted.errors.alone.C[rows] / len(rows)])
+
+
+def _of_channel(features: np.ndarray, i: int) -> np.ndarray:
+    """The rows of one channel, of an array (feature,) or (feature, column)."""
+    return features.reshape(-1, 2 * ORDERS + 1, *features.shape[1:])[i]
+
+
+def spectrum(answer: Answer) -> Figure:
+    """Residual of every order line of every channel before and after, with the noise floor as a line."""
+    before, after = answer.closed.before, answer.closed.after
+    measured = before.measured
+    channels = measured.layout.channels
+    rows = -(-len(channels) // 2)
+    picture = style.figure(11, 2.3 * rows)
+    panels = picture.subplots(rows, 2, sharex=True, squeeze=False).ravel()
+    orders = np.arange(ORDERS + 1)
+    floor = repeat_lines(measured)
+    for i, (axes, name) in enumerate(zip(panels, channels, strict=False)):
+        for fitted, colour, label, side in ((before, BEFORE, "before", -0.2), (after, AFTER, "after", 0.2)):
+            residual = (fitted.residual - after.nuisance).reshape(measured.values.shape)
+            axes.bar(orders + side, lines(measured, residual)[i], 0.4, color=colour, label=label)
+        if floor is not None:
+            axes.step(orders, floor[i], where="mid", color=FLOOR, linewidth=1.6, label="noise floor by repeats")
+        axes.set_yscale("log")
+        style.label(axes, "", f"{name} [{CHANNELS[name].unit}]")
+    for axes in panels[len(channels) :]:
+        axes.set_visible(False)
+    for axes in panels[max(len(channels) - 2, 0) : len(channels)]:
+        axes.set_xlabel("order of the wave generator")
+        axes.tick_params(labelbottom=True)
+    picture.legend(*panels[0].get_legend_handles_labels(), ncols=3, loc="outside upper center")
+    return picture
+
+
+def lines(measured: Measured, rows: Float[np.ndarray, "recording feature"]) -> Float[np.ndarray, "channel order"]:
+    """Root mean square over recordings of the size of every order line."""
+    return np.sqrt((np.abs(measured.layout.lines(rows)) ** 2).mean(axis=0))
+
+
+def repeat_lines(measured: Measured) -> Float[np.ndarray, "channel order"] | None:
+    """What repeats differ by in every order line; None where nothing was repeated."""
+    noise = repeat_noise(measured)
+    return None if noise is None else lines(measured, noise)
+
+
+def scores(report: Mapping[str, Any]) -> Figure:
+    """Score of every effect, those that stand out in colour, those absorbed in grey."""
+    absorbed = {each["name"] for each in report["absorbed"]}
+    found = [score for score in report["scores"] if score["name"] not in absorbed]
+    found = sorted(found, key=lambda score: score["score"])
+    names = sorted(absorbed, reverse=True) + [score["name"] for score in found]
+    picture = style.figure(9.5, 1.0 + 0.19 * len(names))
+    axes = picture.subplots()
+    shortest = 0.1
+    for place in range(len(absorbed)):
+        axes.text(shortest * 1.15, place, "cannot be tested", color="#777777", fontsize=7, va="center")
+    for place, score in enumerate(found, len(absorbed)):
+        colour = BEFORE if score["chance"] <= ALPHA else "#56B4E9"
+        axes.barh(place, max(score["score"], shortest) - shortest, left=shortest, color=colour, height=0.75)
+    axes.set_yticks(range(len(names)), [style.words(name) for name in names], fontsize=7.5)
+    for place, tick in enumerate(axes.get_yticklabels()):
+        tick.set_color(GREY if place < len(absorbed) else "#000000")
+    axes.set_xscale("log")
+    axes.set_xlim(left=shortest)
+    axes.set_ylim(-0.7, len(names) - 0.3)
+    style.label(axes, "score: fall of the residual's sum of squares [noise variance]", "")
+    return picture
+
+
+def errors(report: Mapping[str, Any]) -> Figure:
+    """Error of every channel before and after, of what was fitted and left out, with the noise floor as a line."""
+    per_channel = report["error"]["per_channel"]
+    picture = style.figure(12, 3.8)
+    panels = picture.subplots(1, len(WHAT), sharey=True)
+    titles = ("recordings that were fitted", "repeats left out", "operating points left out")
+    for axes, what, title in zip(panels, WHAT, titles, strict=True):
+        for i, each in enumerate(per_channel.values()):
+            share = 100 / each["root_mean_square"]
+            for when, colour, side in (("before", BEFORE, -0.2), ("after", AFTER, 0.2)):
+                if each[when][what] is not None:
+                    label = when if i == 0 else None
+                    axes.bar(i + side, share * each[when][what], 0.4, color=colour, label=label)
+            if each["noise_floor"] is not None:
+                label = "noise floor by repeats" if i == 0 else None
+                height = share * each["noise_floor"]
+                axes.hlines(height, i - 0.45, i + 0.45, color=FLOOR, linewidth=2, label=label)
+        if all(each["before"][what] is None for each in per_channel.values()):
+            axes.text(0.5, 0.5, "nothing that can be left out", ha="center", transform=axes.transAxes)
+        axes.set_xticks(range(len(per_channel)), list(per_channel), fontsize=8)
+        style.label(axes, "", "error [% of the root mean square]" if what == "fit" else "", title)
+        axes.set_yscale("log")
+    picture.legend(*panels[0].get_legend_handles_labels(), ncols=3, loc="outside upper center")
+    return picture
+
+
+def parameters(answer: Answer, report: Mapping[str, Any]) -> Figure:
+    """Declared parameters before and after with their intervals."""
+    before, after = answer.closed.before, answer.closed.after
+    names = list(after.declared)
+    picture = style.figure(9.5, 1.0 + 0.24 * len(names))
+    axes = picture.subplots()
+    rows = np.arange(len(names))[::-1]
+    for fitted, colour, label, side in ((before, BEFORE, "before", 0.17), (after, AFTER, "after", -0.17)):
+        centre = [fitted.calibrated.position[name] for name in names]
+        half = [NORMAL * fitted.deviation[name] / fitted.parameters[name].sd for name in names]
+        axes.errorbar(centre, rows + side, xerr=half, fmt="o", markersize=4, color=colour, capsize=2, label=label)
+    axes.axvline(0, color=GREY)
+    axes.set_yticks(rows, names, fontsize=8)
+    for name, tick in zip(names, axes.get_yticklabels(), strict=True):
+        tick.set_color(BEFORE if name in report["moved"] else "#000000")
+    axes.legend(fontsize=8)
+    style.label(axes, "deviation from the nominal value [spread over a series]", "")
+    return picture

@@ -1,0 +1,212 @@
+"""The next experiment: operating point and conditions at which two explanations that look alike so far come apart.
+
+Two models are compared as a referee would: the one is the truth, the other adjusts everything that it does not know
+exactly to the recordings there are and to those that would be made. What is left of their difference, in units of the
+noise, is the separation (T-optimality).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+from scipy.linalg import solve_triangular
+
+from swgsim.gear.conditions import Conditions
+from swgsim.gear.gear import OperatingPoint
+from swgsim.identification.covariance import scatter
+from swgsim.identification.report.answer import Answer
+from swgsim.identification.fit.form_error import FORM_TOLERANCE, allowance
+from swgsim.identification.fit.fitted import Fitted
+from swgsim.identification.covariance.low_rank_covariance import without_what_noise_hides
+from swgsim.identification.data.model import Model, Situation, predict
+
+# What a test bench can run, and that it can do as it stands, with a warm gear, or after an hour.
+FEASIBLE = tuple(OperatingPoint(n, T) for n in (300.0, 1000.0, 2000.0, 3000.0, 4000.0) for T in (3.0, 20.0, 45.0, 70.0))
+CONDITIONS = (Conditions(), Conditions(temperature=45.0), Conditions(elapsed=3600.0))
+# To heat a gear or to wait is worth it only if it separates clearly better than another operating point.
+EASIER = 0.8
+# Numbers of further recordings at one operating point, in one session.
+RECORDINGS = (1, 2, 3, 6, 12)
+# Separation at which two explanations are told apart: five standard deviations.
+SEPARATED = 25.0
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """Further recordings, and what they would tell apart.
+
+    Attributes
+    ----------
+    between : (str, str)
+        The two explanations.
+    situation : Situation
+        Where they differ most.
+    recordings : int or None
+        That bring the separation to SEPARATED; None if as many as can be asked for do not.
+    separation : float
+        Of so many recordings, or of the largest number asked for.
+    """
+
+    between: tuple[str, str]
+    situation: Situation
+    recordings: int | None
+    separation: float
+
+    def __str__(self) -> str:
+        one, other = self.between
+        point, conditions = self.situation.point, self.situation.conditions
+        where = f"at {point.n_in_rpm:g} rpm and {point.T_out:g} N m"
+        where += f" with the gear at {conditions.temperature:g} degC" if conditions.warmer else ""
+        where += f" {conditions.elapsed / 3600:g} h after the session began" if conditions.elapsed else ""
+        if self.recordings is None:
+            return (
+                f"no recording on the bench tells {one} from {other}: {RECORDINGS[-1]} recordings {where} would "
+                f"separate them by {self.separation:.2g}, {SEPARATED:g} are needed"
+            )
+        count = f"{self.recordings} recording{'s' if self.recordings > 1 else ''}"
+        return f"to tell {one} from {other}, make {count} {where}: separation {self.separation:.3g}"
+
+
+def next_experiments(answer: Answer) -> tuple[Experiment, ...]:
+    """What would separate every accepted effect from its rivals, and show every effect that is absorbed so far."""
+    found = []
+    for step in answer.closed.steps:
+        for rival in step.rivals:
+            names = (_names(step.accepted.effects), _names(rival.effects))
+            found += _best(rival.fitted, [step.accepted.fitted.model], [names])
+    after = answer.closed.after
+    effects = [score.hypothesis.effect() for score in answer.absorbed]
+    if effects:
+        between = [(_names((effect,)) + " of typical size", "its absence") for effect in effects]
+        found += _best(after, [after.model.plus(effect) for effect in effects], between)
+    return tuple(found)
+
+
+def _names(effects: Sequence) -> str:
+    return " and ".join(effect.title() for effect in effects)
+
+
+def _best(adjusting: Fitted, truths: Sequence[Model], between: Sequence[tuple[str, str]]) -> list[Experiment]:
+    """For every truth the least number of recordings that shows a fitted model to be wrong, and where."""
+    further = _Further.of(adjusting, truths)
+    found: dict[int, Experiment] = {}
+    for recordings in RECORDINGS:
+        separations = further.separations(recordings)
+        for number in range(len(truths)):
+            if number in found and found[number].recordings:
+                continue
+            best = easiest(separations[:, number])
+            most = float(separations[best, number])
+            enough = recordings if most >= SEPARATED else None
+            found[number] = Experiment(between[number], further.candidates[best], enough, most)
+    return list(found.values())
+
+
+def easiest(separations: Float[np.ndarray, " candidate"]) -> int:
+    """The candidate that separates best, an operating point as the bench stands if it does nearly as well."""
+    plain = int(separations[: len(FEASIBLE)].argmax())
+    best = int(separations.argmax())
+    needed = SEPARATED if separations[best] >= SEPARATED else EASIER * separations[best]
+    return plain if separations[plain] >= needed else best
+
+
+@dataclass(frozen=True, eq=False)
+class _Further:
+    """A fitted model before recordings that have not been made yet.
+
+    Attributes
+    ----------
+    candidates : tuple of Situation
+    known : array (truth,)
+        Separation by the recordings there are, to which all that the model may adjust is adjusted.
+    differences : array (candidate, feature, truth)
+        What is left of the difference when it is.
+    spread : array (candidate, feature, feature)
+        Covariance of the features as it may still adjust, with errors that further recordings share.
+    variance : array (feature,)
+        White noise of one recording.
+    single : array (candidate, feature, kind)
+        Errors of single recordings.
+    """
+
+    candidates: tuple[Situation, ...]
+    known: Float[np.ndarray, " truth"]
+    differences: Float[np.ndarray, "candidate feature truth"]
+    spread: Float[np.ndarray, "candidate feature feature"]
+    variance: Float[np.ndarray, " feature"]
+    single: Float[np.ndarray, "candidate feature kind"]
+
+    @classmethod
+    def of(cls, fitted: Fitted, truths: Sequence[Model]) -> "_Further":
+        """All that does not depend on the number of recordings."""
+        measured = fitted.measured
+        count = len(measured.situations)
+        candidates = tuple(Situation(point, conditions) for conditions in CONDITIONS for point in FEASIBLE)
+        situations = (*measured.situations, *candidates)
+        predicted, directions = _directions(fitted, situations)
+        seen = predict(truths, situations, measured.layout) - predicted
+        differences = np.moveaxis(seen, 0, -1)
+        # A difference that what was set free absorbs, or within the tolerance of form, told nothing so far.
+        errors = fitted.errors.with_columns(fitted.allowed.free)
+        for number in _added(fitted):
+            errors = errors.with_columns(without_what_noise_hides(allowance(fitted, number), errors.variance))
+        C = errors.whiten(measured.rows(directions[:count]))
+        d = errors.whiten(measured.rows(differences[:count]))
+        L = np.linalg.cholesky(np.eye(C.shape[1]) + C.T @ C)
+        pull = solve_triangular(L, C.T @ d, lower=True)
+        adjusted = solve_triangular(L, np.concatenate(directions[count:]).T, lower=True)
+        left = np.concatenate(differences[count:]) - adjusted.T @ pull
+        there = predicted[count:]
+        of_session = measured.further("planned", candidates, there).session_columns(there)
+        shared = [of_session.reshape(*there.shape, -1), _tolerance(fitted, candidates, there)]
+        shared.append(adjusted.T.reshape(*there.shape, -1))
+        spread = [columns @ columns.T for columns in np.concatenate(shared, axis=-1)]
+        moves = scatter.directions(fitted.model, candidates, measured.layout)
+        noise = np.median(fitted.unit.inflated(measured.variance), axis=0)
+        return cls(
+            candidates, (d**2).sum(axis=0) - (pull**2).sum(axis=0), left.reshape(differences[count:].shape),
+            np.array(spread), noise, fitted.scatter.columns(moves),
+        )  # fmt: skip
+
+    def separations(self, recordings: int) -> Float[np.ndarray, "candidate truth"]:
+        """Separation of all truths by so many recordings at each candidate."""
+        # The mean of the recordings says all; what is theirs alone averages out, what they share does not.
+        alone = self.single @ self.single.transpose(0, 2, 1) + np.diag(self.variance)
+        further = np.linalg.solve(self.spread + alone / recordings, self.differences)
+        return self.known + (self.differences * further).sum(axis=1)
+
+
+def _directions(
+    fitted: Fitted, situations: Sequence[Situation]
+) -> tuple[Float[np.ndarray, "situation feature"], Float[np.ndarray, "situation feature direction"]]:
+    """Prediction of a model anywhere, and all directions in which it may still adjust, one standard deviation each."""
+    unsure = fitted.unit.left_open(fitted.model, situations, fitted.measured.layout, fitted.parameters)
+    return unsure.predicted, np.concatenate([unsure.columns, unsure.J], axis=-1)
+
+
+def _added(fitted: Fitted) -> range:
+    """Numbers of the effects that were added to the unit's."""
+    return range(len(fitted.unit.model.effects), len(fitted.model.effects))
+
+
+def _tolerance(
+    fitted: Fitted, candidates: Sequence[Situation], predicted: Float[np.ndarray, "candidate feature"]
+) -> Float[np.ndarray, "candidate feature column"]:
+    """What an imperfect form of the fitted effects leaves open at a new operating point: of each channel and order a
+    share, and what an inaccurate structural model does.
+    """
+    layout = fitted.measured.layout
+    effects = _added(fitted)
+    if not effects:
+        return np.zeros((*predicted.shape, 0))
+    without = predict([fitted.model.without(number) for number in effects], candidates, layout)
+    masks = [np.ones(len(layout), bool)]
+    masks += [layout.channel == channel for channel in layout.channels]
+    masks += [layout.order == order for order in np.unique(layout.order)]
+    shares = np.stack([FORM_TOLERANCE * (predicted - each) * mask for each in without for mask in masks], axis=-1)
+    # At one operating point the same line of several effects is off together by the root of their squares.
+    structural = [fitted.model.effects[number].structural for number in effects]
+    acting = [acts * (predicted - each) for acts, each in zip(structural, without, strict=True)]
+    structure = np.sqrt(sum(fitted.unit.open_of(each, layout) ** 2 for each in acting))
+    return np.concatenate([shares, structure], axis=-1)

@@ -1,0 +1,163 @@
+"""What remains open: the unknown, what cannot be tested, what would have been seen, and what to record next."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from swgsim.effects.base import Effect
+from swgsim.effects.quantity import quantities
+from swgsim.effects.text import entries, path_of
+from swgsim.identification.report.answer import Answer
+from swgsim.identification.report.next_experiment import Experiment
+from swgsim.identification.report.found import names, why
+from swgsim.common.numbers import number
+from swgsim.identification.search.screening import Score
+from swgsim.identification.interharmonics.named_interharmonics import acts_on_signals, is_random
+from swgsim.identification.interharmonics.unattributed_lines import Unnamed
+from swgsim.identification.search.regularities import Atom, Described
+
+
+def unknown(answer: Answer) -> dict[str, Any] | None:
+    """What no effect of the library explains, in words and numbers, and as effects that can be added.
+
+    ``orders`` are those of regularities and of lines between them, ``pattern`` and ``law`` those of the first
+    regularity, or of the first line if there is none.
+    """
+    if not answer.unexplained:
+        return None
+    patches = {Atom(patch.order, patch.pattern, patch.law) for patch in answer.patches}
+    atoms = [_described(each) | {"added": each.atom in patches} for each in answer.unknown]
+    lines = [_line(each) for each in answer.unnamed]
+    leading = next(iter(atoms or (line["parts"][0] for line in lines)), {"pattern": None, "law": None})
+    orders = {each["order"] for each in atoms} | {line["at"] for line in lines if line["kind"] == "order"}
+    return {
+        "words": answer.unexplained,
+        "orders": sorted(orders),
+        "pattern": leading["pattern"],
+        "law": leading["law"],
+        "regularities": atoms,
+        "lines": lines,
+        "effects": entries([*(each.effect for each in answer.unknown), *answer.bare_lines]),
+        "added": entries(answer.patches),
+        "nearest": _nearest(answer),
+    }
+
+
+def _nearest(answer: Answer) -> dict[str, Any] | None:
+    trial = answer.nearest
+    if trial is None:
+        return None
+    return {"name": names(trial), "explains": answer.closed.nearest_explains, "why": why(trial, answer)}
+
+
+def _described(each: Described) -> dict[str, Any]:
+    return {
+        "words": str(each),
+        "order": int(each.atom.order),
+        "pattern": each.atom.pattern,
+        "law": each.atom.law,
+        "rivals": list(each.rivals),
+        "amplitude": number(each.amplitude),
+        "phase": number(each.phase),
+        "chance": number(each.chance),
+    }
+
+
+def _line(line: Unnamed) -> dict[str, Any]:
+    return {
+        "words": str(line),
+        "kind": line.kind,
+        "at": number(line.at),
+        "reach": number(line.reach),
+        "chance": number(line.chance),
+        "parts": [
+            {
+                "words": str(part),
+                "pattern": part.effect.pattern,
+                "law": part.effect.law,
+                "rivals": list(part.rivals),
+                "amplitude": number(part.effect.amplitude),
+            }
+            for part in line.parts
+        ],
+    }
+
+
+def next_experiment(experiments: Sequence[Experiment], answer: Answer) -> dict[str, Any] | None:
+    """What to record next, the question that needs the fewest recordings first; None if nothing is open."""
+    helpful = sorted((e for e in experiments if e.recordings), key=lambda e: (e.recordings or 0, -e.separation))
+    helpless = [e for e in experiments if not e.recordings]
+    words = [str(e) for e in (*helpful, *helpless)]
+    commission = bool(helpless or answer.unexplained) and not answer.closed.before.unit.commissioned
+    if commission:
+        words.append("recordings of the healthy gear, given as commissioning=FOLDER, tell what it has always had")
+    if not words:
+        return None
+    return {
+        "words": "; ".join(words),
+        "commission": commission,
+        "questions": [
+            {
+                "between": list(e.between),
+                "n_in_rpm": float(e.situation.point.n_in_rpm),
+                "T_out_nm": float(e.situation.point.T_out),
+                "temperature_c": float(e.situation.conditions.temperature),
+                "elapsed_s": float(e.situation.conditions.elapsed),
+                "recordings": e.recordings,
+                "separation": number(e.separation),
+            }
+            for e in (*helpful, *helpless)
+        ],
+    }
+
+
+def absorbed(score: Score) -> dict[str, Any]:
+    """An effect that these recordings cannot show."""
+    return {
+        "name": path_of(score.hypothesis.kind),
+        "visible": number(score.visible),
+        "why": (
+            "these recordings do not show it: the channels do not see it at the recorded operating points"
+            if score.visible <= 0
+            else "no size within its bounds would stand out at the recorded operating points: "
+            f"{100 * score.visible:.2g} % of its signature is left beside the declared parameters"
+        ),
+    }
+
+
+def untried(answer: Answer, kinds: Sequence[type[Effect]]) -> list[dict[str, Any]]:
+    """Effects that no test looks at."""
+    gauges = any(channel.startswith("s") for channel in answer.closed.before.measured.layout.channels)
+    whys = {
+        kind: "its phase is another one in every recording and no gauge was recorded in all of them"
+        if acts_on_signals(kind)
+        else "its phase is another one in every recording and it acts inside the chain: there is no test for it"
+        for kind in kinds
+        if is_random(kind) and not (gauges and acts_on_signals(kind))
+    }
+    return [{"name": path_of(kind), "visible": None, "why": why_not} for kind, why_not in whys.items()]
+
+
+def detectable(score: Score) -> dict[str, Any]:
+    """The smallest size that would have been seen, counted from the one that changes nothing; None if none within the
+    bounds would.
+    """
+    q = quantities(score.hypothesis.kind)[score.hypothesis.size]
+    return {
+        "parameter": score.hypothesis.size,
+        "value": number(score.smallest) if score.within_bounds else None,
+        "typical": float(q.typical),
+        "unit": q.unit,
+        "typical_would_be_seen": bool(score.detectable <= abs(q.typical - q.nothing)),
+    }
+
+
+def scored(score: Score) -> dict[str, Any]:
+    """Score of one effect in the first search."""
+    return {
+        "name": path_of(score.hypothesis.kind),
+        "place": score.hypothesis.kind.place,
+        "score": number(score.gain),
+        "freedom": int(score.freedom),
+        "chance": number(score.chance),
+        "visible": number(score.visible),
+    }

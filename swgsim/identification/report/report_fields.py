@@ -1,0 +1,125 @@
+"""The answer as ``report.json``: what was found, how well it is known, what it changes, and what remains open."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.recordings.checks.defect import Defect
+from swgsim.effects.base import Effect
+from swgsim.identification.report.answer import Answer
+from swgsim.identification.fit.errors import noise_floor
+from swgsim.identification.report.next_experiment import Experiment
+from swgsim.identification.fit.fitted import Fitted
+from swgsim.identification.report.found import accepted, of_line, rejected
+from swgsim.common.numbers import estimate
+from swgsim.identification.report.open_questions import absorbed, detectable, next_experiment, scored, unknown, untried
+from swgsim.identification.report.prediction_errors import error, named
+from swgsim.identification.data.measured import Measured
+from swgsim.identification.fit.unit import UNHEARD
+from swgsim.recordings.recording import CHANNELS
+
+
+def report(
+    answer: Answer,
+    kinds: Sequence[type[Effect]],
+    experiments: Sequence[Experiment] = (),
+    defects: Sequence[Defect] = (),
+    seconds: float = 0.0,
+) -> dict[str, Any]:
+    """All that closing the loop says, as plain numbers and text; what is not known is None.
+
+    Parameters
+    ----------
+    answer : Answer
+    kinds : sequence of effect classes
+        The library that was searched.
+    experiments : sequence of Experiment
+        What would separate what these recordings cannot.
+    defects : sequence of Defect
+        What was detected in the recordings.
+    seconds : float
+        That the answer took.
+    """
+    before, after = answer.closed.before, answer.closed.after
+    measured = before.measured
+    unheard = _orders(before, before.unit.inflation, UNHEARD / 2)
+    less_certain = _orders(before, before.unit.inflation, 1.0)
+    return {
+        "verdict": answer.verdict,
+        "sentence": answer.sentence,
+        "noise_floor": named(measured, noise_floor(measured)),
+        "calibrated": calibrated(after),
+        "effects": [*accepted(answer), *(of_line(line) for line in answer.lines)],
+        "rejected": rejected(answer),
+        "error": error(before, after),
+        "unknown": unknown(answer),
+        "next_experiment": next_experiment(experiments, answer),
+        "moved": moved(before, after),
+        "absorbed": [absorbed(each) for each in answer.absorbed] + untried(answer, kinds),
+        "detectable": {each.hypothesis.kind.name(): detectable(each) for each in answer.closed.scores},
+        "scores": [scored(each) for each in answer.closed.scores],
+        "commissioned": before.unit.commissioned,
+        "structure": before.unit.structure,
+        "learned": _orders(before, before.unit.learned, 0.0),
+        "less_certain": {name: orders for name, orders in less_certain.items() if name not in unheard},
+        "unheard": list(unheard),
+        "zeros": measured.zeros,
+        "channels": {name: CHANNELS[name].unit for name in measured.layout.channels},
+        "recordings": _recordings(measured),
+        "defects": [str(defect) for defect in defects],
+        "seconds": round(seconds, 1),
+    }
+
+
+def _orders(fitted: Fitted, values: Float[np.ndarray, " feature"] | None, least: float) -> dict[str, list[int]]:
+    """Orders of every channel at which a value is more than the least one."""
+    if values is None:
+        return {}
+    layout, more = fitted.measured.layout, values > least
+    found = {channel: layout.order[more & (layout.channel == channel)] for channel in layout.channels}
+    return {channel: np.unique(orders).tolist() for channel, orders in found.items() if len(orders)}
+
+
+def calibrated(fitted: Fitted) -> dict[str, dict[str, Any]]:
+    """The declared parameters at which the chain ran, with what is left open of them."""
+    unit = fitted.unit
+    if unit.reach is None or unit.nominal is None:
+        declared = fitted.declared
+        deviations = [fitted.deviation[name] for name in declared]
+    else:
+        # By whose spread the reach of commissioning is counted.
+        declared = unit.declared
+        spread = np.sqrt((unit.reach**2).sum(axis=1))[: len(declared)].tolist()
+        deviations = [s * p.sd for s, p in zip(spread, declared.values(), strict=True)]
+    return {
+        name: estimate(p.value(fitted.model), deviation, p.unit)
+        for (name, p), deviation in zip(declared.items(), deviations, strict=True)
+    }
+
+
+def moved(before: Fitted, after: Fitted) -> dict[str, dict[str, Any]]:
+    """Declared parameters that adding the effects has moved by more than two standard deviations.
+
+    Calibration had bent them to hide what was missing.
+    """
+    found = {}
+    for name, parameter in before.declared.items():
+        was, now = parameter.value(before.model), parameter.value(after.model)
+        if abs(now - was) > 2 * after.deviation[name]:
+            found[name] = {"before": was, "after": now, "unit": parameter.unit}
+    return found
+
+
+def _recordings(measured: Measured) -> dict[str, Any]:
+    """What was recorded."""
+    groups = [measured.repeats.count(group) for group in dict.fromkeys(measured.repeats)]
+    points = dict.fromkeys(recording.point for recording in measured.recordings)
+    return {
+        "count": len(measured),
+        "gear": measured.recordings[0].gear,
+        "sessions": len(measured.sessions),
+        "operating_points": [{"n_in_rpm": float(p.n_in_rpm), "T_out_nm": float(p.T_out)} for p in points],
+        "repeats": {"fewest": min(groups), "most": max(groups)},
+    }

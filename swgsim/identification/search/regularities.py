@@ -1,0 +1,223 @@
+"""An open vocabulary for what no known effect explains: an order, a pattern over the gauges, and a law.
+
+Atoms are tested as the effects of the library are, after projecting out what the declared parameters absorb. Together
+they are also the widest question that can be asked of a residual: whether anything regular is left in it at all.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import groupby, product
+
+import numpy as np
+from jaxtyping import Bool, Complex, Float
+
+from swgsim.common.chi2_logsf import surprise
+from swgsim.common.seeds import generator
+from swgsim.effects.quantity import quantities
+from swgsim.effects.regularity import LAWS, PATTERNS, Regularity
+from swgsim.identification.covariance.low_rank_covariance import as_squares
+from swgsim.identification.data.features import ORDERS, Layout
+from swgsim.identification.fit.fitted import Fitted
+from swgsim.identification.fit.fitting import extended
+from swgsim.identification.fit.form_error import LEAST_GAIN
+from swgsim.identification.search.screening import AT_ONCE, VISIBLE, family_wise
+from swgsim.identification.search.shortlist import ALPHA
+
+# Prior standard deviation of an atom that is set free, in amplitudes found.
+WIDE = 100.0
+
+# Regularities that are described at most.
+MOST_ATOMS = 3
+
+
+@dataclass(frozen=True)
+class Atom:
+    """One regularity.
+
+    Attributes
+    ----------
+    order : int
+        Of the wave generator's revolution; 0 is the mean.
+    pattern : str
+        Of :data:`swgsim.effects.regularity.PATTERNS`.
+    law : str
+        Of :data:`swgsim.effects.regularity.LAWS`.
+    """
+
+    order: int
+    pattern: str
+    law: str
+
+    @property
+    def alone(self) -> bool:
+        """Whether it is in one channel only, as a disturbance of one instrument is."""
+        return len(PATTERNS[self.pattern]) == 1
+
+
+@dataclass(frozen=True)
+class Described:
+    """An atom with what the residual says of it.
+
+    Attributes
+    ----------
+    atom : Atom
+    gain : float
+        Fall of the residual's sum of squares.
+    freedom : int
+    amplitude : float
+        At 70 N m, 4000 rpm, 10 K, 1 h where the law has them [unit of the channel].
+    phase : float
+        [rad].
+    chance : float
+        Of as much by noise in the whole vocabulary; nan where nobody asked.
+    rivals : tuple of str
+        Other laws that explain the same order and pattern as well.
+    """
+
+    atom: Atom
+    gain: float
+    freedom: int
+    amplitude: float
+    phase: float
+    chance: float = np.nan
+    rivals: tuple[str, ...] = ()
+
+    @property
+    def rank(self) -> float:
+        """How unlikely the gain is by luck."""
+        return surprise(self.gain, self.freedom)
+
+    @property
+    def effect(self) -> Regularity:
+        """The atom as an effect that a model can be given."""
+        # A mean has no phase but a sign.
+        sign, phase = (1.0, self.phase) if self.atom.order else (float(np.cos(self.phase)), 0.0)
+        bound = quantities(Regularity)["amplitude"].high
+        amplitude = sign * min(self.amplitude, bound)
+        return Regularity(int(self.atom.order), amplitude, phase, self.atom.pattern, self.atom.law)
+
+    def __str__(self) -> str:
+        what = "the mean" if self.atom.order == 0 else f"order {self.atom.order}"
+        unit = {"T": "N m", "n": "rpm"}.get(self.atom.pattern.removeprefix("in ")[:1], "mV/V")
+        law = self.atom.law + (f" (or {', or '.join(self.rivals)})" if self.rivals else "")
+        return f"{what}, {self.atom.pattern}, {law}, amplitude {self.amplitude:.3g} {unit}"
+
+
+def atoms(layout: Layout) -> list[Atom]:
+    """All atoms that the channels can show."""
+    shown = [name for name, pattern in PATTERNS.items() if set(pattern) <= set(layout.channels)]
+    # A mean does not turn.
+    return [Atom(*each) for each in product(range(ORDERS + 1), shown, LAWS) if each[0] or "turns" not in each[1]]
+
+
+def columns(atom: Atom, fitted: Fitted) -> Float[np.ndarray, "row column"]:
+    """Cosine and sine of an atom; the mean has its real patterns only."""
+    measured = fitted.measured
+    law = np.array([LAWS[atom.law](s.point, s.conditions) for s in measured.situations])
+    found = []
+    for turn in (1, 1j) if atom.order else (1,):
+        lines: Complex[np.ndarray, "channel order"] = np.zeros((len(measured.layout.channels), ORDERS + 1), complex)
+        for channel, weight in PATTERNS[atom.pattern].items():
+            lines[measured.layout.channels.index(channel), atom.order] = turn * weight
+        found.append(measured.rows(law[:, None] * measured.layout.vector(lines)))
+    return np.stack(found, axis=1)
+
+
+def describe(fitted: Fitted) -> list[Described]:
+    """Atoms by how unlikely they are by luck, the likeliest to be real first."""
+    return _Projected.of(fitted).ranked
+
+
+def strongest(fitted: Fitted, rng: np.random.Generator) -> Described:
+    """The atom that is least likely by luck, with its chance and its rivals."""
+    projected = _Projected.of(fitted)
+    freedom = np.array([each.freedom for each in projected.described])
+    noise = (projected.along(each) for each in fitted.null(AT_ONCE, rng))
+    chances = family_wise(projected.along(fitted.weighed), freedom, noise)
+    best = projected.ranked[0]
+    chance = float(chances[projected.described.index(best)])
+    return replace(best, chance=chance, rivals=other_laws(best, projected.ranked))
+
+
+def other_laws(best: Described, others: Sequence[Described]) -> tuple[str, ...]:
+    """By which others explain the same order and pattern as well."""
+    same = [other for other in others if replace(other.atom, law=best.atom.law) == best.atom]
+    return tuple(o.atom.law for o in same if o.atom != best.atom and best.gain - o.gain < as_squares(LEAST_GAIN))
+
+
+def regularities(fitted: Fitted, seed: int) -> tuple[Described, ...]:
+    """Atoms that are no luck, the likeliest first, up to MOST_ATOMS; each is taken out before the next is sought."""
+    found: list[Described] = []
+    while len(found) < MOST_ATOMS:
+        best = strongest(fitted, generator("vocabulary", seed, len(found)))
+        if best.chance > ALPHA:
+            break
+        found.append(best)
+        fitted = freed(fitted, best)
+    return tuple(found)
+
+
+@dataclass(frozen=True, eq=False)
+class _Projected:
+    """All atoms, without what is declared absorbs of them.
+
+    Attributes
+    ----------
+    described : tuple of Described
+        In the order of their directions, an order of the revolution after the other.
+    blocks : tuple of (array (row,), array (row of the order, direction))
+        Of every order: its rows (a mask), and directions, along each of which a weighed residual has a standard
+        deviation of 1.
+    """
+
+    described: tuple[Described, ...]
+    blocks: tuple[tuple[Bool[np.ndarray, " row"], Float[np.ndarray, "_ _"]], ...]
+
+    @classmethod
+    def of(cls, fitted: Fitted) -> "_Projected":
+        """As a fit leaves them."""
+        measured = fitted.measured
+        described, blocks = [], []
+        for order, group in groupby(atoms(measured.layout), key=lambda atom: atom.order):
+            rows = np.tile(measured.layout.order == order, len(measured))
+            whole, alone = (errors.precision(rows) for errors in (fitted.whole, fitted.errors))
+            directions = []
+            for atom in group:
+                C = columns(atom, fitted)[rows]
+                s2, V = np.linalg.eigh(C.T @ whole @ C)
+                kept = s2 > VISIBLE * max(float((C * (alone @ C)).sum(axis=0).max()), 1e-300)
+                weights = V[:, kept] / np.sqrt(s2[kept])
+                directions.append(C @ weights)
+                described.append(_described(atom, weights, directions[-1].T @ fitted.weighed[rows]))
+            blocks.append((rows, np.hstack(directions)))
+        return cls(tuple(described), tuple(blocks))
+
+    @property
+    def ranked(self) -> list[Described]:
+        """The least likely by luck first."""
+        return sorted(self.described, key=lambda each: -each.rank)
+
+    def along(self, weighed: np.ndarray) -> np.ndarray:
+        """What a weighed residual (row,) has along all directions, or each of several."""
+        return np.concatenate([directions.T @ weighed[rows] for rows, directions in self.blocks])
+
+
+def _described(
+    atom: Atom, weights: Float[np.ndarray, "column direction"], along: Float[np.ndarray, " direction"]
+) -> Described:
+    """An atom, from how its columns make its directions and what the residual has along these."""
+    fit = weights @ along
+    amplitude = float(np.hypot(*fit) if len(fit) == 2 else abs(fit[0]))
+    phase = float(np.arctan2(-fit[1], fit[0])) if len(fit) == 2 else float(np.pi * (fit[0] < 0))
+    return Described(atom, float(along @ along), len(along), amplitude, phase)
+
+
+def set_free(fitted: Fitted, described: Described) -> Fitted:
+    """A fit in which an atom may be as large as it likes, also when effects are added to it."""
+    taken = columns(described.atom, fitted) * max(described.amplitude, 1e-12) * WIDE
+    return fitted.allowing(taken)
+
+
+def freed(fitted: Fitted, described: Described) -> Fitted:
+    """The same fitted again, so that parameters that the atom had bent come back."""
+    return extended(set_free(fitted, described), ())

@@ -1,0 +1,248 @@
+"""Score test of every hypothesis, after taking out what the declared parameters can absorb.
+
+No hypothesis is fitted here. The residual at the calibrated parameters is compared with the signature of every effect,
+both weighed by the covariance of noise, single recordings and declared parameters; what a declared parameter would
+absorb of a signature is gone by then, and only the rest counts.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from swgsim.common.chi2_logsf import log_tail, surprise
+from swgsim.common.singular import svd
+from swgsim.effects.quantity import Quantity, quantities
+from swgsim.identification.covariance.low_rank_covariance import as_squares
+from swgsim.identification.fit.fitted import Fitted
+from swgsim.identification.search.hypotheses import Hypothesis
+
+# Share of a signature beside the declared parameters below which what is left is rounding, of the chain and of its
+# differences. It says nothing of what can be seen: however far a residual lies beyond the spread of a declared
+# parameter, this share is small where the noise is small beside that spread.
+VISIBLE = 1e-8
+# Directions of a signature below this part of its largest one are rounding.
+NEGLIGIBLE = 1e-6
+# Draws of noise, so many at a time, until the best score was beaten so often that it is luck (after Besag and Clifford,
+# Biometrika 78 (1991) 301; no other score can then be better), or all were drawn.
+DRAWS, AT_ONCE, LUCK = 1000, 100, 20
+# A logarithm of a probability this many times that of the most unlikely draw is far beyond them.
+FAR = 2.0
+# Deviations at which a size stands out (:data:`shortlist.ALPHA`) with 80 % power: of the library's 300
+# hypotheses one goes beyond 4.31 of them by luck so often, and a size 0.84 beyond that does four times in five.
+SEEN = 5.15
+
+
+@dataclass(frozen=True)
+class Score:
+    """Score of one hypothesis.
+
+    Attributes
+    ----------
+    hypothesis : Hypothesis
+    gain : float
+        Fall of the residual's sum of squares if the effect were added, in units of the noise.
+    freedom : int
+        Numbers that this would fit: 1, or 2 for a wave.
+    estimate : float
+        Expected size.
+    phase : float
+        Expected phase of a wave [rad].
+    deviation : float
+        Standard deviation of the size, declared parameters being open.
+    visible : float
+        Share of the signature that the declared parameters cannot absorb.
+    chance : float
+        Probability that the best score of the whole library is as high as this if nothing is missing.
+    """
+
+    hypothesis: Hypothesis
+    gain: float
+    freedom: int
+    estimate: float
+    phase: float
+    deviation: float
+    visible: float
+    chance: float
+
+    @property
+    def rank(self) -> float:
+        """What hypotheses are ordered by: how unlikely the gain is by luck, in a search of this extent."""
+        return surprise(self.gain, self.freedom) - as_squares(float(np.log(self.hypothesis.tried)))
+
+    @property
+    def detectable(self) -> float:
+        """Smallest size that would stand out with 80 % power."""
+        return SEEN * self.deviation
+
+    @property
+    def smallest(self) -> float:
+        """The parameter at that size, on the side of the typical one."""
+        quantity = self._quantity
+        return quantity.nothing + float(np.copysign(self.detectable, quantity.typical - quantity.nothing))
+
+    @property
+    def within_bounds(self) -> bool:
+        """Whether the parameter may have that value."""
+        return self._quantity.low <= self.smallest <= self._quantity.high
+
+    @property
+    def shown(self) -> float:
+        """The size at which the signature was taken."""
+        return abs(self.hypothesis.typical - self._quantity.nothing)
+
+    @property
+    def absorbed(self) -> bool:
+        """Whether no size within the bounds would be seen."""
+        quantity = self._quantity
+        largest = max(quantity.high - quantity.nothing, quantity.nothing - quantity.low)
+        return self.visible < VISIBLE or self.detectable > largest
+
+    @property
+    def _quantity(self) -> Quantity:
+        return quantities(self.hypothesis.kind)[self.hypothesis.size]
+
+
+def screen(
+    found: Sequence[Hypothesis],
+    signatures: Sequence[Float[np.ndarray, "row _"]],
+    fitted: Fitted,
+    rng: np.random.Generator,
+) -> list[Score]:
+    """Scores of all hypotheses, the best rank first.
+
+    Parameters
+    ----------
+    found : sequence of Hypothesis
+    signatures : sequence of array (row, column)
+        Change by the typical size.
+    fitted : Fitted
+        The model that is asked what it lacks.
+    rng : Generator
+    """
+    projected = _all_projected(signatures, fitted)
+    directions = np.hstack([p.directions for p in projected])
+    freedom = np.array([p.directions.shape[1] for p in projected])
+    noise = (directions.T @ each for each in fitted.null(AT_ONCE, rng))
+    return _ranked(found, projected, fitted, family_wise(directions.T @ fitted.weighed, freedom, noise))
+
+
+def rank(found: Sequence[Hypothesis], signatures: Sequence[Float[np.ndarray, "row _"]], fitted: Fitted) -> list[Score]:
+    """The same where nobody asks for chances, which are nan: most of the time goes into drawing noise for them."""
+    return _ranked(found, _all_projected(signatures, fitted), fitted, np.full(len(found), np.nan))
+
+
+def _ranked(
+    found: Sequence[Hypothesis],
+    projected: Sequence["Projected"],
+    fitted: Fitted,
+    chances: Float[np.ndarray, " hypothesis"],
+) -> list[Score]:
+    along = [p.directions.T @ fitted.weighed for p in projected]
+    scores = [_score(*each) for each in zip(found, projected, along, chances, strict=True)]
+    return sorted(scores, key=lambda score: (-score.rank, -score.visible))
+
+
+def best_of_kind(scores: Sequence[Score]) -> list[Score]:
+    """The best hypothesis of every effect, in the order of the scores."""
+    best: dict[type, Score] = {}
+    for score in scores:
+        best.setdefault(score.hypothesis.kind, score)
+    return list(best.values())
+
+
+class Projected(NamedTuple):
+    """What is left of a signature: directions, along each of which a weighed residual has a standard deviation of 1,
+    their sizes, how columns make them, visible share.
+    """
+
+    directions: Float[np.ndarray, "row rank"]
+    s: Float[np.ndarray, " rank"]
+    Vt: Float[np.ndarray, "rank column"]
+    visible: float
+
+
+def _all_projected(signatures: Sequence[Float[np.ndarray, "row _"]], fitted: Fitted) -> list[Projected]:
+    """All signatures without what is declared absorbs of them."""
+    if not signatures:
+        return []
+    stacked = np.hstack(list(signatures))
+    ends = np.cumsum([s.shape[1] for s in signatures])[:-1]
+    white, alone = (np.split(errors.whiten(stacked), ends, axis=1) for errors in (fitted.whole, fitted.errors))
+    return [_projected(*each) for each in zip(signatures, white, alone, strict=True)]
+
+
+def _projected(
+    signature: Float[np.ndarray, "row column"],
+    white: Float[np.ndarray, "row column"],
+    alone: Float[np.ndarray, "row column"],
+) -> Projected:
+    """Directions of a signature, from it whitened by all errors and without declared ones; none if these absorb it."""
+    _, s, Vt = svd(white)
+    size = float((alone**2).sum())
+    visible = float((s**2).sum()) / size if size > 0 else 0.0
+    kept = s > NEGLIGIBLE * np.sqrt(size) if visible > VISIBLE else np.zeros(len(s), bool)
+    return Projected(signature @ (Vt[kept].T / s[kept]), s[kept], Vt[kept], visible)
+
+
+def _score(hypothesis: Hypothesis, projected: Projected, u: Float[np.ndarray, " rank"], chance: float) -> Score:
+    """Figures of one hypothesis from its projections."""
+    if not len(u):
+        return Score(hypothesis, 0.0, 0, np.nan, np.nan, np.inf, projected.visible, 1.0)
+    quantity = quantities(hypothesis.kind)[hypothesis.size]
+    span = hypothesis.typical - quantity.nothing
+    weights = projected.Vt.T @ (u / projected.s)
+    along = weights / max(float(np.linalg.norm(weights)), 1e-300)
+    deviation = abs(span) * float(np.linalg.norm((projected.Vt @ along) / projected.s))
+    size, phase = span * float(weights[0]), 0.0
+    if hypothesis.phase:
+        size, phase = span * float(np.hypot(*weights)), float(np.arctan2(weights[1], weights[0]) % (2 * np.pi))
+    size = float(np.clip(quantity.nothing + size, quantity.low, quantity.high))
+    if size == quantity.nothing:
+        # It would have to be less than nothing.
+        return Score(hypothesis, 0.0, len(u), size, phase, deviation, projected.visible, 1.0)
+    return Score(hypothesis, float(u @ u), len(u), size, phase, deviation, projected.visible, chance)
+
+
+def family_wise(
+    along: Float[np.ndarray, " direction"],
+    freedom: Int[np.ndarray, " hypothesis"],
+    noise: Iterable[Float[np.ndarray, "direction draw"]],
+) -> Float[np.ndarray, " hypothesis"]:
+    """Of every hypothesis, how often pure noise gives any of them a score as unlikely.
+
+    Hypotheses overlap, so their scores are taken of the same draws of noise. The errors of single recordings are known
+    from few recordings only: each draw has them as large as these may be.
+
+    Parameters
+    ----------
+    along : array (direction,)
+        What the residual has along the directions of all hypotheses, one after the other.
+    freedom : array (hypothesis,)
+        How many directions each has.
+    noise : iterable of array (direction, draw)
+        What pure noise has along them, without end.
+    """
+    used = np.flatnonzero(freedom)
+    chances = np.ones(len(freedom))
+    if not len(used):
+        return chances
+    starts = np.concatenate([[0], np.cumsum(freedom[used])[:-1]])
+    own = log_tail(np.add.reduceat(along**2, starts), freedom[used])
+    lowest = np.zeros(0)
+    for drawn in noise:
+        gains = np.add.reduceat(drawn**2, starts, axis=0)
+        # Of those with as many directions the largest gain is the least likely.
+        largest = (
+            log_tail(gains[freedom[used] == many].max(axis=0), many) for many in np.unique(freedom[used]).tolist()
+        )
+        lowest = np.append(lowest, np.min(list(largest), axis=0))
+        if len(lowest) >= DRAWS or (lowest <= own.min()).sum() >= LUCK:
+            break
+    beaten, none = (lowest[:, None] <= own).sum(axis=0), 1 / (len(lowest) + 1)
+    # Far beyond the draws, Bonferroni's bound says more than that no draw came near.
+    bound = np.where(own < FAR * lowest.min(), np.minimum(np.exp(own) * len(used), none), none)
+    chances[used] = np.where(beaten > 0, (beaten + 1) * none, bound)
+    return chances

@@ -1,1 +1,0 @@
-"""Closing the loop: find the residual between model and measurement, and the physical effect that explains it."""

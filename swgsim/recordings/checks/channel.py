@@ -1,0 +1,81 @@
+"""Channels that are clipped or stuck."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.recordings.checks.defect import Defect
+from swgsim.recordings.checks.thresholds import CLIPPED_EDGE, CLIPPED_REFUSES, CLIPPED_RUN, STUCK_RUN, STUCK_TURN
+from swgsim.recordings.files.file_defect import FIRST_ROW
+from swgsim.recordings.recording import Recording
+from swgsim.storage.gauge_set import SENSORS
+
+
+def channel_defects(recording: Recording) -> Iterator[Defect]:
+    """Defects that every channel may have."""
+    turn = 60 / recording.point.n_in_rpm * recording.rate
+    for name, values in recording.channels.items():
+        if not np.ptp(values):
+            yield _constant(recording, name, float(values[0]))
+            continue
+        if name == "phi_in":
+            continue
+        starts, lengths = runs(values)
+        plateau = [row for sign in (1, -1) if (row := _plateau(sign * values, starts, lengths)) is not None]
+        if plateau:
+            share = float(np.isin(values, values[plateau]).mean())
+            mild = name in SENSORS and share < CLIPPED_REFUSES  # The library has an effect for it, which can be found.
+            yield Defect(
+                "clipped", "warn" if mild else "refuse", recording.name, name,
+                f"{values[plateau[0]]:.5g} in a row between steep flanks, {100 * share:.2g} % of the samples cut",
+                "a signal within the range of the amplifier", "lower the gain or widen the range, and record again",
+                plateau[0] + FIRST_ROW,
+            )  # fmt: skip
+        elif name in SENSORS[1:] and lengths.max() > max(STUCK_RUN, STUCK_TURN * turn):
+            row = int(starts[np.argmax(lengths)])
+            yield Defect(
+                "stuck", "refuse", recording.name, name, f"{lengths.max()} times {values[row]:.5g} in a row",
+                "a gauge that follows the wave generator", "check the connection, and record again", row + FIRST_ROW,
+            )  # fmt: skip
+
+
+def _constant(recording: Recording, name: str, value: float) -> Defect:
+    """A gauge or an angle that never changes is broken; a torque or speed may be the set value."""
+    if name in (*SENSORS, "phi_in"):
+        return Defect(
+            "stuck", "refuse", recording.name, name, f"{value:.5g} throughout", "a signal that changes",
+            "check the connection, or leave the channel out", FIRST_ROW,
+        )  # fmt: skip
+    return Defect(
+        "constant", "warn", recording.name, name, f"{value:.5g} throughout", "a measurement",
+        "leave the channel out if it is only the set value",
+    )  # fmt: skip
+
+
+def runs(values: Float[np.ndarray, " time"]) -> tuple[np.ndarray, np.ndarray]:
+    """Where each run of equal values starts, and how long it is.
+
+    >>> runs(np.array([3.0, 3.0, 1.0]))
+    (array([0, 2]), array([2, 1]))
+    """
+    starts = np.concatenate([[0], np.flatnonzero(np.diff(values)) + 1])
+    return starts, np.diff(starts, append=len(values))
+
+
+def _plateau(values: Float[np.ndarray, " time"], starts: np.ndarray, lengths: np.ndarray) -> int | None:
+    """First sample of the longest run at the maximum, if the signal was cut there.
+
+    The peak of a digitised signal is flat as well, by one step of the converter. A parabola falls three times as much
+    from the edge of a plateau to twice the distance from its middle as it rises above the edge; so the height that a
+    plateau hides is a third of that fall, and in a cut peak it is more than the step to the next level below.
+    """
+    top = lengths * (values[starts] == values.max())
+    start, length = int(starts[np.argmax(top)]), int(top.max())
+    if length < CLIPPED_RUN:
+        return None
+    aside = length // 2
+    edges = [i for i in (start - aside, start + length - 1 + aside) if 0 <= i < len(values)]
+    fall = float(np.mean(values.max() - values[edges])) if edges else 0.0
+    step = float(values.max() - values[values < values.max()].max())
+    return start if fall / 3 > CLIPPED_EDGE * step else None

@@ -1,0 +1,38 @@
+"""What the time of a recording shows: lost samples, and a clock that jitters."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from swgsim.recordings.checks.defect import Defect, Severity
+from swgsim.recordings.checks.thresholds import GAP, JITTER_REFUSES, JITTER_WARNS, SHORT_STEP
+from swgsim.recordings.files.file_defect import FIRST_ROW
+from swgsim.recordings.recording import Recording
+
+
+def clock_defects(recording: Recording) -> Iterator[Defect]:
+    """Steps of time that are not even."""
+    steps = np.diff(recording.time)
+    usual = float(np.median(steps))
+    ratio = steps / usual
+    gaps = np.flatnonzero(ratio > GAP)
+    if len(gaps):
+        lost = int(np.sum(np.round(ratio[gaps]) - 1))
+        yield Defect(
+            "samples_dropped", "refuse", recording.name, "t",
+            f"{len(gaps)} gaps with about {lost} lost samples, the first of {steps[gaps[0]]:.3g} s",
+            f"steps of {usual:.3g} s", "record again without losses, or cut the recording before the first gap",
+            int(gaps[0]) + 1 + FIRST_ROW,
+        )  # fmt: skip
+    short = np.flatnonzero(ratio < SHORT_STEP)
+    even = ratio[(ratio <= GAP) & (ratio >= SHORT_STEP)]
+    jitter = float(np.sqrt(np.mean((even - 1) ** 2)))
+    if len(short) or jitter > JITTER_WARNS:
+        severity: Severity = "refuse" if len(short) or jitter > JITTER_REFUSES else "warn"
+        worst = int(short[0]) if len(short) else int(np.argmax(np.abs(ratio - 1)))
+        yield Defect(
+            "clock_jitter", severity, recording.name, "t",
+            f"steps that differ by {100 * jitter:.2g} % rms, one of {steps[worst]:.3g} s",
+            f"even steps of {usual:.3g} s", "sample by a hardware clock, or write the time with more digits",
+            worst + 1 + FIRST_ROW,
+        )  # fmt: skip

@@ -1,0 +1,56 @@
+"""What the size of the gauge signals shows: the unit, a gain that is far from the others', a gauge that is dead."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from swgsim.recordings.checks.angle import angle_is_sound
+from swgsim.recordings.checks.defect import Defect
+from swgsim.recordings.checks.order_2 import order_2
+from swgsim.recordings.checks.thresholds import (
+    GAUGE_GAIN,
+    GAUGE_LARGEST,
+    GAUGE_QUANTILES,
+    GAUGE_SMALLEST,
+    ORDER_2_SHARE,
+)
+from swgsim.recordings.recording import Recording
+from swgsim.storage.gauge_set import SENSORS
+
+
+def gauge_defects(recording: Recording) -> Iterator[Defect]:
+    """Defects of the channels s0 to s4, each recording by itself."""
+    lines = {sensor: abs(line) for sensor, line in order_2(recording).items()}
+    usual = float(np.median(list(lines.values()))) if lines else 0.0
+    for sensor in (sensor for sensor in SENSORS if sensor in recording.channels):
+        values = recording.channels[sensor]
+        if not np.ptp(values):
+            continue
+        half = float(np.ptp(np.quantile(values, GAUGE_QUANTILES))) / 2
+        size = max(half, abs(float(np.median(values))) if sensor == "s0" else 0.0)
+        if size > GAUGE_LARGEST or (sensor != "s0" and size < GAUGE_SMALLEST):
+            yield _wrong_size(recording, sensor, size)
+        elif sensor in lines and angle_is_sound(recording) and lines[sensor] < ORDER_2_SHARE * half:
+            yield Defect(
+                "gauge_without_order_2", "warn", recording.name, sensor,
+                f"{lines[sensor]:.3g} of {half:.3g} mV/V at order 2", "a gauge that shows the two lobes most",
+                "check bonding, wiring and noise of this gauge",
+            )  # fmt: skip
+        elif sensor in lines and not 1 / GAUGE_GAIN < lines[sensor] / usual < GAUGE_GAIN:
+            yield Defect(
+                "gauge_gain", "warn", recording.name, sensor, f"{lines[sensor]:.3g} mV/V at order 2",
+                f"about {usual:.3g} mV/V, as the others", "check gain, bridge type and bonding of this gauge",
+            )  # fmt: skip
+
+
+def _wrong_size(recording: Recording, sensor: str, size: float) -> Defect:
+    """A signal far too small or too large for mV/V."""
+    if size > GAUGE_LARGEST:
+        kind, remedy = "gauge_in_um_m", "it is in um/m, uV/V or volts: convert it, or read it through a column map"
+    else:
+        kind, remedy = (
+            "gauge_in_v_v",
+            "it is in V/V (or dead): convert it, or read it through a column map",
+        )
+    expected = f"from {GAUGE_SMALLEST:g} to {GAUGE_LARGEST:g} mV/V"
+    return Defect(kind, "refuse", recording.name, sensor, f"a size of {size:.3g} mV/V", expected, remedy)

@@ -1,0 +1,106 @@
+"""From facts and columns to a recording: the checks that every form on disk shares."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from swgsim.gear.conditions import Conditions
+from swgsim.gear.gear import OperatingPoint
+from swgsim.recordings.files.file_defect import FIRST_ROW, FileDefect, shown
+from swgsim.recordings.files.limits import LARGEST_NUMBER, SMALLEST_STEP, require_rows
+from swgsim.recordings.recording import CHANNELS, Recording
+
+# What a wrapped angle may span beyond one revolution, as the jitter of an encoder at its index does.
+WRAPPED = 2 * np.pi * 1.001
+
+
+def assemble(file: str, facts: Mapping, columns: Mapping[str, Float[np.ndarray, " time"]]) -> Recording:
+    """A recording of one file, with an angle that does not wrap.
+
+    Parameters
+    ----------
+    file : str
+        For messages.
+    facts : mapping
+        As :func:`swgsim.recordings.files.facts.parse` returns them.
+    columns : mapping
+        ``t`` [s] and names of :data:`swgsim.recordings.recording.CHANNELS` to their values.
+
+    Raises
+    ------
+    FileDefect
+        If a number is not finite or the time does not increase; it names row and column.
+    """
+    require_sound(file, columns)
+    channels = {name: columns[name] for name in CHANNELS if name in columns}
+    if "phi_in" in channels:
+        channels["phi_in"] = unwrapped(channels["phi_in"])
+    return Recording(
+        name=facts["recording"],
+        gear=facts["gear"],
+        session=facts["session"],
+        point=OperatingPoint(facts["n_in_rpm"], facts["T_out_nm"]),
+        repeat=facts["repeat"],
+        time=columns["t"],
+        channels=channels,
+        conditions=Conditions(facts["temperature_c"], facts["elapsed_s"]),
+        label=facts["label"],
+    )
+
+
+def require_sound(file: str, columns: Mapping[str, Float[np.ndarray, " time"]]) -> None:
+    """Raise a FileDefect unless there are channels, rows enough, finite numbers and an increasing time."""
+    if set(columns) <= {"t"}:
+        raise FileDefect(file, "no channel", f"at least one of {', '.join(each.column for each in CHANNELS.values())}")
+    require_rows(file, len(columns["t"]))
+    for name, values in columns.items():
+        bad = no_numbers(values)
+        if len(bad):
+            expected = f"a finite number within {LARGEST_NUMBER:g}"
+            raise FileDefect(file, str(values[bad[0]]), expected, int(bad[0]) + FIRST_ROW, column_of(name))
+    back = standing(columns["t"])
+    if len(back):
+        found = f"{columns['t'][back[0]]} after {columns['t'][back[0] - 1]}"
+        raise FileDefect(file, found, "a time that increases", int(back[0]) + FIRST_ROW, "t_s")
+
+
+def no_numbers(values: Float[np.ndarray, " time"]) -> Int[np.ndarray, " bad"]:
+    """Samples that cannot be computed with."""
+    return np.flatnonzero(~(np.abs(values) <= LARGEST_NUMBER))
+
+
+def standing(time: Float[np.ndarray, " time"]) -> Int[np.ndarray, " bad"]:
+    """Samples that are not later than the one before."""
+    return np.flatnonzero(~(np.diff(time) >= SMALLEST_STEP)) + 1
+
+
+def require_alike(recordings: Sequence[Recording]) -> None:
+    """Raise a FileDefect unless all recordings have names of their own and the same channels."""
+    first, names = recordings[0], set()
+    for each in recordings:
+        if each.name in names:
+            raise FileDefect(f"recording {each.name}", f"the name {shown(each.name)} twice", "a name of its own")
+        names.add(each.name)
+        if set(each.channels) != set(first.channels):
+            found = ", ".join(map(column_of, each.channels))
+            expected = ", ".join(map(column_of, first.channels))
+            raise FileDefect(f"recording {each.name}", f"the channels {found}", f"those of {first.name}: {expected}")
+
+
+def column_of(name: str) -> str:
+    """The column of a channel, or of the time, in a file."""
+    return "t_s" if name == "t" else CHANNELS[name].column
+
+
+def unwrapped(angle: Float[np.ndarray, " time"]) -> Float[np.ndarray, " time"]:
+    """The angle without the jumps by one revolution of an angle that is kept within one [rad]; else as it is.
+
+    >>> unwrapped(np.array([6.0, 6.2, 0.1])).round(3)
+    array([6.   , 6.2  , 6.383])
+    """
+    steps = np.diff(angle)
+    if np.ptp(angle) > WRAPPED or not (np.abs(steps) > np.pi).any():
+        return angle
+    turns = np.where(np.abs(steps) > np.pi, -np.sign(steps), 0)
+    return angle + 2 * np.pi * np.concatenate([[0], np.cumsum(turns)])

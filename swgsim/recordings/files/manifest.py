@@ -1,0 +1,100 @@
+"""``manifest.csv``: which file holds which recording, and the facts that belong to it."""
+
+import csv
+import io
+from collections.abc import Iterable
+from pathlib import Path
+
+from swgsim.recordings.files import facts
+from swgsim.recordings.files.file_defect import FIRST_ROW, FileDefect, shown
+from swgsim.recordings.files.limits import inside, require_file_count, require_readable
+
+NAME = "manifest.csv"
+# It is read at once; the facts of 10 000 recordings have less.
+LARGEST = 32 * 2**20
+
+# Columns in the order in which they are written.
+COLUMNS = ("recording", "file", *(name for name in facts.KNOWN if name != "recording"))
+
+
+def read(folder: Path) -> list[tuple[Path, dict[str, object]]]:
+    """The file and the facts of every recording of a folder.
+
+    Raises
+    ------
+    FileDefect
+        If the manifest is missing or no table, lacks a column, has an unknown one or a fact of the wrong kind, or if
+        its files and those of the folder are not the same.
+    """
+    path = folder / NAME
+    require_readable(path)
+    if path.stat().st_size > LARGEST:
+        raise FileDefect(NAME, f"{path.stat().st_size} bytes", f"at most {LARGEST}")
+    rows = _rows(path)
+    require_file_count(folder, len(rows) - 1)
+    header = [cell.strip() for cell in rows[0]]
+    _require_header(header)
+    found: list[tuple[Path, dict[str, object]]] = []
+    taken: dict[Path, int] = {}
+    names: dict[object, int] = {}
+    for row, cells in enumerate(rows[1:], FIRST_ROW):
+        if len(cells) != len(header):
+            raise FileDefect(NAME, f"{len(cells)} cells", f"{len(header)}, as the header has", row)
+        given: dict[str, object] = dict(zip(header, (cell.strip() for cell in cells), strict=True))
+        file = inside(folder, str(given.pop("file")), NAME, row)
+        said = facts.parse(given, NAME, row)
+        first = taken.setdefault(file.resolve(), row)
+        if first != row:
+            raise FileDefect(NAME, f"{shown(file.name)} as in row {first}", "a file of its own", row, "file")
+        first = names.setdefault(said["recording"], row)
+        if first != row:
+            raise FileDefect(
+                NAME, f"{shown(said['recording'])} as in row {first}", "a name of its own", row, "recording"
+            )
+        found.append((file, said))
+    for file in sorted(folder.rglob("*")):
+        if file.suffix.lower() == ".csv" and _place(file) not in taken and file != path:
+            raise FileDefect(str(file.relative_to(folder)), "no row for this file in the manifest", "one row per file")
+    return found
+
+
+def _place(file: Path) -> Path:
+    """Where a file is; one that cannot be found, as links in a circle cannot, is at no place of another one."""
+    try:
+        return file.resolve()
+    except (OSError, RuntimeError):
+        return file
+
+
+def text(rows: Iterable[tuple[str, dict[str, object]]]) -> str:
+    """The manifest of files and the facts of their recordings."""
+    stream = io.StringIO()
+    writer = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
+    writer.writeheader()
+    for file, said in rows:
+        writer.writerow({"file": file, **said})
+    return stream.getvalue()
+
+
+def _rows(path: Path) -> list[list[str]]:
+    """Cells of all rows that are not blank at the end."""
+    try:
+        rows = list(csv.reader(io.StringIO(path.read_text(encoding="utf-8-sig"), newline=""), strict=True))
+    except (csv.Error, UnicodeDecodeError) as error:
+        raise FileDefect(NAME, f"no table ({error})", "a CSV file in UTF-8") from None
+    while rows and not any(rows[-1]):
+        rows.pop()
+    if not rows:
+        raise FileDefect(NAME, "an empty file", f"a header {','.join(COLUMNS)}", 1)
+    return rows
+
+
+def _require_header(header: list[str]) -> None:
+    """Raise unless the header has the columns that are needed, each once, and no unknown ones."""
+    missing = [name for name in ("file", *facts.NEEDED) if name not in header]
+    if missing:
+        raise FileDefect(NAME, f"no column {', '.join(missing)}", f"the columns {','.join(COLUMNS)}", 1)
+    for i, name in enumerate(header):
+        if name not in COLUMNS or name in header[:i]:
+            found = f"{'unknown' if name not in COLUMNS else 'twice the'} column {shown(name)}"
+            raise FileDefect(NAME, found, f"the columns {','.join(COLUMNS)}", 1)

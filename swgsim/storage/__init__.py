@@ -1,0 +1,23 @@
+"""Labelled gauge signals in memory and on disk: arrays with a table of facts, HDF5 files with a seal, order spectra.
+
+Imports ``common`` only.
+"""
+
+from swgsim.storage.attributes import attribute
+from swgsim.storage.gauge_set import CLASSES, COLUMNS, SENSORS, Recordings, facts
+from swgsim.storage.hdf5_writer import created
+from swgsim.storage.orders import lines_of, order_lines, revolution, whole_revolutions
+
+__all__ = [
+    "CLASSES",
+    "COLUMNS",
+    "SENSORS",
+    "Recordings",
+    "attribute",
+    "created",
+    "facts",
+    "lines_of",
+    "order_lines",
+    "revolution",
+    "whole_revolutions",
+]

@@ -1,0 +1,215 @@
+"""Recordings on disk: one HDF5 file laid out as NetCDF-4, so that xarray opens it, sealed with a SHA-256.
+
+The first 512 bytes (the HDF5 user block) hold the SHA-256 of all that follows; every read checks it.
+"""
+
+import hashlib
+import re
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pandas as pd
+
+from swgsim.common.files import replacing
+from swgsim.storage.attributes import attribute, say
+from swgsim.storage.gauge_set import CLASSES, COLUMNS, SENSORS, Recordings
+from swgsim.storage.hdf5_writer import created
+
+SEAL_SIZE = 512
+SEAL_START = b"swgsim recordings, sha256 "
+SEAL = re.compile(re.escape(SEAL_START) + rb"([0-9a-f]{64})\n *")
+
+
+def write(path: Path, blocks: Iterable[Recordings], rows: int) -> None:
+    """Write recordings block by block; the file is complete or absent.
+
+    Parameters
+    ----------
+    path : Path
+    blocks : iterable of Recordings
+        Of the same rate, window and attributes; those of the first count.
+    rows : int
+        Number of recordings in all blocks together.
+
+    Raises
+    ------
+    ValueError
+        If the blocks do not hold exactly ``rows`` recordings.
+    OSError
+        If the disk is full or the folder cannot be written; the message says what to do.
+    """
+    with replacing(path) as aside:
+        with created(aside, SEAL_SIZE) as (file, raw):
+            done = 0
+            for block in blocks:
+                if not done:
+                    _lay_out(file, block, rows)
+                if done + len(block) > rows:
+                    raise ValueError(f"{path}: more than the {rows} recordings announced")
+                where = slice(done, done + len(block))
+                file["signals"][where] = block.signals
+                for name in COLUMNS:
+                    values = block.table[name].cat.codes if name == "label" else block.table[name]
+                    file[name][where] = values.to_numpy()
+                raw.require_written()
+                done += len(block)
+        if done != rows:
+            raise ValueError(f"{path}: {done} recordings found, {rows} announced")
+        seal(aside)
+
+
+def _lay_out(file: h5py.File, first: Recordings, rows: int) -> None:
+    """Create all variables with their dimensions, units and descriptions."""
+    samples = first.signals.shape[2]
+    say(file, **{"Conventions": "CF-1.11", "title": "strain wave gear gauge signals", **first.attributes})
+    say(file, sampling_rate_hz=first.rate)
+    coordinates = {
+        "sample": (np.arange(rows), "1", "number of the recording"),
+        "sensor": (np.array(SENSORS, dtype="S"), "1", "strain-gauge bridge"),
+        "time": (np.arange(samples) / first.rate, "s", "time since the trigger"),
+    }
+    for name, (values, units, long_name) in coordinates.items():
+        variable = file.create_dataset(name, data=values)
+        variable.make_scale(name)
+        say(variable, units=units, long_name=long_name)
+    say(file["sensor"], _Encoding="utf-8")  # so that xarray gives text
+    shape, dimensions = (rows, len(SENSORS), samples), ("sample", "sensor", "time")
+    signals = file.create_dataset("signals", shape, "f4", chunks=(1, *shape[1:]), fletcher32=True)
+    say(signals, units="mV/V", long_name="bridge signal")
+    variables: list[tuple[h5py.Dataset, tuple[str, ...]]] = [(signals, dimensions)]
+    for name, column in COLUMNS.items():
+        variable = file.create_dataset(name, (rows,), column.dtype, chunks=(min(rows, 4096),), fletcher32=True)
+        say(variable, units=column.units, long_name=column.long_name)
+        variables.append((variable, ("sample",)))
+    say(file["label"], flag_values=np.arange(len(CLASSES), dtype="i1"), flag_meanings=" ".join(CLASSES))
+    for variable, names in variables:
+        for axis, name in enumerate(names):
+            variable.dims[axis].attach_scale(file[name])
+
+
+def seal(path: Path) -> None:
+    """Write the SHA-256 of all that follows into the first bytes of a file, where HDF5 leaves them free."""
+    with path.open("r+b") as raw:
+        raw.seek(SEAL_SIZE)
+        digest = hashlib.file_digest(raw, "sha256").hexdigest()
+        raw.seek(0)
+        raw.write((SEAL_START + digest.encode() + b"\n").ljust(SEAL_SIZE))
+
+
+def digest(path: Path) -> str:
+    """The SHA-256 that the file says it has.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    ValueError
+        If it is not a file of recordings.
+    """
+    with path.open("rb") as raw:
+        start = raw.read(SEAL_SIZE)
+    found = SEAL.fullmatch(start)
+    if not found or len(start) < SEAL_SIZE:
+        raise ValueError(
+            f"{path}: not a file of recordings (its first {SEAL_SIZE} bytes are no seal); generate it again"
+        )
+    return found[1].decode()
+
+
+def verify(path: Path) -> None:
+    """Raise a ValueError naming the file unless its contents have the SHA-256 that its seal says."""
+    said = digest(path)
+    with path.open("rb") as raw:
+        raw.seek(SEAL_SIZE)
+        found = hashlib.file_digest(raw, "sha256").hexdigest()
+    if found != said:
+        raise ValueError(
+            f"{path}: damaged or truncated, SHA-256 found {found[:12]}…, expected {said[:12]}…; generate it again"
+        )
+
+
+def read(path: Path) -> Recordings:
+    """All recordings of a file.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    ValueError
+        If it is damaged or no file of recordings; the message names it.
+    """
+    return next(blocks(path))
+
+
+def blocks(path: Path, rows: int | None = None) -> Iterator[Recordings]:
+    """The recordings of a file in blocks of so many rows (all at once by default), checked first."""
+    verify(path)
+    said = attributes(path)
+    with _opened(path) as file:
+        _require_layout(path, file)
+        rate = float(attribute(file, "sampling_rate_hz"))
+        total = len(file["signals"])
+        for start in range(0, total, rows or total):
+            where = slice(start, start + (rows or total))
+            columns = {name: file[name][where] for name in COLUMNS}
+            if not np.isin(columns["label"], range(len(CLASSES))).all():
+                raise ValueError(f"label is not from 0 to {len(CLASSES) - 1} in recordings from {start}")
+            columns["label"] = pd.Categorical.from_codes(columns["label"], categories=pd.Index(CLASSES))
+            columns["reference"] = columns["reference"].astype(bool)
+            yield Recordings(file["signals"][where], pd.DataFrame(columns), rate, said)
+
+
+def attributes(path: Path) -> dict[str, str]:
+    """What a file says of itself: configuration and version of the code."""
+    with _opened(path) as file:
+        said = {name: attribute(file, name) for name in file.attrs}
+    return {name: value for name, value in said.items() if isinstance(value, str)}
+
+
+def shape(path: Path) -> tuple[int, int, int]:
+    """Number of recordings in a file, of their sensors and of their samples; the file is checked first."""
+    verify(path)
+    with _opened(path) as file:
+        _require_layout(path, file)
+        rows, sensors, samples = file["signals"].shape
+    return rows, sensors, samples
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[h5py.File]:
+    """A file to read; whatever the library says of one that is not as it was written becomes a ValueError."""
+    try:
+        with h5py.File(path) as file:
+            yield file
+    except FileNotFoundError:
+        raise
+    except (OSError, RuntimeError, LookupError, TypeError, ValueError) as error:
+        raise ValueError(
+            f"{path}: not a file of recordings as they are written ({error}); generate it again"
+        ) from error
+
+
+def _require_layout(path: Path, file: h5py.File) -> None:
+    """Raise a ValueError unless every variable lies in the file itself, as it was laid out, and has room in it.
+
+    A seal can be put on any file. What is compressed, left out for a fill value, or in another file, was not written
+    here, and might fill the memory or bring numbers from elsewhere.
+    """
+    layout = {"signals": ("f4", 3)} | {name: (column.dtype, 1) for name, column in COLUMNS.items()}
+    size = path.stat().st_size
+    for name, (dtype, axes) in layout.items():
+        variable = file[name] if isinstance(file.get(name, getlink=True), h5py.HardLink) else None
+        if not isinstance(variable, h5py.Dataset) or variable.is_virtual or variable.external:
+            raise ValueError(f"{name} is no variable in the file itself")
+        if variable.dtype != dtype or len(variable.shape or ()) != axes:
+            raise ValueError(f"{name} is {variable.dtype} of shape {variable.shape}, must be {dtype} with {axes} axes")
+        if len(variable) != len(file["signals"]) or not len(variable):
+            raise ValueError(
+                f"{name} has {len(variable)} recordings, signals {len(file['signals'])}: as many, and some"
+            )
+        size -= variable.size * variable.dtype.itemsize
+    if size < 0:
+        raise ValueError("more numbers than the file has room for")

@@ -1,0 +1,12 @@
+"""Studies of the chain itself: convergence, benchmarks, claims C1 to C8 of the paper, the gallery of effects.
+
+Imports ``dataset``, ``identification`` and rooms below these.
+"""
+
+from swgsim.studies.claims import chain_claims
+from swgsim.studies.finding import Finding
+
+__all__ = [
+    "Finding",
+    "chain_claims",
+]

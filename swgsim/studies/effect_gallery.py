@@ -1,0 +1,129 @@
+"""The library of effects as a page with pictures: what each one changes, by channel and order."""
+
+import inspect
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from textwrap import wrap
+
+import numpy as np
+from jaxtyping import Float
+from matplotlib.colors import LogNorm
+
+from swgsim.common import style
+from swgsim.common.files import write_text
+from swgsim.effects.base import PLACES
+from swgsim.effects.library import SEARCHED
+from swgsim.effects.quantity import quantities, size_of
+from swgsim.gear.gear import Gear
+from swgsim.identification.interharmonics.named_interharmonics import has_sidelines, is_random
+from swgsim.studies.effect_signature import (
+    ELSEWHERE,
+    LEAST,
+    ORDERS,
+    OWN,
+    REVOLUTIONS,
+    SHOWN,
+    USUAL,
+    Signature,
+    signatures,
+)
+
+
+def picture(found: Sequence[Signature]) -> bytes:
+    """One panel per effect: what it changes, over channels and orders, on a logarithmic scale."""
+    columns = min(4, len(found))
+    rows = int(np.ceil(len(found) / columns))
+    drawing = style.figure(1.4 + 2.4 * columns, 0.8 + 2.0 * rows)
+    axes = drawing.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
+    for axis in axes.flat[len(found) :]:
+        axis.set_axis_off()
+    for axis, signature in zip(axes.flat, found, strict=False):
+        image = axis.imshow(
+            np.maximum(half_orders(signature.share[0]), LEAST), norm=LogNorm(LEAST, 1), aspect="auto",
+            interpolation="nearest", extent=(-0.25, ORDERS + 0.25, len(SHOWN) - 0.5, -0.5),
+        )  # fmt: skip
+        axis.set_title(title(signature), fontsize=8, loc="left")
+        axis.set_yticks(range(len(SHOWN)), SHOWN, fontsize=7)
+        axis.set_xticks(range(0, ORDERS + 1, 2))
+    for axis in axes.flat[max(len(found) - columns, 0) : len(found)]:
+        axis.tick_params(labelbottom=True)
+        axis.set_xlabel("order")
+    drawing.colorbar(image, ax=axes, label="change, share of\nthe channel's largest line")
+    return style.png(drawing)
+
+
+def title(signature: Signature) -> str:
+    """Name of the effect, how it grows, and where it is shown unless that is the usual place."""
+    load, speed = signature.growth
+    grows = f"10 x load: {load}, 2 x speed: {speed}"
+    at = [] if signature.setting == USUAL else wrap(f"at {signature.setting}", 40)
+    return "\n".join([signature.kind.title(), *at, grows])
+
+
+def half_orders(share: Float[np.ndarray, "*batch line"]) -> Float[np.ndarray, "*batch half"]:
+    """The largest change around every half order."""
+    step = REVOLUTIONS // 2
+    halves = np.arange(2 * ORDERS + 1) * step
+    return np.stack([share[..., max(h - step // 2, 0) : h + step // 2 + 1].max(axis=-1) for h in halves], axis=-1)
+
+
+def row(signature: Signature) -> str:
+    """A row of the table: sizes, the largest change, how it goes with load and speed, and the pattern over gauges."""
+    kind = signature.kind
+    declared = quantities(kind)
+    name = size_of(kind)
+    size = declared[name]
+    inner = ", ".join(other for other in declared if other != name) or "-"
+    channel, line = signature.where
+    # A bar as in |T| would end the cell.
+    says = (inspect.getdoc(kind) or "").split("\n\n")[0].replace("\n", " ").replace("|", "\\|")
+    cells = (
+        f"`{kind.name()}`", says, f"{name} {size.low:g} to {size.high:g} {size.unit}, typically {size.typical:.2g}",
+        inner, f"{SHOWN[channel]}, order {line / REVOLUTIONS:.3g}", f"{signature.top[0]:.1e}", *signature.growth,
+        signature.over_gauges,
+    )  # fmt: skip
+    return f"| {' | '.join(cells)} |"
+
+
+def page(folder: Path) -> None:
+    """Write ``effects.md`` and a picture for every place."""
+    text = [HEAD]
+    for place in PLACES:
+        found = signatures([kind for kind in SEARCHED if kind.place == place], Gear())
+        file = folder / "effects" / f"{place.replace(' ', '_')}.png"
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_bytes(picture(found))
+        text += [f"## {place.capitalize()}", f"![Effects of place {place}](effects/{file.name})"]
+        text.append("\n".join([HEADER, *map(row, found)]))
+    write_text(folder / "effects.md", "\n\n".join(text) + "\n")
+
+
+# Another phase in every recording, and no line between the orders to tell it by.
+UNTESTED = [kind.name() for kind in SEARCHED if is_random(kind) and not has_sidelines(kind)]
+HEAD = f"""# The library of effects
+
+Made by `make docs` from the code: {len(SEARCHED)} effects, by the place of the chain at which they act. A loop
+searches all of them but {", ".join(UNTESTED)}, whose phase is another one in every recording and
+which makes no line between the orders to tell it by. The pictures show what an effect of typical size changes at
+{USUAL} (the gear at 35 degC, an hour into the session), by channel and order, as a share of the channel's largest
+line other than the mean. Choices such as an order are at their default or first value; a gauge is s1, or all of
+them where that is the default. The unit "-" is that of a pure number. What changes nothing there is shown elsewhere,
+as its panel says:
+
+{chr(10).join(f"- `{kind.name()}` at {each}: {each.reason}." for kind, each in ELSEWHERE.items())}
+
+The factors, in table and panels, are those by which the largest change grows, in the unit of its channel, from a tenth
+of the load to the load shown and from the speed shown to twice that: "-" where a tenth of the load leaves no change,
+0 where twice the speed leaves none (a hum of the mains is at another order then). The last column names the pattern
+over the gauges of the line that changes most, by sign and phase, in the words by which a loop describes what it cannot
+explain (`swgsim/effects/regularity.py`); "several patterns" where no single one has {OWN:.0%} of its power. The full
+physics, signature and source of every effect are in its docstring in `swgsim/effects/`; rows such as SE20 are those of
+[physics.md](physics.md)."""
+HEADER = (
+    "| effect | physics | size | inner parameters | largest change | share | 10 x load | 2 x speed | over gauges |\n"
+    "|---|---|---|---|---|---|---|---|---|"
+)
+
+if __name__ == "__main__":
+    page(Path(sys.argv[1]))

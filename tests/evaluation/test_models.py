@@ -1,0 +1,160 @@
+"""Trained models come back from disk as they were, and what is no model is refused before anything in it runs."""
+
+import pickle
+import time
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import skops.io
+from sklearn.ensemble import ExtraTreesClassifier, RandomForestClassifier
+
+from learn.evaluation import models
+from learn.methods import neural, strong
+from learn.methods.classical import multi_layer_perceptron, nearest_neighbours, support_vector_machine
+
+RNG = np.random.default_rng(0)
+Y = np.array(["a", "b", "c"])[np.arange(60) % 3]
+X = RNG.standard_normal((60, 16)) + 2 * (np.arange(60) % 3)[:, None]
+FOREST = RandomForestClassifier(5, max_depth=3, random_state=0)
+NETWORKS = {
+    "perceptron": neural.neural_perceptron(neurons=8, epochs=2, device="cpu"),
+    "cnn": neural.convolutional_network(channels=1, points=8, width=4, epochs=2, device="cpu"),
+}
+ESTIMATORS = {
+    "forest": FOREST,
+    "extra trees": ExtraTreesClassifier(5, random_state=0),
+    "boosting": strong.gradient_boosting(rounds=3),
+    "logistic regression": strong.logistic_regression(),
+    "mlp": multi_layer_perceptron(hidden_layers=1, iterations=2000),
+    "knn": nearest_neighbours(),
+}
+
+
+@pytest.mark.parametrize("name", [*ESTIMATORS, *NETWORKS])
+def test_a_model_comes_back_with_the_same_probabilities(name, tmp_path):
+    model = {**ESTIMATORS, **NETWORKS}[name].fit(X, Y)
+    back = models.trained(tmp_path, "identity", model, X, Y)
+    assert back is not model
+    assert np.array_equal(back.predict_proba(X), model.predict_proba(X))
+    assert np.array_equal(back.classes_, model.classes_)
+    assert np.array_equal(back.predict(X), model.predict(X))
+    (kept,) = tmp_path.iterdir()
+    assert kept.suffix == (".pt" if name in NETWORKS else ".skops")
+
+
+def test_a_model_without_probabilities_comes_back_too(tmp_path):
+    model = support_vector_machine().fit(X, Y)
+    models.save(model, tmp_path / "svm.skops")
+    assert np.array_equal(models.load(tmp_path / "svm.skops").predict(X), model.predict(X))
+
+
+def test_networks_come_back_on_the_device_that_was_chosen(tmp_path):
+    assert models.trained(tmp_path, "identity", NETWORKS["perceptron"], X, Y).device == "cpu"
+    assert models.load(next(tmp_path.iterdir())).device == "auto"
+
+
+class Harmful:
+    """Leaves a trace when it is read."""
+
+    def __init__(self, trace: Path) -> None:
+        self.trace = trace
+
+    def __reduce__(self):
+        return Path.touch, (self.trace,)
+
+
+class HarmfulState:
+    """Leaves a trace when its state is set, as skops does for types that it trusts."""
+
+    def __init__(self, trace: str) -> None:
+        self.trace = trace
+
+    def __getstate__(self):
+        return {"trace": self.trace}
+
+    def __setstate__(self, state):
+        Path(state["trace"]).touch()
+
+
+@pytest.mark.parametrize("suffix", [".skops", ".pt"])
+def test_a_pickle_that_would_run_code_is_refused_and_does_not_run(suffix, tmp_path):
+    path, trace = tmp_path / f"model{suffix}", tmp_path / "trace"
+    path.write_bytes(pickle.dumps(Harmful(trace)))
+    with pytest.raises(ValueError, match=f"model{suffix}"):
+        models.load(path)
+    assert not trace.exists()
+    pickle.loads(path.read_bytes())
+    assert trace.exists()  # it would have
+
+
+def test_a_type_that_is_none_of_a_classifiers_is_refused_and_does_not_run(tmp_path):
+    path, trace = tmp_path / "model.skops", tmp_path / "trace"
+    skops.io.dump(HarmfulState(str(trace)), path)
+    with pytest.raises(ValueError, match=r"model\.skops: not a model of this project.*HarmfulState.*remove it"):
+        models.load(path)
+    assert not trace.exists()
+    skops.io.load(path, trusted=skops.io.get_untrusted_types(file=path))
+    assert trace.exists()  # it would have
+
+
+@pytest.mark.parametrize("model", [FOREST, NETWORKS["perceptron"]], ids=["forest", "network"])
+@pytest.mark.parametrize("share", [0.0, 0.5, 0.99])
+def test_a_truncated_file_is_refused(model, share, tmp_path):
+    models.trained(tmp_path, "identity", model, X, Y)
+    (path,) = tmp_path.iterdir()
+    content = path.read_bytes()
+    path.write_bytes(content[: int(share * len(content))])
+    with pytest.raises(ValueError, match=path.name):
+        models.trained(tmp_path, "identity", model, X, Y)
+
+
+class Unfit(RandomForestClassifier):
+    """Must not be trained."""
+
+    def fit(self, *rows):
+        raise AssertionError("trained again")
+
+
+def test_a_model_is_trained_once_for_the_same_rows_and_identity(tmp_path):
+    first = models.trained(tmp_path / "new", "identity", FOREST, X, Y)
+    again = models.trained(tmp_path / "new", "identity", Unfit(), X, Y)
+    assert np.array_equal(first.predict_proba(X), again.predict_proba(X))
+    changed = X.copy()
+    changed[3, 2] += 1e-12
+    for identity, rows, names in (
+        ("another", X, Y),
+        ("identity", changed, Y),
+        ("identity", X[:-1], Y[:-1]),
+        ("identity", X, Y[::-1]),
+    ):
+        with pytest.raises(AssertionError, match="trained again"):
+            models.trained(tmp_path / "new", identity, Unfit(), rows, names)
+    assert len(list((tmp_path / "new").iterdir())) == 1
+
+
+class Slow(RandomForestClassifier):
+    """Takes its time, so that another job comes along meanwhile."""
+
+    fits = 0
+
+    def fit(self, *rows):
+        type(self).fits += 1
+        time.sleep(0.3)
+        return super().fit(*rows)
+
+
+def test_jobs_that_need_the_same_model_at_once_train_it_once(tmp_path, monkeypatch):
+    monkeypatch.setattr(models, "TRUSTED", [*models.TRUSTED, f"{Slow.__module__}.Slow"])
+    with ThreadPoolExecutor(4) as jobs:
+        made = list(jobs.map(lambda _: models.trained(tmp_path, "identity", Slow(3, random_state=0), X, Y), range(4)))
+    assert Slow.fits == 1
+    assert all(np.array_equal(made[0].predict_proba(X), each.predict_proba(X)) for each in made)
+
+
+def test_a_fit_that_fails_leaves_no_file(tmp_path):
+    with pytest.raises(ValueError, match="1 class"):
+        models.trained(tmp_path, "identity", replace(NETWORKS["perceptron"]), X, np.repeat("a", 60))
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,107 @@
+"""Selective decisions on cases that are known by hand or by theory."""
+
+import numpy as np
+import pytest
+
+from learn.evaluation.selective import (
+    area_under_risk,
+    conformal_threshold,
+    coverage_at,
+    gear_novelty,
+    novelty_auroc,
+    novelty_left_out,
+    prediction_sets,
+    risk_coverage,
+    set_figures,
+)
+from swgsim.common.seeds import generator
+
+
+def test_risk_by_hand():
+    curve = risk_coverage(np.array([0.5, 0.9, 0.8, 0.6]), np.array([False, True, True, True]))
+    assert curve["coverage"].tolist() == [0.25, 0.5, 0.75, 1]
+    assert curve["risk"].tolist() == [0, 0, 0, 0.25]
+    assert area_under_risk(curve) == pytest.approx(0.0625)
+    assert coverage_at(curve, 0.05) == 0.75
+    assert coverage_at(curve, 0.25) == 1
+
+
+def test_no_coverage_where_the_surest_are_wrong():
+    curve = risk_coverage(np.array([0.9, 0.5]), np.array([False, True]))
+    assert coverage_at(curve, 0.01) == 0
+
+
+def test_ties_are_decided_together():
+    correct = np.array([True, False, True, False])
+    for order in ([0, 1, 2, 3], [1, 3, 0, 2]):
+        curve = risk_coverage(np.full(4, 0.7), correct[order])
+        assert curve["risk"].tolist() == [0.5]
+        assert area_under_risk(curve) == 0.5
+
+
+def test_one_recording_per_gear_is_split_conformal():
+    rng = generator("split conformal")
+    probabilities = rng.dirichlet(np.ones(3), 99)
+    y = rng.integers(3, size=99)
+    threshold = conformal_threshold(probabilities, y, np.arange(99), nominal=0.9)
+    true = np.sort(probabilities[np.arange(99), y])[::-1]
+    assert threshold == true[int(np.ceil(0.9 * 100)) - 1]
+
+
+def drawn(rng, gears, rows=30):
+    """Two classes; the probability of the true one differs between gears more than within."""
+    gear = np.repeat(np.arange(gears), rows)
+    odds = rng.normal(1, 2, gears)[gear] + rng.normal(0, 0.5, len(gear))
+    y = rng.integers(2, size=len(gear))
+    true = 1 / (1 + np.exp(-odds))
+    return np.where(np.arange(2) == y[:, None], true[:, None], 1 - true[:, None]), y, gear
+
+
+def test_sets_hold_the_truth_of_new_gears_as_promised():
+    rng, coverage = generator("new gears"), []
+    for _ in range(200):
+        threshold = conformal_threshold(*drawn(rng, 19), nominal=0.8)
+        probabilities, y, gear = drawn(rng, 5)
+        coverage.append(set_figures(prediction_sets(probabilities, threshold), y, gear)["coverage"].mean())
+    assert 0.8 - 2 * np.std(coverage) / np.sqrt(200) <= np.mean(coverage) <= 0.8 + 1 / 20 + 0.03
+
+
+def test_too_few_gears_for_the_promise_give_full_sets():
+    probabilities, y, gear = drawn(generator("few"), 8)
+    assert conformal_threshold(probabilities, y, gear, nominal=0.9) == -np.inf
+    figures = set_figures(prediction_sets(probabilities, -np.inf), y, gear)
+    assert (figures["mean_size"] == 2).all()
+    assert (figures["coverage"] == 1).all()
+    with pytest.raises(ValueError, match="nominal coverage 95 must be between 0 and 1"):
+        conformal_threshold(probabilities, y, gear, nominal=95)
+
+
+def test_set_figures_by_hand():
+    sets = np.array([[True, True], [False, False], [True, False]])
+    figures = set_figures(sets, np.array([1, 1, 0]), np.array([7, 7, 8]))
+    assert figures.loc[7].tolist() == [0.5, 1, 0.5]
+    assert figures.loc[8].tolist() == [1, 1, 0]
+
+
+def test_gear_from_another_population_is_novel():
+    rng = generator("novel")
+    mixing = rng.normal(size=(30, 30)) * np.logspace(-6, 3, 30)
+    source, same = (rng.normal(size=(20, 30)) @ mixing for _ in range(2))
+    far = (rng.normal(size=(20, 30)) + 3) @ mixing
+    assert novelty_auroc(gear_novelty(source, same), gear_novelty(source, far)) > 0.9
+    assert 0.2 < novelty_auroc(novelty_left_out(source), gear_novelty(source, same)) < 0.8
+
+
+def test_novelty_does_not_depend_on_units():
+    rng = generator("units")
+    source, target, units = rng.normal(size=(9, 4)), rng.normal(size=(3, 4)), np.array([1e-6, 1, 1e3, 1e9])
+    np.testing.assert_allclose(gear_novelty(source * units, target * units), gear_novelty(source, target))
+
+
+def test_feature_that_never_varies_is_left_out():
+    rng = generator("constant")
+    source, target = rng.normal(size=(9, 4)), rng.normal(size=(3, 4))
+    longer = gear_novelty(np.c_[source, np.full(9, 0.1)], np.c_[target, np.full(3, 0.1)])
+    np.testing.assert_allclose(longer, gear_novelty(source, target))
+    with pytest.raises(ValueError, match="2 source gears, at least 3"):
+        gear_novelty(source[:2], target)

@@ -1,0 +1,97 @@
+"""Orders above those that the model is compared at: what is there is told, what is known is not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from chain_fixtures import GEAR
+from loop_fixtures import POINTS, recorded, turning
+
+from swgsim.effects.regularity import Regularity
+from swgsim.identification.data.model import Model
+from swgsim.identification.search.high_orders import above
+from swgsim.storage.gauge_set import SENSORS
+
+MODEL, NOISE, LEVEL, RATE = Model(GEAR), 1e-3, 0.005, 10_000.0
+
+
+def bench(rng, add=lambda phi, point: {}, points=POINTS, repeats=3, rate=RATE):
+    """Gauges of noise, with what is added to some of them at an operating point."""
+    found = []
+    for point in points:
+        for _ in range(repeats):
+            phi = turning(point, 12, rate)
+            more = add(phi, point)
+            gauges = {name: rng.normal(0, NOISE, len(phi)) + more.get(name, 0.0) for name in SENSORS}
+            found.append(recorded({"phi_in": phi, **gauges}, point, rate))
+    return found
+
+
+def coupling(size):
+    """Order 13 in proportion to the load, opposite in s1 and s3."""
+
+    def add(phi, point):
+        wave = size * point.T_out / 70 * np.cos(13 * phi - 0.5)
+        return {"s1": wave, "s3": -wave}
+
+    return add
+
+
+def test_a_coupling_of_13_teeth_has_its_order_pattern_law_amplitude_and_phase():
+    found = above(bench(np.random.default_rng(1), coupling(5e-3)), (), MODEL, MODEL, LEVEL, 3)
+    assert [(each.atom.order, each.atom.pattern, each.atom.law) for each in found] == [
+        (13, "opposite in s1 and s3", "proportional to the load")
+    ]
+    assert found[0].amplitude == pytest.approx(5e-3, rel=0.05)
+    assert found[0].phase == pytest.approx(0.5, abs=0.05)
+    assert isinstance(found[0].effect, Regularity)
+
+
+def test_what_the_healthy_gear_has_is_not_missing():
+    rng = np.random.default_rng(2)
+    asked, healthy = bench(rng, coupling(5e-3)), bench(rng, coupling(5e-3))
+    assert above(asked, healthy, MODEL, MODEL, LEVEL, 3) == ()
+    grown = bench(rng, coupling(15e-3))
+    assert above(grown, healthy, MODEL, MODEL, LEVEL, 3)[0].amplitude == pytest.approx(10e-3, rel=0.1)
+
+
+def test_an_index_that_is_off_is_no_new_line():
+    rng = np.random.default_rng(3)
+    healthy = bench(rng, coupling(5e-3))
+    turned = [replace(each, channels={**each.channels, "phi_in": each.channels["phi_in"] + 0.02}) for each in healthy]
+    assert above(turned, healthy, MODEL, MODEL, LEVEL, 3) == ()
+
+
+def test_what_was_found_explains_its_high_orders():
+    stray = Regularity(20, 5e-3, 0.3, "in s2 alone", "constant")
+    asked = bench(np.random.default_rng(4), lambda phi, point: {"s2": 5e-3 * np.cos(20 * phi - 0.3)})
+    assert [each.effect.order for each in above(asked, (), MODEL, MODEL, LEVEL, 3)] == [20]
+    assert above(asked, (), MODEL, MODEL.plus(stray), LEVEL, 3) == ()
+
+
+def test_what_was_found_may_be_sharper_than_the_library_has_it():
+    """A tenth of its line is within its form, in the gauge that has it."""
+    known = Regularity(2, 50e-3, 0.0, "in s2 alone", "constant")
+
+    def sharper(phi, point):
+        return {"s2": 50e-3 * np.cos(2 * phi) + 5e-3 * np.cos(14 * phi)}
+
+    asked = bench(np.random.default_rng(8), sharper)
+    assert above(asked, (), MODEL, MODEL.plus(known), LEVEL, 3) == ()
+    moved = [replace(each, channels={**each.channels, "s3": each.channels["s2"]}) for each in asked]
+    assert [each.atom.pattern for each in above(moved, (), MODEL, MODEL.plus(known), LEVEL, 3)] == ["in s3 alone"]
+
+
+def test_noise_is_nothing():
+    told = [above(bench(np.random.default_rng([5, n]), repeats=1), (), MODEL, MODEL, 0.1, 3) for n in range(40)]
+    # 4 of 40 are expected; more than 9 in one of a hundred.
+    assert sum(map(bool, told)) <= 9
+
+
+def test_another_phase_in_every_recording_is_no_regularity():
+    rng = np.random.default_rng(6)
+
+    def hum(phi, point):
+        return {"s1": 2e-3 * np.cos(14 * phi + rng.uniform(0, 2 * np.pi))}
+
+    assert above(bench(rng, hum), (), MODEL, MODEL, LEVEL, 3) == ()

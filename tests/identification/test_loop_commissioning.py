@@ -1,0 +1,83 @@
+"""What the model misses of a healthy gear counts as that uncertain later."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from loop_fixtures import fitted_to
+
+from swgsim.identification.commissioning.lack_of_fit import LUCK, UNEXPLAINED, beyond_noise, require_own
+from swgsim.identification.commissioning.relinearisation import posterior, triangle
+from swgsim.identification.data.features import Layout
+from swgsim.identification.data.measured import Measured
+
+LAYOUT = Layout(("T_out", "s0", "s1", "s2"))
+REPEATS = 3
+
+
+@pytest.fixture(scope="module")
+def measured() -> Measured:
+    """Three repeats of six operating points, of a ripple of 100 in units of the noise."""
+    fitted = fitted_to(LAYOUT, np.random.default_rng(1), repeats=REPEATS)
+    ripple = 100 * (LAYOUT.order == 2) * np.ones((len(fitted.measured), 1))
+    return Measured(fitted.measured.recordings, LAYOUT, ripple, np.ones(ripple.shape))
+
+
+def line(channel: str, order: int) -> np.ndarray:
+    return (LAYOUT.channel == channel) & (LAYOUT.order == order)
+
+
+def test_noise_is_rarely_taken_for_something_missed(measured):
+    """Of all lines together."""
+    rng = np.random.default_rng(2)
+    found = [(beyond_noise(measured, rng.standard_normal(measured.values.shape)) > 1).any() for _ in range(100)]
+    assert np.mean(found) < 2.5 * LUCK
+
+
+@pytest.mark.parametrize("common", [True, False])
+def test_what_is_missed_alike_in_many_recordings_counts_once(measured, common):
+    """A sum over the recordings that it is alike in is then as uncertain as it is large."""
+    rng = np.random.default_rng(3)
+    points = [hash(r.point) for r in measured.recordings]
+    off = {point: 2.0 if common else 2 * rng.choice([-1, 1]) for point in points}
+    missed = rng.standard_normal(measured.values.shape)
+    missed[:, line("T_out", 3)] += np.array([off[point] for point in points])[:, None]
+    beyond = beyond_noise(measured, missed)[line("T_out", 3)]
+    alike = len(measured) if common else REPEATS
+    assert beyond == pytest.approx(alike * 2.0**2, rel=0.4)
+
+
+def test_gauges_that_sit_alike_are_missed_alike(measured):
+    missed = np.zeros(measured.values.shape)
+    missed[:, line("s1", 4)] = 5.0
+    beyond = beyond_noise(measured, missed)
+    assert beyond[line("s1", 4)][0] == beyond[line("s2", 4)][0] > 1
+    assert beyond[line("s0", 4)] == pytest.approx(1.0)
+
+
+def test_a_channel_of_which_a_tenth_is_missed_is_refused(measured):
+    missed = np.zeros(measured.values.shape)
+    missed[:, line("s0", 1)] = 100 * 0.9 * UNEXPLAINED
+    require_own(measured, missed)
+    missed[:, line("s0", 1)] = 100 * 1.1 * UNEXPLAINED
+    with pytest.raises(ValueError, match=r"leaves s0 \(11 %\) of the ripple unexplained, at most 10 %"):
+        require_own(measured, missed)
+
+
+def test_a_channel_without_ripple_is_not_refused_for_its_noise(measured):
+    missed = np.random.default_rng(4).normal(0, 1.5, measured.values.shape)
+    require_own(replace(measured, values=missed), missed)
+
+
+def test_what_is_told_to_a_billionth_of_a_spread_has_a_root():
+    """The inverse of its square is no covariance any more; a direction that nothing tells stays as it was."""
+    fitted = fitted_to(LAYOUT, np.random.default_rng(5))
+    open_ = np.hstack([1e9 * fitted.open, 0 * fitted.open[:, :1]])
+    root, mean = posterior(replace(fitted, open=open_))
+    covariance = root @ root.T
+    white = fitted.errors.whiten(fitted.open)
+    np.testing.assert_allclose(covariance[:-1, :-1] * 1e18, np.linalg.inv(white.T @ white), rtol=1e-6)
+    assert covariance[-1, -1] == pytest.approx(1.0)
+    assert mean == pytest.approx(0.0)
+    part = triangle(root[1:].T).T
+    np.testing.assert_allclose(part @ part.T, covariance[1:, 1:], rtol=1e-9, atol=1e-30)

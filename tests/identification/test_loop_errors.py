@@ -1,0 +1,111 @@
+"""Errors of what was fitted and of what was left out, the noise floor, and how sure each of them is."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from loop_fixtures import POINTS, drawn, fitted_to, holding
+
+from swgsim.identification.data.features import Layout
+from swgsim.identification.fit.errors import Errors, noise_floor, repeat_noise, rms
+from swgsim.identification.report.prediction_errors import FEWEST, WHAT, _explained, _of_floor, _ratio, error
+
+LAYOUT = Layout(("s1", "s2"))
+
+
+def fitted(points=POINTS, repeats=3, open_=0):
+    return fitted_to(LAYOUT, np.random.default_rng(1), points=points, repeats=repeats, open_=open_)
+
+
+def in_recording(number, now):
+    """Rows of a recording, as ones."""
+    return np.repeat(np.arange(len(now.measured)) == number, len(LAYOUT)).astype(float)
+
+
+def test_what_one_recording_alone_shows_is_an_error_of_that_recording():
+    now = fitted()
+    one = holding(replace(now, errors=replace(now.errors, G=now.errors.G[:, :0])), 50 * in_recording(4, now))
+    found = Errors(one, one).repeats.sum(axis=1)
+    assert np.flatnonzero(found > 1e-9).tolist() == [4]
+
+
+@pytest.mark.parametrize("points", [POINTS, POINTS[:1]], ids=["six points", "one point"])
+def test_what_a_session_has_off_is_told_by_the_other_repeats(points):
+    """Also where there is one operating point only, so that none can be left out."""
+    now = fitted(points)
+    zero = np.tile(LAYOUT.order == 0, len(now.measured)).astype(float)[:, None]
+    noise = np.sqrt(now.errors.variance) * np.random.default_rng(3).standard_normal(len(zero))
+    off = replace(now, errors=replace(now.errors, G=100 * zero))
+    found, quiet = (
+        Errors(held, held).repeats for held in (holding(off, noise + 150 * zero[:, 0]), holding(off, noise))
+    )
+    np.testing.assert_allclose(found, quiet, atol=0.01)
+    assert rms(found) < 10
+    assert np.isnan(Errors(off, off).heldout).all() == (len(points) == 1)
+
+
+def test_recordings_without_a_repeat_have_no_error_of_repeats():
+    now = fitted(repeats=2)
+    recordings = (*now.measured.recordings[:-1], replace(now.measured.recordings[-1], session="2"))
+    now = holding(
+        replace(now, measured=replace(now.measured, recordings=recordings)), drawn(now.errors, np.random.default_rng(2))
+    )
+    known = np.isfinite(Errors(now, now).repeats).all(axis=1)
+    assert np.flatnonzero(~known).tolist() == [10, 11]  # the last one, and the one that it had been a repeat of
+    assert np.isnan(Errors(*2 * [fitted(repeats=1)]).repeats).all()
+
+
+def test_noise_floor_is_the_noise():
+    now = fitted(repeats=20)
+    held = holding(now, np.sqrt(now.errors.variance) * np.random.default_rng(4).standard_normal(len(now.residual)))
+    quiet = Errors(held, held)
+    np.testing.assert_allclose(noise_floor(held.measured), np.sqrt((quiet.fit**2).mean(axis=0)), rtol=0.1)
+    assert repeat_noise(fitted(repeats=1).measured) is None
+    assert np.isnan(noise_floor(fitted(repeats=1).measured)).all()
+
+
+def test_interval_of_the_floor_holds_it_in_95_of_100_cases():
+    """By so many spare recordings, the errors of each of which go together."""
+    rng, spare = np.random.default_rng(5), 12
+    floors = np.sqrt(rng.chisquare(spare, 2000) / spare)
+    held = [low < 1 < high for low, high in (_of_floor(float(floor), spare) for floor in floors)]
+    assert np.mean(held) == pytest.approx(0.95, abs=4 * np.sqrt(0.05 * 0.95 / 2000))
+
+
+def test_ratio_has_an_interval_where_operating_points_differ():
+    rng = np.random.default_rng(6)
+    points = np.repeat(np.arange(6), 3)
+    before = np.ones((18, 2))
+    same = _ratio(0.2 * before, before, points)
+    assert same["value"] == pytest.approx(0.2)
+    np.testing.assert_allclose(same["ci95"], 0.2)
+    apart = _ratio(before * rng.uniform(0.1, 0.4, 6)[points, None], before, points)
+    low, high = apart["ci95"]
+    assert 0.1 < low < apart["value"] < high < 0.4
+
+
+def test_ratio_has_no_interval_of_a_few_points_nor_where_nothing_was_added():
+    before = np.ones((FEWEST - 1, 2))
+    assert _ratio(0.2 * before, before, np.arange(FEWEST - 1)) == {"value": pytest.approx(0.2), "ci95": None}
+    before = np.ones((6, 2))
+    assert _ratio(before, before, np.arange(6)) == {"value": 1.0, "ci95": None}
+    assert _ratio(np.nan * before, np.nan * before, np.arange(6)) == {"value": None, "ci95": None}
+
+
+def test_share_explained():
+    assert _explained(5.0, 1.0, 1.0, [0.8, 1.3]) == pytest.approx(1.0)
+    assert _explained(5.0, 3.0, 1.0, [0.8, 1.3]) == pytest.approx(16 / 24)
+    assert _explained(1.2, 0.9, 1.0, [0.8, 1.3]) is None
+    assert _explained(5.0, 1.0, None, None) is None
+
+
+@pytest.mark.parametrize(("points", "repeats"), [(POINTS, 2), (POINTS, 1), (POINTS[:1], 3), (POINTS[:1], 1)])
+def test_what_is_not_known_is_none(points, repeats):
+    now = fitted(points, repeats)
+    held = holding(now, drawn(now.errors, np.random.default_rng(7)))
+    said = error(held, held)
+    known = {"fit": True, "repeats": repeats > 1, "heldout": len(points) > 1}
+    for what in WHAT:
+        assert (said["after"][what] is not None) == known[what]
+        assert (said["after_over_before"][what]["value"] is not None) == known[what]
+    assert (said["noise_floor"] is None) == (said["noise_floor_ci95"] is None) == (repeats == 1)

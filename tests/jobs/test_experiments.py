@@ -1,0 +1,150 @@
+"""Every experiment file runs on a small grid, and a parallel sweep neither locks nor loses runs."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from fabricated import recordings
+from hydra import compose, initialize_config_dir
+from omegaconf import OmegaConf
+
+from learn import tracking
+from learn.jobs import train_job as job
+from learn.jobs.sweep import named_on_command_line
+from swgsim.storage import storage
+
+pytestmark = pytest.mark.end_to_end
+ROOT = Path(__file__).parents[2]
+# A small form has jobs of the whole one, which are not run twice.
+EXPERIMENTS = sorted(p.stem for p in (ROOT / "conf" / "experiment").glob("*.yaml") if not p.stem.endswith("_small"))
+
+
+@pytest.fixture(scope="module")
+def data(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("data")
+    for condition, disturbance in (("clean", 0.0), ("disturbed", 0.002), ("bench", 0.001)):
+        made = recordings(variants=4, disturbance=disturbance)
+        storage.write(folder / f"small-{condition}.h5", [made], len(made))
+    for foreign in ("few-bench", "far-bench", "few-noisy", "few-other_day"):
+        shutil.copy(folder / "small-bench.h5", folder / f"{foreign}.h5")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    return tmp_path_factory.mktemp("runs")
+
+
+def composed(*overrides, **options):
+    with initialize_config_dir(str(ROOT / "conf"), version_base="1.3"):
+        return compose("train", list(overrides), **options)
+
+
+# For experiments on new gears, which want more gears and variants than the small grid has.
+FEW = [
+    "protocol.development=0", "protocol.labelled=1", "protocol.unlabelled=1", "protocol.kept_out=1", "shots=[1]",
+    "draws=1",
+]  # fmt: skip
+
+
+def jobs(experiment):
+    """As many jobs as it takes to use every value that the experiment sweeps once."""
+    config = composed(f"experiment={experiment}", return_hydra_config=True)
+    sweep = {key: values.split(",") for key, values in config.hydra.sweeper.params.items()}
+    for number in range(max(map(len, sweep.values()))):
+        yield [f"{key}={values[number % len(values)]}" for key, values in sweep.items()]
+
+
+def run_ids(folder, experiment):
+    """The finished runs of the experiment's study, to which other experiments may add."""
+    study = composed(f"experiment={experiment}").study
+    found = tracking.finished_runs(tracking.local_store(str(folder)), study=study)
+    return set(found["run_id"]) if len(found) else set()
+
+
+@pytest.mark.parametrize("experiment", EXPERIMENTS)
+def test_every_experiment_runs_on_a_small_grid(experiment, data, runs):
+    where = ["grid=small", f"data={data}", f"tracking.folder={runs}", f"models={runs / 'models'}"]
+    protocol = composed(f"experiment={experiment}").protocol
+    few = FEW if protocol.name == "new_gears" else []
+    few = [*few, "protocol.judged=3"] if protocol.get("judged") else few
+    before = run_ids(runs, experiment)
+    for overrides in jobs(experiment):
+        config = composed(f"experiment={experiment}", *few, *overrides, *where)
+        metrics = job.run(OmegaConf.to_container(config, resolve=True))
+        assert 0 <= metrics["test_score"] <= 100
+    assert len(run_ids(runs, experiment) - before) == len(list(jobs(experiment)))
+
+
+def train(*arguments):
+    command = [sys.executable, str(ROOT / "scripts" / "train.py"), *arguments]
+    return subprocess.run(command, capture_output=True, text=True, cwd=ROOT, check=False)
+
+
+def test_parallel_sweep_loses_no_run_and_a_second_one_does_only_what_is_new(data, tmp_path):
+    where = ["grid=small", f"data={data}", f"tracking.folder={tmp_path / 'runs'}", f"hydra.sweep.dir={tmp_path}"]
+    sweep = ["-m", "experiment=table10", "workers=2", *where]
+
+    first = train(*sweep, "classifier=nb,knn")
+    assert first.returncode == 0, first.stderr
+    store = tracking.local_store(str(tmp_path / "runs"))
+    found = tracking.finished_runs(store)
+    assert sorted(zip(found["classifier"], found["features"], strict=True)) == [
+        ("knn", "selection_1"),
+        ("knn", "selection_3"),
+        ("nb", "selection_1"),
+        ("nb", "selection_3"),
+    ]
+    assert {"test/1_2_to_3", "test/2_3_to_1", "test/1_3_to_2"} < set(found.columns)
+
+    second = train(*sweep, "classifier=nb,knn,rf")
+    assert second.stdout.count("done before") == 4
+    assert len(tracking.finished_runs(store)) == 6
+
+    children = store.client.search_runs([store.experiment_id], "tags.kind = 'job'")
+    assert len(children) == 6
+    assert len({run.data.tags["mlflow.parentRunId"] for run in children}) == 1
+    artifacts = {a.path for a in store.client.list_artifacts(children[0].info.run_id)}
+    assert artifacts == {"config.yaml", "figures"}
+
+
+def test_a_sweep_without_an_experiment_is_kept_as_one(data, tmp_path):
+    where = ["grid=small", f"data={data}", f"tracking.folder={tmp_path / 'runs'}", f"hydra.sweep.dir={tmp_path}"]
+    answer = train("-m", "classifier=nb,knn", "workers=2", *where)
+    assert answer.returncode == 0, answer.stderr
+    assert "Callback" not in answer.stderr
+    store = tracking.local_store(str(tmp_path / "runs"))
+    (sweep,) = store.client.search_runs([store.experiment_id], "tags.kind = 'sweep'")
+    assert (sweep.info.run_name, sweep.info.status) == ("trial small", "FINISHED")
+    children = store.client.search_runs([store.experiment_id], "tags.kind = 'job'")
+    assert [run.data.tags["mlflow.parentRunId"] for run in children] == [sweep.info.run_id] * 2
+
+
+def test_a_sweep_stops_at_the_start_if_the_server_is_absent():
+    answer = train("-m", "classifier=nb,knn", "tracking=server", "tracking.uri=http://127.0.0.1:9")
+    assert answer.returncode != 0
+    assert "no MLflow server answers at tracking.uri=http://127.0.0.1:9" in answer.stderr
+    assert "Callback" not in answer.stderr
+
+
+def test_command_line_wins_over_the_sweep_of_an_experiment():
+    named = named_on_command_line(["experiment=table7", "classifier=rf,knn", "+new=1", "~old"])
+    assert named == {"experiment": "table7", "classifier": "rf,knn", "new": "1", "old": ""}
+
+
+def test_unknown_choice_is_answered_with_the_list():
+    answer = train("classifier=forest")
+    assert answer.returncode != 0
+    assert "Could not find 'classifier/forest'" in answer.stderr
+    assert all(name in answer.stderr for name in ("knn", "mlp", "nb", "rf", "svm"))
+
+
+@pytest.mark.parametrize("uri", [None, "http://127.0.0.1:5999"])
+def test_the_server_is_that_of_the_environment_unless_one_is_named(monkeypatch, uri):
+    monkeypatch.delenv("MLFLOW_TRACKING_URI", raising=False)
+    if uri:
+        monkeypatch.setenv("MLFLOW_TRACKING_URI", uri)
+    assert composed("tracking=server").tracking.uri == (uri or "http://127.0.0.1:5000")
+    assert composed("tracking=server", "tracking.uri=http://there:5000").tracking.uri == "http://there:5000"

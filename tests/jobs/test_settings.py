@@ -1,0 +1,82 @@
+"""Every choice in conf/ makes an object, and a wrong one is answered with the choices there are."""
+
+import inspect
+from pathlib import Path
+
+import pytest
+import yaml
+from omegaconf import OmegaConf
+
+from learn.adaptation.adaptations import ADAPTATIONS
+from learn.jobs import settings
+
+CONF = Path(__file__).parents[2] / "conf"
+MAKERS = {
+    "features": settings.representation,
+    "classifier": settings.classifier,
+    "adaptation": settings.adaptation,
+    "protocol": settings.protocol,
+    "tracking": settings.store,
+}
+
+
+@pytest.mark.parametrize(
+    "path", [p for group in MAKERS for p in sorted((CONF / group).glob("*.yaml")) if p.stem != "none"], ids=str
+)
+def test_every_choice_of_the_configuration_makes_an_object(path, monkeypatch):
+    monkeypatch.delenv("MLFLOW_TRACKING_URI", raising=False)
+    written = OmegaConf.create(path.read_text().replace("${seed}", "0"))
+    # Other groups refer to one another.
+    config = OmegaConf.to_container(written, resolve=path.parent.name == "tracking")
+    assert config["name"] == path.stem
+    assert MAKERS[path.parent.name](config) is not None
+
+
+@pytest.mark.parametrize("group", ["classifier", "adaptation", "protocol"])
+def test_defaults_are_what_the_configuration_says(group):
+    makers = {"classifier": settings.CLASSIFIERS, "adaptation": ADAPTATIONS, "protocol": settings.PROTOCOLS}[group]
+    for name, maker in makers.items():
+        config = yaml.safe_load((CONF / group / f"{name}.yaml").read_text().replace("${seed}", "0"))
+        options = inspect.signature(maker).parameters.items()
+        defaults = {key: option.default for key, option in options if option.default is not option.empty}
+        assert {key: config[key] for key in defaults if key in config} == {
+            key: value for key, value in defaults.items() if key in config
+        }, name
+
+
+@pytest.mark.parametrize(
+    ("maker", "config", "message"),
+    [
+        (settings.classifier, {"name": "forest"}, "unknown classifier 'forest'; choose from mlp, svm, rf, knn, nb"),
+        (
+            settings.classifier,
+            {"name": "rf", "tress": 3},
+            "unknown option 'tress' of classifier rf; choose from trees, depth",
+        ),
+        (settings.classifier, {"name": "nb", "trees": 3}, "unknown option 'trees' of classifier nb; choose from none"),
+        (
+            settings.protocol,
+            {"name": "folds"},
+            "unknown protocol 'folds'; choose from random_folds, grouped_folds, leave_one",
+        ),
+        (settings.store, {"name": "cloud"}, "unknown tracking 'cloud'; choose from local, server"),
+        (settings.store, {"name": "server", "uri": "host"}, "tracking.uri='host' is no address of a server"),
+        (
+            settings.representation,
+            {"name": "x", "order": 3},
+            "unknown option 'order' of features x; choose from name, statistics",
+        ),
+    ],
+)
+def test_a_wrong_choice_is_answered_with_the_choices(maker, config, message):
+    with pytest.raises(ValueError, match=message):
+        maker(config)
+
+
+def test_a_missing_data_set_is_answered_with_those_that_exist_and_the_command(tmp_path):
+    (tmp_path / "small-clean.h5").touch()
+    config = {"data": str(tmp_path), "grid": "paper", "condition": "clean"}
+    with pytest.raises(
+        ValueError, match=r"data sets in .*: small-clean. Make it with .*generate.py grid=paper condition=clean"
+    ):
+        settings.data_set(config)

@@ -1,0 +1,217 @@
+"""The report from end to end on a small grid, and what it says when something is missing."""
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from fabricated import recordings
+from hydra import compose, initialize_config_dir
+from matplotlib.figure import Figure
+from omegaconf import OmegaConf
+from test_paper import runs_like_the_paper
+
+from learn import tracking
+from learn.evaluation.evaluate import Evaluation
+from learn.paper import paper_page as report
+from learn.paper.choices import choices
+from learn.paper.paper_report import run
+from learn.paper.published_tables import PROTOCOLS, compare
+from swgsim.common.style import Picture
+from swgsim.jobs.generate_data_set import run as generate
+from swgsim.storage import storage
+from swgsim.storage.gauge_set import CLASSES
+from swgsim.studies.examples import SEVEREST
+from swgsim.studies.finding import Finding, percent
+
+pytestmark = pytest.mark.end_to_end
+ROOT = Path(__file__).parents[2]
+DATASET = {"recordings": 912, "seconds": 1.5, "recordings_per_second": 608.0, "peak_memory_mib": 500.0, "cores": 2}
+
+
+def finding(number):
+    return Finding(f"C{number}", f"claim <{number}>", "limit", number != 3, f"{number} %", "note & reason")
+
+
+def written(grid="paper", shift=-2.5):
+    fold = {"features": ["selection_1"], "classifier": ["rf"], "random": [99.0], "grouped": [96.0], "difference": [3.0]}
+    return report.Report(
+        grid=grid,
+        dataset=DATASET,
+        tables={name: compare(name, runs_like_the_paper(name, shift)) for name in PROTOCOLS},
+        folds={"table7": pd.DataFrame(fold).set_index(["features", "classifier"])},
+        findings=[finding(n) for n in range(1, 19)],
+        choices=[("Window", "600 samples")],
+        statistics=report.statistics([recordings(variants=1)]),
+        pictures=[Picture("Fig. 6", "Look here.", b"\x89PNG one")],
+        confusions=[Picture("As Table VII", "Look there.", b"\x89PNG two")],
+        seconds=100.0,
+        seconds_are="the steps added up",
+        steps={"generation": 1.5, "report": 10.0},
+        versions={"swgsim": "0.1.0"},
+    )
+
+
+def test_json_has_what_is_asked_for():
+    content = json.loads(written().json())
+    assert content["dataset"] == DATASET
+    assert set(content["tables"]) == set(PROTOCOLS)
+    assert all({"ours", "paper", "mean_absolute_difference"} <= set(table) for table in content["tables"].values())
+    assert content["tables"]["table7"]["mean_absolute_difference"] == pytest.approx(2.5)
+    assert content["tables"]["table7"]["ours"]["selection 1, test"]["rf"] == pytest.approx(97.31)
+    assert list(content["claims"]) == [f"C{n}" for n in range(1, 19)]
+    assert content["claims"]["C3"] == {"holds": False, "figure": "3 %", "note": "note & reason"}
+    assert content["seconds"] == 100.0
+
+
+def test_page_is_one_file_that_escapes_text():
+    page = written().html()
+    assert re.findall(r'(?:src|href)="(?!data:image/png;base64,|#|transfer\.html")', page) == []
+    assert "http" not in page
+    assert "claim &lt;3&gt;" in page
+    assert "note &amp; reason" in page
+    assert page == written().html()
+
+
+def test_first_lines_say_what_holds_and_what_does_not():
+    lead = written().html().split("<nav>")[0]
+    assert "17 of 18 claims" in lead
+    assert re.search(r"Not reproduced:</b> C3;", lead)
+    assert re.search(r"Table VII 2\.5 points\s+\(30 cells\)", lead)
+    assert "small grid" not in lead
+    assert "This is the small grid" in written("small").html()
+
+
+def test_cell_is_white_when_both_agree_and_full_at_the_limit():
+    assert report.shade(0).endswith(",0.00)")
+    assert report.shade(30) == report.shade(45) == "rgba(0,114,178,0.60)"
+    assert report.shade(-30) != report.shade(30)
+
+
+def test_missing_cell_names_the_command():
+    runs = runs_like_the_paper("table9").query("classifier != 'knn'")
+    with pytest.raises(ValueError, match=r"9 of 45 cells .* first is knn, .* experiment=table9 grid=paper"):
+        report.complete(compare("table9", runs), "table9", "paper")
+
+
+def of_one_class():
+    return Evaluation((), ("a",), np.eye(1, dtype=int), np.zeros(1, dtype=int), np.ones((1, 1)))
+
+
+def store_with_a_run(folder, digest):
+    store = tracking.local_store(str(folder))
+    parameters = {"study": "table7", "grid": "small", "classifier": "rf", "features": "selection_3",
+                  "protocol": "random_folds"}  # fmt: skip
+    tags = {"data_digest": digest, "code_version": "1"}
+    with tracking.job_run(store, "a run", "key", parameters, {}, tags) as run:
+        from learn.evaluation.confusion import picture
+
+        run.record({"test_score": 90.0}, {"figures/confusion.png": picture(of_one_class(), "")}, {})
+    return store
+
+
+def test_runs_of_another_data_set_do_not_count(tmp_path):
+    store = store_with_a_run(tmp_path, "old")
+    assert len(report.runs_of_tables(store, "small", {"clean": "old"})) == 1
+    for grid, digest in (("small", "new"), ("paper", "old")):
+        with pytest.raises(ValueError, match=rf"no finished run .* grid={grid} .* experiment=table10"):
+            report.runs_of_tables(store, grid, {"clean": digest})
+
+
+def test_confusion_matrix_comes_from_the_run(tmp_path):
+    store = store_with_a_run(tmp_path, "digest")
+    shown = report.confusion(store, {"clean": "digest"}, "table7", "selection_3")
+    assert shown.png[:4] == b"\x89PNG"
+    assert shown.title == "As Table VII, selection 3"
+
+
+def test_data_sets_of_different_code_do_not_belong_together():
+    report.require_same_code({"clean": "1", "disturbed": "1"}, "paper")
+    with pytest.raises(ValueError, match=r"clean by 1, disturbed by 2; make them anew .* grid=paper"):
+        report.require_same_code({"clean": "1", "disturbed": "2"}, "paper")
+
+
+def test_statistics_have_one_row_per_operating_point():
+    rows = report.statistics([recordings(variants=2), recordings(variants=2)])
+    assert [row["operating point"] for row in rows] == [
+        "2000 rpm, 7 N m",
+        "2000 rpm, 39 N m",
+        "4000 rpm, 7 N m",
+        "4000 rpm, 39 N m",
+    ]
+    assert len({len(row) for row in rows}) == 1
+
+
+@pytest.mark.parametrize(("efficiency", "verdict"), [(0.728, "outside"), (0.775, "within")])
+def test_choices_state_what_b1_means_against_the_catalogue(efficiency, verdict):
+    config = {
+        "window": {"samples": 600, "rate": 1e4},
+        "grid": {"speeds_rpm": [2000, 4000], "variants": 60, "positions": 20, "references": 20,
+                 "severities": {"reduced_damping": [0.67, 0.99], "eccentric_wave_generator": [2e-5, 1e-4]}},
+    }  # fmt: skip
+    catalogue = {"0.52": (efficiency, 0.074), "0.254": (0.769, 0.051)}
+    text = dict(choices(config, {"amplitude": 2.8e-4, "offset": 2.8e-4}, catalogue, orders=6, floor=1e-6))
+    assert f"is {verdict} its range" in text["b1"]
+    assert "2 or 4 revolutions" in text["Window"]
+    assert "20, 100 µm" in text["Severities of Table V"]
+
+
+@pytest.mark.parametrize(("share", "words"), [(0.0123, "1.2 %"), (1.0, "100 %"), (0.0, "0 %"), (-0.2, "-20 %")])
+def test_percent_has_two_digits(share, words):
+    assert percent(share) == words
+
+
+def configured(name, *overrides):
+    with initialize_config_dir(str(ROOT / "conf"), version_base="1.3"):
+        return OmegaConf.to_container(compose(name, list(overrides)), resolve=True)
+
+
+def test_unknown_grid_is_answered_by_name():
+    assert configured("report", "grid=small")["grid"]["name"] == "small"
+    with pytest.raises(Exception, match="Could not find 'grid/large'"):
+        configured("report", "grid=large")
+
+
+def keep_runs_like_the_papers(store, digests):
+    """One finished run for every cell of the paper's tables, with random and with grouped folds."""
+    recall = {f"recall/{label}": 90.0 for label in CLASSES}
+    for table, protocol in PROTOCOLS.items():
+        tags = {"data_digest": digests["disturbed" if table in ("table8", "table10") else "clean"], "code_version": "1"}
+        for row in runs_like_the_paper(table).to_dict("records"):
+            for folds in {protocol, protocol.replace("random", "grouped")}:
+                text = {"study": table, "grid": "small", **{k: row[k] for k in ("classifier", "features")}}
+                scores = {k: v for k, v in row.items() if isinstance(v, float) and v == v}
+                figures = {"figures/confusion.png": Figure()} if row["classifier"] == "rf" else {}
+                with tracking.job_run(store, "run", "key", {**text, "protocol": folds}, {}, tags) as run:
+                    run.record({"test_score": 50.0, "fit_seconds": 1.0, **recall, **scores}, figures, {})
+
+
+def test_whole_report_from_a_small_data_set(tmp_path):
+    data = f"data={tmp_path}"
+    tiny = [
+        "grid=small",
+        "grid.variants=4",
+        "grid.positions=4",
+        "grid.references=1",
+        "mesh.sectors=40",
+        "workers=1",
+        data,
+    ]
+    single = ["eccentric_wave_generator", "root_tooth_crack", "tip_tooth_crack"]
+    severe = [f"grid.severities.{label}=[{SEVEREST[label][0]}]" for label in single]
+    generate(configured("generate", *tiny, *severe, "condition=disturbed"))
+    paths = {c: tmp_path / f"small-{c}.h5" for c in ("clean", "disturbed")}
+    store = tracking.local_store(str(tmp_path / "runs"))
+    keep_runs_like_the_papers(store, {condition: storage.digest(path) for condition, path in paths.items()})
+
+    where = [data, f"tracking.folder={tmp_path / 'runs'}", f"out={tmp_path / 'report'}"]
+    run(configured("report", "grid=small", *where))
+
+    content = json.loads((tmp_path / "report" / "report.json").read_text())
+    assert content["tables"]["table9"]["mean_absolute_difference"] == pytest.approx(0)
+    assert [key for key in content["claims"] if content["claims"][key]["holds"]][-1] == "C18"
+    page = (tmp_path / "report" / "index.html").read_text()
+    assert page.count("data:image/png;base64,") == 9 + 4
+    assert page.count("holds</td>") + page.count("does not hold</td>") == 18

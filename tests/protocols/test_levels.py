@@ -1,0 +1,257 @@
+"""Pools and shots of gears never seen: nothing is known twice, and everyone is given the same."""
+
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from learn.protocols.levels import NewGears
+from swgsim.storage.gauge_set import CLASSES
+
+FACTS = ["gear", "label", "variant", "point"]
+few = settings(deadline=None, max_examples=15)
+
+
+def table_of(gears=4, labels=CLASSES[:2], variants=6, points=2):
+    rows = [(g, c, v, p) for g in range(1, gears + 1) for c in labels for v in range(variants) for p in range(points)]
+    table = pd.DataFrame(rows, columns=FACTS)
+    return table.assign(label=pd.Categorical(table["label"], categories=CLASSES))
+
+
+@st.composite
+def grids(draw):
+    """A table and a protocol that it is large enough for."""
+    gears, variants = draw(st.integers(3, 6)), draw(st.integers(4, 7))
+    labels = draw(st.lists(st.sampled_from(CLASSES), min_size=1, max_size=3, unique=True))
+    labelled = draw(st.integers(0, variants - 1))
+    protocol = NewGears(
+        folds=draw(st.integers(2, 5)),
+        development=draw(st.integers(0, gears - 1)),
+        labelled=labelled,
+        unlabelled=draw(st.integers(0, variants - 1 - labelled)),
+        kept_out=draw(st.integers(0, variants - 1)),
+        variants=draw(st.none() | st.integers(1, variants)),
+        sources=draw(st.none() | st.integers(1, gears)),
+    )
+    return table_of(gears, labels, variants, draw(st.integers(1, 2))), protocol
+
+
+def all_episodes(protocol, table):
+    yield from protocol.episodes(table)
+    if protocol.development > 1:
+        yield from protocol.development_episodes(table)
+
+
+def pools(target):
+    return target.labelled, target.unlabelled, target.judged
+
+
+def named(table, rows):
+    """Rows by what they are and not by where they stand."""
+    return set(table.iloc[rows][FACTS].astype({"label": str}).itertuples(index=False, name=None))
+
+
+def specimens(table, rows):
+    return {row[:3] for row in named(table, rows)}
+
+
+@few
+@given(grids())
+def test_pools_of_a_gear_are_disjoint_and_cover_it(grid):
+    table, protocol = grid
+    for episode in all_episodes(protocol, table):
+        for target in episode.targets:
+            together = np.sort(np.concatenate(pools(target)))
+            assert np.array_equal(together, np.flatnonzero(table["gear"] == target.gear))
+
+
+@few
+@given(grids())
+def test_pools_hold_whole_variants_and_as_many_of_each_class_as_asked_for(grid):
+    table, protocol = grid
+    variants = table["variant"].nunique()
+    wanted = (protocol.labelled, protocol.unlabelled, variants - protocol.labelled - protocol.unlabelled)
+    for episode in all_episodes(protocol, table):
+        for target in episode.targets:
+            found = [specimens(table, pool) for pool in pools(target)]
+            assert sum(map(len, found)) == len(set.union(*found))
+            for pool, number in zip(found, wanted, strict=True):
+                assert len(pool) == number * table["label"].nunique()
+
+
+@few
+@given(grids())
+def test_nothing_of_a_gear_left_out_is_trained_on_or_kept_out_and_no_row_is_both(grid):
+    table, protocol = grid
+    for episode in all_episodes(protocol, table):
+        left_out = {target.gear for target in episode.targets}
+        known = set(table["gear"].iloc[np.append(episode.source, episode.kept_out)])
+        assert known.isdisjoint(left_out)
+        assert specimens(table, episode.source).isdisjoint(specimens(table, episode.kept_out))
+        assert len(episode.source) > 0
+
+
+@few
+@given(grids())
+def test_every_gear_but_those_of_development_is_judged_once_and_those_are_always_known(grid):
+    table, protocol = grid
+    gears = np.unique(table["gear"])
+    of_development = set(gears[len(gears) - protocol.development :])
+    episodes = list(protocol.episodes(table))
+    judged = [target.gear for episode in episodes for target in episode.targets]
+    assert sorted([*judged, *of_development]) == gears.tolist()
+    for episode in episodes:
+        known = set(table["gear"].iloc[episode.source])
+        wanted = len(gears) - len(episode.targets)
+        assert len(known) == min(wanted, protocol.sources or wanted)
+        assert known <= of_development or of_development <= known  # development gears come first
+
+
+@few
+@given(grids())
+def test_development_episodes_know_development_gears_alone_and_leave_each_out_once(grid):
+    table, protocol = grid
+    if protocol.development < 2:
+        return
+    gears = np.unique(table["gear"])[-protocol.development :]
+    episodes = list(protocol.development_episodes(table))
+    assert sorted(target.gear for episode in episodes for target in episode.targets) == gears.tolist()
+    for episode in episodes:
+        assert set(table["gear"].iloc[np.append(episode.source, episode.kept_out)]) <= set(gears)
+
+
+@few
+@given(grids(), st.integers(0, 3))
+def test_shots_are_nested_whole_variants_of_the_labelled_pool_and_all_of_them_are_level_z4(grid, draw):
+    table, protocol = grid
+    target = next(iter(protocol.episodes(table))).targets[0]
+    fewer = set()
+    for number in range(protocol.labelled + 1):
+        rows = target.shots(table, number, draw)
+        assert np.isin(rows, target.labelled).all()
+        found = table.iloc[rows]
+        assert (found.groupby("label", observed=True)["variant"].nunique() == number).all()
+        assert len(rows) == number * table["label"].nunique() * table["point"].nunique()  # at all operating points
+        assert fewer <= set(rows)
+        fewer = set(rows)
+    assert np.array_equal(rows, target.labelled)
+
+
+@few
+@given(grids(), st.randoms(use_true_random=False))
+def test_the_order_of_rows_changes_neither_pools_nor_shots(grid, random):
+    table, protocol = grid
+    order = list(range(len(table)))
+    random.shuffle(order)
+    shuffled = table.iloc[order].reset_index(drop=True)
+    for one, other in zip(protocol.episodes(table), protocol.episodes(shuffled), strict=True):
+        assert named(table, one.source) == named(shuffled, other.source)
+        assert named(table, one.kept_out) == named(shuffled, other.kept_out)
+        for target, same in zip(one.targets, other.targets, strict=True):
+            for pool, same_pool in zip(pools(target), pools(same), strict=True):
+                assert named(table, pool) == named(shuffled, same_pool)
+            number = min(2, protocol.labelled)
+            assert named(table, target.shots(table, number, 1)) == named(shuffled, same.shots(shuffled, number, 1))
+
+
+def first_target(table, gear=1, **options):
+    protocol = NewGears(**{"folds": 2, "development": 0, "labelled": 3, "unlabelled": 1, "kept_out": 1, **options})
+    return next(t for e in protocol.episodes(table) for t in e.targets if t.gear == gear)
+
+
+def test_pools_and_shots_of_a_gear_do_not_change_with_other_gears_classes_or_numbers_of_folds():
+    small, large = table_of(gears=3, labels=CLASSES[:2]), table_of(gears=5, labels=CLASSES)
+    one, other = first_target(small), first_target(large, folds=4, development=1)
+    of_small = large[large["label"].isin(CLASSES[:2])].index
+    for pool, same in zip(pools(one), pools(other), strict=True):
+        assert named(small, pool) == named(large, np.intersect1d(same, of_small))
+    shots = np.intersect1d(other.shots(large, 2, 0), of_small)
+    assert named(small, one.shots(small, 2, 0)) == named(large, shots)
+
+
+def test_draws_classes_and_gears_have_shots_and_pools_of_their_own():
+    table = table_of(gears=2, variants=12)
+    targets = [first_target(table, gear, labelled=8) for gear in (1, 2)]
+    draws = [tuple(targets[0].shots(table, 3, draw)) for draw in range(5)]
+    assert len(set(draws)) == 5
+    numbers = {
+        (target.gear, label): tuple(sorted({s[2] for s in specimens(table, target.judged) if s[1] == label}))
+        for target in targets
+        for label in CLASSES[:2]
+    }
+    assert len(set(numbers.values())) == 4
+
+
+def test_source_gears_and_their_variants_can_be_limited():
+    table = table_of(gears=6)
+    (first, *_) = NewGears(folds=4, development=2, labelled=2, unlabelled=1, sources=3).episodes(table)
+    assert set(table["gear"].iloc[first.source]) == {6, 5, 4}
+    assert set(table["variant"].iloc[first.source]) == {0, 1, 2, 3}
+    assert set(table["variant"].iloc[first.kept_out]) == {4, 5}
+    (limited, *_) = NewGears(folds=4, development=0, labelled=2, unlabelled=1, variants=2).episodes(table)
+    assert set(table["variant"].iloc[limited.source]) == {0, 1}
+    assert set(table["variant"].iloc[limited.kept_out]) == {4, 5}
+    assert not any(pool.size == 0 for target in limited.targets for pool in pools(target))
+
+
+def test_zero_shot_splits_train_on_the_source_and_test_the_judged_rows():
+    table = table_of()
+    protocol = NewGears(folds=2, development=2, labelled=2, unlabelled=1)
+    features = np.zeros((len(table), 1))
+    for splits, episodes in (
+        (protocol.split(features, table), protocol.episodes(table)),
+        (protocol.development_splits(table), protocol.development_episodes(table)),
+    ):
+        for split, episode in zip(splits, episodes, strict=True):
+            assert split.name == episode.name
+            assert np.array_equal(split.train, episode.source)
+            assert set(split.test) == {row for target in episode.targets for row in target.judged}
+
+
+def test_more_shots_than_labelled_variants_are_refused():
+    table = table_of()
+    with pytest.raises(ValueError, match="4 shots of healthy asked for, gear 1 has 3 labelled variants: take fewer"):
+        first_target(table).shots(table, 4, 0)
+    with pytest.raises(ValueError, match="1 shots asked for, gear 1 has 0 labelled variants: give the protocol"):
+        first_target(table, labelled=0).shots(table, 1, 0)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"labelled": 4, "unlabelled": 2}, "gear 1 has 6 variants of healthy, 4 labelled and 2 .* leave none to judge"),
+        ({"development": 4}, "0 gears to judge of 4 in all, with 4 kept for development"),
+        ({"development": 5}, "0 gears to judge of 4 in all, with 5 kept for development"),
+        ({"kept_out": 6}, "6 variants of which 6 are kept out leave none to train on: keep out fewer"),
+    ],
+)
+def test_a_grid_that_is_too_small_is_refused(change, message):
+    protocol = replace(NewGears(folds=2, development=0, labelled=2, unlabelled=1), **change)
+    with pytest.raises(ValueError, match=message):
+        list(protocol.episodes(table_of()))
+
+
+@pytest.mark.parametrize("development", [0, 1])
+def test_choosing_takes_two_development_gears(development):
+    with pytest.raises(ValueError, match=f"{development} gears to judge .* {development} kept for development"):
+        list(NewGears(development=development).development_episodes(table_of()))
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"folds": 1}, "folds of the protocol is 1, must be an integer from 2"),
+        ({"development": -1}, "development of the protocol is -1, must be an integer from 0"),
+        ({"labelled": -1}, "labelled of the protocol is -1"),
+        ({"unlabelled": -1}, "unlabelled of the protocol is -1"),
+        ({"kept_out": -1}, "kept_out of the protocol is -1"),
+        ({"variants": 0}, "variants of the protocol is 0, must be an integer from 1"),
+        ({"sources": 0}, "sources of the protocol is 0, must be an integer from 1"),
+    ],
+)
+def test_numbers_out_of_their_limits_are_refused(change, message):
+    with pytest.raises(ValueError, match=message):
+        NewGears(**change)

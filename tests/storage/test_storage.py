@@ -1,0 +1,124 @@
+"""The one file: round trip, xarray, damage."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray
+from chain_fixtures import small_plan
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from swgsim.dataset.simulate_cases import record
+from swgsim.storage import storage
+from swgsim.storage.gauge_set import COLUMNS, Recordings, facts
+
+
+@pytest.fixture(scope="module")
+def recordings() -> Recordings:
+    plan = small_plan()
+    return record(plan, next(plan.blocks())[:6])
+
+
+@pytest.fixture(scope="module")
+def path(recordings: Recordings, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("file") / "recordings.h5"
+    storage.write(path, [recordings.where(np.arange(4)), recordings.where(np.arange(4, 6))], 6)
+    return path
+
+
+def test_round_trip(path: Path, recordings: Recordings) -> None:
+    read = storage.read(path)
+    np.testing.assert_array_equal(read.signals, recordings.signals)
+    assert read.table.equals(recordings.table)
+    assert read.rate == recordings.rate
+    assert read.attributes["configuration"] == recordings.attributes["configuration"]
+    assert "swgsim" in read.attributes
+
+
+def test_blocks_hold_the_same_rows(path: Path, recordings: Recordings) -> None:
+    blocks = list(storage.blocks(path, 4))
+    assert [len(b) for b in blocks] == [4, 2]
+    np.testing.assert_array_equal(np.concatenate([b.signals for b in blocks]), recordings.signals)
+
+
+def test_xarray_opens_it_with_units(path: Path) -> None:
+    with xarray.open_dataset(path, engine="h5netcdf") as data:
+        assert data["signals"].dims == ("sample", "sensor", "time")
+        assert data["signals"].attrs["units"] == "mV/V"
+        assert list(data["sensor"].values) == ["s0", "s1", "s2", "s3", "s4"]
+        assert "root_tooth_crack" in data["label"].attrs["flag_meanings"]
+
+
+def spoiled(path: Path, damaged: Path, where: int, bits: int) -> Path:
+    """A copy in which some bits of one byte are turned."""
+    content = bytearray(path.read_bytes())
+    content[where] ^= bits
+    damaged.write_bytes(content)
+    return damaged
+
+
+@given(position=st.floats(0, 1, exclude_max=True), bits=st.integers(1, 255))
+@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_any_spoiled_byte_is_noticed(path: Path, tmp_path: Path, position: float, bits: int) -> None:
+    damaged = spoiled(path, tmp_path / "damaged.h5", int(position * path.stat().st_size), bits)
+    with pytest.raises(ValueError, match=r"damaged\.h5"):
+        storage.read(damaged)
+
+
+def test_every_byte_of_the_seal_and_of_what_follows_it_counts(path: Path, tmp_path: Path) -> None:
+    for where in range(2048):
+        damaged = spoiled(path, tmp_path / "damaged.h5", where, 1 << where % 8)
+        with pytest.raises(ValueError, match=r"damaged\.h5"):
+            storage.verify(damaged)
+
+
+@pytest.mark.parametrize("size", [0, 100, 512, 5000])
+def test_a_truncated_file_is_named(path: Path, tmp_path: Path, size: int) -> None:
+    short = tmp_path / "short.h5"
+    short.write_bytes(path.read_bytes()[:size])
+    with pytest.raises(ValueError, match=r"short\.h5"):
+        storage.read(short)
+
+
+def test_nothing_is_left_of_a_failed_write(tmp_path: Path, recordings: Recordings) -> None:
+    with pytest.raises(ValueError, match="6 recordings found, 7 announced"):
+        storage.write(tmp_path / "a.h5", [recordings], 7)
+    with pytest.raises(ValueError, match="more than the 5 recordings"):
+        storage.write(tmp_path / "a.h5", [recordings], 5)
+    assert not list(tmp_path.iterdir())
+
+
+def test_what_a_killed_write_left_is_replaced(tmp_path: Path, path: Path, recordings: Recordings) -> None:
+    again = tmp_path / "a.h5"
+    (tmp_path / ".a.h5.tmp").write_bytes(path.read_bytes()[:5000])
+    storage.write(again, [recordings.where(np.arange(4)), recordings.where(np.arange(4, 6))], 6)
+    assert list(tmp_path.iterdir()) == [again]
+    assert again.read_bytes() == path.read_bytes()
+
+
+def test_signals_that_are_no_numbers_are_named(recordings: Recordings) -> None:
+    signals = recordings.signals.copy()
+    signals[2, 3, 17] = np.nan
+    with pytest.raises(ValueError, match="recording 2, s3, sample 17: found nan, expected a finite number"):
+        Recordings(signals, recordings.table, recordings.rate)
+
+
+def test_what_a_file_says_of_itself_has_a_length(tmp_path: Path, recordings: Recordings) -> None:
+    said = {"configuration": "größe: 1\n", "empty": ""}
+    storage.write(tmp_path / "a.h5", [replace(recordings, attributes=said)], 6)
+    assert said.items() <= storage.attributes(tmp_path / "a.h5").items()
+    with pytest.raises(ValueError, match="configuration has 64001 bytes, a file says at most 64000"):
+        storage.write(tmp_path / "b.h5", [replace(recordings, attributes={"configuration": 64_001 * "x"})], 6)
+
+
+def test_facts_must_fit(recordings: Recordings) -> None:
+    with pytest.raises(ValueError, match="one row each"):
+        Recordings(recordings.signals[:3], recordings.table, recordings.rate)
+    rows = {name: [0] for name in COLUMNS} | {"label": ["rusty"]}
+    with pytest.raises(ValueError, match="unknown class 'rusty'; choose from healthy"):
+        facts(rows)
+    del rows["seed"]
+    with pytest.raises(ValueError, match="columns"):
+        facts(rows)
