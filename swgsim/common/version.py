@@ -39,3 +39,12 @@ def code_version(*also: str) -> str:
         for source in sorted((PACKAGE / room).rglob("*.py")):
             digest.update(source.read_bytes())
     return f"{version('swg-workbench')}+{digest.hexdigest()[:12]}"
+
+
+def version_text() -> str:
+    """Name and version of the distribution.
+
+    >>> version_text().split()[0]
+    'swg-workbench'
+    """
+    return f"swg-workbench {version('swg-workbench')}"

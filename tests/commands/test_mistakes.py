@@ -5,12 +5,12 @@ import subprocess
 import sys
 from pathlib import Path
 
-import interrupts
 import pytest
-from close_loop import require_one_kind
 from hydra import compose, initialize_config_dir
-from misspelt import FULL, answered
 
+from learn.commands.close_loop import require_one_kind
+from swgsim.commands import interrupts
+from swgsim.commands.mistakes import FULL, answered
 from swgsim.common.configured import plain
 
 ROOT = Path(__file__).parents[2]

@@ -1,15 +1,14 @@
-"""Answers a mistake in a command with a sentence, a misspelt choice with the list of choices.
+"""Mistakes in a command end with a sentence instead of a traceback; a misspelt choice, with the choices.
 
-Hydra does the latter for files of a group only, and the former at the end of a traceback.
+Hydra lists choices for files of a group only.
 """
 
+import difflib
 import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
 
-import interrupts
 from hydra import compose, initialize_config_dir
 from hydra.core.global_hydra import GlobalHydra
 from hydra.core.override_parser.overrides_parser import OverridesParser
@@ -18,19 +17,23 @@ from hydra.errors import CompactHydraException, ConfigCompositionException, Over
 from omegaconf import DictConfig
 from omegaconf.errors import OmegaConfBaseException
 
-# Set to 1, the variable of Hydra that asks for tracebacks.
+from swgsim.commands import interrupts
+from swgsim.common.configured import conf_folder
+
+# Hydra's variable that asks for tracebacks, by the value 1.
 FULL = "HYDRA_FULL_ERROR"
-CONF = Path(__file__).parent.parent / "conf"
+# Errors that a user can mend; all others are defects of the code and keep their traceback.
+MENDABLE = (CompactHydraException, ValueError, OSError)
 
 
 def answered(main: Callable[[], object], config_name: str) -> None:
-    """Run a Hydra main; where it fails, say why, and name the choices of every key that does not exist.
+    """Run a Hydra main; explain a failure in a sentence, and name the choices of every key that does not exist.
 
-    Stops quietly at Ctrl-C.
+    Ctrl-C ends it with one line and status 130.
     """
     interrupts.kept()
     try:
-        with _in_a_sentence():
+        with _explained():
             main()
     except KeyboardInterrupt:
         print("\ninterrupted; what is finished is kept, and the same command goes on from there", file=sys.stderr)
@@ -42,33 +45,35 @@ def answered(main: Callable[[], object], config_name: str) -> None:
         raise
 
 
-@contextmanager
-def _in_a_sentence() -> Iterator[None]:
-    """Say what was wrong where it can be mended; any other error keeps its traceback.
+def explain(error: BaseException) -> None:
+    """Print an error as a sentence, and how to see where it was raised."""
+    print(error, file=sys.stderr)
+    if isinstance(error.__cause__, OmegaConfBaseException):  # of a choice: Hydra names the choice, its cause the reason
+        print(error.__cause__, file=sys.stderr)
+    print(f"({FULL}=1 shows where)", file=sys.stderr)
 
-    The errors of jobs come here from Hydra, that of a sweep once all of its jobs are done.
-    """
+
+@contextmanager
+def _explained() -> Iterator[None]:
+    """Explain the errors that Hydra raises itself, and those of a sweep, which it raises when all jobs are done."""
     if os.environ.get(FULL) == "1":
         yield
         return
-    os.environ[FULL] = "1"  # Hydra hands errors on and prints none
+    os.environ[FULL] = "1"  # Hydra then hands errors on instead of printing them
     try:
         yield
     except OverrideParseException as error:
         print(_unread(error), file=sys.stderr)
         raise SystemExit(1) from error
-    except (CompactHydraException, ValueError, OSError) as error:
-        print(error, file=sys.stderr)
-        if isinstance(error.__cause__, OmegaConfBaseException):  # of a choice: Hydra says only which one
-            print(error.__cause__, file=sys.stderr)
-        print(f"({FULL}=1 shows where)", file=sys.stderr)
+    except MENDABLE as error:
+        explain(error)
         raise SystemExit(1) from error
     finally:
         del os.environ[FULL]
 
 
 def _unread(error: OverrideParseException) -> str:
-    """What to write for a word that Hydra cannot read."""
+    """The answer to a word that Hydra cannot read."""
     if "=" not in error.override:
         return f"cannot read {error.override!r}: choices are name=value, such as recordings=FOLDER"
     return (
@@ -78,26 +83,26 @@ def _unread(error: OverrideParseException) -> str:
 
 
 def _is_group(override: Override) -> bool:
-    return (CONF / override.key_or_group).is_dir()
+    return (conf_folder() / override.key_or_group).is_dir()
 
 
 def _first(override: Override) -> str:
     """An override with the first of the values that it sweeps."""
-    return override.input_line.split(",")[0]
+    return (override.input_line or "").split(",")[0]
 
 
 def unknown(config_name: str, words: list[str]) -> Iterator[str]:
-    """One sentence for each override whose key the configuration does not have."""
+    """One sentence for each override whose key the configuration does not have, the nearest key first."""
     try:
         overrides = OverridesParser.create().parse_overrides(words)
     except OverrideParseException:
-        return  # told already, if it was a choice at all and not the value of an option of Hydra's
+        return  # answered already, or the value of an option of Hydra
     GlobalHydra.instance().clear()
     try:
-        with initialize_config_dir(str(CONF), version_base="1.3"):
+        with initialize_config_dir(str(conf_folder()), version_base="1.3"):
             config = compose(config_name, [_first(override) for override in overrides if _is_group(override)])
     except ConfigCompositionException:
-        return  # a file of a group that does not exist: Hydra has listed those that do
+        return  # a file of a group that does not exist: Hydra has listed the files
     for override in overrides:
         key = override.key_or_group
         if override.is_add() or override.is_delete() or key.startswith("hydra") or _is_group(override):
@@ -105,8 +110,11 @@ def unknown(config_name: str, words: list[str]) -> Iterator[str]:
         node = config
         for part in key.split("."):
             if not isinstance(node, DictConfig):
-                break  # below a value, of which Hydra has said that it has nothing below it
+                break  # below a value: Hydra has refused it
             if part not in node:
-                yield f"unknown choice {part!r}; choose from {', '.join(sorted(map(str, node)))}"
+                choices = sorted(map(str, node))
+                near = difflib.get_close_matches(part, choices, n=1)
+                guess = f"; did you mean {near[0]!r}?" if near else ";"
+                yield f"unknown choice {part!r}{guess} choose from {', '.join(choices)}"
                 break
             node = node[part]
