@@ -129,7 +129,7 @@ def test_two_processes_do_not_make_the_same_data_set(tmp_path: Path) -> None:
     """The second is refused; when the first is killed with -9, another one may, and goes on from its parts."""
     program = (
         "import json, sys, time\n"
-        "from swgsim import dataset, generation\n"
+        "from swgsim.jobs import generate_data_set as generation\n"
         "def generate(plan, path, engine, progress):\n"
         "    print('makes', path, flush=True)\n"
         "    time.sleep(60)\n"
