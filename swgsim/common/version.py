@@ -41,10 +41,13 @@ def code_version(*also: str) -> str:
     return f"{version('swg-workbench')}+{digest.hexdigest()[:12]}"
 
 
+__version__ = version("swg-workbench")
+
+
 def version_text() -> str:
     """Name and version of the distribution.
 
     >>> version_text().split()[0]
     'swg-workbench'
     """
-    return f"swg-workbench {version('swg-workbench')}"
+    return f"swg-workbench {__version__}"

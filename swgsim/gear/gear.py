@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 from math import pi
+from pathlib import Path
 
 from swgsim.common.checks import require, require_integer, require_positive
 from swgsim.flexspline.gauges import GaugeSet
@@ -137,6 +138,13 @@ class Gear:
             raise ValueError(
                 f"{teeth} teeth do not fit the ratio N = {N}: with two lobes a flex spline has 2 N = {2 * N}"
             )
+
+    @classmethod
+    def load(cls, path: str | Path) -> "Gear":
+        """Read a gear from a YAML file; see :func:`swgsim.gear.load_gear`."""
+        from swgsim.gear.gear_file import load_gear
+
+        return load_gear(path)
 
 
 # Catalogue limits of SHG-17-100: maximum input speed [rpm] and momentary peak torque [N m].
