@@ -1,5 +1,5 @@
 from . import effects
-from .api import SimulatedRun, identify, simulate
+from .api import SimulatedRun, generate, identify, record, simulate
 from .chain import Run, simulate_runs
 from .common.version import __version__
 from .gear import Conditions, Gear, KinematicError, OperatingPoint, Population, Transmission, WaveGenerator, Window
@@ -26,8 +26,10 @@ __all__ = [
     "__version__",
     "commission",
     "effects",
+    "generate",
     "identify",
     "read_recordings",
+    "record",
     "recordings_of",
     "simulate",
     "simulate_runs",

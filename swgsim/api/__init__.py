@@ -3,6 +3,7 @@
 Imports every room but ``commands``.
 """
 
+from swgsim.api.data_set import generate, record
 from swgsim.api.simulate import SimulatedRun, simulate
 
-__all__ = ["SimulatedRun", "simulate"]
+__all__ = ["SimulatedRun", "generate", "record", "simulate"]

@@ -4,9 +4,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import yaml
+from omegaconf import OmegaConf
 
 from swgsim.common.build import build
+from swgsim.common.plain_yaml import plain
 from swgsim.flexspline.gauges import GaugeSet
 from swgsim.flexspline.silk_hat import SilkHat
 from swgsim.gear.gear import Gear, KinematicError, Transmission, WaveGenerator
@@ -43,10 +44,17 @@ def load_gear(path: str | Path) -> Gear:
     path = Path(path)
     if not path.is_file():
         raise ValueError(f"no gear file {path}: copy conf/gear/gear1.yaml and change its numbers")
-    config = yaml.safe_load(path.read_text(encoding="utf-8"))
-    if not isinstance(config, dict):
-        raise ValueError(f"gear file {path} holds {type(config).__name__}, expected names with values")
     try:
-        return gear_from(config)
+        return gear_from(_values(path))
     except ValueError as error:
         raise ValueError(f"gear file {path}: {error}") from error
+
+
+def _values(path: Path) -> dict[str, Any]:
+    """The numbers of a file on top of those of the files that it names under ``defaults``, as Hydra composes them."""
+    config = plain(path.read_text(encoding="utf-8"))
+    if not isinstance(config, dict):
+        raise ValueError(f"holds {type(config).__name__}, expected names with values")
+    bases = [name for name in config.pop("defaults", []) if name != "_self_"]
+    merged = OmegaConf.merge(*(_values(path.with_name(f"{name}.yaml")) for name in bases), config)
+    return dict(OmegaConf.to_container(merged))  # type: ignore[arg-type]
