@@ -14,7 +14,7 @@ from swgsim.effects import (
     RootToothCrack,
     TipToothCrack,
 )
-from swgsim.storage.gauge_set import CLASSES
+from swgsim.storage.labelled_signals import CLASSES
 
 # A class name to its effect at (severity, position).
 FAULTS: Mapping[str, Callable[[float, float], Effect]] = {

@@ -9,7 +9,7 @@ from jaxtyping import Float
 from swgsim.effects.base import Effect, Scene
 from swgsim.effects.quantity import choice, size
 from swgsim.effects.turns import on_gauges
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from swgsim.common.checks import require_known
 from swgsim.effects.base import Effect, Scene
 from swgsim.effects.quantity import random_phase, shape, size
 from swgsim.effects.regularity import LAWS, PATTERNS, with_wave
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 GAUGE_PATTERNS = {name: pattern for name, pattern in PATTERNS.items() if set(pattern) <= set(SENSORS)}
 

@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.effects.base import Scene
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 
 def samples_per_turn(scene: Scene) -> float:

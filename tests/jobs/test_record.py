@@ -20,7 +20,7 @@ from swgsim.jobs import settings
 from swgsim.jobs.record_on_bench import run
 from swgsim.recordings.read import inspect_recordings, read_recordings
 from swgsim.recordings.recording import Recording
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 pytestmark = pytest.mark.end_to_end
 ROOT = Path(__file__).parents[2]

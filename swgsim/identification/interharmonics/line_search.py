@@ -15,7 +15,7 @@ from swgsim.identification.interharmonics.interharmonic_spectrum import Between,
 from swgsim.identification.interharmonics.named_interharmonics import Sideline, nearby, ranked
 from swgsim.identification.interharmonics.unattributed_lines import Unnamed, unnamed
 from swgsim.recordings.recording import Recording
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 # Lines that are found at most, with a name or without.
 MOST = 4
