@@ -54,6 +54,7 @@ def write(path: Path, blocks: Iterable[LabelledSignals], rows: int) -> None:
                 for name in COLUMNS:
                     values = block.table[name].cat.codes if name == "label" else block.table[name]
                     file[name][where] = values.to_numpy()
+                file["label_name"][where] = block.table["label"].to_numpy().astype("S")
                 raw.require_written()
                 done += len(block)
         if done != rows:
@@ -75,7 +76,6 @@ def _lay_out(file: h5py.File, first: LabelledSignals, rows: int) -> None:
         variable = file.create_dataset(name, data=values)
         variable.make_scale(name)
         say(variable, units=units, long_name=long_name)
-    say(file["sensor"], _Encoding="utf-8")  # so that xarray gives text
     shape, dimensions = (rows, len(SENSORS), samples), ("sample", "sensor", "time")
     signals = file.create_dataset("signals", shape, "f4", chunks=(1, *shape[1:]), fletcher32=True)
     say(signals, units="mV/V", long_name="bridge signal")
@@ -84,9 +84,14 @@ def _lay_out(file: h5py.File, first: LabelledSignals, rows: int) -> None:
         variable = file.create_dataset(name, (rows,), column.dtype, chunks=(min(rows, 4096),), fletcher32=True)
         say(variable, units=column.units, long_name=column.long_name)
         variables.append((variable, ("sample",)))
+    names = file.create_dataset("label_name", (rows,), f"S{max(map(len, CLASSES))}", chunks=(min(rows, 4096),))
+    say(names, units="1", long_name="condition of the gear as text; label has it as a number")
+    variables.append((names, ("sample",)))
     say(file["label"], flag_values=np.arange(len(CLASSES), dtype="i1"), flag_meanings=" ".join(CLASSES))
-    for variable, names in variables:
-        for axis, name in enumerate(names):
+    for text in (file["sensor"], names):
+        say(text, _Encoding="utf-8")  # so that xarray gives text
+    for variable, dimensions in variables:
+        for axis, name in enumerate(dimensions):
             variable.dims[axis].attach_scale(file[name])
 
 
