@@ -1,7 +1,8 @@
 """A gear and its operating point: immutable, SI units, the paper's symbols."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import pi
+from typing import Any
 
 from swgsim.common.checks import require, require_integer, require_positive
 from swgsim.flexspline.gauges import GaugeSet
@@ -137,6 +138,14 @@ class Gear:
             raise ValueError(
                 f"{teeth} teeth do not fit the ratio N = {N}: with two lobes a flex spline has 2 N = {2 * N}"
             )
+
+    def with_transmission(self, **changes: Any) -> "Gear":
+        """The gear with other values of parameters of :class:`Transmission`.
+
+        >>> Gear().with_transmission(b1=0.4).transmission.b1
+        0.4
+        """
+        return replace(self, transmission=replace(self.transmission, **changes))
 
 
 # Catalogue limits of SHG-17-100: maximum input speed [rpm] and momentary peak torque [N m].
