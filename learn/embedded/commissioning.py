@@ -9,7 +9,7 @@ from learn.embedded.front import Front, operating_points
 from learn.embedded.source import array, number, pairs, values
 from learn.inputs.references import healthy_reference
 from swgsim.common.checks import require
-from swgsim.storage.gauge_set import Recordings
+from swgsim.storage.labelled_signals import LabelledSignals
 from swgsim.storage.orders import whole_revolutions
 
 HEAD = """/* The healthy gear, written by its commissioning. */
@@ -43,12 +43,12 @@ class _Clock:
         return np.exp(-1j * angle).mean(axis=0)
 
 
-def gear_source(references: Recordings, front: Front, saturation: float) -> str:
+def gear_source(references: LabelledSignals, front: Front, saturation: float) -> str:
     """The C source that tells a method of one gear.
 
     Parameters
     ----------
-    references : Recordings
+    references : LabelledSignals
         Healthy recordings of one gear at all operating points.
     front : Front
         The features of the method.
@@ -91,7 +91,7 @@ def _scale(saturation: float, samples: int) -> float:
     return float(2 ** np.floor(np.log2(min(DEVIATION, SUM / samples) / (2 * saturation))))
 
 
-def _signal(references: Recordings, speed: float, orders: int) -> str:
+def _signal(references: LabelledSignals, speed: float, orders: int) -> str:
     """What one operating point says of the signals."""
     length = whole_revolutions(speed, references.rate, references.signals.shape[-1])
     require("the window", "samples", length, low=QUARTERS, high=LONGEST)

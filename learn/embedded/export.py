@@ -12,7 +12,7 @@ from learn.embedded.front import front
 from learn.embedded.source import Macros, macros
 from learn.inputs.inputs import Representation
 from swgsim.common.files import remedied
-from swgsim.storage.gauge_set import Recordings
+from swgsim.storage.labelled_signals import LabelledSignals
 
 SOURCES = Path(__file__).parent / "c"
 NUMBERS = ("float", "int16", "int8")
@@ -22,7 +22,7 @@ WRITTEN = {"gear.c", "model.h", "parameters.c", "forest_tables.h"}  # beside cop
 def export_c(
     model: Any,
     representation: Representation,
-    references: Recordings,
+    references: LabelledSignals,
     folder: Path,
     *,
     numbers: str = "float",
@@ -36,7 +36,7 @@ def export_c(
         A trained forest, logistic regression, perceptron or convolutional network.
     representation : Representation
         The features it was trained on: a selection of Table III, harmonics or residual.
-    references : Recordings
+    references : LabelledSignals
         Healthy recordings of the gear at all its operating points.
     folder : Path
         What an export before wrote there is removed.

@@ -19,7 +19,7 @@ from learn.jobs.train_job import BLOCK, learning_set_of
 from learn.protocols.splits import Splitting
 from swgsim.common.checks import require_known
 from swgsim.storage import storage
-from swgsim.storage.gauge_set import Recordings
+from swgsim.storage.labelled_signals import LabelledSignals
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Fold:
         Trained.
     representation : Representation
         Its inputs.
-    recordings : Recordings
+    recordings : LabelledSignals
         Of gears that it was not trained on: their references, and the samples that it is judged on.
     features : array (sample, column)
         Its inputs made of these samples in Python.
@@ -40,7 +40,7 @@ class Fold:
 
     model: Any
     representation: Representation
-    recordings: Recordings
+    recordings: LabelledSignals
     features: Float[np.ndarray, "sample column"]
 
     @property
@@ -87,7 +87,7 @@ def folds(
         yield Fold(model, representation, recordings.where(kept), np.asarray(data.features[split.test]))
 
 
-def of_gears(path: Path, gears: Collection[int]) -> Recordings:
+def of_gears(path: Path, gears: Collection[int]) -> LabelledSignals:
     """The recordings of some gears of a data set.
 
     Raises

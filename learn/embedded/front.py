@@ -15,7 +15,7 @@ from learn.inputs.inputs import Representation
 from learn.inputs.references import HEALTHY, healthy_reference
 from learn.inputs.residuals import BENCH, ERRORS, healthy_lines, leakage
 from learn.inputs.signals import Signals
-from swgsim.storage.gauge_set import SENSORS, Recordings
+from swgsim.storage.labelled_signals import SENSORS, LabelledSignals
 
 COMMON = ("swg.h", "window.c", "decide.c", "lines.h", "lines.c")
 
@@ -49,7 +49,7 @@ class Front:
     files: tuple[str, ...]
     sizes: Macros
     orders: int
-    healthy: Callable[[Recordings], Healthy]
+    healthy: Callable[[LabelledSignals], Healthy]
 
 
 def front(representation: Representation) -> Front:
@@ -79,7 +79,7 @@ def front(representation: Representation) -> Front:
     )
 
 
-def operating_points(references: Recordings) -> pd.DataFrame:
+def operating_points(references: LabelledSignals) -> pd.DataFrame:
     """One row of facts for each operating point of a gear's healthy recordings, by speed and load."""
     return references.table.drop_duplicates(HEALTHY).sort_values(HEALTHY)
 
@@ -98,7 +98,7 @@ def _selection(selection: Selection) -> Front:
         "OPERATING_POINT": int(selection.operating_point),
     }
 
-    def healthy(references: Recordings) -> Healthy:
+    def healthy(references: LabelledSignals) -> Healthy:
         quantities = signal_quantities(references, selection)
         numbers = healthy_reference(quantities, references.table, operating_points(references))
         return Healthy(np.empty((len(numbers), 0, 0), complex), numbers)
@@ -124,7 +124,7 @@ def _of_residual(representation: Harmonics | Signals, file: str, columns: int, o
     return Front(files, sizes, orders, lambda references: _healthy_lines(references, orders, acquisitions))
 
 
-def _healthy_lines(references: Recordings, orders: int, acquisitions: int | None) -> Healthy:
+def _healthy_lines(references: LabelledSignals, orders: int, acquisitions: int | None) -> Healthy:
     """The healthy lines and their change with each error, of :func:`learn.inputs.residuals.residual`."""
     rows = references.table.index.get_indexer(operating_points(references).index)
     asked = references.where(rows)  # a recording of each point as a sample, for which the healthy lines are asked

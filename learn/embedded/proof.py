@@ -12,7 +12,7 @@ from jaxtyping import Float
 
 from learn.embedded.machines import Machine, build
 from learn.embedded.running import Decisions, decide
-from swgsim.storage.gauge_set import Recordings
+from swgsim.storage.labelled_signals import LabelledSignals
 
 FACTS = ["n_in_rpm", "T_out_nm", "efficiency", "temperature_c"]
 
@@ -66,7 +66,7 @@ def together(parts: Sequence[Agreement]) -> Agreement:
     )
 
 
-def said_by(folder: Path, machine: Machine, recordings: Recordings) -> Decisions:
+def said_by(folder: Path, machine: Machine, recordings: LabelledSignals) -> Decisions:
     """What an exported method says of recordings on a machine."""
     with TemporaryDirectory(prefix="swg-") as out:
         return decide(build(folder, machine, Path(out)), machine, recordings.signals, operations(recordings.table))
@@ -77,6 +77,6 @@ def operations(table: pd.DataFrame) -> Float[np.ndarray, "recording quantity"]:
     return table[FACTS].to_numpy(dtype=float)
 
 
-def prove(folder: Path, machine: Machine, model: Any, features: np.ndarray, recordings: Recordings) -> Agreement:
+def prove(folder: Path, machine: Machine, model: Any, features: np.ndarray, recordings: LabelledSignals) -> Agreement:
     """Run an exported method on a gear's recordings, whose features the original is given."""
     return agreement(said_by(folder, machine, recordings), model.predict_proba(features))

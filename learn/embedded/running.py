@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from learn.embedded.machines import Machine, call, require_tools
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 MAGIC = 0x53574752
 HEADER = np.dtype([("magic", "<u4"), ("recordings", "<u4"), ("samples", "<u4"), ("counted", "<u4")])

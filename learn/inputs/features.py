@@ -10,7 +10,7 @@ from jaxtyping import Float
 from learn.inputs.auxiliary_inputs import operating_point
 from learn.inputs.inputs import Layout, LearningSet
 from learn.inputs.references import healthy_reference
-from swgsim.storage.gauge_set import SENSORS, Recordings
+from swgsim.storage.labelled_signals import SENSORS, LabelledSignals
 from swgsim.storage.orders import order_lines, whole_revolutions
 
 SPECTRA = {"none": (), "gauges": SENSORS, "differences": ("ds13", "ds24"), "both": (*SENSORS, "ds13", "ds24")}
@@ -74,7 +74,7 @@ class Selection:
         side = ("speed", "load", "temperature") if self.operating_point else ()
         return (*statistics, *spectrum, *EFFICIENCIES[self.efficiency], *side)
 
-    def learning_set(self, blocks: Iterable[Recordings]) -> LearningSet:
+    def learning_set(self, blocks: Iterable[LabelledSignals]) -> LearningSet:
         """Features of all samples relative to the healthy reference of their own gear and operating point.
 
         Eq. 7, component by component, as 1 + (m - m_healthy) / m_healthy: the divisor alone is kept from falling
@@ -82,7 +82,7 @@ class Selection:
 
         Parameters
         ----------
-        blocks : iterable of Recordings
+        blocks : iterable of LabelledSignals
             The recordings of a data set, samples and references, in one block or in many that are dropped one by one.
 
         Raises
@@ -121,7 +121,7 @@ class Selection:
         return np.append(statistics, np.full(len(SPECTRA[self.spectrum]) * self.orders, self.floor))
 
 
-def signal_quantities(recordings: Recordings, selection: Selection) -> Float[np.ndarray, "sample quantity"]:
+def signal_quantities(recordings: LabelledSignals, selection: Selection) -> Float[np.ndarray, "sample quantity"]:
     """The selection's means and variances [mV/V, squared], and DFT magnitudes [mV/V] before they are set in relation.
 
     All are taken over the largest whole number of revolutions at the recording's desired speed.

@@ -17,7 +17,7 @@ from learn.inputs.inputs import LearningSet
 from learn.inputs.lines import parts
 from learn.inputs.residuals import ERRORS, healthy_lines, require_acquisitions, residual
 from swgsim.common.checks import require_integer
-from swgsim.storage.gauge_set import SENSORS, Recordings
+from swgsim.storage.labelled_signals import SENSORS, LabelledSignals
 
 RIPPLE_ORDERS = (1, 2, 4)  # of the kinematic error (eq. 2)
 SMALLEST_RIPPLE = 2e-4  # mV/V; the noise of condition=bench leaves a fifth of it on a line
@@ -53,7 +53,7 @@ class Harmonics:
         require_integer(self.name, "orders", self.orders, low=max(RIPPLE_ORDERS), high=1000)
         require_acquisitions(self.name, self.acquisitions)
 
-    def learning_set(self, blocks: Iterable[Recordings]) -> LearningSet:
+    def learning_set(self, blocks: Iterable[LabelledSignals]) -> LearningSet:
         """The features of all samples."""
         healthy = healthy_lines(blocks, self.orders, self.acquisitions)
         lines, errors = residual(healthy)

@@ -11,7 +11,7 @@ import pandas as pd
 from jaxtyping import Float, Int
 
 from learn.inputs.rows import Inputs, on_disk
-from swgsim.storage.gauge_set import Recordings
+from swgsim.storage.labelled_signals import LabelledSignals
 
 OPERATING_POINT = ("n_in_rpm", "T_out_nm")
 SPECIMEN = ("gear", "label", "variant")  # a physical unit, recorded at several operating points
@@ -46,7 +46,7 @@ class LearningSet:
     features : array (sample, feature)
         Of a large data set, rows in a file.
     table : DataFrame
-        One row of facts per sample, with the columns of :data:`swgsim.storage.gauge_set.COLUMNS`.
+        One row of facts per sample, with the columns of :data:`swgsim.storage.labelled_signals.COLUMNS`.
     names : tuple of str
         One per feature.
     layout : Layout
@@ -82,13 +82,13 @@ def beside_foreign(data: LearningSet, foreign: LearningSet) -> LearningSet:
 class Representation(Hashable, Protocol):
     """A way to make inputs of recordings; equal ones are interchangeable."""
 
-    def learning_set(self, blocks: Iterable[Recordings]) -> LearningSet:
+    def learning_set(self, blocks: Iterable[LabelledSignals]) -> LearningSet:
         """The inputs of the samples of a data set, which comes in one block or in many that are dropped one by one."""
         ...
 
 
 def gear_by_gear(
-    blocks: Iterable[Recordings], representation: Representation, folder: Path, progress: Callable[[int], object]
+    blocks: Iterable[LabelledSignals], representation: Representation, folder: Path, progress: Callable[[int], object]
 ) -> LearningSet:
     """The inputs of a data set that is too large for the memory, one gear after the other, in a file.
 
@@ -96,7 +96,7 @@ def gear_by_gear(
 
     Parameters
     ----------
-    blocks : iterable of Recordings
+    blocks : iterable of LabelledSignals
         The recordings of a gear in a row, as data sets have them.
     representation : Representation
     folder : Path
@@ -123,7 +123,7 @@ def gear_by_gear(
     return LearningSet(rows, table, facts[0].names, facts[0].layout)
 
 
-def _gears(blocks: Iterable[Recordings]) -> Iterator[list[Recordings]]:
+def _gears(blocks: Iterable[LabelledSignals]) -> Iterator[list[LabelledSignals]]:
     """The recordings of each gear."""
     pieces = (block.where(rows) for block in blocks for rows in _runs(block.table["gear"].to_numpy()))
     before: set[int] = set()

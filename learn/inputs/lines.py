@@ -10,7 +10,7 @@ from learn.inputs.auxiliary_inputs import Side
 from learn.inputs.inputs import LearningSet
 from learn.inputs.residuals import ERRORS, healthy_lines, require_acquisitions, residual
 from swgsim.common.checks import require_integer
-from swgsim.storage.gauge_set import SENSORS, Recordings
+from swgsim.storage.labelled_signals import SENSORS, LabelledSignals
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class ResidualLines:
         require_integer(self.name, "orders", self.orders, low=1, high=1000)
         require_acquisitions(self.name, self.acquisitions)
 
-    def learning_set(self, blocks: Iterable[Recordings]) -> LearningSet:
+    def learning_set(self, blocks: Iterable[LabelledSignals]) -> LearningSet:
         """The features of all samples."""
         healthy = healthy_lines(blocks, self.orders, self.acquisitions)
         lines, errors = residual(healthy)

@@ -15,7 +15,7 @@ from jaxtyping import Complex, Float, Int
 
 from learn.inputs.references import HEALTHY, healthy_reference
 from swgsim.common.checks import require_integer
-from swgsim.storage.gauge_set import Recordings
+from swgsim.storage.labelled_signals import LabelledSignals
 from swgsim.storage.orders import lines_of, whole_revolutions
 
 
@@ -51,12 +51,12 @@ def require_acquisitions(owner: str, acquisitions: int | None) -> None:
         require_integer(owner, "acquisitions", acquisitions, low=1, high=10_000)
 
 
-def healthy_lines(blocks: Iterable[Recordings], orders: int, acquisitions: int | None = None) -> HealthyLines:
+def healthy_lines(blocks: Iterable[LabelledSignals], orders: int, acquisitions: int | None = None) -> HealthyLines:
     """Order lines of all samples beside those of their healthy reference.
 
     Parameters
     ----------
-    blocks : iterable of Recordings
+    blocks : iterable of LabelledSignals
         Samples and references of a data set.
     orders : int
         Highest order.
@@ -94,7 +94,7 @@ def healthy_lines(blocks: Iterable[Recordings], orders: int, acquisitions: int |
     )  # fmt: skip
 
 
-def _revolutions(recordings: Recordings) -> Int[np.ndarray, " sample"]:
+def _revolutions(recordings: LabelledSignals) -> Int[np.ndarray, " sample"]:
     length, rate = recordings.signals.shape[-1], recordings.rate
     return np.array([
         round(whole_revolutions(speed, rate, length) * speed / 60 / rate) for speed in recordings.table["n_in_rpm"]

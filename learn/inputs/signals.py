@@ -9,7 +9,7 @@ from learn.inputs.auxiliary_inputs import Side
 from learn.inputs.inputs import Layout, LearningSet
 from learn.inputs.residuals import ERRORS, healthy_lines, require_acquisitions, residual
 from swgsim.common.checks import require_integer
-from swgsim.storage.gauge_set import SENSORS, Recordings
+from swgsim.storage.labelled_signals import SENSORS, LabelledSignals
 from swgsim.storage.orders import revolution
 
 CHANNELS = {"raw": SENSORS, "differenced": ("ds13", "ds24"), "residual": SENSORS}
@@ -56,7 +56,7 @@ class Signals:
         require_integer(self.name, "orders", self.orders, low=1, high=self.points // 2 - 1)
         require_acquisitions(self.name, self.acquisitions)
 
-    def learning_set(self, blocks: Iterable[Recordings]) -> LearningSet:
+    def learning_set(self, blocks: Iterable[LabelledSignals]) -> LearningSet:
         """The signals of all samples, with the side inputs behind."""
         healthy = healthy_lines(blocks, self.orders, self.acquisitions)
         side = Side(self.efficiency, self.operating_point, self.reference).columns(healthy)

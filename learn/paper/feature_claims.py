@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from learn.inputs.features import Selection, signal_quantities
 from learn.inputs.references import healthy_reference
-from swgsim.storage.gauge_set import Recordings
+from swgsim.storage.labelled_signals import LabelledSignals
 from swgsim.studies.finding import Finding, percent
 
 SPECTRUM = Selection("spectrum of differences", statistics=False, spectrum="differences", efficiency="eta_rel")
@@ -45,7 +45,7 @@ class Features:
     healthy_odd: float
 
 
-def features_of(blocks: Sequence[Recordings]) -> Features:
+def features_of(blocks: Sequence[LabelledSignals]) -> Features:
     """The features of a clean data set."""
     learning = SPECTRUM.learning_set(blocks)
     relative = np.asarray(learning.features)

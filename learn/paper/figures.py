@@ -8,7 +8,7 @@ from jaxtyping import Float
 from matplotlib.figure import Figure
 
 from swgsim.common import style
-from swgsim.storage.gauge_set import CLASSES, SENSORS, Recordings
+from swgsim.storage.labelled_signals import CLASSES, SENSORS, LabelledSignals
 from swgsim.storage.orders import whole_revolutions
 
 HIGHEST_ORDER = 8
@@ -23,8 +23,8 @@ TABLES: Mapping[str, str] = {
 def pictures(
     examples: Mapping[str, Float[np.ndarray, "5 time"]],
     speed_rpm: float,
-    clean: Recordings,
-    disturbed: Recordings,
+    clean: LabelledSignals,
+    disturbed: LabelledSignals,
     runs: pd.DataFrame,
 ) -> list[style.Picture]:
     """All pictures of this module; the parameters are those of the functions below."""
@@ -99,7 +99,7 @@ def spectrum(
     return np.fft.rfftfreq(length, speed_rpm / 60 / rate), np.abs(np.fft.rfft(part)) * 2 / length
 
 
-def disturbance(clean: Recordings, disturbed: Recordings) -> Figure:
+def disturbance(clean: LabelledSignals, disturbed: LabelledSignals) -> Figure:
     """Fig. 8: the same recording clean and disturbed, and the difference on its own scale."""
     time = 1e3 * np.arange(clean.signals.shape[2]) / clean.rate
     picture = style.figure(11, 3.8)

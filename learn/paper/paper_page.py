@@ -17,7 +17,7 @@ from learn.paper.published_tables import PROTOCOLS, Comparison, row_label
 from learn.tracking import Store, finished_runs
 from swgsim.common.html import environment
 from swgsim.common.style import Picture, words
-from swgsim.storage.gauge_set import Recordings
+from swgsim.storage.labelled_signals import LabelledSignals
 from swgsim.studies.finding import Finding
 
 os.environ.setdefault("MLFLOW_ENABLE_ARTIFACTS_PROGRESS_BAR", "false")
@@ -180,7 +180,7 @@ def confusion(store: Store, digests: Mapping[str, str], study: str, features: st
     return Picture(f"As Table {ROMAN[study]}, {words(features)}", caption, raw)
 
 
-def statistics(blocks: Sequence[Recordings]) -> list[dict[str, str]]:
+def statistics(blocks: Sequence[LabelledSignals]) -> list[dict[str, str]]:
     """Per operating point: recordings, healthy efficiency of each gear, amplitude of s1 and mean of s0."""
     table = pd.concat([block.table for block in blocks], ignore_index=True)
     table["s1"] = np.concatenate([np.ptp(block.signals[:, 1], axis=1) / 2 for block in blocks])

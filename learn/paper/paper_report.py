@@ -21,7 +21,7 @@ from swgsim.common.files import write_text
 from swgsim.common.style import Picture
 from swgsim.jobs import settings as chain_settings
 from swgsim.storage import storage
-from swgsim.storage.gauge_set import Recordings
+from swgsim.storage.labelled_signals import LabelledSignals
 from swgsim.studies import figures as chain_figures
 from swgsim.studies.claims import chain_claims
 from swgsim.studies.examples import FIGURE_POINT, Subject
@@ -167,7 +167,9 @@ def example_rows(table: pd.DataFrame) -> pd.Series:
     return at_point & (table["label"] == "healthy")
 
 
-def _pictures(subject: Subject, clean: Recordings, disturbed: Recordings, runs: pd.DataFrame) -> list[Picture]:
+def _pictures(
+    subject: Subject, clean: LabelledSignals, disturbed: LabelledSignals, runs: pd.DataFrame
+) -> list[Picture]:
     """Those of the chain, then those of learning, with the same recordings of both data sets."""
     healthy = example_rows(clean.table)
     return [

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from learn.evaluation.evaluate import metric_key
-from swgsim.storage.gauge_set import CLASSES
+from swgsim.storage.labelled_signals import CLASSES
 
 PROTOCOLS = {
     "table7": "random_folds",

@@ -52,6 +52,9 @@ def grid(config: Config) -> Grid:
         if not isinstance(config[name], list):
             raise ValueError(f"{name} of the grid is {config[name]!r}, must be a list such as [{config[name]}]")
     points = tuple(OperatingPoint(n, T) for n in config["speeds_rpm"] for T in config["loads_nm"])
+    for label, levels in config["severities"].items():
+        if not isinstance(levels, list):
+            raise ValueError(f"severities of {label} are {levels!r}, must be a list such as [{levels}]")
     severities = {label: tuple(levels) for label, levels in config["severities"].items()}
     variants = Variants(config["variants"], config["positions"], severities, config["drawn"])
     return Grid(

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from swgsim.common.html import environment
-from swgsim.common.numbers import figure
+from swgsim.common.numbers import significant
 from swgsim.joint.joint_page import capital
 
 
@@ -22,7 +22,7 @@ def page(said: Mapping[str, Mapping[str, Any]], missing: Mapping[str, str], fold
         Name of a case to the folder of its answer, where the pictures are.
     """
     templates = environment("swgsim")
-    templates.filters["figure"] = figure
+    templates.filters["figure"] = significant
     templates.filters["capital"] = capital
     ladders = {name: (folder / "ladder.png").read_bytes() for name, folder in folders.items()}
     return templates.get_template("joint/cases.html.jinja").render(said=said, missing=missing, ladders=ladders)
@@ -33,7 +33,7 @@ def tables(said: Mapping[str, Mapping[str, Any]]) -> str:
     parts = ["<!-- Written by scripts/joints.py; do not edit. -->"]
     for name, each in said.items():
         unit, floor = each["unit"], each["noise_floor"]
-        noise = "not recorded" if floor is None else f"{figure(floor)} {unit}, {each['noise_floor_how']}"
+        noise = "not recorded" if floor is None else f"{significant(floor)} {unit}, {each['noise_floor_how']}"
         parts.append(
             f"\n## {capital(name)}\n\n{each['sentence']}\n\n"
             f"Fitted: {len(each['split']['fit'])} recordings; held out: {', '.join(each['split']['heldout'])}. "

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from swgsim.common.files import replacing, require_writable, write_json, write_text
-from swgsim.common.numbers import figure
+from swgsim.common.numbers import significant
 from swgsim.common.outcome import Outcome
 from swgsim.effects.library import listed, named
 from swgsim.effects.text import as_text
@@ -151,9 +151,12 @@ def _write(folder: Path, judged: Judged, by_day: Any, lines: Any, said: Mapping[
 def _lines(said: Mapping[str, Any]) -> list[str]:
     """What the command prints."""
     error, unit = said["error"], said["unit"]
-    both = {when: f"{figure(error[when]['fit'])} {unit}, on recordings not seen {figure(error[when]['heldout'])} {unit}"
-            for when in ("before", "after")}  # fmt: skip
-    floor = figure(said["noise_floor"]) + (f" {unit}" if said["noise_floor"] is not None else "")
+    both = {
+        when: f"{significant(error[when]['fit'])} {unit}, "
+        f"on recordings not seen {significant(error[when]['heldout'])} {unit}"
+        for when in ("before", "after")
+    }
+    floor = significant(said["noise_floor"]) + (f" {unit}" if said["noise_floor"] is not None else "")
     return [
         said["sentence"],
         f"error before   {both['before']}",

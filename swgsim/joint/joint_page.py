@@ -5,7 +5,7 @@ from typing import Any
 
 from swgsim.common import style
 from swgsim.common.html import environment
-from swgsim.common.numbers import figure
+from swgsim.common.numbers import significant
 
 
 def page(said: Mapping[str, Any], pictures: Sequence[style.Picture]) -> str:
@@ -19,7 +19,7 @@ def page(said: Mapping[str, Any], pictures: Sequence[style.Picture]) -> str:
     """
     templates = environment("swgsim")
     templates.filters["words"] = style.words
-    templates.filters["figure"] = figure
+    templates.filters["figure"] = significant
     templates.filters["capital"] = capital
     return templates.get_template("joint/joint_page.html.jinja").render(said=said, pictures=pictures)
 

@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import OperatingPoint
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 
 class Channel(NamedTuple):

@@ -11,7 +11,7 @@ from swgsim.flexspline.lattice import INNER
 from swgsim.flexspline.silk_hat import sector
 from swgsim.gear.acquisition import Window
 from swgsim.gear.gear import Gear, OperatingPoint
-from swgsim.storage.gauge_set import CLASSES
+from swgsim.storage.labelled_signals import CLASSES
 from swgsim.studies import figures, flexspline_figures
 from swgsim.studies.examples import EXAMPLES, Subject
 

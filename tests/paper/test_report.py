@@ -22,7 +22,7 @@ from learn.paper.published_tables import PROTOCOLS, compare
 from swgsim.common.style import Picture
 from swgsim.jobs.generate_data_set import run as generate
 from swgsim.storage import storage
-from swgsim.storage.gauge_set import CLASSES
+from swgsim.storage.labelled_signals import CLASSES
 from swgsim.studies.examples import SEVEREST
 from swgsim.studies.finding import Finding, percent
 

@@ -21,7 +21,7 @@ from swgsim.chain.chain import simulate_turns
 from swgsim.identification.data import model
 from swgsim.identification.report import answer_figures as figures
 from swgsim.storage import storage
-from swgsim.storage.gauge_set import CLASSES
+from swgsim.storage.labelled_signals import CLASSES
 
 pytestmark = pytest.mark.end_to_end
 CONF = Path(__file__).parents[2] / "conf"

@@ -16,7 +16,7 @@ from swgsim.recordings.read import require_usable
 from swgsim.identification.data.features import Layout, features
 from swgsim.identification.data.model import Model, Situation, predict
 from swgsim.recordings.recording import Recording
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 
 def zero_of(recordings: Sequence[Recording], model: Model) -> float:

@@ -21,7 +21,7 @@ from swgsim.common.numbers import NORMAL
 from swgsim.identification.report.prediction_errors import WHAT
 from swgsim.identification.data.measured import Measured
 from swgsim.recordings.recording import CHANNELS
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 BEFORE, AFTER, FLOOR, GREY = "#D55E00", "#0072B2", "#000000", "#bbbbbb"
 POINTS = 360

@@ -5,7 +5,7 @@ from typing import Any
 
 from swgsim.common import style
 from swgsim.common.html import environment
-from swgsim.common.numbers import figure
+from swgsim.common.numbers import significant
 
 
 def page(report: Mapping[str, Any], pictures: Sequence[style.Picture]) -> str:
@@ -19,5 +19,5 @@ def page(report: Mapping[str, Any], pictures: Sequence[style.Picture]) -> str:
     """
     templates = environment("swgsim")
     templates.filters["words"] = style.words
-    templates.filters["figure"] = figure
+    templates.filters["figure"] = significant
     return templates.get_template("identification/report/answer_page.html.jinja").render(report=report, pictures=pictures)

@@ -31,7 +31,7 @@ from swgsim.identification.data.features import COMPARED
 from swgsim.identification.data.gauge_order import order_defects
 from swgsim.identification.data.model import Model
 from swgsim.identification.report.answer_page import page
-from swgsim.common.numbers import figure
+from swgsim.common.numbers import significant
 from swgsim.identification.report.report_fields import report
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.interharmonics.named_interharmonics import has_sidelines
@@ -153,15 +153,15 @@ def _both(error: Mapping[str, float | None]) -> str:
 
 
 def _between(interval: Sequence[float] | None) -> str:
-    return "" if interval is None else f" (95 %: {figure(interval[0])} to {figure(interval[1])})"
+    return "" if interval is None else f" (95 %: {significant(interval[0])} to {significant(interval[1])})"
 
 
 def _percent(value: float | None) -> str:
-    return figure(value) + ("" if value is None else " %")
+    return significant(value) + ("" if value is None else " %")
 
 
 def _parameter(name: str, estimate: Mapping[str, Any]) -> str:
-    return sized(name, figure(estimate["value"]), estimate["unit"])
+    return sized(name, significant(estimate["value"]), estimate["unit"])
 
 
 def digest(recordings: Sequence[Recording]) -> str:

@@ -15,7 +15,7 @@ from swgsim.recordings.checks.thresholds import (
     ORDER_2_SHARE,
 )
 from swgsim.recordings.recording import Recording
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 
 def gauge_defects(recording: Recording) -> Iterator[Defect]:

@@ -6,7 +6,7 @@ from jaxtyping import Complex, Float
 from swgsim.recordings.checks.angle import angle_is_sound
 from swgsim.recordings.files.assembly import unwrapped
 from swgsim.recordings.recording import Recording
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 ORDERS = 4
 

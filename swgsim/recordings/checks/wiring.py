@@ -24,7 +24,7 @@ from swgsim.recordings.checks.thresholds import (
     S0_SCALE,
 )
 from swgsim.recordings.recording import Recording
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 # Phase of order 2 against s1, in half turns.
 OPPOSITE = {"s1": 0, "s2": 1, "s3": 0, "s4": 1}

@@ -14,7 +14,7 @@ from swgsim.recordings.files.file_defect import shown
 from swgsim.recordings.files.plain_file import described, require_names
 from swgsim.recordings.files.units import FACTORS, STRAIN, bridge_factor
 from swgsim.recordings.recording import CHANNELS
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 
 @dataclass(frozen=True)

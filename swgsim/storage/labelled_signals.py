@@ -43,7 +43,7 @@ COLUMNS: Mapping[str, Column] = {
 
 
 @dataclass(frozen=True)
-class Recordings:
+class LabelledSignals:
     """Gauge signals with their facts.
 
     Attributes
@@ -89,19 +89,19 @@ class Recordings:
     def __len__(self) -> int:
         return len(self.signals)
 
-    def where(self, rows: np.ndarray | pd.Series) -> "Recordings":
+    def where(self, rows: np.ndarray | pd.Series) -> "LabelledSignals":
         """The recordings of a boolean mask or of a list of row numbers."""
         rows = np.asarray(rows)
         rows = np.flatnonzero(rows) if rows.dtype == bool else rows
         return replace(self, signals=self.signals[rows], table=self.table.iloc[rows].reset_index(drop=True))
 
     @property
-    def samples(self) -> "Recordings":
+    def samples(self) -> "LabelledSignals":
         """The recordings that are to be judged: all but the references."""
         return self.where(~self.table["reference"])
 
     @property
-    def references(self) -> "Recordings":
+    def references(self) -> "LabelledSignals":
         """The separate healthy acquisitions of each gear."""
         return self.where(self.table["reference"])
 
