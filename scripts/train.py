@@ -1,5 +1,7 @@
 """Train and judge classifiers: one job, a sweep with -m, or an experiment such as experiment=table7."""
 
+import sys
+
 import hydra
 from misspelt import answered
 from omegaconf import DictConfig
@@ -16,4 +18,7 @@ def main(config: DictConfig) -> float:
 
 
 if __name__ == "__main__":
+    from learn.methods.contract import with_own_classifier
+
+    sys.argv[1:] = with_own_classifier(sys.argv[1:])
     answered(main, "train")
