@@ -11,7 +11,7 @@ from learn.inputs.harmonics import Harmonics
 from learn.inputs.inputs import NO_SIGNAL, Layout, Representation
 from learn.inputs.lines import ResidualLines
 from learn.inputs.signals import Signals
-from learn.methods import classical, neural, strong
+from learn.methods import classical, contract, neural, strong
 from learn.methods.rocket import MiniRocket
 from learn.protocols.harder_splits import LeaveOperatingPointOut, LeaveSeverityOut
 from learn.protocols.levels import NewGears
@@ -66,14 +66,30 @@ def protocol(config: Config) -> Splitting:
     return _chosen("protocol", PROTOCOLS, config)()
 
 
-def classifier(config: Config, layout: Layout = NO_SIGNAL) -> Callable[..., classical.Classifier]:
+def classifier(config: Config, layout: Layout | None = None) -> Callable[..., classical.Classifier]:
     """A maker of untrained classifiers of ``conf/classifier``; it takes options in place of those configured.
 
-    Methods that know signals are told where in a row the signal is.
+    Parameters
+    ----------
+    config : mapping
+        Its ``name`` is a built-in classifier, or the import path ``module:Class`` of another one.
+    layout : Layout, optional
+        Where in a row the signal is, for classifiers that use it. With it, a class that is given by its import path
+        is tried on a few made-up rows.
+
+    Raises
+    ------
+    ValueError
+        If there is no such classifier or option, or a class does not keep :class:`learn.methods.Classifier`.
     """
-    make = _chosen("classifier", CLASSIFIERS, config)
-    knows_signals = "channels" in inspect.signature(make).parameters
-    return partial(make, **layout._asdict()) if knows_signals else make
+    name = str(config.get("name"))
+    own = contract.is_import_path(name)
+    make = _chosen("classifier", {name: contract.class_of(name)} if own else CLASSIFIERS, config)
+    if "channels" in inspect.signature(make).parameters:
+        make = partial(make, **(layout or NO_SIGNAL)._asdict())
+    if own and layout is not None:
+        contract.require_contract(name, make, layout.columns + 8)
+    return make
 
 
 def adaptation(config: Config) -> Callable[..., "Adaptation"]:
@@ -115,7 +131,8 @@ def data_set(config: Config) -> Path:
 def _chosen(kind: str, choices: Mapping[str, Callable[..., T]], config: Config) -> Callable[..., T]:
     name = str(config.get("name"))
     if name not in choices:
-        raise ValueError(f"unknown {kind} {name!r}; choose from {', '.join(choices)}")
+        own = ", or give the import path module:Class" if kind == "classifier" else ""
+        raise ValueError(f"unknown {kind} {name!r}; choose from {', '.join(choices)}{own}")
     options = {key: value for key, value in config.items() if key not in NO_OPTIONS}
     return _configured(f"{kind} {name}", choices[name], options)
 

@@ -15,6 +15,8 @@ from swgsim.commands.mistakes import FULL, MENDABLE, answered, explain
 from swgsim.common.configured import conf_folder, plain
 
 GROUP = "swg.commands"
+# Functions that spell the words of a command as Hydra reads them.
+SPELLINGS = "swg.spellings"
 
 
 def commands() -> dict[str, Callable[[], Callable[[Mapping[str, Any]], Any]]]:
@@ -66,6 +68,9 @@ def command(name: str, arguments: list[str] | None = None) -> None:
             explain(error)  # here, since Hydra would print the overrides of the command before the error
             raise SystemExit(1) from error
 
+    words = sys.argv[1:] if arguments is None else arguments
+    for entry in entry_points(group=SPELLINGS, name=name):
+        words = entry.load()(words)
     # Hydra reads the process's arguments, and names the command in its help by the first of them.
-    sys.argv = [f"swg {name}", *(sys.argv[1:] if arguments is None else arguments)]
+    sys.argv = [f"swg {name}", *words]
     answered(main, config_name(name))
