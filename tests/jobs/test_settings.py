@@ -60,7 +60,7 @@ def test_defaults_are_what_the_configuration_says(group):
             "unknown protocol 'folds'; choose from random_folds, grouped_folds, leave_one",
         ),
         (settings.store, {"name": "cloud"}, "unknown tracking 'cloud'; choose from local, server"),
-        (settings.store, {"name": "server", "uri": "host"}, "tracking.uri='host' is no address of a server"),
+        (settings.store, {"name": "server", "uri": "host"}, "tracking.uri='host' is not an address of a server"),
         (
             settings.representation,
             {"name": "x", "order": 3},

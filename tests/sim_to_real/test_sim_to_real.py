@@ -7,16 +7,16 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-import sim_to_real_study as study
 from fabricated import recordings
 from hydra import compose, initialize_config_dir
 from omegaconf import OmegaConf
 
 from learn.jobs import settings
 from learn.sim_to_real import report, verdicts
-from learn.sim_to_real.finished import Finished
+from learn.sim_to_real import sim_to_real_study as study
 from learn.sim_to_real.judging import COMMISSIONING, DAYS, MODELS, SAME_DAY, Pair, judged
 from learn.sim_to_real.scores import scores
+from learn.sim_to_real.verdicts import Finished
 from swgsim.chain.chain import simulate_turns
 from swgsim.identification.data import model
 from swgsim.identification.report import answer_figures as figures
