@@ -85,7 +85,8 @@ def _advised(variants: pd.DataFrame, part: Part, advice: Recommendation | None) 
         f"{part.rate * row['instructions'] / 1e6:.1f} million instructions a second."
     )
     if advice.variant == advice.most_accurate:
-        return f"{chosen} On unseen gears it is the most accurate one that fits; each smaller one is worse.{left_out}"
+        reason = "On unseen gears it is the most accurate one that fits; no smaller one is known to be as accurate."
+        return f"{chosen} {reason}{left_out}"
     more = f"{advice.difference:.1f} points more ({advice.low:.1f} to {advice.high:.1f})"
     return (
         f"{chosen} Of those that fit, {advice.most_accurate} is the most accurate on unseen gears. The recommended "

@@ -16,6 +16,7 @@ import pytest
 from fabricated import recordings
 from hydra import compose, initialize_config_dir
 from omegaconf import OmegaConf
+from prepared_store import prepared
 
 from learn import tracking
 from learn.jobs import train_job as job
@@ -25,7 +26,7 @@ from swgsim.storage import storage
 
 ROOT = Path(__file__).parents[2]
 SECONDS_TO_START = 600  # on a machine that does much else; it takes ten on an idle one
-JOBS = 20
+JOBS = 12
 # A server that does not import everything anew for each of the jobs.
 PROCESSES = multiprocessing.get_context("forkserver")
 PROCESSES.set_forkserver_preload(["learn.tracking", "mlflow", "mlflow.store.artifact.mlflow_artifacts_repo", "pyarrow"])
@@ -80,7 +81,7 @@ def server():
         shutil.rmtree(folder)
 
 
-def keep(store, number, study="twenty"):
+def keep(store, number, study="many"):
     table = pd.DataFrame({"number": [number], "square": [number**2]})
     parameters = {"study": study, "grid": "small", "number": number}
     tags = {"data_digest": "d"}
@@ -97,7 +98,8 @@ def finished_by_number(store, study):
     return tracking.finished_runs(store, study=study).astype({"number": int}).set_index("number").sort_index()
 
 
-def test_twenty_jobs_at_once_lose_no_run_and_no_metric(server):
+@pytest.mark.slow
+def test_many_jobs_at_once_lose_no_run_and_no_metric(server):
     jobs = [PROCESSES.Process(target=join_in, args=(server.uri, number)) for number in range(JOBS)]
     for each in jobs:
         each.start()
@@ -105,7 +107,7 @@ def test_twenty_jobs_at_once_lose_no_run_and_no_metric(server):
         each.join()
     assert [each.exitcode for each in jobs] == [0] * JOBS
     store = server.store()
-    found = finished_by_number(store, "twenty")
+    found = finished_by_number(store, "many")
     assert list(found.index) == list(range(JOBS))
     for number, run in found.iterrows():
         assert [run[f"m/{i}"] for i in range(50)] == [number + i / 100 for i in range(50)]
@@ -135,7 +137,7 @@ def not_trained(*_):
 @pytest.fixture(scope="module")
 def lost(server, data, tmp_path_factory):
     """A job of a sweep whose server goes away while it works and is then started again; and its metrics."""
-    pending = tmp_path_factory.mktemp("pending")
+    pending = prepared(tmp_path_factory.mktemp("pending"))
     config = configured(data, "tracking=server", f"tracking.uri={server.uri}", f"tracking.pending={pending}")
     judge = zero_shot.results
     keep(server.store(), 5, study="before")
@@ -152,10 +154,11 @@ def lost(server, data, tmp_path_factory):
     return pending, metrics
 
 
+@pytest.mark.slow
 def test_a_job_whose_server_goes_away_ends_as_it_would_without(server, data, lost, tmp_path):
     pending, metrics = lost
     waiting = tracking.local_store(str(pending))
-    undisturbed = configured(data, f"tracking.folder={tmp_path}")
+    undisturbed = configured(data, f"tracking.folder={prepared(tmp_path)}")
     expected = {**job.run(undisturbed), "fit_seconds": metrics["fit_seconds"]}
     assert metrics == expected
     (before,) = tracking.finished_runs(server.store(), study="before").itertuples()  # the server keeps its runs
@@ -171,6 +174,7 @@ def test_a_job_whose_server_goes_away_ends_as_it_would_without(server, data, los
     )
 
 
+@pytest.mark.slow
 def test_what_waits_for_upload_is_not_done_again(data, lost, monkeypatch):
     pending, metrics = lost
     monkeypatch.setattr(zero_shot, "results", not_trained)
@@ -181,7 +185,9 @@ def test_what_waits_for_upload_is_not_done_again(data, lost, monkeypatch):
 def test_jobs_of_a_sweep_go_on_without_their_server_and_say_so(data, tmp_path, monkeypatch, caplog):
     uri = f"http://127.0.0.1:{free_port()}"
     monkeypatch.setenv(tracking.SWEEP, "0123456789abcdef")
-    metrics = job.run(configured(data, "tracking=server", f"tracking.uri={uri}", f"tracking.pending={tmp_path}"))
+    metrics = job.run(
+        configured(data, "tracking=server", f"tracking.uri={uri}", f"tracking.pending={prepared(tmp_path)}")
+    )
     assert f"the results are kept in {tmp_path}" in caplog.text
     assert f"swg upload tracking.uri={uri} tracking.pending={tmp_path}" in caplog.text
     assert tracking.finished_runs(tracking.local_store(str(tmp_path)))["test_score"].tolist() == [metrics["test_score"]]
@@ -214,6 +220,7 @@ def killed_upload(uri, pending):
     tracking.upload(tracking.server_store(uri, pending=pending))
 
 
+@pytest.mark.slow
 def test_runs_are_uploaded_whole_and_once(server, lost, monkeypatch):
     pending, _ = lost
     store, local = server.store(pending), tracking.local_store(str(pending))
@@ -251,7 +258,7 @@ def test_an_upload_of_nothing_is_an_error(tmp_path):
     server = tracking.server_store("http://host:1", pending=str(tmp_path))
     with pytest.raises(ValueError, match=f"no runs to upload to http://host:1 in {tmp_path}.*tracking.pending=FOLDER"):
         tracking.upload(server)
-    assert tracking.local_store(str(tmp_path)).experiment_id
+    assert tracking.local_store(str(prepared(tmp_path))).experiment_id
     with pytest.raises(ValueError, match=f"{tmp_path} has no finished run to upload: give another folder"):
         tracking.upload(server)
 

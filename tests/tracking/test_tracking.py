@@ -7,6 +7,7 @@ from contextlib import closing
 
 import pytest
 from mlflow.exceptions import MlflowException
+from prepared_store import prepared, store_in
 
 from learn import tracking
 from learn.jobs import identity
@@ -17,7 +18,7 @@ PARAMETERS = {"study": "table7", "grid": "small", "classifier": "rf"}
 
 @pytest.fixture(scope="module")
 def store(tmp_path_factory):
-    return tracking.local_store(str(tmp_path_factory.mktemp("store") / "runs"))
+    return store_in(tmp_path_factory.mktemp("store") / "runs")
 
 
 def keep(store, key, metrics, **parameters):
@@ -38,7 +39,7 @@ def test_a_finished_job_is_found_by_its_key_a_failed_or_killed_one_is_not(store)
 
 
 def test_a_local_store_that_is_damaged_is_not_taken_for_a_lost_server(tmp_path, monkeypatch):
-    store = tracking.local_store(str(tmp_path))
+    store = store_in(tmp_path)
     monkeypatch.setenv(tracking.SWEEP, tracking.open_sweep(store, "trial", "small"))
     with closing(sqlite3.connect(store.folder / "mlflow.db")) as database:
         database.execute("drop table tags")
@@ -104,7 +105,9 @@ def test_key_depends_on_what_decides_the_result_only():
 
 
 def test_every_experiment_with_runs_has_a_link(tmp_path):
-    store, loop, empty = (tracking.local_store(str(tmp_path), name) for name in (tracking.EXPERIMENT, "loop", "empty"))
+    store, loop, empty = (
+        tracking.local_store(str(prepared(tmp_path)), name) for name in (tracking.EXPERIMENT, "loop", "empty")
+    )
     assert empty.experiment_id
     assert ui.links(store, "http://host:1") == {}
     keep(loop, "key", {"noise_floor": 0.8})
