@@ -1,4 +1,4 @@
-"""A trained classifier with recordings of gears that it was not trained on, judged by the code that it becomes."""
+"""A trained classifier with recordings of unseen gears, and the accuracy of its exported code on them."""
 
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, replace
@@ -12,7 +12,7 @@ from jaxtyping import Float
 
 from learn.embedded.export import export_c
 from learn.embedded.machines import HOST
-from learn.embedded.proof import Agreement, agreement, said_by, together
+from learn.embedded.proof import Agreement, agreement, decisions_of, together
 from learn.evaluation.evaluate import fit
 from learn.inputs.inputs import SPECIMEN, Layout, Representation
 from learn.jobs.train_job import BLOCK, learning_set_of
@@ -24,7 +24,7 @@ from swgsim.storage.labelled_signals import LabelledSignals
 
 @dataclass(frozen=True)
 class Fold:
-    """A trained classifier and what it is judged on.
+    """A trained classifier and its test recordings.
 
     Attributes
     ----------
@@ -33,9 +33,9 @@ class Fold:
     representation : Representation
         Its inputs.
     recordings : LabelledSignals
-        Of gears that it was not trained on: their references, and the samples that it is judged on.
+        References and test samples of gears that are not in the training set.
     features : array (sample, column)
-        Its inputs made of these samples in Python.
+        Its inputs from these samples, computed in Python.
     """
 
     model: Any
@@ -56,7 +56,7 @@ class Fold:
         return replace(self, recordings=self.recordings.where(mine), features=self.features[samples])
 
     def export(self, folder: Path, numbers: str) -> None:
-        """Write it in C for the gear, of which there must be one."""
+        """Write its C code for the only gear of the recordings."""
         export_c(self.model, self.representation, self.recordings.references, folder, numbers=numbers)
 
 
@@ -102,7 +102,7 @@ def of_gears(path: Path, gears: Collection[int]) -> LabelledSignals:
 
 
 def judged(fold: Fold, numbers: str) -> tuple[pd.DataFrame, Agreement]:
-    """What the code says on this machine, exported for one gear after the other.
+    """Errors of the code on this machine, exported for each gear in turn.
 
     Returns
     -------
@@ -117,9 +117,9 @@ def judged(fold: Fold, numbers: str) -> tuple[pd.DataFrame, Agreement]:
         samples = part.recordings.samples
         with TemporaryDirectory(prefix="swg-") as folder:
             part.export(Path(folder) / "c", numbers)
-            said = said_by(Path(folder) / "c", HOST, samples)
-        names = np.append(fold.model.classes_, "no decision")[said.results.clip(min=-1)]
+            decisions = decisions_of(Path(folder) / "c", HOST, samples)
+        names = np.append(fold.model.classes_, "no decision")[decisions.results.clip(min=-1)]
         wrong = names != samples.table["label"].astype(str).to_numpy()
         errors.append(samples.table[list(SPECIMEN)].assign(error=100.0 * wrong))
-        agreements.append(agreement(said, fold.model.predict_proba(part.features)))
+        agreements.append(agreement(decisions, fold.model.predict_proba(part.features)))
     return pd.concat(errors, ignore_index=True), together(agreements)

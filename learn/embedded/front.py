@@ -1,4 +1,4 @@
-"""The part of an exported method before the classifier: which C files make its features, and from which numbers."""
+"""The features of an exported method: their C files, macros and healthy numbers."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -21,7 +21,7 @@ COMMON = ("swg.h", "window.c", "decide.c", "lines.h", "lines.c")
 
 
 class Healthy(NamedTuple):
-    """What features are set in relation to, at each operating point in the order of :func:`operating_points`.
+    """Healthy values for the features at each operating point, in the order of :func:`operating_points`.
 
     Order lines [mV/V], array (point, sensor, order), which may be empty (point, 0, 0); and other numbers.
     """
@@ -43,7 +43,7 @@ class Front:
     orders : int
         Highest order whose lines are taken.
     healthy : callable
-        From the healthy recordings of a gear, what features are set in relation to.
+        Healthy values for the features from the healthy recordings of a gear.
     """
 
     files: tuple[str, ...]
@@ -58,7 +58,7 @@ def front(representation: Representation) -> Front:
     Raises
     ------
     ValueError
-        If there is none in C for this representation, or for so many points.
+        If there is no C code for this representation, or for so many points.
     """
     if isinstance(representation, Selection):
         return _selection(representation)
@@ -107,7 +107,7 @@ def _selection(selection: Selection) -> Front:
 
 
 def _of_residual(representation: Harmonics | Signals, file: str, columns: int, own: Macros) -> Front:
-    """With columns made of the residual lines, the side columns and the errors that were taken out."""
+    """Columns from the residual lines, auxiliary columns, and the errors that were removed."""
     orders, acquisitions = representation.orders, representation.acquisitions
     sizes: Macros = {
         "ORDERS": orders,
@@ -127,9 +127,9 @@ def _of_residual(representation: Harmonics | Signals, file: str, columns: int, o
 def _healthy_lines(references: LabelledSignals, orders: int, acquisitions: int | None) -> Healthy:
     """The healthy lines and their change with each error, of :func:`learn.inputs.residuals.residual`."""
     rows = references.table.index.get_indexer(operating_points(references).index)
-    asked = references.where(rows)  # a recording of each point as a sample, for which the healthy lines are asked
-    asked = replace(asked, table=asked.table.assign(reference=False))
-    healthy = healthy_lines([references, asked], orders, acquisitions)
+    samples = references.where(rows)  # one recording of each point as a sample, to get its healthy lines
+    samples = replace(samples, table=samples.table.assign(reference=False))
+    healthy = healthy_lines([references, samples], orders, acquisitions)
     lines = healthy.reference
     turned = 1j * np.arange(orders + 1) * lines
     changes = np.stack([healthy.slope, turned, leakage(lines, healthy.revolutions)], axis=1)

@@ -1,6 +1,7 @@
-"""From configuration to objects, in one place: an unknown choice is answered with the list of choices."""
+"""Makes objects from the configuration; the error of an unknown choice lists the choices."""
 
 import inspect
+import shlex
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
@@ -21,7 +22,7 @@ from learn.tracking import Store, local_store, server_store
 if TYPE_CHECKING:
     from learn.adaptation.transfer import Adaptation
 
-NO_OPTIONS = ("name", "trials", "shots")  # of a file in conf: what is not for the object itself
+NO_OPTIONS = ("name", "trials", "shots")  # entries of a file in conf that are no arguments of its object
 
 T = TypeVar("T")
 Config = Mapping[str, Any]
@@ -56,7 +57,7 @@ STORES: Mapping[str, Callable[..., Store]] = {"local": local_store, "server": se
 
 
 def representation(config: Config) -> Representation:
-    """What methods see, of ``conf/features``; a name that is none of the known ones is a selection of one's own."""
+    """The inputs of methods, of ``conf/features``; an unknown name is a selection of the user's own."""
     name = str(config.get("name"))
     return _configured(f"features {name}", REPRESENTATIONS.get(name, Selection), config)()
 
@@ -93,14 +94,14 @@ def classifier(config: Config, layout: Layout | None = None) -> Callable[..., cl
 
 
 def adaptation(config: Config) -> Callable[..., "Adaptation"]:
-    """A maker of the adaptation of ``conf/adaptation``; it takes options in place of those configured."""
+    """Makes the adaptation of ``conf/adaptation``; its arguments replace configured options."""
     from learn.adaptation.adaptations import ADAPTATIONS  # with torch, which takes seconds
 
     return _chosen("adaptation", ADAPTATIONS, config)
 
 
 def trials(config: Config) -> list[dict[str, Any]]:
-    """The options that are tried on development gears, ``trials`` of a method's file; one empty trial for none."""
+    """The options to try on development gears, ``trials`` of a method's file; without trials one empty entry."""
     return [dict(options) for options in config.get("trials") or [{}]]
 
 
@@ -117,15 +118,29 @@ def data_set(config: Config) -> Path:
     ValueError
         If there is no such file; it names the data sets that exist and the command that makes this one.
     """
-    folder = Path(config["data"])
+    folder = Path(config["data"]).resolve()
     path = folder / f"{config['grid']}-{config['condition']}.h5"
     if not path.is_file():
-        there = ", ".join(sorted(p.stem for p in folder.glob("*-*.h5"))) or "none"
+        existing = ", ".join(sorted(p.stem for p in folder.glob("*-*.h5"))) or "none"
         raise ValueError(
-            f"no data set {path}; data sets in {folder}: {there}. Make it with "
-            f"'python scripts/generate.py grid={config['grid']} condition={config['condition']}'"
+            f"no data set {path}; data sets in {folder}: {existing}. Give another folder with data=..., or make it "
+            f"with 'swg generate grid={config['grid']} condition={config['condition']}{_elsewhere(config)}'"
         )
-    return path
+    return Path(config["data"]) / path.name
+
+
+def train_command(config: Config) -> str:
+    """The command that makes runs on the data sets and in the store of a configuration, without its experiment."""
+    tracking = config["tracking"]
+    place = f" tracking=server tracking.uri={tracking['uri']}" if tracking["name"] == "server" else ""
+    if tracking["name"] == "local" and tracking["folder"] != "mlruns":
+        place = f" tracking.folder={shlex.quote(str(tracking['folder']))}"
+    return f"swg train grid={config['grid']['name']}{_elsewhere(config)}{place}"
+
+
+def _elsewhere(config: Config) -> str:
+    """The option that names the folder of the data sets, if it is not the default one."""
+    return f" data={shlex.quote(str(config['data']))}" if str(config["data"]) != "data" else ""
 
 
 def _chosen(kind: str, choices: Mapping[str, Callable[..., T]], config: Config) -> Callable[..., T]:

@@ -82,8 +82,9 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
 
 
 def run_name(config: Mapping[str, Any], parameters: Mapping[str, Any]) -> str:
-    """Name of a job's run: study, method and inputs, and the options of the method."""
-    groups = ["study", "classifier", "features", "protocol"]
-    groups += ["adaptation"] if parameters["adaptation"] != "none" else []
+    """Name of a job's run: protocol, classifier and features first, which MLflow's page must not cut off."""
+    groups = ["protocol", "classifier", "features", "adaptation", "study"]
+    if parameters["adaptation"] == "none":
+        groups.remove("adaptation")
     options = [f"{k}={v}" for k, v in config["classifier"].items() if k not in ("name", "seed", "trials")]
     return " ".join([*(str(parameters[group]) for group in groups), *options])

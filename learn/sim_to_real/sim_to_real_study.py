@@ -1,7 +1,4 @@
-"""From a hidden effect to scores: record the gear, close the loop, make the data sets, train and test.
-
-The one place that knows both the chain, which makes recordings, and learning, which reads them.
-"""
+"""From a hidden effect to scores: record the gear, close the loop, generate the data sets, train and test."""
 
 import hashlib
 import json
@@ -16,9 +13,9 @@ from threadpoolctl import threadpool_limits
 from learn import tracking
 from learn.jobs import identity
 from learn.sim_to_real import judging
-from learn.sim_to_real.finished import Finished
 from learn.sim_to_real.judging import Pair, judged
 from learn.sim_to_real.scores import scores
+from learn.sim_to_real.verdicts import Finished
 from swgsim.bench.scatter import Bench
 from swgsim.bench.virtual_bench import Sessions, record_sessions
 from swgsim.common.compute import Engine
@@ -45,13 +42,17 @@ STUDY = "sim_to_real"
 
 
 def study_all(config: Mapping[str, Any], store: tracking.Store) -> list[Finished]:
-    """Study every undeclared effect of a resolved configuration of ``conf/sim_to_real.yaml``, unless that is done.
+    """Study every undeclared effect of a resolved configuration of ``conf/sim_to_real.yaml``.
+
+    Effects with a finished run in the store are not computed again.
 
     Raises
     ------
     ValueError
-        If a choice is unknown or beyond its limits; it says which.
+        If there is no undeclared effect, or a choice is unknown or beyond its limits; the message names it.
     """
+    if not config["undeclared"]:
+        raise ValueError("undeclared has no effects, so nothing would be studied: leave at least one, such as none")
     hidden = {name: settings.effects(entries) for name, entries in config["undeclared"].items()}
     keys = {name: key(config, name) for name in hidden}
     missing = [name for name in hidden if _finished(store, keys[name]).empty]
@@ -85,7 +86,7 @@ class TestBench:
     Attributes
     ----------
     nominal, unit : Gear
-        What the model declares of the series, and the unit as it is.
+        The nominal gear of the series, which the model knows, and the true unit.
     sessions : Sessions
     bench : Bench
     window : Window
@@ -126,12 +127,12 @@ class TestBench:
 
 
 def study(config: Mapping[str, Any], store: tracking.Store, name: str, key: str, bench: TestBench, unit: Unit) -> None:
-    """Close the loop on healthy recordings under one undeclared effect, train, test, and keep it as an MLflow run."""
+    """Close the loop on healthy recordings with one undeclared effect, train, test, and keep all as an MLflow run."""
     entries = config["undeclared"][name]
     hidden = settings.effects(entries)
     parameters = {"study": STUDY, "undeclared": name, "key": key}
     with threadpool_limits(1):
-        found, said = closed(config, name, bench.recorded(hidden, f"with {name}"), unit)
+        found, answered = closed(config, name, bench.recorded(hidden, f"with {name}"), unit)
         (_, twin, mesh), (_, real, fine) = _sides(config, bench, unit)
         plain = data_set(config, "model-none", twin, (), mesh)
         bench_plain = data_set(config, "bench-none", real, (), fine, number=1)
@@ -141,10 +142,14 @@ def study(config: Mapping[str, Any], store: tracking.Store, name: str, key: str,
             "oracle": Pair(plain, data_set(config, f"model-{name}", twin, hidden, mesh) if hidden else plain),
         }
         acting = data_set(config, f"bench-{name}", real, hidden, fine, number=1) if hidden else bench_plain
-        tags = {"data_digest": storage.digest(acting), "verdict": said["verdict"], "sentence": said["sentence"][:5000]}
+        tags = {
+            "data_digest": storage.digest(acting),
+            "verdict": answered["verdict"],
+            "sentence": answered["sentence"][:5000],
+        }
         with tracking.job_run(store, f"{STUDY} {name}", key, parameters, config, tags) as job:
             predictions = judged(models, Pair(bench_plain, acting), config["methods"])
-            kept = pd.DataFrame({"said": [json.dumps({"hidden": text.entries(hidden), "loop": said})]})
+            kept = pd.DataFrame({"said": [json.dumps({"hidden": text.entries(hidden), "loop": answered})]})
             tables = {"predictions": predictions, "loop": kept}
             job.record(
                 metrics(scores(predictions)), {}, {f"tables/{each}.parquet": table for each, table in tables.items()}
@@ -154,16 +159,16 @@ def study(config: Mapping[str, Any], store: tracking.Store, name: str, key: str,
 def closed(
     config: Mapping[str, Any], name: str, recordings: Sequence[Recording], unit: Unit
 ) -> tuple[tuple[Effect, ...], dict[str, Any]]:
-    """What the loop finds in recordings of a commissioned unit, and what it says; its page goes to a folder."""
+    """Effects that the loop finds in recordings of a commissioned unit, and its report; writes the loop's page."""
     kinds = SEARCHED if config["searched"] is None else tuple(map(named, listed(config["searched"])))
     found = answer(recordings, unit, kinds, seed=config["seed"])
-    said = report(found, kinds)
-    loop_job.write(Path(config["out"]) / STUDY / name, found, said)
+    fields = report(found, kinds)
+    loop_job.write(Path(config["out"]) / STUDY / name, found, fields)
     shown = {
-        **{each: said[each] for each in ("verdict", "sentence", "error")},
+        **{each: fields[each] for each in ("verdict", "sentence", "error")},
         "found": text.entries(found.effects),
         "rivals": [type(e).name() for step in found.closed.steps for trial in step.rivals for e in trial.effects],
-        "absorbed": [each["name"] for each in said["absorbed"]],
+        "absorbed": [each["name"] for each in fields["absorbed"]],
     }
     return found.effects, shown
 
@@ -172,7 +177,7 @@ def data_set(
     config: Mapping[str, Any], name: str, gear: Gear, effects: Sequence[Effect], mesh: Mapping[str, Any],
     *, number: int = 0,
 ) -> Path:  # fmt: skip
-    """A data set of one gear, every run of which is under some effects; made unless it is there.
+    """A data set of one gear with effects on every run; it is generated unless it exists.
 
     Parameters
     ----------
@@ -210,7 +215,7 @@ def metrics(result: pd.DataFrame) -> dict[str, float]:
 def _sides(
     config: Mapping[str, Any], bench: TestBench, unit: Unit
 ) -> tuple[tuple[str, Gear, Mapping[str, Any]], tuple[str, Gear, Mapping[str, Any]]]:
-    """The gear as the commissioned model has it, and as it is, each with its mesh."""
+    """The gear of the commissioned model and the true unit, each with its mesh."""
     return ("model", unit.model.gear, config["mesh"]), ("bench", bench.unit, config["bench_mesh"])
 
 
