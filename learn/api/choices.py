@@ -25,7 +25,7 @@ def choice(group: str, name: str, seed: int = 0, **options: Any) -> dict[str, An
         )
     # The files refer to the seed of the job, which is the root of a configuration.
     whole = OmegaConf.create({"seed": seed, "chosen": OmegaConf.load(path)})
-    resolved: dict[str, Any] = OmegaConf.to_container(whole, resolve=True)["chosen"]  # type: ignore[call-overload, index]
+    resolved: dict[str, Any] = OmegaConf.to_container(whole, resolve=True)["chosen"]  # type: ignore[call-overload, index, assignment]
     return resolved | options
 
 
