@@ -63,8 +63,8 @@ def test_the_same_command_writes_the_same_bytes(clean: Path, tmp_path: Path) -> 
 
 
 def test_recordings_are_sound_and_numbered(clean: Path) -> None:
-    recordings, defects = inspect_recordings(clean)
-    assert defects == ()
+    recordings = inspect_recordings(clean)
+    assert recordings.defects == ()
     assert [r.repeat for r in recordings] == [1, 1, 2, 2]
     elapsed = [r.conditions.elapsed for r in recordings]
     assert elapsed == sorted(elapsed)

@@ -177,7 +177,8 @@ def digest(recordings: Sequence[Recording]) -> str:
 def _read(path: str, what: str, mapping: str | None) -> tuple[tuple[Recording, ...], tuple[Defect, ...]]:
     """Recordings of one gear with what the loop needs."""
     with read_for(what, path):
-        recordings, defects = read_recordings(Path(path), Path(mapping) if mapping else None)
+        found = read_recordings(path, mapping or None)
+    recordings, defects = found.recordings, found.defects
     gears = list(dict.fromkeys(recording.gear for recording in recordings))
     if len(gears) > 1:
         raise ValueError(
