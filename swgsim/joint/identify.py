@@ -68,8 +68,8 @@ class JointAnswer:
     def __repr__(self) -> str:
         error, unit = self.report["error"], self.report["unit"]
         both = {
-            when: f"{significant(error[when]['fit'])} {unit}, on recordings not seen {significant(error[when]['heldout'])} {unit}"
-            for when in ("before", "after")
+            when: f"{significant(each['fit'])} {unit}, on recordings not seen {significant(each['heldout'])} {unit}"
+            for when, each in ((when, error[when]) for when in ("before", "after"))
         }
         floor = self.report["noise_floor"]
         return "\n".join(

@@ -239,8 +239,8 @@ def _cautions(judged: Judged) -> list[str]:
     if judged.before.heldout > scatter:
         found.append(
             f"the textbook model predicts the held-out recordings worse than a constant (error "
-            f"{significant(judged.before.heldout)} {unit}, standard deviation of the signal {significant(scatter)} {unit}), so "
-            "its parameters and the effects are not reliable"
+            f"{significant(judged.before.heldout)} {unit}, standard deviation of the signal {significant(scatter)} "
+            f"{unit}), so its parameters and the effects are not reliable"
         )
     return found
 
