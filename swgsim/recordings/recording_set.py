@@ -11,7 +11,7 @@ import pandas as pd
 from swgsim.recordings.checks.defect import Defect, summary
 from swgsim.recordings.checks.order_2 import angle_of
 from swgsim.recordings.recording import Recording
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
