@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from math import prod
 from pathlib import Path
+from typing import IO, NamedTuple
 
 import numpy as np
 
