@@ -3,6 +3,8 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/ready
+DEV := $(VENV)/ready-dev
+SWG := $(BIN)/swg
 GRID := $(if $(SMALL),small,paper)
 TABLES := table7 table8 table9 table10
 # The study of transfer: gears to judge, experiments in the order of the report; the small form leaves some out.
@@ -31,96 +33,101 @@ JOBS := $(shell echo $$(( ($(CORES) + 3) / 4 )))
 export MLFLOW_DISABLE_TELEMETRY := true
 
 .DEFAULT_GOAL := help
-.PHONY: help install data experiments report paper transfer loop blind sim-to-real joints embedded test lint fuzz chaos scale matrix benchmark convergence docs ui clean $(TABLES)
+.PHONY: help install install-dev site data experiments report paper transfer loop blind sim-to-real joints embedded test lint fuzz chaos scale matrix benchmark convergence docs ui clean $(TABLES)
 
 help:  ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-12s %s\n", $$1, $$2}'
 
 $(READY): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,rocket,dask,slurm,postgresql,embedded]'
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[data,rocket]'
 	touch $@
 
-install: $(READY)  ## virtual environment with everything in it
+$(DEV): $(READY)
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[data,rocket,dask,slurm,postgresql,embedded,dev,site]'
+	touch $@
+
+install: $(READY)  ## virtual environment with what the commands need
+install-dev: $(DEV)  ## the same with tests, linters, documentation and all extras
 
 data: $(READY)  ## the clean and the disturbed data set
-	$(BIN)/python scripts/generate.py grid=$(GRID) condition=clean
-	$(BIN)/python scripts/generate.py grid=$(GRID) condition=disturbed
+	$(SWG) generate grid=$(GRID) condition=clean
+	$(SWG) generate grid=$(GRID) condition=disturbed
 
 experiments: data  ## the paper's Tables VII to X, every job a run in MLflow
 	@$(MAKE) --no-print-directory --jobs=$(CORES) $(TABLES)
 
 $(TABLES): $(READY)
-	$(BIN)/python scripts/train.py experiment=$@ grid=$(GRID) workers=$(JOBS)
+	$(SWG) train experiment=$@ grid=$(GRID) workers=$(JOBS)
 
 report: $(READY)  ## report/index.html and report/report.json from the finished runs (SMALL=1: in report/small)
-	$(BIN)/python scripts/report.py grid=$(GRID)
+	$(SWG) report grid=$(GRID)
 
 paper: $(READY)  ## data sets, runs and report of the paper's tables (SMALL=1: a small grid, report/small, about a minute)
 	@started=$$(date +%s) && $(MAKE) --no-print-directory experiments && \
-	    $(BIN)/python scripts/report.py grid=$(GRID) started=$$started
+	    $(SWG) report grid=$(GRID) started=$$started
 	@echo "open report/$(if $(SMALL),small/)index.html; 'make ui' shows the runs"
 
 transfer: data  ## beyond the paper: networks, transfer to gears never seen, report/transfer.html (SMALL=1: under two minutes)
 	@set -e; \
-	for set in $(GEARS)-bench $(FOREIGN); do $(BIN)/python scripts/generate.py grid=$${set%-*} condition=$${set##*-}; done; \
-	$(BIN)/python scripts/oracle.py grid=$(GEARS); \
-	for name in $(ON_PAPER); do $(BIN)/python scripts/train.py experiment=$$name grid=$(GRID); done; \
-	for name in $(ON_GEARS); do $(BIN)/python scripts/train.py experiment=$$name grid=$(GEARS) $(QUICK); done; \
-	$(if $(SMALL),,$(BIN)/python scripts/train.py experiment=harder_splits grid=$(GEARS);) \
-	$(BIN)/python scripts/transfer_report.py grid=$(GEARS) paper_grid=$(GRID) started=$(STARTED)
+	for set in $(GEARS)-bench $(FOREIGN); do $(SWG) generate grid=$${set%-*} condition=$${set##*-}; done; \
+	$(SWG) oracle grid=$(GEARS); \
+	for name in $(ON_PAPER); do $(SWG) train experiment=$$name grid=$(GRID); done; \
+	for name in $(ON_GEARS); do $(SWG) train experiment=$$name grid=$(GEARS) $(QUICK); done; \
+	$(if $(SMALL),,$(SWG) train experiment=harder_splits grid=$(GEARS);) \
+	$(SWG) transfer-report grid=$(GEARS) paper_grid=$(GRID) started=$(STARTED)
 	@echo "open report/transfer.html; 'make ui' shows the runs"
 
 loop: $(READY)  ## closing the loop once, from nothing: record, hide an effect, find it; loop/answer/page.html (45 s)
 	@set -e; rm -rf loop; \
-	$(BIN)/python scripts/record.py out=loop/commissioning seed=1 sessions.name=commissioning; \
-	$(BIN)/python scripts/record.py out=loop/recordings seed=2 'hidden=[{eccentric_wave_generator: {r: 1.0e-5, theta: 1.0}}]'; \
-	$(BIN)/python scripts/close_loop.py recordings=loop/recordings commissioning=loop/commissioning \
+	$(SWG) record out=loop/commissioning seed=1 sessions.name=commissioning; \
+	$(SWG) record out=loop/recordings seed=2 'hidden=[{eccentric_wave_generator: {r: 1.0e-5, theta: 1.0}}]'; \
+	$(SWG) close-loop recordings=loop/recordings commissioning=loop/commissioning \
 	    truth=loop/recordings.truth.json out=loop/answer
 	@echo "open loop/answer/page.html; 'make ui' shows the run"
 
 blind: $(READY)  ## the loop judged on sealed cases, report/blind.json (SMALL=1: 20 cases, 12 effects)
-	$(BIN)/python scripts/blind.py $(if $(SMALL),cases=20 seed=4 'sectors=[130$(comma)110]' 'library=[$(FEW_EFFECTS)]' blind=blind/small)
+	$(SWG) blind $(if $(SMALL),cases=20 seed=4 'sectors=[130$(comma)110]' 'library=[$(FEW_EFFECTS)]' blind=blind/small)
 
 sim-to-real: $(READY)  ## classifiers before and after the loop found an undeclared effect, report/sim_to_real.html (SMALL=1: one effect)
-	$(BIN)/python scripts/sim_to_real.py $(if $(SMALL),grid.variants=4 $(addprefix ~undeclared.,$(LEFT_OUT)))
+	$(SWG) sim-to-real $(if $(SMALL),grid.variants=4 $(addprefix ~undeclared.,$(LEFT_OUT)))
 
 joints: $(READY)  ## real robot joints (files: docs/joint_recordings.md), report/joints.html (SMALL=1: one joint)
-	$(BIN)/python scripts/joints.py $(if $(MEASURED),folder=$(MEASURED)) $(if $(SMALL),'only=*joint 1')
+	$(SWG) joints $(if $(MEASURED),folder=$(MEASURED)) $(if $(SMALL),'only=*joint 1')
 	@echo "open report/joints.html, and joints/*/page.html for every case"
 
-embedded: $(READY)  ## classifiers as C on microcontrollers, report/embedded.md; flash and instructions after scripts/install_arm.sh (SMALL=1: three of them)
-	$(BIN)/python scripts/generate.py grid=$(GEARS) condition=bench
-	$(BIN)/python scripts/generate.py grid=$(GRID) condition=disturbed
-	$(BIN)/python scripts/embedded.py unseen=$(GEARS)-bench disturbed=$(GRID)-disturbed \
+embedded: $(DEV)  ## classifiers as C on microcontrollers, report/embedded.md; flash and instructions after scripts/install_arm.sh (SMALL=1: three of them)
+	$(SWG) generate grid=$(GEARS) condition=bench
+	$(SWG) generate grid=$(GRID) condition=disturbed
+	$(SWG) embedded unseen=$(GEARS)-bench disturbed=$(GRID)-disturbed \
 	    $(if $(SMALL),judged=2 proof=72 counted=4 $(addprefix ~methods.,$(LARGER)))
-	$(BIN)/python scripts/export.py grid=$(GEARS) target=c numbers=int16
-	$(BIN)/python scripts/export.py grid=$(GEARS) target=onnx
+	$(SWG) export grid=$(GEARS) target=c numbers=int16
+	$(SWG) export grid=$(GEARS) target=onnx
 
-test: $(READY)  ## all tests
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile -q
+test: $(DEV)  ## all tests and doctests (FAST=1: without the slow ones)
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(CORES) --dist loadfile -q $(if $(FAST),-m "not slow") $(if $(FAST),,--doctest-modules swgsim learn tests)
 
-lint: $(READY)  ## style and types
+lint: $(DEV)  ## style and types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-fuzz: $(READY)  ## every reader on spoiled files, SECONDS=300 in all (docs/reliability.md)
+fuzz: $(DEV)  ## every reader on spoiled files, SECONDS=300 in all (docs/reliability.md)
 	OMP_NUM_THREADS=1 ARROW_DEFAULT_MEMORY_POOL=system $(BIN)/python scripts/fuzz.py --seconds $(or $(SECONDS),300)
 
-chaos: $(READY)  ## data sets and sweeps killed at random moments, KILLS=200 (docs/reliability.md)
+chaos: $(DEV)  ## data sets and sweeps killed at random moments, KILLS=200 (docs/reliability.md)
 	OMP_NUM_THREADS=1 $(BIN)/python scripts/chaos.py --kills $(or $(KILLS),200) $(if $(SECONDS),--seconds $(SECONDS))
 
-scale: $(READY)  ## engines beside one another, and data sets larger than the memory: half an hour, 12 GiB (docs/scale.md)
+scale: $(DEV)  ## engines beside one another, and data sets larger than the memory: half an hour, 12 GiB (docs/scale.md)
 	$(BIN)/python scripts/scale.py
 	$(BIN)/python scripts/large.py
 
-matrix: $(READY)  ## the same numbers on the oldest and the newest NumPy that pyproject.toml allows (docs/reliability.md)
+matrix: $(DEV)  ## the same numbers on the oldest and the newest NumPy that pyproject.toml allows (docs/reliability.md)
 	$(BIN)/python scripts/matrix.py
 
 benchmark: $(READY)  ## the chain against the obvious ways of doing the same
-	$(BIN)/python scripts/benchmark.py
+	$(SWG) benchmark
 
 convergence: $(READY)  ## gauge signals against the mesh of the flex spline
 	$(BIN)/python -m swgsim.studies.convergence
@@ -129,8 +136,12 @@ docs: $(READY)  ## the picture of the README and the page of the effects
 	$(BIN)/python -m swgsim.studies.flexspline_figures docs/flexspline.png
 	$(BIN)/python -m swgsim.studies.effect_gallery docs
 
+site: $(DEV)  ## the documentation site, docs/_build/html/index.html, built strictly and offline
+	$(BIN)/sphinx-build -W --keep-going -q -b html docs docs/_build/html
+	@echo "open docs/_build/html/index.html"
+
 ui: $(READY)  ## the runs in the MLflow page, on this machine only
-	$(BIN)/python scripts/ui.py
+	$(SWG) ui
 
 clean:  ## remove data sets, runs and reports
-	rm -rf data mlruns models report outputs loop blind joints embedded
+	rm -rf data mlruns models report outputs loop blind joints embedded docs/_build docs/gallery

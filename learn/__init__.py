@@ -4,7 +4,8 @@
 
 - :func:`load`: a data set of ``swg generate`` as features and a table of facts;
 - :func:`classifier`: an untrained classifier by its name in ``conf/classifier``;
-- :func:`evaluate`: scores of a classifier, by name or of one's own, under a protocol such as "leave_one_gear_out".
+- :func:`evaluate`: scores of a classifier, by name or of one's own, under a protocol such as "leave_one_gear_out";
+- :func:`transfer`: the same for gears never seen, with a few labelled recordings of each.
 
 Sweeps over many choices, with every job kept in MLflow, are the command ``swg train``.
 

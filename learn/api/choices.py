@@ -23,8 +23,8 @@ def choice(group: str, name: str, seed: int = 0, **options: Any) -> dict[str, An
         raise ValueError(
             f"unknown {group} {name!r}; choose from {', '.join(sorted(p.stem for p in folder.glob('*.yaml')))}"
         )
-    # The files refer to the seed of the job, which is the root of a configuration.
-    whole = OmegaConf.create({"seed": seed, "chosen": OmegaConf.load(path)})
+    # The files refer to choices of the job, which is the root of a configuration.
+    whole = OmegaConf.create({"seed": seed, "shots": [1], "chosen": OmegaConf.load(path)})
     resolved: dict[str, Any] = OmegaConf.to_container(whole, resolve=True)["chosen"]  # type: ignore[call-overload, index, assignment]
     return resolved | options
 
