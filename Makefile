@@ -53,13 +53,13 @@ experiments: data  ## the paper's Tables VII to X, every job a run in MLflow
 $(TABLES): $(READY)
 	$(BIN)/python scripts/train.py experiment=$@ grid=$(GRID) workers=$(JOBS)
 
-report: $(READY)  ## report/index.html and report/report.json from what has been run
+report: $(READY)  ## report/index.html and report/report.json from the finished runs (SMALL=1: in report/small)
 	$(BIN)/python scripts/report.py grid=$(GRID)
 
-paper: $(READY)  ## from nothing to the paper's tables beside ours (SMALL=1: a small grid, about a minute)
+paper: $(READY)  ## data sets, runs and report of the paper's tables (SMALL=1: a small grid, report/small, about a minute)
 	@started=$$(date +%s) && $(MAKE) --no-print-directory experiments && \
 	    $(BIN)/python scripts/report.py grid=$(GRID) started=$$started
-	@echo "open report/index.html; 'make ui' shows the runs"
+	@echo "open report/$(if $(SMALL),small/)index.html; 'make ui' shows the runs"
 
 transfer: data  ## beyond the paper: networks, transfer to gears never seen, report/transfer.html (SMALL=1: under two minutes)
 	@set -e; \

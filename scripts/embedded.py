@@ -1,19 +1,6 @@
-"""Exported methods beside one another: python scripts/embedded.py (docs/embedded.md)"""
+"""The command ``swg embedded``."""
 
-import hydra
-from misspelt import answered
-from omegaconf import DictConfig
-
-from swgsim.common.configured import plain
-
-
-@hydra.main(version_base="1.3", config_path="../conf", config_name="embedded")
-def main(config: DictConfig) -> None:
-    """Resolve the configuration and run the job."""
-    from learn.embedded.report import run
-
-    run(plain(config))
-
+from swgsim.commands import command
 
 if __name__ == "__main__":
-    answered(main, "embedded")
+    command("embedded")

@@ -1,19 +1,6 @@
-"""Train and judge classifiers: one job, a sweep with -m, or an experiment such as experiment=table7."""
+"""The command ``swg train``."""
 
-import hydra
-from misspelt import answered
-from omegaconf import DictConfig
-
-from swgsim.common.configured import plain
-
-
-@hydra.main(version_base="1.3", config_path="../conf", config_name="train")
-def main(config: DictConfig) -> float:
-    """One job of ``conf/train.yaml``; its test score [%]."""
-    from learn.jobs.train_job import run
-
-    return run(plain(config))["test_score"]
-
+from swgsim.commands import command
 
 if __name__ == "__main__":
-    answered(main, "train")
+    command("train")

@@ -13,7 +13,7 @@ from swgsim.effects import Effect
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import Gear, OperatingPoint
 from swgsim.recordings.recording import Recording
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 POINTS = tuple(OperatingPoint(n, T) for n in (2000, 4000) for T in (7, 39, 70))
 NOISE = 1e-3  # mV/V

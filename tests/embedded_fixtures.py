@@ -14,7 +14,7 @@ from fabricated import recordings
 
 from learn.evaluation.evaluate import fit
 from learn.inputs.features import Selection
-from swgsim.storage.gauge_set import CLASSES, Recordings
+from swgsim.storage.labelled_signals import CLASSES, LabelledSignals
 
 needs_compiler = pytest.mark.skipif(shutil.which("gcc") is None, reason="no gcc on this machine")
 SELECTION = Selection(
@@ -40,7 +40,7 @@ void drive(const swg_operation *operation, const float *sample, int count, int s
 """
 
 
-def noisy() -> Recordings:
+def noisy() -> LabelledSignals:
     """Recordings of three gears with noise, without which rounding would be all that some features hold."""
     clean = recordings(gears=3, variants=6)
     noise = 1e-3 * np.random.default_rng(7).standard_normal(clean.signals.shape)
@@ -48,11 +48,11 @@ def noisy() -> Recordings:
     return replace(clean, signals=(clean.signals + noise).astype(np.float32), table=table)
 
 
-def of_gear(data: Recordings, gear: int = 2) -> Recordings:
+def of_gear(data: LabelledSignals, gear: int = 2) -> LabelledSignals:
     return data.where((data.table["gear"] == gear).to_numpy())
 
 
-def trained(data: Recordings, representation: Any, model: Any) -> tuple[Any, np.ndarray]:
+def trained(data: LabelledSignals, representation: Any, model: Any) -> tuple[Any, np.ndarray]:
     """A model that has seen all gears but the second, and the features of that one."""
     made = representation.learning_set([data])
     y = made.table["label"].astype(str).to_numpy()
@@ -73,7 +73,7 @@ def compiled(folder: Path) -> ctypes.CDLL:
 
 
 def driven(
-    library: ctypes.CDLL, recordings: Recordings, columns: int, **facts: float
+    library: ctypes.CDLL, recordings: LabelledSignals, columns: int, **facts: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Rows of features, probabilities and answers; facts in place of those that were recorded."""
     return driven_signals(library, recordings.signals, recordings.table.assign(**facts), columns)

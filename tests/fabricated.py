@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 
 from swgsim.common.seeds import generator
-from swgsim.storage.gauge_set import CLASSES, Recordings, facts
+from swgsim.storage.labelled_signals import CLASSES, LabelledSignals, facts
 
 RATE = 10_000.0
 SPEEDS, LOADS = (2000.0, 4000.0), (7.0, 39.0)
@@ -14,7 +14,7 @@ SPEEDS, LOADS = (2000.0, 4000.0), (7.0, 39.0)
 
 def recordings(
     gears: int = 3, variants: int = 6, references: int = 2, disturbance: float = 0.0, length: int = 600
-) -> Recordings:
+) -> LabelledSignals:
     """Five sinusoids of order 2 with an offset per gear and gauge, changed by class and variant.
 
     All healthy recordings of a gear and operating point are identical unless there is a disturbance [mV/V].
@@ -30,7 +30,7 @@ def recordings(
     names = ("gear", "label", "variant", "severity", "n_in_rpm", "T_out_nm", "efficiency", "reference", "seed")
     columns = dict(zip(names, zip(*rows, strict=True), strict=True))
     table = facts({**columns, "position": np.nan, "temperature_c": np.nan})
-    return Recordings(np.array(signals, dtype=np.float32), table, RATE)
+    return LabelledSignals(np.array(signals, dtype=np.float32), table, RATE)
 
 
 def _specimens(variants: int, references: int) -> Iterator[tuple[str, int, bool]]:
@@ -59,7 +59,7 @@ def _signal(gear: int, speed: float, load: float, label: str, severity: float, l
     return s, efficiency
 
 
-def of_lines(lines: np.ndarray, length: int = 600, **columns: object) -> Recordings:
+def of_lines(lines: np.ndarray, length: int = 600, **columns: object) -> LabelledSignals:
     """Recordings whose order lines (sample, sensor, order) are given; columns of facts in place of those of a dull one.
 
     Signals stay in double precision, so that tests may ask for results to rounding.
@@ -71,4 +71,4 @@ def of_lines(lines: np.ndarray, length: int = 600, **columns: object) -> Recordi
     table = facts({name: np.broadcast_to(value, len(lines)) for name, value in {**dull, **columns}.items()})
     angle = 2 * np.pi * table["n_in_rpm"].to_numpy()[:, None] / 60 * np.arange(length) / RATE  # (sample, time)
     waves = np.exp(1j * angle[:, None] * np.arange(lines.shape[-1])[:, None])  # (sample, order, time)
-    return Recordings((lines @ waves).real, table, RATE)
+    return LabelledSignals((lines @ waves).real, table, RATE)

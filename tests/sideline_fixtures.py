@@ -7,7 +7,7 @@ from scipy.signal import lfilter
 from swgsim.common.seeds import generator
 from swgsim.effects.base import Effect, Scene
 from swgsim.recordings.recording import Recording
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 NOISE = 1e-3
 

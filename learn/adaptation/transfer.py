@@ -114,11 +114,19 @@ def copied_network(source: Any) -> "Network":
 
 
 def untrained(source: Any, seed: int) -> Any:
-    """A model like the source model before it was trained, with another seed for all that is random in it."""
+    """An untrained model like the source model, with another seed.
+
+    Raises
+    ------
+    ValueError
+        If the model is a classifier of one's own that scikit-learn cannot copy.
+    """
     from sklearn.base import clone
 
     if isinstance(source, NeuralClassifier | MiniRocket):
         return replace(source, seed=seed)
+    if not hasattr(source, "get_params"):
+        raise ValueError(f"{type(source).__name__} cannot be trained anew: derive it from sklearn.base.BaseEstimator")
     fresh = clone(source)
     random = [name for name in fresh.get_params() if name.split("__")[-1] == "random_state"]
     return fresh.set_params(**dict.fromkeys(random, seed))

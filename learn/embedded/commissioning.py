@@ -1,4 +1,4 @@
-"""What the commissioning of a gear writes: its healthy numbers at every operating point, as ``gear.c``."""
+"""Writes ``gear.c`` at the commissioning of a gear: its healthy numbers at every operating point."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from learn.embedded.front import Front, operating_points
 from learn.embedded.source import array, number, pairs, values
 from learn.inputs.references import healthy_reference
 from swgsim.common.checks import require
-from swgsim.storage.gauge_set import Recordings
+from swgsim.storage.labelled_signals import LabelledSignals
 from swgsim.storage.orders import whole_revolutions
 
 HEAD = """/* The healthy gear, written by its commissioning. */
@@ -19,7 +19,7 @@ HEAD = """/* The healthy gear, written by its commissioning. */
 #include "swg.h"
 
 """
-WAVE = 2**30  # unit of the waves that samples are multiplied with
+WAVE = 2**30  # unit of the waves by which samples are multiplied
 DEVIATION, SUM = 2**29, 2**38  # counts that a deviation, and the sum of all deviations, may have (window.c)
 QUARTERS = 4  # of a window, in each of which a gauge has to move (window.c)
 LONGEST = 2**16  # samples of a window; beyond, the rounding of the waves shows
@@ -38,22 +38,22 @@ class _Clock:
         return np.exp(-2j * np.pi * self.turns * np.arange(1, orders + 1))
 
     def offset(self, orders: int) -> Complex[np.ndarray, " order"]:
-        """Mean over the samples of the wave, which is 0 but where a revolution is no whole number of samples."""
+        """Mean over the samples of the wave; it is 0 if a revolution is a whole number of samples."""
         angle = 2 * np.pi * self.turns * np.outer(np.arange(self.samples), np.arange(1, orders + 1))
         return np.exp(-1j * angle).mean(axis=0)
 
 
-def gear_source(references: Recordings, front: Front, saturation: float) -> str:
-    """The C source that tells a method of one gear.
+def gear_source(references: LabelledSignals, front: Front, saturation: float) -> str:
+    """C source with the healthy numbers of one gear.
 
     Parameters
     ----------
-    references : Recordings
+    references : LabelledSignals
         Healthy recordings of one gear at all operating points.
     front : Front
         The features of the method.
     saturation : float
-        Limit of the gauges' amplifiers [mV/V], from which on there is no decision.
+        Limit of the gauges' amplifiers [mV/V]; with larger samples there is no decision.
 
     Raises
     ------
@@ -87,12 +87,12 @@ def gear_source(references: Recordings, front: Front, saturation: float) -> str:
 
 
 def _scale(saturation: float, samples: int) -> float:
-    """Counts to 1 mV/V: the largest power of 2 for which nothing overflows."""
+    """Counts per 1 mV/V: the largest power of 2 without overflow."""
     return float(2 ** np.floor(np.log2(min(DEVIATION, SUM / samples) / (2 * saturation))))
 
 
-def _signal(references: Recordings, speed: float, orders: int) -> str:
-    """What one operating point says of the signals."""
+def _signal(references: LabelledSignals, speed: float, orders: int) -> str:
+    """Entries of one operating point for the signals."""
     length = whole_revolutions(speed, references.rate, references.signals.shape[-1])
     require("the window", "samples", length, low=QUARTERS, high=LONGEST)
     clock = _Clock(length, speed / 60 / references.rate)

@@ -1,4 +1,4 @@
-"""A trained method as a folder of C files that needs nothing but a C compiler and its mathematical functions."""
+"""Writes a trained method as a folder of C files, which need only a C compiler and its mathematical functions."""
 
 import shutil
 from collections.abc import Iterable
@@ -12,23 +12,23 @@ from learn.embedded.front import front
 from learn.embedded.source import Macros, macros
 from learn.inputs.inputs import Representation
 from swgsim.common.files import remedied
-from swgsim.storage.gauge_set import Recordings
+from swgsim.storage.labelled_signals import LabelledSignals
 
 SOURCES = Path(__file__).parent / "c"
 NUMBERS = ("float", "int16", "int8")
-WRITTEN = {"gear.c", "model.h", "parameters.c", "forest_tables.h"}  # beside copies of the sources
+WRITTEN = {"gear.c", "model.h", "parameters.c", "forest_tables.h"}  # in addition to copies of the sources
 
 
 def export_c(
     model: Any,
     representation: Representation,
-    references: Recordings,
+    references: LabelledSignals,
     folder: Path,
     *,
     numbers: str = "float",
     saturation: float = 2.0,
 ) -> None:
-    """Write a trained classifier with its features, for one gear; the folder is complete or as it was before.
+    """Write a trained classifier with its features for one gear; after an error the folder is unchanged.
 
     Parameters
     ----------
@@ -36,10 +36,10 @@ def export_c(
         A trained forest, logistic regression, perceptron or convolutional network.
     representation : Representation
         The features it was trained on: a selection of Table III, harmonics or residual.
-    references : Recordings
+    references : LabelledSignals
         Healthy recordings of the gear at all its operating points.
     folder : Path
-        What an export before wrote there is removed.
+        An earlier export in it is replaced.
     numbers : {"float", "int16", "int8"}
         How trained numbers are kept; forests have no int8.
     saturation : float
@@ -48,7 +48,7 @@ def export_c(
     Raises
     ------
     ValueError
-        If the method has no C, the references do not fit, or the folder holds what no export wrote.
+        If the method cannot be exported, the references do not fit, or the folder holds other files.
     """
     if numbers not in NUMBERS:
         raise ValueError(f"unknown numbers {numbers!r}; choose from {', '.join(NUMBERS)}")

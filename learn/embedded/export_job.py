@@ -33,7 +33,7 @@ def run(config: Mapping[str, Any]) -> None:
     ------
     ValueError
         If a choice is unknown, the gear is not in the data set, the model has another number of inputs, or the folder
-        holds what no export wrote.
+        holds other files.
     """
     require_known("target", [config["target"]], TARGETS)
     require_known("numbers", [config["numbers"]], NUMBERS)
@@ -59,13 +59,12 @@ def run(config: Mapping[str, Any]) -> None:
     if not missing(HOST):
         _compared(out, prove(out, HOST, model, inputs, recordings.samples))
     else:
-        log.info("%s: not compared with its original, as there is no C compiler", out)
+        log.warning("%s: not compared with its original, because gcc is missing: 'apt-get install gcc'", out)
 
 
 def _compared(path: Path, found: Agreement) -> None:
-    """Say how an export agrees with its original, as a warning if it does not."""
-    say = log.info if found.share >= FAITHFUL else log.warning
-    say("%s: %s", path, found)
+    """Log how an export agrees with its original; a poor agreement is a warning."""
+    log.log(logging.INFO if found.share >= FAITHFUL else logging.WARNING, "%s: %s", path, found)
 
 
 def _trained(config: Mapping[str, Any], data: LearningSet, others: np.ndarray) -> Any:

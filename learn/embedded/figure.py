@@ -1,4 +1,4 @@
-"""The picture of the study: accuracy on gears never seen and on disturbed ones against flash and instructions."""
+"""Figure of the study: accuracy on unseen gears and on disturbed recordings against flash and instructions."""
 
 import pandas as pd
 from matplotlib.axes import Axes
@@ -12,13 +12,13 @@ COLOURS = ("#000000", "#0072B2", "#E69F00", "#56B4E9", "#D55E00", "#009E73", "#C
 MARKERS = {"float": "o", "int16": "s", "int8": "^"}
 COSTS = {"flash": "flash [kB]", "instructions": "instructions per decision [10³]"}
 UNITS = {"flash": 1024.0, "instructions": 1000.0}
-ACCURACIES = {"unseen": "gears never seen [%]", "disturbed": "disturbed recordings [%]"}
+ACCURACIES = {"unseen": "unseen gears [%]", "disturbed": "disturbed recordings [%]"}
 GREY = "#888888"
 BESIDE = ((4, 4), (4, -11), (-13, 4), (-13, -11))  # a marker, in turn, for numbers of neighbours not to overlap [pt]
 
 
 def drawn(variants: pd.DataFrame, part: Part) -> Figure:
-    """One marker per variant, numbered as in the legend; what lies right of a dashed line does not fit the part.
+    """One marker per variant, numbered as in the legend; variants right of a dashed line do not fit the part.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A trained classifier with recordings of gears that it was not trained on, judged by the code that it becomes."""
+"""A trained classifier with recordings of unseen gears, and the accuracy of its exported code on them."""
 
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, replace
@@ -12,19 +12,19 @@ from jaxtyping import Float
 
 from learn.embedded.export import export_c
 from learn.embedded.machines import HOST
-from learn.embedded.proof import Agreement, agreement, said_by, together
+from learn.embedded.proof import Agreement, agreement, decisions_of, together
 from learn.evaluation.evaluate import fit
 from learn.inputs.inputs import SPECIMEN, Layout, Representation
 from learn.jobs.train_job import BLOCK, learning_set_of
 from learn.protocols.splits import Splitting
 from swgsim.common.checks import require_known
 from swgsim.storage import storage
-from swgsim.storage.gauge_set import Recordings
+from swgsim.storage.labelled_signals import LabelledSignals
 
 
 @dataclass(frozen=True)
 class Fold:
-    """A trained classifier and what it is judged on.
+    """A trained classifier and its test recordings.
 
     Attributes
     ----------
@@ -32,15 +32,15 @@ class Fold:
         Trained.
     representation : Representation
         Its inputs.
-    recordings : Recordings
-        Of gears that it was not trained on: their references, and the samples that it is judged on.
+    recordings : LabelledSignals
+        References and test samples of gears that are not in the training set.
     features : array (sample, column)
-        Its inputs made of these samples in Python.
+        Its inputs from these samples, computed in Python.
     """
 
     model: Any
     representation: Representation
-    recordings: Recordings
+    recordings: LabelledSignals
     features: Float[np.ndarray, "sample column"]
 
     @property
@@ -56,7 +56,7 @@ class Fold:
         return replace(self, recordings=self.recordings.where(mine), features=self.features[samples])
 
     def export(self, folder: Path, numbers: str) -> None:
-        """Write it in C for the gear, of which there must be one."""
+        """Write its C code for the only gear of the recordings."""
         export_c(self.model, self.representation, self.recordings.references, folder, numbers=numbers)
 
 
@@ -87,7 +87,7 @@ def folds(
         yield Fold(model, representation, recordings.where(kept), np.asarray(data.features[split.test]))
 
 
-def of_gears(path: Path, gears: Collection[int]) -> Recordings:
+def of_gears(path: Path, gears: Collection[int]) -> LabelledSignals:
     """The recordings of some gears of a data set.
 
     Raises
@@ -102,7 +102,7 @@ def of_gears(path: Path, gears: Collection[int]) -> Recordings:
 
 
 def judged(fold: Fold, numbers: str) -> tuple[pd.DataFrame, Agreement]:
-    """What the code says on this machine, exported for one gear after the other.
+    """Errors of the code on this machine, exported for each gear in turn.
 
     Returns
     -------
@@ -117,9 +117,9 @@ def judged(fold: Fold, numbers: str) -> tuple[pd.DataFrame, Agreement]:
         samples = part.recordings.samples
         with TemporaryDirectory(prefix="swg-") as folder:
             part.export(Path(folder) / "c", numbers)
-            said = said_by(Path(folder) / "c", HOST, samples)
-        names = np.append(fold.model.classes_, "no decision")[said.results.clip(min=-1)]
+            decisions = decisions_of(Path(folder) / "c", HOST, samples)
+        names = np.append(fold.model.classes_, "no decision")[decisions.results.clip(min=-1)]
         wrong = names != samples.table["label"].astype(str).to_numpy()
         errors.append(samples.table[list(SPECIMEN)].assign(error=100.0 * wrong))
-        agreements.append(agreement(said, fold.model.predict_proba(part.features)))
+        agreements.append(agreement(decisions, fold.model.predict_proba(part.features)))
     return pd.concat(errors, ignore_index=True), together(agreements)

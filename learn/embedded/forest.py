@@ -22,7 +22,7 @@ KINDS = {"float": ("float", 2**16 - 1), "int16": ("int16_t", 2**8 - 1)}
 HIGHEST = np.iinfo(np.int16).max
 # A scale is linear over this part of the range of its thresholds at least; beyond, it is logarithmic.
 LINEAR = 2.0**-16
-NEAREST = 1e-30  # distance of thresholds that are all equal: whatever is not equal to them is far away
+NEAREST = 1e-30  # distance of thresholds that are all equal: any other value is far away
 ONE = np.float32(1)
 
 
@@ -54,7 +54,7 @@ def write(model: Any, folder: Path, numbers: str) -> tuple[tuple[str, ...], Macr
     Raises
     ------
     ValueError
-        If the model is no forest, none of its trees splits, or there are no such numbers for forests.
+        If the model is not a forest, no tree splits, or forests do not have such numbers.
     """
     require_known("numbers of a forest", [numbers], KINDS)
     forest = flatten(model)
@@ -101,7 +101,7 @@ def _left_first(forest: FlatForest) -> Int[np.ndarray, " node"]:
 
 
 def _single(threshold: Float[np.ndarray, " split"]) -> Float[np.ndarray, " split"]:
-    """The greatest numbers in single precision that are not above the thresholds: the same rows are at most these."""
+    """The greatest numbers in single precision that are not above the thresholds: they split rows in the same way."""
     nearest = threshold.astype(np.float32)
     return np.where(nearest > threshold, np.nextafter(nearest, np.float32(-np.inf)), nearest)
 
@@ -109,8 +109,10 @@ def _single(threshold: Float[np.ndarray, " split"]) -> Float[np.ndarray, " split
 def _scales(
     columns: int, column: Int[np.ndarray, " split"], threshold: Float[np.ndarray, " split"]
 ) -> tuple[Float[np.ndarray, " column"], Float[np.ndarray, " column"], Float[np.ndarray, " column"]]:
-    """Centre, steepness and gain of the scale of each column, on which its thresholds take the whole range but its last
-    step, that of all values beyond them."""
+    """Centre, steepness and gain of the scale of each column.
+
+    Its thresholds use the whole range except the last step, which is for all values beyond them.
+    """
     centre, steepness, gain = np.zeros(columns, np.float32), np.ones(columns, np.float32), np.ones(columns, np.float32)
     for each in np.unique(column):
         own = threshold[column == each]

@@ -1,4 +1,4 @@
-"""The part of an exported method before the classifier: which C files make its features, and from which numbers."""
+"""The features of an exported method: their C files, macros and healthy numbers."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -15,13 +15,13 @@ from learn.inputs.inputs import Representation
 from learn.inputs.references import HEALTHY, healthy_reference
 from learn.inputs.residuals import BENCH, ERRORS, healthy_lines, leakage
 from learn.inputs.signals import Signals
-from swgsim.storage.gauge_set import SENSORS, Recordings
+from swgsim.storage.labelled_signals import SENSORS, LabelledSignals
 
 COMMON = ("swg.h", "window.c", "decide.c", "lines.h", "lines.c")
 
 
 class Healthy(NamedTuple):
-    """What features are set in relation to, at each operating point in the order of :func:`operating_points`.
+    """Healthy values for the features at each operating point, in the order of :func:`operating_points`.
 
     Order lines [mV/V], array (point, sensor, order), which may be empty (point, 0, 0); and other numbers.
     """
@@ -43,13 +43,13 @@ class Front:
     orders : int
         Highest order whose lines are taken.
     healthy : callable
-        From the healthy recordings of a gear, what features are set in relation to.
+        Healthy values for the features from the healthy recordings of a gear.
     """
 
     files: tuple[str, ...]
     sizes: Macros
     orders: int
-    healthy: Callable[[Recordings], Healthy]
+    healthy: Callable[[LabelledSignals], Healthy]
 
 
 def front(representation: Representation) -> Front:
@@ -58,7 +58,7 @@ def front(representation: Representation) -> Front:
     Raises
     ------
     ValueError
-        If there is none in C for this representation, or for so many points.
+        If there is no C code for this representation, or for so many points.
     """
     if isinstance(representation, Selection):
         return _selection(representation)
@@ -79,7 +79,7 @@ def front(representation: Representation) -> Front:
     )
 
 
-def operating_points(references: Recordings) -> pd.DataFrame:
+def operating_points(references: LabelledSignals) -> pd.DataFrame:
     """One row of facts for each operating point of a gear's healthy recordings, by speed and load."""
     return references.table.drop_duplicates(HEALTHY).sort_values(HEALTHY)
 
@@ -98,7 +98,7 @@ def _selection(selection: Selection) -> Front:
         "OPERATING_POINT": int(selection.operating_point),
     }
 
-    def healthy(references: Recordings) -> Healthy:
+    def healthy(references: LabelledSignals) -> Healthy:
         quantities = signal_quantities(references, selection)
         numbers = healthy_reference(quantities, references.table, operating_points(references))
         return Healthy(np.empty((len(numbers), 0, 0), complex), numbers)
@@ -107,7 +107,7 @@ def _selection(selection: Selection) -> Front:
 
 
 def _of_residual(representation: Harmonics | Signals, file: str, columns: int, own: Macros) -> Front:
-    """With columns made of the residual lines, the side columns and the errors that were taken out."""
+    """Columns from the residual lines, auxiliary columns, and the errors that were removed."""
     orders, acquisitions = representation.orders, representation.acquisitions
     sizes: Macros = {
         "ORDERS": orders,
@@ -124,12 +124,12 @@ def _of_residual(representation: Harmonics | Signals, file: str, columns: int, o
     return Front(files, sizes, orders, lambda references: _healthy_lines(references, orders, acquisitions))
 
 
-def _healthy_lines(references: Recordings, orders: int, acquisitions: int | None) -> Healthy:
+def _healthy_lines(references: LabelledSignals, orders: int, acquisitions: int | None) -> Healthy:
     """The healthy lines and their change with each error, of :func:`learn.inputs.residuals.residual`."""
     rows = references.table.index.get_indexer(operating_points(references).index)
-    asked = references.where(rows)  # a recording of each point as a sample, for which the healthy lines are asked
-    asked = replace(asked, table=asked.table.assign(reference=False))
-    healthy = healthy_lines([references, asked], orders, acquisitions)
+    samples = references.where(rows)  # one recording of each point as a sample, to get its healthy lines
+    samples = replace(samples, table=samples.table.assign(reference=False))
+    healthy = healthy_lines([references, samples], orders, acquisitions)
     lines = healthy.reference
     turned = 1j * np.arange(orders + 1) * lines
     changes = np.stack([healthy.slope, turned, leakage(lines, healthy.revolutions)], axis=1)

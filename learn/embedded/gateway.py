@@ -35,7 +35,7 @@ def write(model: Any, path: Path) -> None:
     Raises
     ------
     ValueError
-        If the method cannot be said in ONNX, or the libraries for it are not installed.
+        If the method cannot be exported to ONNX, or the libraries for it are not installed.
     """
     try:
         from onnx.helper import set_model_props
@@ -49,7 +49,7 @@ def write(model: Any, path: Path) -> None:
 
 
 def check(path: Path, model: Any, rows: Float[np.ndarray, "row column"]) -> Agreement:
-    """What onnxruntime makes of a file beside what the original classifier says."""
+    """Agreement of a file in onnxruntime with the original classifier."""
     from onnxruntime import InferenceSession, SessionOptions
 
     options = SessionOptions()
@@ -94,7 +94,7 @@ def _estimator(model: Any) -> "ModelProto":
         )
     except (MissingConverter, MissingShapeCalculator, ValueError) as error:
         reason = str(error)[:LONGEST_REASON]  # one that skl2onnx gives may hold all trees
-        raise ValueError(f"{type(model).__name__} cannot be said in ONNX, take another classifier: {reason}") from error
+        raise ValueError(f"{type(model).__name__} cannot become ONNX, take another classifier: {reason}") from error
     return Extractor(proto).extract_model([ROW], [PROBABILITY])
 
 
@@ -102,7 +102,7 @@ def _asinh(scope: Any, operator: Any, container: Any) -> None:
     """The node for :func:`learn.methods.strong.compression`, the only function in the project's pipelines."""
     function = operator.raw_operator.func
     if function is not np.arcsinh:
-        raise ValueError(f"the function {function} of a pipeline cannot be said in ONNX: only np.arcsinh can")
+        raise ValueError(f"the function {function} of a pipeline cannot become ONNX: only np.arcsinh can")
     name = scope.get_unique_operator_name("Asinh")
     container.add_node("Asinh", operator.inputs[0].full_name, operator.outputs[0].full_name, name=name, op_version=9)
 

@@ -24,25 +24,25 @@ class Dense:
 
 @dataclass(frozen=True)
 class Layers:
-    """What a classifier computes.
+    """Computation of a classifier.
 
     Attributes
     ----------
     centre, spread : array (column,) or None
-        The row is compressed to ``asinh((row - centre) / spread)``; None: it is taken as it is.
+        The row is compressed to ``asinh((row - centre) / spread)``; None: it is not compressed.
     dense : tuple of Dense
         The layers at the end; the last one gives logits.
     blocks : tuple of (channels, Dense)
         Convolutions with stride 2 over the signal, if any, with the channels of their inputs.
-    beside : Dense or None
-        Of the columns behind the signal.
+    auxiliary : Dense or None
+        Layer of the columns after the signal.
     """
 
     centre: Float[np.ndarray, " column"] | None
     spread: Float[np.ndarray, " column"] | None
     dense: tuple[Dense, ...]
     blocks: tuple[tuple[int, Dense], ...] = ()
-    beside: Dense | None = None
+    auxiliary: Dense | None = None
     channels: int = 0
     points: int = 0
 

@@ -1,4 +1,4 @@
-"""Machines that exported C runs on: this one, with sanitizers too, and Cortex-M microcontrollers in an emulator."""
+"""Machines for exported C: this computer, also with sanitizers, and emulated Cortex-M microcontrollers."""
 
 import shutil
 import subprocess
@@ -47,7 +47,7 @@ CORTEX_M7 = _cortex("cortex-m7", "fpv5-sp-d16", "mps2-an500")
 
 
 def missing(machine: Machine) -> list[str]:
-    """Debian packages that a machine needs and that are not installed."""
+    """Debian packages of a machine that are not installed."""
     tools = [machine.compiler[0], *(machine.emulator or ())[:1]]
     packages = [PACKAGES[tool] for tool in tools if shutil.which(tool) is None]
     if machine.emulator is not None and not packages and not _newlib_is_there(machine):
@@ -61,7 +61,7 @@ def build(folder: Path, machine: Machine, out: Path) -> Path:
     Parameters
     ----------
     folder : Path
-        What :func:`learn.embedded.export.export_c` wrote.
+        Folder of :func:`learn.embedded.export.export_c`.
     machine : Machine
     out : Path
         Folder for the program and its objects; it is made.
@@ -76,7 +76,7 @@ def build(folder: Path, machine: Machine, out: Path) -> Path:
     ValueError
         If a tool is not installed.
     RuntimeError
-        If the compiler refuses, with what it says.
+        If the compiler fails; with its message.
     """
     if machine.emulator is None:
         return link([*compile_objects(folder, machine, out, "main.c")], machine, out / "program", "-lm")
@@ -94,7 +94,7 @@ def compile_objects(folder: Path, machine: Machine, out: Path, *of_bench: str) -
 
 
 def link(objects: list[Path], machine: Machine, program: Path, *options: str) -> Path:
-    """Link objects, on a microcontroller without what is not used and with the bench's memory layout."""
+    """Link objects; for a microcontroller without unused sections and with the bench's memory layout."""
     layout = () if machine.emulator is None else ("-nostartfiles", "-Wl,--gc-sections", f"-T{BENCH / 'cortex-m.ld'}")
     paths = [str(path.resolve()) for path in objects]
     call([*machine.compiler, *layout, *paths, *options, "-lm", "-o", str(program.resolve())], program.parent)
@@ -110,18 +110,18 @@ def require_tools(machine: Machine) -> None:
 
 
 def call(command: list[str], folder: Path, timeout: float = TIMEOUT) -> None:
-    """Run a command in a folder; raise a RuntimeError with the end of what it says if it fails."""
+    """Run a command in a folder; raise a RuntimeError with the end of its output if it fails."""
     quiet: dict[str, Any] = {"stdin": subprocess.DEVNULL, "capture_output": True, "text": True}
     try:
         done = subprocess.run(command, cwd=folder, timeout=timeout, check=False, **quiet)
     except subprocess.TimeoutExpired as error:
         raise RuntimeError(f"{command[0]} was stopped after {timeout:g} s in {folder}") from error
     if done.returncode:
-        said = (done.stderr + done.stdout)[-3000:]
-        raise RuntimeError(f"{command[0]} failed with status {done.returncode} in {folder}:\n{said}")
+        output = (done.stderr + done.stdout)[-3000:]
+        raise RuntimeError(f"{command[0]} failed with status {done.returncode} in {folder}:\n{output}")
 
 
 def _newlib_is_there(machine: Machine) -> bool:
-    """The compiler answers with the bare name for a file that it does not have."""
-    asked = [machine.compiler[0], "-print-file-name=rdimon.specs"]
-    return Path(subprocess.run(asked, capture_output=True, text=True, check=True).stdout.strip()).is_absolute()
+    """Whether the compiler has its C library; for a missing file it prints the bare name."""
+    command = [machine.compiler[0], "-print-file-name=rdimon.specs"]
+    return Path(subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()).is_absolute()

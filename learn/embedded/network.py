@@ -19,7 +19,7 @@ WEIGHTS = {"float": "float", "int16": "int16_t", "int8": "int8_t"}
 def quantised(
     weight: Float[np.ndarray, "row column"], numbers: str
 ) -> tuple[Float[np.ndarray, "row column"] | Int[np.ndarray, "row column"], Float[np.ndarray, " row"]]:
-    """Weights as they are kept, and the scale of each row that makes them of it."""
+    """Stored weights, and the scale of each row that converts them back."""
     if numbers == "float":
         return weight, np.ones(len(weight))
     highest = np.iinfo(WEIGHTS[numbers].removesuffix("_t")).max
@@ -37,7 +37,7 @@ def write(model: Any, folder: Path, numbers: str) -> tuple[tuple[str, ...], Macr
         Of :func:`layers_of`.
     folder : Path
     numbers : {"float", "int16", "int8"}
-        How weights are kept.
+        Type of the stored weights.
 
     Returns
     -------
@@ -49,7 +49,7 @@ def write(model: Any, folder: Path, numbers: str) -> tuple[tuple[str, ...], Macr
     layers = layers_of(model)
     named = [(f"layer{i}", dense) for i, dense in enumerate(layers.dense)]
     named += [(f"block{i}", dense) for i, (_, dense) in enumerate(layers.blocks)]
-    named += [("beside", layers.beside)] if layers.beside else []
+    named += [("beside", layers.auxiliary)] if layers.auxiliary else []
     text = ['#include "parameters.h"\n']
     if layers.centre is not None and layers.spread is not None:
         text += [array("swg_centre", layers.centre), array("swg_spread", layers.spread)]
@@ -63,7 +63,7 @@ def write(model: Any, folder: Path, numbers: str) -> tuple[tuple[str, ...], Macr
         "WEIGHT": WEIGHTS[numbers],
     }
     files = ("dense.h", "dense.c", "parameters.h")
-    if layers.beside is None:
+    if layers.auxiliary is None:
         _put(folder, text)
         return (*files, "perceptron.c"), sizes
     blocks = (
@@ -71,13 +71,13 @@ def write(model: Any, folder: Path, numbers: str) -> tuple[tuple[str, ...], Macr
         for i, (channels, dense) in enumerate(layers.blocks)
     )
     text += [f"const swg_convolution swg_block[] = {{{', '.join(blocks)}}};\n"]
-    text += [f"const swg_dense swg_beside = {_entry('beside', layers.beside)};\n"]
+    text += [f"const swg_dense swg_beside = {_entry('beside', layers.auxiliary)};\n"]
     signals = [len(dense.bias) * layers.points >> i for i, (_, dense) in enumerate(layers.blocks, start=1)]
     of_blocks: Macros = {
         "CHANNELS": layers.channels,
         "BLOCKS": len(layers.blocks),
         "PATCH": max(dense.weight.shape[1] for _, dense in layers.blocks),
-        "LARGEST": max(*signals, layers.beside.weight.shape[1] + layers.channels * layers.points),
+        "LARGEST": max(*signals, layers.auxiliary.weight.shape[1] + layers.channels * layers.points),
     }
     _put(folder, text)
     return (*files, "convolutional.c"), {**sizes, **of_blocks}

@@ -1,4 +1,4 @@
-"""What the study finds out about one method: accuracy of its code, and what the code takes of microcontrollers."""
+"""Results of one method: accuracy of its code, and its flash, RAM and instructions on microcontrollers."""
 
 from collections.abc import Mapping
 from dataclasses import asdict
@@ -60,19 +60,19 @@ def _accuracy(new: Fold, others: list[Fold], numbers: str) -> dict[str, Any]:
 
 
 def _cost(fold: Fold, numbers: str, config: Mapping[str, Any]) -> dict[str, Any]:
-    """Of the first gear's code, on the microcontrollers whose tools are there; before that, under sanitizers."""
-    there = [machine for machine in MICROCONTROLLERS if not missing(machine)]
+    """Costs of the first gear's code on the microcontrollers whose tools are installed; first a run with sanitizers."""
+    installed = [machine for machine in MICROCONTROLLERS if not missing(machine)]
     part = fold.of_gear(fold.gears[0])
     with TemporaryDirectory(prefix="swg-") as folder:
         code = Path(folder) / "c"
         part.export(code, numbers)
         checked = build(code, HOST_SANITIZED, Path(folder) / "checked")
-        taken = sizes(code, CORTEX_M4) if CORTEX_M4 in there else None
+        memory = sizes(code, CORTEX_M4) if CORTEX_M4 in installed else None
         return {
             "sanitized": _decided(checked, HOST_SANITIZED, part, config["proof"])[1],
-            "flash": dict(taken.flash) if taken else {},
-            "ram": taken.ram if taken else None,
-            "machines": {machine.name: _on(machine, part, Path(folder), config) for machine in there},
+            "flash": dict(memory.flash) if memory else {},
+            "ram": memory.ram if memory else None,
+            "machines": {machine.name: _on(machine, part, Path(folder), config) for machine in installed},
         }
 
 
@@ -92,8 +92,8 @@ def _on(machine: Machine, part: Fold, folder: Path, config: Mapping[str, Any]) -
 def _decided(
     program: Path, machine: Machine, part: Fold, count: int, *, counted: bool = False
 ) -> tuple[Decisions, dict[str, Any]]:
-    """What a program says of some of a gear's recordings, evenly chosen, and its agreement with the original."""
+    """Decisions of a program on some of a gear's recordings, evenly chosen, and its agreement with the original."""
     rows = np.linspace(0, len(part.features) - 1, min(count, len(part.features))).round().astype(int)
     chosen = part.recordings.samples.where(rows)
-    said = decide(program, machine, chosen.signals, operations(chosen.table), counted=counted)
-    return said, asdict(agreement(said, part.model.predict_proba(part.features[rows])))
+    decisions = decide(program, machine, chosen.signals, operations(chosen.table), counted=counted)
+    return decisions, asdict(agreement(decisions, part.model.predict_proba(part.features[rows])))

@@ -1,4 +1,4 @@
-"""An exported method beside its original, on the recordings of the gear that it was exported for."""
+"""Compares an exported method with its original, on recordings of the gear of the export."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from jaxtyping import Float
 
 from learn.embedded.machines import Machine, build
 from learn.embedded.running import Decisions, decide
-from swgsim.storage.gauge_set import Recordings
+from swgsim.storage.labelled_signals import LabelledSignals
 
 FACTS = ["n_in_rpm", "T_out_nm", "efficiency", "temperature_c"]
 
@@ -26,9 +26,9 @@ class Agreement:
     Attributes
     ----------
     recordings, decided, equal : int
-        How many there were, on how many there was a decision, and on how many it was that of the original.
+        Numbers of recordings, of those with a decision, and of those with the decision of the original.
     difference : float
-        Largest one of a probability.
+        Largest difference of a probability.
     """
 
     recordings: int
@@ -38,7 +38,7 @@ class Agreement:
 
     @property
     def share(self) -> float:
-        """Labels that are those of the original [%]."""
+        """Share of labels that equal those of the original [%]."""
         return 100 * self.equal / self.recordings
 
     def __str__(self) -> str:
@@ -48,16 +48,16 @@ class Agreement:
         )
 
 
-def agreement(said: Decisions, probabilities: Float[np.ndarray, "recording class"]) -> Agreement:
-    """Decisions beside the probabilities that the original gives."""
-    decided = said.results >= 0
-    difference = np.abs(said.probabilities - probabilities)[decided]
-    equal = said.results == probabilities.argmax(axis=1)
+def agreement(decisions: Decisions, probabilities: Float[np.ndarray, "recording class"]) -> Agreement:
+    """Agreement of decisions with the probabilities of the original."""
+    decided = decisions.results >= 0
+    difference = np.abs(decisions.probabilities - probabilities)[decided]
+    equal = decisions.results == probabilities.argmax(axis=1)
     return Agreement(len(equal), int(decided.sum()), int(equal.sum()), float(difference.max(initial=0)))
 
 
 def together(parts: Sequence[Agreement]) -> Agreement:
-    """That of several sets of recordings."""
+    """Agreement over several sets of recordings."""
     return Agreement(
         sum(part.recordings for part in parts),
         sum(part.decided for part in parts),
@@ -66,17 +66,17 @@ def together(parts: Sequence[Agreement]) -> Agreement:
     )
 
 
-def said_by(folder: Path, machine: Machine, recordings: Recordings) -> Decisions:
-    """What an exported method says of recordings on a machine."""
+def decisions_of(folder: Path, machine: Machine, recordings: LabelledSignals) -> Decisions:
+    """Decisions of an exported method on a machine."""
     with TemporaryDirectory(prefix="swg-") as out:
         return decide(build(folder, machine, Path(out)), machine, recordings.signals, operations(recordings.table))
 
 
 def operations(table: pd.DataFrame) -> Float[np.ndarray, "recording quantity"]:
-    """What the drive knows beside the gauges, of :data:`learn.embedded.running.OPERATION`."""
+    """Quantities that the drive measures, :data:`learn.embedded.running.OPERATION`."""
     return table[FACTS].to_numpy(dtype=float)
 
 
-def prove(folder: Path, machine: Machine, model: Any, features: np.ndarray, recordings: Recordings) -> Agreement:
-    """Run an exported method on a gear's recordings, whose features the original is given."""
-    return agreement(said_by(folder, machine, recordings), model.predict_proba(features))
+def prove(folder: Path, machine: Machine, model: Any, features: np.ndarray, recordings: LabelledSignals) -> Agreement:
+    """Run an exported method on recordings, and its original on their features."""
+    return agreement(decisions_of(folder, machine, recordings), model.predict_proba(features))

@@ -1,6 +1,6 @@
-"""The study of exported methods: runs what is missing, then writes ``report/embedded.json``, ``.md`` and ``.png``.
+"""The study of exported methods: runs missing methods, then writes ``report/embedded.json``, ``.md`` and ``.png``.
 
-The picture needs flash and instructions, and so the tools of the microcontrollers.
+The figure needs the tools of the microcontrollers.
 """
 
 import hashlib
@@ -45,17 +45,20 @@ def run(config: Mapping[str, Any]) -> dict[str, Any]:
     Returns
     -------
     dict
-        What embedded.json holds.
+        Content of embedded.json.
 
     Raises
     ------
     ValueError
-        If a data set does not exist, with the command to make it, or there is no C compiler.
+        If a data set does not exist, with the command to make it, or there is no method or no C compiler.
     """
+    if not config["methods"]:
+        raise ValueError("methods is empty, so nothing would be compared: leave at least one of conf/embedded.yaml")
     require_tools(HOST)
     for machine in MICROCONTROLLERS:
-        if missing(machine):
-            log.warning("%s is left out: %s not installed; run scripts/install_arm.sh", machine.name, missing(machine))
+        packages = ", ".join(missing(machine))
+        if packages:
+            log.warning("%s is left out, because %s is missing: run scripts/install_arm.sh", machine.name, packages)
     results = [entry for method in _outcomes(config) for entry in method]
     variants, errors = variants_of(results), errors_of(results)
     part = Part.of(config["part"])
@@ -95,7 +98,7 @@ def _finished(config: Mapping[str, Any], name: str, path: Path) -> None:
 
 
 def _keys(config: Mapping[str, Any]) -> dict[str, str]:
-    """A name for each method's result that changes with everything that it depends on."""
+    """Key of each method's result; it changes with all that the result depends on."""
     digest = hashlib.sha256(identity.code_version().encode())
     sources = (path for path in Path(__file__).parent.rglob("*") if path.suffix in (".py", ".c", ".h", ".ld"))
     for source in sorted(path for path in sources if path.name not in PRESENTATION):

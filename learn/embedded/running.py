@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from learn.embedded.machines import Machine, call, require_tools
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 MAGIC = 0x53574752
 HEADER = np.dtype([("magic", "<u4"), ("recordings", "<u4"), ("samples", "<u4"), ("counted", "<u4")])
@@ -34,7 +34,7 @@ class Decisions:
         By part: all samples of the ``window``, the longest single ``push`` of them, ``decide``, and the two parts of
         that: ``features`` and ``classify``, which are 0 where there is no decision. None where they were not counted.
     stack : int or None
-        Most bytes of stack that pushing and deciding took; None where it was not counted.
+        Largest stack of pushing and deciding [bytes]; None where it was not counted.
     """
 
     results: Int[np.ndarray, " recording"]
@@ -72,9 +72,9 @@ def decide(
     Raises
     ------
     ValueError
-        If instructions shall be counted where programs run by themselves, or the emulator is not installed.
+        If instructions are to be counted without an emulator, or the emulator is not installed.
     RuntimeError
-        If the program fails, with what it says.
+        If the program fails; with its message.
     """
     require_tools(machine)
     if counted and machine.emulator is None:

@@ -1,4 +1,4 @@
-"""Flash and RAM that an exported method takes in a microcontroller, from the linker's map."""
+"""Flash and RAM of an exported method on a microcontroller, from the linker's map."""
 
 import re
 from collections import Counter
@@ -18,13 +18,12 @@ PLACED = re.compile(r"^ (\S+)\s+0x[0-9a-f]+\s+0x([0-9a-f]+) (\S.*)$", re.MULTILI
 
 @dataclass(frozen=True)
 class Sizes:
-    """What a firmware grows by that calls ``swg_push`` and ``swg_decide`` [bytes].
+    """Bytes that ``swg_push`` and ``swg_decide`` add to a firmware.
 
     Attributes
     ----------
     flash : dict of int
-        By C file without its ending, and by library where functions of the compiler's are taken in; without the few
-        bytes that align them.
+        By C file without its ending, and by library of the compiler; without the few bytes of alignment.
     ram : int
         Static, with one window; the stack is of :class:`learn.embedded.running.Decisions`.
     """
@@ -34,21 +33,21 @@ class Sizes:
 
 
 def sizes(folder: Path, machine: Machine) -> Sizes:
-    """Link an exported method with the smallest firmware and see what it takes.
+    """Link an exported method with the smallest firmware and read its sizes.
 
     Parameters
     ----------
     folder : Path
-        What :func:`learn.embedded.export.export_c` wrote.
+        Folder of :func:`learn.embedded.export.export_c`.
     machine : Machine
         A microcontroller.
 
     Raises
     ------
     ValueError
-        If the machine is no microcontroller, or a tool is not installed.
+        If the machine is not a microcontroller, or a tool is not installed.
     RuntimeError
-        If the compiler refuses, with what it says.
+        If the compiler fails; with its message.
     """
     if machine.emulator is None:
         raise ValueError(f"{machine.name} is no microcontroller: take one for sizes in flash and RAM")

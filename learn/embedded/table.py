@@ -11,7 +11,7 @@ from learn.evaluation.bootstrap import hierarchical_bootstrap, mean_error
 from learn.inputs.inputs import SPECIMEN
 from swgsim.common.seeds import generator
 
-# C files by what they are for; other names are those of the compiler's libraries.
+# C files by purpose; other names are libraries of the compiler.
 FEATURES = ("window", "decide", "lines", "residual", "harmonics", "signal", "selection")
 CLASSIFIERS = ("dense", "parameters", "perceptron", "convolutional", "forest")
 COUNTER = "cortex-m4"  # of instructions; other Cortex-M with single precision take as many
@@ -23,21 +23,21 @@ def name_of(entry: Mapping[str, Any]) -> str:
 
 
 def errors_of(results: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
-    """Error [%] of each variant (column) for every specimen of the gears never seen."""
+    """Error [%] of each variant (column) for every specimen of the unseen gears."""
     first = pd.DataFrame(results[0]["specimens"])[list(SPECIMEN)]
     columns = {name_of(entry): np.array(entry["specimens"]["error"]) for entry in results}
     return first.assign(**columns)
 
 
 def variants_of(results: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
-    """One row for each variant, with sizes and instructions where microcontrollers were there.
+    """One row for each variant, with sizes and instructions if there are microcontrollers.
 
     Returns
     -------
     DataFrame
         Indexed by name: ``unseen``, ``low``, ``high`` and ``disturbed`` accuracy [%]; ``…_equal`` of ``…_recordings``
         labels on both data sets, under sanitizers and on each microcontroller, ``same``, the lowest share of them [%],
-        and the largest ``difference`` of a probability on gears never seen; ``flash`` and its parts, ``ram`` with
+        and the largest ``difference`` of a probability on unseen gears; ``flash`` and its parts, ``ram`` with
         ``stack`` in it [bytes]; ``instructions`` of a decision and their parts, the ``most_instructions`` of one, and
         those of the ``longest_push``.
     """

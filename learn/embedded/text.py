@@ -1,4 +1,4 @@
-"""The study in words: two tables, and what is recommended."""
+"""The study as text: two tables and a recommendation."""
 
 from collections.abc import Sequence
 
@@ -9,7 +9,7 @@ from learn.embedded.proof import FAITHFUL
 from learn.embedded.trade import Part, Recommendation
 
 ACCURACY = (
-    "method and its numbers", "gears never seen [%]", "disturbed [%]", "labels as in Python, gears never seen",
+    "method and its numbers", "unseen gears [%]", "disturbed [%]", "labels as in Python, unseen gears",
     "disturbed", "probabilities within",
 )  # fmt: skip
 MACHINES = ("Cortex-M4", "Cortex-M7", "sanitizers")
@@ -24,7 +24,7 @@ COUNTS = (
 
 
 def markdown(variants: pd.DataFrame, part: Part, advice: Recommendation | None) -> str:
-    """Tables of accuracy and of cost, and what is recommended.
+    """Tables of accuracy and of cost, and a recommendation.
 
     Parameters
     ----------
@@ -71,27 +71,27 @@ def _of(row: pd.Series, name: str) -> str:
 
 
 def _advised(variants: pd.DataFrame, part: Part, advice: Recommendation | None) -> str:
-    asked = (
+    needs = (
         f"{part.flash / 1024:.0f} kB of flash, {part.ram / 1024:.0f} kB of RAM, {part.rate:g} decisions a second of "
         f"samples at {part.sampling / 1000:g} kHz, and {part.instructions / 1e6:g} million instructions a second"
     )
     left_out = _listed("These do not fit", variants.index[~part.fits(variants)])
     left_out += _listed(f"Less than {FAITHFUL} % of labels as in Python", variants.index[variants["same"] < FAITHFUL])
     if advice is None:
-        return f"None of the methods fits in {asked}.{left_out}"
+        return f"None of the methods fits into {needs}.{left_out}"
     row = variants.loc[advice.variant]
     chosen = (
-        f"For {asked}: **{advice.variant}**, {row['flash'] / 1024:.1f} kB of flash, {row['ram'] / 1024:.1f} kB of RAM, "
+        f"For {needs}: **{advice.variant}**, {row['flash'] / 1024:.1f} kB of flash, {row['ram'] / 1024:.1f} kB of RAM, "
         f"{part.rate * row['instructions'] / 1e6:.1f} million instructions a second."
     )
     if advice.variant == advice.most_accurate:
-        why = "It is the most accurate of those that fit on gears never seen; of none that is smaller it is known that "
-        return f"{chosen} {why}it does as well.{left_out}"
+        reason = "On unseen gears it is the most accurate one that fits; no smaller one is known to be as accurate."
+        return f"{chosen} {reason}{left_out}"
     more = f"{advice.difference:.1f} points more ({advice.low:.1f} to {advice.high:.1f})"
     return (
-        f"{chosen} Of those that fit, {advice.most_accurate} is the most accurate on gears never seen; this one errs "
-        f"{more}, gears and specimens drawn anew, which is not clearly more, and it is the smallest of which that can "
-        f"be said.{left_out}"
+        f"{chosen} Of those that fit, {advice.most_accurate} is the most accurate on unseen gears. The recommended "
+        f"method errs {more}, with the interval of a bootstrap over gears and specimens. It is the smallest one whose "
+        f"error is not significantly larger.{left_out}"
     )
 
 

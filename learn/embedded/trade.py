@@ -1,4 +1,4 @@
-"""Which exported method to take for a part: the smallest that fits, is faithful and not clearly worse than the best."""
+"""Recommends a method for a part: the smallest that fits, is faithful and not significantly worse than the best."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from learn.inputs.inputs import SPECIMEN
 
 @dataclass(frozen=True)
 class Part:
-    """A microcontroller and what is asked of it.
+    """A microcontroller and the requirements on it.
 
     Attributes
     ----------
@@ -23,7 +23,7 @@ class Part:
     rate, sampling : float
         Decisions and samples per second.
     instructions : float
-        Per second, that the firmware leaves for this.
+        Per second that are available for the classifier.
     """
 
     flash: int
@@ -34,13 +34,13 @@ class Part:
 
     @classmethod
     def of(cls, config: Mapping[str, float]) -> "Part":
-        """That of ``part`` of a configuration."""
+        """The part of ``part`` of a configuration."""
         kib = 1024
         flash, ram = (round(config[name] * kib) for name in ("flash_kib", "ram_kib"))
         return cls(flash, ram, config["rate"], config["sampling"], 1e6 * config["mips"])
 
     def fits(self, variants: pd.DataFrame) -> pd.Series:
-        """Whether each variant fits, and its decisions as well as every single sample come in time."""
+        """Whether each variant fits, with decisions and every single sample in time."""
         return (
             (variants["flash"] <= self.flash)
             & (variants["ram"] <= self.ram)
@@ -50,7 +50,7 @@ class Part:
 
 
 class Recommendation(NamedTuple):
-    """The chosen variant, the most accurate one that fits, and how much more the chosen one errs [points]."""
+    """The chosen variant, the most accurate one that fits, and the additional error of the chosen one [points]."""
 
     variant: str
     most_accurate: str
@@ -62,14 +62,14 @@ class Recommendation(NamedTuple):
 def recommend(
     variants: pd.DataFrame, errors: pd.DataFrame, part: Part, rng: np.random.Generator
 ) -> Recommendation | None:
-    """The smallest of those that fit, are faithful and not clearly worse than the best of them; None if none is.
+    """The smallest of those that fit, are faithful and not significantly worse than the best; None if none fits.
 
     Parameters
     ----------
     variants : DataFrame
         Of :func:`learn.embedded.table.variants_of`, with flash and instructions.
     errors : DataFrame
-        Errors [%] of each variant (column) on gears never seen, as :func:`bootstrap.hierarchical_bootstrap`
+        Errors [%] of each variant (column) on unseen gears, as :func:`bootstrap.hierarchical_bootstrap`
         takes them.
     part : Part
     rng : Generator

@@ -5,5 +5,5 @@ Imports ``inputs``, ``methods`` and ``protocols``.
 
 import lazy_loader
 
-# A name is imported when it is used, so that a sweep of forests does not wait for PyTorch.
+# Names are imported at first use, so that jobs without networks do not load PyTorch.
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -8,11 +8,11 @@ import numpy as np
 import pandas as pd
 from jaxtyping import Float, Int
 
-from swgsim.storage.gauge_set import CLASSES
+from swgsim.storage.labelled_signals import CLASSES
 
 
 def probabilities(predictions: pd.DataFrame) -> Float[np.ndarray, "row class"]:
-    """The predicted probability of every class, in the order of :data:`swgsim.storage.gauge_set.CLASSES`.
+    """The predicted probability of every class, in the order of :data:`swgsim.storage.labelled_signals.CLASSES`.
 
     Raises
     ------
@@ -37,7 +37,7 @@ def truth(predictions: pd.DataFrame) -> np.ndarray:
 
 
 def class_numbers(predictions: pd.DataFrame) -> Int[np.ndarray, " row"]:
-    """The true class of every row as its place in :data:`swgsim.storage.gauge_set.CLASSES`.
+    """The true class of every row as its place in :data:`swgsim.storage.labelled_signals.CLASSES`.
 
     Raises
     ------

@@ -12,7 +12,7 @@ from learn.evaluation.decisions import decisions, truth
 from learn.evaluation.detection_curve import detection
 from learn.inputs.inputs import OPERATING_POINT
 from learn.protocols.fault_size import UNITS, size
-from swgsim.storage.gauge_set import CLASSES
+from swgsim.storage.labelled_signals import CLASSES
 
 
 def detected(predictions: pd.DataFrame) -> Bool[np.ndarray, " row"]:

@@ -11,7 +11,7 @@ from jaxtyping import Float, Int
 
 from learn.inputs.inputs import OPERATING_POINT, SPECIMEN
 from learn.inputs.rows import Inputs
-from learn.methods.classical import Classifier
+from learn.methods.contract import Classifier
 from learn.protocols.splits import Split
 
 FACTS = [*SPECIMEN, "severity", *OPERATING_POINT]

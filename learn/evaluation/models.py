@@ -59,6 +59,8 @@ def load(path: Path, device: str = "auto") -> Any:
 def trained(folder: Path, identity: str, model: Any, X: np.ndarray, y: np.ndarray) -> Any:
     """The model trained on these rows: read from the folder if it is there, else trained and kept.
 
+    A classifier that is not part of this project or scikit-learn is trained anew and not kept.
+
     Parameters
     ----------
     folder : Path
@@ -68,6 +70,13 @@ def trained(folder: Path, identity: str, model: Any, X: np.ndarray, y: np.ndarra
         Untrained.
     X, y : array (row, column), array (row,)
     """
+    kind = type(model)
+    if (
+        kind.__module__.partition(".")[0] not in ("learn", "sklearn")
+        and f"{kind.__module__}.{kind.__name__}" not in TRUSTED
+    ):
+        fit(model, X, y)
+        return model
     digest = hashlib.sha256(identity.encode())
     digest.update(np.ascontiguousarray(X).data)
     digest.update("\x1f".join(map(str, y)).encode())

@@ -1,4 +1,4 @@
-"""Inputs beside the signal: efficiency and operating point."""
+"""Auxiliary inputs next to the signal: efficiency and operating point."""
 
 from dataclasses import dataclass
 
@@ -10,18 +10,19 @@ from learn.inputs.residuals import HealthyLines
 
 
 @dataclass(frozen=True)
-class Side:
-    """Inputs beside the signal.
+class AuxiliaryInputs:
+    """Choice of the auxiliary inputs.
 
     Attributes
     ----------
     efficiency : bool
-        Change of the efficiency against the healthy reference: its logarithm, the signed fourth root of it (eq. 9 kept
-        with its sign), and the change of viscous loss that would explain it. Without a reference: the logarithm itself.
+        Change of the efficiency from the healthy reference, in three forms: its logarithm, the fourth root of eq. (9)
+        with a sign, and the change of viscous loss that would explain it. Without a reference: the logarithm of the
+        efficiency.
     operating_point : bool
-        Speed, load, and the temperature (with a reference: against the reference's), where it was recorded.
+        Speed, load and temperature; with a reference, the temperature is relative to that of the reference.
     reference : bool
-        Whether the healthy acquisitions of the gear are known (level Z1); without them it is level Z0.
+        Whether healthy acquisitions of the gear are known (level Z1) or not (level Z0).
     """
 
     efficiency: bool = True
@@ -29,7 +30,7 @@ class Side:
     reference: bool = True
 
     def columns(self, healthy: HealthyLines) -> dict[str, Float[np.ndarray, " sample"]]:
-        """Named columns, one value per sample."""
+        """Named columns, each an array (sample,)."""
         table = healthy.table
         speed, load = table["n_in_rpm"].to_numpy(), table["T_out_nm"].to_numpy()
         eta = table["efficiency"].to_numpy()
@@ -38,7 +39,7 @@ class Side:
             change = np.log(eta / healthy.eta_healthy)
             columns["log eta_rel"] = change
             columns["root of log eta_rel"] = np.sign(change) * np.abs(change) ** 0.25
-            # T_in N = T_out / eta: the change of the loss torque at the output over the speed is one of b1.
+            # As T_in N = T_out / eta, the change of the loss torque at the output over the speed is a change of b1.
             columns["viscous loss"] = (1 / eta - 1 / healthy.eta_healthy) * load / (speed * np.pi / 30)  # N m s
         elif self.efficiency:
             columns["log eta"] = np.log(eta)
@@ -48,6 +49,6 @@ class Side:
 
 
 def operating_point(table: pd.DataFrame, temperature: Float[np.ndarray, " sample"]) -> dict[str, np.ndarray]:
-    """Speed [rpm], load [N m], and temperature against that given [K]; 0 where it was not recorded."""
+    """Speed [rpm], load [N m] and temperature minus a given one [K]; 0 where no temperature was recorded."""
     difference = np.nan_to_num(table["temperature_c"].to_numpy() - temperature)
     return {"speed": table["n_in_rpm"].to_numpy(), "load": table["T_out_nm"].to_numpy(), "temperature": difference}

@@ -1,4 +1,18 @@
-"""Features of eqs. 7 to 9 and the feature selections of Table III."""
+"""Features of eqs. (7) to (9) and the three feature selections of Table III.
+
+===========  ==========================================  =======================================
+Selection    signals                                     efficiency
+===========  ==========================================  =======================================
+Selection 1  mean and variance of every gauge s0 to s4   relative efficiency, eq. (7)
+Selection 2  Selection 1, and the DFT of every gauge     as Selection 1
+Selection 3  DFT of the differences of opposite gauges,  fourth root of the change of the
+             s1 - s3 and s2 - s4, eq. (8)                relative efficiency, eq. (9)
+===========  ==========================================  =======================================
+
+All signal features are relative to the healthy gear at the same operating point, eq. (7). ``conf/features`` has a file
+for each selection; ``selection_all`` joins all features of Table III. With 6 orders the selections have 11, 41 and 13
+features. Table VII compares the three.
+"""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -10,7 +24,7 @@ from jaxtyping import Float
 from learn.inputs.auxiliary_inputs import operating_point
 from learn.inputs.inputs import Layout, LearningSet
 from learn.inputs.references import healthy_reference
-from swgsim.storage.gauge_set import SENSORS, Recordings
+from swgsim.storage.labelled_signals import SENSORS, LabelledSignals
 from swgsim.storage.orders import order_lines, whole_revolutions
 
 SPECTRA = {"none": (), "gauges": SENSORS, "differences": ("ds13", "ds24"), "both": (*SENSORS, "ds13", "ds24")}
@@ -19,28 +33,27 @@ EFFICIENCIES = {"none": (), "eta_rel": ("eta_rel",), "eta2_rel": ("eta2_rel",), 
 
 @dataclass(frozen=True)
 class Selection:
-    """A feature selection of Table III.
+    """A feature selection like those of Table III.
 
     Attributes
     ----------
     name : str
-        Its name, ``selection_1`` to ``selection_3`` for the paper's.
+        ``selection_1`` to ``selection_3`` for those of the paper.
     statistics : bool
         Mean and variance of every gauge signal.
     spectrum : {"none", "gauges", "differences", "both"}
-        DFT of nothing, of every gauge signal, of the differences of opposite gauges (eq. 8), or of both.
+        Signals with a DFT: none, the gauges, the differences of opposite gauges (eq. 8), or both.
     efficiency : {"none", "eta_rel", "eta2_rel", "both"}
-        Nothing, the relative efficiency, the fourth root of its change (eq. 9), or both.
+        None, the relative efficiency (eq. 7), the fourth root of its change (eq. 9), or both.
     orders : int
-        DFT components per signal: the multiples 1 to `orders` of the wave generator's speed n_in. The paper does not
-        say how many it takes.
+        DFT components of each signal: orders 1 to `orders` of the wave generator's speed. The paper does not give
+        this number.
     floor : float
-        Smallest magnitude of a healthy mean or DFT component [mV/V] that eq. 7 divides by; its square for a variance.
-        Where symmetry makes the healthy value vanish, eq. 7 would divide by rounding errors instead. The default,
-        1e-6, bounds the quotient and touches nothing that could be measured: of an amplifier's noise of 5e-4 mV/V a
-        window of 600 samples leaves 3e-5.
+        Smallest magnitude [mV/V] by which eq. (7) divides; its square for a variance. Symmetry makes some healthy
+        values vanish, and eq. (7) would divide by rounding errors. The default of 1e-6 is far below measurable
+        values: an amplifier noise of 5e-4 mV/V leaves 3e-5 in a window of 600 samples.
     operating_point : bool
-        Speed, load and temperature as well, which the paper's selections do not have.
+        Whether speed, load and temperature are features too; the paper's selections have none of them.
 
     Raises
     ------
@@ -71,25 +84,25 @@ class Selection:
         """Names of the features, in their order."""
         statistics = [f"{symbol}({s})" for symbol in ("m_rel", "var_rel") for s in SENSORS] if self.statistics else []
         spectrum = [f"DFT_rel({s})[{k}]" for s in SPECTRA[self.spectrum] for k in range(1, self.orders + 1)]
-        side = ("speed", "load", "temperature") if self.operating_point else ()
-        return (*statistics, *spectrum, *EFFICIENCIES[self.efficiency], *side)
+        auxiliary = ("speed", "load", "temperature") if self.operating_point else ()
+        return (*statistics, *spectrum, *EFFICIENCIES[self.efficiency], *auxiliary)
 
-    def learning_set(self, blocks: Iterable[Recordings]) -> LearningSet:
-        """Features of all samples relative to the healthy reference of their own gear and operating point.
+    def learning_set(self, blocks: Iterable[LabelledSignals]) -> LearningSet:
+        """Features of all samples, relative to the healthy reference of the same gear and operating point.
 
-        Eq. 7, component by component, as 1 + (m - m_healthy) / m_healthy: the divisor alone is kept from falling
-        below the floor, so a healthy recording gives 1 also where the healthy value vanishes.
+        Eq. (7) is evaluated as 1 + (m - m_healthy) / m_healthy for each feature. Only the divisor is bounded by the
+        floor, so a healthy recording gives 1 even if the healthy value vanishes.
 
         Parameters
         ----------
-        blocks : iterable of Recordings
-            The recordings of a data set, samples and references, in one block or in many that are dropped one by one.
+        blocks : iterable of LabelledSignals
+            Samples and references of a data set, in one or more blocks.
 
         Raises
         ------
         ValueError
-            If a gear has no reference at an operating point, if its reference efficiency is not above 0, or if the
-            window holds no whole revolution.
+            If a gear has no reference at an operating point, a reference efficiency is not above 0, or the window
+            is shorter than a revolution.
         """
         parts = [(signal_quantities(block, self), block.table) for block in blocks]
         quantities = np.concatenate([part[0] for part in parts])
@@ -107,24 +120,24 @@ class Selection:
             raise ValueError(f"healthy reference efficiency {eta_healthy.min():g} found, eq. 7 needs one above 0")
         eta_rel = samples[["efficiency"]].to_numpy() / eta_healthy
         efficiency = {"eta_rel": eta_rel, "eta2_rel": np.abs(1 - eta_rel) ** 0.25}  # eq. 9
-        last = [efficiency[name] for name in EFFICIENCIES[self.efficiency]]
+        auxiliary = [efficiency[name] for name in EFFICIENCIES[self.efficiency]]
         if self.operating_point:
-            last += [column[:, None] for column in operating_point(samples, temperature_healthy).values()]
-        # Networks on signals may take the features before the efficiency for one: a row of numbers.
+            auxiliary += [column[:, None] for column in operating_point(samples, temperature_healthy).values()]
+        # Convolutional networks treat the features before the efficiency as a signal of one channel.
         layout = Layout(1, relative.shape[1], periodic=False)
-        return LearningSet(np.concatenate([relative, *last], axis=1), samples, self.names, layout)
+        return LearningSet(np.concatenate([relative, *auxiliary], axis=1), samples, self.names, layout)
 
     @property
     def floors(self) -> Float[np.ndarray, " quantity"]:
-        """Floor of each signal feature: mV/V, or its square for the variances."""
+        """Floor of each signal feature [mV/V; its square for variances]."""
         statistics = np.repeat([self.floor, self.floor**2], len(SENSORS)) if self.statistics else np.empty(0)
         return np.append(statistics, np.full(len(SPECTRA[self.spectrum]) * self.orders, self.floor))
 
 
-def signal_quantities(recordings: Recordings, selection: Selection) -> Float[np.ndarray, "sample quantity"]:
-    """The selection's means and variances [mV/V, squared], and DFT magnitudes [mV/V] before they are set in relation.
+def signal_quantities(recordings: LabelledSignals, selection: Selection) -> Float[np.ndarray, "sample quantity"]:
+    """Means [mV/V], variances [its square] and DFT magnitudes [mV/V] of a selection, before eq. (7).
 
-    All are taken over the largest whole number of revolutions at the recording's desired speed.
+    They are taken over the largest whole number of revolutions at the desired speed.
     """
     result = np.empty((len(recordings), len(selection.floors)))
     speeds = recordings.table["n_in_rpm"].to_numpy()

@@ -1,4 +1,4 @@
-"""What every method is given: one row of numbers per recording, and the facts beside it."""
+"""The data of every method: one row of features per recording, and a table of facts."""
 
 from collections.abc import Callable, Hashable, Iterable, Iterator
 from dataclasses import dataclass, replace
@@ -11,17 +11,17 @@ import pandas as pd
 from jaxtyping import Float, Int
 
 from learn.inputs.rows import Inputs, on_disk
-from swgsim.storage.gauge_set import Recordings
+from swgsim.storage.labelled_signals import LabelledSignals
 
 OPERATING_POINT = ("n_in_rpm", "T_out_nm")
-SPECIMEN = ("gear", "label", "variant")  # a physical unit, recorded at several operating points
+SPECIMEN = ("gear", "label", "variant")  # identify a physical specimen, recorded at several operating points
 
 
 class Layout(NamedTuple):
-    """How a row begins: `channels` times `points` values of signal, channel after channel; side inputs follow.
+    """Place of the signal in a row: first `channels` times `points` values, channel by channel, then other inputs.
 
-    The points of a periodic signal are angles of a revolution; of one that is not they are features in a row, each with
-    a scale of its own.
+    The points of a periodic signal are angles of a revolution. Those of another signal are features, each with a
+    separate scale.
     """
 
     channels: int = 0
@@ -30,7 +30,7 @@ class Layout(NamedTuple):
 
     @property
     def columns(self) -> int:
-        """Columns of signal."""
+        """Number of columns of the signal."""
         return self.channels * self.points
 
 
@@ -39,18 +39,18 @@ NO_SIGNAL = Layout()
 
 @dataclass(frozen=True)
 class LearningSet:
-    """The inputs of all samples, in the columns that `names` names; and their facts.
+    """Inputs of all samples with their facts.
 
     Attributes
     ----------
     features : array (sample, feature)
-        Of a large data set, rows in a file.
+        :class:`learn.inputs.rows.Rows` in a file if the data set is large.
     table : DataFrame
-        One row of facts per sample, with the columns of :data:`swgsim.storage.gauge_set.COLUMNS`.
+        One row of facts per sample, with the columns of :data:`swgsim.storage.labelled_signals.COLUMNS`.
     names : tuple of str
-        One per feature.
+        Names of the features.
     layout : Layout
-        Which columns are a signal; methods that know no signals take all columns alike.
+        Columns of the signal.
     """
 
     features: Inputs
@@ -59,8 +59,8 @@ class LearningSet:
     layout: Layout = NO_SIGNAL
 
 
-def beside_foreign(data: LearningSet, foreign: LearningSet) -> LearningSet:
-    """A data set joined by gears of another one, which get the numbers below 1 and so come first.
+def with_foreign_gears(data: LearningSet, foreign: LearningSet) -> LearningSet:
+    """Both data sets as one; the foreign gears come first, with numbers below 1.
 
     Raises
     ------
@@ -80,60 +80,58 @@ def beside_foreign(data: LearningSet, foreign: LearningSet) -> LearningSet:
 
 @runtime_checkable
 class Representation(Hashable, Protocol):
-    """A way to make inputs of recordings; equal ones are interchangeable."""
+    """A rule that computes inputs from recordings; equal representations give equal inputs."""
 
-    def learning_set(self, blocks: Iterable[Recordings]) -> LearningSet:
-        """The inputs of the samples of a data set, which comes in one block or in many that are dropped one by one."""
+    def learning_set(self, blocks: Iterable[LabelledSignals]) -> LearningSet:
+        """Inputs of the samples of a data set, which arrives in one or more blocks."""
         ...
 
 
 def gear_by_gear(
-    blocks: Iterable[Recordings], representation: Representation, folder: Path, progress: Callable[[int], object]
+    blocks: Iterable[LabelledSignals], representation: Representation, folder: Path, progress: Callable[[int], object]
 ) -> LearningSet:
-    """The inputs of a data set that is too large for the memory, one gear after the other, in a file.
-
-    A gear is a data set of its own: inputs are set in relation to no other gear.
+    """Inputs of a data set that is too large for the memory, computed gear by gear and stored in a file.
 
     Parameters
     ----------
-    blocks : iterable of Recordings
-        The recordings of a gear in a row, as data sets have them.
+    blocks : iterable of LabelledSignals
+        The recordings of each gear are consecutive.
     representation : Representation
     folder : Path
-        Where the file may lie; it has no name and leaves nothing behind.
+        Folder of the temporary file, which has no name and is removed with the process.
     progress : callable
-        Called with the number of recordings whenever that many more are done.
+        Called with the number of recordings of each finished gear.
 
     Raises
     ------
     ValueError
-        If the recordings of a gear are not in a row.
+        If the recordings of a gear are not consecutive.
     """
     facts: list[LearningSet] = []
 
     def features() -> Iterator[Float[np.ndarray, "sample feature"]]:
         for recordings in _gears(blocks):
-            made = representation.learning_set(recordings)
-            facts.append(replace(made, features=np.empty((0, len(made.names)))))
+            of_gear = representation.learning_set(recordings)
+            facts.append(replace(of_gear, features=np.empty((0, len(of_gear.names)))))
             progress(sum(map(len, recordings)))
-            yield np.asarray(made.features)
+            yield np.asarray(of_gear.features)
 
     rows = on_disk(features(), folder)
     table = pd.concat([each.table for each in facts], ignore_index=True)
     return LearningSet(rows, table, facts[0].names, facts[0].layout)
 
 
-def _gears(blocks: Iterable[Recordings]) -> Iterator[list[Recordings]]:
+def _gears(blocks: Iterable[LabelledSignals]) -> Iterator[list[LabelledSignals]]:
     """The recordings of each gear."""
     pieces = (block.where(rows) for block in blocks for rows in _runs(block.table["gear"].to_numpy()))
-    before: set[int] = set()
-    for gear, held in groupby(pieces, key=lambda piece: int(piece.table["gear"].iloc[0])):
-        if gear in before:
-            raise ValueError(f"recordings of gear {gear} in two places of the data set: they must be in a row")
-        before.add(gear)
-        yield list(held)
+    finished: set[int] = set()
+    for gear, of_gear in groupby(pieces, key=lambda piece: int(piece.table["gear"].iloc[0])):
+        if gear in finished:
+            raise ValueError(f"recordings of gear {gear} in two places of the data set: they must be consecutive")
+        finished.add(gear)
+        yield list(of_gear)
 
 
 def _runs(values: Int[np.ndarray, " row"]) -> list[Int[np.ndarray, " run"]]:
-    """Row numbers of equal values in a row."""
+    """Row numbers of each run of equal values."""
     return np.split(np.arange(len(values)), np.flatnonzero(np.diff(values)) + 1)

@@ -1,4 +1,4 @@
-"""The healthy value of every gear at every operating point, to which features are set in relation (eq. 7)."""
+"""Healthy reference of every gear at every operating point, by which eq. (7) divides."""
 
 import numpy as np
 import pandas as pd
@@ -6,16 +6,16 @@ from jaxtyping import Float
 
 from learn.inputs.inputs import OPERATING_POINT
 
-HEALTHY = ["gear", *OPERATING_POINT]  # what has a reference of its own
+HEALTHY = ["gear", *OPERATING_POINT]  # identify a reference
 
 
 def healthy_reference(
     values: Float[np.ndarray, "reference feature"], references: pd.DataFrame, samples: pd.DataFrame
 ) -> Float[np.ndarray, "sample feature"]:
-    """Mean over the reference acquisitions of the sample's own gear at its own operating point.
+    """Mean of the reference acquisitions of each sample's gear and operating point.
 
-    The references are acquisitions of their own that are neither trained on nor tested. They are known for the gear
-    to be judged as well, as the paper assumes by eq. 7: a commissioning run of the healthy gear.
+    References are separate acquisitions that are neither used for training nor for tests. The target gear has them too,
+    as eq. (7) of the paper assumes: they are its commissioning.
 
     Parameters
     ----------
@@ -27,8 +27,8 @@ def healthy_reference(
     Returns
     -------
     array (sample, feature)
-        The mean is taken about the first acquisition, so equal acquisitions give exactly their common value: the
-        fourth root of eq. 9 would turn a rounding error of 1e-16 into 1e-4.
+        The mean is taken about the first acquisition, so equal acquisitions give exactly their common value. The
+        fourth root of eq. (9) would turn a rounding error of 1e-16 into 1e-4.
 
     Raises
     ------

@@ -1,9 +1,9 @@
-"""Order lines relative to the healthy gear: what a fault changes, without what load, speed and trigger have changed.
+"""Residual order lines: the difference to the healthy gear, without errors of load, trigger and speed.
 
-A recording never meets its reference's operating point exactly. A load that is off by dT adds dT times the slope of the
-lines over the load; a trigger that is off by an angle d turns the line of order k by k d; and a speed that is off lets
-the lines leak into each other, as the window then holds no whole revolutions. All three directions follow from the
-gear's own healthy acquisitions, so they are fitted to the difference and taken out of it.
+A recording never has exactly the operating point of its reference. Three errors of the bench change its lines. A load
+error dT adds dT times the slope of the lines over the load. A trigger error, an angle d, turns the line of order k by
+k d. With a speed error the window is no whole number of revolutions, and lines leak into each other. All three
+directions follow from the healthy acquisitions of the gear. They are fitted to the difference and subtracted.
 """
 
 from collections.abc import Iterable
@@ -15,23 +15,23 @@ from jaxtyping import Complex, Float, Int
 
 from learn.inputs.references import HEALTHY, healthy_reference
 from swgsim.common.checks import require_integer
-from swgsim.storage.gauge_set import Recordings
+from swgsim.storage.labelled_signals import LabelledSignals
 from swgsim.storage.orders import lines_of, whole_revolutions
 
 
 @dataclass(frozen=True)
 class HealthyLines:
-    """Recordings as order lines, with those of their healthy reference.
+    """Order lines of recordings and of their healthy references.
 
     Attributes
     ----------
     table : DataFrame
         Facts of the samples.
     lines, reference, slope : array (sample, sensor, order)
-        Lines of the recording [mV/V], healthy lines of its gear and operating point [mV/V], and their slope over the
-        load [mV/V per N m]; a gear with references at a single load has no slope and gets zeros.
+        Lines of the recording [mV/V], healthy lines of the same gear and operating point [mV/V], and their slope over
+        the load [mV/V per N m]. The slope is zero if the gear has references at one load only.
     revolutions : array (sample,)
-        Of the wave generator, over which the lines are taken.
+        Number of revolutions of the wave generator over which the lines are taken.
     eta_healthy, temperature_healthy : array (sample,)
         Means of the reference acquisitions [-, degC].
     """
@@ -46,22 +46,22 @@ class HealthyLines:
 
 
 def require_acquisitions(owner: str, acquisitions: int | None) -> None:
-    """Raise a ValueError unless :func:`healthy_lines` can use so many reference acquisitions."""
+    """Raise a ValueError unless this is a possible number of reference acquisitions."""
     if acquisitions is not None:
         require_integer(owner, "acquisitions", acquisitions, low=1, high=10_000)
 
 
-def healthy_lines(blocks: Iterable[Recordings], orders: int, acquisitions: int | None = None) -> HealthyLines:
-    """Order lines of all samples beside those of their healthy reference.
+def healthy_lines(blocks: Iterable[LabelledSignals], orders: int, acquisitions: int | None = None) -> HealthyLines:
+    """Order lines of all samples and of their healthy references.
 
     Parameters
     ----------
-    blocks : iterable of Recordings
+    blocks : iterable of LabelledSignals
         Samples and references of a data set.
     orders : int
         Highest order.
     acquisitions : int or None
-        Reference acquisitions to use of each gear and operating point, the first ones; None for all.
+        Number of reference acquisitions to use of each gear and operating point, the first ones; None for all.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def healthy_lines(blocks: Iterable[Recordings], orders: int, acquisitions: int |
         mean = healthy_reference(flat.real, references, of) + 1j * healthy_reference(flat.imag, references, of)
         return mean.reshape(len(of), *values.shape[1:])
 
-    # Slopes come from all loads of the references: which samples are there beside a sample does not change it.
+    # Slopes come from all loads of the references, so they do not depend on the other samples.
     slope = _slope(healthy(lines[chosen], references), references)
     measured = healthy_reference(references[["efficiency", "temperature_c"]].to_numpy(), references, samples)
     if not (measured[:, 0] > 0).all():
@@ -94,7 +94,7 @@ def healthy_lines(blocks: Iterable[Recordings], orders: int, acquisitions: int |
     )  # fmt: skip
 
 
-def _revolutions(recordings: Recordings) -> Int[np.ndarray, " sample"]:
+def _revolutions(recordings: LabelledSignals) -> Int[np.ndarray, " sample"]:
     length, rate = recordings.signals.shape[-1], recordings.rate
     return np.array([
         round(whole_revolutions(speed, rate, length) * speed / 60 / rate) for speed in recordings.table["n_in_rpm"]
@@ -104,7 +104,7 @@ def _revolutions(recordings: Recordings) -> Int[np.ndarray, " sample"]:
 def _slope(
     mean: Complex[np.ndarray, "reference sensor order"], references: pd.DataFrame
 ) -> Complex[np.ndarray, "reference sensor order"]:
-    """Slope of the mean at each reference's operating point over the load, from all loads of its gear and speed."""
+    """Slope of the mean over the load at each reference, from all loads of the same gear and speed."""
     slope = np.zeros_like(mean)
     load = references["T_out_nm"].to_numpy()
     for rows in references.groupby(["gear", "n_in_rpm"]).indices.values():
@@ -116,19 +116,19 @@ def _slope(
 
 @dataclass(frozen=True)
 class Accuracy:
-    """How far off a test bench is, as its user would declare it: standard deviations, estimates.
+    """Prior standard deviations of the errors of a test bench, estimates.
 
-    Without it the fit would be ill-conditioned, as errors of load and trigger both show mainly at order 2: it would
-    take what else varies from one healthy recording to the next for errors of load ten times those that are possible.
+    Without a prior the fit is ill-conditioned, as errors of load and trigger both act mainly on order 2. Other healthy
+    variability would then be fitted by load errors ten times the possible ones.
 
     Attributes
     ----------
     load, speed : float
-        Relative to their set points.
+        Errors relative to the set points [-].
     angle : float
-        Of the trigger [rad].
+        Error of the trigger [rad].
     line : float
-        Scatter of a line's real or imaginary part that is none of these [mV/V].
+        Scatter of the real or imaginary part of a line from all other causes [mV/V].
     """
 
     load: float = 0.01
@@ -144,28 +144,28 @@ ERRORS = ("load error", "angle error", "speed error")
 def residual(
     healthy: HealthyLines, accuracy: Accuracy = BENCH
 ) -> tuple[Complex[np.ndarray, "sample sensor order"], Float[np.ndarray, "sample error"]]:
-    """What remains of each recording beside its reference when errors of load, trigger and speed are taken out.
+    """Difference of each recording to its reference after subtraction of errors of load, trigger and speed.
 
-    They are the most probable ones given the orders from 1 on, where the noise is the same on every line; order 0,
-    which carries the drift of the zeros, has no say.
+    The errors are the maximum of the posterior given the orders from 1 on, with equal noise on all lines. Order 0 is
+    not used, because zeros drift.
 
     Returns
     -------
     array (sample, sensor, order)
         [mV/V].
     array (sample, error)
-        The errors that :data:`ERRORS` names: of the load [N m], of the trigger's angle [rad], of the speed [-].
+        Errors in the order of :data:`ERRORS`: load [N m], trigger angle [rad], speed [-].
     """
     difference = healthy.lines - healthy.reference
-    turned = 1j * np.arange(difference.shape[-1]) * healthy.reference
-    directions = np.stack([healthy.slope, turned, leakage(healthy.reference, healthy.revolutions)], axis=1)
+    rotation = 1j * np.arange(difference.shape[-1]) * healthy.reference
+    directions = np.stack([healthy.slope, rotation, leakage(healthy.reference, healthy.revolutions)], axis=1)
     load = np.abs(healthy.table["T_out_nm"].to_numpy())
-    likely = np.stack(np.broadcast_arrays(accuracy.load * load, accuracy.angle, accuracy.speed), axis=1)
-    # In units of what is likely, so that an error that cannot be, as of a load of zero, is no special case.
-    scaled = _real(directions[..., 1:]) * likely[:, :, None] / accuracy.line  # (sample, error, value)
+    prior = np.stack(np.broadcast_arrays(accuracy.load * load, accuracy.angle, accuracy.speed), axis=1)
+    # In units of the prior, so that an error with a prior of zero (at zero load) is no special case.
+    scaled = _real(directions[..., 1:]) * prior[:, :, None] / accuracy.line  # (sample, error, value)
     projected = np.einsum("nev,nv->ne", scaled, _real(difference[..., 1:]) / accuracy.line)
     information = scaled @ scaled.transpose(0, 2, 1) + np.eye(len(ERRORS))
-    errors = likely * np.linalg.solve(information, projected[:, :, None])[:, :, 0]
+    errors = prior * np.linalg.solve(information, projected[:, :, None])[:, :, 0]
     return difference - np.einsum("ne,neso->nso", errors, directions), errors
 
 
@@ -174,11 +174,11 @@ def leakage(
 ) -> Complex[np.ndarray, "sample sensor order"]:
     """Change of the lines per relative error of the speed [mV/V].
 
-    A window that is made for the set speed holds the signal at ``(1 + e) theta``: to first order it gains
+    A window for the set speed then contains the signal at ``(1 + e) theta``. To first order this adds
     ``e theta s'(theta)``, whose lines over n revolutions are integrals of ``theta exp(i m theta)``.
     """
     k = np.arange(lines.shape[-1])
-    j = k[:, None]  # the order that is leaked into
+    j = k[:, None]  # order that receives the leakage
     with np.errstate(divide="ignore", invalid="ignore"):
         direct, mirrored = np.where(j == k, 0, k / (k - j)), np.where(j + k == 0, 0, k / (k + j))
     leaked = lines @ direct.T + lines.conj() @ mirrored.T

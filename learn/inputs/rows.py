@@ -1,4 +1,4 @@
-"""Rows of numbers that are too many for the memory: in a file, and read when they are asked for."""
+"""Rows of features that exceed the memory: they stay in a file and are read when needed."""
 
 import os
 import tempfile
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 CHUNK = 1024  # rows in memory at a time
 
 
-class Open:
-    """An open file without a name, which is closed, and gone, when nobody reads it any more."""
+class OpenFile:
+    """An open file without a name; it is closed, and its space freed, with the last reference to it."""
 
     def __init__(self, descriptor: int):
         self.descriptor = descriptor
@@ -27,23 +27,24 @@ class Open:
 
 
 class Rows:
-    """Rows of a table in a file, all of them or a choice, in their order.
+    """All or selected rows of a table in a file.
 
-    A slice of them or a choice is again such rows, and reads nothing; ``np.asarray`` reads them all. The file is read
-    and not mapped, so that nothing of it counts as memory of the process.
+    A slice or a selection is again Rows and reads nothing; ``np.asarray`` reads all rows. The file is read and not
+    mapped, so it does not count as memory of the process.
 
     Parameters
     ----------
-    file : Open
-        Rows of double precision, one after the other.
+    file : OpenFile
+        Consecutive rows in double precision.
     columns : int
+        Number of columns.
     numbers : array (row,)
-        Of the rows in the file.
+        Numbers of the rows in the file.
     """
 
     ndim, dtype = 2, np.dtype(np.float64)
 
-    def __init__(self, file: "Open", columns: int, numbers: Int[np.ndarray, " row"]):
+    def __init__(self, file: OpenFile, columns: int, numbers: Int[np.ndarray, " row"]):
         self._file, self._numbers = file, numbers
         self.shape = (len(numbers), columns)
 
@@ -62,28 +63,28 @@ class Rows:
         return table if dtype is None else table.astype(dtype, copy=False)
 
 
-Inputs = Float[np.ndarray, "row feature"] | Rows  # in memory or not
+Inputs = Float[np.ndarray, "row feature"] | Rows  # in memory, or in a file
 
 
 def on_disk(parts: Iterable[Float[np.ndarray, "_ column"]], folder: Path) -> Rows:
-    """Rows that come in parts, in a file without a name in a folder."""
+    """Write consecutive parts of a table to a file without a name in a folder."""
     with remedied(folder), tempfile.TemporaryFile(dir=folder) as file:
         rows = columns = 0
         for part in parts:
             file.write(np.ascontiguousarray(part, dtype=Rows.dtype).data)
             rows, columns = rows + len(part), part.shape[1]
         file.flush()
-        return Rows(Open(os.dup(file.fileno())), columns, np.arange(rows))
+        return Rows(OpenFile(os.dup(file.fileno())), columns, np.arange(rows))
 
 
 def chunks(X: Inputs) -> Iterator[Float[np.ndarray, "chunk column"]]:
-    """Rows in memory, so many at a time; of no rows, none once."""
+    """Rows in memory, at most CHUNK at a time; an empty table gives one empty chunk."""
     for start in range(0, max(len(X), 1), CHUNK):
         yield np.asarray(X[start : start + CHUNK])
 
 
 def as_tensor(X: Inputs) -> "Tensor":
-    """A copy of the rows as networks take them, in single precision, on the processor."""
+    """A copy of the rows in single precision on the processor, for networks."""
     import torch
 
     return torch.from_numpy(np.array(X, dtype=np.float32, order="C"))

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from learn.inputs.auxiliary_inputs import Side
+from learn.inputs.auxiliary_inputs import AuxiliaryInputs
 from learn.inputs.inputs import Layout, LearningSet
 from learn.inputs.residuals import ERRORS, healthy_lines, require_acquisitions, residual
 from swgsim.common.checks import require_integer
-from swgsim.storage.gauge_set import SENSORS, Recordings
+from swgsim.storage.labelled_signals import SENSORS, LabelledSignals
 from swgsim.storage.orders import revolution
 
 CHANNELS = {"raw": SENSORS, "differenced": ("ds13", "ds24"), "residual": SENSORS}
@@ -17,26 +17,26 @@ CHANNELS = {"raw": SENSORS, "differenced": ("ds13", "ds24"), "residual": SENSORS
 
 @dataclass(frozen=True)
 class Signals:
-    """One revolution of the wave generator, averaged over those of the window, as a signal over its angle.
+    """Signal over one revolution of the wave generator, the mean over all revolutions of the window.
 
     Attributes
     ----------
     name : {"raw", "differenced", "residual"}
-        Five gauges; s1 - s3 and s2 - s4 (eq. 8); or five gauges relative to the healthy reference
+        Five gauges; the gauge differences of eq. (8); or the residual of the five gauges
         (:func:`learn.inputs.residuals.residual`).
     points : int
-        Angles.
+        Number of angles.
     orders : int
-        Highest order that the signal keeps.
+        Highest order of the signal.
     efficiency, operating_point, reference : bool
-        As in :class:`learn.inputs.auxiliary_inputs.Side`.
+        As in :class:`learn.inputs.auxiliary_inputs.AuxiliaryInputs`.
     acquisitions : int or None
-        Reference acquisitions to use at each operating point; None for all.
+        Number of reference acquisitions to use at each operating point; None for all.
 
     Raises
     ------
     ValueError
-        If a value is not one of the choices or out of its limits, or the residual is asked for without a reference.
+        If a value is not one of the choices or out of its limits, or the residual has no reference.
     """
 
     name: str
@@ -56,17 +56,17 @@ class Signals:
         require_integer(self.name, "orders", self.orders, low=1, high=self.points // 2 - 1)
         require_acquisitions(self.name, self.acquisitions)
 
-    def learning_set(self, blocks: Iterable[Recordings]) -> LearningSet:
-        """The signals of all samples, with the side inputs behind."""
+    def learning_set(self, blocks: Iterable[LabelledSignals]) -> LearningSet:
+        """Signals of all samples, followed by the auxiliary inputs."""
         healthy = healthy_lines(blocks, self.orders, self.acquisitions)
-        side = Side(self.efficiency, self.operating_point, self.reference).columns(healthy)
+        auxiliary = AuxiliaryInputs(self.efficiency, self.operating_point, self.reference).columns(healthy)
         lines = healthy.lines
         if self.name == "differenced":
             lines = lines[:, 1:3] - lines[:, 3:5]  # eq. 8
         elif self.name == "residual":
             lines, errors = residual(healthy)
-            side |= dict(zip(ERRORS, errors.T, strict=True))
+            auxiliary |= dict(zip(ERRORS, errors.T, strict=True))
         signal = revolution(lines, self.points)
         names = [f"{channel}({point}/{self.points})" for channel in CHANNELS[self.name] for point in range(self.points)]
-        features = np.column_stack([signal.reshape(len(signal), -1), *side.values()])
-        return LearningSet(features, healthy.table, (*names, *side), Layout(signal.shape[1], self.points))
+        features = np.column_stack([signal.reshape(len(signal), -1), *auxiliary.values()])
+        return LearningSet(features, healthy.table, (*names, *auxiliary), Layout(signal.shape[1], self.points))

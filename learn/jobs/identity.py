@@ -8,6 +8,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from learn.methods.contract import own_source_digests
 from swgsim.storage import orders
 
 # Parts of a configuration that no result depends on.
@@ -23,7 +24,8 @@ def decisive(config: Mapping[str, Any]) -> dict[str, Any]:
 
 def job_key(config: Mapping[str, Any], data_digest: str) -> str:
     """Sixteen hexadecimal digits that change when the result of a job may change."""
-    text = json.dumps([decisive(config), data_digest, code_version()], sort_keys=True)
+    code = [code_version(), *own_source_digests(config)]
+    text = json.dumps([decisive(config), data_digest, *code], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 

@@ -1,6 +1,7 @@
-"""From configuration to objects, in one place: an unknown choice is answered with the list of choices."""
+"""Makes objects from the configuration; the error of an unknown choice lists the choices."""
 
 import inspect
+import shlex
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
@@ -11,7 +12,7 @@ from learn.inputs.harmonics import Harmonics
 from learn.inputs.inputs import NO_SIGNAL, Layout, Representation
 from learn.inputs.lines import ResidualLines
 from learn.inputs.signals import Signals
-from learn.methods import classical, neural, strong
+from learn.methods import classical, contract, neural, strong
 from learn.methods.rocket import MiniRocket
 from learn.protocols.harder_splits import LeaveOperatingPointOut, LeaveSeverityOut
 from learn.protocols.levels import NewGears
@@ -21,7 +22,7 @@ from learn.tracking import Store, local_store, server_store
 if TYPE_CHECKING:
     from learn.adaptation.transfer import Adaptation
 
-NO_OPTIONS = ("name", "trials", "shots")  # of a file in conf: what is not for the object itself
+NO_OPTIONS = ("name", "trials", "shots")  # entries of a file in conf that are no arguments of its object
 
 T = TypeVar("T")
 Config = Mapping[str, Any]
@@ -56,7 +57,7 @@ STORES: Mapping[str, Callable[..., Store]] = {"local": local_store, "server": se
 
 
 def representation(config: Config) -> Representation:
-    """What methods see, of ``conf/features``; a name that is none of the known ones is a selection of one's own."""
+    """The inputs of methods, of ``conf/features``; an unknown name is a selection of the user's own."""
     name = str(config.get("name"))
     return _configured(f"features {name}", REPRESENTATIONS.get(name, Selection), config)()
 
@@ -66,25 +67,41 @@ def protocol(config: Config) -> Splitting:
     return _chosen("protocol", PROTOCOLS, config)()
 
 
-def classifier(config: Config, layout: Layout = NO_SIGNAL) -> Callable[..., classical.Classifier]:
+def classifier(config: Config, layout: Layout | None = None) -> Callable[..., classical.Classifier]:
     """A maker of untrained classifiers of ``conf/classifier``; it takes options in place of those configured.
 
-    Methods that know signals are told where in a row the signal is.
+    Parameters
+    ----------
+    config : mapping
+        Its ``name`` is a built-in classifier, or the import path ``module:Class`` of another one.
+    layout : Layout, optional
+        Where in a row the signal is, for classifiers that use it. With it, a class that is given by its import path
+        is tried on a few made-up rows.
+
+    Raises
+    ------
+    ValueError
+        If there is no such classifier or option, or a class does not keep :class:`learn.methods.Classifier`.
     """
-    make = _chosen("classifier", CLASSIFIERS, config)
-    knows_signals = "channels" in inspect.signature(make).parameters
-    return partial(make, **layout._asdict()) if knows_signals else make
+    name = str(config.get("name"))
+    own = contract.is_import_path(name)
+    make = _chosen("classifier", {name: contract.class_of(name)} if own else CLASSIFIERS, config)
+    if "channels" in inspect.signature(make).parameters:
+        make = partial(make, **(layout or NO_SIGNAL)._asdict())
+    if own and layout is not None:
+        contract.require_contract(name, make, layout.columns + 8)
+    return make
 
 
 def adaptation(config: Config) -> Callable[..., "Adaptation"]:
-    """A maker of the adaptation of ``conf/adaptation``; it takes options in place of those configured."""
+    """Makes the adaptation of ``conf/adaptation``; its arguments replace configured options."""
     from learn.adaptation.adaptations import ADAPTATIONS  # with torch, which takes seconds
 
     return _chosen("adaptation", ADAPTATIONS, config)
 
 
 def trials(config: Config) -> list[dict[str, Any]]:
-    """The options that are tried on development gears, ``trials`` of a method's file; one empty trial for none."""
+    """The options to try on development gears, ``trials`` of a method's file; without trials one empty entry."""
     return [dict(options) for options in config.get("trials") or [{}]]
 
 
@@ -101,21 +118,36 @@ def data_set(config: Config) -> Path:
     ValueError
         If there is no such file; it names the data sets that exist and the command that makes this one.
     """
-    folder = Path(config["data"])
+    folder = Path(config["data"]).resolve()
     path = folder / f"{config['grid']}-{config['condition']}.h5"
     if not path.is_file():
-        there = ", ".join(sorted(p.stem for p in folder.glob("*-*.h5"))) or "none"
+        existing = ", ".join(sorted(p.stem for p in folder.glob("*-*.h5"))) or "none"
         raise ValueError(
-            f"no data set {path}; data sets in {folder}: {there}. Make it with "
-            f"'python scripts/generate.py grid={config['grid']} condition={config['condition']}'"
+            f"no data set {path}; data sets in {folder}: {existing}. Give another folder with data=..., or make it "
+            f"with 'swg generate grid={config['grid']} condition={config['condition']}{_elsewhere(config)}'"
         )
-    return path
+    return Path(config["data"]) / path.name
+
+
+def train_command(config: Config) -> str:
+    """The command that makes runs on the data sets and in the store of a configuration, without its experiment."""
+    tracking = config["tracking"]
+    place = f" tracking=server tracking.uri={tracking['uri']}" if tracking["name"] == "server" else ""
+    if tracking["name"] == "local" and tracking["folder"] != "mlruns":
+        place = f" tracking.folder={shlex.quote(str(tracking['folder']))}"
+    return f"swg train grid={config['grid']['name']}{_elsewhere(config)}{place}"
+
+
+def _elsewhere(config: Config) -> str:
+    """The option that names the folder of the data sets, if it is not the default one."""
+    return f" data={shlex.quote(str(config['data']))}" if str(config["data"]) != "data" else ""
 
 
 def _chosen(kind: str, choices: Mapping[str, Callable[..., T]], config: Config) -> Callable[..., T]:
     name = str(config.get("name"))
     if name not in choices:
-        raise ValueError(f"unknown {kind} {name!r}; choose from {', '.join(choices)}")
+        own = ", or give the import path module:Class" if kind == "classifier" else ""
+        raise ValueError(f"unknown {kind} {name!r}; choose from {', '.join(choices)}{own}")
     options = {key: value for key, value in config.items() if key not in NO_OPTIONS}
     return _configured(f"{kind} {name}", choices[name], options)
 

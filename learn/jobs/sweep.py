@@ -8,7 +8,6 @@ from omegaconf import DictConfig, OmegaConf, open_dict
 
 from learn import tracking
 from learn.jobs import settings
-from learn.tracking import ui as page
 
 
 class Sweep(Callback):
@@ -24,7 +23,6 @@ class Sweep(Callback):
         try:
             store = _store(config)
             self._run = tracking.open_sweep(store, config.study, named.get("grid", config.grid.name))
-            page.save_views(store)
         except ValueError as error:  # of which Hydra would make a warning, and start the jobs
             raise SystemExit(str(error)) from error
         # Hydra composes every job anew where it is done, on whatever machine, from these words.

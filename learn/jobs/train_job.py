@@ -10,7 +10,7 @@ from threadpoolctl import threadpool_limits
 from tqdm import tqdm
 
 from learn import tracking
-from learn.inputs.inputs import LearningSet, Representation, beside_foreign, gear_by_gear
+from learn.inputs.inputs import LearningSet, Representation, gear_by_gear, with_foreign_gears
 from learn.jobs import few_shot, identity, settings, zero_shot
 from swgsim.storage import storage
 
@@ -73,7 +73,7 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
     with threadpool_limits(1), tracking.job_run(store, name, key, parameters, config, tags) as record:
         data, *foreign = [learning_set_of(*each, representation) for each in zip(paths, digests, strict=True)]
         for gears in foreign:
-            data = beside_foreign(data, gears)
+            data = with_foreign_gears(data, gears)
         judge = zero_shot if config["adaptation"]["name"] == "none" else few_shot
         metrics, figures, tables = judge.results(config, data)
         record.record(metrics, figures, tables)
@@ -82,8 +82,9 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
 
 
 def run_name(config: Mapping[str, Any], parameters: Mapping[str, Any]) -> str:
-    """Name of a job's run: study, method and inputs, and the options of the method."""
-    groups = ["study", "classifier", "features", "protocol"]
-    groups += ["adaptation"] if parameters["adaptation"] != "none" else []
+    """Name of a job's run: protocol, classifier and features first, which MLflow's page must not cut off."""
+    groups = ["protocol", "classifier", "features", "adaptation", "study"]
+    if parameters["adaptation"] == "none":
+        groups.remove("adaptation")
     options = [f"{k}={v}" for k, v in config["classifier"].items() if k not in ("name", "seed", "trials")]
     return " ".join([*(str(parameters[group]) for group in groups), *options])

@@ -1,4 +1,4 @@
-from .classical import Classifier
+from .contract import Classifier, require_contract
 from .flat_forest import FlatForest
 from .networks import Network
 from .neural import NeuralClassifier
@@ -12,5 +12,6 @@ __all__ = [
     "Network",
     "NeuralClassifier",
     "Recipe",
+    "require_contract",
     "train",
 ]

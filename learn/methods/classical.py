@@ -3,24 +3,7 @@
 Like the paper, none scales its features. Each is a scikit-learn estimator: ``fit(X, y)`` and ``predict(X)``.
 """
 
-from typing import Protocol, runtime_checkable
-
-import numpy as np
-
-from learn.inputs.rows import Inputs
-
-
-@runtime_checkable
-class Classifier(Protocol):
-    """What evaluation asks of a method."""
-
-    def fit(self, X: Inputs, y: np.ndarray) -> object:
-        """Learn from features and class names."""
-        ...
-
-    def predict(self, X: Inputs) -> np.ndarray:
-        """The class name of each row."""
-        ...
+from learn.methods.contract import Classifier
 
 
 def multi_layer_perceptron(

@@ -21,7 +21,7 @@ from swgsim.common.seeds import seed_hash
 # Of a Gaussian: interquartile range and median absolute deviation to standard deviation.
 QUARTILES, DEVIATION = 1 / 1.349, 1.4826
 # A column of which nothing but rounding is seen varies by less than this part of its typical value.
-ROUNDING = 1e-6
+LEAST_SPREAD = 1e-6
 # Points that one shift of the convolutional network spans: three blocks halve the revolution.
 STRIDE = 8
 FEATURES = 64  # at the end of the convolutional body
@@ -94,7 +94,7 @@ def _positive(
     values: Float[np.ndarray, "row group"],
 ) -> Float[np.ndarray, " group"]:
     """The robust scale; the standard deviation where most rows are equal; 1 where all are, but for rounding."""
-    least = ROUNDING * np.median(np.abs(values), axis=0)
+    least = LEAST_SPREAD * np.median(np.abs(values), axis=0)
     scale = np.where(robust > least, robust, deviation.std(axis=0))
     return np.where(scale > least, scale, 1.0)
 

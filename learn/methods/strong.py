@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from learn.methods.classical import Classifier
+from learn.methods.contract import Classifier
 
 if TYPE_CHECKING:
     from sklearn.pipeline import Pipeline

@@ -1,4 +1,4 @@
-"""What the paper leaves open and what was chosen, in words, from the configuration of a data set."""
+"""Values that the paper leaves open and our choices, as text from the configuration of a data set."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -17,8 +17,8 @@ def choices(config: Mapping[str, Any], disturbance: Mapping[str, float], catalog
     disturbance : mapping
         Amplitudes of eq. (10) [mV/V].
     catalogue : mapping
-        b1 [N m s/rad] to efficiency at the catalogue point and no-load running torque [N m]: ours, then the one that
-        the catalogue's losses ask for.
+        b1 [N m s/rad] to efficiency at the catalogue point and no-load running torque [N m]: our value, then the one
+        with the losses of the catalogue.
     orders, floor : int, float
         DFT components and the smallest divisor of eq. (7) [mV/V].
     """
@@ -30,13 +30,13 @@ def choices(config: Mapping[str, Any], disturbance: Mapping[str, float], catalog
     return [
         (
             "Window",
-            f"{window['samples']} samples at {window['rate']:g} Hz, {length:g} s, that is {turns} revolutions of the "
-            "wave generator; every window starts at the same angle of the wave generator.",
+            f"{window['samples']} samples at {window['rate']:g} Hz: {length:g} s or {turns} revolutions of the wave "
+            "generator. Every window starts at the same angle of the wave generator.",
         ),
         (
             "DFT",
             f"Components at the multiples 1 to {orders} of the input speed. Eq. (7) divides by the healthy value, but "
-            f"never by less than {floor:g} mV/V: where symmetry makes it vanish, the quotient would be rounding error.",
+            f"never by less than {floor:g} mV/V: where it is zero by symmetry, the quotient would be rounding error.",
         ),
         (
             "Severities of Table V",
@@ -49,28 +49,27 @@ def choices(config: Mapping[str, Any], disturbance: Mapping[str, float], catalog
         (
             "Amplitudes of eq. (10)",
             f"a_1 to a_4 evenly from 0 to {disturbance['amplitude']:.2g} mV/V, a_0 within {disturbance['offset']:.2g} "
-            "mV/V. This is the one number that was set from the paper's scores: claim C15, the random forest loses "
+            "mV/V. This is the only number that was chosen by the paper's scores: by claim C15 the random forest loses "
             "about 7 points on Selection 1.",
         ),
         (
             "b1",
-            f"b1 = {b1} N m s/rad is set so that one third less raises the efficiency by 7 % (relative, mean over the "
-            f"six operating points; claim C6). The catalogue's losses would ask for {b1_catalogue}. At 31 N m and "
-            f"2000 rpm this gear then has an efficiency of {100 * eta:.1f} % where the catalogue says 77 +- 3 %, which "
-            f"is {'within' if inside else 'outside'} its range, and needs {1e3 * idle:.0f} mN m without load where the "
-            f"catalogue says 51; with b1 = {b1_catalogue} the chain gives {100 * eta_catalogue:.1f} % and "
-            f"{1e3 * idle_catalogue:.0f} mN m.",
+            f"With b1 = {b1} N m s/rad, one third less raises the efficiency by 7 % (relative, mean over the six "
+            f"operating points; claim C6). At 31 N m and 2000 rpm the efficiency is then {100 * eta:.1f} %, which is "
+            f"{'within' if inside else 'outside'} the catalogue's range of 77 ± 3 %, and the torque without load is "
+            f"{1e3 * idle:.0f} mN m, in the catalogue 51 mN m. The losses of the catalogue correspond to "
+            f"b1 = {b1_catalogue} N m s/rad, with {100 * eta_catalogue:.1f} % and {1e3 * idle_catalogue:.0f} mN m.",
         ),
         (
             "Gears",
             "Gear 1 is fitted to the catalogue of a size 17, ratio 100 gear; gears 2 and 3 have b1 and k1 times 1.2 "
-            "and 0.8 (Table IV). Gains, zeros, positions and grid angles of the gauges differ between gears within "
-            "what bonding leaves; the paper fits them to three physical gears.",
+            "and 0.8 (Table IV). Gains, zeros, positions and grid angles of the gauges differ between gears within the "
+            "tolerances of bonding; the paper fits them to three physical gears.",
         ),
         (
             "Healthy value of eq. (7)",
-            f"Mean of {grid['references']} separate healthy acquisitions per gear and operating point, also for the "
-            "gear that is left out of training, as in the paper.",
+            f"Mean of {grid['references']} separate healthy recordings per gear and operating point, also for the gear "
+            "that is left out of training, as in the paper.",
         ),
     ]
 

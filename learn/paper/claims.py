@@ -1,4 +1,4 @@
-"""Claims C11 to C18 of the paper, judged on the figures of Tables VII to X."""
+"""Claims C11 to C18 of the paper, judged by the scores of Tables VII to X."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -16,16 +16,19 @@ ABOUT = 2.0
 GOOD_ENOUGH = 95.0
 # Two classifiers closer than this, eleven of a gear's 2160 recordings, are equally good.
 TIE = 0.5
-LIMIT = f"the claim's own words; a figure without above or below to {ABOUT:g} points, {TIE:g} points are a tie"
+LIMIT = (
+    f"limits are those of the claim; a figure without above or below must agree within {ABOUT:g} points; a difference "
+    f"of {TIE:g} points is a tie"
+)
 
 GEARS = ("1,2->3", "2,3->1", "1,3->2")
 
 
 @dataclass(frozen=True)
 class Part:
-    """One figure of a claim: what it is, ours, what the paper says of it, and whether ours agrees.
+    """One figure of a claim: its name, our value, that of the paper, and whether both agree.
 
-    ``side`` is 1 where our classifier does better than the paper's, -1 where it does worse, 0 where neither is said.
+    ``side`` is 1 if our classifier is better than the paper's, -1 if it is worse, 0 if the figure does not show this.
     """
 
     name: str
@@ -110,14 +113,15 @@ def table_claims(tables: Mapping[str, Comparison], features: Features, disturban
     scores = Scores({name: table.cells.set_index(CELL)["ours"] for name, table in tables.items()})
     spread = features.relative.std(axis=0)
     leak = (
-        "Where ours is lower: the amplitudes of eq. (10) are not in the paper. Its order 1 falls on a DFT line, and "
-        f"what is not periodic in the window (1/3, at 2000 rpm also 1/4) spreads over all lines: a_j goes up to "
+        "Where ours is lower: the paper does not give the amplitudes of eq. (10). Its order 1 is a DFT line, and its "
+        f"orders that are not periodic in the window (1/3, at 2000 rpm also 1/4) spread over all lines. a_j is at most "
         f"{disturbance:.1e} mV/V, {disturbance / features.healthy_odd:.1f} times the largest odd line of the healthy "
         "clean gears by which eq. (7) divides."
     )
     unscaled = (
-        "Where ours is lower: features are not scaled here, and the paper does not say; the standard deviations of the "
-        f"relative DFT lines of Selection 3 go from {spread.min():.1f} to {spread.max():.0f}."
+        "Where ours is lower: our features are not scaled, and the paper does not say whether its features are. The "
+        "standard deviations of the relative DFT lines of Selection 3 are between "
+        f"{spread.min():.1f} and {spread.max():.0f}."
     )
     claims: Sequence[tuple[str, str, Callable[[Scores], list[Part]], str]] = (
         (
@@ -138,7 +142,7 @@ def table_claims(tables: Mapping[str, Comparison], features: Features, disturban
             "C14",
             "The DFT of single sensors (Selection 2) does not improve on Selection 1 or 3.",
             _single_sensors,
-            "The number of DFT components per gauge, 6 here, is open in the paper.",
+            "The paper does not give the number of DFT components per gauge; it is 6 here.",
         ),
         (
             "C15",
@@ -172,14 +176,14 @@ def table_claims(tables: Mapping[str, Comparison], features: Features, disturban
 
 
 EASIER = (
-    "Where ours is higher, our task is easier than the paper's; what acts on that and is open in the paper: the "
-    "severities of Table V, and how much the three gears differ (ours in b1, k1 and small gauge errors, the paper's "
-    "gauge models are fitted to physical gears). Neither was varied to find out."
+    "Where ours is higher, our task is easier than the paper's. Possible reasons are the severities of Table V and the "
+    "differences between the three gears (ours in b1, k1 and small gauge errors; the paper fits its gauge models to "
+    "physical gears). Neither was varied to test this."
 )
 
 
 def _finding(key: str, claim: str, parts: list[Part], lower: str) -> Finding:
-    """The verdict; ``lower`` says what may make ours worse than the paper's."""
+    """The verdict; ``lower`` is a possible reason for a score below the paper's."""
     figure = "; ".join(f"{part.name} {part.ours}" for part in parts)
     against = [part for part in parts if not part.holds]
     note = [f"{len(parts) - len(against)} of {len(parts)} parts agree."]

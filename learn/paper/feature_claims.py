@@ -9,12 +9,12 @@ from jaxtyping import Float
 
 from learn.inputs.features import Selection, signal_quantities
 from learn.inputs.references import healthy_reference
-from swgsim.storage.gauge_set import Recordings
+from swgsim.storage.labelled_signals import LabelledSignals
 from swgsim.studies.finding import Finding, percent
 
 SPECTRUM = Selection("spectrum of differences", statistics=False, spectrum="differences", efficiency="eta_rel")
 
-# What an amplifier resolves: 3e-5 mV/V of noise are left in a DFT line of 600 samples (noise 5e-4 mV/V); three times.
+# Three times the noise of a DFT line of 600 samples, 3e-5 mV/V (noise of an amplifier: 5e-4 mV/V).
 RESOLUTION = 1e-4
 SEPARATE = ("eccentric_wave_generator", "root_tooth_crack", "tip_tooth_crack")
 ALIKE = ("reduced_damping", "reduced_stiffness")
@@ -45,7 +45,7 @@ class Features:
     healthy_odd: float
 
 
-def features_of(blocks: Sequence[Recordings]) -> Features:
+def features_of(blocks: Sequence[LabelledSignals]) -> Features:
     """The features of a clean data set."""
     learning = SPECTRUM.learning_set(blocks)
     relative = np.asarray(learning.features)
@@ -70,7 +70,7 @@ def feature_claims(features: Features) -> list[Finding]:
 
 
 def separation(features: Features) -> Finding:
-    """C9; 90 % is what the paper's own KNN exceeds on Selection 3."""
+    """C9; the paper's KNN exceeds 90 % on Selection 3."""
     label = features.table["label"].astype(str)
     departs = pd.Series(features.departure > RESOLUTION)
     visible = {str(name): float(share) for name, share in departs.groupby(label).mean().items()}
@@ -82,11 +82,11 @@ def separation(features: Features) -> Finding:
     at_load = departs[label == low].groupby(features.table["T_out_nm"]).mean()
     return Finding(
         "C9",
-        "Eccentric, root crack and tip crack separate in the DFT of s1 - s3 and s2 - s4; healthy, damping and "
-        "stiffness do not, and need the efficiency.",
-        f"of each of the three faults at least 90 % depart from healthy by more than {RESOLUTION:g} mV/V (three times "
-        "an amplifier's noise) and at least 90 % have a recording of their own class as nearest neighbour among all by "
-        "eq. (7); of the other two at most 5 % depart",
+        "Eccentric wave generator, root crack and tip crack separate in the DFT of s1 - s3 and s2 - s4; healthy, "
+        "damping and stiffness do not, and need the efficiency.",
+        f"of each of the three faults at least 90 % differ from healthy by more than {RESOLUTION:g} mV/V (three times "
+        "an amplifier's noise), and the nearest neighbour of at least 90 % by eq. (7) is of the same class; of the "
+        "other two faults at most 5 % differ",
         bool(visible[low] >= 0.9 and correct >= 0.9 and silent),
         ", ".join(f"{name.replace('_', ' ')} {percent(share)}" for name, share in visible.items() if name != "healthy")
         + f" depart; nearest neighbour of the same class at least {percent(correct)} by eq. (7), "
@@ -104,7 +104,7 @@ def separation(features: Features) -> Finding:
 
 
 def fourth_root(features: Features) -> Finding:
-    """C10; three times the gap, and a tenth of the axis, make small changes visible where they were not."""
+    """C10; with three times the gap, and a tenth of the axis, small changes become visible."""
     change = np.abs(1 - features.eta_rel)
     damping = pd.Series(change)[(features.table["label"] == "reduced_damping").to_numpy()]
     groups = damping.groupby([features.table[c].loc[damping.index] for c in ("gear", "n_in_rpm", "T_out_nm")])

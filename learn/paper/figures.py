@@ -1,4 +1,4 @@
-"""Pictures of the learning's side: spectra, the disturbance, and which classes the random forest takes for which."""
+"""Pictures of the learning: spectra, the disturbance, and the classes that the random forest recognises."""
 
 from collections.abc import Mapping
 
@@ -8,7 +8,7 @@ from jaxtyping import Float
 from matplotlib.figure import Figure
 
 from swgsim.common import style
-from swgsim.storage.gauge_set import CLASSES, SENSORS, Recordings
+from swgsim.storage.labelled_signals import CLASSES, SENSORS, LabelledSignals
 from swgsim.storage.orders import whole_revolutions
 
 HIGHEST_ORDER = 8
@@ -23,8 +23,8 @@ TABLES: Mapping[str, str] = {
 def pictures(
     examples: Mapping[str, Float[np.ndarray, "5 time"]],
     speed_rpm: float,
-    clean: Recordings,
-    disturbed: Recordings,
+    clean: LabelledSignals,
+    disturbed: LabelledSignals,
     runs: pd.DataFrame,
 ) -> list[style.Picture]:
     """All pictures of this module; the parameters are those of the functions below."""
@@ -32,23 +32,23 @@ def pictures(
     return [
         style.Picture(
             "Fig. 7: DFT of different sensor signals",
-            "Magnitude at the multiples of the input speed, on a logarithmic scale. Look at order 2, the wave "
-            "generator's two lobes: it dominates s1 (b) and is far smaller in the differences (c, d), where the three "
-            "faults of the flex spline stand out at even orders, the tip crack least. Damping and stiffness stay "
-            "with the healthy gear.",
+            "Magnitude at the multiples of the input speed, on a logarithmic scale. Order 2 comes from the two lobes "
+            "of the wave generator: it dominates s1 (b) and is far smaller in the differences (c, d). There the three "
+            "faults of the flex spline stand out at even orders, the tip crack least. Reduced damping and stiffness "
+            "equal the healthy gear.",
             style.png(spectra(examples, speed_rpm, clean.rate)),
         ),
         style.Picture(
             "Fig. 8: non-disturbed and disturbed data",
-            f"A healthy recording and the same one with eq. (10). The disturbance is at most {100 * ratio:.2f} % of "
-            "the largest signal's amplitude, so the curves coincide on the left; the difference on the right shows the "
-            "offset and the sub-harmonics, of which two are not periodic in the window.",
+            f"A healthy recording without and with the disturbance of eq. (10), which is at most {100 * ratio:.2f} % "
+            "of the largest signal's amplitude. Left: the curves coincide. Right: the difference shows the offset and "
+            "the sub-harmonics, of which two are not periodic in the window.",
             style.png(disturbance(clean, disturbed)),
         ),
         style.Picture(
             "What the random forest recognises",
-            "Share of each class that is recognised, for every row of experiments of the paper's tables (new gear: "
-            "mean of the three). Look for the dark cells: these are the classes that the features do not tell apart.",
+            "Recall of each class, for every row of the paper's tables (new gear: mean of the three). Dark cells are "
+            "classes that the features do not separate from others.",
             style.png(recall(runs)),
         ),
     ]
@@ -99,7 +99,7 @@ def spectrum(
     return np.fft.rfftfreq(length, speed_rpm / 60 / rate), np.abs(np.fft.rfft(part)) * 2 / length
 
 
-def disturbance(clean: Recordings, disturbed: Recordings) -> Figure:
+def disturbance(clean: LabelledSignals, disturbed: LabelledSignals) -> Figure:
     """Fig. 8: the same recording clean and disturbed, and the difference on its own scale."""
     time = 1e3 * np.arange(clean.signals.shape[2]) / clean.rate
     picture = style.figure(11, 3.8)

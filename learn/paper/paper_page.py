@@ -1,13 +1,11 @@
-"""The report: the paper's tables, claims and figures beside ours, as one HTML page and as JSON."""
+"""The report: our tables, claims and figures with those of the paper, as one HTML page and as JSON."""
 
 import json
-import os
 import platform
-import tempfile
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,10 +15,8 @@ from learn.paper.published_tables import PROTOCOLS, Comparison, row_label
 from learn.tracking import Store, finished_runs
 from swgsim.common.html import environment
 from swgsim.common.style import Picture, words
-from swgsim.storage.gauge_set import Recordings
+from swgsim.storage.labelled_signals import LabelledSignals
 from swgsim.studies.finding import Finding
-
-os.environ.setdefault("MLFLOW_ENABLE_ARTIFACTS_PROGRESS_BAR", "false")
 
 ROMAN: Mapping[str, str] = {"table7": "VII", "table8": "VIII", "table9": "IX", "table10": "X"}
 TITLES: Mapping[str, str] = {
@@ -33,11 +29,13 @@ CLASSIFIERS = ("mlp", "svm", "rf", "knn", "nb")
 RELATIONS: Mapping[str, str] = {"about": "", "above": "> ", "at most": "≤ "}
 DATASET = ("recordings", "seconds", "recordings_per_second", "peak_memory_mib", "cores")
 FULL_COLOUR = 30  # points of difference at which a cell has its full colour
+# The spaces of "7 N m" and "2000 rpm".
+UNIT = re.compile(r"(?<=\d) (?=(?:m?N m|rpm|[mµ]V/V|Hz|µm|MiB|s|%)(?!\w))|(?<=[ \[m]N) (?=m(?!\w))")
 
 
 @dataclass(frozen=True)
 class Report:
-    """All that the report says.
+    """Content of the report.
 
     Attributes
     ----------
@@ -48,14 +46,13 @@ class Report:
     tables : mapping
         ``table7`` to ``table10``.
     folds : mapping
-        ``table7`` and ``table8`` to random folds beside grouped folds.
+        ``table7`` and ``table8`` to the scores with random and with grouped folds.
     findings : sequence of Finding
         C1 to C18.
     choices : sequence of (topic, text)
     statistics : sequence of mapping
         Of the clean data set, one row per operating point; column to text.
     pictures : sequence of Picture
-    confusions : sequence of Picture
     seconds : float
         Of the whole, counted as ``seconds_are`` says.
     steps : mapping
@@ -71,7 +68,6 @@ class Report:
     choices: Sequence[tuple[str, str]]
     statistics: Sequence[Mapping[str, str]]
     pictures: Sequence[Picture]
-    confusions: Sequence[Picture]
     seconds: float
     seconds_are: str
     steps: Mapping[str, float]
@@ -91,25 +87,46 @@ class Report:
         }
         return json.dumps(content, indent=2, allow_nan=False) + "\n"
 
-    def html(self) -> str:
-        """``index.html``: one file, pictures inside."""
-        return (
-            environment("learn")
-            .get_template("paper/paper_page.html.jinja")
-            .render(
-                report=self,
-                held=[f for f in self.findings if f.holds],
-                failed=[f for f in self.findings if not f.holds],
-                tables=[_table(name, comparison) for name, comparison in self.tables.items()],
-                folds=[{"title": ROMAN[name], "rows": _folds(frame)} for name, frame in self.folds.items()],
-                roman=ROMAN,
-                classifiers=[name.upper() for name in CLASSIFIERS],
-            )
+    def html(self, beyond: bool = False) -> str:
+        """``index.html``: one file with its pictures.
+
+        Parameters
+        ----------
+        beyond : bool
+            Whether ``transfer.html`` is in the same folder; the page then has a link to it.
+        """
+        page = environment("learn").get_template("paper/paper_page.html.jinja")
+        text = page.render(
+            report=self,
+            beyond=beyond,
+            held=[f for f in self.findings if f.holds],
+            failed=[f for f in self.findings if not f.holds],
+            tables=[_table(name, comparison) for name, comparison in self.tables.items()],
+            folds=[{"title": ROMAN[name], "rows": _folds(frame)} for name, frame in self.folds.items()],
+            classifiers=[name.upper() for name in CLASSIFIERS],
+            rest=round(self.seconds - sum(self.steps.values())),
         )
+        return unbroken(text)
 
 
-def require_same_code(codes: Mapping[str, str], grid: str) -> None:
+def unbroken(html: str) -> str:
+    """A page whose numbers are not separated from their units at the end of a line.
+
+    >>> unbroken("at 7 N m [N m] and 2000 rpm").replace("\\u00a0", "_")
+    'at 7_N_m [N_m] and 2000_rpm'
+    """
+    return UNIT.sub("\u00a0", html)
+
+
+def require_same_code(codes: Mapping[str, str], grid: str, data: str = "data") -> None:
     """Check that all data sets were made by the same version of the chain.
+
+    Parameters
+    ----------
+    codes : mapping
+        Version by data set.
+    grid, data : str
+        Of the command that the message advises.
 
     Raises
     ------
@@ -117,15 +134,24 @@ def require_same_code(codes: Mapping[str, str], grid: str) -> None:
         If they were not; it names the versions and the command that makes them anew.
     """
     if len(set(codes.values())) > 1:
-        said = ", ".join(f"{condition} by {code}" for condition, code in codes.items())
+        versions = ", ".join(f"{condition} by {code}" for condition, code in codes.items())
         raise ValueError(
-            f"the data sets of grid={grid} do not belong together: {said}; make them anew with "
-            f"'python scripts/generate.py grid={grid} condition=...' for each of {', '.join(codes)}"
+            f"the data sets of grid={grid} were made by different versions: {versions}. Make them again with "
+            f"'swg generate grid={grid} condition=... data={data}' for each of {', '.join(codes)}"
         )
 
 
-def runs_of_tables(store: Store, grid: str, digests: Mapping[str, str]) -> pd.DataFrame:
+def runs_of_tables(store: Store, grid: str, digests: Mapping[str, str], command: str) -> pd.DataFrame:
     """The finished runs of the paper's tables on the present data sets.
+
+    Parameters
+    ----------
+    store : Store
+    grid : str
+    digests : mapping
+        Condition to digest of the data set.
+    command : str
+        Command that makes runs, without its experiment; the message advises it.
 
     Raises
     ------
@@ -139,13 +165,13 @@ def runs_of_tables(store: Store, grid: str, digests: Mapping[str, str]) -> pd.Da
         commands = " ".join(f"experiment={table}" for table in PROTOCOLS)
         raise ValueError(
             f"no finished run on the present data sets of grid={grid} in {store.uri}: run "
-            f"'python scripts/train.py grid={grid} experiment=...' with each of {commands}"
+            f"'{command} experiment=...' with each of {commands}"
         )
     return runs
 
 
-def complete(comparison: Comparison, table: str, grid: str) -> Comparison:
-    """The comparison itself.
+def complete(comparison: Comparison, table: str, command: str) -> Comparison:
+    """The comparison itself, of which every cell has a run.
 
     Raises
     ------
@@ -156,31 +182,14 @@ def complete(comparison: Comparison, table: str, grid: str) -> Comparison:
     if len(missing):
         cell = missing.iloc[0]
         raise ValueError(
-            f"{len(missing)} of {len(comparison.cells)} cells of {table} have no run on the present data set of "
-            f"grid={grid}, the first is {cell['classifier']}, {row_label(cell['features'], cell['row'])}: run "
-            f"'python scripts/train.py experiment={table} grid={grid}'"
+            f"{len(missing)} of {len(comparison.cells)} cells of {table} have no run on the present data set. "
+            f"The first is {cell['classifier']}, {row_label(cell['features'], cell['row'])}: run "
+            f"'{command} experiment={table}'"
         )
     return comparison
 
 
-def confusion(store: Store, digests: Mapping[str, str], study: str, features: str) -> Picture:
-    """The random forest's confusion matrix of a study, as its run keeps it."""
-    conditions = {"study": study, "features": features, "classifier": "rf", "protocol": PROTOCOLS[study]}
-    query = " and ".join(f"params.{name} = '{value}'" for name, value in conditions.items())
-    found = store.client.search_runs(
-        [store.experiment_id],
-        f"{query} and tags.kind = 'job' and attributes.status = 'FINISHED'",
-        order_by=["attributes.start_time DESC"],
-    )
-    run = next(run for run in found if run.data.tags["data_digest"] in digests.values())
-    with tempfile.TemporaryDirectory() as folder:
-        path = store.client.download_artifacts(run.info.run_id, "figures/confusion.png", folder)
-        raw = Path(path).read_bytes()
-    caption = "Look for the cells off the diagonal: the pairs of classes that are taken for each other."
-    return Picture(f"As Table {ROMAN[study]}, {words(features)}", caption, raw)
-
-
-def statistics(blocks: Sequence[Recordings]) -> list[dict[str, str]]:
+def statistics(blocks: Sequence[LabelledSignals]) -> list[dict[str, str]]:
     """Per operating point: recordings, healthy efficiency of each gear, amplitude of s1 and mean of s0."""
     table = pd.concat([block.table for block in blocks], ignore_index=True)
     table["s1"] = np.concatenate([np.ptp(block.signals[:, 1], axis=1) / 2 for block in blocks])
@@ -227,7 +236,7 @@ def _table(name: str, comparison: Comparison) -> dict[str, Any]:
         agrees = (relation == "above" and difference > 0) or (relation == "at most" and difference <= 0)
         rows.setdefault(row_label(cell["features"], cell["row"]), {})[cell["classifier"].upper()] = {
             "ours": f"{cell['ours']:.1f}",
-            "paper": f"{RELATIONS[relation]}{cell['paper']:g}",
+            "paper": f"{RELATIONS[relation]}{cell['paper']:.1f}",
             "shade": shade(0 if agrees else difference),
         }
     rank = comparison.rank_correlation

@@ -1,4 +1,4 @@
-"""The report of the paper's tables from data sets and runs: what it rests on is found, and both files are written."""
+"""The report of the paper's tables: reads data sets and runs, writes ``index.html`` and ``report.json``."""
 
 import json
 import time
@@ -21,18 +21,12 @@ from swgsim.common.files import write_text
 from swgsim.common.style import Picture
 from swgsim.jobs import settings as chain_settings
 from swgsim.storage import storage
-from swgsim.storage.gauge_set import Recordings
+from swgsim.storage.labelled_signals import LabelledSignals
 from swgsim.studies import figures as chain_figures
 from swgsim.studies.claims import chain_claims
 from swgsim.studies.examples import FIGURE_POINT, Subject
 
 BLOCK = 1024  # recordings in memory at a time
-CONFUSIONS = (
-    ("table7", "selection_3"),
-    ("table8", "selection_1"),
-    ("table8", "selection_3"),
-    ("table10", "selection_3"),
-)
 
 
 @dataclass(frozen=True)
@@ -44,10 +38,10 @@ class DataSets:
     paths, digests : mapping
         By condition.
     code : str
-        That made both.
+        Version of the code that made both.
     made : mapping
-        What is known of the generation of each.
-    said : mapping
+        Facts of the generation of each.
+    configurations : mapping
         The configuration of each.
     """
 
@@ -55,12 +49,12 @@ class DataSets:
     digests: Mapping[str, str]
     code: str
     made: Mapping[str, Mapping[str, Any]]
-    said: Mapping[str, Mapping[str, Any]]
+    configurations: Mapping[str, Mapping[str, Any]]
 
     @property
     def disturbance(self) -> Mapping[str, Any]:
         """Parameters of eq. (10)."""
-        return self.said["disturbed"]["condition"]["disturbance"]
+        return self.configurations["disturbed"]["condition"]["disturbance"]
 
 
 def run(config: Mapping[str, Any]) -> dict[str, float]:
@@ -78,17 +72,16 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
     """
     began = time.time()
     written = report_of(config, began)
-    folder = Path(config["out"])
-    folder.mkdir(parents=True, exist_ok=True)
+    folder = Path(config["out"] or ("report" if written.grid == "paper" else f"report/{written.grid}"))
     write_text(folder / "report.json", written.json())
-    write_text(folder / "index.html", written.html())
+    write_text(folder / "index.html", written.html(beyond=(folder / "transfer.html").is_file()))
     held = sum(finding.holds for finding in written.findings)
     print(f"{folder / 'index.html'}: {held} of {len(written.findings)} claims hold; {time.time() - began:.1f} s")
     return {"claims_that_hold": held, "seconds": time.time() - began}
 
 
 def report_of(config: Mapping[str, Any], began: float) -> report.Report:
-    """All that the report says; raises like :func:`run`.
+    """Content of the report; raises like :func:`run`.
 
     Parameters
     ----------
@@ -99,9 +92,10 @@ def report_of(config: Mapping[str, Any], began: float) -> report.Report:
     grid = config["grid"]["name"]
     sets = data_sets(config["data"], grid)
     store = settings.store(config["tracking"])
-    runs = report.runs_of_tables(store, grid, sets.digests)
-    tables = {name: report.complete(compare(name, runs), name, grid) for name in PROTOCOLS}
-    subject = subject_of(sets.said["clean"])
+    command = settings.train_command(config)
+    runs = report.runs_of_tables(store, grid, sets.digests, command)
+    tables = {name: report.complete(compare(name, runs), name, command) for name in PROTOCOLS}
+    subject = subject_of(sets.configurations["clean"])
     blocks = list(storage.blocks(sets.paths["clean"], BLOCK))
     features = features_of(blocks)
     findings = [
@@ -112,7 +106,6 @@ def report_of(config: Mapping[str, Any], began: float) -> report.Report:
     disturbed = next(storage.blocks(sets.paths["disturbed"], BLOCK))
     pictures = _pictures(subject, blocks[0], disturbed, runs)
     steps = _steps(sets, runs, began)
-    confusions = [report.confusion(store, sets.digests, study, chosen) for study, chosen in CONFUSIONS]
     decided, statistics = _choices(sets, subject), report.statistics(blocks)
     seconds, seconds_are = _seconds(config["started"], steps)
     return report.Report(
@@ -124,7 +117,6 @@ def report_of(config: Mapping[str, Any], began: float) -> report.Report:
         choices=decided,
         statistics=statistics,
         pictures=pictures,
-        confusions=confusions,
         seconds=seconds,
         seconds_are=seconds_are,
         steps=steps,
@@ -145,13 +137,13 @@ def data_sets(data: str, grid: str) -> DataSets:
         for condition in ("clean", "disturbed")
     }
     codes = {condition: storage.attributes(path)["swgsim"] for condition, path in paths.items()}
-    report.require_same_code(codes, grid)
+    report.require_same_code(codes, grid, data)
     return DataSets(
         paths=paths,
         digests={condition: storage.digest(path) for condition, path in paths.items()},
         code=codes["clean"],
         made={c: json.loads(path.with_suffix(".json").read_text()) for c, path in paths.items()},
-        said={c: yaml.safe_load(storage.attributes(path)["configuration"]) for c, path in paths.items()},
+        configurations={c: yaml.safe_load(storage.attributes(path)["configuration"]) for c, path in paths.items()},
     )
 
 
@@ -167,8 +159,10 @@ def example_rows(table: pd.DataFrame) -> pd.Series:
     return at_point & (table["label"] == "healthy")
 
 
-def _pictures(subject: Subject, clean: Recordings, disturbed: Recordings, runs: pd.DataFrame) -> list[Picture]:
-    """Those of the chain, then those of learning, with the same recordings of both data sets."""
+def _pictures(
+    subject: Subject, clean: LabelledSignals, disturbed: LabelledSignals, runs: pd.DataFrame
+) -> list[Picture]:
+    """Pictures of the chain, then those of learning, with the same recordings of both data sets."""
     healthy = example_rows(clean.table)
     return [
         *chain_figures.pictures(subject),
@@ -179,9 +173,9 @@ def _pictures(subject: Subject, clean: Recordings, disturbed: Recordings, runs: 
 
 
 def _choices(sets: DataSets, subject: Subject) -> list[tuple[str, str]]:
-    """What was decided where the paper is silent."""
+    """Choices where the paper gives no value."""
     catalogue = chain_figures.catalogue_comparison(subject)
-    return choices(sets.said["clean"], sets.disturbance, catalogue, SPECTRUM.orders, SPECTRUM.floor)
+    return choices(sets.configurations["clean"], sets.disturbance, catalogue, SPECTRUM.orders, SPECTRUM.floor)
 
 
 def _steps(sets: DataSets, runs: pd.DataFrame, began: float) -> dict[str, float]:
@@ -194,7 +188,7 @@ def _steps(sets: DataSets, runs: pd.DataFrame, began: float) -> dict[str, float]
 
 
 def _seconds(started: float | None, steps: Mapping[str, float]) -> tuple[float, str]:
-    """Seconds of the whole, and what they are."""
+    """Seconds of the whole, and how they were measured."""
     if started:
         return time.time() - started, "on the clock, from the start of make paper"
     return sum(steps.values()), "the steps added up"

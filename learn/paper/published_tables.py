@@ -1,4 +1,4 @@
-"""The paper's Tables VII to X as data, and our figures beside them."""
+"""The paper's Tables VII to X as data, compared with our scores."""
 
 from dataclasses import dataclass
 from importlib.resources import files
@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from learn.evaluation.evaluate import metric_key
-from swgsim.storage.gauge_set import CLASSES
+from swgsim.storage.labelled_signals import CLASSES
 
 PROTOCOLS = {
     "table7": "random_folds",
@@ -58,7 +58,7 @@ def paper_table(table: str) -> pd.DataFrame:
 
 @dataclass(frozen=True)
 class Comparison:
-    """A table of the paper with our figures.
+    """A table of the paper with our scores.
 
     Attributes
     ----------
@@ -70,7 +70,7 @@ class Comparison:
 
     @property
     def figures(self) -> pd.DataFrame:
-        """The cells for which the paper states a figure and we have one."""
+        """The cells with a figure in the paper and a score of ours."""
         return self.cells[(self.cells["relation"] == "about") & self.cells["ours"].notna()]
 
     @property
@@ -92,9 +92,9 @@ class Comparison:
         }
 
     def summary(self) -> dict[str, object]:
-        """Everything as it stands in ``report.json``: scores by row and classifier, None where there is none.
+        """Content for ``report.json``: scores by row and classifier, None for a missing one.
 
-        ``relation`` says how the paper's figure is meant: "about", "above" or "at most"; only the first are compared.
+        ``relation`` of the paper's figure is "about", "above" or "at most"; only the first are compared.
         """
         return {
             "ours": _nested(self.cells, "ours"),
@@ -116,7 +116,7 @@ def row_label(features: str, row: str) -> str:
 
 
 def compare(table: str, runs: pd.DataFrame) -> Comparison:
-    """A table of the paper beside our figures.
+    """A table of the paper with our scores.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ def compare(table: str, runs: pd.DataFrame) -> Comparison:
 
 
 def random_beside_grouped(table: str, runs: pd.DataFrame) -> pd.DataFrame:
-    """Test scores [%] of the paper's random folds and of grouped folds, and what the paper's folds give away [points].
+    """Test scores [%] of the paper's random folds and of grouped folds, and the optimism of random folds [points].
 
     Both are means of the recall over the classes that the grouped folds test: of clean data the five faults, as all
     healthy rows are one and stay in training.

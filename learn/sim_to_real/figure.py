@@ -5,9 +5,8 @@ from collections.abc import Sequence
 import matplotlib.figure
 import numpy as np
 
-from learn.sim_to_real.finished import Finished
 from learn.sim_to_real.judging import DAYS, MODELS
-from learn.sim_to_real.verdicts import row_of
+from learn.sim_to_real.verdicts import Finished, row_of
 from swgsim.common.style import Picture, figure, label, png, words
 
 COLOURS = {"before": "#D55E00", "after": "#0072B2", "oracle": "#000000"}

@@ -13,7 +13,7 @@ from learn.inputs.inputs import LearningSet
 from learn.jobs import settings
 from learn.protocols.splits import Split
 from swgsim.storage import storage
-from swgsim.storage.gauge_set import Recordings
+from swgsim.storage.labelled_signals import LabelledSignals
 
 MODELS = ("before", "after", "oracle")  # without the effect, with what the loop found, with the true effect
 # The day on which the healthy references were recorded: before the effect came, or with it.
@@ -35,7 +35,7 @@ class Pair:
     plain: Path
     acting: Path
 
-    def blocks(self, day: str) -> Iterator[Recordings]:
+    def blocks(self, day: str) -> Iterator[LabelledSignals]:
         """Samples under the effect, and references of a day.
 
         Raises

@@ -6,10 +6,10 @@ from typing import Any
 
 import pandas as pd
 
+from learn.paper.paper_page import unbroken
 from learn.sim_to_real.figure import picture
-from learn.sim_to_real.finished import Finished
 from learn.sim_to_real.judging import COMMISSIONING, DAYS, MODELS
-from learn.sim_to_real.verdicts import named, row_of, why, worth
+from learn.sim_to_real.verdicts import Finished, named, row_of, why, worth
 from swgsim.common.files import write_json, write_text
 from swgsim.common.html import environment
 from swgsim.common.style import words
@@ -18,18 +18,18 @@ SCORES = ("accuracy", "false_alarms", "gain")
 
 
 def write(finished: Sequence[Finished], folder: Path) -> None:
-    """Write ``sim_to_real.html`` and ``sim_to_real.json``, and print how many effects the loop has helped with."""
-    said = content(finished)
-    methods = said["methods"]
+    """Write ``sim_to_real.html`` and ``sim_to_real.json``, and print for how many effects the loop helps."""
+    fields = content(finished)
+    methods = fields["methods"]
     templates = environment("learn")
     templates.filters["words"] = words
     html = templates.get_template("sim_to_real/sim_to_real_page.html.jinja").render(
-        said=said, days=DAYS, models=MODELS, pictures=[picture(finished, method) for method in methods]
+        study=fields, days=DAYS, models=MODELS, pictures=[picture(finished, method) for method in methods]
     )
-    write_json(folder / "sim_to_real.json", said)
-    write_text(folder / "sim_to_real.html", html)
+    write_json(folder / "sim_to_real.json", fields)
+    write_text(folder / "sim_to_real.html", unbroken(html))
     print(f"{folder / 'sim_to_real.html'}:")
-    for sentence in said["sentences"]:
+    for sentence in fields["sentences"]:
         print(sentence)
 
 
@@ -47,8 +47,8 @@ def _effect(finished: Finished, methods: Sequence[str]) -> dict[str, Any]:
             rows = {model: row_of(finished.scores, method, day, model) for model in MODELS}
             numbers = {model: {what: _score(row, what) for what in SCORES} for model, row in rows.items()}
             verdict, reason = why(finished, method, day)
-            said = {"verdict": verdict, "why": reason, "gainful": worth(rows["oracle"])}
-            results.append({"method": method, "references": day, **said, **numbers})
+            judgement = {"verdict": verdict, "why": reason, "gainful": worth(rows["oracle"])}
+            results.append({"method": method, "references": day, **judgement, **numbers})
     return {
         "undeclared": finished.name, "hidden": finished.hidden, "loop": {**finished.loop, "named": named(finished)},
         "healthy_specimens": int(finished.scores["specimens"].iloc[0]), "results": results,
@@ -62,7 +62,7 @@ def _score(row: pd.Series, what: str) -> dict[str, Any]:
 
 
 def _sentence(effects: Sequence[Mapping[str, Any]], method: str) -> str:
-    """What the study says of a method, with references of the commissioning day, where effects hurt."""
+    """Result for a method, with references of the commissioning day, over the effects that cost accuracy."""
     acting = [
         result
         for effect in effects
@@ -80,8 +80,9 @@ def _sentence(effects: Sequence[Mapping[str, Any]], method: str) -> str:
     if not hurt:
         return f"{name}: none of {len(acting)} undeclared effects costs accuracy that a model with it would keep."
     return (
-        f"{name}: {len(hurt)} of {len(acting)} undeclared effects cost accuracy when references are from before; "
-        f"closing the loop brings at least 80 % of it back with {len(helped)}. Mean of these {len(hurt)}: accuracy "
+        f"{name}: {len(hurt)} of {len(acting)} undeclared effects cost accuracy if the references were recorded before "
+        f"the effect came. For {len(helped)} of them, closing the loop recovers at least 80 % of it. Mean of these "
+        f"{len(hurt)}: accuracy "
         f"{mean('before', 'accuracy')} % before, {mean('after', 'accuracy')} % after, {mean('oracle', 'accuracy')} % "
         f"with the effect known; false alarms {mean('before', 'false_alarms')}, {mean('after', 'false_alarms')} and "
         f"{mean('oracle', 'false_alarms')} %."

@@ -1,17 +1,37 @@
 """Whether closing the loop helped a classifier, and if not, why."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import pandas as pd
 
-from learn.sim_to_real.finished import Finished
 from swgsim.common.style import words
 
-# Share of the oracle's gain that counts as all of it.
-RECOVERED = 0.8
-# Gain of the oracle from which an effect counts as one that costs accuracy [points].
-WORTH = 1.0
+RECOVERED = 0.8  # share of the oracle's gain that counts as full recovery
+WORTH = 1.0  # gain of the oracle [points] from which on an effect counts as one that costs accuracy
+
+
+@dataclass(frozen=True, eq=False)
+class Finished:
+    """Results for one undeclared effect.
+
+    Attributes
+    ----------
+    name : str
+    hidden : list
+        The effect as text.
+    loop : mapping
+        Answer of the loop: ``verdict``, ``sentence``, ``found`` (effects as text), ``rivals`` and ``absorbed``
+        (names), ``error``.
+    scores : DataFrame
+        Of :func:`learn.sim_to_real.scores.scores`.
+    """
+
+    name: str
+    hidden: list[dict[str, Any]]
+    loop: Mapping[str, Any]
+    scores: pd.DataFrame
 
 
 def row_of(scores: pd.DataFrame, method: str, day: str, model: str) -> pd.Series:
@@ -21,7 +41,7 @@ def row_of(scores: pd.DataFrame, method: str, day: str, model: str) -> pd.Series
 
 
 def named(finished: Finished) -> str:
-    """How the loop's answer stands to the truth: in four words at most."""
+    """The loop's answer compared with the truth, in four words at most."""
     true, found = _names(finished.hidden), _names(finished.loop["found"])
     rest = [name for name in found if name not in true]
     if not true:
@@ -52,42 +72,45 @@ def why(finished: Finished, method: str, day: str) -> tuple[str, str]:
         return ("helps" if share >= RECOVERED else "helps in part"), f"Regenerating with {brings}."
     if share >= RECOVERED:
         return "does not clearly help", (
-            f"Regenerating with {brings}, but by {after['gain_low']:+.1f} to {after['gain_high']:+.1f} points: the "
-            "specimens are too few to tell it from nothing."
+            f"Regenerating with {brings}, but by {after['gain_low']:+.1f} to {after['gain_high']:+.1f} points: too few "
+            "specimens to distinguish it from no gain."
         )
     return "does not help", (
-        f"What was found, {_listed(finished.loop['found'])}, does not act on this method's features as the truth does."
+        f"The effect found, {_listed(finished.loop['found'])}, changes this method's features in another way."
     )
 
 
 def _unfound(finished: Finished) -> str:
-    """What the loop said where it did not name an effect."""
+    """The loop's answer if it named no effect."""
     if named(finished) == "cannot be tested":
         return (
-            f"It says that these recordings cannot test {_listed(finished.hidden)}: what the model declares not to "
-            "know, such as the zeros of a session, looks the same."
+            f"These recordings cannot test {_listed(finished.hidden)}: nuisance parameters of the model, such as the "
+            "zeros of a session, explain it."
         )
     return str(finished.loop["sentence"])
 
 
 def _safe(after: pd.Series) -> tuple[str, str]:
-    """Of an effect that was found where none acts."""
+    """Verdict and reason for an effect that was found where none acts."""
     if after["gain_high"] < 0:
         return "harms", f"A false effect costs {-after['gain']:.1f} points."
     return "does no harm", f"A false effect was found; it changes the accuracy by {after['gain']:+.1f} points."
 
 
 def worth(oracle: pd.Series) -> bool:
-    """Whether knowing the true effect brings accuracy back, beyond doubt and by more than a trifle."""
+    """Whether a model with the true effect is significantly more accurate, by at least :data:`WORTH`."""
     return bool(oracle["gain_low"] > 0 and oracle["gain"] >= WORTH)
 
 
 def _unneeded(before: pd.Series, after: pd.Series, oracle: pd.Series) -> tuple[str, str]:
-    """Where even the true effect brings nothing."""
+    """Verdict and reason where even the true effect gains nothing."""
     if after["gain_high"] < 0:
-        return "harms", f"Knowing the effect brings nothing here, and what was found costs {-after['gain']:.1f} points."
+        return (
+            "harms",
+            f"Knowing the effect gains nothing here, and the effect found costs {-after['gain']:.1f} points.",
+        )
     return "nothing to gain", (
-        "Even a model that knows the effect does no better by a point beyond doubt "
+        "Even a model that knows the effect is not significantly better by a point "
         f"({before['accuracy']:.1f} % without it, {oracle['accuracy']:.1f} % with it)."
     )
 

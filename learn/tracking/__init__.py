@@ -1,4 +1,4 @@
-"""MLflow behind a few functions: the store, the runs of jobs and sweeps, queries, and the way to a team's server."""
+"""MLflow behind a few functions: the store, runs of jobs and sweeps, queries, a team's server and uploads to it."""
 
 import os
 

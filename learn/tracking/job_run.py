@@ -1,4 +1,4 @@
-"""The run of one job; where the server goes away meanwhile, its results are kept on disk until they are uploaded."""
+"""The run of one job; if the server goes away meanwhile, the results are kept on disk until they are uploaded."""
 
 import logging
 import os
@@ -24,7 +24,7 @@ log = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class Job:
-    """What is known of a job when it begins.
+    """Facts of a job that are known when it begins.
 
     Attributes
     ----------
@@ -56,7 +56,7 @@ class Job:
 
 @dataclass
 class Results:
-    """What there is to say at the end of a job; figures and tables have their path among the artifacts."""
+    """Results of a job; the keys of figures and tables are their paths among the artifacts."""
 
     metrics: Mapping[str, float] = field(default_factory=dict)
     figures: Mapping[str, "Figure"] = field(default_factory=dict)
@@ -65,7 +65,7 @@ class Results:
     def record(
         self, metrics: Mapping[str, float], figures: Mapping[str, "Figure"], tables: Mapping[str, pd.DataFrame]
     ) -> None:
-        """Say it, once; it is written when the job ends."""
+        """Set all results; they are written when the job ends."""
         self.metrics, self.figures, self.tables = metrics, figures, tables
 
     def write(self, store: Store, run_id: str) -> None:
@@ -90,8 +90,8 @@ def job_run(
 ) -> Iterator[Results]:
     """The run of one job: finished at the end, failed after an exception, and left running by a killed job.
 
-    It is a child of the run that the environment variable ``SWEEP`` names; a job outside a sweep has no parent. A run
-    that its server does not take is kept among the store's pending ones; both bear the same tag ``origin``.
+    The environment variable ``SWEEP`` names its parent run; a job outside a sweep has no parent. If the server does not
+    take the run, the store's pending store keeps it; both copies have the same tag ``origin``.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def job_run(
     name : str
         Name of the run.
     key : str
-        What :func:`finished_metrics` finds it by.
+        Key of :func:`finished_metrics`.
     parameters : mapping
         Parameters by which the run is looked up and compared.
     config : mapping
@@ -139,12 +139,12 @@ def _keep(store: Store, run_id: str, job: Job, results: Results) -> None:
 
 
 def _pending(store: Store, job: Job, error: Exception) -> Store:
-    """Where the job is kept instead, which is said; without such a place the error stands."""
+    """The store that keeps the job instead, with a warning; without one the error is raised again."""
     if store.pending is None:
         raise error
     log.warning(
-        "%s: the MLflow server at %s has gone away; the results are kept in %s. When it is back, bring them to it with "
-        "'python scripts/upload.py tracking.uri=%s tracking.pending=%s'. It was noticed by: %s",
+        "%s: the MLflow server at %s has gone away; the results are kept in %s. When it is back, upload them with "
+        "'swg upload tracking.uri=%s tracking.pending=%s'. The error was: %s",
         job.name, store.uri, store.pending.folder, store.uri, store.pending.folder, str(error)[:300],
     )  # fmt: skip
     return store.pending

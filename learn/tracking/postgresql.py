@@ -1,4 +1,4 @@
-"""PostgreSQL on a folder of one's own, reached through a socket in that folder and by no network."""
+"""PostgreSQL with its data in a folder; reached through a socket in that folder, not through a network."""
 
 import os
 import shlex
@@ -9,23 +9,23 @@ from contextlib import contextmanager
 from pathlib import Path
 from urllib.parse import quote
 
-DEBIAN = Path("/usr/lib/postgresql")  # which has a folder for each version
+DEBIAN = Path("/usr/lib/postgresql")  # has a folder for each version
 USER = "mlflow"
 OWNER = "postgres"  # Debian's user for it, to whom root steps down: PostgreSQL refuses to run as root
 
 
 @contextmanager
 def database(folder: Path) -> Iterator[str]:
-    """The address of the database in a folder, which is made if it is new and runs until the end of the context.
+    """The address of the database in a folder, which is created if it is new and runs until the end of the context.
 
-    What a killed process left running is started again.
+    A database that a killed process left running is restarted.
 
     Raises
     ------
     ValueError
         If PostgreSQL is not installed, or not in the version that made the folder.
     RuntimeError
-        If it does not start; with its own words.
+        If it does not start; the message is that of PostgreSQL.
     """
     programs = _programs(folder)
     if not folder.exists():
@@ -41,7 +41,7 @@ def database(folder: Path) -> Iterator[str]:
 
 
 def _runs(folder: Path) -> bool:
-    """Whether PostgreSQL works in a folder. After a power failure its number may be that of another process."""
+    """Whether PostgreSQL runs in a folder. After a power failure its number may be that of another process."""
     try:
         number = int((folder / "postmaster.pid").read_text().split()[0])
         return Path(f"/proc/{number}/cwd").resolve(strict=True) == folder
@@ -50,7 +50,7 @@ def _runs(folder: Path) -> bool:
 
 
 def _programs(folder: Path) -> Path:
-    """Where the programs of the version are that made the folder, of the newest one for a new folder."""
+    """Folder of the programs, in the version that made the folder; for a new folder in the newest version."""
     elsewhere = shutil.which("postgres")
     found = [*DEBIAN.glob("*/bin/postgres"), *([Path(elsewhere)] if elsewhere else [])]
     versions = {_version(program): program.parent for program in found}
@@ -60,20 +60,20 @@ def _programs(folder: Path) -> Path:
     version = int(kept.read_text()) if kept.is_file() else max(versions)
     if version not in versions:
         raise ValueError(
-            f"{folder} is of PostgreSQL {version}, installed is {', '.join(map(str, sorted(versions)))}: "
+            f"{folder} was made by PostgreSQL {version}, installed is {', '.join(map(str, sorted(versions)))}: "
             f"install postgresql-{version}, convert the folder with pg_upgrade, or choose another with folder=..."
         )
     return versions[version]
 
 
 def _version(program: Path) -> int:
-    """Number of the version of a program, which says: postgres (PostgreSQL) 15.14 (Debian 15.14-0+deb12u1)."""
-    said = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout
-    return int(said.split()[2].partition(".")[0])
+    """Major version of a program, which prints: postgres (PostgreSQL) 15.14 (Debian 15.14-0+deb12u1)."""
+    printed = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout
+    return int(printed.split()[2].partition(".")[0])
 
 
 def _create(programs: Path, folder: Path) -> None:
-    """Made aside, then renamed. Nobody is asked for a password: only the owner may enter the folder with the socket."""
+    """Create it aside, then rename. It needs no password: only the owner may enter the folder with the socket."""
     aside = folder.with_name(f".{folder.name}.tmp")
     shutil.rmtree(aside, ignore_errors=True)
     aside.mkdir(mode=0o700, parents=True)

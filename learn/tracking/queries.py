@@ -1,4 +1,4 @@
-"""Finding finished runs and what they hold."""
+"""Queries of finished runs, their metrics and tables."""
 
 import os
 import tempfile
@@ -16,7 +16,7 @@ def finished_metrics(store: Store, key: str) -> dict[str, float] | None:
     Raises
     ------
     ServerAway
-        If the server does not answer. Not within a sweep, which began when it did: its jobs go on and wait for upload.
+        If the server does not answer. Within a sweep the jobs go on instead, and wait for upload.
     """
     waiting = _metrics(store.pending, key) if store.pending and store.pending.exists else None
     try:

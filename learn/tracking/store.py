@@ -36,7 +36,7 @@ class Store:
     folder : Path or None
         Folder of a local store: its database and, beside it, the artifacts. None with a server.
     pending : Store or None
-        With a server, the local store where results wait that could not be brought to it.
+        With a server, the local store of results that the server could not take.
     """
 
     uri: str
@@ -95,7 +95,7 @@ class Store:
 
 
 def _create(database: Path) -> None:
-    """A database with its tables, complete or absent: MLflow cannot go on with one whose creation was killed."""
+    """Create a database with its tables, complete or not at all: MLflow cannot use one whose creation was killed."""
     from mlflow import MlflowClient
 
     with replacing(database) as aside:
@@ -120,7 +120,7 @@ def server_store(uri: str, experiment: str = EXPERIMENT, pending: str | None = N
     experiment : str
         Name of the experiment.
     pending : str or None
-        Folder of the local store for results that could not be brought to the server; None to fail instead.
+        Folder of the local store for results that the server could not take; None: such a job fails.
 
     Raises
     ------
@@ -129,13 +129,13 @@ def server_store(uri: str, experiment: str = EXPERIMENT, pending: str | None = N
     """
     if not uri.startswith(("http://", "https://")):
         raise ValueError(
-            f"tracking.uri={uri!r} is no address of a server: give one like http://host:5000, or tracking=local"
+            f"tracking.uri={uri!r} is not an address of a server: give one like http://host:5000, or tracking=local"
         )
     return Store(uri.rstrip("/"), experiment, pending=local_store(pending, experiment) if pending else None)
 
 
 def lost() -> tuple[type[Exception], ...]:
-    """The exceptions by which it is noticed that a server has gone away."""
+    """The exceptions that show that a server has gone away."""
     from mlflow.exceptions import MlflowException
 
     return MlflowException, OSError, ServerAway

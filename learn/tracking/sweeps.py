@@ -4,11 +4,11 @@ from contextlib import suppress
 
 from learn.tracking.store import Store, lost
 
-SWEEP = "STRAIN_WAVE_GEARS_SWEEP"  # environment variable, which Hydra sets for every job: the run that it belongs to
+SWEEP = "STRAIN_WAVE_GEARS_SWEEP"  # environment variable that Hydra sets for every job: id of its parent run
 
 
 def open_sweep(store: Store, study: str, grid: str) -> str:
-    """Open the run that the jobs of a study on a grid belong to, for ever the same one, and return its id."""
+    """Open the parent run of the jobs of a study on a grid, create it if it is new, and return its id."""
     run_id = find_sweep(store, study, grid)
     if run_id is None:
         tags = {"kind": "sweep", "study": study, "grid": grid}
@@ -27,7 +27,7 @@ def find_sweep(store: Store, study: str, grid: str) -> str | None:
 def close_sweep(store: Store, run_id: str) -> None:
     """Mark the run of a sweep as finished; jobs of another sweep of the same study may still join it.
 
-    Where the server has gone away, the upload of the jobs does so.
+    If the server has gone away, the upload of the jobs does this later.
     """
     with suppress(*lost()):
         store.client.set_terminated(run_id)

@@ -1,4 +1,4 @@
-"""Bringing the runs of a local store to a server: whole or not at all, and none twice."""
+"""Uploads the runs of a local store to a server: each run completely or not at all, and none twice."""
 
 import logging
 from dataclasses import dataclass, replace
@@ -20,52 +20,59 @@ log = logging.getLogger(__name__)
 
 
 def upload(server: Store) -> int:
-    """Bring the finished runs of all experiments that wait for a server to it, and return how many were new to it.
+    """Upload the finished runs of all experiments of a pending store, and return how many were new to the server.
 
-    They stay where they are as well. A second upload at the same time waits for the first.
+    The pending store keeps them as well. A second upload at the same time waits for the first.
 
     Raises
     ------
     ValueError
-        If there is no local store where runs would wait, or the server does not answer.
+        If there is no pending store, or it has no finished run, or the server does not answer.
     """
     waiting = server.pending
     if waiting is None or waiting.folder is None or not waiting.exists:
         raise ValueError(
-            f"no runs wait for {server.uri} in {waiting.folder if waiting else None}: "
-            "give tracking=server and, as tracking.pending, the folder of a local store"
+            f"no runs to upload to {server.uri} in {waiting.folder if waiting else None}: "
+            f"'swg upload tracking.uri={server.uri} tracking.pending=FOLDER' uploads those of a local store"
         )
     with sole_maker(waiting.folder / "upload", wait=True):
         names = [experiment.name for experiment in waiting.client.search_experiments()]
-        return sum(Upload(*(replace(each, experiment=name) for each in (waiting, server))).run() for name in names)
+        uploads = [Upload(*(replace(each, experiment=name) for each in (waiting, server))) for name in names]
+        if not any(each.jobs for each in uploads):
+            raise ValueError(f"{waiting.folder} has no finished run to upload: give another folder as tracking.pending")
+        return sum(each.run() for each in uploads)
 
 
 @dataclass(frozen=True)
 class Upload:
-    """Of one experiment, from a local store to a server."""
+    """Upload of one experiment from a local store to a server."""
 
     source: Store
     server: Store
 
+    @cached_property
+    def jobs(self) -> "list[Run]":
+        """The finished jobs of the local store."""
+        return _search(self.source, "kind = 'job'", FINISHED)
+
     def run(self) -> int:
-        """Bring the jobs that the server lacks, with their sweeps, and return how many."""
-        waiting = _search(self.source, "kind = 'job'", FINISHED)
-        missing = [job for job in waiting if self._lacks(job)]
+        """Copy the jobs that the server lacks, with their sweeps, and return how many."""
+        missing = [job for job in self.jobs if self._lacks(job)]
         for job in missing:
             self._bring(job)
-        parents = {self._parent(sweep) for sweep in {job.data.tags.get(PARENT) for job in waiting}}
+        parents = {self._parent(sweep) for sweep in {job.data.tags.get(PARENT) for job in self.jobs}}
         for sweep in _search(self.server, "kind = 'sweep'", "attributes.status = 'RUNNING'"):
             if sweep.info.run_id in parents:  # left open when the server went away, or by a killed upload
                 close_sweep(self.server, sweep.info.run_id)
         return len(missing)
 
     def _lacks(self, run: "Run") -> bool:
-        """Whether the server lacks a run; what a lost job or a killed upload left of it there is removed."""
-        there = _search(self.server, f"origin = '{_origin(run)}'")
-        if any(each.info.status == "FINISHED" for each in there):
+        """Whether the server lacks a run; an incomplete copy of a lost job or a killed upload is removed."""
+        copies = _search(self.server, f"origin = '{_origin(run)}'")
+        if any(each.info.status == "FINISHED" for each in copies):
             return False
-        for half in there:
-            self.server.client.delete_run(half.info.run_id)
+        for incomplete in copies:
+            self.server.client.delete_run(incomplete.info.run_id)
         return True
 
     def _bring(self, run: "Run") -> None:
@@ -75,7 +82,7 @@ class Upload:
         log.info("%s: uploaded", run.info.run_name)
 
     def _parent(self, run_id: str | None) -> str | None:
-        """The sweep on the server that stands for a run; one that is no local sweep is the server's own."""
+        """The sweep on the server for a parent run; a run that is no local sweep is the server's own."""
         sweep = self._sweeps.get(run_id)
         if sweep is None:
             return run_id
@@ -86,7 +93,7 @@ class Upload:
         return {sweep.info.run_id: sweep for sweep in _search(self.source, "kind = 'sweep'")}
 
     def _copy(self, run: "Run", tags: dict[str, str]) -> str:
-        """Copy a run; the last step, which makes it a finished one, comes when all else is there."""
+        """Copy a run; it becomes a finished one in the last step."""
         from mlflow.entities import Param
 
         source, server, info = self.source.client, self.server.client, run.info
@@ -107,5 +114,5 @@ def _search(store: Store, tag: str, *more: str) -> "list[Run]":
 
 
 def _origin(run: "Run") -> str:
-    """What the copies of a run have in common; runs that are older than this tag have their id."""
+    """Tag that the copies of a run share; a run without it has its id instead."""
     return str(run.data.tags.get("origin", run.info.run_id))

@@ -12,7 +12,7 @@ from learn.jobs.identity import code_version
 from learn.tracking import Store, finished_runs, table_of
 from swgsim.common.style import words
 from swgsim.oracle.columns import KNOWN
-from swgsim.storage.gauge_set import CLASSES
+from swgsim.storage.labelled_signals import CLASSES
 
 os.environ.setdefault("MLFLOW_ENABLE_ARTIFACTS_PROGRESS_BAR", "false")
 

@@ -22,7 +22,7 @@ from swgsim.gear.acquisition import Window
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import Gear, OperatingPoint
 from swgsim.recordings.recording import Recording
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 # Recordings that are simulated at once: many share the work of each step in time, few bound the memory.
 BLOCK = 36

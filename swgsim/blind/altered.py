@@ -10,7 +10,7 @@ from swgsim.effects.base import Effect, Scene
 from swgsim.effects.quantity import choice, phase, quantities, size, size_of
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import OperatingPoint
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 # A size that is nothing only so many times beyond its typical value is a level that something reaches.
 LEVEL = 10.0
@@ -82,7 +82,7 @@ class StrayOrder(Effect):
     Attributes
     ----------
     channel : int
-        Of :data:`swgsim.storage.gauge_set.SENSORS`.
+        Of :data:`swgsim.storage.labelled_signals.SENSORS`.
     order : int
     amplitude : float
         In the channel's unit.

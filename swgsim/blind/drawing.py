@@ -20,7 +20,7 @@ from swgsim.identification.fit.errors import per_channel
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import fit
 from swgsim.identification.fit.unit import Unit
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 # How far laws are off the library's: by this power of the load, or with sizes that vary by this share over operating
 # points; estimates, within what the loop tolerates of a form (evidence.FORM_TOLERANCE).

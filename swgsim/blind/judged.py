@@ -17,7 +17,7 @@ from swgsim.effects.regularity import PATTERNS
 from swgsim.identification.interharmonics.named_interharmonics import is_random
 
 # Weights of patterns whose direction is the same differ by less than this.
-ROUNDING = 1e-9
+SAME_DIRECTION = 1e-9
 # An effect outside the library looks like one inside if that reproduces this share of its projected signature.
 LOOK_ALIKE = 0.9
 # An error that grew to no more than this many times itself is no worse: less would matter to nobody (an estimate).
@@ -244,4 +244,4 @@ def _same(one: str, other: str, order: int) -> bool:
     if not {one, other} <= set(PATTERNS):
         return one == other
     a, b = ({name: complex(w) if order else complex(w).real for name, w in PATTERNS[p].items()} for p in (one, other))
-    return all(abs(a.get(name, 0) - b.get(name, 0)) < ROUNDING for name in {*a, *b})
+    return all(abs(a.get(name, 0) - b.get(name, 0)) < SAME_DIRECTION for name in {*a, *b})

@@ -18,7 +18,7 @@ from swgsim.identification.search.hypotheses import hypotheses, signatures
 # Shares of the way from nothing to the bound at which the strength is tried, and how far at most.
 FARTHEST, COARSE, FINE = 0.9, 13, 5
 # How far a strength beside fitted parameters may fall short of the planned one.
-NEAR = 0.03
+STRENGTH_TOLERANCE = 0.03
 
 
 def strengths(effects: Sequence[Effect], of: Sequence[type[Effect]], fitted: Fitted) -> np.ndarray:
@@ -102,11 +102,11 @@ def sized(
 
     share = _share(linear, target)
     found = strength(share)
-    if share < FARTHEST and found < (1 - NEAR) * target:
+    if share < FARTHEST and found < (1 - STRENGTH_TOLERANCE) * target:
         share, near, found = FARTHEST, share, strength(FARTHEST)
         if found > target:
             # Strength goes with the square of a small size.
-            share = np.exp(brentq(short_of, np.log(near), np.log(FARTHEST), xtol=NEAR / 2))
+            share = np.exp(brentq(short_of, np.log(near), np.log(FARTHEST), xtol=STRENGTH_TOLERANCE / 2))
             found = strength(share)
     return at(share), found
 

@@ -3,7 +3,8 @@
 Imports ``effects``, ``gear``, ``recordings`` and rooms below these.
 """
 
-from swgsim.chain.chain import SECTORS, Run, Simulation, channels_of, simulate, simulate_turns
+from swgsim.chain.chain import SECTORS, Run, Simulation, channels_of, simulate_turns
+from swgsim.chain.chain import simulate as simulate_runs
 from swgsim.chain.direct import DirectSolver
 from swgsim.chain.dynamics import Drive
 from swgsim.chain.influence import InfluenceMap, influence_map
@@ -19,7 +20,7 @@ __all__ = [
     "Simulation",
     "channels_of",
     "influence_map",
-    "simulate",
+    "simulate_runs",
     "simulate_turns",
     "steady_state",
 ]

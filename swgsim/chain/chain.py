@@ -18,7 +18,7 @@ from swgsim.gear.acquisition import Window
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import Gear, OperatingPoint
 from swgsim.recordings.recording import Recording
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 SECTORS = 100
 

@@ -8,7 +8,7 @@ from jaxtyping import Float
 from scipy.signal import resample
 
 from swgsim.effects.base import Effect, Scene
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 # Where effects make corners, so many samples are taken for each one that is kept: an error of order lines below a tenth
 # of the noise of a recording.

@@ -1,11 +1,14 @@
 """Checks of values and their physical limits; every message names the value, the limit and so the remedy."""
 
 from collections.abc import Iterable, Sequence
+from difflib import get_close_matches
 from math import isfinite
 from numbers import Integral, Real
 from reprlib import Repr
 from typing import Any
 
+# Names that the message about an unknown choice lists at most.
+LISTED = 20
 # Of a value from a file, which may be nested so that it fills the memory when it is written out.
 _SHORT = Repr()
 _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 200
@@ -46,11 +49,30 @@ def require_range(owner: str, name: str, value: Any, low: float, high: float) ->
 
 
 def require_known(owner: str, given: Iterable[str], known: Iterable[str]) -> None:
-    """Raise a ValueError naming the first of ``given`` that is not known, with the list of choices."""
+    """Raise a ValueError that names the first of ``given`` that is not known, and the choices, nearest names first.
+
+    Parameters
+    ----------
+    owner : str
+        What the choice belongs to, for the message.
+    given, known : iterable of str
+    """
     known = list(known)
     for name in given:
         if name not in known:
-            raise ValueError(f"unknown choice {name!r} of {owner}; choose from {', '.join(known)}")
+            near = nearest(name, known)
+            choices = [*near, *(each for each in known if each not in near)]
+            more = f" and {len(choices) - LISTED} more" if len(choices) > LISTED else ""
+            raise ValueError(f"unknown choice {name!r} of {owner}; choose from {', '.join(choices[:LISTED])}{more}")
+
+
+def nearest(name: str, known: Iterable[str]) -> list[str]:
+    """Known names that are spelt nearly like an unknown one, nearest first; three at most.
+
+    >>> nearest("ecentric_wave_generator", ["coning", "eccentric_wave_generator"])
+    ['eccentric_wave_generator']
+    """
+    return get_close_matches(str(name), [str(each) for each in known])
 
 
 def _is_number(value: Any) -> bool:

@@ -1,5 +1,6 @@
-"""A configuration of Hydra as the plain values that jobs take."""
+"""Where the configuration lies, and a configuration of Hydra as the plain values that jobs take."""
 
+from pathlib import Path
 from typing import Any
 
 from hydra.core.hydra_config import HydraConfig
@@ -8,6 +9,17 @@ from omegaconf import DictConfig, OmegaConf
 # Choices that are names of files and folders, or patterns of them.
 NAMES = {"blind", "commissioning", "commissioning_mapping", "data", "docs", "embedded", "folder", "holdout", "mapping"}
 NAMES |= {"model", "models", "only", "out", "recordings", "report", "truth", "without"}
+
+
+def conf_folder() -> Path:
+    """The folder ``conf/``: that of a wheel lies in the package, that of a checkout beside it.
+
+    >>> (conf_folder() / "gear" / "gear1.yaml").is_file()
+    True
+    """
+    package = Path(__file__).parents[1]
+    packaged = package / "conf"
+    return packaged if packaged.is_dir() else package.parent / "conf"
 
 
 def plain(config: DictConfig) -> dict[str, Any]:

@@ -29,10 +29,10 @@ def estimate(value: float, deviation: float, unit: str, low: float = -np.inf, hi
     return {"value": number(value), "ci95": [number(end) for end in interval], "unit": unit}
 
 
-def figure(value: float | None, digits: int = 3) -> str:
+def significant(value: float | None, digits: int = 3) -> str:
     """A number as people read it.
 
-    >>> figure(0.00012345), figure(None), figure(4810.8), figure(999.7)
+    >>> significant(0.00012345), significant(None), significant(4810.8), significant(999.7)
     ('0.000123', 'not known', '4811', '1000')
     """
     if value is None:

@@ -1,5 +1,7 @@
 """One look for all pictures: colours that colour-blind readers tell apart (Okabe and Ito), labels, PNG."""
 
+import base64
+import html
 import io
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -64,3 +66,10 @@ def png(picture: Figure) -> bytes:
     with matplotlib.rc_context({"savefig.facecolor": "white"}):
         picture.savefig(buffer, format="png", dpi=DOTS_PER_INCH, metadata={"Software": None})
     return buffer.getvalue()
+
+
+def html_figure(picture: Figure, title: str) -> str:
+    """A picture with its title as HTML, for notebooks."""
+    data = base64.b64encode(png(picture)).decode()
+    name = html.escape(title)
+    return f'<figure><figcaption>{name}</figcaption><img alt="{name}" src="data:image/png;base64,{data}"></figure>'

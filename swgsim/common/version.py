@@ -39,3 +39,15 @@ def code_version(*also: str) -> str:
         for source in sorted((PACKAGE / room).rglob("*.py")):
             digest.update(source.read_bytes())
     return f"{version('swg-workbench')}+{digest.hexdigest()[:12]}"
+
+
+__version__ = version("swg-workbench")
+
+
+def version_text() -> str:
+    """Name and version of the distribution.
+
+    >>> version_text().split()[0]
+    'swg-workbench'
+    """
+    return f"swg-workbench {__version__}"

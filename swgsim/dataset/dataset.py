@@ -24,7 +24,7 @@ from swgsim.dataset.grid import Case
 from swgsim.dataset.plan import Plan, block_size, provenance
 from swgsim.dataset.simulate_cases import record
 from swgsim.storage import storage
-from swgsim.storage.gauge_set import Recordings
+from swgsim.storage.labelled_signals import LabelledSignals
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ def generate(plan: Plan, path: Path, engine: Engine, progress: Callable[[int], o
     tasks = ((plan, cases, file) for cases, file in zip(plan.blocks(), files, strict=True))
     peak: dict[str, float] = {}
 
-    def made() -> Generator[Recordings, None, None]:
+    def made() -> Generator[LabelledSignals, None, None]:
         """The parts in their order: they are joined while the workers make the next ones."""
         for part, file in zip(engine.results(_part, tasks, len(files)), files, strict=True):
             if part.flaw:
@@ -120,7 +120,7 @@ def disturb(source: Path, path: Path, disturbance: Disturbance, configuration: s
     """
     rows, sensors, samples = storage.shape(source)
 
-    def disturbed() -> Iterator[Recordings]:
+    def disturbed() -> Iterator[LabelledSignals]:
         for block in storage.blocks(source, block_size(samples)):
             time = np.arange(samples) / block.rate
             added = np.stack([
@@ -128,7 +128,7 @@ def disturb(source: Path, path: Path, disturbance: Disturbance, configuration: s
                 for seed, n_in_rpm in zip(block.table["seed"], block.table["n_in_rpm"], strict=True)
             ])  # fmt: skip
             signals = (block.signals + added).astype("f4")
-            yield Recordings(signals, block.table, block.rate, provenance(configuration))
+            yield LabelledSignals(signals, block.table, block.rate, provenance(configuration))
             progress(len(block))
 
     storage.write(path, disturbed(), rows)
@@ -145,7 +145,7 @@ def _part(plan: Plan, cases: list[Case], file: Path) -> Part:
     return Part(len(cases), flaw, usage())
 
 
-def _read(plan: Plan, file: Path) -> Recordings:
+def _read(plan: Plan, file: Path) -> LabelledSignals:
     """A part, which a worker of a killed run with another plan may have replaced meanwhile."""
     part = storage.read(file)
     if not plan.attributes.items() <= part.attributes.items():

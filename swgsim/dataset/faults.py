@@ -14,7 +14,7 @@ from swgsim.effects import (
     RootToothCrack,
     TipToothCrack,
 )
-from swgsim.storage.gauge_set import CLASSES
+from swgsim.storage.labelled_signals import CLASSES
 
 # A class name to its effect at (severity, position).
 FAULTS: Mapping[str, Callable[[float, float], Effect]] = {
@@ -83,13 +83,13 @@ class Variants:
         for label, levels in self.severities.items():
             if not levels:
                 raise ValueError(f"{label}: no severities, give at least one")
+            for level in levels:
+                FAULTS[label](level, 0.0)
             located = label not in WITHOUT_POSITION
             if located and not self.drawn and len(levels) * self.positions != self.count:
                 raise ValueError(
                     f"{label}: {len(levels)} severities x {self.positions} positions do not make {self.count} variants"
                 )
-            for level in levels:
-                FAULTS[label](level, 0.0)
 
     def of(self, label: str, rng: np.random.Generator) -> Iterator[Variant]:
         """The variants of one class; ``rng`` is used only where they are drawn.

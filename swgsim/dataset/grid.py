@@ -11,7 +11,7 @@ from swgsim.common.seeds import generator, seed_hash
 from swgsim.dataset.faults import Variant, Variants
 from swgsim.effects import ParameterScatter
 from swgsim.gear.gear import Gear, OperatingPoint
-from swgsim.storage.gauge_set import CLASSES
+from swgsim.storage.labelled_signals import CLASSES
 
 
 @dataclass(frozen=True)

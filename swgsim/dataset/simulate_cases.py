@@ -10,10 +10,10 @@ from swgsim.common.seeds import generator
 from swgsim.dataset.grid import Case
 from swgsim.dataset.plan import Plan
 from swgsim.effects.base import Effect
-from swgsim.storage.gauge_set import Recordings, facts
+from swgsim.storage.labelled_signals import LabelledSignals, facts
 
 
-def record(plan: Plan, cases: list[Case]) -> Recordings:
+def record(plan: Plan, cases: list[Case]) -> LabelledSignals:
     """The recordings of some cases of a plan."""
     runs = [replace(case.run, effects=(*_declared(plan, case), *case.run.effects)) for case in cases]
     temperature = np.full(len(cases), np.nan)
@@ -40,7 +40,7 @@ def record(plan: Plan, cases: list[Case]) -> Recordings:
         "reference": [case.reference for case in cases],
         "seed": np.array([case.seed for case in cases], dtype="u8"),
     })  # fmt: skip
-    return Recordings(signals, table, plan.window.rate, plan.attributes)
+    return LabelledSignals(signals, table, plan.window.rate, plan.attributes)
 
 
 def _declared(plan: Plan, case: Case) -> tuple[Effect, ...]:

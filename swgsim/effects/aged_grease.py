@@ -9,11 +9,12 @@ from swgsim.gear.gear import Gear
 
 @dataclass(frozen=True)
 class AgedGrease(Effect):
-    """Old or scarce grease rubs more at the flanks and drags less: mu rises by a share, b1 falls by half of it
-    (physics.md AG6; that the two go together, and by half, is an estimate).
+    """Old or scarce grease: the friction coefficient mu rises by a share, and b1 falls by half of this share.
 
-    Signature: more input torque at high load and low speed, less at low load and high speed; the torque ripple
-    falls by some per cent, as with flank friction. Typical: mu up by 20 to 100 %.
+    The source is physics.md AG6. That both go together, and by half, is an estimate.
+
+    Signature: more input torque at high load and low speed, less at low load and high speed. The torque ripple falls by
+    some per cent, as with flank friction. Typical: mu rises by 20 to 100 %.
 
     Attributes
     ----------

@@ -8,10 +8,10 @@ from swgsim.effects.quantity import choice, shape
 
 @dataclass(frozen=True)
 class BallPass(BearingOrder):
-    """Balls pass a place of the outer ring, which stays with the flex spline, or of the inner one, which turns.
+    """Balls of the wave generator's bearing pass a flaw of the outer race, which stands, or the inner, which turns.
 
-    Form and signature are those of :class:`BearingOrder`. Typical: 0.05 to 0.5 % of order 2, at orders 9.3 to 10.6 of
-    the outer ring and 11.3 to 12.8 of the inner one for 21 to 23 balls (physics.md FS11).
+    Form and signature are those of :class:`BearingOrder`. Typical: 0.05 to 0.5 % of order 2. For 21 to 23 balls the
+    order is 9.3 to 10.6 for the outer race and 11.3 to 12.8 for the inner one (physics.md FS11).
 
     Attributes
     ----------

@@ -13,6 +13,15 @@ from swgsim.effects.quantity import Role, quantities
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import Gear, OperatingPoint
 
+# Values over psi, the angle of the wave generator, and theta, the position around the flex spline (both [rad]).
+Psi = Float[np.ndarray, " psi"]
+Theta = Float[np.ndarray, " theta"]
+Field = Float[np.ndarray, "psi theta"]
+# Samples of one channel over time, of s0 to s4, and of all channels by name.
+Samples = Float[np.ndarray, " time"]
+Signals = Float[np.ndarray, "5 time"]
+Channels = Mapping[str, Samples]
+
 PLACES = ("gear", "drive", "wave generator", "mesh", "structure", "gauge", "acquisition")
 
 
@@ -78,9 +87,9 @@ class Scene:
     conditions : Conditions
     """
 
-    time: Float[np.ndarray, " time"]
-    phi_in: Float[np.ndarray, " time"]
-    T_out: Float[np.ndarray, " time"]
+    time: Samples
+    phi_in: Samples
+    T_out: Samples
     point: OperatingPoint
     conditions: Conditions
 
@@ -145,39 +154,19 @@ class Effect:
         """Torques to add to the equations of motion; they repeat with each revolution of the wave generator."""
         return Extra()
 
-    def wave_generator(
-        self,
-        displacement: Float[np.ndarray, "psi theta"],
-        psi: Float[np.ndarray, " psi"],
-        theta: Float[np.ndarray, " theta"],
-    ) -> Float[np.ndarray, "psi theta"]:
+    def wave_generator(self, displacement: Field, psi: Psi, theta: Theta) -> Field:
         """Radial displacement [m] that the wave generator imposes on the sleeve."""
         return displacement
 
-    def engaged(
-        self,
-        depth: Float[np.ndarray, "psi theta"],
-        psi: Float[np.ndarray, " psi"],
-        theta: Float[np.ndarray, " theta"],
-    ) -> Float[np.ndarray, "psi theta"]:
+    def engaged(self, depth: Field, psi: Psi, theta: Theta) -> Field:
         """Depth [m] to which teeth engage, by which they share the force: the imposed displacement if nothing else."""
         return depth
 
-    def mesh(
-        self,
-        share: Float[np.ndarray, "psi theta"],
-        psi: Float[np.ndarray, " psi"],
-        theta: Float[np.ndarray, " theta"],
-    ) -> Float[np.ndarray, "psi theta"]:
+    def mesh(self, share: Field, psi: Psi, theta: Theta) -> Field:
         """Share of the tangential force that is carried at each angle; the chain scales the shares to sum to one."""
         return share
 
-    def carried(
-        self,
-        share: Float[np.ndarray, "psi theta"],
-        psi: Float[np.ndarray, " psi"],
-        theta: Float[np.ndarray, " theta"],
-    ) -> Float[np.ndarray, "psi theta"]:
+    def carried(self, share: Field, psi: Psi, theta: Theta) -> Field:
         """Of these shares, what each angle passes on; no other angle takes over what is lost."""
         return share
 
@@ -185,13 +174,11 @@ class Effect:
         """Places where the rim lost stiffness."""
         return ()
 
-    def gauge(self, signals: Float[np.ndarray, "5 time"], scene: Scene) -> Float[np.ndarray, "5 time"]:
+    def gauge(self, signals: Signals, scene: Scene) -> Signals:
         """The bridge signals [mV/V]."""
         return signals
 
-    def acquisition(
-        self, channels: Mapping[str, Float[np.ndarray, " time"]], scene: Scene
-    ) -> Mapping[str, Float[np.ndarray, " time"]]:
+    def acquisition(self, channels: Channels, scene: Scene) -> Channels:
         """Every recorded channel by its name (:data:`swgsim.recordings.recording.CHANNELS`), in its unit."""
         return channels
 

@@ -10,8 +10,8 @@ from swgsim.effects.quantity import shape
 class BearingCage(BearingOrder):
     """Unequal balls load the sleeve as the cage carries them around, once in a little over two revolutions.
 
-    Form and signature are those of :class:`BearingOrder`, of one wave for a single thick ball. Typical: 0.1 to 1 % of
-    order 2, at 0.445 to 0.46 (physics.md FS11).
+    Form and signature are those of :class:`BearingOrder`, with one wave for a single thick ball. Typical: 0.1 to 1 % of
+    order 2, at order 0.445 to 0.46 (physics.md FS11).
 
     Attributes
     ----------

@@ -12,11 +12,14 @@ from swgsim.gear.gear import OperatingPoint
 
 @dataclass(frozen=True)
 class BearingFriction(Effect):
-    """The load presses on the balls of the wave generator, T T_out / 31 N m at the input (Palmgren's M1, physics.md
-    section 2.2); also the part of the flex spline's hysteresis loss that grows with the load (FS17).
+    """The load presses on the balls of the wave generator: the input is braked by T T_out / 31 N m.
 
-    Signature: input torque in proportion to the load at every speed; gauges untouched. Flank friction is a near double
-    in the input torque, but it dampens the torque ripple. Typical: 7 mN m, 8 % of the losses at rated torque.
+    This is Palmgren's M1 (physics.md section 2.2). It also stands for the part of the flex spline's hysteresis loss
+    that grows with the load (FS17).
+
+    Signature: input torque in proportion to the load at every speed; the gauges do not change. Flank friction is nearly
+    the same in the input torque, but it also dampens the torque ripple. Typical: 7 mN m, 8 % of the losses at rated
+    torque.
 
     Attributes
     ----------

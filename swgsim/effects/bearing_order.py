@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 
-from swgsim.effects.base import Effect, Scene
+from swgsim.effects.base import Effect, Scene, Signals
 from swgsim.effects.frozen import FULL_LOAD
 from swgsim.effects.quantity import choice, random_phase, shape, size
 
@@ -15,14 +14,16 @@ POSITIONS = np.pi / 2 * np.arange(4)
 
 @dataclass(frozen=True)
 class BearingOrder(Effect):
-    """Unequal balls or a damaged race: a pattern that travels around at a non-integer order (physics.md FS11).
+    """Unequal balls or a damaged race: a pattern travels around the collar at a non-integer order (physics.md FS11).
 
-    Each of s1 to s4 gains amplitude (preload + (1 - preload) T / 70 N m) cos(order phi_in - waves beta - phase) at its
-    position beta. The all-round bridge s0 takes no part, as its four pairs, 90 degrees apart, cancel such patterns; of
-    no waves, a breathing of the ring, it shows as much as the others. A map over one revolution cannot hold a
-    non-integer order, so it is added to the signals. Signature: one line at the order, from gauge to gauge a quarter
-    turn times ``waves`` behind, growing with load, alike at all speeds. Sidebands at the order +-2, as the lobes load
-    the balls, are left out. Typical: 0.05 to 1 % of order 2, which is 0.17 mV/V.
+    A gauge at the angle beta from s1 gains amplitude (preload + (1 - preload) T / 70 N m) cos(order phi_in - waves beta
+    - phase). The all-round bridge s0 gains nothing, because its four grid pairs cancel such patterns; without waves (a
+    breathing ring) s0 gains as much as the others. A map over one revolution cannot hold a non-integer order, so the
+    effect adds it to the signals.
+
+    Signature: one line at the order, which lags by ``waves`` quarter turns from gauge to gauge. It grows with load and
+    does not depend on speed. The model leaves out sidebands at the order +-2, which come from the passing lobes.
+    Typical: 0.05 to 1 % of order 2, which is 0.17 mV/V.
 
     Attributes
     ----------
@@ -35,7 +36,7 @@ class BearingOrder(Effect):
     preload : float
         Share of the load on the balls at 70 N m that the deflection makes by itself; an estimate.
     phase : float
-        [rad].
+        Of the wave at phi_in = 0, the major axis at s1 [rad].
     """
 
     place = "wave generator"
@@ -45,7 +46,7 @@ class BearingOrder(Effect):
     preload: float = shape(0.3, unit="-", low=0, high=1)
     phase: float = random_phase()
 
-    def gauge(self, signals: Float[np.ndarray, "5 time"], scene: Scene) -> Float[np.ndarray, "5 time"]:
+    def gauge(self, signals: Signals, scene: Scene) -> Signals:
         """The signals with the line added."""
         load = self.preload + (1 - self.preload) * scene.T_out / FULL_LOAD
         wave = np.cos(self.order * scene.phi_in - self.waves * POSITIONS[:, None] - self.phase)

@@ -1,40 +1,37 @@
 """Imperfection: crosstalk between neighbouring channels."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
-from jaxtyping import Float
-
-from swgsim.effects.base import Effect, Scene
+from swgsim.effects.base import Channels, Effect, Scene
 from swgsim.effects.quantity import choice, size
 from swgsim.effects.turns import on_gauges
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 
 @dataclass(frozen=True)
 class ChannelCrosstalk(Effect):
-    """A share of the next channel (s0 after s4) appears in one channel: a ground loop, a common return wire, or a
-    multiplexer that has not settled. An estimate; physics.md SE20 names ground loops.
+    """A share of the next channel appears in one channel; s0 follows s4.
 
-    Signature: neighbours among s1 to s4 have order 2 in opposite phase and the same mean, so order 2 of this gauge
-    falls by the share and its mean rises by the share; s0 gets order 2 from s1, and s4 the mean of s0 only.
+    Causes are a ground loop, a common return wire, or a multiplexer that has not settled. The size is an estimate;
+    physics.md SE20 names ground loops.
+
+    Signature: neighbours among s1 to s4 have order 2 in opposite phase and equal means. Order 2 of this gauge therefore
+    falls by the share, and its mean rises by the share. In s0 order 2 of s1 appears; s4 gains the mean of s0 only.
     Typical: 0.5 %.
 
     Attributes
     ----------
     sensor : int
+        Number of the gauge, from 0 to 4.
     share : float
-        Up to 0.1 (beyond, the wiring is wrong) both ways.
+        From -0.1 to 0.1 (beyond, the wiring is wrong).
     """
 
     place = "acquisition"
     sensor: int = choice(low=0, high=4)
     share: float = size(unit="-", low=-0.1, high=0.1, typical=0.005)
 
-    def acquisition(
-        self, channels: Mapping[str, Float[np.ndarray, " time"]], scene: Scene
-    ) -> Mapping[str, Float[np.ndarray, " time"]]:
+    def acquisition(self, channels: Channels, scene: Scene) -> Channels:
         """The channels with one of them mixed."""
         neighbour = channels[SENSORS[(self.sensor + 1) % len(SENSORS)]]
         return on_gauges(channels, lambda s, signal: signal + self.share * neighbour if s == self.sensor else signal)

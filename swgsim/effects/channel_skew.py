@@ -1,24 +1,23 @@
 """Imperfection: channels that are sampled one after another."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 from scipy.interpolate import CubicSpline
 
-from swgsim.effects.base import Effect, Scene
+from swgsim.effects.base import Channels, Effect, Samples, Scene
 from swgsim.effects.quantity import size
 from swgsim.effects.turns import on_gauges
 
 
 @dataclass(frozen=True)
 class ChannelSkew(Effect):
-    """A multiplexer scans s0 to s4 one after another, so that sensor i shows s_i(t - i delay) (physics.md AC1). Before
-    and after the window the signal is taken to be that of the next or last revolution.
+    """A multiplexer scans s0 to s4 one after another: gauge i shows s_i(t - i delay).
 
-    Signature: order n of s_i lags by n i omega_in delay, so that the difference of opposite gauges gets
-    2 n omega_in delay of A_n, in proportion to the speed and whatever the load. Typical: 10 to 100 us.
+    The source is physics.md AC1. Outside of the window the signal is taken from the next or the last revolution.
+
+    Signature: order n of s_i lags by n i omega_in delay. The difference of opposite gauges therefore gains 2 n omega_in
+    delay of A_n, in proportion to the speed and at any load. Typical: 10 to 100 us.
 
     Attributes
     ----------
@@ -30,13 +29,11 @@ class ChannelSkew(Effect):
     place = "acquisition"
     delay: float = size(unit="s", low=-500e-6, high=500e-6, typical=50e-6)
 
-    def acquisition(
-        self, channels: Mapping[str, Float[np.ndarray, " time"]], scene: Scene
-    ) -> Mapping[str, Float[np.ndarray, " time"]]:
+    def acquisition(self, channels: Channels, scene: Scene) -> Channels:
         """The channels with each gauge delayed."""
         turn = 2 * np.pi / scene.point.omega_in
 
-        def delayed(sensor: int, signal: Float[np.ndarray, " time"]) -> Float[np.ndarray, " time"]:
+        def delayed(sensor: int, signal: Samples) -> Samples:
             then = scene.time - sensor * self.delay
             then = np.where(then < scene.time[0], then + turn, then)
             then = np.where(then > scene.time[-1], then - turn, then)

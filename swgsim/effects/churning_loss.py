@@ -14,11 +14,13 @@ RATED_SPEED = 2000 * 2 * np.pi / 60
 
 @dataclass(frozen=True)
 class ChurningLoss(Effect):
-    """The wave generator's bearing churns its grease, T (n / 2000 rpm)^(2/3) after Palmgren (physics.md section 2.2).
+    """The bearing of the wave generator churns its grease and brakes the input by T (n / 2000 rpm)^(2/3).
 
-    Signature: input torque that grows slower than speed, the same at every load; gauges all but untouched. With
-    two speeds it cannot be told from a constant and a viscous loss. Typical: 0.02 N m; churning and seals are some
-    60 % of the 51 mN m that the gear takes without load.
+    The law is Palmgren's (physics.md section 2.2).
+
+    Signature: input torque that grows slower than speed and is equal at every load; the gauges hardly change. Two
+    speeds cannot separate it from a constant plus a viscous loss. Typical: 0.02 N m. Churning and seals take about 60 %
+    of the 51 mN m that the gear needs without load.
 
     Attributes
     ----------

@@ -11,16 +11,18 @@ from swgsim.gear.gear import OperatingPoint
 
 @dataclass(frozen=True)
 class Coning(Effect):
-    """The contact moves along the coned sleeve with load, so that the collar feels a changed deflection.
+    """Under load the contact moves along the coned sleeve, and the collar feels another deflection.
 
-    The sleeve deflects in proportion to the distance from the collar (physics.md FS6): displacement (1 + share T / 70 N
-    m). Signature: orders 2 and 4 of the deflection, alike in opposite gauges, change in proportion to load; the force
-    of the teeth keeps its pattern. Typical: 5 to 20 % of order 2 from 7 to 70 N m (estimate).
+    The sleeve deflects in proportion to the distance from the collar (physics.md FS6), so the imposed displacement
+    changes by the factor 1 + share T / 70 N m.
+
+    Signature: orders 2 and 4 of the deflection change in proportion to load, equally in opposite gauges. The pattern of
+    the tooth forces stays. Typical: 5 to 20 % of order 2 from 7 to 70 N m (estimate).
 
     Attributes
     ----------
     share : float
-        Change of the deflection at 70 N m, up to 0.3 either way.
+        Change of the deflection at 70 N m, from -0.3 to 0.3.
     """
 
     place = "wave generator"

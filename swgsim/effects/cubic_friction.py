@@ -1,6 +1,6 @@
 """Effect: viscous friction that does not grow in proportion to speed."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import size
@@ -9,10 +9,12 @@ from swgsim.gear.gear import Gear
 
 @dataclass(frozen=True)
 class CubicFriction(Effect):
-    """The cubic friction b2 of eq. (5): below 0, friction grows slower than speed (physics.md section 1.3).
+    """Viscous friction is not in proportion to speed: the cubic coefficient b2 of eq. (5) changes.
 
-    Signature: input torque that changes with the third power of speed, at every load alike; gauges all but untouched.
-    Typical: -1e-3, with which b1 and b2 together follow the churning of grease, n^(2/3), up to 4500 rpm.
+    Below 0, friction grows slower than speed (physics.md section 1.3).
+
+    Signature: input torque that changes with the third power of speed, equally at every load; the gauges hardly change.
+    Typical: -1e-3. With it, b1 and b2 follow the churning of grease, n^(2/3), up to 4500 rpm.
 
     Attributes
     ----------
@@ -26,5 +28,4 @@ class CubicFriction(Effect):
 
     def gear(self, gear: Gear) -> Gear:
         """The gear with more or less cubic friction."""
-        transmission = gear.transmission
-        return replace(gear, transmission=replace(transmission, b2=transmission.b2 + self.b2))
+        return gear.with_transmission(b2=gear.transmission.b2 + self.b2)

@@ -2,10 +2,7 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-from jaxtyping import Float
-
-from swgsim.effects.base import Effect, Scene
+from swgsim.effects.base import Effect, Scene, Signals
 from swgsim.effects.one_gauge import weights
 from swgsim.effects.quantity import choice, size
 from swgsim.effects.turns import since_session
@@ -13,24 +10,27 @@ from swgsim.effects.turns import since_session
 
 @dataclass(frozen=True)
 class Debonding(Effect):
-    """The bond of one gauge gives way, so that it shows less and less of the strain: 1 - rate t of it at time t of the
-    session (physics.md SE15). What it lost before is a gain; an amplifier of which one channel drifts looks the same.
+    """The bond of one gauge gives way, so that it shows 1 - rate t of the strain at the time t of the session.
 
-    Signature: mean and all orders of this gauge alike, falling with the time of the session, whatever load and speed.
-    Typical: 1 % per hour (an estimate; the end is the whole gauge).
+    The source is physics.md SE15. What it lost before the session is a gain error. A drift of one amplifier channel
+    looks the same.
+
+    Signature: mean and all orders of this gauge fall by one share with time, at any load and speed. Typical: 1 % per
+    hour (an estimate; in the end the whole signal is lost).
 
     Attributes
     ----------
     sensor : int
+        Number of the gauge, from 0 to 4.
         From 0 to 4.
     rate : float
-        [1/h], up to 0.2 (beyond, nothing is left of a long session) both ways.
+        [1/h], from -0.2 to 0.2 (beyond, nothing is left of a long session).
     """
 
     place = "gauge"
     sensor: int = choice(low=0, high=4)
     rate: float = size(unit="1/h", low=-0.2, high=0.2, typical=0.01)
 
-    def gauge(self, signals: Float[np.ndarray, "5 time"], scene: Scene) -> Float[np.ndarray, "5 time"]:
+    def gauge(self, signals: Signals, scene: Scene) -> Signals:
         """The signals, that of the gauge without what is lost."""
         return signals * (1 - self.rate * since_session(scene) / 3600 * weights(self.sensor))

@@ -3,26 +3,28 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 
+from swgsim.effects.base import Psi, Theta
 from swgsim.effects.off_centre import OffCentre, unequal_lobes
 from swgsim.effects.quantity import phase, size
 
 
 @dataclass(frozen=True)
 class EccentricWaveGenerator(OffCentre):
-    """The axis of the wave generator is off centre by u_ecc = [r, theta, 0] (section II-B), fixed to the flex spline.
+    """The axis of the wave generator is off centre by u_ecc = [r, theta, 0], fixed to the flex spline.
 
-    Signature: opposite offsets of opposite gauges, a pattern of one wave around the collar, and changed even orders
-    under load, because the lobe that sinks deeper carries more of it; no odd orders, as the two lobes are alike.
-    Typical: 0.02 to 0.15 mm; assembly tolerances allow 0.010 to 0.034 mm.
+    This is a fault of Table I (section II-B): the imposed radial displacement gains r cos(angle - theta).
+
+    Signature: opposite offsets of opposite gauges, one wave around the collar. Under load even orders change too,
+    because the lobe that engages deeper carries more. There are no odd orders, as the two lobes are alike. Typical:
+    0.02 to 0.15 mm; assembly tolerances allow 0.010 to 0.034 mm.
 
     Attributes
     ----------
     r : float
         Eccentricity [m], from 0 to 0.15 mm; beyond, the teeth of one lobe would leave engagement.
     theta : float
-        Its direction [rad].
+        Direction of the axis, from gauge s1 in the sense of phi_in [rad].
     unequal : float
         By how much more than the other the lobe is loaded that sinks deeper: 0 if both carry alike, 1 in proportion to
         depth, as in the paper's chain, up to 3 for stiff teeth (an estimate).
@@ -32,6 +34,6 @@ class EccentricWaveGenerator(OffCentre):
     theta: float = phase()
     unequal: float = unequal_lobes()
 
-    def shift(self, psi: Float[np.ndarray, " psi"], theta: Float[np.ndarray, " theta"]) -> Float[np.ndarray, " theta"]:
+    def shift(self, psi: Psi, theta: Theta) -> Theta:
         """Of the axis, seen from an angle [m]."""
         return self.r * np.cos(theta - self.theta)

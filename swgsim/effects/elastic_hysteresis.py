@@ -10,15 +10,15 @@ from swgsim.effects.quantity import size
 
 @dataclass(frozen=True)
 class ElasticHysteresis(Effect):
-    """Flex spline and its joints lose a share of the energy that each cycle of the twist stores, however fast it is
-    (physics.md FS17, DY1): T_stiff gains h K dtwist / d(2 phi_in) with the secant stiffness K of eq. (2).
+    """Flex spline and its joints lose a share of the energy that each cycle of the twist stores, at any speed.
 
-    The loss factor h holds for order 2, at which the ellipse works the flex spline; at order 1 it is half, at order 4
-    twice as much. The torque follows the change of the twist and not its sign: h |T_stiff| times the sign would brake a
-    small ripple about a large load as if the twist swung through the whole load.
+    T_stiff gains h K d(twist) / d(2 phi_in), with the secant stiffness K of eq. (2) (physics.md FS17, DY1). The loss
+    factor h holds for order 2, at which the ellipse works the flex spline; order 1 has half of it and order 4 twice as
+    much. The torque follows the change of the twist, not its sign: h |T_stiff| times the sign would brake a small
+    ripple about a large load as strongly as a twist through the whole load.
 
-    Signature: smaller torque ripple near the resonance and a phase lag, in all gauges alike; mean torques all but
-    untouched (the drag of the turning ellipse is seal friction and bearing friction). Typical: 0.02, an estimate.
+    Signature: smaller torque ripple near the resonance and a phase lag, equally in all gauges. Mean torques hardly
+    change; the drag of the turning ellipse is seal friction and bearing friction. Typical: 0.02, an estimate.
 
     Attributes
     ----------

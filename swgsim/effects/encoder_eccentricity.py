@@ -1,31 +1,30 @@
 """Imperfection: an encoder disc off centre."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 
-from swgsim.effects.base import Effect, Scene
+from swgsim.effects.base import Channels, Effect, Scene
 from swgsim.effects.quantity import choice, phase, size
 
 
 @dataclass(frozen=True)
 class EncoderEccentricity(Effect):
-    """The disc of the input's encoder turns off centre: phi_in shows as phi_in + error sin(phi_in + phase), and the
-    speed as its rate, unless that is told by another encoder (physics.md AC7). The speed control is taken to follow the
-    motor's own.
+    """The disc of the input's encoder is off centre: phi_in shows as phi_in + error sin(phi_in + phase).
 
-    Signature: order 1 of n_in, if that is its rate, in proportion to the speed; over the measured angle, sidebands
-    n - 1 and n + 1 of n / 2 error A_n at order n of all gauges, so orders 1 and 3. In time the gauges stay. Typical:
-    0.05 to 0.2 degree.
+    The speed shows as the rate of this angle, unless another encoder measures it (physics.md AC7). The speed control
+    uses the motor's own encoder.
+
+    Signature: order 1 of n_in, in proportion to the speed, if this encoder measures it. Over the measured angle, order
+    n of all gauges gains sidebands n - 1 and n + 1 of n / 2 error A_n, so orders 1 and 3. Over time the gauges do not
+    change. Typical: 0.05 to 0.2 degree.
 
     Attributes
     ----------
     error : float
         [rad], from 0 to 0.02 (0.2 mm at a disc of 20 mm in diameter).
     phase : float
-        [rad].
+        Of the wave at phi_in = 0, the major axis at s1 [rad].
     tells_speed : int
         1 if n_in is its rate, 0 if another encoder tells it.
     """
@@ -35,9 +34,7 @@ class EncoderEccentricity(Effect):
     phase: float = phase()
     tells_speed: int = choice(1, low=0, high=1)
 
-    def acquisition(
-        self, channels: Mapping[str, Float[np.ndarray, " time"]], scene: Scene
-    ) -> Mapping[str, Float[np.ndarray, " time"]]:
+    def acquisition(self, channels: Channels, scene: Scene) -> Channels:
         """The channels with angle and speed as the encoder shows them."""
         angle = scene.phi_in + self.phase
         return {

@@ -1,6 +1,6 @@
 """Effect: friction coefficient of the flanks."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import size
@@ -9,10 +9,12 @@ from swgsim.gear.gear import Gear
 
 @dataclass(frozen=True)
 class FlankFriction(Effect):
-    """The flanks rub with another coefficient mu of eq. (5): lost or better lubrication (physics.md DY4, section 5).
+    """The flanks have another friction coefficient mu in eq. (5), by lost or better lubrication.
 
-    Signature: input torque that grows with the load, hardly with speed, and a smaller torque ripple, by 2 to 5 % for
-    30 % more mu, as the flanks brake it. Typical: mu from 0.05 to 0.12 in boundary lubrication.
+    The source is physics.md DY4 and section 5.
+
+    Signature: input torque that grows with the load and hardly with speed. The torque ripple falls by 2 to 5 % for 30 %
+    more mu, as the flanks brake it. Typical: mu from 0.05 to 0.12 in boundary lubrication.
 
     Attributes
     ----------
@@ -25,5 +27,4 @@ class FlankFriction(Effect):
 
     def gear(self, gear: Gear) -> Gear:
         """The gear with its friction coefficient scaled."""
-        transmission = gear.transmission
-        return replace(gear, transmission=replace(transmission, mu=self.mu_ratio * transmission.mu))
+        return gear.with_transmission(mu=self.mu_ratio * gear.transmission.mu)

@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 
-from swgsim.effects.base import Effect
+from swgsim.effects.base import Effect, Field, Psi, Theta
 from swgsim.effects.quantity import size
 
 # Load [N m] and speed [rpm] to which laws in them refer: the limit for repeated peaks of a size 17, ratio 100 gear, and
@@ -13,7 +12,7 @@ from swgsim.effects.quantity import size
 FULL_LOAD, FULL_SPEED = 70.0, 4000.0
 
 
-def turned(field: Float[np.ndarray, "psi theta"], angle: float) -> Float[np.ndarray, "psi theta"]:
+def turned(field: Field, angle: float) -> Field:
     """A field turned ahead around the circumference by an angle [rad], through its Fourier series."""
     points = field.shape[1]
     turn = np.exp(-1j * angle * np.arange(points // 2 + 1))
@@ -33,12 +32,7 @@ class ScaledDisplacement(Effect):
     place = "wave generator"
     factor: float = size(unit="-", low=0.3, high=2, typical=1.05, nothing=1)
 
-    def wave_generator(
-        self,
-        displacement: Float[np.ndarray, "psi theta"],
-        psi: Float[np.ndarray, " psi"],
-        theta: Float[np.ndarray, " theta"],
-    ) -> Float[np.ndarray, "psi theta"]:
+    def wave_generator(self, displacement: Field, psi: Psi, theta: Theta) -> Field:
         """The displacement times the factor."""
         return displacement * self.factor
 
@@ -50,18 +44,13 @@ class TurnedDisplacement(Effect):
     Attributes
     ----------
     angle : float
-        [rad], up to 0.5 either way.
+        [rad], from -0.5 to 0.5.
     """
 
     place = "wave generator"
     angle: float = size(unit="rad", low=-0.5, high=0.5, typical=0.05)
 
-    def wave_generator(
-        self,
-        displacement: Float[np.ndarray, "psi theta"],
-        psi: Float[np.ndarray, " psi"],
-        theta: Float[np.ndarray, " theta"],
-    ) -> Float[np.ndarray, "psi theta"]:
+    def wave_generator(self, displacement: Field, psi: Psi, theta: Theta) -> Field:
         """The displacement at angles further back."""
         return turned(displacement, self.angle)
 
@@ -79,11 +68,6 @@ class PoweredShare(Effect):
     place = "mesh"
     exponent: float = size(unit="-", low=0.1, high=10, typical=0.7, nothing=1)
 
-    def mesh(
-        self,
-        share: Float[np.ndarray, "psi theta"],
-        psi: Float[np.ndarray, " psi"],
-        theta: Float[np.ndarray, " theta"],
-    ) -> Float[np.ndarray, "psi theta"]:
+    def mesh(self, share: Field, psi: Psi, theta: Theta) -> Field:
         """The shares to the power of the exponent."""
         return share**self.exponent

@@ -10,20 +10,22 @@ from swgsim.gear.gear import Gear
 
 @dataclass(frozen=True)
 class GaugeDirection(Effect):
-    """The +-45 degree grids of one bridge are turned by an angle: cos 2 angle of the shear, and sin 2 angle of the
-    difference of radial and hoop strain (physics.md SE2).
+    """The +-45 degree grids of one bridge are turned by an angle.
 
-    Signature: order 2 of this gauge in quadrature, 7.8 % of it per degree, since these strains are largest where the
-    shear is zero; the mean, which is the torque's shear, falls by cos 2 angle only. On s1 to s4 it is hard to tell from
-    a wrong position of -2.2 times the angle: order 4 alone differs. It also stands for grids of a pair that differ in
-    transverse sensitivity (SE12), which lets radial and hoop strain in as well; alike in both grids, it is a gain.
-    Typical: 1 degree.
+    The bridge then shows cos(2 angle) of the shear and sin(2 angle) of the difference of radial and hoop strain
+    (physics.md SE2). The effect also stands for grids of a pair with different transverse sensitivity (SE12); equal
+    transverse sensitivity of both grids is a gain error.
+
+    Signature: order 2 of this gauge in quadrature, 7.8 % of it per degree, because these strains are largest where the
+    shear is zero. The mean falls by cos(2 angle) only. On s1 to s4 a wrong position of -2.2 times the angle looks
+    nearly the same; only order 4 differs. Typical: 1 degree.
 
     Attributes
     ----------
     sensor : int
+        Number of the gauge, from 0 to 4.
     angle : float
-        [rad], up to 0.17 (10 degrees; a larger error is seen by eye) both ways.
+        [rad], from -0.17 to 0.17 (10 degrees; a larger error is seen by eye).
     """
 
     place = "gear"

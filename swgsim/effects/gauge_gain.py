@@ -12,15 +12,18 @@ from swgsim.gear.gear import Gear
 class GaugeGain(Effect):
     """The strain of one bridge, or of all, counts 1 + share (physics.md SE3); zeros stay.
 
-    Signature: mean and all orders of this gauge alike, at all loads and speeds. All gauges: another excitation, or an
-    amplifier that was set anew between sessions (AC9). One gauge also stands for a bond that comes off, which is a loss
-    up to all of the signal (SE15), for a radius that is off (SE2), for lead wires (SE13) and for transverse sensitivity
-    (SE12). Typical: 0.3 to 1 %, the tolerance of gauge factors.
+    For all gauges this is another excitation, or an amplifier that was set again between sessions (AC9). For one gauge
+    it also stands for a lost bond, up to the whole signal (SE15), a wrong radius (SE2), lead wires (SE13) and
+    transverse sensitivity (SE12).
+
+    Signature: mean and all orders of this gauge change by one share, at all loads and speeds. Typical: 0.3 to 1 %, the
+    tolerance of gauge factors.
 
     Attributes
     ----------
     sensor : int
-        From 0 to 4; 5: all of them.
+        Number of the gauge, from 0 to 4.
+        Number of the gauge, from 0 to 4; 5 for all of them.
     share : float
         From -1 (the gauge is off) to 0.5 (beyond, another gauge or amplifier setting, not an error).
     """

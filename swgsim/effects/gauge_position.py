@@ -10,17 +10,18 @@ from swgsim.gear.gear import Gear
 
 @dataclass(frozen=True)
 class GaugePosition(Effect):
-    """The grids of one bridge are bonded further around the collar, beta_i + shift (physics.md SE1).
+    """The grids of one bridge are bonded further around the collar, at beta_i + shift (physics.md SE1).
 
-    Signature: order n of this gauge lags by n times the shift, so that n shift A_n of the even orders, order 2 above
-    all, leaks into the difference of opposite gauges; the same at all loads and speeds, but for what the torque ripple
-    does to the signal, as that is felt at all angles at once. Typical: 0.1 to 1 degree, 0.05 to 0.5 mm.
+    Signature: order n of this gauge lags by n times the shift, at all loads and speeds. In the difference of opposite
+    gauges n shift A_n of the even orders appears, mainly order 2. The torque ripple, which all angles feel at once,
+    does not lag. Typical: 0.1 to 1 degree, 0.05 to 0.5 mm.
 
     Attributes
     ----------
     sensor : int
+        Number of the gauge, from 0 to 4.
     shift : float
-        [rad], up to 0.1 (2.8 mm on the default collar; beyond, the grid has left its pad) both ways.
+        [rad], from -0.1 to 0.1 (2.8 mm on the default collar; beyond, the grid has left its pad).
     """
 
     place = "gear"

@@ -12,12 +12,13 @@ from swgsim.gear.gear import OperatingPoint
 
 @dataclass(frozen=True)
 class GreaseSettling(Effect):
-    """After a rest or a regreasing the wave generator churns grease until it is pushed aside: viscous friction
-    b1 (1 + share exp(-t / time_constant)) at time t after the session began (physics.md DY15).
+    """After a rest or new grease the wave generator churns grease until it is pushed aside, so b1 falls with time.
 
-    Signature: input torque that falls with the time of the session towards what it was, more at high speed, whatever
-    the load; gauges all but untouched. A gear that warms up steadily does so by another law in time. Typical: 5 to 30 %
-    of the torque without load, minutes to hours.
+    Viscous friction is b1 (1 + share exp(-t / time_constant)) at the time t since the session began (physics.md DY15).
+
+    Signature: input torque that falls with time to its usual value, more at high speed and at any load; the gauges
+    hardly change. A warming gear follows another law in time. Typical: 5 to 30 % of the torque without load, minutes to
+    hours.
 
     Attributes
     ----------

@@ -11,11 +11,12 @@ from swgsim.gear.gear import OperatingPoint
 
 @dataclass(frozen=True)
 class GreaseTemperature(Effect):
-    """Viscous friction follows the temperature of each recording, b1 exp(-beta (temperature - 25 degC)) (physics.md
-    DY3); warm grease with the temperature known.
+    """Viscous friction follows the temperature of each recording, b1 exp(-beta (temperature - 25 degC)).
 
-    Signature: input torque that falls from cold to warm recordings, more at high speed, and no change at 25 degC;
-    gauges all but untouched. If all recordings are equally warm, it is a change of b1. Typical: 0.02 to 0.035 per K.
+    This is warm grease with a known temperature (physics.md DY3).
+
+    Signature: input torque that falls from cold to warm recordings, more at high speed, and no change at 25 degC; the
+    gauges hardly change. If all recordings are equally warm, it equals a change of b1. Typical: 0.02 to 0.035 per K.
 
     Attributes
     ----------

@@ -11,11 +11,13 @@ from swgsim.effects.sense import sense
 
 @dataclass(frozen=True)
 class InputFriction(Effect):
-    """Seals and the bearing of the wave generator drag more at some of its angles than at others, behind the torque
-    flange (physics.md DY5, DY13); order 1 is that of an unbalance.
+    """Seals and the bearing of the wave generator drag more at some angles of the wave generator than at others.
 
-    Signature: the order in the speed, and in the input torque the share of it that the inertia before the flange makes;
-    the same at every load, gauges all but untouched. Typical: 3 to 10 % of the running torque without load, 3 mN m.
+    The torque amplitude cos(order phi_in + phase) brakes the input behind the torque flange (physics.md DY5, DY13).
+    Order 1 is the effect input unbalance.
+
+    Signature: the order in the speed. In the input torque it shows with the share of the inertia before the flange. It
+    is equal at every load, and the gauges hardly change. Typical: 3 to 10 % of the running torque without load, 3 mN m.
 
     Attributes
     ----------
@@ -24,7 +26,7 @@ class InputFriction(Effect):
     amplitude : float
         [N m], from 0 to 0.05, which is all of that torque.
     phase : float
-        [rad].
+        Of the wave at phi_in = 0, the major axis at s1 [rad].
     """
 
     place = "drive"

@@ -10,18 +10,19 @@ from swgsim.effects.quantity import phase, size
 
 @dataclass(frozen=True)
 class InputUnbalance(Effect):
-    """Gravity turns an unbalanced wave generator on a level axis once per revolution; also run-out of a seal or an
-    Oldham coupling, behind the torque flange (an estimate, beside physics.md DY13).
+    """Gravity turns an unbalanced wave generator on a level axis; it brakes by amplitude cos(phi_in + phase).
 
-    Signature: that of motor torque ripple of order 1 but for the input torque, in which only the answer of the speed
-    control shows. Typical: 1 mN m, 10 g at 10 mm.
+    It also stands for run-out of a seal or an Oldham coupling behind the torque flange (an estimate; physics.md DY13).
+
+    Signature: that of motor torque ripple of order 1, except for the input torque, which shows only the answer of the
+    speed control. Typical: 1 mN m, 10 g at 10 mm.
 
     Attributes
     ----------
     amplitude : float
         Torque at the input [N m], from 0 to 0.02.
     phase : float
-        [rad].
+        Of the wave at phi_in = 0, the major axis at s1 [rad].
     """
 
     place = "drive"

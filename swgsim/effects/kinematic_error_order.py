@@ -1,6 +1,6 @@
 """Effect: another order of the kinematic error."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import choice, phase, size
@@ -9,11 +9,13 @@ from swgsim.gear.gear import Gear, KinematicError
 
 @dataclass(frozen=True)
 class KinematicErrorOrder(Effect):
-    """Cam, circular spline or their assembly add a wave to the kinematic error of eq. (3) (physics.md DY7).
+    """Cam, circular spline or their assembly add amplitude sin(order phi_in + phase) to phi_err of eq. (3).
 
-    Signature: the order in the output torque, so in all gauges alike, with order n + 2 and n - 2 in s1 to s4 beside
-    it. Above the resonance the output stands still and the ripple is stiffness times error, whatever the speed; it
-    grows with the load, as the gear stiffens. Typical: 0.2 to 1e-4 rad; the catalogue allows 4.4e-4 rad peak to peak.
+    The source is physics.md DY7.
+
+    Signature: the order in the output torque, so equally in all gauges; s1 to s4 also show the orders n + 2 and n - 2.
+    Above the resonance the output stands still, and the ripple is stiffness times error at any speed. It grows with the
+    load, as the gear stiffens. Typical: 0.2e-4 to 1e-4 rad; the catalogue allows 4.4e-4 rad peak to peak.
 
     Attributes
     ----------
@@ -22,7 +24,7 @@ class KinematicErrorOrder(Effect):
     amplitude : float
         At the output [rad], from 0 to 4.4e-4, twice what the catalogue allows.
     phase : float
-        Of the sine [rad].
+        Of the sine at phi_in = 0, the major axis at s1 [rad].
     """
 
     place = "gear"
@@ -34,4 +36,4 @@ class KinematicErrorOrder(Effect):
         """The gear with one more term of the kinematic error."""
         transmission = gear.transmission
         terms = (*transmission.kinematic_error, KinematicError(self.order, self.amplitude, self.phase))
-        return replace(gear, transmission=replace(transmission, kinematic_error=terms))
+        return gear.with_transmission(kinematic_error=terms)

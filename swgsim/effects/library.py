@@ -4,6 +4,7 @@ import importlib
 import sys
 from collections.abc import Mapping, Sequence
 
+from swgsim.common.checks import nearest
 from swgsim.effects.aged_grease import AgedGrease
 from swgsim.effects.amplifier_drift import AmplifierDrift
 from swgsim.effects.axial_thrust import AxialThrust
@@ -186,14 +187,17 @@ def named(name: str) -> type[Effect]:
     Raises
     ------
     ValueError
-        If there is none; it lists the library.
+        If there is none; it names those that are spelt alike.
     """
     if name in LIBRARY:
         return LIBRARY[name]
     module, _, kind = name.partition(":")
     if not all(part.isidentifier() for part in (*module.split("."), kind)):
+        near = nearest(name, LIBRARY)
+        meant = f"did you mean {' or '.join(near)}? T" if near else "t"
         raise ValueError(
-            f"unknown effect {name!r}; choose from {', '.join(sorted(LIBRARY))}, or give the import path module:Class"
+            f"unknown effect {name!r}; {meant}he library has {len(LIBRARY)}: swg effects lists them; an effect of your "
+            "own needs its import path module:Class"
         )
     if module.partition(".")[0] in sys.stdlib_module_names:
         # Not imported: some of them act when they are.

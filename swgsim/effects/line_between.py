@@ -4,17 +4,15 @@ It is what a loop that was closed gives back where no effect of the library fits
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 
 from swgsim.common.checks import require_known
-from swgsim.effects.base import Effect, Scene
+from swgsim.effects.base import Channels, Effect, Samples, Scene
 from swgsim.effects.quantity import random_phase, shape, size
 from swgsim.effects.regularity import LAWS, PATTERNS, with_wave
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 GAUGE_PATTERNS = {name: pattern for name, pattern in PATTERNS.items() if set(pattern) <= set(SENSORS)}
 
@@ -47,12 +45,10 @@ class LineBetween(Effect, ABC):
         require_known(f"law of {self.title()}", [self.law], LAWS)
 
     @abstractmethod
-    def angle(self, scene: Scene) -> Float[np.ndarray, " time"]:
+    def angle(self, scene: Scene) -> Samples:
         """How far the line has turned [rad]."""
 
-    def acquisition(
-        self, channels: Mapping[str, Float[np.ndarray, " time"]], scene: Scene
-    ) -> Mapping[str, Float[np.ndarray, " time"]]:
+    def acquisition(self, channels: Channels, scene: Scene) -> Channels:
         """The channels with the line on the gauges of the pattern."""
         amplitude = self.amplitude * LAWS[self.law](scene.point, scene.conditions)
         return with_wave(channels, self.pattern, amplitude * np.exp(1j * (self.angle(scene) - self.phase)))
@@ -72,7 +68,7 @@ class FractionalOrder(LineBetween):
 
     order: float = shape(0.5, unit="-", low=0, high=50, points=501)
 
-    def angle(self, scene: Scene) -> Float[np.ndarray, " time"]:
+    def angle(self, scene: Scene) -> Samples:
         """How far the line has turned [rad]."""
         return self.order * scene.phi_in
 
@@ -91,6 +87,6 @@ class FixedFrequency(LineBetween):
 
     frequency: float = shape(25.0, unit="Hz", low=0, high=4000, points=4001)
 
-    def angle(self, scene: Scene) -> Float[np.ndarray, " time"]:
+    def angle(self, scene: Scene) -> Samples:
         """How far the line has turned since the trigger [rad]."""
         return 2 * np.pi * self.frequency * scene.time

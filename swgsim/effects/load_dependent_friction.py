@@ -14,11 +14,12 @@ RATED = 31.0
 
 @dataclass(frozen=True)
 class LoadDependentFriction(Effect):
-    """Load thins the film between the flanks, mu (1 + c (T_out / 31 N m - 1)) (physics.md DY4): the first term of any
-    law mu(T) about the rated torque, at which mu was fitted.
+    """Load thins the film between the flanks, so mu is multiplied by 1 + c (T_out / 31 N m - 1).
 
-    Signature: input torque that is curved over the load, with no change at 31 N m; the torque ripple changes
-    a little against it. Typical: 0.1, an estimate; mu from 0.05 to 0.12 over all loads.
+    This is the first term of any law mu(T) about the rated torque, for which mu holds (physics.md DY4).
+
+    Signature: input torque that is curved over the load, with no change at 31 N m. The torque ripple changes slightly
+    in the opposite sense. Typical: 0.1, an estimate; mu from 0.05 to 0.12 over all loads.
 
     Attributes
     ----------

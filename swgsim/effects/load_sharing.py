@@ -12,17 +12,18 @@ from swgsim.gear.gear import OperatingPoint
 
 @dataclass(frozen=True)
 class LoadSharing(Effect):
-    """Load bends the teeth and spreads over more of them: share^p with p = exp(-change T / 70 N m) (physics.md FS8).
+    """Load bends the teeth, so more of them share it: the shares are raised to the power p = exp(-change T / 70 N m).
 
-    Without load, the force follows the engagement depth (p = 1); the engaged arc stays +-45 degrees of each lobe, only
-    its edges carry more. Signature: what the teeth contribute to even orders bends away from proportion to load, alike
-    in opposite gauges. Typical: 0.5, which at 70 N m takes 5 % of their order 2 and 30 % of order 4; 5 to 15 % is the
-    estimate.
+    The source is physics.md FS8. Without load the force follows the engagement depth (p = 1). The engaged arc stays
+    +-45 degrees of each lobe; its edges carry more.
+
+    Signature: the contribution of the teeth to even orders is not in proportion to load, equally in opposite gauges.
+    Typical: 0.5, which at 70 N m takes 5 % of their order 2 and 30 % of order 4; 5 to 15 % is the estimate.
 
     Attributes
     ----------
     change : float
-        Fall of ln p up to 70 N m, up to 1 either way.
+        Fall of ln p up to 70 N m, from -1 to 1.
     """
 
     place = "mesh"

@@ -24,10 +24,10 @@ class _Ripple(Effect):
 
 @dataclass(frozen=True)
 class LoadTorqueRipple(Effect):
-    """The brake does not hold its torque: share T_out cos(order phi_in + phase) (physics.md DY10).
+    """The brake does not hold its torque: the load gains share T_out cos(order phi_in + phase) (physics.md DY10).
 
-    Signature: the order in the output torque, so in all gauges alike, in proportion to the load; largest near the
-    resonance and falling with speed above it, as the load's inertia takes the ripple. Typical: 0.5 to 3 % of the load.
+    Signature: the order in the output torque, so equally in all gauges, in proportion to the load. It is largest near
+    the resonance and falls with speed above, as the load's inertia takes the ripple. Typical: 0.5 to 3 % of the load.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ class LoadTorqueRipple(Effect):
     share : float
         Of the load that is set, from 0 to 0.1.
     phase : float
-        [rad].
+        Of the wave at phi_in = 0, the major axis at s1 [rad].
     """
 
     place = "drive"

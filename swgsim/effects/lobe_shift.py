@@ -11,17 +11,19 @@ from swgsim.gear.gear import OperatingPoint
 
 @dataclass(frozen=True)
 class LobeShift(Effect):
-    """Load distorts the ellipse, and its lobes turn ahead of the cam by an angle in proportion to it.
+    """Load distorts the ellipse, so that its lobes turn ahead of the cam by angle T / 70 N m.
 
-    The displacement is that at psi + angle T / 70 N m (physics.md FS7); what is fixed to the flex spline and listed
-    before is turned along, which matters little at such angles. Signature: all lines of order k change by the phase
-    k angle T / 70 N m, alike in opposite gauges. Wind-up between the wave generator and the sensor of its angle is the
-    same. Typical: 1 to 5 degrees at 70 N m (estimate).
+    The displacement is that at psi + angle T / 70 N m (physics.md FS7). Displacements that are fixed to the flex spline
+    and listed before this effect turn too, which matters little at such angles. Wind-up between the wave generator and
+    its encoder is the same.
+
+    Signature: all lines of order k change by the phase k angle T / 70 N m, equally in opposite gauges. Typical: 1 to 5
+    degrees at 70 N m (estimate).
 
     Attributes
     ----------
     angle : float
-        At 70 N m [rad], up to 0.2 either way.
+        At 70 N m [rad], from -0.2 to 0.2.
     """
 
     place = "wave generator"

@@ -13,14 +13,14 @@ END = 0.05
 
 @dataclass(frozen=True)
 class LostMotion(Effect):
-    """Worn flanks leave a gap: the stiffness carries nothing while the twist crosses it (physics.md DY12).
+    """Worn flanks leave a gap: the stiffness carries no torque while the twist crosses it (physics.md DY12).
 
-    The twist counts from the loaded flank, as no channel shows where the output stands: above the gap T_stiff is that
-    of eq. (2), in it zero, and below it that of the twist plus the gap, there with the secant stiffness, which is exact
-    but for the cubic term of a small twist.
+    The twist counts from the loaded flank, as no channel shows the position of the output. Above the gap T_stiff is
+    that of eq. (2), in the gap zero, and below it that of the twist plus the gap. There the secant stiffness is used,
+    which is exact except for the cubic term of a small twist.
 
-    Signature: none while the load keeps the flank, which the default gear's own friction does even without load;
-    impacts at many orders where the torque ripple turns T_stiff around, without load near the resonance.
+    Signature: none while the load keeps the flank, which the default gear's own friction does even without load.
+    Impacts at many orders appear where the torque ripple changes the sign of T_stiff: without load near the resonance.
     Typical: 0.2 to 3 arcmin in all.
 
     Attributes

@@ -1,12 +1,10 @@
 """Disturbance: mains hum."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Float
 
-from swgsim.effects.base import Effect, Scene
+from swgsim.effects.base import Channels, Effect, Scene
 from swgsim.effects.one_gauge import ALL, weights
 from swgsim.effects.quantity import choice, choice_among, random_phase, shape, size
 from swgsim.effects.turns import on_gauges
@@ -14,11 +12,13 @@ from swgsim.effects.turns import on_gauges
 
 @dataclass(frozen=True)
 class MainsHum(Effect):
-    """The mains or one of its harmonics couples into all bridges alike, or into the cable of one (physics.md SE20).
+    """The mains or one of its harmonics couples into all bridges equally, or into the cable of one (physics.md SE20).
 
-    Signature: a line at a fixed frequency, so at another order at every speed, alike in all gauges or in one, with
-    another phase in every recording, whatever the load. Cables of several may hum differently, and at several
-    harmonics. A line elsewhere is something else. Typical: 0.1 to 1 % of order 2, 0.0002 to 0.002 mV/V.
+    Signals gain amplitude cos(2 pi frequency t + phase). The cables of several gauges may hum differently, and at
+    several harmonics.
+
+    Signature: a line at a fixed frequency, so at another order at every speed, in all gauges or in one. Its phase
+    differs in every recording and does not depend on load. Typical: 0.1 to 1 % of order 2, 0.0002 to 0.002 mV/V.
 
     Attributes
     ----------
@@ -29,9 +29,10 @@ class MainsHum(Effect):
     phase : float
         At the trigger [rad].
     sensor : int
-        From 0 to 4; 5: all of them.
+        Number of the gauge, from 0 to 4.
+        Number of the gauge, from 0 to 4; 5 for all of them.
     deviation : float
-        Share by which the grid is faster, up to 0.004 both ways, what large grids allow themselves.
+        Share by which the grid is faster, from -0.004 to 0.004, what large grids allow themselves.
     """
 
     place = "acquisition"
@@ -45,9 +46,7 @@ class MainsHum(Effect):
         """The hum of each gauge."""
         return tuple(replace(self, sensor=s) for s in range(ALL))
 
-    def acquisition(
-        self, channels: Mapping[str, Float[np.ndarray, " time"]], scene: Scene
-    ) -> Mapping[str, Float[np.ndarray, " time"]]:
+    def acquisition(self, channels: Channels, scene: Scene) -> Channels:
         """The channels with hum on the gauges."""
         frequency = self.frequency * (1 + self.deviation)
         hum = self.amplitude * np.cos(2 * np.pi * frequency * scene.time + self.phase)

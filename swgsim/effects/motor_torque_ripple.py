@@ -10,11 +10,13 @@ from swgsim.effects.quantity import choice, phase, size
 
 @dataclass(frozen=True)
 class MotorTorqueRipple(Effect):
-    """Cogging, current offsets and the controller add a wave to the torque of the motor (physics.md DY9).
+    """Cogging, current offsets and the controller add amplitude cos(order phi_in + phase) to the motor's torque.
 
-    Signature: the order in the input torque, its full amplitude above the bandwidth of the speed control, and in the
-    speed, where it falls with order and speed; the same at every load, gauges all but untouched. Typical: 1 to 3 % of
-    the motor's torque, 0.01 N m; orders 1, 2, number of pole pairs and six times that.
+    The source is physics.md DY9.
+
+    Signature: the order in the input torque, with its full amplitude above the bandwidth of the speed control. In the
+    speed it falls with order and speed. It is equal at every load, and the gauges hardly change. Typical: 1 to 3 % of
+    the motor's torque, 0.01 N m; orders 1, 2, the number of pole pairs and six times it.
 
     Attributes
     ----------
@@ -23,7 +25,7 @@ class MotorTorqueRipple(Effect):
     amplitude : float
         [N m], from 0 to 0.1, beyond which the speed would ripple by per cents.
     phase : float
-        [rad].
+        Of the wave at phi_in = 0, the major axis at s1 [rad].
     """
 
     place = "drive"

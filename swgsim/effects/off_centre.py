@@ -3,10 +3,7 @@
 from abc import abstractmethod
 from typing import Any
 
-import numpy as np
-from jaxtyping import Float
-
-from swgsim.effects.base import Effect
+from swgsim.effects.base import Effect, Field, Psi, Theta
 from swgsim.effects.quantity import shape
 
 
@@ -20,7 +17,7 @@ def unequal_lobes() -> Any:
 
 
 class OffCentre(Effect):
-    """The lobe that sinks deeper into the teeth carries more of the load; how much more rests on how far they give way.
+    """The lobe that engages deeper carries more of the load; how much more depends on the stiffness of the teeth.
 
     Attributes
     ----------
@@ -32,25 +29,13 @@ class OffCentre(Effect):
     unequal: float
 
     @abstractmethod
-    def shift(
-        self, psi: Float[np.ndarray, " psi"], theta: Float[np.ndarray, " theta"]
-    ) -> Float[np.ndarray, "psi theta"] | Float[np.ndarray, " theta"]:
+    def shift(self, psi: Psi, theta: Theta) -> Field | Theta:
         """The radial part of the shift [m]."""
 
-    def wave_generator(
-        self,
-        displacement: Float[np.ndarray, "psi theta"],
-        psi: Float[np.ndarray, " psi"],
-        theta: Float[np.ndarray, " theta"],
-    ) -> Float[np.ndarray, "psi theta"]:
+    def wave_generator(self, displacement: Field, psi: Psi, theta: Theta) -> Field:
         """The displacement plus the shift."""
         return displacement + self.shift(psi, theta)
 
-    def engaged(
-        self,
-        depth: Float[np.ndarray, "psi theta"],
-        psi: Float[np.ndarray, " psi"],
-        theta: Float[np.ndarray, " theta"],
-    ) -> Float[np.ndarray, "psi theta"]:
+    def engaged(self, depth: Field, psi: Psi, theta: Theta) -> Field:
         """The depth, with as much of the shift as loads the lobes unequally."""
         return depth + (self.unequal - 1) * self.shift(psi, theta)

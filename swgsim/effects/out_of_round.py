@@ -3,19 +3,20 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 
-from swgsim.effects.base import Effect
+from swgsim.effects.base import Effect, Field, Psi, Theta
 from swgsim.effects.quantity import choice, phase, size
 
 
 @dataclass(frozen=True)
 class OutOfRound(Effect):
-    """The flex spline is not round when free, or its housing is not: w cos(n theta - phase), fixed to it.
+    """The free flex spline or its housing is not round: a displacement amplitude cos(n theta - phase), fixed to it.
 
-    From heat treatment, residual stress or clamping (physics.md FS14). Signature: offsets without load, for n = 2 alike
-    in opposite gauges and opposite in neighbours, for n = 3 opposite in opposite gauges, for n = 4 alike in all; under
-    load even orders, as teeth engage more deeply where it bulges. Typical: 5 to 30 um (estimate).
+    Causes are heat treatment, residual stress or clamping (physics.md FS14).
+
+    Signature: offsets without load. For n = 2 they are equal in opposite gauges and opposite in neighbours, for n = 3
+    opposite in opposite gauges, for n = 4 equal in all. Under load even orders appear, as teeth engage deeper at the
+    bulges. Typical: 5 to 30 um (estimate).
 
     Attributes
     ----------
@@ -24,7 +25,7 @@ class OutOfRound(Effect):
     amplitude : float
         w [m], from 0 to 60 um.
     phase : float
-        It bulges at phase / n [rad].
+        The sleeve bulges at phase / n, from gauge s1 [rad].
     """
 
     place = "wave generator"
@@ -32,11 +33,6 @@ class OutOfRound(Effect):
     amplitude: float = size(unit="m", low=0, high=60e-6, typical=10e-6)
     phase: float = phase()
 
-    def wave_generator(
-        self,
-        displacement: Float[np.ndarray, "psi theta"],
-        psi: Float[np.ndarray, " psi"],
-        theta: Float[np.ndarray, " theta"],
-    ) -> Float[np.ndarray, "psi theta"]:
+    def wave_generator(self, displacement: Field, psi: Psi, theta: Theta) -> Field:
         """The displacement plus the bulges."""
         return displacement + self.amplitude * np.cos(self.n * theta - self.phase)

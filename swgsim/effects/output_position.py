@@ -1,6 +1,6 @@
 """Effect: where the output stands when the recording begins."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import angle
@@ -9,10 +9,11 @@ from swgsim.gear.gear import Gear
 
 @dataclass(frozen=True)
 class OutputPosition(Effect):
-    """The friction b3 sin(phi_out + theta_b) of eq. (5) depends on the output's angle, which changes from one recording
-    to the next while a run of the chain always begins near phi_out = 0.
+    """The output stands at another angle when the recording begins, which shifts b3 sin(phi_out + theta_b) of eq. (5).
 
-    Signature: efficiency varies by b3 over b0, a few per cent of the dry friction. Typical: any angle.
+    A run of the chain always begins near phi_out = 0; on a bench the angle differs from recording to recording.
+
+    Signature: the efficiency varies by b3 over b0, a few per cent of the constant friction. Typical: any angle.
 
     Attributes
     ----------
@@ -25,5 +26,4 @@ class OutputPosition(Effect):
 
     def gear(self, gear: Gear) -> Gear:
         """The gear with its output turned on."""
-        transmission = gear.transmission
-        return replace(gear, transmission=replace(transmission, theta_b=transmission.theta_b + self.angle))
+        return gear.with_transmission(theta_b=gear.transmission.theta_b + self.angle)

@@ -1,6 +1,6 @@
 """Effect: scatter of the gear's parameters from one recording to the next."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import size
@@ -9,7 +9,7 @@ from swgsim.gear.gear import Gear
 
 @dataclass(frozen=True)
 class ParameterScatter(Effect):
-    """Damping and stiffness of the same gear differ a little between recordings (grease, seating); an estimate.
+    """Damping and stiffness of the same gear differ slightly between recordings, by grease and seating (estimate).
 
     Attributes
     ----------
@@ -24,4 +24,4 @@ class ParameterScatter(Effect):
     def gear(self, gear: Gear) -> Gear:
         """The gear with both parameters scaled."""
         t = gear.transmission
-        return replace(gear, transmission=replace(t, b1=self.b1_ratio * t.b1, k1=self.k1_ratio * t.k1))
+        return gear.with_transmission(b1=self.b1_ratio * t.b1, k1=self.k1_ratio * t.k1)

@@ -11,11 +11,13 @@ from swgsim.effects.sense import sense
 
 @dataclass(frozen=True)
 class PositionFriction(Effect):
-    """The friction of eq. (5) varies within a revolution of the wave generator, b cos(order phi_in + phase), as one of
-    the flanks or of the lobes is tighter (physics.md DY5).
+    """A flank or lobe is tighter: the friction of eq. (5) gains amplitude cos(order phi_in + phase).
 
-    Signature: the order in the output torque, so in all gauges alike, above the resonance b / sin(alpha_tooth) at every
-    load and speed. A kinematic error of the order grows with the load. Typical: 3 to 10 % of the friction.
+    The source is physics.md DY5.
+
+    Signature: the order in the output torque, so equally in all gauges. Above the resonance it is amplitude /
+    sin(alpha_tooth) at every load and speed. A kinematic error of the same order grows with the load. Typical: 3 to 10
+    % of the friction.
 
     Attributes
     ----------
@@ -24,7 +26,7 @@ class PositionFriction(Effect):
     amplitude : float
         [N m], from 0 to 1.4, which is all of b0.
     phase : float
-        [rad].
+        Of the wave at phi_in = 0, the major axis at s1 [rad].
     """
 
     place = "drive"

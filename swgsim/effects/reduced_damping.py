@@ -1,6 +1,6 @@
 """Fault: reduced damping."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import size
@@ -9,9 +9,12 @@ from swgsim.gear.gear import Gear
 
 @dataclass(frozen=True)
 class ReducedDamping(Effect):
-    """The linear damping b1 of eq. (5) drops, as flanks smooth and grease spreads during run-in (section II-A).
+    """Flanks smooth and grease spreads during run-in, so the linear damping b1 of eq. (5) falls.
 
-    Signature: higher efficiency, gauges all but untouched. Typical: b1 falls by one third, efficiency rises by 7 %.
+    This is a fault of Table I (section II-A).
+
+    Signature: higher efficiency; the gauges hardly change. Typical: with b1 lower by one third, the efficiency is
+    higher by 7 %.
 
     Attributes
     ----------
@@ -24,5 +27,4 @@ class ReducedDamping(Effect):
 
     def gear(self, gear: Gear) -> Gear:
         """The gear with less linear damping."""
-        transmission = gear.transmission
-        return replace(gear, transmission=replace(transmission, b1=self.b1_ratio * transmission.b1))
+        return gear.with_transmission(b1=self.b1_ratio * gear.transmission.b1)

@@ -1,6 +1,6 @@
 """Fault: reduced stiffness."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import size
@@ -9,9 +9,11 @@ from swgsim.gear.gear import Gear
 
 @dataclass(frozen=True)
 class ReducedStiffness(Effect):
-    """The linear stiffness k1 of eq. (2) drops, as in the first hours of run-in (section II-A, Fig. 4).
+    """The linear stiffness k1 of eq. (2) falls, as in the first hours of run-in.
 
-    Signature: the torque ripple that the kinematic error excites changes slightly, seen best in s0. Typical: -20 %.
+    This is a fault of Table I (section II-A, Fig. 4).
+
+    Signature: the torque ripple that the kinematic error excites changes slightly, most visibly in s0. Typical: -20 %.
 
     Attributes
     ----------
@@ -24,5 +26,4 @@ class ReducedStiffness(Effect):
 
     def gear(self, gear: Gear) -> Gear:
         """The gear with less linear stiffness."""
-        transmission = gear.transmission
-        return replace(gear, transmission=replace(transmission, k1=self.k1_ratio * transmission.k1))
+        return gear.with_transmission(k1=self.k1_ratio * gear.transmission.k1)

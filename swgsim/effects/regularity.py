@@ -4,10 +4,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Complex, Float
+from jaxtyping import Complex
 
 from swgsim.common.checks import require_known
-from swgsim.effects.base import Effect, Scene
+from swgsim.effects.base import Channels, Effect, Scene
 from swgsim.effects.frozen import FULL_LOAD, FULL_SPEED
 from swgsim.effects.quantity import choice, phase, size
 from swgsim.gear.conditions import Conditions
@@ -48,10 +48,11 @@ LAWS: Mapping[str, Callable[[OperatingPoint, Conditions], float]] = {
 
 @dataclass(frozen=True)
 class Regularity(Effect):
-    """One order of the wave generator on the recorded channels, in one pattern and by one law.
+    """One order of the wave generator on the recorded channels, with one pattern and one law, without a known cause.
 
-    It is what a loop that was closed adds where no effect of the library fits: a patch that predicts and names no
-    cause. Signature: as its parameters say. Typical: a hundredth of order 2.
+    The identification adds it where no effect of the library fits. It predicts signals but names no cause.
+
+    Signature: as the parameters say. Typical: one hundredth of order 2.
 
     Attributes
     ----------
@@ -80,16 +81,12 @@ class Regularity(Effect):
         require_known(f"pattern of {self.title()}", [self.pattern], PATTERNS)
         require_known(f"law of {self.title()}", [self.law], LAWS)
 
-    def acquisition(
-        self, channels: Mapping[str, Float[np.ndarray, " time"]], scene: Scene
-    ) -> Mapping[str, Float[np.ndarray, " time"]]:
+    def acquisition(self, channels: Channels, scene: Scene) -> Channels:
         """The channels with the order on those of the pattern."""
         amplitude = self.amplitude * LAWS[self.law](scene.point, scene.conditions)
         return with_wave(channels, self.pattern, amplitude * np.exp(1j * (self.order * scene.phi_in - self.phase)))
 
 
-def with_wave(
-    channels: Mapping[str, Float[np.ndarray, " time"]], pattern: str, turn: Complex[np.ndarray, " time"]
-) -> Mapping[str, Float[np.ndarray, " time"]]:
+def with_wave(channels: Channels, pattern: str, turn: Complex[np.ndarray, " time"]) -> Channels:
     """The channels with a wave on those of a pattern."""
     return {**channels, **{name: channels[name] + (weight * turn).real for name, weight in PATTERNS[pattern].items()}}

@@ -8,18 +8,22 @@ from swgsim.effects.quantity import angle, size
 
 @dataclass(frozen=True)
 class RootToothCrack(Effect):
-    """A crack at the root of a tooth: the stiffness between two neighbouring nodes drops (section II-B).
+    """A crack at the root of a tooth: the stiffness between two neighbouring columns of nodes falls.
 
-    Signature: a local hinge in the rim; even orders of all gauges change in amplitude and phase, locked to the position
-    of the crack. The bars that cross the gap are weakened, the diagonal ones as well: with the circumferential ones
-    alone, as in the paper, the gauges hardly notice (docs/chain.md).
+    This is a fault of Table I (section II-B). All bars of the toothed band that cross the gap lose stiffness, also the
+    diagonal ones. If only the circumferential bars did, as in the paper, the gauges would hardly notice
+    (docs/chain.md). :func:`swgsim.chain.influence._cracked` applies it to the truss.
+
+    Signature: a local hinge in the rim. Even orders of all gauges change in amplitude and phase, depending on the
+    position of the crack.
 
     Attributes
     ----------
     stiffness_ratio : float
         Remaining stiffness of one tooth pitch of the rim, from 0.001 (torn through) to 1.
     theta : float
-        Position of the crack [rad]; the crack is in the gap of the mesh that begins at or holds this angle.
+        Position of the crack, from gauge s1 in the sense of phi_in [rad]. It is in the gap between sectors
+        of the mesh that begins at or holds this angle.
     """
 
     place = "structure"

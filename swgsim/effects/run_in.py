@@ -1,6 +1,6 @@
 """Effect: run-in of a new gear."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import exp
 
 from swgsim.effects.base import Effect
@@ -16,10 +16,11 @@ B1_HOURS, B1_LOSS = 100.0, 0.4968
 
 @dataclass(frozen=True)
 class RunIn(Effect):
-    """Teeth and wave generator settle and smooth in the first hours of operation (section II-A).
+    """Teeth and wave generator settle and smooth in the first hours of operation, so k1 and b1 fall.
 
-    Signature: stiffness falls by 20 % within 10 h and stays; efficiency rises by 10 % within 250 h. The paper takes
-    these healthy states as its faults reduced stiffness and reduced damping.
+    The paper takes these states as its faults reduced stiffness and reduced damping (section II-A).
+
+    Signature: the stiffness falls by 20 % within 10 h and stays; the efficiency rises by 10 % within 250 h.
 
     Attributes
     ----------
@@ -35,4 +36,4 @@ class RunIn(Effect):
         transmission = gear.transmission
         k1 = transmission.k1 * (1 - K1_LOSS * (1 - exp(-self.hours / K1_HOURS)))
         b1 = transmission.b1 * (1 - B1_LOSS * (1 - exp(-self.hours / B1_HOURS)))
-        return replace(gear, transmission=replace(transmission, k1=k1, b1=b1))
+        return gear.with_transmission(k1=k1, b1=b1)

@@ -11,8 +11,8 @@ from swgsim.effects.sense import sense
 class SealFriction(Effect):
     """Seals, motor bearings or an Oldham coupling brake the input by a constant torque (physics.md DY13).
 
-    Signature: input torque that is higher by the same amount at every speed and load; gauges untouched. All but the
-    same as a higher b0, which acts behind the gear ratio and also brakes the flanks. Typical: 5 to 20 mN m.
+    Signature: a higher input torque, by the same amount at every speed and load; the gauges do not change. A higher b0
+    is nearly the same, but acts behind the gear ratio and also brakes the flanks. Typical: 5 to 20 mN m.
 
     Attributes
     ----------

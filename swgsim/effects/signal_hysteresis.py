@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 
-from swgsim.effects.base import Effect, Scene
+from swgsim.effects.base import Effect, Scene, Signals
 from swgsim.effects.quantity import size
 from swgsim.effects.turns import samples_per_turn
 
@@ -15,13 +14,14 @@ PLAYS = 10
 
 @dataclass(frozen=True)
 class SignalHysteresis(Effect):
-    """Falling strain shows more than rising strain, however fast it changes (physics.md SE8). Each signal runs through
-    its own loop, that of evenly spread plays (Prandtl-Ishlinskii): parabolic branches, and smaller loops inside that
-    close. One revolution runs ahead, so that the loop is settled.
+    """Strain and bond have a hysteresis: falling strain shows more than rising strain, at any speed (physics.md SE8).
 
-    Signature: order 2 of s1 to s4 lags by 0.85 share, the same at all speeds, unlike a filter; order 6 at 0.17 share of
-    order 2; mean and amplitude stay. Typical: 2.19 % of full scale, as measured on an integrated sensor with slow load
-    cycles; no source says how much is left in the cycle of the wave generator.
+    Each signal runs through its own loop of evenly spread plays (Prandtl-Ishlinskii). The branches are parabolic, and
+    smaller loops inside close. One revolution runs ahead, so that the loop is settled.
+
+    Signature: order 2 of s1 to s4 lags by 0.85 share at all speeds, unlike with a filter. Order 6 is 0.17 share of
+    order 2; mean and amplitude stay. Typical: 2.19 % of full scale, measured on an integrated sensor with slow load
+    cycles. No source gives the value for the fast cycles of the wave generator.
 
     Attributes
     ----------
@@ -33,7 +33,7 @@ class SignalHysteresis(Effect):
     sharp = True
     share: float = size(unit="-", low=0, high=0.2, typical=0.02)
 
-    def gauge(self, signals: Float[np.ndarray, "5 time"], scene: Scene) -> Float[np.ndarray, "5 time"]:
+    def gauge(self, signals: Signals, scene: Scene) -> Signals:
         """The signals plus 4 share times the distance of the mean play from its middle line, half the signal."""
         low, high = signals.min(axis=1), signals.max(axis=1)
         x = signals - ((low + high) / 2)[:, None]

@@ -11,16 +11,17 @@ from swgsim.gear.gear import OperatingPoint
 
 @dataclass(frozen=True)
 class SpeedDeformation(Effect):
-    """Inertia of the rim under the travelling wave: displacement (1 + share (n / 4000 rpm)^2) (physics.md FS16).
+    """Inertia of the rim under the travelling wave scales the displacement by 1 + share (n / 4000 rpm)^2.
 
-    Shell modes far above the orders of the deflection act by the same law (FS15). Signature: orders 2 and 4 of the
-    deflection, alike in opposite gauges, change with the square of speed, without regard to load. Typical: below 1e-3
-    at 4000 rpm (estimate).
+    The source is physics.md FS16. Shell modes far above the orders of the deflection act by the same law (FS15).
+
+    Signature: orders 2 and 4 of the deflection change with the square of speed, equally in opposite gauges and at any
+    load. Typical: below 1e-3 at 4000 rpm (estimate).
 
     Attributes
     ----------
     share : float
-        Of the deflection at 4000 rpm, up to 0.02 either way.
+        Of the deflection at 4000 rpm, from -0.02 to 0.02.
     """
 
     place = "wave generator"

@@ -14,12 +14,12 @@ J_IN = Transmission().J_in
 
 @dataclass(frozen=True)
 class SpeedRipple(Effect):
-    """The drive turns unevenly by a share of its speed, n (1 + share cos(order phi_in + phase)), as a resolver or a
-    speed control with a fault of its own makes it (physics.md DY9); the torque that this takes on the inertia of the
-    input is added.
+    """The drive turns unevenly, n (1 + share cos(order phi_in + phase)), by a faulty resolver or speed control.
+
+    The effect adds the torque that this takes on the inertia of the input (physics.md DY9).
 
     Signature: the order in the speed, in proportion to it, and in the input torque with the square of the speed, at
-    every load; gauges all but untouched. A motor torque ripple is the same torque at every speed. Typical: 0.1 to 1 %.
+    every load; the gauges hardly change. A motor torque ripple is one torque at every speed. Typical: 0.1 to 1 %.
 
     Attributes
     ----------
@@ -28,7 +28,7 @@ class SpeedRipple(Effect):
     share : float
         Of the speed, from 0 to 0.03, beyond which drives trip; above the bandwidth of the speed control.
     phase : float
-        [rad].
+        Of the wave at phi_in = 0, the major axis at s1 [rad].
     """
 
     place = "drive"

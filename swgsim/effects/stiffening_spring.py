@@ -1,6 +1,6 @@
 """Effect: how much the gear stiffens under load."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import size
@@ -9,9 +9,9 @@ from swgsim.gear.gear import Gear
 
 @dataclass(frozen=True)
 class StiffeningSpring(Effect):
-    """The cubic stiffness k2 of eq. (2) is another one than the gear's (physics.md DY1).
+    """The cubic stiffness k2 of eq. (2) differs from that of the nominal gear (physics.md DY1).
 
-    Signature: the torque ripple that the kinematic error excites changes at high load, hardly at low load, where a
+    Signature: the torque ripple that the kinematic error excites changes at high load and hardly at low load, where a
     change of k1 shows. Typical: 30 %, an estimate; catalogues give K3 = 1.6 K1.
 
     Attributes
@@ -25,5 +25,4 @@ class StiffeningSpring(Effect):
 
     def gear(self, gear: Gear) -> Gear:
         """The gear with another cubic stiffness."""
-        transmission = gear.transmission
-        return replace(gear, transmission=replace(transmission, k2=transmission.k2 * (1 + self.share)))
+        return gear.with_transmission(k2=gear.transmission.k2 * (1 + self.share))

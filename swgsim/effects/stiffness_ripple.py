@@ -10,10 +10,10 @@ from swgsim.effects.quantity import choice, phase, size
 
 @dataclass(frozen=True)
 class StiffnessRipple(Effect):
-    """As the lobes pass, the stiffness of eq. (2) varies by 1 + e cos(order phi_in + phase) (physics.md DY8).
+    """As the lobes pass, the stiffness of eq. (2) varies by 1 + share cos(order phi_in + phase) (physics.md DY8).
 
-    Signature: the order in the output torque, so in all gauges alike, growing with the load; largest near the
-    resonance. A kinematic error, which grows with the load by far less, is a near double at a single load. Typical:
+    Signature: the order in the output torque, so equally in all gauges. It grows with the load and is largest near the
+    resonance. A kinematic error grows far less with the load, but at a single load it is nearly the same. Typical:
     0.02, an estimate.
 
     Attributes
@@ -23,7 +23,7 @@ class StiffnessRipple(Effect):
     share : float
         e, from 0 to 0.2.
     phase : float
-        [rad].
+        Of the wave at phi_in = 0, the major axis at s1 [rad].
     """
 
     place = "drive"

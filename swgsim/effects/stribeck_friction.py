@@ -11,12 +11,13 @@ from swgsim.effects.sense import sense
 
 @dataclass(frozen=True)
 class StribeckFriction(Effect):
-    """Where speed no longer carries the flanks on a film, T_fric rises by b_s exp(-(v / v_s)^2) (physics.md DY2).
+    """At low speed no film carries the flanks, so T_fric rises by b_s exp(-(v / v_s)^2) (physics.md DY2).
 
-    Signature: more input torque at low speed, at every load alike, and none at high speed. At 100, 500, 2000 and
-    4000 rpm the flanks of a gear of ratio 100 slide at 0.21, 1.0, 4.1 and 8.3 rad/s, eq. (6): below 500 rpm the typical
-    v_s shows; from two speeds of 2000 rpm and more it cannot be told from b0, or it is not there at all.
-    Typical: static friction is 1.0 to 1.5 times the kinetic one b0.
+    The sliding speed v is that of eq. (6). At 100, 500, 2000 and 4000 rpm it is 0.21, 1.0, 4.1 and 8.3 rad/s for a
+    ratio of 100. With the typical v_s the effect therefore shows below 500 rpm.
+
+    Signature: more input torque at low speed, equally at every load, and none at high speed. Two speeds of 2000 rpm and
+    more cannot separate it from b0, or do not show it. Typical: static friction is 1.0 to 1.5 times the kinetic one b0.
 
     Attributes
     ----------

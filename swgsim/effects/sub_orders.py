@@ -1,21 +1,20 @@
 """Disturbance: sub-harmonics of the input speed."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 
-from swgsim.effects.base import Effect, Scene
+from swgsim.effects.base import Channels, Effect, Scene
 from swgsim.effects.quantity import choice, random_phase, size
 from swgsim.effects.turns import on_gauges
 
 
 @dataclass(frozen=True)
 class SubOrders(Effect):
-    """One line of eq. (10), a_j sin(phi_in / j + alpha_j), with a phase of its own in every gauge and recording. The
-    cage of the wave generator's bearing, at order 0.45 to 0.46, is near j = 2 (physics.md FS11). The paper also draws
-    the amplitudes anew; here they are the size.
+    """One line of the disturbance of eq. (10): every gauge gains a_j sin(phi_in / j + alpha_j).
+
+    The phases differ in every gauge and recording. The paper also draws the amplitudes; here they are the size. The
+    cage of the wave generator's bearing, at order 0.45 to 0.46, is near j = 2 (physics.md FS11).
 
     Signature: order 1 / j in all gauges, without a pattern, at all loads and speeds. Typical: 0.1 to 1 % of order 2.
 
@@ -38,9 +37,7 @@ class SubOrders(Effect):
     phase_3: float = random_phase()
     phase_4: float = random_phase()
 
-    def acquisition(
-        self, channels: Mapping[str, Float[np.ndarray, " time"]], scene: Scene
-    ) -> Mapping[str, Float[np.ndarray, " time"]]:
+    def acquisition(self, channels: Channels, scene: Scene) -> Channels:
         """The channels with the line on the gauges."""
         phases = (self.phase_0, self.phase_1, self.phase_2, self.phase_3, self.phase_4)
         return on_gauges(

@@ -11,16 +11,16 @@ from swgsim.gear.gear import OperatingPoint
 
 @dataclass(frozen=True)
 class ThermalGrowth(Effect):
-    """The wave generator grows against the flex spline as the gear warms: displacement (1 + share dT).
+    """The warming wave generator grows against the flex spline: the displacement scales by 1 + share dT.
 
-    Signature: orders 2 and 4 of the deflection, alike in opposite gauges, change with temperature, without regard to
-    load or speed. Typical: 1.2e-3 per K if the wave generator alone warms (11.5e-6 / K of 21.6 mm over 0.216 mm;
-    physics.md FS22), next to nothing if both warm alike, negative if the flex spline is the warmer one.
+    Signature: orders 2 and 4 of the deflection change with temperature, equally in opposite gauges and at any load and
+    speed. Typical: 1.2e-3 per K if only the wave generator warms (11.5e-6 / K of 21.6 mm over 0.216 mm; physics.md
+    FS22). It is nearly 0 if both warm alike, and negative if the flex spline is warmer.
 
     Attributes
     ----------
     share : float
-        Of the deflection per kelvin above the reference temperature [1/K], up to 3e-3 either way.
+        Of the deflection per kelvin above the reference temperature [1/K], from -3e-3 to 3e-3.
     """
 
     place = "wave generator"

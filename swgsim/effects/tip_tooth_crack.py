@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 
-from swgsim.effects.base import Effect
+from swgsim.effects.base import Effect, Field, Psi, Theta
 from swgsim.effects.quantity import angle, choice, shape, size
 
 # Pitch of one tooth of 200 [rad].
@@ -14,18 +13,20 @@ TOOTH = 2 * np.pi / 200
 
 @dataclass(frozen=True)
 class TipToothCrack(Effect):
-    """The tip of a tooth is cracked or gone: its force is strongly reduced (section II-B). The other teeth take it
-    over, or, where something else holds the output as well, nobody does; the paper does not say which.
+    """The tip of a tooth is cracked or gone, so its force F_tooth falls strongly.
+
+    This is a fault of Table I (section II-B). The other teeth take the force over, unless something else also holds the
+    output; the paper does not say which.
 
     Signature: short, small deviations twice per revolution, when a lobe passes the tooth; they grow with load. If
-    nobody takes the force over, all gauges, s0 above all, show less torque meanwhile, several times as much.
+    nothing takes the force over, all gauges, mainly s0, show less torque at these times, several times as much.
 
     Attributes
     ----------
     force_loss : float
         Share of the tooth's force that is lost, from 0 to 1.
     theta : float
-        Position of the tooth [rad].
+        Position of the tooth, from gauge s1 in the sense of phi_in [rad].
     width : float
         Angle of the affected teeth [rad], from one to ten teeth of 200, as in FE studies. The paper loads a node of its
         truss, which stands for several teeth; the default is four of 200.
@@ -39,27 +40,15 @@ class TipToothCrack(Effect):
     width: float = shape(4 * TOOTH, unit="rad", low=TOOTH, high=10 * TOOTH)
     taken_over: int = choice(1, low=0, high=1)
 
-    def mesh(
-        self,
-        share: Float[np.ndarray, "psi theta"],
-        psi: Float[np.ndarray, " psi"],
-        theta: Float[np.ndarray, " theta"],
-    ) -> Float[np.ndarray, "psi theta"]:
+    def mesh(self, share: Field, psi: Psi, theta: Theta) -> Field:
         """The shares with less force on the cracked teeth, if the others take it over."""
         return self._reduced(share, theta) if self.taken_over else share
 
-    def carried(
-        self,
-        share: Float[np.ndarray, "psi theta"],
-        psi: Float[np.ndarray, " psi"],
-        theta: Float[np.ndarray, " theta"],
-    ) -> Float[np.ndarray, "psi theta"]:
+    def carried(self, share: Field, psi: Psi, theta: Theta) -> Field:
         """The shares with less force on the cracked teeth, if nobody takes it over."""
         return share if self.taken_over else self._reduced(share, theta)
 
-    def _reduced(
-        self, share: Float[np.ndarray, "psi theta"], theta: Float[np.ndarray, " theta"]
-    ) -> Float[np.ndarray, "psi theta"]:
+    def _reduced(self, share: Field, theta: Theta) -> Field:
         """A sampled angle loses what it holds of the width of the cracked teeth."""
         pitch = theta[1] - theta[0]
         distance = np.abs((theta - self.theta + np.pi) % (2 * np.pi) - np.pi)

@@ -1,12 +1,12 @@
 """Revolutions of the wave generator and time within a recording, for effects that act while signals are recorded."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.effects.base import Scene
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.effects.base import Channels, Samples, Scene
+from swgsim.storage.labelled_signals import SENSORS
 
 
 def samples_per_turn(scene: Scene) -> float:
@@ -21,14 +21,11 @@ def mean_over_turns(signals: Float[np.ndarray, "sensor time"], scene: Scene) -> 
     return signals[:, : round(turns * turn)].mean(axis=1, keepdims=True)
 
 
-def since_session(scene: Scene) -> Float[np.ndarray, " time"]:
+def since_session(scene: Scene) -> Samples:
     """Time since the session began [s]."""
     return scene.conditions.elapsed + scene.time
 
 
-def on_gauges(
-    channels: Mapping[str, Float[np.ndarray, " time"]],
-    change: Callable[[int, Float[np.ndarray, " time"]], Float[np.ndarray, " time"]],
-) -> Mapping[str, Float[np.ndarray, " time"]]:
+def on_gauges(channels: Channels, change: Callable[[int, Samples], Samples]) -> Channels:
     """The channels with each gauge signal as ``change(sensor, signal)`` makes it."""
     return {**channels, **{name: change(s, channels[name]) for s, name in enumerate(SENSORS)}}

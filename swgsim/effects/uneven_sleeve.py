@@ -3,21 +3,22 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 
-from swgsim.effects.base import Effect
+from swgsim.effects.base import Effect, Field, Psi, Theta
 from swgsim.effects.quantity import choice, phase, size
 
 
 @dataclass(frozen=True)
 class UnevenSleeve(Effect):
-    """The thickness of the wall varies around the circumference: displacement (1 + e cos(k theta - phase)).
+    """The wall of the sleeve is thicker at some places: the displacement scales by 1 + e cos(k theta - phase).
 
-    An approximation of physics.md FS13: a thicker wall passes more of the deflection on to the collar and engages
-    deeper; its stiffness stays even. Signature: order 2 again, not 2 +- k: what is fixed to the flex spline adds waves
-    around it, here 2 - k and 2 + k of them, not orders in time. For k = 1 opposite gauges change in opposite ways, as
-    with a wave generator tilted about its middle; for k = 2 s1 to s4 change alike and s0 twice as much. Under load a
-    little at orders 0 and 4. Typical: 1 to 3 % of the wall.
+    This approximates physics.md FS13: a thicker wall passes more of the deflection on to the collar and engages deeper.
+    The stiffness of the truss stays even.
+
+    Signature: order 2, because an unevenness that is fixed to the flex spline adds waves around it (2 - k and 2 + k),
+    not orders in time. For k = 1 opposite gauges change in opposite ways, as with a wave generator that is tilted about
+    its middle. For k = 2 s1 to s4 change alike and s0 twice as much. Under load orders 0 and 4 change slightly.
+    Typical: 1 to 3 % of the wall.
 
     Attributes
     ----------
@@ -26,7 +27,7 @@ class UnevenSleeve(Effect):
     e : float
         Share of the deflection, from 0 to 0.2.
     phase : float
-        The wall is thickest at phase / k [rad].
+        The wall is thickest at phase / k, from gauge s1 [rad].
     """
 
     place = "wave generator"
@@ -34,11 +35,6 @@ class UnevenSleeve(Effect):
     e: float = size(unit="-", low=0, high=0.2, typical=0.02)
     phase: float = phase()
 
-    def wave_generator(
-        self,
-        displacement: Float[np.ndarray, "psi theta"],
-        psi: Float[np.ndarray, " psi"],
-        theta: Float[np.ndarray, " theta"],
-    ) -> Float[np.ndarray, "psi theta"]:
+    def wave_generator(self, displacement: Field, psi: Psi, theta: Theta) -> Field:
         """The displacement with the wave on it."""
         return displacement * (1 + self.e * np.cos(self.k * theta - self.phase))

@@ -1,6 +1,6 @@
 """Effect: temperature of the grease."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import exp
 
 from swgsim.effects.base import Effect
@@ -10,10 +10,10 @@ from swgsim.gear.gear import Gear
 
 @dataclass(frozen=True)
 class WarmGrease(Effect):
-    """Viscous friction falls with temperature, b1 exp(-beta dT) (physics.md DY3).
+    """Viscous friction falls with temperature: b1 exp(-beta dT) (physics.md DY3).
 
-    Signature: higher efficiency, as reduced damping; 12 to 20 K more look like b1 reduced by one third.
-    Typical: beta 0.02 to 0.035 per K (robot joints lose 17 to 20 % of their viscous friction while warming up).
+    Signature: higher efficiency, as with reduced damping; 12 to 20 K more look like b1 reduced by one third. Typical:
+    beta 0.02 to 0.035 per K (robot joints lose 17 to 20 % of their viscous friction while warming up).
 
     Attributes
     ----------
@@ -29,5 +29,4 @@ class WarmGrease(Effect):
 
     def gear(self, gear: Gear) -> Gear:
         """The gear with its viscous friction at the temperature."""
-        transmission = gear.transmission
-        return replace(gear, transmission=replace(transmission, b1=transmission.b1 * exp(-self.beta * self.dT)))
+        return gear.with_transmission(b1=gear.transmission.b1 * exp(-self.beta * self.dT))

@@ -2,20 +2,16 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-from jaxtyping import Float
-
-from swgsim.effects.base import Effect
+from swgsim.effects.base import Effect, Field, Psi, Theta
 from swgsim.effects.quantity import size
 
 
 @dataclass(frozen=True)
 class WornWaveGenerator(Effect):
-    """Wear between wave generator and sleeve takes a share of the deflection (physics.md AG4).
+    """Wear between wave generator and sleeve takes a share of the deflection w0 (physics.md AG4).
 
-    Signature: orders 2 and 4 of the deflection fall, alike in opposite gauges, without regard to load, speed or
-    temperature. It is the same as a smaller w0 of the gear, so a gear whose w0 is calibrated cannot show it. Typical: 2
-    % (estimate).
+    Signature: orders 2 and 4 of the deflection fall, equally in opposite gauges, at any load, speed and temperature. A
+    gear whose w0 is fitted cannot show it, because a smaller w0 is the same. Typical: 2 % (estimate).
 
     Attributes
     ----------
@@ -26,11 +22,6 @@ class WornWaveGenerator(Effect):
     place = "wave generator"
     loss: float = size(unit="-", low=0, high=0.3, typical=0.02)
 
-    def wave_generator(
-        self,
-        displacement: Float[np.ndarray, "psi theta"],
-        psi: Float[np.ndarray, " psi"],
-        theta: Float[np.ndarray, " theta"],
-    ) -> Float[np.ndarray, "psi theta"]:
+    def wave_generator(self, displacement: Field, psi: Psi, theta: Theta) -> Field:
         """What is left of the displacement."""
         return displacement * (1 - self.loss)

@@ -10,16 +10,17 @@ from swgsim.gear.gear import Gear
 
 @dataclass(frozen=True)
 class ZeroOffset(Effect):
-    """One bridge is out of balance after bonding and assembly (physics.md SE4).
+    """One bridge is out of balance after bonding and assembly, so its zero is off (physics.md SE4).
 
-    Signature: the mean of this gauge, at all loads and speeds; on s1 to s4 in opposite pairs it looks like a tilting
-    moment or, without load, like an eccentric wave generator. Typical: 0.01 to 0.05 mV/V uncalibrated.
+    Signature: the mean of this gauge, at all loads and speeds. In opposite pairs of s1 to s4 it looks like a tilting
+    moment or, without load, like an eccentric wave generator. Typical: 0.01 to 0.05 mV/V if not calibrated.
 
     Attributes
     ----------
     sensor : int
+        Number of the gauge, from 0 to 4.
     offset : float
-        [mV/V], up to 1 both ways; a bridge further out fails the check after bonding.
+        [mV/V], from -1 to 1; a bridge further out fails the check after bonding.
     """
 
     place = "gear"

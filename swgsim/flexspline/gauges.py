@@ -14,7 +14,7 @@ from swgsim.common.checks import require, require_positive
 from swgsim.flexspline.cyclic import orders
 from swgsim.flexspline.lattice import INNER
 from swgsim.flexspline.silk_hat import Sector
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 # Angles of the grid pairs of each sensor [rad] and the number of active bridge arms.
 LAYOUT = tuple(np.pi / 4 + np.pi / 2 * np.arange(4) if s == 0 else np.array([np.pi / 2 * (s - 1)]) for s in range(5))

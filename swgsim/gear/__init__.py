@@ -6,6 +6,7 @@ Imports ``common`` and ``flexspline``.
 from swgsim.gear.acquisition import Window
 from swgsim.gear.conditions import REFERENCE_TEMPERATURE, Conditions
 from swgsim.gear.gear import Gear, KinematicError, OperatingPoint, Transmission, WaveGenerator
+from swgsim.gear.gear_file import gear_from, load_gear
 from swgsim.gear.population import Population
 from swgsim.gear.stiffness import RATED_TORQUE, torsional_stiffness
 
@@ -20,5 +21,7 @@ __all__ = [
     "Transmission",
     "WaveGenerator",
     "Window",
+    "gear_from",
+    "load_gear",
     "torsional_stiffness",
 ]

@@ -1,7 +1,9 @@
 """A gear and its operating point: immutable, SI units, the paper's symbols."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import pi
+from pathlib import Path
+from typing import Any
 
 from swgsim.common.checks import require, require_integer, require_positive
 from swgsim.flexspline.gauges import GaugeSet
@@ -137,6 +139,21 @@ class Gear:
             raise ValueError(
                 f"{teeth} teeth do not fit the ratio N = {N}: with two lobes a flex spline has 2 N = {2 * N}"
             )
+
+    @classmethod
+    def load(cls, path: str | Path) -> "Gear":
+        """Read a gear from a YAML file; see :func:`swgsim.gear.load_gear`."""
+        from swgsim.gear.gear_file import load_gear
+
+        return load_gear(path)
+
+    def with_transmission(self, **changes: Any) -> "Gear":
+        """The gear with other values of parameters of :class:`Transmission`.
+
+        >>> Gear().with_transmission(b1=0.4).transmission.b1
+        0.4
+        """
+        return replace(self, transmission=replace(self.transmission, **changes))
 
 
 # Catalogue limits of SHG-17-100: maximum input speed [rpm] and momentary peak torque [N m].

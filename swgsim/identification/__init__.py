@@ -2,11 +2,12 @@
 
 ``data`` prepares measurements, ``covariance`` and ``fit`` hold the statistics, ``commissioning`` learns the healthy
 gear, ``search`` proposes effects, ``decide`` accepts them, ``interharmonics`` treats interharmonic lines, ``report``
-writes; ``identify`` has the two calls.
+writes; ``calls`` has the two functions for users.
 Imports ``bench``, ``chain``, ``recordings`` and rooms below these; robot joints (``joint``) do not need it.
 """
 
+from swgsim.identification.calls import commission, identify
 from swgsim.identification.fit.unit import Unit
-from swgsim.identification.identify import Identification, commission, identify
+from swgsim.identification.report.identification import Identification
 
 __all__ = ["Identification", "Unit", "commission", "identify"]

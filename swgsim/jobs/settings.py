@@ -3,7 +3,6 @@
 import hashlib
 import inspect
 from collections.abc import Mapping, Sequence
-from dataclasses import fields
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -11,16 +10,16 @@ import yaml
 
 from swgsim.bench.disturbance import Disturbance
 from swgsim.bench.scatter import Bench
+from swgsim.common.build import build
 from swgsim.common.checks import require_known
 from swgsim.dataset.faults import Variants
 from swgsim.dataset.grid import Grid
 from swgsim.dataset.plan import Plan
 from swgsim.effects import text
 from swgsim.effects.base import Effect
-from swgsim.flexspline.gauges import GaugeSet
-from swgsim.flexspline.silk_hat import SilkHat
 from swgsim.gear.acquisition import Window
-from swgsim.gear.gear import Gear, KinematicError, OperatingPoint, Transmission, WaveGenerator
+from swgsim.gear.gear import Gear, OperatingPoint
+from swgsim.gear.gear_file import gear_from as gear
 from swgsim.gear.population import Population
 
 # What a file of conf/grid holds.
@@ -46,33 +45,6 @@ T = TypeVar("T")
 Config = Mapping[str, Any]
 
 
-def build(kind: type[T], config: Config, **given: Any) -> T:
-    """An object of a dataclass from a mapping; lists become tuples.
-
-    Raises
-    ------
-    ValueError
-        If the mapping has a key that the class does not know; it lists the choices.
-    """
-    require_known(kind.__name__, config, [f.name for f in fields(kind)])  # type: ignore[arg-type]
-    values = {key: tuple(value) if isinstance(value, list) else value for key, value in config.items()}
-    return kind(**(values | given))
-
-
-def gear(config: Config) -> Gear:
-    """A gear (conf/gear)."""
-    transmission = dict(config.get("transmission", {}))
-    if "kinematic_error" in transmission:
-        transmission["kinematic_error"] = [build(KinematicError, term) for term in transmission["kinematic_error"]]
-    parts = {
-        "transmission": build(Transmission, transmission),
-        "flex_spline": build(SilkHat, config.get("flex_spline", {})),
-        "wave_generator": build(WaveGenerator, config.get("wave_generator", {})),
-        "gauges": build(GaugeSet, config.get("gauges", {})),
-    }
-    return build(Gear, {key: value for key, value in config.items() if key not in parts}, **parts)
-
-
 def grid(config: Config) -> Grid:
     """A grid (conf/grid)."""
     require_known("the grid", config, GRID)
@@ -80,6 +52,9 @@ def grid(config: Config) -> Grid:
         if not isinstance(config[name], list):
             raise ValueError(f"{name} of the grid is {config[name]!r}, must be a list such as [{config[name]}]")
     points = tuple(OperatingPoint(n, T) for n in config["speeds_rpm"] for T in config["loads_nm"])
+    for label, levels in config["severities"].items():
+        if not isinstance(levels, list):
+            raise ValueError(f"severities of {label} are {levels!r}, must be a list such as [{levels}]")
     severities = {label: tuple(levels) for label, levels in config["severities"].items()}
     variants = Variants(config["variants"], config["positions"], severities, config["drawn"])
     return Grid(

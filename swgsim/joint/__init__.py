@@ -1,1 +1,10 @@
-"""Robot joints with a strain wave gear: what is recorded of them, what a textbook says of them, and what that lacks."""
+"""Robot joints with a strain wave gear: recordings, textbook model, and the effects that this model lacks.
+
+Imports ``effects``, ``recordings`` and rooms below these; gauges and their identification are not needed.
+"""
+
+from swgsim.joint.identify import JointAnswer, identify_joint, recordings_of
+from swgsim.joint.intake.read import JointRecordings
+from swgsim.joint.recording import JointRecording
+
+__all__ = ["JointAnswer", "JointRecording", "JointRecordings", "identify_joint", "recordings_of"]

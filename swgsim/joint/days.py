@@ -1,4 +1,4 @@
-"""Whether friction differs between sessions, as it does with temperature and grease, by more than it can be known."""
+"""Friction by session, which changes with temperature and grease, and the significance of the differences."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -6,40 +6,38 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.stats import f
 
-from swgsim.joint.effects.quadratic_friction import QuadraticFriction
-from swgsim.joint.effects.stribeck_friction import StribeckFriction
-from swgsim.joint.effects.sublinear_friction import SublinearFriction
+from swgsim.joint.effects.friction import QuadraticFriction, StribeckFriction, SublinearFriction
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.regression import Fit, Table, solved
 from swgsim.joint.term import Term
 from swgsim.joint.textbook import Friction, Zero
 
-# Terms that are friction by speed alone.
+# Terms of friction that depend on speed only.
 OF_SPEED = (Friction, SublinearFriction, QuadraticFriction, StribeckFriction)
-# A session whose friction curve is this near to a constant does not show how it rises with speed.
+# A session with a nearly constant friction curve does not show the slope over speed; relative limit.
 FLAT = 0.1
-# Runs of a session that tell how much runs differ by themselves.
+# Least number of runs of a session, for the scatter between runs.
 LEAST_RUNS = 3
 
 
 @dataclass(frozen=True)
 class Day:
-    """Friction that rises with speed in one session, as a share of that of all sessions.
+    """Speed-dependent friction of one session, as a share of that of all sessions.
 
-    Sessions of different speeds are compared by one common curve, so that a curved one does not pass for a difference.
+    All sessions share one friction curve, so that sessions at different speeds can be compared.
 
     Attributes
     ----------
     session : str
     share : float
-        1 where the session is as all are.
+        1 if the session has the common friction.
     deviation : float
         Its standard deviation.
     coulomb, zero : float
-        Friction that does not rise, and the signal without any, in the unit of the signal. Of a joint that turned one
-        way only they cannot be told apart.
+        Constant friction, and zero of the signal, in the unit of the signal. They cannot be separated for a joint that
+        turned in one direction only.
     runs : int
-        By whose differences the deviation is known.
+        Number of runs behind the deviation.
     """
 
     session: str
@@ -58,7 +56,7 @@ class Days:
     ----------
     days : tuple of Day
     chance : float
-        Probability of such differences, were all the same.
+        p-value of the differences.
     """
 
     days: tuple[Day, ...]
@@ -66,22 +64,22 @@ class Days:
 
     @property
     def spread(self) -> float:
-        """Largest less smallest share."""
+        """Largest minus smallest share."""
         shares = [day.share for day in self.days]
         return max(shares) - min(shares)
 
 
 def days(top: Fit, tables: Sequence[Table]) -> Days | None:
-    """Friction of every session that shows how it rises with speed; None if fewer than two do.
+    """Speed-dependent friction of every session; None for fewer than two sessions.
 
-    A session needs three runs, as it is their differences that say how well its friction is known.
+    A session needs three runs, because their scatter gives the deviation.
 
     Parameters
     ----------
     top : Fit
         The model.
     tables : sequence of Table
-        All recordings, of the fit and held out.
+        Fitted and held-out recordings.
     """
     if not any(isinstance(term, Friction) for term in top.terms):
         return None
@@ -99,7 +97,7 @@ def days(top: Fit, tables: Sequence[Table]) -> Days | None:
 
 
 def _day(session: str, table: Table, terms: Sequence[Term]) -> Day | None:
-    """Share of one session, its constant friction and its zero being open; None if it does not show it."""
+    """Share of one session, with free constant friction and zero; None if the session does not determine it."""
     if len(table.recordings) < LEAST_RUNS:
         return None
     curve = np.concatenate([rising(each, terms) for each in table.recordings])
@@ -113,7 +111,7 @@ def _day(session: str, table: Table, terms: Sequence[Term]) -> Day | None:
     share = float(free @ left / (free @ free))
     constant = solved(open_, left - share * curve)
     residual = left - share * curve - open_ @ constant
-    # What a run does otherwise than the others of its session is common to all of it.
+    # Residuals are correlated within a run.
     runs = len(table.recordings)
     spread = np.sqrt((np.bincount(table.run, free * residual) ** 2).sum() * runs / (runs - 1)) / float(free @ free)
     coulomb, zero = constant.tolist()
@@ -121,11 +119,11 @@ def _day(session: str, table: Table, terms: Sequence[Term]) -> Day | None:
 
 
 def rising(recording: JointRecording, terms: Sequence[Term]) -> np.ndarray:
-    """Friction that rises with speed, by the model of all sessions."""
+    """Speed-dependent friction in the common model."""
     found = np.zeros(len(recording))
     for term in terms:
         if isinstance(term, Friction):
-            # Its first column is Coulomb friction, which does not rise.
+            # The first column is Coulomb friction, which does not depend on speed.
             term = replace(term, weights=(0.0, *term.weights[1:]))
         if isinstance(term, OF_SPEED):
             found += term.signal(recording)

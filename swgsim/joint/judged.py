@@ -1,4 +1,4 @@
-"""A ladder before recordings that it was not fitted to."""
+"""Errors of the models of a ladder on held-out recordings."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,16 +12,16 @@ from swgsim.joint.slow import slow
 
 @dataclass(frozen=True, eq=False)
 class Rung:
-    """One model on the way up, or one that was tried and refused.
+    """One accepted or refused model.
 
     Attributes
     ----------
     trial : Trial or None
-        What was added; None for the textbook model.
+        The added term; None for the textbook model.
     fit, heldout : float
         Errors, in the unit of the signal.
     heldout_slow : float
-        The latter below SLOW.
+        Error on held-out recordings below the frequency SLOW.
     kept : bool
     """
 
@@ -34,15 +34,15 @@ class Rung:
 
 @dataclass(frozen=True, eq=False)
 class Judged:
-    """A ladder, and how its models do elsewhere.
+    """A ladder with held-out recordings.
 
     Attributes
     ----------
     ladder : Ladder
     heldout : Table
-        Recordings that nothing was fitted to and nothing was chosen by.
+        Recordings that neither the fit nor the selection used.
     floor : float or None
-        Noise of the signal at rest, in its unit, if recorded.
+        Noise of the signal at rest, in its unit, if known.
     """
 
     ladder: Ladder
@@ -51,15 +51,20 @@ class Judged:
 
     @property
     def table(self) -> Table:
-        """What was fitted."""
+        """Fitted recordings."""
         return self.ladder.top.table
 
     @cached_property
     def rungs(self) -> tuple[Rung, ...]:
-        """The textbook model, every term that was kept, and those that were refused, each beside the top."""
+        """The textbook model, every accepted term, and every refused term added to the last model."""
         steps = (self._rung(step, step.fit, True) for step in self.ladder.steps)
         refused = (self._rung(trial, trial.fit, False) for trial in self.ladder.refused)
         return (self._rung(None, self.ladder.textbook, True), *steps, *refused)
+
+    @property
+    def helps(self) -> bool:
+        """Whether the accepted terms lower the error on the held-out recordings."""
+        return self.after.heldout < self.before.heldout
 
     @cached_property
     def before(self) -> Rung:
@@ -68,7 +73,7 @@ class Judged:
 
     @cached_property
     def after(self) -> Rung:
-        """The model with all that was kept."""
+        """The model with all accepted terms."""
         return self.rungs[len(self.ladder.steps)]
 
     def _rung(self, trial: Trial | None, fit: Fit, kept: bool) -> Rung:
@@ -77,17 +82,16 @@ class Judged:
 
 
 def noise_floor(at_rest: Table) -> float:
-    """Standard deviation of a signal of joints that stand still."""
+    """Standard deviation of a signal of joints at standstill."""
     parts = [each.signals[at_rest.of] - each.signals[at_rest.of].mean() for each in at_rest.recordings]
     return rms(np.concatenate(parts))
 
 
 def standing_noise(standing: Table) -> float | None:
-    """Root of the mean square above SLOW of a signal of a joint that stands while others move, in the quietest
-    recording; None if all are too coarse to tell.
+    """Root mean square above the frequency SLOW of a signal of a joint that stands while others move, in the quietest
+    recording; None if all are quantised too coarsely.
 
-    Below, the load that the others put on it changes, and friction holds as much of it as it likes; above, they shake
-    it.
+    Below SLOW, the load from the other joints changes, and static friction carries an unknown part of it.
     """
     fast = standing.signal - slow(standing, standing.signal)
     found = (rms(fast[standing.run == number]) for number in range(len(standing.recordings)))

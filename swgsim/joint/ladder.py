@@ -1,43 +1,45 @@
-"""The ladder: from the textbook model upwards, the effect that helps most on unseen recordings, as long as one does."""
+"""The ladder: forward selection of effects by cross-validated error, from the textbook model upwards."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
 from scipy.stats import ttest_1samp
+from tqdm import tqdm
 
+from swgsim.joint.naming import in_words
+from swgsim.joint.recording import SIGNALS
 from swgsim.joint.regression import Fit, Table, fit, rms
 from swgsim.joint.shaping import shaped
 from swgsim.joint.term import Term
 from swgsim.joint.textbook import textbook
 from swgsim.joint.waves import LOOKED_AT, Wave, waves
 
-# Probability of a false effect of the library, and of a false wave, in a round of trials, beside the other demands; and
-# of a false order among all.
+# Significance level of an effect or wave in one round, and of an order that stands out of the spectrum.
 ALPHA, LINE_ALPHA = 0.05, 0.005
-# Share by which the error on unseen groups must fall; less is not worth a term.
+# Relative reduction of the cross-validated error that is worth a term.
 LEAST = 0.005
-# Effects that are added at most.
+# Largest number of added effects.
 MOST = 24
 
 
 @dataclass(frozen=True, eq=False)
 class Trial:
-    """A term beside the others of a fit.
+    """A candidate: one term added to a fit.
 
     Attributes
     ----------
     term : Term
         With weights.
     fit : Fit
-        With it.
+        Fit with this term.
     gain : float
-        Share by which it lowers the error on groups that were left out.
+        Relative reduction of the cross-validated error.
     worst : float
-        That of the session which it helps least; negative where it harms.
+        The same for the session with the least gain; negative if its error rises.
     chance : float
-        Probability of so steady a gain by luck, over stretches of the recordings, times the terms tried beside it.
+        p-value of the gain over stretches of the recordings, times the number of candidates.
     """
 
     term: Term
@@ -48,12 +50,12 @@ class Trial:
 
     @property
     def pays(self) -> bool:
-        """Whether it helps where it was not fitted: enough, by more than luck, and harms no session more than that."""
+        """Whether the gain is large enough, significant, and larger than the loss of any session."""
         return self._helps and self.chance < ALPHA
 
     @property
     def unsteady(self) -> bool:
-        """Whether it would help but for luck, so that more recordings might decide about it."""
+        """Whether only the significance is missing, so that more recordings might decide."""
         return self._helps and self.chance >= ALPHA
 
     @property
@@ -62,37 +64,37 @@ class Trial:
 
     @property
     def _unsound(self) -> Term | None:
-        """The first term that would have a sign that its physics forbids; the new one comes first."""
+        """First term with a sign that its physics forbids; the new term is checked first."""
         return next((term for term in reversed(self.fit.terms) if not term.sound), None)
 
     @property
     def why(self) -> str:
-        """Why it was not kept, in words."""
+        """Reason of the refusal, in words."""
         if self._unsound:
             own = self._unsound is self.fit.terms[-1]
             return "its size would have the wrong sign" if own else f"{self._unsound.title()} would have the wrong sign"
         if self.gain <= 0:
-            return f"raises the error on groups left out by {-100 * self.gain:.2g} %"
+            return f"raises the cross-validated error by {-100 * self.gain:.2g} %"
         if self.gain <= LEAST:
-            return f"lowers the error on groups left out by {100 * self.gain:.2g} % only"
+            return f"lowers the cross-validated error by only {100 * self.gain:.2g} %"
         if self.worst <= -self.gain:
             return f"lowers the error by {100 * self.gain:.2g} %, raises that of a session by {-100 * self.worst:.2g} %"
         if self.chance >= ALPHA:
-            return f"its gain of {100 * self.gain:.2g} % is not steady: chance {self.chance:.1g} by luck"
+            return f"its gain of {100 * self.gain:.2g} % is not significant: p-value {self.chance:.1g}"
         return ""
 
 
 @dataclass(frozen=True, eq=False)
 class Ladder:
-    """What climbing found.
+    """Result of the forward selection.
 
     Attributes
     ----------
     textbook : Fit
     steps : tuple of Trial
-        The terms that were kept, in order.
+        Accepted terms, in order.
     refused : tuple of Trial
-        Of every other kind, and of orders that stand out, the last trial.
+        Candidates of the last round.
     """
 
     textbook: Fit
@@ -101,61 +103,79 @@ class Ladder:
 
     @property
     def top(self) -> Fit:
-        """The model with all that was kept."""
+        """The model with all accepted terms."""
         return self.steps[-1].fit if self.steps else self.textbook
 
 
-def climb(table: Table, kinds: Sequence[type[Term]], tell: Callable[[str], None] = lambda _: None) -> Ladder:
-    """Add the term that helps most, again and again.
+def climb(
+    table: Table, kinds: Sequence[type[Term]], progress: Callable[[str], None] = lambda _: None, *, bar: bool = False
+) -> Ladder:
+    """Add the best candidate, round after round, as long as one is accepted.
 
     Parameters
     ----------
     table : Table
-        Recordings to fit; those that judge must not be among them.
+        Recordings to fit, without held-out ones.
     kinds : sequence of classes of terms
         The library.
-    tell : callable
-        Is told of every step.
+    progress : callable
+        Receives one line of text for each step.
+    bar : bool
+        Whether to show a progress bar of the candidates.
     """
     now = start = fit(table, textbook(table.recordings, table.of))
+    unit, ratio = SIGNALS[table.of].unit, table.recordings[0].gear_ratio
+    progress(f"textbook model: error {now.error:.4g} {unit} on the {len(table.recordings)} fitted recordings")
     steps: list[Trial] = []
     known: dict[float, tuple[Wave, ...]] = {}
     possible = [k for k in kinds if table.of in k.explains and all(map(k.possible, table.recordings))]
     while True:
         sought = [kind for kind in possible if kind not in {type(term) for term in now.terms}]
-        effects = [_tried(now, shaped(now, kind()), len(sought)) for kind in sought]
-        found = [_best(now, shapes) for shapes in waves(now, LINE_ALPHA, known)]
-        trials = sorted((*effects, *found), key=lambda trial: -trial.gain)
+        candidates = _candidates(now, sought, known)
+        tested = tqdm(candidates, f"step {len(steps) + 1}", unit=" candidates", leave=False, disable=not bar)
+        trials = sorted(tested, key=lambda trial: -trial.gain)
         best = next((trial for trial in trials if trial.pays), None)
         if best is None or len(steps) == MOST:
+            progress(f"step {len(steps) + 1}: none of {len(trials)} candidates is accepted")
             return Ladder(start, tuple(steps), tuple(trials))
         steps.append(best)
         now = best.fit
-        tell(f"{best.term.title()}: {now.error:.4g}")
+        what = in_words(best.term, ratio)
+        progress(f"step {len(steps)}: + {what}: error {now.error:.4g} {unit} on the fitted recordings")
+
+
+def _candidates(now: Fit, sought: Sequence[type[Term]], known: dict[float, tuple[Wave, ...]]) -> Iterator[Trial]:
+    """Effects of the library with their best inner parameters, and waves."""
+    for kind in sought:
+        yield _tried(now, shaped(now, kind()), len(sought))
+    for shapes in waves(now, LINE_ALPHA, known):
+        yield _best(now, shapes)
 
 
 def _best(now: Fit, shapes: Sequence[Wave]) -> Trial:
-    """The shape of a wave that helps most, of those that pay if any does."""
-    # Every order was tried that could have been it, in as many shapes.
+    """The shape of a wave with the largest gain, accepted shapes first."""
+    # The correction counts all orders that were looked at, in as many shapes.
     trials = [_tried(now, shape, LOOKED_AT * len(shapes)) for shape in shapes]
     return max(trials, key=lambda trial: (trial.pays, trial.gain))
 
 
 def _tried(now: Fit, term: Term, trials: int) -> Trial:
-    """A term added to a fit."""
+    """Add a term to a fit."""
     added = fit(now.table, (*now.terms, term))
     before, after = now.unseen, added.unseen
     session = now.table.session
     worst = 1 - float(np.sqrt((np.bincount(session, after**2) / np.bincount(session, before**2)).max()))
-    chance = _luck(now.table, before, after, always=isinstance(term, Wave))
+    chance = _p_value(now.table, before, after, relative=isinstance(term, Wave))
     return Trial(added.terms[-1], added, 1 - rms(after) / rms(before), worst, min(1.0, chance * trials))
 
 
-def _luck(table: Table, before: Float[np.ndarray, " row"], after: Float[np.ndarray, " row"], *, always: bool) -> float:
-    """Probability that luck saves as much over the stretches of the recordings.
+def _p_value(
+    table: Table, before: Float[np.ndarray, " row"], after: Float[np.ndarray, " row"], *, relative: bool
+) -> float:
+    """p-value of the reduction of the error over the stretches of the recordings.
 
-    A wave acts ``always``: it must save a share of the error of most stretches, however large that is. Another effect
-    may act in few, such as friction while a joint stands: there the mean square counts.
+    A wave acts everywhere, so its ``relative`` reduction in each stretch counts. Other effects may act in few
+    stretches, such as friction at standstill, so their mean square counts.
     """
     rows = np.bincount(table.stretch)
     whole = rows > np.median(rows) / 2  # stretches at the end of a recording may be short
@@ -163,5 +183,5 @@ def _luck(table: Table, before: Float[np.ndarray, " row"], after: Float[np.ndarr
         return 1.0
     squares = [np.bincount(table.stretch, residual**2)[whole] / rows[whole] for residual in (before, after)]
     roots = np.sqrt(squares)
-    saved = (roots[0] - roots[1]) / np.maximum(roots.sum(axis=0), 1e-300) if always else squares[0] - squares[1]
+    saved = (roots[0] - roots[1]) / np.maximum(roots.sum(axis=0), 1e-300) if relative else squares[0] - squares[1]
     return float(ttest_1samp(saved, 0, alternative="greater").pvalue)

@@ -1,19 +1,19 @@
-"""Terms in words, and orders as revolutions of the parts of a gear."""
+"""Terms in words, and orders as multiples of the revolutions of the parts of a gear."""
 
 from collections.abc import Iterable
 
-from swgsim.joint.effects.position_friction import PositionFriction
+from swgsim.joint.effects.friction import PositionFriction
 from swgsim.joint.effects.ripple import Ripple
 from swgsim.joint.term import Term
 
-# An order is a multiple of another one if it is one but for so much.
+# An order counts as a multiple of a revolution within this difference.
 SAME = 0.5
-# Highest multiple of a revolution of the motor that is named.
+# Highest named multiple of a revolution of the motor.
 MOST = 30
 
 
 def in_words(term: Term, gear_ratio: float | None) -> str:
-    """A term with its order, if it has one, and what turns so often."""
+    """A term with its order, if it has one, and the part that turns with it."""
     if not isinstance(term, Ripple | PositionFriction):
         return term.title()
     part = part_of(term.order, gear_ratio)
@@ -21,10 +21,10 @@ def in_words(term: Term, gear_ratio: float | None) -> str:
 
 
 def part_of(order: float, gear_ratio: float | None) -> str:
-    """What turns with an order: output, motor, or the wave generator relative to the flex spline; empty if none does.
+    """Part that turns with an order: output, motor, or the wave generator relative to the flex spline; else empty.
 
-    The wave generator turns with the motor; seen from a flex spline that is the output, it makes one revolution more
-    for each of the output. An ellipse repeats twice in each.
+    The wave generator turns with the motor. Relative to a flex spline that is the output, it makes one more revolution
+    per revolution of the output. An ellipse repeats twice in each revolution.
     """
     if gear_ratio is not None:
         for ratio, what in ((gear_ratio, "motor"), (gear_ratio + 1, "wave generator in the flex spline")):
@@ -35,7 +35,7 @@ def part_of(order: float, gear_ratio: float | None) -> str:
 
 
 def listed(terms: Iterable[Term], gear_ratio: float | None) -> str:
-    """Several terms in words; waves of a kind together, by what they turn with."""
+    """Several terms in words; waves of one kind and one part together."""
     waves: dict[str, list[str]] = {}
     for term in terms:
         if isinstance(term, Ripple | PositionFriction):

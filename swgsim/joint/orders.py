@@ -1,4 +1,4 @@
-"""Orders that stand out of a residual: its lines over the angle of the joint, whatever their phase and law of speed."""
+"""Orders that stand out of a residual: lines over the angle of the joint, of any phase and any law of speed."""
 
 from typing import NamedTuple
 
@@ -9,42 +9,42 @@ from scipy.ndimage import median_filter
 from swgsim.common.chi2_logsf import log_tail
 from swgsim.joint.regression import Table
 
-# Lines per wave that the longest recording resolves, and the highest order, if the gear ratio does not say more.
+# Oversampling of the resolution of orders, and the highest order if the gear ratio is unknown.
 FINENESS, HIGHEST = 4, 2500
-# Orders up to so many times the gear ratio are looked at.
+# Highest order as a multiple of the gear ratio.
 RATIOS = 25
-# Waves that a recording must hold of an order to say anything of it.
+# A recording must contain so many waves of an order.
 WAVES = 2.0
-# Lines nearer to a stronger one than so many times what the longest recording resolves belong to it.
+# Lines within so many resolutions of a stronger line belong to it.
 NEIGHBOURS = 4
-# Share of the samples of a recording that must be dense enough to see a wave.
+# Share of the samples of a recording that must be dense enough for a wave.
 SLOWER = 0.3
-# Lines over which the noise beside a line is taken, times FINENESS.
+# Width of the median filter for the noise, in units of FINENESS lines.
 BESIDE = 40
 
 
 class Line(NamedTuple):
-    """A line: waves per revolution of the output, logarithm of its chance among all orders looked at."""
+    """A line: waves per revolution of the output, logarithm of its p-value among all orders."""
 
     order: float
     log_chance: float
 
 
 def lines(table: Table, residual: Float[np.ndarray, " row"], level: float, most: int, *, above: float) -> list[Line]:
-    """Orders that are too strong to be noise, the least likely first.
+    """Significant orders, the least likely first.
 
-    Phases and amplitudes may be others in every recording. The noise at an order is that of its neighbours, as it is
-    higher where the speed or the structure makes it so.
+    Phases and amplitudes may differ between recordings. The noise at an order is the median of its neighbours.
 
     Parameters
     ----------
     table : Table
     residual : array (row,)
     level : float
-        Chance of any false one.
+        Probability of any false order.
     most : int
+        Largest number of lines.
     above : float
-        Below, orders are not looked at.
+        Lowest order.
     """
     ratio = max((each.gear_ratio or 0 for each in table.recordings), default=0)
     highest = int(RATIOS * ratio) or HIGHEST
@@ -53,26 +53,26 @@ def lines(table: Table, residual: Float[np.ndarray, " row"], level: float, most:
     log_chance = log_tail(np.nansum(power, axis=0), np.maximum(numbers, 1)) + np.log(len(orders))
     log_chance[(numbers == 0) | (orders <= above)] = 0.0
     found: list[Line] = []
-    # Neighbours of a line that was taken belong to it.
-    beside = NEIGHBOURS * 2 * np.pi / max(float(np.ptp(each.signals["q"])) for each in table.recordings)
+    # Neighbours of a line belong to it.
+    width = NEIGHBOURS * 2 * np.pi / max(float(np.ptp(each.signals["q"])) for each in table.recordings)
     free = np.ones(len(orders), bool)
     while len(found) < most:
         best = int(np.where(free, log_chance, 0.0).argmin())
         if not free[best] or log_chance[best] > np.log(level):
             break
         found.append(Line(float(orders[best]), float(log_chance[best])))
-        free &= np.abs(orders - orders[best]) > beside
+        free &= np.abs(orders - orders[best]) > width
     return found
 
 
 def spectrum(
     table: Table, residual: Float[np.ndarray, " row"], highest: int
 ) -> tuple[Float[np.ndarray, " order"], Float[np.ndarray, "law order"]]:
-    """Power of every recording at every order, in units of the noise beside it, 2 on average; NaN where a recording is
+    """Power of every recording at every order, in units of the noise near it, 2 on average; NaN where a recording is
     too short or too slowly sampled for the order.
 
-    Of a recording that moves to and fro there are two: of waves that are the same in both directions, and of those that
-    change their sign with it, as friction and what grows with speed do.
+    A recording that reverses has two: of waves that are the same in both directions, and of waves that change their
+    sign with the direction.
     """
     # Bins of the angle are a fifth of the shortest wave.
     width = 2 * np.pi / (5 * highest)
@@ -84,7 +84,7 @@ def spectrum(
     power = np.full((2 * len(table.recordings), len(orders)), np.nan)
     for number, each in enumerate(table.recordings):
         q, r = each.signals["q"], residual[table.run == number]
-        # Where the speed varies, the samples of its fast stretches miss a wave without imitating another one.
+        # Where the speed varies, fast stretches miss a wave but do not alias it to one order.
         usual = float(np.quantile(np.abs(each.signals["omega"]), SLOWER))
         seen = (orders * spans[number] >= WAVES * 2 * np.pi) & (orders * usual < 0.8 * np.pi * each.rate)
         if not seen.any():
@@ -95,7 +95,7 @@ def spectrum(
         for law, by in enumerate((np.ones(len(r)), np.sign(each.speed))):
             if np.ptp(by) > 0 or law == 0:
                 total = np.bincount(place, by * r - (by * r).mean())
-                # Tapered towards the ends of the way, so that strong lines stay within their own places.
+                # The taper keeps strong lines within their own bins.
                 total = total * np.hanning(len(total))
                 raw = np.abs(np.fft.rfft(total, length)[1 : len(orders) + 1]) ** 2
                 noise = median_filter(raw, BESIDE * FINENESS * wide, mode="reflect") / np.log(2)

@@ -1,4 +1,4 @@
-"""One recording of one joint of a robot, of which only the output's motion, torque and motor current are known."""
+"""One recording of one joint of a robot: motion of the output, torque and motor current."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -13,7 +13,7 @@ from swgsim.joint.kinematics import CREEP, direction, smooth
 
 
 class Signal(NamedTuple):
-    """Unit of a signal, and what it says."""
+    """Unit and meaning of a signal."""
 
     unit: str
     says: str
@@ -26,11 +26,11 @@ SIGNALS: Mapping[str, Signal] = {
     "current": Signal("A", "motor current"),
     "T_rigid": Signal("N m", "torque at the output by the controller's rigid-body model, without friction"),
 }
-# Share of the time that a joint moves in a direction if it was moved there on purpose.
+# Least share of the time in each direction of a joint that reverses.
 BACK = 0.02
-# A joint whose own angle is in the posture to this accuracy [rad] is one of those that gravity loads through others.
+# Accuracy [rad] with which a joint's angle must agree with an angle of the posture to be the same.
 SAME = 1e-6
-# Signals that a forward model predicts; the others tell it what the joint did.
+# Signals that the model predicts; the others are its inputs.
 PREDICTED = ("T_sensor", "current")
 
 
@@ -41,21 +41,20 @@ class JointRecording:
     Attributes
     ----------
     name : str
-        Of the run, unique within a joint.
+        Name of the run, unique within a joint.
     robot, joint : str
     session : str
-        Recordings between which nothing was taken apart: a day, or a trajectory.
+        Recordings between which nothing was dismounted, such as a day or a trajectory.
     time : array (time,)
         [s], increasing.
     signals : mapping
-        Name of :data:`SIGNALS` to array (time,) in its unit; ``q`` and ``omega`` are always there.
+        Name of :data:`SIGNALS` to array (time,) in its unit; ``q`` and ``omega`` are mandatory.
     posture : array (joint, time)
-        Angles [rad] of those joints of the robot whose axes are level and parallel, from its base to its tip, for what
-        gravity does, if known.
+        Angles [rad] of the joints with parallel level axes, from base to tip, for gravity, if known.
     gear_ratio : float or None
-        Revolutions of the motor to one of the output, if known.
+        Revolutions of the motor per revolution of the output, if known.
     torque_constant : float or None
-        Torque at the output for one ampere [N m/A], if known.
+        Torque at the output per ampere [N m/A], if known.
     """
 
     name: str
@@ -85,24 +84,24 @@ class JointRecording:
 
     @cached_property
     def speed(self) -> Float[np.ndarray, " time"]:
-        """Speed of the joint without its noise [rad/s]."""
+        """Smoothed speed of the joint [rad/s]."""
         return smooth(self.signals["omega"], self.rate, 0)
 
     @cached_property
     def acceleration(self) -> Float[np.ndarray, " time"]:
-        """[rad/s^2]."""
+        """Acceleration of the joint [rad/s^2]."""
         return smooth(self.signals["omega"], self.rate, 1)
 
     @cached_property
     def sense(self) -> Float[np.ndarray, " time"]:
-        """Of Coulomb friction, from -1 to 1. A joint that is moved one way only, and sticks on it, keeps its sense."""
+        """Sign of Coulomb friction, from -1 to 1; constant for a joint that never reverses."""
         if turns_back([self]):
             return direction(self.signals["omega"])
         return np.full(len(self), float(np.sign(self.speed.sum())))
 
     @cached_property
     def inertia(self) -> Float[np.ndarray, " time"] | None:
-        """About the axis of a joint that is not one of the posture [kg m^2]; None if the recording does not say it."""
+        """Inertia about the axis of a joint that is not in the posture [kg m^2]; None if it cannot be computed."""
         if self.posture is None or "T_rigid" not in self.signals or len(self.links[0]) > 1:
             return None
         reach = np.cos(np.cumsum(self.posture, axis=0))
@@ -111,7 +110,7 @@ class JointRecording:
     @property
     def links(self) -> tuple[Float[np.ndarray, "link time"], int]:
         """Angle of every link about parallel level axes against the first one's base [rad], and the number of the link
-        that this joint turns; its own angle only if it is not among them or the posture is unknown.
+        that this joint turns; only its own angle if it is not in the posture or the posture is unknown.
         """
         own = self.signals["q"][None]
         if self.posture is not None:
@@ -133,6 +132,6 @@ class JointRecording:
 
 
 def turns_back(recordings: Iterable[JointRecording]) -> bool:
-    """Whether a joint was moved in both directions, and not only shaken in one."""
+    """Whether a joint was moved in both directions."""
     speed = np.concatenate([each.speed for each in recordings])
     return min(float((speed > CREEP).mean()), float((speed < -CREEP).mean())) > BACK

@@ -1,4 +1,4 @@
-"""Weights of terms by least squares over many recordings, and what they predict of recordings they have not seen."""
+"""Weights of terms by least squares over many recordings, and their errors in cross-validation."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,9 +12,9 @@ from swgsim.common.singular import svd
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.term import Term
 
-# Stretch of a recording whose errors are taken to be independent of those of the next one [s].
+# Length of a stretch [s]; errors of different stretches count as independent.
 STRETCH = 1.0
-# Groups to which a single recording is cut for cross-validation.
+# Groups for the cross-validation of a single recording.
 PARTS = 5
 
 
@@ -26,7 +26,7 @@ class Table:
     ----------
     recordings : tuple of JointRecording
     of : str
-        Name of the signal that is explained.
+        Name of the signal to explain.
     """
 
     recordings: tuple[JointRecording, ...]
@@ -42,15 +42,15 @@ class Table:
 
     @cached_property
     def signal(self) -> Float[np.ndarray, " row"]:
-        """What is explained, without the zero of every run where the sensor has one."""
+        """The signal to explain; of a torque sensor without the zero of each run."""
         return self.rows([each.signals[self.of][:, None] for each in self.recordings])[:, 0]
 
     def columns(self, term: Term) -> Float[np.ndarray, "row column"]:
-        """Columns of a term, treated as the signal is."""
+        """Columns of a term, treated like the signal."""
         return self.rows([term.columns(each) for each in self.recordings])
 
     def rows(self, each: Sequence[Float[np.ndarray, "_ column"]]) -> Float[np.ndarray, "row column"]:
-        """Columns of all recordings; a torque sensor has another zero in every run, which is taken out."""
+        """Columns of all recordings; for a torque sensor the mean of each run is removed."""
         return np.vstack([part - part.mean(axis=0) for part in each] if self.of == "T_sensor" else list(each))
 
     @cached_property
@@ -66,7 +66,7 @@ class Table:
 
     @cached_property
     def group(self) -> Int[np.ndarray, " row"]:
-        """What is left out together: a run, or a part of it if there is one only."""
+        """Number of the group of every row for cross-validation: a run, or a part of a single run."""
         return self.run if len(self.recordings) > 1 else np.arange(len(self.run)) * PARTS // len(self.run)
 
     @cached_property
@@ -87,7 +87,7 @@ class Fit:
     Attributes
     ----------
     table : Table
-        To which they were fitted.
+        Fitted recordings.
     terms : tuple of Term
         With weights.
     X : array (row, column)
@@ -100,12 +100,12 @@ class Fit:
 
     @cached_property
     def weights(self) -> Float[np.ndarray, " column"]:
-        """Of all columns."""
+        """Weights of all columns."""
         return np.concatenate([term.weights for term in self.terms])
 
     @cached_property
     def residual(self) -> Float[np.ndarray, " row"]:
-        """Measured less predicted."""
+        """Measured minus predicted."""
         return self.table.signal - self.X @ self.weights
 
     @cached_property
@@ -116,19 +116,19 @@ class Fit:
 
     @property
     def error(self) -> float:
-        """Root of the mean square of the residual, in the unit of the signal."""
+        """Root mean square of the residual, in the unit of the signal."""
         return rms(self.residual)
 
     @cached_property
     def unseen(self) -> Float[np.ndarray, " row"]:
-        """Residual of every group as the others predict it."""
+        """Residual of every group, predicted by a fit to the other groups."""
         scaled, y = self.X / _scale(self.X), self.table.signal
         starts = np.flatnonzero(np.diff(self.table.group, prepend=-1))
         parts = [slice(a, b) for a, b in zip(starts, [*starts[1:], len(y)], strict=True)]
         squares = [scaled[part].T @ scaled[part] for part in parts]
         products = [scaled[part].T @ y[part] for part in parts]
         square, product = sum(squares), sum(products)
-        # Scaled columns, so the normal equations lose no more digits than the noise leaves.
+        # With scaled columns the normal equations are accurate enough.
         return np.concatenate([
             y[part] - scaled[part] @ np.linalg.lstsq(square - own, product - other, rcond=1e-9)[0]
             for part, own, other in zip(parts, squares, products, strict=True)
@@ -136,7 +136,7 @@ class Fit:
 
     @cached_property
     def half_interval(self) -> Float[np.ndarray, " column"]:
-        """Half of the 95 % interval of every weight, the errors being alike within a stretch only."""
+        """Half of the 95 % interval of every weight, for errors that are correlated within a stretch only."""
         scale = _scale(self.X)
         inverse = np.linalg.pinv((self.X / scale).T @ (self.X / scale), hermitian=True)
         stretches = int(self.table.stretch.max()) + 1
@@ -146,7 +146,7 @@ class Fit:
         return float(t.ppf(0.975, max(stretches - 1, 1))) * spread
 
     def missed(self, other: Table) -> Float[np.ndarray, " row"]:
-        """Residual on recordings that it was not fitted to."""
+        """Residual on other recordings."""
         return other.signal - sum(other.columns(term) @ np.array(term.weights) for term in self.terms)
 
 
@@ -160,7 +160,7 @@ def fit(table: Table, terms: Sequence[Term]) -> Fit:
 
 
 def solved(X: Float[np.ndarray, "row column"], y: Float[np.ndarray, " row"]) -> Float[np.ndarray, " column"]:
-    """Weights of columns by least squares; columns that cannot be told apart share them."""
+    """Weights of columns by least squares; equal columns share their weight."""
     scale = _scale(X)
     return np.linalg.lstsq(X / scale, y, rcond=1e-9)[0] / scale
 
@@ -171,6 +171,6 @@ def rms(values: Float[np.ndarray, " row"]) -> float:
 
 
 def _scale(X: Float[np.ndarray, "row column"]) -> Float[np.ndarray, " column"]:
-    """Size of every column; 1 where there is nothing."""
+    """Root mean square of every column; 1 for a column of zeros."""
     size = np.sqrt((X**2).mean(axis=0))
     return np.where(size > 0, size, 1.0)

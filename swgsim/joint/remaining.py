@@ -1,34 +1,37 @@
-"""Lines that remain in the residual of runs at steady speed, and how their frequency goes with speed."""
+"""Lines that remain in the residual of runs at steady speed: their frequency over speed, and their coherence."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
+from jaxtyping import Float
 from scipy.signal import find_peaks, periodogram
 
 from swgsim.common.seeds import generator
-from swgsim.joint.coherence import foretold
+from swgsim.joint.recording import JointRecording
 from swgsim.joint.regression import Fit, Table, rms
 
-# Speeds that vary by less than this share are steady.
+# Speeds whose standard deviation is below this share of the mean are steady.
 STEADY = 0.1
-# A line stands out of the noise beside it by this factor of power; so many are taken of a run.
+# Power of a line relative to the noise near it, and largest number of lines in a run.
 STRONG, MOST_LINES = 30.0, 8
-# Lines of different runs are the same if their law meets them to this share: that of clocks that were estimated.
+# Relative accuracy of frequencies, as that of estimated clocks; lines this near to a law follow it.
 MET = 0.03
-# A line with fewer waves in a run, times two, is no line but a drift.
+# A line needs so many resolutions of the run in frequency; below is drift.
 WAVES = 5
-# A law holds for so many runs at least, and explains so many lines at most.
+# Least number of runs of a law, and largest number of laws.
 LEAST_RUNS, MOST_LAWS = 4, 3
-# Lines so many times as far from a law as those that meet it may be are none of its own.
+# Lines within so many tolerances of a law belong to its skirt.
 SKIRT = 3.0
-# Deals of the speeds to the runs, which say how many runs a law meets by luck (one in twenty goes beyond).
-DEALT = 19
-# Rounds of a law and the lines that it meets.
+# Permutations of the speeds of the runs, which give the number of runs that a law meets by chance (level 1 in 20).
+PERMUTATIONS = 19
+# Rounds of the refinement of a law.
 REFINED = 3
-# Shares of the fixed part, beside the largest frequency, that are none.
+# A fixed part below this share of the largest frequency counts as zero.
 NOTHING = 0.05
+# Oversampling of the resolution of half of a run.
+FINER = 16
 
 
 @dataclass(frozen=True)
@@ -42,14 +45,14 @@ class RemainingLine:
     order : float
         Waves per revolution of the output; negative where the frequency falls with speed.
     amplitude : float
-        The largest one, in the unit of the signal.
+        The largest amplitude, in the unit of the signal.
     speed : float
-        Of the run where that is [rad/s].
+        Speed of the run with this amplitude [rad/s].
     runs : tuple of str
-        Names of the runs that show it.
+        Names of the runs with the line.
     gain : float
-        Share by which it lowers the error of those runs, each half of a run being told by the other; negative where its
-        phase does not last, so that no model of it predicts.
+        Relative reduction of the error of these runs if each half of a run is predicted from the other half; negative
+        if the phase does not last.
     """
 
     fixed: float
@@ -60,27 +63,25 @@ class RemainingLine:
     gain: float
 
     def __str__(self) -> str:
-        what = "lowers" if self.gain > 0 else "raises"
+        change = "lowers" if self.gain > 0 else "raises"
         where = (
-            f"largest at {self.speed:.2g} rad/s ({self.amplitude:.2g}), in {len(self.runs)} runs; told by one half of "
-            f"a run it {what} the error of the other by {100 * abs(self.gain):.2g} %"
+            f"largest at {self.speed:.2g} rad/s ({self.amplitude:.2g}), in {len(self.runs)} runs; predicted from one "
+            f"half of a run it {change} the error of the other by {100 * abs(self.gain):.2g} %"
         )
         if not self.fixed:
             return f"a wave of order {self.order:.4g} per revolution of the output, {where}"
         if not self.order:
             return f"a line at {self.fixed:.3g} Hz at every speed, {where}"
-        side = "falls" if self.order < 0 else "rises"
-        return (
-            f"a line at {self.fixed:.3g} Hz less order {-self.order:.4g}, whose frequency {side} with speed "
-            f"as the image of a wave in a sampled signal does, {where}"
-            if self.order < 0 else
-            f"a line at {self.fixed:.3g} Hz plus order {self.order:.4g}, whose frequency {side} with speed, {where}"
-        )  # fmt: skip
+        if self.order < 0:
+            law = f"less order {-self.order:.4g}, whose frequency falls with speed like an alias of a sampled wave"
+        else:
+            law = f"plus order {self.order:.4g}, whose frequency rises with speed"
+        return f"a line at {self.fixed:.3g} Hz {law}, {where}"
 
 
 @dataclass(frozen=True)
 class _Peak:
-    """One line of one run: frequency [Hz], amplitude, and of the run name, speed [rad/s] and resolution [Hz]."""
+    """One line of one run: frequency [Hz], amplitude; name, speed [rad/s] and resolution [Hz] of the run."""
 
     frequency: float
     amplitude: float
@@ -90,32 +91,32 @@ class _Peak:
 
 
 def remaining(fits: Sequence[tuple[Fit, Table]]) -> tuple[RemainingLine, ...]:
-    """Laws of lines that several runs share, the one with the most power first.
+    """Laws of lines that several runs share, the law with the most power first.
 
     Parameters
     ----------
     fits : sequence of (Fit, Table)
-        A model and recordings of which it leaves something.
+        A model, and recordings with a residual.
     """
     peaks = [peak for fit, table in fits for peak in _peaks(fit, table)]
-    luck = _luck(peaks, generator("remaining lines"))
+    by_chance = _by_chance(peaks, generator("remaining lines"))
     found: list[RemainingLine] = []
     while len(found) < MOST_LAWS:
         best = _best(peaks)
-        if best is None or _runs(best[0]) <= luck:
+        if best is None or _runs(best[0]) <= by_chance:
             break
         met, fixed, slope = best
         largest = max(met, key=lambda peak: peak.amplitude)
         runs = tuple(dict.fromkeys(p.run for p in met))
         gain = _gain(fits, runs, fixed, slope)
         found.append(RemainingLine(fixed, 2 * np.pi * slope, largest.amplitude, largest.speed, runs, gain))
-        # What is near it is its skirt.
+        # Peaks near the law are its skirt.
         peaks = [peak for peak in peaks if _off(peak, fixed, slope) > SKIRT]
     return tuple(found)
 
 
 def _gain(fits: Sequence[tuple[Fit, Table]], runs: Sequence[str], fixed: float, slope: float) -> float:
-    """Share by which a line lowers the error of the runs that show it, each half of a run being told by the other."""
+    """Relative reduction of the error of the runs with a line, each half of a run predicted from the other half."""
     before, after = [], []
     for fit, table in fits:
         missed = fit.missed(table)
@@ -124,25 +125,25 @@ def _gain(fits: Sequence[tuple[Fit, Table]], runs: Sequence[str], fixed: float, 
                 own = missed[table.run == number]
                 doubt = MET * max(abs(fixed), abs(slope) * float(np.abs(each.speed).mean()))
                 before.append(own)
-                after.append(foretold(each, own, fixed, 2 * np.pi * slope, doubt))
+                after.append(coherent_part_removed(each, own, fixed, 2 * np.pi * slope, doubt))
     return 1 - rms(np.concatenate(after)) / rms(np.concatenate(before))
 
 
-def _luck(peaks: Sequence[_Peak], rng: np.random.Generator) -> int:
-    """Most runs that a law meets when the speeds are dealt out to the runs anew: what many lines meet by luck."""
+def _by_chance(peaks: Sequence[_Peak], rng: np.random.Generator) -> int:
+    """Largest number of runs that a law meets by chance, after permutations of the speeds of the runs."""
     speeds = {peak.run: peak.speed for peak in peaks}
     most = LEAST_RUNS - 1
-    for _ in range(DEALT if len(speeds) >= LEAST_RUNS else 0):
-        dealt = dict(zip(speeds, rng.permutation(list(speeds.values())).tolist(), strict=True))
-        best = _best([replace(peak, speed=dealt[peak.run]) for peak in peaks], moving=True)
+    for _ in range(PERMUTATIONS if len(speeds) >= LEAST_RUNS else 0):
+        permuted = dict(zip(speeds, rng.permutation(list(speeds.values())).tolist(), strict=True))
+        best = _best([replace(peak, speed=permuted[peak.run]) for peak in peaks], moving=True)
         most = max(most, _runs(best[0]) if best else 0)
     return most
 
 
 def _best(peaks: Sequence[_Peak], *, moving: bool = False) -> tuple[list[_Peak], float, float] | None:
-    """The law that meets lines of most runs, of most power among these: its lines, fixed part and slope.
+    """The law that meets lines of most runs, with the most power among these: its lines, fixed part and slope.
 
-    A fixed frequency is the same however speeds are dealt out; with ``moving`` it is no law.
+    A fixed frequency does not change with permuted speeds; ``moving`` excludes it.
     """
     if not peaks:
         return None
@@ -150,8 +151,8 @@ def _best(peaks: Sequence[_Peak], *, moving: bool = False) -> tuple[list[_Peak],
     run = np.unique([p.run for p in peaks], return_inverse=True)[1]
     laws = np.array([law for one, other in combinations(peaks, 2) for law in _laws(one, other) if law[1] or not moving]
                     or [(0.0, 0.0)])  # fmt: skip
-    may_be = MET * np.maximum(np.abs(laws[:, :1]), np.abs(laws[:, 1:]) * v) + resolution
-    near = np.abs(f - laws[:, :1] - laws[:, 1:] * v) < may_be
+    tolerance = MET * np.maximum(np.abs(laws[:, :1]), np.abs(laws[:, 1:]) * v) + resolution
+    near = np.abs(f - laws[:, :1] - laws[:, 1:] * v) < tolerance
     runs = np.stack([near[:, run == number].any(axis=1) for number in range(run.max() + 1)]).sum(axis=0)
     power = near @ np.array([p.amplitude**2 for p in peaks])
     fixed, slope = laws[np.lexsort((power, runs))[-1]].tolist()
@@ -170,7 +171,7 @@ def _runs(met: Sequence[_Peak]) -> int:
 
 
 def _peaks(fit: Fit, table: Table) -> list[_Peak]:
-    """Lines that stand out of the residual of runs at steady speed."""
+    """Significant lines in the residual of runs at steady speed."""
     missed = fit.missed(table)
     found = []
     for number, each in enumerate(table.recordings):
@@ -189,7 +190,7 @@ def _peaks(fit: Fit, table: Table) -> list[_Peak]:
 
 
 def _laws(one: _Peak, other: _Peak) -> list[tuple[float, float]]:
-    """Laws that two lines suggest: fixed frequency, order, or both; fixed part [Hz] and slope [Hz s/rad]."""
+    """Laws through two lines: fixed frequency, order, or both; fixed part [Hz] and slope [Hz s/rad]."""
     found = [(0.0, one.frequency / one.speed), (one.frequency, 0.0)]
     if one.run != other.run and abs(one.speed - other.speed) > 0.1 * max(one.speed, other.speed):
         slope = (one.frequency - other.frequency) / (one.speed - other.speed)
@@ -210,13 +211,13 @@ def _met(peaks: Sequence[_Peak], fixed: float, slope: float) -> list[_Peak]:
 
 
 def _off(peak: _Peak, fixed: float, slope: float) -> float:
-    """Distance of a line from a law, in units of what may be; fixed and moving part are each known to a share only."""
-    may_be = MET * max(abs(fixed), abs(slope) * peak.speed) + peak.resolution
-    return abs(peak.frequency - fixed - slope * peak.speed) / may_be
+    """Distance of a line from a law, in units of its tolerance, which is relative to the larger part of the law."""
+    tolerance = MET * max(abs(fixed), abs(slope) * peak.speed) + peak.resolution
+    return abs(peak.frequency - fixed - slope * peak.speed) / tolerance
 
 
 def _refined(met: Sequence[_Peak], fixed: float, slope: float) -> tuple[float, float]:
-    """A law by least squares over all lines that it meets."""
+    """Refine a law by least squares over all lines that it meets."""
     f, v = np.array([p.frequency for p in met]), np.array([p.speed for p in met])
     if not fixed:
         return 0.0, float((f * v).sum() / (v**2).sum())
@@ -224,3 +225,35 @@ def _refined(met: Sequence[_Peak], fixed: float, slope: float) -> tuple[float, f
         return float(f.mean()), 0.0
     slope, fixed = np.polyfit(v, f, 1).tolist()
     return fixed, slope
+
+
+def coherent_part_removed(
+    recording: JointRecording, residual: Float[np.ndarray, " time"], fixed: float, order: float, doubt: float
+) -> Float[np.ndarray, " time"]:
+    """Residual of each half of a run without a line that is estimated from the other half.
+
+    Amplitude, phase and exact frequency are free in every run, since its clock was not recorded. If the line keeps its
+    phase, this lowers the error; if not, it raises it.
+
+    Parameters
+    ----------
+    recording : JointRecording
+    residual : array (time,)
+    fixed, order : float
+        The line's frequency is fixed + order * speed / (2 pi) [Hz].
+    doubt : float
+        Uncertainty of the frequency [Hz].
+    """
+    time = np.arange(len(residual)) / recording.rate
+    way = recording.signals["q"] * np.sign(recording.speed.mean())
+    wave = np.exp(1j * (2 * np.pi * fixed * time + order * way))
+    remainder = residual.copy()
+    halves = np.array_split(np.arange(len(residual)), 2)
+    for known, unknown in (halves, halves[::-1]):
+        number = FINER * len(known)
+        sizes = 2 / len(known) * np.fft.fft((residual * wave.conj())[known], number)
+        off = np.fft.fftfreq(number, 1 / recording.rate)
+        best = int(np.where(np.abs(off) <= doubt, np.abs(sizes), -1.0).argmax())
+        turned = np.exp(2j * np.pi * off[best] * (time - time[known[0]]))
+        remainder[unknown] -= (sizes[best] * turned * wave).real[unknown]
+    return remainder

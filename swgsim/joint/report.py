@@ -1,14 +1,16 @@
-"""The answer for a joint as ``report.json``: what its textbook model lacks, what each effect bought, what remains."""
+"""The answer for a joint as ``report.json``: missing effects, their value on held-out recordings, what remains."""
 
 from collections.abc import Sequence
+from inspect import getdoc
 from typing import Any
 
 import numpy as np
 
+from swgsim.common.numbers import significant
 from swgsim.common.outcome import FOUND, NOTHING, UNKNOWN
 from swgsim.effects.quantity import Role, quantities
 from swgsim.joint.days import Days
-from swgsim.joint.effects.position_friction import PositionFriction
+from swgsim.joint.effects.friction import PositionFriction
 from swgsim.joint.effects.ripple import Ripple
 from swgsim.joint.judged import Judged, Rung
 from swgsim.joint.naming import in_words, listed
@@ -16,23 +18,27 @@ from swgsim.joint.recording import SIGNALS
 from swgsim.joint.regression import Fit, rms
 from swgsim.joint.remaining import RemainingLine
 from swgsim.joint.term import Term
+from swgsim.joint.textbook import RigidBody
 from swgsim.joint.waves import SLOW
 
-# Probability below which sessions differ in friction.
+# Verdict for effects that do not lower the error on the held-out recordings.
+NOT_CONFIRMED = "not_confirmed"
+# p-value below which sessions differ in friction.
 DIFFERENT = 0.02
 # No strain wave gear has a smaller ratio.
 SLOWEST = 30
 
 
 def report(judged: Judged, days: Days | None, lines: Sequence[RemainingLine]) -> dict[str, Any]:
-    """All that is said of a joint, as plain numbers and text; what is not known is None."""
+    """The answer as plain numbers and text; unknown values are None."""
     first, top, unit = judged.table.recordings[0], judged.ladder.top, SIGNALS[judged.table.of].unit
-    steps = len(judged.ladder.steps)
-    words = [*map(str, lines), *([_of_days(days)] if days and days.chance < DIFFERENT else [])]
+    ratio, steps, base = first.gear_ratio, judged.ladder.steps, len(judged.ladder.textbook.terms)
+    words = [*map(str, lines), *([_friction_by_session(days)] if days and days.chance < DIFFERENT else [])]
+    found = FOUND if judged.helps else NOT_CONFIRMED
     return {
-        "verdict": FOUND if steps else UNKNOWN if words else NOTHING,
+        "verdict": found if steps else UNKNOWN if words else NOTHING,
         "sentence": sentence(judged, words),
-        "lacks": listed([step.term for step in judged.ladder.steps], first.gear_ratio),
+        "lacks": listed([step.term for step in steps], ratio),
         "robot": first.robot,
         "joint": first.joint,
         "signal": judged.table.of,
@@ -43,28 +49,25 @@ def report(judged: Judged, days: Days | None, lines: Sequence[RemainingLine]) ->
         },
         "noise_floor": judged.floor,
         "gear_ratio": gear_ratio(judged),
-        "calibrated": _weights(top, 0, len(judged.ladder.textbook.terms), unit),
+        "calibrated": _weights(top, 0, base, unit),
         "effects": [
             {
-                "name": rung.trial.term.name(),
-                "title": in_words(rung.trial.term, first.gear_ratio),
+                "name": step.term.name(),
+                "title": in_words(step.term, ratio),
+                "meaning": " ".join((getdoc(type(step.term)) or "").partition("\n\n")[0].split()),
                 "place": "joint",
-                "parameters": _shape(term) | _weights(top, number, number + 1, unit),
-                "evidence": {"gain": rung.trial.gain, "worst_session": rung.trial.worst, "chance": rung.trial.chance},
+                "parameters": _shape(top.terms[number]) | _weights(top, number, number + 1, unit),
+                "evidence": {"gain": step.gain, "worst_session": step.worst, "chance": step.chance},
                 "indistinguishable_from": [],
             }
-            for number, (rung, term) in enumerate(
-                zip(judged.rungs[1 : steps + 1], top.terms[-steps:] if steps else (), strict=True),
-                len(judged.ladder.textbook.terms),
-            )
-            if rung.trial
+            for number, step in enumerate(steps, base)
         ],
         "rejected": [
-            {"name": r.trial.term.name(), "title": in_words(r.trial.term, first.gear_ratio), "heldout_error": r.heldout,
+            {"name": r.trial.term.name(), "title": in_words(r.trial.term, ratio), "heldout_error": r.heldout,
              "why": r.trial.why}
             for r in judged.rungs if r.trial and not r.kept
         ],
-        "rungs": [_rung(rung, first.gear_ratio) for rung in judged.rungs],
+        "rungs": _rungs(judged, ratio),
         "error": {
             "before": _errors(judged.before), "after": _errors(judged.after), "noise_floor": judged.floor, "unit": unit,
         },
@@ -73,23 +76,43 @@ def report(judged: Judged, days: Days | None, lines: Sequence[RemainingLine]) ->
             "sessions": [vars(day) for day in days.days], "chance": days.chance, "spread": days.spread,
         },
         "unknown": {"words": words, "lines": [vars(line) for line in lines]} if words else None,
+        "cautions": _cautions(judged),
         "next_experiment": _next(judged, days),
     }  # fmt: skip
 
 
-def sentence(judged: Judged, left: Sequence[str]) -> str:
+def sentence(judged: Judged, remaining: Sequence[str]) -> str:
     """The verdict in one sentence."""
     ratio, of = judged.table.recordings[0].gear_ratio, SIGNALS[judged.table.of]
     where = f"{judged.table.recordings[0].robot}, {judged.table.recordings[0].joint.replace('_', ' ')}, {of.says}"
-    more = "one regularity in what is left remains" if len(left) == 1 else f"{len(left)} regularities remain"
-    rest = f"; {more} unexplained" if left else ""
+    more = "one regularity of the residual remains" if len(remaining) == 1 else f"{len(remaining)} regularities remain"
+    rest = f"; {more} unexplained" if remaining else ""
     if not judged.ladder.steps:
         return f"{where}: no effect of the library helps the textbook model on recordings it has not seen{rest}."
     terms = [step.term for step in judged.ladder.steps]
+    change = _change(judged.before.heldout, judged.after.heldout, of.unit)
+    if judged.helps:
+        them = "them" if terms[1:] else "it"
+        return (
+            f"{where}: the textbook model lacks {listed(terms, ratio)}; with {them} the error on recordings not seen "
+            f"{change}{rest}."
+        )
     return (
-        f"{where}: the textbook model lacks {listed(terms, ratio)}; with {'them' if terms[1:] else 'it'} the error on "
-        f"recordings not seen falls from {judged.before.heldout:.3g} to {judged.after.heldout:.3g} {of.unit}{rest}."
+        f"{where}: the effects found on the fitted recordings do not help on recordings not seen; with "
+        f"{listed(terms, ratio)} the error there {change}{rest}."
     )
+
+
+def _change(before: float, after: float, unit: str) -> str:
+    """A change of an error in words, with as many digits as it needs."""
+    if before == after:
+        return f"stays at {significant(before)} {unit}"
+    first, last = next(
+        pair
+        for digits in range(3, 18)
+        if len(set(pair := (significant(before, digits), significant(after, digits)))) > 1
+    )
+    return f"{'falls' if after < before else 'rises'} from {first} to {last} {unit}"
 
 
 def runs(judged: Judged) -> list[dict[str, Any]]:
@@ -113,7 +136,7 @@ def runs(judged: Judged) -> list[dict[str, Any]]:
 
 
 def gear_ratio(judged: Judged) -> dict[str, Any] | None:
-    """As declared; else the largest number of which all fast orders that were found are multiples, if there are two."""
+    """The declared ratio; else the largest number that divides all orders above SLOW, if there are two."""
     known = judged.table.recordings[0].gear_ratio
     if known is not None:
         return {"value": known, "ci95": None, "how": "declared"}
@@ -128,7 +151,7 @@ def gear_ratio(judged: Judged) -> dict[str, Any] | None:
             return {
                 "value": ratio,
                 "ci95": [ratio - half, ratio + half],
-                "how": "read off the ripple: the largest number that divides all fast orders; the ratio or a multiple",
+                "how": "estimated from the ripple: the largest divisor of all fast orders; the ratio or a multiple",
             }
     return None
 
@@ -143,10 +166,9 @@ def _weights(top: Fit, first: int, last: int, unit: str) -> dict[str, dict[str, 
             found |= _wave(term, top.half_interval[start : start + 2], units[0])
             start += 2
             continue
-        for number, weight in enumerate(term.weights):
+        each_unit = units if len(units) > 1 else units * len(term.weights)
+        for number, (name, weight, own) in enumerate(zip(term.names(), term.weights, each_unit, strict=True)):
             half = float(top.half_interval[start + number])
-            name = term.name() if len(term.weights) == 1 else f"{term.name()} {number + 1}"
-            own = units[number] if len(units) > 1 else units[0]
             found[name] = {"value": weight, "ci95": [weight - half, weight + half], "unit": own}
         start += len(term.weights)
     return found
@@ -167,45 +189,73 @@ def _wave(term: Ripple | PositionFriction, half: np.ndarray, unit: str) -> dict[
 
 
 def _shape(term: Term) -> dict[str, dict[str, Any]]:
-    """Inner parameters, of which no interval is known; a filter that is open is none."""
+    """Inner parameters, without intervals; a filter without effect is left out."""
     declared = {n: q for n, q in quantities(type(term)).items() if q.role in (Role.SHAPE, Role.CHOICE)}
     if isinstance(term, Ripple) and term.corner == declared["corner"].high:
         declared = {name: q for name, q in declared.items() if name not in ("corner", "damping")}
     return {n: {"value": float(getattr(term, n)), "ci95": None, "unit": q.unit} for n, q in declared.items()}
 
 
-def _rung(rung: Rung, ratio: float | None) -> dict[str, Any]:
-    return {
-        "effect": rung.trial.term.name() if rung.trial else "textbook",
-        "title": in_words(rung.trial.term, ratio) if rung.trial else "textbook model",
-        **_errors(rung),
-        "kept": rung.kept,
-        "why": "" if rung.kept or not rung.trial else rung.trial.why,
-    }
+def _rungs(judged: Judged, ratio: float | None) -> list[dict[str, Any]]:
+    """Accepted and refused terms with their errors, and a remark where there is one."""
+    found = []
+    for number, rung in enumerate(judged.rungs):
+        worse = rung.kept and number > 0 and rung.heldout > judged.rungs[number - 1].heldout
+        remark = "raises the error on held-out recordings" if worse else ""
+        found.append(
+            {
+                "effect": rung.trial.term.name() if rung.trial else "textbook",
+                "title": in_words(rung.trial.term, ratio) if rung.trial else "textbook model",
+                **_errors(rung),
+                "kept": rung.kept,
+                "why": remark if rung.kept or not rung.trial else rung.trial.why,
+            }
+        )
+    return found
 
 
 def _errors(rung: Rung) -> dict[str, float]:
     return {"fit": rung.fit, "heldout": rung.heldout, "heldout_slow": rung.heldout_slow}
 
 
-def _of_days(days: Days) -> str:
-    """How friction differs between sessions, and what that does not say."""
-    share = f"{100 * days.spread:.0f} % (chance {days.chance:.1g})"
+def _friction_by_session(days: Days) -> str:
+    """Difference of friction between sessions, in words."""
+    share = f"{100 * days.spread:.0f} % (p-value {days.chance:.1g})"
     return (
-        f"friction that rises with speed differs between sessions by {share}, as grease at another temperature would "
-        "make it, but no temperature was recorded, so the cause is not known"
+        f"speed-dependent friction differs between sessions by {share}; grease at another temperature would explain "
+        "it, but no temperature was recorded, so the cause is unknown"
     )
 
 
+def _cautions(judged: Judged) -> list[str]:
+    """Limits of the model that a reader must know."""
+    found, unit = [], SIGNALS[judged.table.of].unit
+    if any(isinstance(term, RigidBody) and not term.modelled for term in judged.ladder.textbook.terms):
+        found.append(
+            "there is no rigid-body torque (T_rigid), so the textbook model has the inertia and gravity of a single "
+            "link; for a joint that carries several links, map T_rigid in the source"
+        )
+    scatter = float(np.std(judged.heldout.signal))
+    if judged.before.heldout > scatter:
+        found.append(
+            f"the textbook model predicts the held-out recordings worse than a constant (error "
+            f"{significant(judged.before.heldout)} {unit}, standard deviation of the signal {significant(scatter)} "
+            f"{unit}), so its parameters and the effects are not reliable"
+        )
+    return found
+
+
 def _next(judged: Judged, days: Days | None) -> dict[str, Any] | None:
-    """What to record next, where something is open."""
+    """The next recordings that would answer an open question."""
     wishes = []
+    if judged.ladder.steps and not judged.helps:
+        wishes.append("fit more sessions, such as the held-out ones: they differ from the fitted ones")
     if days and days.chance < DIFFERENT:
         wishes.append("log the temperature of the joint, and record one session cold and warm on the same day")
     if judged.floor is None:
         wishes.append("record the joint at rest, for the noise of its signals")
-    unsteady = [r.trial.term for r in judged.rungs if r.trial and not r.kept and r.trial.unsteady]
-    if unsteady:
+    undecided = [r.trial.term for r in judged.rungs if r.trial and not r.kept and r.trial.unsteady]
+    if undecided:
         ratio = judged.table.recordings[0].gear_ratio
-        wishes.append(f"record more sessions, to decide about {listed(unsteady, ratio)}")
+        wishes.append(f"record more sessions, to decide about {listed(undecided, ratio)}")
     return {"words": "; ".join(wishes)} if wishes else None

@@ -1,4 +1,4 @@
-"""The inner parameters of a term: those at which it explains most of a residual."""
+"""The inner parameters of a term at which it explains most of a residual."""
 
 from dataclasses import replace
 from itertools import product
@@ -12,36 +12,36 @@ from swgsim.joint.regression import Fit
 from swgsim.joint.term import Term
 
 T = TypeVar("T", bound=Term)
-# A parameter whose bounds lie so many times apart is searched in its logarithm.
+# A parameter is searched in its logarithm if the ratio of its bounds is at least this.
 WIDE = 10.0
-# Evaluations of a search beyond its grid, for each parameter.
+# Evaluations after the grid search, for each parameter.
 ROUNDS = 35
 
 
 def shaped(now: Fit, term: T) -> T:
-    """A term at its likeliest inner parameters beside the terms of a fit."""
+    """A term at its most likely inner parameters, added to the terms of a fit."""
     return max(shapes(now, term), key=lambda each: gain(now, each))
 
 
 def shapes(now: Fit, term: T) -> list[T]:
-    """A term at the likeliest inner parameters of each of its choices: best of a grid, then downhill from there.
+    """A term at the most likely inner parameters for each of its choices: grid search, then simplex search.
 
     Parameters
     ----------
     now : Fit
     term : Term
-        Parameters that declare no values to try stay as they are.
+        Parameters with a single declared value stay as they are.
     """
     searched = {name: q for name, q in quantities(type(term)).items() if q.role is Role.SHAPE and q.points > 1}
     choices = {name: q.tried for name, q in quantities(type(term)).items() if q.role is Role.CHOICE}
-    # Where effects of the same kind were found is where this one may be: waves pass the same filter.
+    # Parameters of accepted effects of the same kind are start values: waves pass the same filter.
     alike = [tuple(getattr(each, name) for name in searched) for each in now.terms if type(each) is type(term)]
     values = (*product(*map(_grid, searched.values())), *alike)
     best = [
         max((_with(term, (*choices, *searched), (*c, *v)) for v in values), key=lambda each: gain(now, each))
         for c in product(*choices.values())
     ]
-    # A choice shows its worth only at the parameters that suit it.
+    # Choices are compared at their own best parameters.
     return [_downhill(now, each, searched) if searched else each for each in best]
 
 
@@ -49,16 +49,16 @@ def gain(now: Fit, term: Term) -> float:
     """Fall of the mean square of the residual if a term were added."""
     C = now.table.columns(term)
     free = C - now.basis @ (now.basis.T @ C)
-    # The columns are few: their products say all, at a fraction of the work.
+    # The columns are few: their products suffice, at a fraction of the work.
     s, V = np.linalg.eigh(free.T @ free)
     along = V.T @ (free.T @ now.residual)
-    # What the other terms absorb of a column is no column of its own.
+    # A column that the other terms explain does not count.
     kept = s > 1e-10 * float((C**2).sum())
     return float((along[kept] ** 2 / s[kept]).sum()) / len(now.residual)
 
 
 def _downhill(now: Fit, begin: T, searched: dict[str, Quantity]) -> T:
-    """The term of a simplex search, if it is better than where that began."""
+    """Result of a simplex search, if it is better than its start."""
     names, declared = list(searched), list(searched.values())
     x = np.array([_inner(q, getattr(begin, name)) for name, q in searched.items()])
     ends = np.array([[_inner(q, q.low), _inner(q, q.high)] for q in declared])
@@ -82,7 +82,7 @@ def _with(term: T, names: Any, values: Any) -> T:
 
 
 def _grid(quantity: Quantity) -> list[float]:
-    """Values that are tried first."""
+    """Values of the grid search."""
     ends = _inner(quantity, quantity.low), _inner(quantity, quantity.high)
     return [_outer(quantity, x) for x in np.linspace(*ends, quantity.points)]
 
@@ -92,10 +92,10 @@ def _wide(quantity: Quantity) -> bool:
 
 
 def _inner(quantity: Quantity, value: float) -> float:
-    """A value in the measure of the search."""
+    """A value on the scale of the search."""
     return float(np.log(value)) if _wide(quantity) else value
 
 
 def _outer(quantity: Quantity, value: float) -> float:
-    """A value from the measure of the search, within its bounds."""
+    """A value from the scale of the search, within its bounds."""
     return float(np.clip(np.exp(value) if _wide(quantity) else value, quantity.low, quantity.high))

@@ -1,4 +1,4 @@
-"""Which recordings are fitted, which judge, and which are neither."""
+"""Selection of the recordings to fit and of the held-out recordings."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,30 +6,30 @@ from fnmatch import fnmatchcase
 
 import numpy as np
 
-from swgsim.joint.intake.read import JointFiles
+from swgsim.joint.intake.read import JointRecordings
 from swgsim.joint.judged import noise_floor, standing_noise
 from swgsim.joint.recording import PREDICTED, SIGNALS, JointRecording
 from swgsim.joint.regression import Table
 from swgsim.joint.slow import SLOW
 
-# A joint that moved less than a revolution of its motor, or this [rad] if the ratio is unknown, did not turn its gear.
+# A joint must move one revolution of its motor, or this angle [rad] if the gear ratio is unknown.
 LEAST_WAY = 0.05
 
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A question to recordings of one joint.
+    """Recordings of one joint, selected for one identification.
 
     Attributes
     ----------
     table, heldout : Table
-        Recordings to fit, and to judge.
+        Recordings to fit, and held-out recordings.
     floor : float or None
-        Noise of the signal at rest.
+        Noise of the signal at rest, in its unit.
     floor_how : str
-        Of which rest, in words; empty if none is known.
+        Origin of this noise, in words; empty if it is unknown.
     left_out : tuple of str
-        Names of recordings in neither, with the reason.
+        Names of unused recordings with the reason.
     """
 
     table: Table
@@ -39,52 +39,56 @@ class Case:
     left_out: tuple[str, ...]
 
 
-def chosen(
-    files: JointFiles, judging: JointFiles | None, joint: str | None, signal: str | None, holdout: str | None,
-    without: str | None,
+def select(
+    files: JointRecordings, judging: JointRecordings | None, joint: str | None, signal: str | None,
+    holdout: str | None, without: str | None,
 ) -> Case:  # fmt: skip
-    """The recordings of a question.
+    """Select recordings.
 
     Parameters
     ----------
-    files : JointFiles
-    judging : JointFiles or None
-        Files of a folder of their own that judge; None if ``holdout`` says which ones do.
+    files : JointRecordings
+    judging : JointRecordings or None
+        Held-out recordings from a folder of their own; None if ``holdout`` names them.
     joint, signal : str or None
         Needed if there are several.
     holdout, without : str or None
-        Patterns, separated by commas, of sessions or runs: those that judge, and those to leave out.
+        Patterns, separated by commas, of sessions or runs that are held out, or that are left out.
 
     Raises
     ------
     ValueError
-        If there is nothing to fit or nothing to judge, or a choice is open; it lists the choices.
+        If no recordings remain to fit or to hold out, or a choice is missing; it lists the choices.
     """
     every = (*files.recordings, *(judging.recordings if judging else ()))
-    joint = _only("joint", joint, sorted({each.joint for each in every}))
+    refused = (*files.refused, *(judging.refused if judging else ()))
+    for each in (files, *([judging] if judging else ())):
+        each.require_usable()
+    joint = _only("joint", joint, sorted({each.joint for each in every}), {joint for _, _, joint in refused})
     own = [each for each in every if each.joint == joint]
     for what, patterns in (("without", without), ("holdout", None if judging else holdout)):
-        _require_met(what, patterns, own)
+        _require_met(what, patterns, own, [run for run in refused if run[2] == joint])
     if judging:
         _require_apart(files.recordings, judging.recordings)
     signal = _only("signal", signal, [name for name in PREDICTED if any(name in each.signals for each in own)])
     reasons = {id(each): _unused(each, signal, without) for each in own}
     used = [each for each in own if not reasons[id(each)]]
+    left_out = tuple(f"{each.name}: {reasons[id(each)]}" for each in own if reasons[id(each)])
     apart = {id(each) for each in judging.recordings} if judging else {id(e) for e in used if _matches(e, holdout)}
-    fitted, heldout = (tuple(e for e in used if (id(e) in apart) == judges) for judges in (False, True))
+    fitted, heldout = (tuple(e for e in used if (id(e) in apart) == held) for held in (False, True))
     if not fitted or not heldout:
         sessions = ", ".join(sorted({each.session for each in used})) or "none"
+        unused = f"; not used: {'; '.join(left_out)}" if left_out else ""
         raise ValueError(
-            f"holdout={holdout} leaves {len(fitted)} recordings of {joint} to fit and {len(heldout)} to judge: give a "
-            f"pattern of some of the sessions {sessions}, or of their runs, or a folder of recordings that judge"
+            f"holdout={holdout} leaves {len(fitted)} recordings of {joint} to fit and {len(heldout)} held out: give a "
+            f"pattern of some of the sessions {sessions}, or of their runs, or a folder of held-out recordings{unused}"
         )
     floor, how = _floor(files, joint, signal)
-    left_out = tuple(f"{each.name}: {reasons[id(each)]}" for each in own if reasons[id(each)])
     return Case(Table(fitted, signal), Table(heldout, signal), floor, how, left_out)
 
 
-def _floor(files: JointFiles, joint: str, signal: str) -> tuple[float | None, str]:
-    """Noise of a signal, of recordings at rest or else of those in which other joints moved; and which it is."""
+def _floor(files: JointRecordings, joint: str, signal: str) -> tuple[float | None, str]:
+    """Noise of a signal from recordings at rest, else from recordings in which other joints moved; and its origin."""
     resting, standing = (
         tuple(each for each in recordings if each.joint == joint and signal in each.signals)
         for recordings in (files.at_rest, files.standing)
@@ -95,44 +99,55 @@ def _floor(files: JointFiles, joint: str, signal: str) -> tuple[float | None, st
     return floor, f"above {SLOW:g} Hz, of the joint standing while another one moved" if floor is not None else ""
 
 
-def _require_met(what: str, patterns: str | None, recordings: Sequence[JointRecording]) -> None:
-    """Raise a ValueError for a pattern that meets nothing: what it was to keep apart would be fitted unnoticed."""
+def _require_met(
+    what: str, patterns: str | None, recordings: Sequence[JointRecording], refused: Sequence[tuple[str, str, str]]
+) -> None:
+    """Raise a ValueError for a pattern without a match: recordings to hold out would be fitted unnoticed."""
     for pattern in _patterns(patterns):
         if not any(_matches(each, pattern) for each in recordings):
             sessions = ", ".join(sorted({each.session for each in recordings}))
-            raise ValueError(f"{pattern!r} of {what}= meets no session and no run: the sessions are {sessions}")
+            lost = [run for session, run, _ in refused if fnmatchcase(session, pattern) or fnmatchcase(run, pattern)]
+            why = f"matches only refused recordings ({', '.join(lost)})" if lost else "meets no session and no run"
+            raise ValueError(f"{pattern!r} of {what}= {why}: the usable sessions are {sessions}")
 
 
 def _require_apart(fitted: Sequence[JointRecording], judging: Sequence[JointRecording]) -> None:
-    """Raise a ValueError if a recording is in both folders: it would judge what was fitted to it."""
-    there = {each.signals["q"].tobytes(): each.name for each in fitted}
+    """Raise a ValueError if a recording is in both folders: it would be fitted and held out."""
+    known = {each.signals["q"].tobytes(): each.name for each in fitted}
     for each in judging:
-        if each.signals["q"].tobytes() in there:
+        if each.signals["q"].tobytes() in known:
             raise ValueError(
                 f"run {each.name} of the holdout folder is also in the recordings to fit, as "
-                f"{there[each.signals['q'].tobytes()]}: keep the files that judge in a folder outside of them"
+                f"{known[each.signals['q'].tobytes()]}: keep held-out files in a folder outside of them"
             )
 
 
 def _unused(recording: JointRecording, signal: str, without: str | None) -> str:
-    """Why a recording is neither fitted nor judges; empty if it is used."""
+    """Reason why a recording is not used; empty if it is used."""
     if _matches(recording, without):
-        return "left out as asked"
+        return "left out by without="
     if signal not in recording.signals:
         return f"has no {signal}"
-    way = 2 * np.pi / recording.gear_ratio if recording.gear_ratio else LEAST_WAY
+    ratio = recording.gear_ratio
+    way = 2 * np.pi / ratio if ratio else LEAST_WAY
     moved = float(np.ptp(recording.signals["q"]))
-    return f"moved {moved:.2g} rad, less than a revolution of the motor" if moved < way else ""
+    limit = "a revolution of the motor" if ratio else f"{LEAST_WAY} rad"
+    return f"moved {moved:.2g} rad, less than {limit}" if moved < way else ""
 
 
-def _only(what: str, wanted: str | None, there: Sequence[str]) -> str:
-    """The one that is wanted, or the only one there is."""
-    if wanted in there:
+def _only(what: str, wanted: str | None, available: Sequence[str], refused: set[str] | None = None) -> str:
+    """The wanted choice, or the only one."""
+    if wanted in available:
         return str(wanted)
-    if wanted is None and len(there) == 1:
-        return there[0]
-    listed = ", ".join(f"{name} ({SIGNALS[name].says})" if name in SIGNALS else name for name in there) or "none"
-    raise ValueError(f"{what}={wanted} is none of the recordings': choose {what}= from {listed}")
+    if wanted is None and len(available) == 1:
+        return available[0]
+    choices = ", ".join(f"{name} ({SIGNALS[name].says})" if name in SIGNALS else name for name in available)
+    if not choices:
+        raise ValueError(f"no recording has a signal to explain: map {' or '.join(PREDICTED)} in the source")
+    if wanted is None:
+        raise ValueError(f"the recordings have several: choose {what}= from {choices}")
+    why = "has refused recordings only" if refused and wanted in refused else "is not in the recordings"
+    raise ValueError(f"{what}={wanted} {why}: choose {what}= from {choices}")
 
 
 def _patterns(patterns: str | None) -> list[str]:
@@ -140,6 +155,6 @@ def _patterns(patterns: str | None) -> list[str]:
 
 
 def _matches(recording: JointRecording, patterns: str | None) -> bool:
-    """Whether the session or the run of a recording meets one of the patterns."""
+    """Whether the session or the run of a recording matches one of the patterns."""
     names = recording.session, recording.name
     return any(fnmatchcase(name, pattern) for pattern in _patterns(patterns) for name in names)

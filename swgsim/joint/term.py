@@ -1,4 +1,4 @@
-"""The idea of an effect on a joint: columns over time, each with a weight that least squares finds."""
+"""Base class of the effects on a joint: columns over time, each with a weight that least squares finds."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
@@ -13,10 +13,10 @@ from swgsim.joint.recording import JointRecording
 
 @dataclass(frozen=True, kw_only=True)
 class Term(Effect, ABC):
-    """What one physical effect adds to a signal of a joint.
+    """Contribution of one physical effect to a signal of a joint.
 
-    The parameters that it declares shape the columns; how much of each column there is, is a weight. Subclasses write
-    :meth:`columns`. Effects of users outside the project are found by their import path, as those of the chain are.
+    Declared parameters shape the columns; the weights scale them. A subclass implements :meth:`columns`. Effects from
+    outside the project are found by their import path, as those of the chain are.
 
     Attributes
     ----------
@@ -25,10 +25,16 @@ class Term(Effect, ABC):
     """
 
     place = "joint"
-    #: Signals of which it is tried as an explanation.
+    #: Signals that the effect may explain.
     explains: ClassVar[tuple[str, ...]] = ("current",)
-    #: Signals that the columns are made of.
+    #: Signals that the columns need.
     needs: ClassVar[tuple[str, ...]] = ("omega",)
+    #: Names of the weights.
+    weight_names: ClassVar[tuple[str, ...]] = ()
+    #: Units of the weights after the unit of the signal: one each, or one for all.
+    per: ClassVar[tuple[str, ...]] = ("",)
+    #: Whether all weights must be positive, because friction brakes.
+    brakes: ClassVar[bool] = False
 
     weights: tuple[float, ...] = ()
 
@@ -36,18 +42,24 @@ class Term(Effect, ABC):
     def columns(self, recording: JointRecording) -> Float[np.ndarray, "time column"]:
         """The columns of a recording."""
 
-    @abstractmethod
+    def names(self) -> tuple[str, ...]:
+        """Names of the weights: as declared, or numbered if there are several."""
+        number = len(self.weights)
+        default = (self.name(),) if number == 1 else tuple(f"{self.name()} {i + 1}" for i in range(number))
+        return self.weight_names or default
+
     def units(self, of: str) -> tuple[str, ...]:
-        """Of the weights, if the effect adds to a signal in the unit ``of``: one each, or one for all of them."""
+        """Units of the weights for a signal in the unit ``of``: one each, or one for all."""
+        return tuple(of + each for each in self.per)
 
     def signal(self, recording: JointRecording) -> Float[np.ndarray, " time"]:
-        """What it adds, in the unit of the signal that it was fitted to."""
+        """Contribution in the unit of the fitted signal."""
         return self.columns(recording) @ np.array(self.weights)
 
     @property
     def sound(self) -> bool:
-        """Whether the weights have the sign that the physics demands."""
-        return True
+        """Whether the weights have the sign that physics requires."""
+        return not self.brakes or all(weight > 0 for weight in self.weights)
 
     def weighted(self, weights: np.ndarray) -> "Term":
         """The effect with its weights."""
@@ -55,5 +67,5 @@ class Term(Effect, ABC):
 
     @classmethod
     def possible(cls, recording: JointRecording) -> bool:
-        """Whether a recording holds all that the columns are made of."""
+        """Whether a recording has all signals that the columns need."""
         return all(name in recording.signals for name in cls.needs)

@@ -11,7 +11,7 @@ from swgsim.joint.term import Term
 
 @dataclass(frozen=True)
 class RigidBody(Term):
-    """What moves the links: the torque by the controller's rigid-body model; without one, inertia and gravity of a
+    """Torque that moves the links: the controller's rigid-body model, or without one the inertia and gravity of a
     single link, J domega/dt + c cos q + s sin q.
     """
 
@@ -25,8 +25,12 @@ class RigidBody(Term):
         q = recording.signals["q"]
         return np.stack([recording.acceleration, np.cos(q), np.sin(q)], axis=1)
 
+    def names(self) -> tuple[str, ...]:
+        """Factor of the modelled torque, or the parts of a single link."""
+        return ("factor of the rigid-body torque",) if self.modelled else ("inertia", "gravity cosine", "gravity sine")
+
     def units(self, of: str) -> tuple[str, ...]:
-        """Share of a torque, or inertia and torques, in the unit of the signal."""
+        """Per torque; or of inertia and two torques in the unit of the signal."""
         return (f"{of}/(N m)",) if self.modelled else (f"{of} s^2/rad", of, of)
 
 
@@ -34,17 +38,16 @@ class RigidBody(Term):
 class Friction(Term):
     """Coulomb and viscous friction, b0 sign(omega) + b1 omega, as in eq. (5) without its cubic and angular parts."""
 
-    def columns(self, recording: JointRecording) -> Float[np.ndarray, "time column"]:
-        """Its sense and its speed."""
-        return np.stack([recording.sense, recording.speed], axis=1)
+    weight_names = ("Coulomb friction", "viscous friction")
+    per = ("", " s/rad")
 
-    def units(self, of: str) -> tuple[str, ...]:
-        """Of b0 and b1."""
-        return of, f"{of} s/rad"
+    def columns(self, recording: JointRecording) -> Float[np.ndarray, "time column"]:
+        """Sign and speed of the motion."""
+        return np.stack([recording.sense, recording.speed], axis=1)
 
     @property
     def sound(self) -> bool:
-        """Friction brakes."""
+        """Friction brakes, or is absent."""
         return all(weight >= 0 for weight in self.weights)
 
 
@@ -53,19 +56,15 @@ class Zero(Term):
     """A constant."""
 
     def columns(self, recording: JointRecording) -> Float[np.ndarray, "time column"]:
-        """One."""
+        """A column of ones."""
         return np.ones((len(recording), 1))
-
-    def units(self, of: str) -> tuple[str, ...]:
-        """That of the signal."""
-        return (of,)
 
 
 def textbook(recordings: tuple[JointRecording, ...], of: str) -> tuple[Term, ...]:
-    """The textbook's terms for a signal, as far as the recordings hold what they are made of.
+    """The textbook's terms for a signal, as far as the recordings have the signals that these need.
 
-    A torque sensor behind the gear sees no friction of the gear; its zero is another one in every run. Where no joint
-    ever turns back, the zero of a current cannot be told from Coulomb friction and is taken to be nothing.
+    A torque sensor behind the gear does not measure friction of the gear, and its zero differs in every run. If no
+    joint ever reverses, the zero of a current and Coulomb friction cannot be separated; the zero is then left out.
     """
     rigid = RigidBody(modelled=all("T_rigid" in each.signals for each in recordings))
     if of == "T_sensor":

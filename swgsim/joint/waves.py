@@ -1,13 +1,12 @@
-"""Waves over the angle of a joint to be tried as terms: whole orders of the output, and orders that stand out."""
+"""Candidate waves over the angle of a joint: whole orders of the output, and orders that stand out of the residual."""
 
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from swgsim.joint.effects.inertia_ripple import InertiaRipple
-from swgsim.joint.effects.position_friction import PositionFriction
-from swgsim.joint.effects.ripple import Ripple
+from swgsim.joint.effects.friction import PositionFriction
+from swgsim.joint.effects.ripple import InertiaRipple, Ripple
 from swgsim.joint.orders import NEIGHBOURS, Line, lines
 from swgsim.joint.recording import turns_back
 from swgsim.joint.regression import Fit
@@ -16,26 +15,25 @@ from swgsim.joint.slow import slow
 from swgsim.joint.term import Term
 
 Wave = Ripple | PositionFriction
-# Up to this order, waves are fixed to the output and repeat after its revolution: whole numbers, of which so many are
-# tried in a round; the first one is gravity's.
+# Waves up to this order are whole orders of the output; so many of them are tested in a round. Order 1 is gravity.
 SLOW, SLOW_ORDERS = 40, 2
-# Above, so many lines are tried. An order is a multiple of the motor's, or else a whole number, unless another one near
-# it explains so many times as much.
+# Above, so many lines are tested. An order is a multiple of the motor's, or else a whole number, unless a free order
+# near it explains so many times as much.
 ORDERS, OTHERWISE = 4, 1.25
-# Orders of which the best ones are proposed.
+# Orders that are looked at in a round, for the correction of p-values.
 LOOKED_AT = SLOW + ORDERS
 
 
 def waves(now: Fit, level: float, known: dict[float, tuple[Wave, ...]]) -> list[tuple[Wave, ...]]:
-    """Waves fixed to the output, and waves at orders that stand out of the residual, each in all its shapes.
+    """Waves of whole orders of the output, and of orders that stand out of the residual, each in all its shapes.
 
     Parameters
     ----------
     now : Fit
     level : float
-        Chance of a false order.
+        Significance level of an order.
     known : dict
-        Keeps what takes long to find: the shapes of every order that was looked at.
+        Cache: the shapes of every order that was tested in earlier rounds.
     """
     slow = sorted((Ripple(order=float(n)) for n in range(2, SLOW + 1)), key=lambda term: -gain(now, term))
     laws: list[Wave] = [Ripple(), Ripple(power=1)]
@@ -43,53 +41,53 @@ def waves(now: Fit, level: float, known: dict[float, tuple[Wave, ...]]) -> list[
         laws.append(PositionFriction())
     if now.table.of == "current" and all(map(InertiaRipple.possible, now.table.recordings)):
         laws.append(InertiaRipple())
-    there = {_what(term) for term in now.terms}
-    found: list[tuple[Wave, ...]] = [(term,) for term in slow[:SLOW_ORDERS] if _what(term) not in there]
+    present = {_what(term) for term in now.terms}
+    found: list[tuple[Wave, ...]] = [(term,) for term in slow[:SLOW_ORDERS] if _what(term) not in present]
     for line in _lines(now, level):
         rough = _at_order(now, line.order, laws)
-        if rough.order not in known or any(_what(each) in there for each in known[rough.order]):
-            # A wave that is there already may leave one of another law at its order.
-            known[rough.order] = tuple(each for each in _shapes(now, rough) if _what(each) not in there)
+        if rough.order not in known or any(_what(each) in present for each in known[rough.order]):
+            # A wave in the model may leave one of another law at its order.
+            known[rough.order] = tuple(each for each in _shapes(now, rough) if _what(each) not in present)
         if known[rough.order]:
             found.append(known[rough.order])
     return found
 
 
 def _lines(now: Fit, level: float) -> list[Line]:
-    """Lines of the residual, and of its fast part: what friction leaves at low frequency, at other angles on each way,
-    drowns the waves of a joint that moves to and fro.
+    """Lines of the residual, and of its part above 5 Hz: residual friction at low frequency hides the waves of a joint
+    that reverses.
     """
     fast = now.residual - slow(now.table, now.residual)
-    there = [line for part in (now.residual, fast) for line in lines(now.table, part, level / 2, ORDERS, above=SLOW)]
+    every = [line for part in (now.residual, fast) for line in lines(now.table, part, level / 2, ORDERS, above=SLOW)]
     found: list[Line] = []
-    for line in sorted(there, key=lambda line: line.log_chance):
+    for line in sorted(every, key=lambda line: line.log_chance):
         if all(abs(line.order - other.order) > NEIGHBOURS * _resolution(now) for other in found):
             found.append(line)
     return found[:ORDERS]
 
 
 def _resolution(now: Fit) -> float:
-    """Orders that the longest recording tells apart."""
+    """Resolution of orders in the longest recording."""
     return 2 * np.pi / max(float(np.ptp(each.signals["q"])) for each in now.table.recordings)
 
 
 def _what(term: Term) -> tuple:
-    """What makes two waves the same."""
+    """Identity of a wave: kind, order and power of the speed."""
     return type(term), getattr(term, "order", None), getattr(term, "power", None)
 
 
 def _at_order(now: Fit, order: float, laws: Sequence[Wave]) -> Wave:
-    """The wave at an order near one that gains most."""
+    """The wave with the largest gain near an order."""
     near = order + _resolution(now) * np.linspace(-0.5, 0.5, 9)
     return max((replace(law, order=float(o)) for law in laws for o in near), key=lambda term: gain(now, term))
 
 
 def _shapes(now: Fit, wave: Wave) -> tuple[Wave, ...]:
-    """The likeliest shapes of a wave, one for each law of speed, and the wave that is the same at all speeds: a sharp
-    resonance may be the likeliest by what it does to few stretches.
+    """The most likely shapes of a wave, one for each law of speed, and the wave with constant amplitude: a sharp
+    resonance may be most likely because it fits a few stretches only.
 
-    Its order is the next multiple of the motor's revolutions, or else of the output's, if the recordings do not tell it
-    from one.
+    Its order becomes the nearest multiple of the motor's revolutions, or else of the output's, if the recordings cannot
+    separate the two.
     """
     found = shapes(now, wave)
     ratio = now.table.recordings[0].gear_ratio or 1.0

@@ -21,7 +21,7 @@ from swgsim.dataset.simulate_cases import record
 from swgsim.effects import Effect, ParameterScatter
 from swgsim.gear.gear import Gear, OperatingPoint
 from swgsim.oracle.cells import Cells, Partition, Resolution
-from swgsim.storage.gauge_set import Recordings
+from swgsim.storage.labelled_signals import LabelledSignals
 from swgsim.storage.orders import lines_of
 
 # Highest order that the oracle looks at.
@@ -110,7 +110,7 @@ def expectations(plan: Plan, gear: Gear, resolution: Resolution) -> list[Expecta
     ]
 
 
-def observations(recordings: Recordings) -> Float[np.ndarray, "sample feature"]:
+def observations(recordings: LabelledSignals) -> Float[np.ndarray, "sample feature"]:
     """What the oracle looks at.
 
     Raises

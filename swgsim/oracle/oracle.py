@@ -14,7 +14,7 @@ from swgsim.dataset.plan import Plan
 from swgsim.gear.gear import Gear
 from swgsim.oracle.model import ORDERS, Expectation, bench_of, observations
 from swgsim.oracle.point import PointModel
-from swgsim.storage.gauge_set import CLASSES, SENSORS, Recordings
+from swgsim.storage.labelled_signals import CLASSES, SENSORS, LabelledSignals
 from swgsim.storage.orders import whole_revolutions
 
 # Where the logarithm of the efficiency and the temperature stand in an observation.
@@ -66,7 +66,7 @@ def point_model(plan: Plan, gear: Gear, expected: Expectation, session_known: bo
 
 
 def judge(
-    plan: Plan, gear: Gear, expected: Sequence[Expectation], samples: Recordings, session_known: bool
+    plan: Plan, gear: Gear, expected: Sequence[Expectation], samples: LabelledSignals, session_known: bool
 ) -> Float[np.ndarray, "sample class"]:
     """Posterior probability of each of CLASSES for samples of one gear of which this is expected.
 
@@ -77,7 +77,7 @@ def judge(
     gear : Gear
     expected : sequence of Expectation
         Of this gear, at every operating point of its samples.
-    samples : Recordings
+    samples : LabelledSignals
         None of them a reference.
     session_known : bool
         As in :func:`point_model`.

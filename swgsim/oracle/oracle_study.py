@@ -24,7 +24,7 @@ from swgsim.oracle.columns import KNOWN
 from swgsim.oracle.model import expectations
 from swgsim.oracle.oracle import judge
 from swgsim.storage import storage
-from swgsim.storage.gauge_set import CLASSES, Recordings
+from swgsim.storage.labelled_signals import CLASSES, LabelledSignals
 
 
 def run(config: Mapping[str, Any]) -> dict[str, float]:
@@ -130,7 +130,7 @@ def _make(
     return pd.concat([parts[number] for number in chosen], ignore_index=True)
 
 
-def _samples(plan: Plan, source: Path) -> Iterator[tuple[Gear, int, Recordings]]:
+def _samples(plan: Plan, source: Path) -> Iterator[tuple[Gear, int, LabelledSignals]]:
     """Every gear with the number of its first sample and its samples."""
     first = 0
     for gear, block in zip(plan.gears, storage.blocks(source, plan.grid.count()), strict=True):
@@ -139,7 +139,7 @@ def _samples(plan: Plan, source: Path) -> Iterator[tuple[Gear, int, Recordings]]
         first += len(samples)
 
 
-def _judged(plan: Plan, gear: Gear, resolution: Resolution, first: int, samples: Recordings) -> pd.DataFrame:
+def _judged(plan: Plan, gear: Gear, resolution: Resolution, first: int, samples: LabelledSignals) -> pd.DataFrame:
     """What both oracles say of one gear's samples."""
     with threadpool_limits(1):
         expected = expectations(plan, gear, resolution)

@@ -11,7 +11,7 @@ from scipy.linalg import cholesky, solve_triangular
 from scipy.special import logsumexp
 
 from swgsim.oracle.cells import Cells
-from swgsim.storage.gauge_set import CLASSES
+from swgsim.storage.labelled_signals import CLASSES
 
 
 @dataclass(frozen=True)

@@ -9,12 +9,14 @@ from swgsim.recordings.files.folder import write_folder
 from swgsim.recordings.files.recording_file import write_file
 from swgsim.recordings.read import read_recordings
 from swgsim.recordings.recording import CHANNELS, Recording
+from swgsim.recordings.recording_set import RecordingSet
 
 __all__ = [
     "CHANNELS",
     "Defect",
     "FileDefect",
     "Recording",
+    "RecordingSet",
     "Severity",
     "read_recordings",
     "write_file",

@@ -1,11 +1,11 @@
-"""The one way in for recordings: whatever form they have, with what their numbers say of the test bench."""
+"""Single entry for recordings of every format, with the checks of their numbers."""
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import NamedTuple
 
 from swgsim.recordings.checks.defect import Defect, summary
 from swgsim.recordings.checks.inspection import inspect
+from swgsim.recordings.files.assembly import ONE_TABLE
 from swgsim.recordings.files.file_defect import FileDefect
 from swgsim.recordings.files.folder import read_folder
 from swgsim.recordings.files.manifest import NAME
@@ -13,62 +13,66 @@ from swgsim.recordings.files.recording_file import read_file
 from swgsim.recordings.files.source_map import read_map
 from swgsim.recordings.files.sources import read_mapped
 from swgsim.recordings.recording import Recording
+from swgsim.recordings.recording_set import RecordingSet
 
 
-class Intake(NamedTuple):
-    """Recordings, and what was detected in their numbers."""
-
-    recordings: tuple[Recording, ...]
-    defects: tuple[Defect, ...]
-
-
-def read_recordings(path: Path, mapping: Path | None = None) -> Intake:
-    """Recordings that may be used; what is left to tell of them are warnings.
+def read_recordings(path: str | Path, mapping: str | Path | None = None) -> RecordingSet:
+    """Usable recordings, with the warnings of the checks.
 
     Parameters
     ----------
-    path : Path
-        A folder with a manifest, a file of :func:`recording_file.write_file`, or, with a map, files of
-        others.
-    mapping : Path, optional
+    path : str or Path
+        A folder with a manifest, a file of :func:`swgsim.recordings.write_file`, or, with a column map, a file or
+        folder of other formats.
+    mapping : str or Path, optional
         A column map (conf/sources/example.yaml).
+
+    Returns
+    -------
+    RecordingSet
+        Its ``defects`` are warnings only.
 
     Raises
     ------
     ValueError
-        If a file cannot be read, or the numbers have a defect that forbids their use; all of those are listed.
+        If a file cannot be read, or defects forbid the use of the numbers; the message lists all of these.
     """
-    intake = inspect_recordings(path, mapping)
-    require_usable(path, intake.defects)
-    return intake
+    found = inspect_recordings(path, mapping)
+    require_usable(path, found.defects)
+    return found
 
 
-def require_usable(path: Path, defects: Iterable[Defect]) -> None:
+def require_usable(path: str | Path, defects: Iterable[Defect]) -> None:
     """Raise a ValueError that lists the defects that forbid the use of recordings, if there are any."""
     refused = [defect for defect in defects if defect.severity == "refuse"]
     if refused:
         raise ValueError(f"{path}: these recordings cannot be used\n{summary(refused)}")
 
 
-def inspect_recordings(path: Path, mapping: Path | None = None) -> Intake:
-    """Recordings with all that was detected in them, whether they may be used or not.
+def inspect_recordings(path: str | Path, mapping: str | Path | None = None) -> RecordingSet:
+    """Recordings with all defects of their numbers, usable or not; parameters as for :func:`read_recordings`.
 
     Raises
     ------
     ValueError
         If a file cannot be read.
     """
-    recordings = _read(path, mapping)
-    return Intake(recordings, inspect(recordings))
+    recordings = _read(Path(path), mapping)
+    return RecordingSet(recordings, inspect(recordings), str(path))
 
 
-def _read(path: Path, mapping: Path | None) -> tuple[Recording, ...]:
+def _read(path: Path, mapping: str | Path | None) -> tuple[Recording, ...]:
     if mapping is not None:
-        return read_mapped(path, read_map(mapping))
+        return read_mapped(path, read_map(Path(mapping)))
     if path.is_dir() and (path / NAME).exists():
         return read_folder(path)
     if path.is_file() and path.suffix.lower() in (".h5", ".hdf5", ".nc"):
         return read_file(path)
-    found = "nothing" if not path.exists() else "neither a manifest nor a file of recordings"
-    expected = f"a folder with {NAME}, an .h5 file of recordings, or a column map beside files of others"
-    raise FileDefect(str(path), found, expected)
+    expected = f"a folder with {NAME}, an .h5 file of recordings, or mapping= with a column map for other files"
+    if not path.exists():
+        raise FileDefect(str(path), "nothing", expected)
+    tables = sorted(each.name for each in path.glob("*.[cC][sS][vV]"))
+    if tables:
+        found = f"no {NAME} for {', '.join(tables[:5])}{', …' * (len(tables) > 5)}"
+        raise FileDefect(str(path), found, f"{expected}; {ONE_TABLE}")
+    raise FileDefect(str(path), "neither a manifest nor a file of recordings", expected)

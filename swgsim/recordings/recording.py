@@ -1,4 +1,4 @@
-"""One recording with every channel that a test bench delivers, and the facts that belong to it."""
+"""One recording: the channels that a test bench measures, and the facts that belong to them."""
 
 import hashlib
 from collections.abc import Mapping
@@ -10,15 +10,15 @@ from jaxtyping import Float
 
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import OperatingPoint
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 
 class Channel(NamedTuple):
-    """Name of the column in a file, unit, and what it says."""
+    """Name of the column in a file, unit, and meaning."""
 
     column: str
     unit: str
-    says: str
+    meaning: str
 
 
 CHANNELS: Mapping[str, Channel] = {
@@ -30,7 +30,7 @@ CHANNELS: Mapping[str, Channel] = {
 }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Recording:
     """One recording of one gear at one operating point.
 
@@ -38,20 +38,25 @@ class Recording:
     ----------
     name : str
     gear : str
-        Which gear, as its owner calls it.
+        Name that its owner gave it.
     session : str
-        Recordings between which nothing was taken apart.
+        Name of the session; within it nothing was taken apart and no bridge was balanced.
     point : OperatingPoint
-        As it was set.
+        Set points of speed and load.
     repeat : int
-        Number of the recording among those of its session and operating point.
+        Number of the recording within its session and operating point.
     time : array (time,)
         [s], evenly spaced.
     channels : mapping
-        Name of :data:`CHANNELS` to array (time,) in the channel's unit; a channel that is not there is not there.
+        Name of :data:`CHANNELS` to array (time,) in the channel's unit; channels that were not recorded are absent.
     conditions : Conditions
     label : str
         Condition of the gear, empty if unknown.
+
+    Raises
+    ------
+    ValueError
+        If a channel is unknown or has another length than the time.
     """
 
     name: str
@@ -80,8 +85,20 @@ class Recording:
         return (len(self.time) - 1) / float(self.time[-1] - self.time[0])
 
     @property
+    def duration(self) -> float:
+        """Length [s]."""
+        return len(self.time) / self.rate
+
+    def __repr__(self) -> str:
+        return (
+            f"Recording({self.name!r}: gear {self.gear}, session {self.session}, {self.point.n_in_rpm:g} rpm, "
+            f"{self.point.T_out:g} N m, repeat {self.repeat}, {self.duration:.3g} s at {self.rate:.4g} Hz, "
+            f"{' '.join(self.channels)})"
+        )
+
+    @property
     def numbers(self) -> str:
-        """Digest of the channels, which a copy under another name shares."""
+        """Digest of the channels; a copy under another name has the same."""
         digest = hashlib.sha256()
         for name in sorted(self.channels):
             digest.update(name.encode() + self.channels[name].tobytes())

@@ -4,15 +4,15 @@ Imports ``common`` only.
 """
 
 from swgsim.storage.attributes import attribute
-from swgsim.storage.gauge_set import CLASSES, COLUMNS, SENSORS, Recordings, facts
 from swgsim.storage.hdf5_writer import created
+from swgsim.storage.labelled_signals import CLASSES, COLUMNS, SENSORS, LabelledSignals, facts
 from swgsim.storage.orders import lines_of, order_lines, revolution, whole_revolutions
 
 __all__ = [
     "CLASSES",
     "COLUMNS",
     "SENSORS",
-    "Recordings",
+    "LabelledSignals",
     "attribute",
     "created",
     "facts",

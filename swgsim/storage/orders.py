@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Complex, Float
 
-from swgsim.storage.gauge_set import Recordings
+from swgsim.storage.labelled_signals import LabelledSignals
 
 
 def whole_revolutions(speed_rpm: float, rate: float, length: int) -> int:
@@ -54,7 +54,7 @@ def order_lines(
     return np.concatenate([mean, zero_mean @ waves.real + 1j * (zero_mean @ waves.imag)], axis=-1)
 
 
-def lines_of(recordings: Recordings, orders: int) -> Complex[np.ndarray, "sample sensor order"]:
+def lines_of(recordings: LabelledSignals, orders: int) -> Complex[np.ndarray, "sample sensor order"]:
     """Order lines 0 to `orders` of recordings [mV/V], over the whole revolutions at each one's desired speed."""
     speeds = recordings.table["n_in_rpm"].to_numpy()
     result = np.empty((len(recordings), recordings.signals.shape[1], orders + 1), dtype=np.complex128)

@@ -15,21 +15,21 @@ import pandas as pd
 
 from swgsim.common.files import replacing
 from swgsim.storage.attributes import attribute, say
-from swgsim.storage.gauge_set import CLASSES, COLUMNS, SENSORS, Recordings
 from swgsim.storage.hdf5_writer import created
+from swgsim.storage.labelled_signals import CLASSES, COLUMNS, SENSORS, LabelledSignals
 
 SEAL_SIZE = 512
 SEAL_START = b"swgsim recordings, sha256 "
 SEAL = re.compile(re.escape(SEAL_START) + rb"([0-9a-f]{64})\n *")
 
 
-def write(path: Path, blocks: Iterable[Recordings], rows: int) -> None:
+def write(path: Path, blocks: Iterable[LabelledSignals], rows: int) -> None:
     """Write recordings block by block; the file is complete or absent.
 
     Parameters
     ----------
     path : Path
-    blocks : iterable of Recordings
+    blocks : iterable of LabelledSignals
         Of the same rate, window and attributes; those of the first count.
     rows : int
         Number of recordings in all blocks together.
@@ -54,6 +54,7 @@ def write(path: Path, blocks: Iterable[Recordings], rows: int) -> None:
                 for name in COLUMNS:
                     values = block.table[name].cat.codes if name == "label" else block.table[name]
                     file[name][where] = values.to_numpy()
+                file["label_name"][where] = block.table["label"].to_numpy().astype("S")
                 raw.require_written()
                 done += len(block)
         if done != rows:
@@ -61,7 +62,7 @@ def write(path: Path, blocks: Iterable[Recordings], rows: int) -> None:
         seal(aside)
 
 
-def _lay_out(file: h5py.File, first: Recordings, rows: int) -> None:
+def _lay_out(file: h5py.File, first: LabelledSignals, rows: int) -> None:
     """Create all variables with their dimensions, units and descriptions."""
     samples = first.signals.shape[2]
     say(file, **{"Conventions": "CF-1.11", "title": "strain wave gear gauge signals", **first.attributes})
@@ -75,7 +76,6 @@ def _lay_out(file: h5py.File, first: Recordings, rows: int) -> None:
         variable = file.create_dataset(name, data=values)
         variable.make_scale(name)
         say(variable, units=units, long_name=long_name)
-    say(file["sensor"], _Encoding="utf-8")  # so that xarray gives text
     shape, dimensions = (rows, len(SENSORS), samples), ("sample", "sensor", "time")
     signals = file.create_dataset("signals", shape, "f4", chunks=(1, *shape[1:]), fletcher32=True)
     say(signals, units="mV/V", long_name="bridge signal")
@@ -84,9 +84,14 @@ def _lay_out(file: h5py.File, first: Recordings, rows: int) -> None:
         variable = file.create_dataset(name, (rows,), column.dtype, chunks=(min(rows, 4096),), fletcher32=True)
         say(variable, units=column.units, long_name=column.long_name)
         variables.append((variable, ("sample",)))
+    names = file.create_dataset("label_name", (rows,), f"S{max(map(len, CLASSES))}", chunks=(min(rows, 4096),))
+    say(names, units="1", long_name="condition of the gear as text; label has it as a number")
+    variables.append((names, ("sample",)))
     say(file["label"], flag_values=np.arange(len(CLASSES), dtype="i1"), flag_meanings=" ".join(CLASSES))
-    for variable, names in variables:
-        for axis, name in enumerate(names):
+    for text in (file["sensor"], names):
+        say(text, _Encoding="utf-8")  # so that xarray gives text
+    for variable, dimensions in variables:
+        for axis, name in enumerate(dimensions):
             variable.dims[axis].attach_scale(file[name])
 
 
@@ -131,7 +136,7 @@ def verify(path: Path) -> None:
         )
 
 
-def read(path: Path) -> Recordings:
+def read(path: Path) -> LabelledSignals:
     """All recordings of a file.
 
     Raises
@@ -144,7 +149,7 @@ def read(path: Path) -> Recordings:
     return next(blocks(path))
 
 
-def blocks(path: Path, rows: int | None = None) -> Iterator[Recordings]:
+def blocks(path: Path, rows: int | None = None) -> Iterator[LabelledSignals]:
     """The recordings of a file in blocks of so many rows (all at once by default), checked first."""
     verify(path)
     said = attributes(path)
@@ -159,7 +164,7 @@ def blocks(path: Path, rows: int | None = None) -> Iterator[Recordings]:
                 raise ValueError(f"label is not from 0 to {len(CLASSES) - 1} in recordings from {start}")
             columns["label"] = pd.Categorical.from_codes(columns["label"], categories=pd.Index(CLASSES))
             columns["reference"] = columns["reference"].astype(bool)
-            yield Recordings(file["signals"][where], pd.DataFrame(columns), rate, said)
+            yield LabelledSignals(file["signals"][where], pd.DataFrame(columns), rate, said)
 
 
 def attributes(path: Path) -> dict[str, str]:

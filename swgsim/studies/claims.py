@@ -6,7 +6,7 @@ from jaxtyping import Float
 from swgsim.chain.chain import Run, simulate
 from swgsim.effects import ReducedDamping, RootToothCrack, RunIn
 from swgsim.gear.stiffness import RATED_TORQUE, torsional_stiffness
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 from swgsim.studies.examples import EXAMPLES, FIGURE_POINT, SEVEREST, Subject
 from swgsim.studies.finding import Finding, percent
 

@@ -31,25 +31,41 @@ from swgsim.studies.effect_signature import (
 
 
 def picture(found: Sequence[Signature]) -> bytes:
-    """One panel per effect: what it changes, over channels and orders, on a logarithmic scale."""
-    columns = min(4, len(found))
-    rows = int(np.ceil(len(found) / columns))
+    """One panel per effect: what it changes, over channels and orders, on a logarithmic scale.
+
+    Effects that change only means share the last panel, over effects and channels. Channels and orders that no effect
+    changes are left out.
+    """
+    shares = np.array([np.maximum(half_orders(each.share[0]), LEAST) for each in found])  # (effect, channel, half)
+    shown = np.flatnonzero((shares > LEAST).any(axis=(0, 2)))
+    of_means = (shares[..., 1:] <= LEAST).all(axis=(1, 2))
+    if of_means.sum() < 2:
+        of_means[:] = False
+    panels = [(found[i], shares[i][shown]) for i in np.flatnonzero(~of_means)]
+    count = len(panels) + bool(of_means.any())
+    columns = min(4, count)
+    rows = int(np.ceil(count / columns))
     drawing = style.figure(1.4 + 2.4 * columns, 0.8 + 2.0 * rows)
-    axes = drawing.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
-    for axis in axes.flat[len(found) :]:
+    axes = drawing.subplots(rows, columns, squeeze=False).ravel()
+    for axis in axes[count:]:
         axis.set_axis_off()
-    for axis, signature in zip(axes.flat, found, strict=False):
-        image = axis.imshow(
-            np.maximum(half_orders(signature.share[0]), LEAST), norm=LogNorm(LEAST, 1), aspect="auto",
-            interpolation="nearest", extent=(-0.25, ORDERS + 0.25, len(SHOWN) - 0.5, -0.5),
-        )  # fmt: skip
+    last = max(int(np.flatnonzero((shares > LEAST).any(axis=(0, 1))).max()), 2)  # half orders
+    colours = {"norm": LogNorm(LEAST, 1), "aspect": "auto", "interpolation": "nearest"}
+    for axis, (signature, share) in zip(axes, panels, strict=False):
+        extent = (-0.25, last / 2 + 0.25, len(shown) - 0.5, -0.5)
+        image = axis.imshow(share[:, : last + 1], extent=extent, **colours)
         axis.set_title(title(signature), fontsize=8, loc="left")
-        axis.set_yticks(range(len(SHOWN)), SHOWN, fontsize=7)
-        axis.set_xticks(range(0, ORDERS + 1, 2))
-    for axis in axes.flat[max(len(found) - columns, 0) : len(found)]:
-        axis.tick_params(labelbottom=True)
-        axis.set_xlabel("order")
-    drawing.colorbar(image, ax=axes, label="change, share of\nthe channel's largest line")
+        axis.set_yticks(range(len(shown)), [SHOWN[channel] for channel in shown], fontsize=7)
+        axis.set_xticks(range(0, last // 2 + 1, 2))
+        axis.set_xlabel("order", fontsize=8)
+    if of_means.any():
+        axis = axes[count - 1]
+        image = axis.imshow(shares[of_means][:, shown, 0], **colours)
+        axis.set_title("order 0 only", fontsize=8, loc="left")
+        names = [found[i].kind.title() for i in np.flatnonzero(of_means)]
+        axis.set_yticks(range(len(names)), names, fontsize=7)
+        axis.set_xticks(range(len(shown)), [SHOWN[channel] for channel in shown], fontsize=7)
+    drawing.colorbar(image, ax=axes.tolist(), label="change, share of\nthe channel's largest line")
     return style.png(drawing)
 
 

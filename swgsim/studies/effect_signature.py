@@ -17,7 +17,7 @@ from swgsim.effects.stribeck_friction import StribeckFriction
 from swgsim.effects.text import in_words
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import Gear, OperatingPoint
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 # Warm and late, so that effects of temperature and time show.
 CONDITIONS = Conditions(temperature=35.0, elapsed=3600.0)

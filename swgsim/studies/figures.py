@@ -12,7 +12,7 @@ from swgsim.effects import Effect, RunIn
 from swgsim.flexspline.flexspline import solve_flex_spline
 from swgsim.gear.gear import Gear, OperatingPoint
 from swgsim.gear.stiffness import RATED_TORQUE, torsional_stiffness
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 from swgsim.studies import flexspline_figures
 from swgsim.studies.examples import EXAMPLES, FIGURE_POINT, Subject
 

@@ -14,7 +14,7 @@ from swgsim.flexspline.gauges import LAYOUT
 from swgsim.flexspline.lattice import OUTER
 from swgsim.flexspline.silk_hat import sector
 from swgsim.gear.gear import Gear
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 MAGNIFICATION = 15
 TORQUE = 70.0

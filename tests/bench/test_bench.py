@@ -9,7 +9,7 @@ from chain_fixtures import small_plan
 from swgsim.bench.scatter import LIMITS, Bench
 from swgsim.dataset.simulate_cases import record
 from swgsim.gear.acquisition import Window
-from swgsim.storage.gauge_set import Recordings
+from swgsim.storage.labelled_signals import LabelledSignals
 
 MAGNITUDES = [f.name for f in fields(Bench) if f.name != "reference_temperature"]
 SILENT = Bench(**dict.fromkeys(MAGNITUDES, 0.0), reference_temperature=25.0)
@@ -17,16 +17,16 @@ PLAN = small_plan()
 HEALTHY = [case for case in PLAN.grid.cases(PLAN.gears[0]) if case.variant.label == "healthy"]
 
 
-def recorded(bench: Bench | None) -> Recordings:
+def recorded(bench: Bench | None) -> LabelledSignals:
     return record(replace(PLAN, bench=bench), HEALTHY)
 
 
 @pytest.fixture(scope="module")
-def clean() -> Recordings:
+def clean() -> LabelledSignals:
     return recorded(None)
 
 
-def test_a_silent_bench_records_what_the_chain_says(clean: Recordings) -> None:
+def test_a_silent_bench_records_what_the_chain_says(clean: LabelledSignals) -> None:
     silent = recorded(SILENT)
     np.testing.assert_allclose(silent.signals, clean.signals, atol=1e-7)
     np.testing.assert_allclose(silent.table["efficiency"], clean.table["efficiency"], rtol=1e-9)
@@ -62,14 +62,16 @@ def bench_with(name: str, value: float) -> Bench:
 
 
 @pytest.mark.parametrize(("name", "value", "low", "high"), SIGNALS)
-def test_one_magnitude_moves_the_signals(name: str, value: float, low: float, high: float, clean: Recordings) -> None:
+def test_one_magnitude_moves_the_signals(
+    name: str, value: float, low: float, high: float, clean: LabelledSignals
+) -> None:
     change = np.abs(recorded(bench_with(name, value)).signals - clean.signals).max()
     assert low < change < high
 
 
 @pytest.mark.parametrize(("name", "value", "low", "high"), EFFICIENCY)
 def test_one_magnitude_moves_the_efficiency(
-    name: str, value: float, low: float, high: float, clean: Recordings
+    name: str, value: float, low: float, high: float, clean: LabelledSignals
 ) -> None:
     change = np.abs(recorded(bench_with(name, value)).table["efficiency"] - clean.table["efficiency"]).max()
     assert low < change < high

@@ -49,7 +49,7 @@ from swgsim.identification.fit.priors import of_unit
 from swgsim.identification.fit.unit import Unit
 from swgsim.identification.report.answer import Answer
 from swgsim.identification.search.hypotheses import Hypothesis
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 pytestmark = pytest.mark.end_to_end
 CONF = Path(__file__).parents[2] / "conf"

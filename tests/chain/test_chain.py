@@ -15,7 +15,7 @@ from swgsim.effects.signal_hysteresis import SignalHysteresis
 from swgsim.gear.acquisition import Window
 from swgsim.gear.gear import OperatingPoint
 from swgsim.identification.data.features import Layout, features
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 POINT = OperatingPoint(2000, 39)
 WINDOW = Window()

@@ -25,7 +25,7 @@ from swgsim.dataset.simulate_cases import record
 from swgsim.gear.acquisition import Window
 from swgsim.gear.population import Population
 from swgsim.storage import storage
-from swgsim.storage.gauge_set import Recordings
+from swgsim.storage.labelled_signals import LabelledSignals
 
 pytestmark = pytest.mark.end_to_end
 
@@ -56,7 +56,7 @@ def made(clean: Path, monkeypatch: pytest.MonkeyPatch) -> list[int]:
     known = storage.read(clean)
     seeds: list[int] = []
 
-    def remembered(plan: Plan, cases: list[Case]) -> Recordings:
+    def remembered(plan: Plan, cases: list[Case]) -> LabelledSignals:
         seeds.extend(case.seed for case in cases)
         if plan != small_plan():
             return record(plan, cases)
@@ -72,7 +72,9 @@ def kill(program: str, path: Path, lines: int) -> None:
         "import sys, time; sys.path[:0] = ['tests']\n"
         "from pathlib import Path\n"
         "from chain_fixtures import small_plan\n"
-        "from swgsim import compute, dataset, plan, storage\n"
+        "from swgsim.common import compute\n"
+        "from swgsim.dataset import dataset, plan\n"
+        "from swgsim.storage import storage\n"
         "plan.BLOCK = 10\n"
     )
     command = [sys.executable, "-c", head + program, str(path)]

@@ -41,7 +41,7 @@ from swgsim.gear.acquisition import Window
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import OperatingPoint
 from swgsim.recordings.recording import Recording
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 TURNS, POINTS = 12, 150
 IDLE, LOADED, FAST = OperatingPoint(2000, 7), OperatingPoint(2000, 70), OperatingPoint(4000, 70)

@@ -35,7 +35,7 @@ from swgsim.effects.stribeck_friction import StribeckFriction
 from swgsim.effects.warm_grease import WarmGrease
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import OperatingPoint
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 EFFECTS = {
     type(effect).__name__: effect

@@ -33,7 +33,7 @@ from swgsim.effects.worn_wave_generator import WornWaveGenerator
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import OperatingPoint
 from swgsim.recordings.recording import Recording
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 REVOLUTIONS = 12
 EFFECTS: Mapping[str, Effect] = {

@@ -1,12 +1,13 @@
 """The exported C makes the features and the decisions of its original, and none where the window is bad."""
 
+from copy import deepcopy
+
 import numpy as np
 import pytest
 from embedded_fixtures import SELECTION, compiled, driven, driven_signals, needs_compiler, noisy, of_gear, trained
 from fabricated import recordings
 
 from learn.embedded.export import export_c
-from learn.embedded.layers import layers_of
 from learn.inputs.harmonics import Harmonics
 from learn.inputs.lines import ResidualLines
 from learn.inputs.signals import Signals
@@ -16,6 +17,8 @@ from learn.methods.strong import extra_trees, logistic_regression
 
 HARMONICS = Harmonics("harmonics", 6)
 RESIDUAL = Signals("residual", points=16, orders=6)
+REGRESSION = logistic_regression(iterations=30)
+CONVOLUTIONAL = convolutional_network(5, 16, width=4, epochs=30)
 REPRESENTATIONS = (SELECTION, HARMONICS, RESIDUAL, Harmonics("harmonics", 5, efficiency=False, operating_point=False))
 
 pytestmark = needs_compiler
@@ -26,9 +29,23 @@ def data():
     return noisy()
 
 
+@pytest.fixture(scope="module")
+def fitted(data):
+    """A trained copy of a model and the features of the exported gear; each is trained once."""
+    kept = {}
+
+    def once(representation, model):
+        key = representation, id(model)
+        if key not in kept:
+            kept[key] = trained(data, representation, deepcopy(model))
+        return kept[key]
+
+    return once
+
+
 @pytest.mark.parametrize("representation", REPRESENTATIONS, ids=lambda each: type(each).__name__)
-def test_features_are_those_of_python(data, representation, tmp_path):
-    model, expected = trained(data, representation, logistic_regression(iterations=30))
+def test_features_are_those_of_python(data, fitted, representation, tmp_path):
+    model, expected = fitted(representation, REGRESSION)
     gear = of_gear(data)
     export_c(model, representation, gear.references, tmp_path / "c")
     rows, _, said = driven(compiled(tmp_path / "c"), gear.samples, expected.shape[1])
@@ -40,19 +57,19 @@ def test_features_are_those_of_python(data, representation, tmp_path):
 @pytest.mark.parametrize(
     ("representation", "model", "numbers", "tolerance"),
     [
-        (HARMONICS, logistic_regression(), "float", 1e-3),
-        (HARMONICS, logistic_regression(), "int8", 0.05),
+        (HARMONICS, REGRESSION, "float", 1e-3),
+        (HARMONICS, REGRESSION, "int8", 0.05),
         (SELECTION, multi_layer_perceptron(iterations=30), "float", 1e-3),
         (HARMONICS, neural_perceptron(neurons=16, epochs=3), "int16", 1e-3),
-        (RESIDUAL, convolutional_network(5, 16, width=4, epochs=30), "float", 1e-3),
-        (RESIDUAL, convolutional_network(5, 16, width=4, epochs=30), "int8", 0.05),
+        (RESIDUAL, CONVOLUTIONAL, "float", 1e-3),
+        (RESIDUAL, CONVOLUTIONAL, "int8", 0.05),
         (SELECTION, extra_trees(20), "float", 1e-3),
         (HARMONICS, extra_trees(20), "int16", 0.15),
     ],
     ids=lambda each: getattr(each, "name", type(each).__name__) if not isinstance(each, str) else each,
 )
-def test_decisions_are_those_of_python(data, representation, model, numbers, tolerance, tmp_path):
-    model, features = trained(data, representation, model)
+def test_decisions_are_those_of_python(data, fitted, representation, model, numbers, tolerance, tmp_path):
+    model, features = fitted(representation, model)
     gear = of_gear(data)
     export_c(model, representation, gear.references, tmp_path / "c", numbers=numbers)
     _, p, said = driven(compiled(tmp_path / "c"), gear.samples, features.shape[1])
@@ -69,9 +86,9 @@ NOT_COMMISSIONED, NOT_STEADY, NOT_A_NUMBER, SATURATED, DEAD = -1, -4, -8, -16, -
 
 
 @pytest.fixture(scope="module")
-def library(data, tmp_path_factory):
+def library(data, fitted, tmp_path_factory):
     folder = tmp_path_factory.mktemp("exported") / "c"
-    model, _ = trained(data, HARMONICS, logistic_regression())
+    model, _ = fitted(HARMONICS, REGRESSION)
     export_c(model, HARMONICS, of_gear(data).references, folder, saturation=1.5)
     return compiled(folder)
 
@@ -134,37 +151,35 @@ def test_a_temperature_that_is_not_measured_is_that_of_the_reference(library, sa
     assert warm[changed] == pytest.approx(90.0 - 25.5)  # the mean of its two references
 
 
-def test_what_has_no_c_is_refused_and_what_was_there_stays(data, tmp_path):
-    model, _ = trained(data, HARMONICS, logistic_regression(iterations=30))
-    references = of_gear(data).references
-    folder = tmp_path / "c"
-    export_c(model, HARMONICS, references, folder)
-    before = {path.name: path.read_bytes() for path in folder.iterdir()}
-    with pytest.raises(ValueError, match="features=lines have no front end in C: take"):
-        export_c(model, ResidualLines("lines", 6), references, folder)
-    with pytest.raises(ValueError, match="saturation of the amplifiers is"):
-        export_c(model, HARMONICS, references, folder, saturation=0.1)
-    with pytest.raises(ValueError, match="saturation of the amplifiers is 100"):
-        export_c(model, HARMONICS, references, folder, saturation=100)
-    with pytest.raises(ValueError, match="signals of 50 points have no front end"):
-        export_c(model, Signals("residual", points=50, orders=6), references, folder)
-    with pytest.raises(ValueError, match="references of gears 1, 2, 3 found"):
-        export_c(model, HARMONICS, data.references, folder)
-    with pytest.raises(ValueError, match="Harmonics has no layers"):
-        layers_of(HARMONICS)
-    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["c"]
-
-
-def test_only_a_folder_of_an_export_is_replaced(data, tmp_path):
-    model, _ = trained(data, HARMONICS, logistic_regression(iterations=30))
-    references = of_gear(data).references
-    for _ in range(2):
-        export_c(model, HARMONICS, references, tmp_path / "c")
-    (tmp_path / "c" / "main.c").write_text("mine")
-    with pytest.raises(ValueError, match=r"c holds main\.c, which no export wrote"):
-        export_c(model, HARMONICS, references, tmp_path / "c")
-    with pytest.raises(ValueError, match=r"main\.c is a file"):
-        export_c(model, HARMONICS, references, tmp_path / "c" / "main.c")
-    assert (tmp_path / "c" / "main.c").read_text() == "mine"
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"representation": ResidualLines("lines", 6)}, "features=lines have no front end in C: take"),
+        ({"representation": Signals("residual", points=50, orders=6)}, "signals of 50 points have no front end"),
+        ({"saturation": 0.1}, "saturation of the amplifiers is"),
+        ({"saturation": 100}, "saturation of the amplifiers is 100"),
+        ({"references": "all"}, "references of gears 1, 2, 3 found"),
+        ({"model": HARMONICS}, "Harmonics has no layers"),
+        ({"file": "main.c"}, r"c holds main\.c, which no export wrote"),
+    ],
+    ids=str,
+)
+def test_what_cannot_be_exported_is_refused_and_an_earlier_export_stays(data, fitted, changes, message, tmp_path):
+    choices = {"model": fitted(HARMONICS, REGRESSION)[0], "representation": HARMONICS, "folder": tmp_path / "c"}
+    choices |= {"references": of_gear(data).references}
+    for _ in range(2):  # the second replaces the first
+        export_c(**choices)
+    changes = dict(changes) | ({"references": data.references} if "references" in changes else {})
+    if "file" in changes:
+        (tmp_path / "c" / changes.pop("file")).write_text("mine")
+    before = {path.name: path.read_bytes() for path in (tmp_path / "c").iterdir()}
+    with pytest.raises(ValueError, match=message):
+        export_c(**{**choices, **changes})
+    assert {path.name: path.read_bytes() for path in (tmp_path / "c").iterdir()} == before
     assert [path.name for path in tmp_path.iterdir()] == ["c"]
+
+
+def test_a_file_is_no_folder_to_export_to(data, fitted, tmp_path):
+    (tmp_path / "main.c").write_text("mine")
+    with pytest.raises(ValueError, match=r"main\.c is a file"):
+        export_c(fitted(HARMONICS, REGRESSION)[0], HARMONICS, of_gear(data).references, tmp_path / "main.c")

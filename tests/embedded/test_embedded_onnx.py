@@ -55,7 +55,7 @@ def test_what_onnx_cannot_say_is_refused(data, tmp_path):
     from sklearn.preprocessing import FunctionTransformer
 
     X, y = data
-    with pytest.raises(ValueError, match="DummyClassifier cannot be said in ONNX"):
+    with pytest.raises(ValueError, match="DummyClassifier cannot become ONNX"):
         gateway.write(DummyClassifier().fit(X, y), tmp_path / "model.onnx")
     rooted = make_pipeline(FunctionTransformer(np.cbrt), random_forest(1)).fit(X, y)
     with pytest.raises(ValueError, match="cbrt"):

@@ -115,8 +115,10 @@ def test_without_the_tools_accuracies_are_left():
 
 
 def test_an_absent_data_set_is_named_with_the_command_that_makes_it(tmp_path):
-    config = {"data": str(tmp_path), "unseen": "gears-bench", "disturbed": "paper-disturbed", "methods": {}}
+    config = {"data": str(tmp_path), "unseen": "gears-bench", "disturbed": "paper-disturbed", "methods": {"m": {}}}
     config |= {"embedded": str(tmp_path), "report": str(tmp_path)}
-    with pytest.raises(ValueError, match="grid=gears condition=bench"):
+    with pytest.raises(ValueError, match=f"grid=gears condition=bench data={tmp_path}"):
         run(config)
+    with pytest.raises(ValueError, match="methods is empty, so nothing would be compared"):
+        run({**config, "methods": {}})
     assert not list(tmp_path.iterdir())

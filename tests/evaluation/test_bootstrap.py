@@ -18,7 +18,7 @@ from learn.evaluation.bootstrap import (
 )
 from learn.evaluation.decisions import decisions
 from swgsim.common.seeds import generator
-from swgsim.storage.gauge_set import CLASSES
+from swgsim.storage.labelled_signals import CLASSES
 
 LABELS = CLASSES[:2]
 

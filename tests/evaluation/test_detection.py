@@ -16,7 +16,7 @@ from learn.evaluation.detection_curve import DetectionCurve, detection
 from learn.protocols.fault_size import SIZES, size
 from swgsim.common.seeds import generator
 from swgsim.dataset.faults import FAULTS
-from swgsim.storage.gauge_set import CLASSES
+from swgsim.storage.labelled_signals import CLASSES
 
 A50, SLOPE = 0.1, 4.0
 

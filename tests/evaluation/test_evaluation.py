@@ -7,7 +7,7 @@ import pytest
 from learn.evaluation.evaluate import evaluate
 from learn.methods import classical
 from learn.protocols.splits import RandomFolds, Split
-from swgsim.storage.gauge_set import CLASSES
+from swgsim.storage.labelled_signals import CLASSES
 
 LABELS = np.repeat(CLASSES, 200)
 TABLE = pd.DataFrame({"label": LABELS})

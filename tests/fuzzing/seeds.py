@@ -20,7 +20,7 @@ from swgsim.recordings.files.folder import write_folder
 from swgsim.recordings.files.recording_file import write_file
 from swgsim.recordings.recording import Recording
 from swgsim.storage import storage
-from swgsim.storage.gauge_set import COLUMNS, Recordings, facts
+from swgsim.storage.labelled_signals import COLUMNS, LabelledSignals, facts
 
 CONF = Path(__file__).parents[2] / "conf" / "sources"
 ROWS = 24
@@ -112,7 +112,7 @@ def data_set(place: Path) -> None:
     rows = {name: [1, 1] for name in COLUMNS} | {"label": ["healthy", "root_tooth_crack"]}
     signals = np.random.default_rng(0).normal(size=(2, 5, 32)).astype("f4")
     storage.write(
-        place / "set.h5", [Recordings(signals, facts(rows), 1e4, {"configuration": "a: 1", "swgsim": "1"})], 2
+        place / "set.h5", [LabelledSignals(signals, facts(rows), 1e4, {"configuration": "a: 1", "swgsim": "1"})], 2
     )
 
 

@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
-from close_loop import record
 
 from learn import tracking
+from learn.commands.close_loop import record
 from swgsim.bench.scatter import Bench
 from swgsim.bench.virtual_bench import Instruments, Sessions, record_sessions
 from swgsim.chain.chain import simulate_turns

@@ -16,7 +16,7 @@ from swgsim.identification.interharmonics.interharmonic_spectrum import between
 from swgsim.identification.interharmonics.line_pattern import distinct_patterns
 from swgsim.identification.interharmonics.line_search import search
 from swgsim.identification.interharmonics.unattributed_lines import Unnamed
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 KINDS = [LIBRARY["bearing_cage"], LIBRARY["mains_hum"]]
 ROUND = "one wave that turns with the wave generator (or three against it)"

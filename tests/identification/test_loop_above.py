@@ -10,7 +10,7 @@ from loop_fixtures import POINTS, recorded, turning
 from swgsim.effects.regularity import Regularity
 from swgsim.identification.data.model import Model
 from swgsim.identification.search.high_orders import above
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 MODEL, NOISE, LEVEL, RATE = Model(GEAR), 1e-3, 0.005, 10_000.0
 

@@ -30,7 +30,7 @@ from swgsim.identification.report.report_fields import calibrated
 from swgsim.identification.search.regularities import describe, freed
 from swgsim.identification.search.shortlist import ALPHA
 from swgsim.recordings.recording import Recording
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 pytestmark = pytest.mark.end_to_end
 SECTORS = 40

@@ -17,7 +17,7 @@ from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model
 from swgsim.identification.fit import fitting
 from swgsim.identification.fit.fitted import Fitted
-from swgsim.identification.fit.fitting import BENT, NEAR, TURNS, UNREPEATED, extended, fit, unbent
+from swgsim.identification.fit.fitting import BENT, SAME_SCATTER, TURNS, UNREPEATED, extended, fit, unbent
 from swgsim.identification.fit.unit import Unit
 from swgsim.identification.search import refining
 from swgsim.identification.search.hypotheses import hypotheses, signatures
@@ -89,8 +89,8 @@ def test_errors_of_single_recordings_are_found_from_any_guess(found):
     assert found.scatter.sd["trigger"] < STATED["trigger"] / 10
     far = replace(found.scatter, sd={name: 20 * sd for name, sd in found.scatter.sd.items()})
     again = fit(found.measured, found.unit, guess=far)
-    assert again.errors.alone.divergence(again.scattering(found.scatter).errors.alone) < NEAR
-    assert not again.errors.alone.divergence(again.scattering(far).errors.alone) < NEAR
+    assert again.errors.alone.divergence(again.scattering(found.scatter).errors.alone) < SAME_SCATTER
+    assert not again.errors.alone.divergence(again.scattering(far).errors.alone) < SAME_SCATTER
     for name, there in found.calibrated.position.items():
         assert again.calibrated.position[name] == pytest.approx(there, abs=0.05)
 

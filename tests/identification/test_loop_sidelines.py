@@ -16,7 +16,7 @@ from swgsim.identification.interharmonics.line_search import cleaned, search
 from swgsim.identification.interharmonics.named_interharmonics import ranked
 from swgsim.identification.interharmonics.unattributed_lines import unnamed
 from swgsim.recordings.recording import Recording
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 KINDS = [LIBRARY["bearing_cage"], LIBRARY["mains_hum"]]
 

@@ -54,7 +54,7 @@ def unit(healthy: Path) -> Unit:
 
 def measured(folder: Path) -> Measured:
     """Two recordings of each set point as the loop sees them; the third is left out to save time."""
-    return Measured.of([each for each in read_recordings(folder)[0] if each.repeat < 3])
+    return Measured.of([each for each in read_recordings(folder) if each.repeat < 3])
 
 
 def found(folder: Path, unit: Unit) -> list[Found]:
@@ -82,7 +82,7 @@ def test_a_healthy_gear_of_other_code_is_commissioned_as_accurately_as_it_can_be
 
 def test_what_single_recordings_of_other_code_hold_between_the_orders_is_no_line(healthy):
     """A channel is quieter between its lines than its converter rounds: no noise, and nothing stands out of it."""
-    found = search(between(read_recordings(healthy / "recordings")[0]), LIBRARY.values(), 0.005)
+    found = search(between(read_recordings(healthy / "recordings").recordings), LIBRARY.values(), 0.005)
     assert found.named == found.unnamed == ()
 
 
@@ -97,7 +97,7 @@ def test_an_eccentric_wave_generator_of_other_code_is_found_alone(unit, tmp_path
 
 def test_the_bench_writes_the_folder_form(healthy):
     assert list(COLUMNS) == ["t_s", *(channel.column for channel in CHANNELS.values())]
-    recordings = read_recordings(healthy / "recordings")[0]
+    recordings = read_recordings(healthy / "recordings").recordings
     assert len(recordings) == 18
     assert {r.gear for r in recordings} == {f"unit {SPECIMEN}"}
     assert {len(set(r.channels) & set(CHANNELS)) for r in recordings} == {len(CHANNELS)}

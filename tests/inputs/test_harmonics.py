@@ -22,7 +22,7 @@ def nothing_taken_out(monkeypatch):
     def difference(healthy):
         return healthy.lines - healthy.reference, np.zeros((len(healthy.lines), 3))
 
-    monkeypatch.setattr("learn.inputs.harmonics.residual", difference)
+    monkeypatch.setattr("learn.inputs.lines.residual", difference)
 
 
 def drawn(*shape, seed):

@@ -20,7 +20,7 @@ from swgsim.jobs import settings
 from swgsim.jobs.record_on_bench import run
 from swgsim.recordings.read import inspect_recordings, read_recordings
 from swgsim.recordings.recording import Recording
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 pytestmark = pytest.mark.end_to_end
 ROOT = Path(__file__).parents[2]
@@ -63,8 +63,8 @@ def test_the_same_command_writes_the_same_bytes(clean: Path, tmp_path: Path) -> 
 
 
 def test_recordings_are_sound_and_numbered(clean: Path) -> None:
-    recordings, defects = inspect_recordings(clean)
-    assert defects == ()
+    recordings = inspect_recordings(clean)
+    assert recordings.defects == ()
     assert [r.repeat for r in recordings] == [1, 1, 2, 2]
     elapsed = [r.conditions.elapsed for r in recordings]
     assert elapsed == sorted(elapsed)
@@ -176,7 +176,7 @@ def test_commissioning_and_test_are_of_one_unit_on_other_days(clean: Path, riddl
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"hidden": [{"cam": {}}]}, "unknown effect 'cam'; choose from aged_grease"),
+        ({"hidden": [{"cam": {}}]}, "unknown effect 'cam'; the library has"),
         ({"hidden": "nowhere.yaml"}, "no file of effects 'nowhere.yaml'; give a list such as"),
         ({"speeds_rpm": 2000}, r"speeds_rpm is 2000, must be a list such as \[2000\]"),
         ({"loads_nm": []}, r"operating points of the sessions are \(\), must be one or more"),

@@ -21,7 +21,9 @@ MAKERS = {
 
 
 @pytest.mark.parametrize(
-    "path", [p for group in MAKERS for p in sorted((CONF / group).glob("*.yaml")) if p.stem != "none"], ids=str
+    "path",
+    [p for group in MAKERS for p in sorted((CONF / group).glob("*.yaml")) if p.stem not in ("none", "own")],
+    ids=str,
 )
 def test_every_choice_of_the_configuration_makes_an_object(path, monkeypatch):
     monkeypatch.delenv("MLFLOW_TRACKING_URI", raising=False)
@@ -60,7 +62,7 @@ def test_defaults_are_what_the_configuration_says(group):
             "unknown protocol 'folds'; choose from random_folds, grouped_folds, leave_one",
         ),
         (settings.store, {"name": "cloud"}, "unknown tracking 'cloud'; choose from local, server"),
-        (settings.store, {"name": "server", "uri": "host"}, "tracking.uri='host' is no address of a server"),
+        (settings.store, {"name": "server", "uri": "host"}, "tracking.uri='host' is not an address of a server"),
         (
             settings.representation,
             {"name": "x", "order": 3},
@@ -73,10 +75,21 @@ def test_a_wrong_choice_is_answered_with_the_choices(maker, config, message):
         maker(config)
 
 
-def test_a_missing_data_set_is_answered_with_those_that_exist_and_the_command(tmp_path):
+def test_a_missing_data_set_is_answered_with_those_that_exist_and_the_whole_command(tmp_path, monkeypatch):
     (tmp_path / "small-clean.h5").touch()
     config = {"data": str(tmp_path), "grid": "paper", "condition": "clean"}
-    with pytest.raises(
-        ValueError, match=r"data sets in .*: small-clean. Make it with .*generate.py grid=paper condition=clean"
-    ):
+    command = f"swg generate grid=paper condition=clean data={tmp_path}"
+    with pytest.raises(ValueError, match=rf"data sets in .*: small-clean\. .*'{command}'$"):
         settings.data_set(config)
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ValueError, match=rf"no data set {tmp_path}/data/paper-clean.h5.* condition=clean'$"):
+        settings.data_set({**config, "data": "data"})
+
+
+def test_the_command_that_makes_runs_names_folders_and_servers():
+    config = {"grid": {"name": "small"}, "data": "data", "tracking": {"name": "local", "folder": "mlruns"}}
+    assert settings.train_command(config) == "swg train grid=small"
+    elsewhere = {**config, "data": "my data", "tracking": {"name": "local", "folder": "my runs"}}
+    assert settings.train_command(elsewhere) == "swg train grid=small data='my data' tracking.folder='my runs'"
+    server = {**config, "tracking": {"name": "server", "uri": "http://host:1"}}
+    assert settings.train_command(server) == "swg train grid=small tracking=server tracking.uri=http://host:1"

@@ -7,22 +7,19 @@ import pytest
 from joint_fixtures import strain
 from scipy.signal import lsim
 
-from swgsim.joint.effects.asymmetric_friction import AsymmetricFriction
-from swgsim.joint.effects.encoder_eccentricity import EncoderEccentricity
-from swgsim.joint.effects.gravity_error import GravityError
-from swgsim.joint.effects.inertia_error import InertiaError
-from swgsim.joint.effects.inertia_ripple import InertiaRipple
-from swgsim.joint.effects.load_curve import LoadCurve
-from swgsim.joint.effects.load_dependent_friction import LoadDependentFriction
-from swgsim.joint.effects.load_viscosity import LoadViscosity
-from swgsim.joint.effects.maxwell_slip import MaxwellSlip
-from swgsim.joint.effects.position_friction import PositionFriction
-from swgsim.joint.effects.quadratic_friction import QuadraticFriction
-from swgsim.joint.effects.ripple import STATED, Ripple
-from swgsim.joint.effects.stribeck_friction import StribeckFriction
-from swgsim.joint.effects.sublinear_friction import SublinearFriction
+from swgsim.joint.effects import SEARCHED
+from swgsim.joint.effects.friction import (
+    AsymmetricFriction,
+    LoadViscosity,
+    PositionFriction,
+    QuadraticFriction,
+    StribeckFriction,
+    SublinearFriction,
+)
+from swgsim.joint.effects.load import EncoderEccentricity, GravityError, InertiaError, LoadCurve
+from swgsim.joint.effects.ripple import STATED, InertiaRipple, Ripple
+from swgsim.joint.effects.slip import LoadDependentFriction, MaxwellSlip
 from swgsim.joint.kinematics import CREEP
-from swgsim.joint.library import SEARCHED
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.term import Term
 from swgsim.joint.textbook import Friction, RigidBody, Zero, textbook

@@ -112,8 +112,7 @@ def test_a_question_that_cannot_be_asked_is_answered_with_the_choices(files, cha
 
 def test_an_effect_of_a_user_is_searched(files, tmp_path, monkeypatch):
     (tmp_path / "of_a_user.py").write_text(
-        "from swgsim.joint.effects.load_dependent_friction import LoadDependentFriction\n"
-        "class Mine(LoadDependentFriction):\n    pass\n"
+        "from swgsim.joint.effects.slip import LoadDependentFriction\nclass Mine(LoadDependentFriction):\n    pass\n"
     )
     monkeypatch.syspath_prepend(tmp_path)
     kinds = job.library({"searched": [], "library": ["of_a_user:Mine"]})

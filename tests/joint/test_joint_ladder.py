@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from joint_fixtures import NOTHING, PER_TORQUE, Hidden, Wave, sessions, steady, trajectories, trajectory, upright
 
+from swgsim.joint.effects import SEARCHED
+from swgsim.joint.effects.friction import StribeckFriction
 from swgsim.joint.effects.ripple import Ripple
-from swgsim.joint.effects.stribeck_friction import StribeckFriction
 from swgsim.joint.ladder import Ladder, climb
-from swgsim.joint.library import SEARCHED
 from swgsim.joint.orders import lines
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.regression import Table, fit, rms

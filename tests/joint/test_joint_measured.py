@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from fabricated_joints import KINOVA, MEASURED, UR
 
-from swgsim.joint.effects.inertia_ripple import InertiaRipple
-from swgsim.joint.effects.load_dependent_friction import LoadDependentFriction
-from swgsim.joint.effects.stribeck_friction import StribeckFriction
+from swgsim.joint.effects import SEARCHED
+from swgsim.joint.effects.friction import StribeckFriction
+from swgsim.joint.effects.ripple import InertiaRipple
+from swgsim.joint.effects.slip import LoadDependentFriction
 from swgsim.joint.intake.read import JointFiles, read_joints
 from swgsim.joint.judged import Judged
 from swgsim.joint.ladder import climb
-from swgsim.joint.library import SEARCHED
 from swgsim.joint.split import chosen
 from swgsim.joint.term import Term
 

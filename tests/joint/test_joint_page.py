@@ -10,17 +10,17 @@ import numpy as np
 import pytest
 from joint_fixtures import Hidden, Wave, steady, trajectories
 from matplotlib.figure import Figure
+from swgsim.joint.joint_page import page
 
 from swgsim.joint import cases_page
 from swgsim.joint.days import Day, Days, days
-from swgsim.joint.effects.load_dependent_friction import LoadDependentFriction
+from swgsim.joint.effects.friction import StribeckFriction
 from swgsim.joint.effects.ripple import Ripple
-from swgsim.joint.effects.stribeck_friction import StribeckFriction
+from swgsim.joint.effects.slip import LoadDependentFriction
 from swgsim.joint.figures import pictures
 from swgsim.joint.figures.parts import pieces, short
 from swgsim.joint.figures.spectrum import density
 from swgsim.joint.figures.waves import modelled, seen
-from swgsim.joint.joint_page import page
 from swgsim.joint.judged import Judged
 from swgsim.joint.ladder import Ladder, Trial
 from swgsim.joint.naming import listed

@@ -8,7 +8,7 @@ import pytest
 import torch
 
 from learn.methods import neural
-from learn.methods.classical import Classifier
+from learn.methods.contract import Classifier
 from learn.methods.networks import convolutional
 
 CHANNELS, POINTS, SIDE = 2, 16, 2

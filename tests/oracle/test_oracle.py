@@ -29,7 +29,7 @@ from swgsim.oracle.model import Expectation, expectations, observations
 from swgsim.oracle.oracle import judge, point_model
 from swgsim.oracle.point import PointModel
 from swgsim.storage import storage
-from swgsim.storage.gauge_set import CLASSES, Recordings
+from swgsim.storage.labelled_signals import CLASSES, LabelledSignals
 
 pytestmark = pytest.mark.end_to_end
 CONF = str(Path(__file__).parents[2] / "conf")
@@ -57,12 +57,12 @@ def plan_of(variants: int, classes: tuple[str, ...] = CLASSES, bench: Bench | No
 PLAN = plan_of(40)
 
 
-def samples_of(plan: Plan) -> Recordings:
+def samples_of(plan: Plan) -> LabelledSignals:
     return record(plan, list(plan.grid.cases(plan.gears[0]))).samples
 
 
 @cache
-def samples() -> Recordings:
+def samples() -> LabelledSignals:
     return samples_of(PLAN)
 
 
@@ -256,7 +256,7 @@ def test_job_goes_on_from_the_gears_that_a_killed_run_left(data: Path, monkeypat
     config = composed("oracle", f"data={data}", *COARSE)
     judged = []
 
-    def counted(plan: Plan, gear: Gear, resolution: Resolution, first: int, samples: Recordings) -> pd.DataFrame:
+    def counted(plan: Plan, gear: Gear, resolution: Resolution, first: int, samples: LabelledSignals) -> pd.DataFrame:
         judged.append(gear.number)
         if judged == [1, 2]:
             raise KeyboardInterrupt

@@ -65,12 +65,6 @@ def test_forest_that_is_good_enough_breaks_c18():
     assert "RF Table X S3 at worst 99.0, paper below 95" in finding.note
 
 
-def test_claims_of_the_chain_are_c1_to_c8_with_figures():
-    found = claims.chain_claims(SUBJECT)
-    assert [f.key for f in found] == [f"C{n}" for n in range(1, 9)]
-    assert all(f.claim and f.limit and f.figure and f.note for f in found)
-
-
 def test_more_viscous_gear_breaks_c6():
     viscous = Gear(transmission=replace(Transmission(), b1=2 * Transmission().b1))
     assert claims.efficiency(SUBJECT).holds

@@ -3,7 +3,6 @@
 import numpy as np
 import pandas as pd
 import pytest
-from fabricated import recordings
 
 from learn.paper import figures as learning_figures
 from swgsim.common import style
@@ -11,7 +10,7 @@ from swgsim.flexspline.lattice import INNER
 from swgsim.flexspline.silk_hat import sector
 from swgsim.gear.acquisition import Window
 from swgsim.gear.gear import Gear, OperatingPoint
-from swgsim.storage.gauge_set import CLASSES
+from swgsim.storage.labelled_signals import CLASSES
 from swgsim.studies import figures, flexspline_figures
 from swgsim.studies.examples import EXAMPLES, Subject
 
@@ -28,30 +27,25 @@ def runs():
     return pd.DataFrame(rows)
 
 
-@pytest.mark.end_to_end
-def test_pictures_of_the_chain_are_drawn_with_captions():
-    drawn = figures.pictures(SUBJECT)
-    assert all(p.png[:8] == b"\x89PNG\r\n\x1a\n" and len(p.png) > 10_000 for p in drawn)
-    assert all(p.title and p.caption for p in drawn)
+@pytest.fixture(scope="module")
+def drawn():
+    return {name: getattr(figures, name)(SUBJECT) for name in ("run_in", "influence_maps", "efficiency", "signals")}
 
 
-def test_same_picture_gives_the_same_bytes():
-    once, again = (style.png(figures.influence_maps(SUBJECT)) for _ in range(2))
-    assert once == again
+def test_same_picture_gives_the_same_bytes(drawn):
+    assert style.png(drawn["influence_maps"]) == style.png(figures.influence_maps(SUBJECT))
 
 
-def test_every_axis_is_named():
-    drawn = [figures.run_in(SUBJECT), figures.influence_maps(SUBJECT), figures.efficiency(SUBJECT)]
-    for picture in drawn:
-        below = [axes for axes in picture.axes if axes.get_subplotspec() and axes.get_subplotspec().is_last_row()]
-        assert all(axes.get_ylabel() for axes in picture.axes)
-        assert all(axes.get_xlabel() for axes in below)
+@pytest.mark.parametrize("name", ["run_in", "influence_maps", "efficiency"])
+def test_every_axis_is_named(drawn, name):
+    below = [axes for axes in drawn[name].axes if axes.get_subplotspec() and axes.get_subplotspec().is_last_row()]
+    assert all(axes.get_ylabel() for axes in drawn[name].axes)
+    assert all(axes.get_xlabel() for axes in below)
 
 
-def test_signals_show_every_fault_beside_the_healthy_gear():
-    picture = figures.signals(SUBJECT)
-    assert len(picture.axes) == 2 * len(EXAMPLES)
-    assert all(len(axes.lines) == 10 for axes in picture.axes[::2])
+def test_signals_show_every_fault_and_the_healthy_gear(drawn):
+    assert len(drawn["signals"].axes) == 2 * len(EXAMPLES)
+    assert all(len(axes.lines) == 10 for axes in drawn["signals"].axes[::2])
 
 
 def test_flex_spline_follows_the_wave_generator_and_is_held_at_the_edge():
@@ -84,13 +78,6 @@ def test_spectrum_of_a_sine_is_one_line():
     order, magnitude = learning_figures.spectrum(3 + 0.2 * np.sin(2 * turn), 2000, 1e4)
     assert order[magnitude.argmax()] == pytest.approx(2)
     assert np.sort(magnitude)[-2:] == pytest.approx([0, 0.2], abs=1e-12)
-
-
-def test_pictures_of_the_learning_are_drawn():
-    clean, disturbed = recordings(), recordings(disturbance=1e-3)
-    drawn = learning_figures.pictures(SUBJECT.examples, 2000, clean, disturbed, runs())
-    assert len(drawn) == 3
-    assert all(p.png[:4] == b"\x89PNG" for p in drawn)
 
 
 def test_recall_counts_the_forest_of_the_papers_protocols_only():

@@ -7,7 +7,7 @@ import pytest
 
 from learn.evaluation.evaluate import metric_key
 from learn.paper import published_tables as paper
-from swgsim.storage.gauge_set import CLASSES
+from swgsim.storage.labelled_signals import CLASSES
 
 
 def runs_like_the_paper(table, shift=0.0):

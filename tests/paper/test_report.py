@@ -1,30 +1,28 @@
-"""The report from end to end on a small grid, and what it says when something is missing."""
+"""The report from end to end on a small grid, and its messages when something is missing."""
 
 import json
 import re
 from pathlib import Path
 
-import numpy as np
 import pandas as pd
 import pytest
 from fabricated import recordings
 from hydra import compose, initialize_config_dir
-from matplotlib.figure import Figure
 from omegaconf import OmegaConf
+from prepared_store import store_in
 from test_paper import runs_like_the_paper
 
 from learn import tracking
-from learn.evaluation.evaluate import Evaluation
 from learn.paper import paper_page as report
+from learn.paper import paper_report
 from learn.paper.choices import choices
-from learn.paper.paper_report import run
 from learn.paper.published_tables import PROTOCOLS, compare
 from swgsim.common.style import Picture
 from swgsim.jobs.generate_data_set import run as generate
 from swgsim.storage import storage
-from swgsim.storage.gauge_set import CLASSES
+from swgsim.storage.labelled_signals import CLASSES
 from swgsim.studies.examples import SEVEREST
-from swgsim.studies.finding import Finding, percent
+from swgsim.studies.finding import Finding
 
 pytestmark = pytest.mark.end_to_end
 ROOT = Path(__file__).parents[2]
@@ -46,7 +44,6 @@ def written(grid="paper", shift=-2.5):
         choices=[("Window", "600 samples")],
         statistics=report.statistics([recordings(variants=1)]),
         pictures=[Picture("Fig. 6", "Look here.", b"\x89PNG one")],
-        confusions=[Picture("As Table VII", "Look there.", b"\x89PNG two")],
         seconds=100.0,
         seconds_are="the steps added up",
         steps={"generation": 1.5, "report": 10.0},
@@ -66,19 +63,20 @@ def test_json_has_what_is_asked_for():
     assert content["seconds"] == 100.0
 
 
-def test_page_is_one_file_that_escapes_text():
+def test_page_is_one_file_that_escapes_text_and_links_to_what_exists():
     page = written().html()
-    assert re.findall(r'(?:src|href)="(?!data:image/png;base64,|#|transfer\.html")', page) == []
+    assert re.findall(r'(?:src|href)="(?!data:image/png;base64,|#)', page) == []
     assert "http" not in page
     assert "claim &lt;3&gt;" in page
     assert "note &amp; reason" in page
-    assert page == written().html()
+    assert "2000\u00a0rpm, 39\u00a0N\u00a0m" in page
+    assert 'href="transfer.html"' in written().html(beyond=True)
 
 
 def test_first_lines_say_what_holds_and_what_does_not():
     lead = written().html().split("<nav>")[0]
     assert "17 of 18 claims" in lead
-    assert re.search(r"Not reproduced:</b> C3;", lead)
+    assert re.search(r"Not reproduced:</b> C3\.", lead)
     assert re.search(r"Table VII 2\.5 points\s+\(30 cells\)", lead)
     assert "small grid" not in lead
     assert "This is the small grid" in written("small").html()
@@ -92,44 +90,24 @@ def test_cell_is_white_when_both_agree_and_full_at_the_limit():
 
 def test_missing_cell_names_the_command():
     runs = runs_like_the_paper("table9").query("classifier != 'knn'")
-    with pytest.raises(ValueError, match=r"9 of 45 cells .* first is knn, .* experiment=table9 grid=paper"):
-        report.complete(compare("table9", runs), "table9", "paper")
-
-
-def of_one_class():
-    return Evaluation((), ("a",), np.eye(1, dtype=int), np.zeros(1, dtype=int), np.ones((1, 1)))
-
-
-def store_with_a_run(folder, digest):
-    store = tracking.local_store(str(folder))
-    parameters = {"study": "table7", "grid": "small", "classifier": "rf", "features": "selection_3",
-                  "protocol": "random_folds"}  # fmt: skip
-    tags = {"data_digest": digest, "code_version": "1"}
-    with tracking.job_run(store, "a run", "key", parameters, {}, tags) as run:
-        from learn.evaluation.confusion import picture
-
-        run.record({"test_score": 90.0}, {"figures/confusion.png": picture(of_one_class(), "")}, {})
-    return store
+    with pytest.raises(ValueError, match=r"9 of 45 cells .* first is knn, .* 'swg train grid=paper experiment=table9'"):
+        report.complete(compare("table9", runs), "table9", "swg train grid=paper")
 
 
 def test_runs_of_another_data_set_do_not_count(tmp_path):
-    store = store_with_a_run(tmp_path, "old")
-    assert len(report.runs_of_tables(store, "small", {"clean": "old"})) == 1
+    store = store_in(tmp_path)
+    parameters = {"study": "table7", "grid": "small", "classifier": "rf", "protocol": "random_folds"}
+    with tracking.job_run(store, "a run", "key", parameters, {}, {"data_digest": "old"}) as run:
+        run.record({"test_score": 90.0}, {}, {})
+    assert len(report.runs_of_tables(store, "small", {"clean": "old"}, "")) == 1
     for grid, digest in (("small", "new"), ("paper", "old")):
-        with pytest.raises(ValueError, match=rf"no finished run .* grid={grid} .* experiment=table10"):
-            report.runs_of_tables(store, grid, {"clean": digest})
-
-
-def test_confusion_matrix_comes_from_the_run(tmp_path):
-    store = store_with_a_run(tmp_path, "digest")
-    shown = report.confusion(store, {"clean": "digest"}, "table7", "selection_3")
-    assert shown.png[:4] == b"\x89PNG"
-    assert shown.title == "As Table VII, selection 3"
+        with pytest.raises(ValueError, match=rf"no finished run .* grid={grid} .*'swg train x experiment.*table10"):
+            report.runs_of_tables(store, grid, {"clean": digest}, "swg train x")
 
 
 def test_data_sets_of_different_code_do_not_belong_together():
     report.require_same_code({"clean": "1", "disturbed": "1"}, "paper")
-    with pytest.raises(ValueError, match=r"clean by 1, disturbed by 2; make them anew .* grid=paper"):
+    with pytest.raises(ValueError, match=r"clean by 1, disturbed by 2\. Make them again .* grid=paper .* data=data'"):
         report.require_same_code({"clean": "1", "disturbed": "2"}, "paper")
 
 
@@ -153,14 +131,9 @@ def test_choices_state_what_b1_means_against_the_catalogue(efficiency, verdict):
     }  # fmt: skip
     catalogue = {"0.52": (efficiency, 0.074), "0.254": (0.769, 0.051)}
     text = dict(choices(config, {"amplitude": 2.8e-4, "offset": 2.8e-4}, catalogue, orders=6, floor=1e-6))
-    assert f"is {verdict} its range" in text["b1"]
+    assert f"is {verdict} the catalogue's range" in text["b1"]
     assert "2 or 4 revolutions" in text["Window"]
     assert "20, 100 µm" in text["Severities of Table V"]
-
-
-@pytest.mark.parametrize(("share", "words"), [(0.0123, "1.2 %"), (1.0, "100 %"), (0.0, "0 %"), (-0.2, "-20 %")])
-def test_percent_has_two_digits(share, words):
-    assert percent(share) == words
 
 
 def configured(name, *overrides):
@@ -168,50 +141,47 @@ def configured(name, *overrides):
         return OmegaConf.to_container(compose(name, list(overrides)), resolve=True)
 
 
-def test_unknown_grid_is_answered_by_name():
-    assert configured("report", "grid=small")["grid"]["name"] == "small"
-    with pytest.raises(Exception, match="Could not find 'grid/large'"):
-        configured("report", "grid=large")
-
-
-def keep_runs_like_the_papers(store, digests):
+def runs_of(digests):
     """One finished run for every cell of the paper's tables, with random and with grouped folds."""
     recall = {f"recall/{label}": 90.0 for label in CLASSES}
+    tables = []
     for table, protocol in PROTOCOLS.items():
-        tags = {"data_digest": digests["disturbed" if table in ("table8", "table10") else "clean"], "code_version": "1"}
-        for row in runs_like_the_paper(table).to_dict("records"):
-            for folds in {protocol, protocol.replace("random", "grouped")}:
-                text = {"study": table, "grid": "small", **{k: row[k] for k in ("classifier", "features")}}
-                scores = {k: v for k, v in row.items() if isinstance(v, float) and v == v}
-                figures = {"figures/confusion.png": Figure()} if row["classifier"] == "rf" else {}
-                with tracking.job_run(store, "run", "key", {**text, "protocol": folds}, {}, tags) as run:
-                    run.record({"test_score": 50.0, "fit_seconds": 1.0, **recall, **scores}, figures, {})
+        facts = {"data_digest": digests["disturbed" if table in ("table8", "table10") else "clean"], "fit_seconds": 1.0}
+        for folds in {protocol, protocol.replace("random", "grouped")}:
+            tables.append(runs_like_the_paper(table).assign(protocol=folds, **facts, **recall))
+    return pd.concat(tables, ignore_index=True)
 
 
-def test_whole_report_from_a_small_data_set(tmp_path):
-    data = f"data={tmp_path}"
-    tiny = [
-        "grid=small",
-        "grid.variants=4",
-        "grid.positions=4",
-        "grid.references=1",
-        "mesh.sectors=40",
-        "workers=1",
-        data,
-    ]
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A folder with the tiniest data sets that have what the report needs."""
+    folder = tmp_path_factory.mktemp("data")
+    sizes = ["grid.variants=4", "grid.positions=4", "grid.references=1", "mesh.sectors=40", "workers=1"]
     single = ["eccentric_wave_generator", "root_tooth_crack", "tip_tooth_crack"]
     severe = [f"grid.severities.{label}=[{SEVEREST[label][0]}]" for label in single]
-    generate(configured("generate", *tiny, *severe, "condition=disturbed"))
-    paths = {c: tmp_path / f"small-{c}.h5" for c in ("clean", "disturbed")}
-    store = tracking.local_store(str(tmp_path / "runs"))
-    keep_runs_like_the_papers(store, {condition: storage.digest(path) for condition, path in paths.items()})
+    generate(configured("generate", "grid=small", f"data={folder}", *sizes, *severe, "condition=disturbed"))
+    return folder
 
-    where = [data, f"tracking.folder={tmp_path / 'runs'}", f"out={tmp_path / 'report'}"]
-    run(configured("report", "grid=small", *where))
 
-    content = json.loads((tmp_path / "report" / "report.json").read_text())
+@pytest.mark.slow
+def test_whole_report_from_a_small_data_set(folder, monkeypatch):
+    digests = {condition: storage.digest(folder / f"small-{condition}.h5") for condition in ("clean", "disturbed")}
+    monkeypatch.setattr(report, "finished_runs", lambda *_, **__: runs_of(digests))
+    whole = paper_report.report_of(configured("report", "grid=small", f"data={folder}"), began=0.0)
+    content, page = json.loads(whole.json()), whole.html()
     assert content["tables"]["table9"]["mean_absolute_difference"] == pytest.approx(0)
+    assert list(content["claims"]) == [f"C{n}" for n in range(1, 19)]
     assert [key for key in content["claims"] if content["claims"][key]["holds"]][-1] == "C18"
-    page = (tmp_path / "report" / "index.html").read_text()
-    assert page.count("data:image/png;base64,") == 9 + 4
+    assert page.count("data:image/png;base64,") == len(whole.pictures) == 9
     assert page.count("holds</td>") + page.count("does not hold</td>") == 18
+    assert all(f.claim and f.limit and f.figure for f in whole.findings)
+    assert all(f.note for f in whole.findings[:10])
+    assert all(p.title and p.caption and p.png[:8] == b"\x89PNG\r\n\x1a\n" for p in whole.pictures)
+
+
+@pytest.mark.parametrize(("grid", "out"), [("paper", "report"), ("small", "report/small")])
+def test_each_grid_has_its_own_page(grid, out, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(paper_report, "report_of", lambda *_: written(grid))
+    paper_report.run(configured("report", f"grid={grid}"))
+    assert {path.name for path in (tmp_path / out).iterdir()} == {"index.html", "report.json"}

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from learn.evaluation.evaluate import metric_key
 from learn.protocols.fault_size import size
 from learn.protocols.harder_splits import LeaveOperatingPointOut, LeaveSeverityOut
-from swgsim.storage.gauge_set import CLASSES
+from swgsim.storage.labelled_signals import CLASSES
 
 FAULTS = CLASSES[1:]
 few = settings(deadline=None, max_examples=25)

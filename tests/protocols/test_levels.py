@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from learn.protocols.levels import NewGears
-from swgsim.storage.gauge_set import CLASSES
+from swgsim.storage.labelled_signals import CLASSES
 
 FACTS = ["gear", "label", "variant", "point"]
 few = settings(deadline=None, max_examples=15)

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from learn.protocols.splits import GroupedFolds, LeaveOneGearOut, RandomFolds, independent_groups
-from swgsim.storage.gauge_set import CLASSES
+from swgsim.storage.labelled_signals import CLASSES
 
 
 @st.composite

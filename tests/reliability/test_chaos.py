@@ -156,11 +156,12 @@ def test_two_processes_make_one_data_set_between_them(tmp_path: Path, undisturbe
 
 STRANGE = """
 import json, sys, time
-sys.path.insert(0, "tests")
+sys.path[:0] = ["tests", "tests/paper"]
 start = time.time()
 time.time = lambda: start - 1e6 * time.perf_counter()  # a clock that is set back all the time
 from pathlib import Path
-from swgsim import generation, plan
+from swgsim.dataset import plan
+from swgsim.jobs import generate_data_set as generation
 plan.BLOCK = 9
 generation.run(json.loads(sys.argv[1]))
 from test_report import written

@@ -10,8 +10,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 LOST_IN_A_DESTRUCTOR = """
 import signal, sys, time
-sys.path.insert(0, "scripts")
-import interrupts
+from swgsim.commands import interrupts
 if sys.argv[1] == "kept":
     interrupts.kept()
 class Removed:

@@ -7,21 +7,22 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-import sim_to_real_study as study
 from fabricated import recordings
 from hydra import compose, initialize_config_dir
 from omegaconf import OmegaConf
+from prepared_store import prepared
 
 from learn.jobs import settings
 from learn.sim_to_real import report, verdicts
-from learn.sim_to_real.finished import Finished
+from learn.sim_to_real import sim_to_real_study as study
 from learn.sim_to_real.judging import COMMISSIONING, DAYS, MODELS, SAME_DAY, Pair, judged
 from learn.sim_to_real.scores import scores
+from learn.sim_to_real.verdicts import Finished
 from swgsim.chain.chain import simulate_turns
 from swgsim.identification.data import model
 from swgsim.identification.report import answer_figures as figures
 from swgsim.storage import storage
-from swgsim.storage.gauge_set import CLASSES
+from swgsim.storage.labelled_signals import CLASSES
 
 pytestmark = pytest.mark.end_to_end
 CONF = Path(__file__).parents[2] / "conf"
@@ -34,7 +35,7 @@ FOREST = {"features": {"name": "selection_1", "statistics": True, "spectrum": "n
 def config(tmp_path_factory):
     place = tmp_path_factory.mktemp("study")
     small = [
-        f"data={place / 'data'}", f"out={place / 'report'}", f"tracking.folder={place / 'runs'}", "workers=1",
+        f"data={place / 'data'}", f"out={place / 'report'}", f"tracking.folder={prepared(place / 'runs')}", "workers=1",
         f"mesh.sectors={SECTORS}", f"bench_mesh.sectors={SECTORS}", "grid.variants=6", "grid.references=3",
         "grid.loads_nm=[10,70]",
         "sessions.repeats=2", "sessions.revolutions=4",

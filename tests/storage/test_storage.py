@@ -12,23 +12,23 @@ from hypothesis import strategies as st
 
 from swgsim.dataset.simulate_cases import record
 from swgsim.storage import storage
-from swgsim.storage.gauge_set import COLUMNS, Recordings, facts
+from swgsim.storage.labelled_signals import COLUMNS, LabelledSignals, facts
 
 
 @pytest.fixture(scope="module")
-def recordings() -> Recordings:
+def recordings() -> LabelledSignals:
     plan = small_plan()
     return record(plan, next(plan.blocks())[:6])
 
 
 @pytest.fixture(scope="module")
-def path(recordings: Recordings, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def path(recordings: LabelledSignals, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("file") / "recordings.h5"
     storage.write(path, [recordings.where(np.arange(4)), recordings.where(np.arange(4, 6))], 6)
     return path
 
 
-def test_round_trip(path: Path, recordings: Recordings) -> None:
+def test_round_trip(path: Path, recordings: LabelledSignals) -> None:
     read = storage.read(path)
     np.testing.assert_array_equal(read.signals, recordings.signals)
     assert read.table.equals(recordings.table)
@@ -37,7 +37,7 @@ def test_round_trip(path: Path, recordings: Recordings) -> None:
     assert "swgsim" in read.attributes
 
 
-def test_blocks_hold_the_same_rows(path: Path, recordings: Recordings) -> None:
+def test_blocks_hold_the_same_rows(path: Path, recordings: LabelledSignals) -> None:
     blocks = list(storage.blocks(path, 4))
     assert [len(b) for b in blocks] == [4, 2]
     np.testing.assert_array_equal(np.concatenate([b.signals for b in blocks]), recordings.signals)
@@ -82,7 +82,7 @@ def test_a_truncated_file_is_named(path: Path, tmp_path: Path, size: int) -> Non
         storage.read(short)
 
 
-def test_nothing_is_left_of_a_failed_write(tmp_path: Path, recordings: Recordings) -> None:
+def test_nothing_is_left_of_a_failed_write(tmp_path: Path, recordings: LabelledSignals) -> None:
     with pytest.raises(ValueError, match="6 recordings found, 7 announced"):
         storage.write(tmp_path / "a.h5", [recordings], 7)
     with pytest.raises(ValueError, match="more than the 5 recordings"):
@@ -90,7 +90,7 @@ def test_nothing_is_left_of_a_failed_write(tmp_path: Path, recordings: Recording
     assert not list(tmp_path.iterdir())
 
 
-def test_what_a_killed_write_left_is_replaced(tmp_path: Path, path: Path, recordings: Recordings) -> None:
+def test_what_a_killed_write_left_is_replaced(tmp_path: Path, path: Path, recordings: LabelledSignals) -> None:
     again = tmp_path / "a.h5"
     (tmp_path / ".a.h5.tmp").write_bytes(path.read_bytes()[:5000])
     storage.write(again, [recordings.where(np.arange(4)), recordings.where(np.arange(4, 6))], 6)
@@ -98,14 +98,14 @@ def test_what_a_killed_write_left_is_replaced(tmp_path: Path, path: Path, record
     assert again.read_bytes() == path.read_bytes()
 
 
-def test_signals_that_are_no_numbers_are_named(recordings: Recordings) -> None:
+def test_signals_that_are_no_numbers_are_named(recordings: LabelledSignals) -> None:
     signals = recordings.signals.copy()
     signals[2, 3, 17] = np.nan
     with pytest.raises(ValueError, match="recording 2, s3, sample 17: found nan, expected a finite number"):
-        Recordings(signals, recordings.table, recordings.rate)
+        LabelledSignals(signals, recordings.table, recordings.rate)
 
 
-def test_what_a_file_says_of_itself_has_a_length(tmp_path: Path, recordings: Recordings) -> None:
+def test_what_a_file_says_of_itself_has_a_length(tmp_path: Path, recordings: LabelledSignals) -> None:
     said = {"configuration": "größe: 1\n", "empty": ""}
     storage.write(tmp_path / "a.h5", [replace(recordings, attributes=said)], 6)
     assert said.items() <= storage.attributes(tmp_path / "a.h5").items()
@@ -113,9 +113,9 @@ def test_what_a_file_says_of_itself_has_a_length(tmp_path: Path, recordings: Rec
         storage.write(tmp_path / "b.h5", [replace(recordings, attributes={"configuration": 64_001 * "x"})], 6)
 
 
-def test_facts_must_fit(recordings: Recordings) -> None:
+def test_facts_must_fit(recordings: LabelledSignals) -> None:
     with pytest.raises(ValueError, match="one row each"):
-        Recordings(recordings.signals[:3], recordings.table, recordings.rate)
+        LabelledSignals(recordings.signals[:3], recordings.table, recordings.rate)
     rows = {name: [0] for name in COLUMNS} | {"label": ["rusty"]}
     with pytest.raises(ValueError, match="unknown class 'rusty'; choose from healthy"):
         facts(rows)

@@ -9,27 +9,24 @@ import subprocess
 import sys
 import tempfile
 import time
-import urllib.request
 from pathlib import Path
-from urllib.error import URLError
 
 import pandas as pd
 import pytest
 from fabricated import recordings
 from hydra import compose, initialize_config_dir
 from omegaconf import OmegaConf
+from prepared_store import prepared
 
 from learn import tracking
 from learn.jobs import train_job as job
 from learn.jobs import zero_shot
 from learn.tracking import postgresql
-from learn.tracking import ui as page
-from learn.tracking.server import require_free
 from swgsim.storage import storage
 
 ROOT = Path(__file__).parents[2]
 SECONDS_TO_START = 600  # on a machine that does much else; it takes ten on an idle one
-JOBS = 20
+JOBS = 12
 # A server that does not import everything anew for each of the jobs.
 PROCESSES = multiprocessing.get_context("forkserver")
 PROCESSES.set_forkserver_preload(["learn.tracking", "mlflow", "mlflow.store.artifact.mlflow_artifacts_repo", "pyarrow"])
@@ -47,24 +44,22 @@ class TeamServer:
         self.uri = f"http://127.0.0.1:{self.port}"
 
     def start(self):
-        command = [sys.executable, str(ROOT / "scripts" / "server.py"), f"folder={self.folder}", f"port={self.port}"]
-        with (self.folder / "said.txt").open("w") as said:
-            self.process = subprocess.Popen([*command, "workers=1"], stdout=said, stderr=said)
+        serve = f"serve_team(Path({str(self.folder)!r}), '127.0.0.1', {self.port}, 1, None)"
+        program = f"from pathlib import Path; from learn.tracking.server import serve_team; {serve}"
+        with (self.folder / "output.txt").open("w") as output:
+            self.process = subprocess.Popen([sys.executable, "-c", program], stdout=output, stderr=output)
         end = time.monotonic() + SECONDS_TO_START
-        while not self.answers():
-            assert self.process.poll() is None, (self.folder / "said.txt").read_text()
-            assert time.monotonic() < end, (self.folder / "said.txt").read_text()
+        while f"tracking.uri={self.uri}" not in self.output():  # printed once the server answers
+            assert self.process.poll() is None, self.output()
+            assert time.monotonic() < end, self.output()
             time.sleep(0.2)
 
-    def answers(self):
-        try:
-            return urllib.request.urlopen(f"{self.uri}/health", timeout=5).status == 200
-        except (URLError, TimeoutError):
-            return False
+    def output(self):
+        return (self.folder / "output.txt").read_text()
 
     def stop(self):
         self.process.terminate()
-        assert self.process.wait(SECONDS_TO_START) == 0, (self.folder / "said.txt").read_text()
+        assert self.process.wait(SECONDS_TO_START) == 0, self.output()
 
     def store(self, pending=None):
         return tracking.server_store(self.uri, pending=pending and str(pending))
@@ -86,9 +81,9 @@ def server():
         shutil.rmtree(folder)
 
 
-def keep(store, number, study="twenty", grid="small"):
+def keep(store, number, study="many"):
     table = pd.DataFrame({"number": [number], "square": [number**2]})
-    parameters = {"study": study, "grid": grid, "number": number}
+    parameters = {"study": study, "grid": "small", "number": number}
     tags = {"data_digest": "d"}
     with tracking.job_run(store, f"{study} {number}", f"{study}-{number}", parameters, {"number": number}, tags) as run:
         metrics = {"test_score": number, **{f"m/{i}": number + i / 100 for i in range(50)}}
@@ -103,7 +98,8 @@ def finished_by_number(store, study):
     return tracking.finished_runs(store, study=study).astype({"number": int}).set_index("number").sort_index()
 
 
-def test_twenty_jobs_at_once_lose_no_run_and_no_metric(server):
+@pytest.mark.slow
+def test_many_jobs_at_once_lose_no_run_and_no_metric(server):
     jobs = [PROCESSES.Process(target=join_in, args=(server.uri, number)) for number in range(JOBS)]
     for each in jobs:
         each.start()
@@ -111,29 +107,12 @@ def test_twenty_jobs_at_once_lose_no_run_and_no_metric(server):
         each.join()
     assert [each.exitcode for each in jobs] == [0] * JOBS
     store = server.store()
-    found = finished_by_number(store, "twenty")
+    found = finished_by_number(store, "many")
     assert list(found.index) == list(range(JOBS))
     for number, run in found.iterrows():
         assert [run[f"m/{i}"] for i in range(50)] == [number + i / 100 for i in range(50)]
         assert tracking.table_of(store, run["run_id"], "tables/t.parquet").to_numpy().tolist() == [[number, number**2]]
     assert len(store.client.search_runs([store.experiment_id], "params.study = 'twenty'")) == JOBS
-
-
-def test_the_page_shows_the_runs_in_a_browser(server, tmp_path):
-    browser = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-    if not browser:
-        pytest.skip("no Chromium: 'apt-get install chromium'")
-    store = server.store()
-    keep(store, 97.25, study="shown", grid="paper")
-    page.save_views(store)
-    quiet = ["--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-sync"]
-    options = [*quiet, "--headless", "--no-sandbox", f"--user-data-dir={tmp_path}", "--window-size=1680,1000"]
-    looked = ["--virtual-time-budget=60000", "--dump-dom", f"--screenshot={tmp_path / 'page.png'}"]
-    command = [browser, *options, *looked, page.link(store, server.uri)]
-    dom = subprocess.run(command, capture_output=True, text=True, check=True, timeout=SECONDS_TO_START).stdout
-    assert "shown 97.25" in dom
-    assert "test_score" in dom
-    assert "twenty" not in dom  # another grid
 
 
 @pytest.fixture(scope="module")
@@ -158,7 +137,7 @@ def not_trained(*_):
 @pytest.fixture(scope="module")
 def lost(server, data, tmp_path_factory):
     """A job of a sweep whose server goes away while it works and is then started again; and its metrics."""
-    pending = tmp_path_factory.mktemp("pending")
+    pending = prepared(tmp_path_factory.mktemp("pending"))
     config = configured(data, "tracking=server", f"tracking.uri={server.uri}", f"tracking.pending={pending}")
     judge = zero_shot.results
     keep(server.store(), 5, study="before")
@@ -175,12 +154,15 @@ def lost(server, data, tmp_path_factory):
     return pending, metrics
 
 
+@pytest.mark.slow
 def test_a_job_whose_server_goes_away_ends_as_it_would_without(server, data, lost, tmp_path):
     pending, metrics = lost
     waiting = tracking.local_store(str(pending))
-    undisturbed = configured(data, f"tracking.folder={tmp_path}")
+    undisturbed = configured(data, f"tracking.folder={prepared(tmp_path)}")
     expected = {**job.run(undisturbed), "fit_seconds": metrics["fit_seconds"]}
     assert metrics == expected
+    (before,) = tracking.finished_runs(server.store(), study="before").itertuples()  # the server keeps its runs
+    assert tracking.table_of(server.store(), before.run_id, "tables/t.parquet").to_numpy().tolist() == [[5, 25]]
     (run,), (other,) = (
         tracking.finished_runs(store, study="trial").itertuples()
         for store in (waiting, tracking.local_store(str(tmp_path)))
@@ -192,6 +174,7 @@ def test_a_job_whose_server_goes_away_ends_as_it_would_without(server, data, los
     )
 
 
+@pytest.mark.slow
 def test_what_waits_for_upload_is_not_done_again(data, lost, monkeypatch):
     pending, metrics = lost
     monkeypatch.setattr(zero_shot, "results", not_trained)
@@ -202,9 +185,11 @@ def test_what_waits_for_upload_is_not_done_again(data, lost, monkeypatch):
 def test_jobs_of_a_sweep_go_on_without_their_server_and_say_so(data, tmp_path, monkeypatch, caplog):
     uri = f"http://127.0.0.1:{free_port()}"
     monkeypatch.setenv(tracking.SWEEP, "0123456789abcdef")
-    metrics = job.run(configured(data, "tracking=server", f"tracking.uri={uri}", f"tracking.pending={tmp_path}"))
+    metrics = job.run(
+        configured(data, "tracking=server", f"tracking.uri={uri}", f"tracking.pending={prepared(tmp_path)}")
+    )
     assert f"the results are kept in {tmp_path}" in caplog.text
-    assert f"scripts/upload.py tracking.uri={uri} tracking.pending={tmp_path}" in caplog.text
+    assert f"swg upload tracking.uri={uri} tracking.pending={tmp_path}" in caplog.text
     assert tracking.finished_runs(tracking.local_store(str(tmp_path)))["test_score"].tolist() == [metrics["test_score"]]
     tracking.close_sweep(tracking.server_store(uri), "0123456789abcdef")  # raises nothing
 
@@ -235,6 +220,7 @@ def killed_upload(uri, pending):
     tracking.upload(tracking.server_store(uri, pending=pending))
 
 
+@pytest.mark.slow
 def test_runs_are_uploaded_whole_and_once(server, lost, monkeypatch):
     pending, _ = lost
     store, local = server.store(pending), tracking.local_store(str(pending))
@@ -263,24 +249,18 @@ def test_runs_are_uploaded_whole_and_once(server, lost, monkeypatch):
 
     left_open = tracking.open_sweep(store, "alone", "small")  # by an upload that was killed before its last step
     before = runs()
-    command = [sys.executable, str(ROOT / "scripts" / "upload.py")]
-    again = subprocess.run(
-        [*command, f"tracking.uri={server.uri}", f"tracking.pending={pending}"],
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    assert again.stdout.endswith(f"0 runs were new to {server.uri}\n"), again.stderr
+    assert tracking.upload(server.store(pending)) == 0
     assert runs() == before
     assert store.client.get_run(left_open).info.status == "FINISHED"
 
 
-def test_an_upload_of_nothing_says_what_to_give(tmp_path):
-    with pytest.raises(ValueError, match=f"no runs wait for http://host:1 in {tmp_path}.*tracking.pending"):
-        tracking.upload(tracking.server_store("http://host:1", pending=str(tmp_path)))
-
-
-def test_a_server_keeps_runs_and_artifacts_from_start_to_start(server, lost):
-    (run,) = tracking.finished_runs(server.store(), study="before").itertuples()
-    assert tracking.table_of(server.store(), run.run_id, "tables/t.parquet").to_numpy().tolist() == [[5, 25]]
+def test_an_upload_of_nothing_is_an_error(tmp_path):
+    server = tracking.server_store("http://host:1", pending=str(tmp_path))
+    with pytest.raises(ValueError, match=f"no runs to upload to http://host:1 in {tmp_path}.*tracking.pending=FOLDER"):
+        tracking.upload(server)
+    assert tracking.local_store(str(prepared(tmp_path))).experiment_id
+    with pytest.raises(ValueError, match=f"{tmp_path} has no finished run to upload: give another folder"):
+        tracking.upload(server)
 
 
 def test_a_missing_postgresql_is_named(tmp_path, monkeypatch):
@@ -295,10 +275,10 @@ def test_another_process_is_not_taken_for_the_database(tmp_path):
     assert not postgresql._runs(tmp_path)
     (tmp_path / "postmaster.pid").write_text(f"{os.getpid()}\n{tmp_path}\n")
     assert not postgresql._runs(tmp_path)
-    with subprocess.Popen(["sleep", "60"], cwd=tmp_path) as there:
-        (tmp_path / "postmaster.pid").write_text(f"{there.pid}\n{tmp_path}\n")
+    with subprocess.Popen(["sleep", "60"], cwd=tmp_path) as server:
+        (tmp_path / "postmaster.pid").write_text(f"{server.pid}\n{tmp_path}\n")
         assert postgresql._runs(tmp_path)
-        there.kill()
+        server.kill()
 
 
 def test_a_folder_of_another_version_is_refused(tmp_path, monkeypatch):
@@ -311,12 +291,3 @@ def test_a_folder_of_another_version_is_refused(tmp_path, monkeypatch):
     (tmp_path / "PG_VERSION").write_text("13\n")
     with pytest.raises(ValueError, match="PostgreSQL 13, installed is 15: install postgresql-13"):
         postgresql.database(tmp_path).__enter__()
-
-
-def test_a_port_that_is_taken_is_refused():
-    with socket.socket() as taken:
-        taken.bind(("127.0.0.1", 0))
-        taken.listen()
-        port = taken.getsockname()[1]
-        with pytest.raises(ValueError, match=f"cannot listen at 127.0.0.1:{port}.*choose another port"):
-            require_free("127.0.0.1", port)

@@ -1,6 +1,5 @@
 """Runs are kept, found again and shown."""
 
-import json
 import socket
 import sqlite3
 import time
@@ -8,17 +7,18 @@ from contextlib import closing
 
 import pytest
 from mlflow.exceptions import MlflowException
+from prepared_store import prepared, store_in
 
 from learn import tracking
 from learn.jobs import identity
-from learn.tracking import ui as page
+from learn.tracking import server, ui
 
 PARAMETERS = {"study": "table7", "grid": "small", "classifier": "rf"}
 
 
 @pytest.fixture(scope="module")
 def store(tmp_path_factory):
-    return tracking.local_store(str(tmp_path_factory.mktemp("store") / "runs"))
+    return store_in(tmp_path_factory.mktemp("store") / "runs")
 
 
 def keep(store, key, metrics, **parameters):
@@ -39,7 +39,7 @@ def test_a_finished_job_is_found_by_its_key_a_failed_or_killed_one_is_not(store)
 
 
 def test_a_local_store_that_is_damaged_is_not_taken_for_a_lost_server(tmp_path, monkeypatch):
-    store = tracking.local_store(str(tmp_path))
+    store = store_in(tmp_path)
     monkeypatch.setenv(tracking.SWEEP, tracking.open_sweep(store, "trial", "small"))
     with closing(sqlite3.connect(store.folder / "mlflow.db")) as database:
         database.execute("drop table tags")
@@ -61,9 +61,13 @@ def parent(store, key):
     return run.data.tags.get("mlflow.parentRunId")
 
 
-def test_sweeps_of_one_study_at_once_share_a_run_that_keeps_their_jobs_after_one_has_closed_it(store, monkeypatch):
-    first, second = (tracking.open_sweep(store, "table9", "small") for _ in range(2))
-    assert first == second
+def test_sweeps_of_one_study_and_grid_share_a_run_that_keeps_their_jobs_after_one_has_closed_it(store, monkeypatch):
+    first, second, other = (tracking.open_sweep(store, "table9", grid) for grid in ("small", "small", "paper"))
+    assert first == second != other
+    names = [store.client.get_run(run_id).info.run_name for run_id in (first, other)]
+    assert names == ["table9 small", "table9 paper"]
+    keep(store, "single", {"test_score": 5.0}, study="table9")
+    assert parent(store, "single") is None
     monkeypatch.setenv(tracking.SWEEP, first)
     keep(store, "early", {"test_score": 5.0}, study="table9")
     tracking.close_sweep(store, first)
@@ -72,20 +76,6 @@ def test_sweeps_of_one_study_at_once_share_a_run_that_keeps_their_jobs_after_one
     assert parent(store, "early") == parent(store, "late") == first
     assert tracking.open_sweep(store, "table9", "small") == first
     assert store.client.get_run(first).info.status == "RUNNING"
-
-
-def test_a_study_has_a_sweep_for_each_grid(store):
-    sweeps = {grid: tracking.open_sweep(store, "table8", grid) for grid in ("small", "paper")}
-    assert {store.client.get_run(run_id).info.run_name for run_id in sweeps.values()} == {
-        "table8 small",
-        "table8 paper",
-    }
-
-
-def test_a_single_job_has_no_parent(store):
-    tracking.open_sweep(store, "table10", "small")
-    keep(store, "single", {"test_score": 5.0}, study="table10")
-    assert parent(store, "single") is None
 
 
 def test_an_absent_server_is_reported_soon_with_the_remedy():
@@ -98,53 +88,11 @@ def test_an_absent_server_is_reported_soon_with_the_remedy():
     assert time.monotonic() - start < 15
 
 
-def test_database_lets_readers_and_writers_work_side_by_side(store):
-    assert store.experiment_id
-    with closing(sqlite3.connect(store.folder / "mlflow.db")) as database:
-        assert database.execute("pragma journal_mode").fetchone() == ("wal",)
-
-
-def test_artifacts_lie_beside_the_database(store):
+def test_the_database_lets_readers_and_writers_work_at_the_same_time_and_has_its_artifacts_in_its_folder(store):
     experiment = store.client.get_experiment(store.experiment_id)
     assert experiment.artifact_location == (store.folder / "artifacts").as_uri()
-
-
-def test_saved_views_are_written_as_mlflow_reads_them(store):
-    page.save_views(store)
-    tags = store.client.get_experiment(store.experiment_id).tags
-    saved = json.loads(tags["mlflow.sharedViewState.scores"])
-    assert saved["name"] == "Scores"
-    assert saved["state"].startswith("deflate;")
-    table = page.decode(saved["state"])
-    assert "metrics.`test_score`" in table["selectedColumns"]
-    assert "params.`classifier`" in table["selectedColumns"]
-
-
-def test_the_table_of_scores_does_not_mix_grids(store):
-    for grid in ("paper", "sampled"):
-        keep(store, f"on {grid}", {"test_score": 4.0}, grid=grid)
-
-    def grids(view):
-        return {run.data.params["grid"] for run in store.client.search_runs([store.experiment_id], view.filter)}
-
-    assert grids(page.SCORES) == {"paper"}
-    assert grids(page.OTHER_GRIDS) >= {"sampled"}
-    assert "paper" not in grids(page.OTHER_GRIDS)
-
-
-def test_the_installed_mlflow_knows_saved_views():
-    from importlib.resources import files
-
-    scripts = (files("mlflow") / "server" / "js" / "build" / "static" / "js").iterdir()
-    text = "".join(
-        s.read_text(encoding="utf-8") for s in scripts if s.name.startswith("main") and s.name.endswith(".js")
-    )
-    for word in ("mlflow.sharedViewState.", "viewStateShareKey", "deflate;", "selectedColumns", "searchFilter"):
-        assert word in text
-
-
-def test_link_names_the_view(store):
-    assert page.link(store, "http://host:1").endswith("workflowType=machine_learning&viewStateShareKey=scores")
+    with closing(sqlite3.connect(store.folder / "mlflow.db")) as database:
+        assert database.execute("pragma journal_mode").fetchone() == ("wal",)
 
 
 def test_key_depends_on_what_decides_the_result_only():
@@ -156,19 +104,50 @@ def test_key_depends_on_what_decides_the_result_only():
     assert identity.job_key(config, "another digest") != key
 
 
-def test_what_has_runs_has_a_link(tmp_path, monkeypatch, capsys):
-    store, loop, empty = (tracking.local_store(str(tmp_path), name) for name in (tracking.EXPERIMENT, "loop", "empty"))
+def test_every_experiment_with_runs_has_a_link(tmp_path):
+    store, loop, empty = (
+        tracking.local_store(str(prepared(tmp_path)), name) for name in (tracking.EXPERIMENT, "loop", "empty")
+    )
     assert empty.experiment_id
-    monkeypatch.setattr(page, "run_mlflow", lambda *_: None)
-    page.serve(store, "host", 1)
-    assert capsys.readouterr().out.startswith("No runs yet")
+    assert ui.links(store, "http://host:1") == {}
     keep(loop, "key", {"noise_floor": 0.8})
-    page.serve(store, "host", 1)
-    beside = f"http://host:1/#/experiments/{loop.experiment_id}/runs?workflowType=machine_learning"
-    assert capsys.readouterr().out.splitlines() == [f"Experiment loop: {beside}"]
-    assert page.others(loop, "http://host:1") == {}
-    keep(store, "key", {"test_score": 4.0}, grid="paper")
-    page.serve(store, "host", 1)
-    *views, last = capsys.readouterr().out.splitlines()
-    assert [line.partition(":")[0] for line in views] == ["Scores", "Sweeps"]
-    assert last == f"Experiment loop: {beside}"
+    assert ui.links(store, "http://host:1") == {"loop": f"http://host:1/#/experiments/{loop.experiment_id}"}
+    keep(store, "key", {"test_score": 4.0})
+    assert set(ui.links(store, "http://host:1")) == {tracking.EXPERIMENT, "loop"}
+
+
+def test_links_are_printed_once_the_server_answers(store, monkeypatch, capsys):
+    keep(store, "shown", {"test_score": 5.0})
+    answers = iter([False, False, True])
+    printed = []
+
+    def answered(host, port):
+        printed.append(capsys.readouterr().out)
+        return next(answers)
+
+    monkeypatch.setattr(server, "_answers", answered)
+    monkeypatch.setattr(server.sys, "executable", "/bin/sleep")  # in place of MLflow; it refuses the options
+    monkeypatch.setattr(server.subprocess.Popen, "poll", lambda _: None)
+    with pytest.raises(RuntimeError, match="ended by itself with status 1"):
+        ui.serve(store, "127.0.0.1", free_number())
+    assert printed == ["", "", ""]
+    assert f"{tracking.EXPERIMENT}: http://127.0.0.1:" in capsys.readouterr().out
+
+
+def free_number():
+    with socket.socket() as trial:
+        trial.bind(("127.0.0.1", 0))
+        return trial.getsockname()[1]
+
+
+@pytest.mark.parametrize("port", ["banana", "0", 65536, 1.5, "taken"])
+def test_a_port_that_cannot_be_used_is_refused_before_the_store_is_made(port, tmp_path, capsys):
+    with socket.socket() as listening:
+        listening.bind(("127.0.0.1", 0))
+        listening.listen()
+        port = listening.getsockname()[1] if port == "taken" else port
+        message = rf"(port={port} is not a number|cannot listen at 127.0.0.1:{port}).*, such as port=\d+$"
+        with pytest.raises(ValueError, match=message):
+            ui.serve(tracking.local_store(str(tmp_path / "runs")), "127.0.0.1", str(port))
+    assert not list(tmp_path.iterdir())
+    assert not capsys.readouterr().out

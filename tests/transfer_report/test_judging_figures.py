@@ -14,7 +14,7 @@ from learn.transfer_report import judging_figures as figures
 from learn.transfer_report.novelty import Novelty
 from learn.transfer_report.novelty_figure import novelty_beside_error
 from swgsim.common.seeds import generator
-from swgsim.storage.gauge_set import CLASSES
+from swgsim.storage.labelled_signals import CLASSES
 
 
 def predictions():

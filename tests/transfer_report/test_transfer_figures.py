@@ -7,7 +7,7 @@ import pytest
 from learn.transfer_report import curve_figures, line_ends, map_figures, size_figures
 from learn.transfer_report import figures as transfer_figures
 from swgsim.common.style import CLASS_COLOURS
-from swgsim.storage.gauge_set import CLASSES
+from swgsim.storage.labelled_signals import CLASSES
 
 SHOTS = (1, 2, 5, 10, 14)
 NETWORKS = ("linear probe", "fine tuning", "L2-SP", "replay", "prototypes", "from scratch")

@@ -30,7 +30,7 @@ from learn.transfer_report.transfer_page import Table
 from swgsim.common.seeds import generator
 from swgsim.oracle.columns import KNOWN
 from swgsim.storage import storage
-from swgsim.storage.gauge_set import CLASSES
+from swgsim.storage.labelled_signals import CLASSES
 
 ROOT = Path(__file__).parents[2]
 POOLS = {"folds": 2, "development": 2, "labelled": 2, "unlabelled": 1, "kept_out": 1, "variants": None}

@@ -22,7 +22,7 @@ from swgsim.identification.data.measured import Measured
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import fit
 from swgsim.identification.fit.unit import STRUCTURE, UNHEARD, Unit
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 # Lines that are missed are learned. A gauge's may lie off by this share of the largest line of all gauges: in a bridge
 # of many arms lines cancel that are large in each. Those of speed and torques, of which the equations of motion make

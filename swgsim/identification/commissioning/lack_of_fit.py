@@ -6,7 +6,7 @@ from scipy.stats import chi2, false_discovery_control
 
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.fit.fitting import MISFIT
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 # Share of a channel's ripple that the model may leave unexplained of a healthy gear; with more it is not its own, if a
 # line of it is also missed by more than MISFIT: a ripple that is hardly more than noise may well be.

@@ -14,7 +14,7 @@ from swgsim.flexspline.gauges import GaugeSet
 from swgsim.identification.data.features import ORDERS, Layout, basis
 from swgsim.identification.data.model import POINTS, Situation
 from swgsim.identification.data.unit_lines import LAWS, Lines, laws
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 # How far lines may deviate by each law (standard deviation).
 Sizes = Float[np.ndarray, "law feature"]

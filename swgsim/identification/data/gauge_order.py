@@ -10,15 +10,15 @@ from dataclasses import astuple
 import numpy as np
 from jaxtyping import Complex
 
-from swgsim.recordings.checks.defect import Defect
 from swgsim.gear.gear import OperatingPoint
 from swgsim.identification.data.features import Layout, features
+from swgsim.recordings.checks.defect import Defect
 from swgsim.recordings.recording import Recording
 
 OPPOSITE = (("s1", "s3"), ("s2", "s4"))
 # A difference is turned if it and that of the commissioning cancel to this share. Of 292 pairs of blind cases the least
 # leaves 1.5 as it is, and 278 leave less than this once their columns are exchanged.
-CANCELLED = 0.2
+LEFT_WHEN_TURNED = 0.2
 
 
 def order_defects(recordings: Sequence[Recording], healthy: Sequence[Recording]) -> list[Defect]:
@@ -53,7 +53,7 @@ def exchanged(now: Complex[np.ndarray, "point order"], before: Complex[np.ndarra
     (True, False)
     """
     left, was = (float(np.linalg.norm(each[:, 2::2])) for each in (now + before, before))
-    return left < CANCELLED * was
+    return left < LEFT_WHEN_TURNED * was
 
 
 def _differences(

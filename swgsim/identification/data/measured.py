@@ -11,7 +11,7 @@ from swgsim.identification.data.features import Layout, features, layout_of
 from swgsim.identification.data.model import Situation
 from swgsim.identification.data.noise import floors, variance
 from swgsim.recordings.recording import Recording
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 # Errors of a whole session, as standard deviations: zeros [N m, mV/V], gains, drifts of a zero [mV/V per hour], the
 # index of the angle [rad]. Zeros of gauges as by 5 K at 1 uV/V per K; gains as of flanges of class 0.2, and of

@@ -12,7 +12,7 @@ from swgsim.effects.frozen import FULL_LOAD, FULL_SPEED
 from swgsim.flexspline.gauges import GaugeSet
 from swgsim.gear.gear import OperatingPoint
 from swgsim.identification.data.features import along_basis, basis
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 # What lines may follow over operating points, of load and speed in units of full ones; powers of the load come first.
 LAWS: tuple[Callable[[np.ndarray, float], np.ndarray | float], ...] = (

@@ -19,7 +19,7 @@ from swgsim.identification.search.shortlist import ALPHA
 
 # Two effects cancel if the cosine between what they do is below the negative of this, an estimate: of pairs of library
 # effects drawn at random one in a hundred is like that.
-CANCELLED = 0.5
+OPPOSED = 0.5
 # What is left must not reach this part of the fall of the sum of squares that an effect brought.
 LEFT = 0.1
 
@@ -73,7 +73,7 @@ def cancelling(steps: Sequence[Step], now: Fitted) -> tuple[Step, ...]:
     seen = now.errors.whiten(np.stack([signature(now, first + i) for i in range(len(owners))], axis=1))
     seen /= np.maximum(np.linalg.norm(seen, axis=0), np.finfo(float).tiny)
     kinds = np.array([effect.name() for step in steps for effect in step.accepted.effects])
-    opposed = ((seen.T @ seen < -CANCELLED) & (kinds[:, None] != kinds)).any(axis=0)
+    opposed = ((seen.T @ seen < -OPPOSED) & (kinds[:, None] != kinds)).any(axis=0)
     opposing = {step for step, each in zip(owners, opposed, strict=True) if each}
     most = max((step.accepted.evidence for step in opposing), default=0.0)
     slight = {step for step in opposing if step.accepted.evidence < FORM_TOLERANCE**2 * most}

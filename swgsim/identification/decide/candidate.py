@@ -42,7 +42,7 @@ NOTHING = 0.1
 # other authors).
 OWN = 1 / 3
 # Directions below this share of the largest one are rounding.
-ROUNDING = 1e-6
+LEAST_DIRECTION = 1e-6
 STEPS = logging.getLogger(__name__)
 
 
@@ -239,5 +239,5 @@ def _exact(effect: Effect, fitted: Fitted) -> float:
 def gain(fitted: Fitted, directions: Float[np.ndarray, "row direction"]) -> float:
     """Fall of a residual's sum of squares by directions of any size."""
     U, s, _ = svd(fitted.whole.whiten(directions))
-    along = U[:, s > ROUNDING * max(float(s[0]), ROUNDING)].T @ fitted.whole.whiten(fitted.from_start)
+    along = U[:, s > LEAST_DIRECTION * max(float(s[0]), LEAST_DIRECTION)].T @ fitted.whole.whiten(fitted.from_start)
     return float(along @ along)

@@ -37,7 +37,7 @@ PHASES, STEP, HALVED, MOVES = 12, 0.5, 3, 20
 # What a place between those that were tried, and the fit, add to the evidence (an estimate).
 ADDED = 8.0
 # Directions below this share of the largest variance are rounding.
-ROUNDING = 1e-9
+LEAST_VARIANCE = 1e-9
 
 
 class Opened(NamedTuple):
@@ -139,7 +139,7 @@ def _directions(
 ) -> tuple[Float[np.ndarray, " direction"], Float[np.ndarray, " direction"]]:
     """Variances that columns make along their own directions, and what a residual has along these."""
     s2, V = np.linalg.eigh(columns.T @ columns)
-    kept = s2 > ROUNDING * max(float(s2[-1]), np.finfo(float).tiny)
+    kept = s2 > LEAST_VARIANCE * max(float(s2[-1]), np.finfo(float).tiny)
     return s2[kept], (V[:, kept].T @ (columns.T @ r)) / np.sqrt(s2[kept])
 
 

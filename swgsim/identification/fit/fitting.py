@@ -23,7 +23,7 @@ from swgsim.identification.fit.unit import Unit
 BENT, MISFIT = 5.0, 10.0
 # Turns at most; they end where the errors of single recordings that parameters were fitted beside cost less than this
 # over those estimated then [nat per recording]: one kind that is a third too small or large costs as much (estimates).
-TURNS, NEAR = 4, 0.1
+TURNS, SAME_SCATTER = 4, 0.1
 # Turns where nothing was repeated: what the model lacks passes for such errors then, and more turns go astray with it.
 UNREPEATED = 2
 
@@ -66,7 +66,7 @@ def fit(
     guess = guess if guess and fixed.told else known
     for _ in range(turns if fixed.told else min(turns, UNREPEATED)):
         found = _turn(fixed, begin, guess)
-        near = found.errors.alone.divergence(found.scattering(guess).errors.alone) < NEAR
+        near = found.errors.alone.divergence(found.scattering(guess).errors.alone) < SAME_SCATTER
         if near and found.calibrated.settled:
             break
         begin, guess = found.calibrated.position, found.scatter

@@ -32,7 +32,7 @@ CONTRADICTION = 1e-3
 NO_SIZE = 0.5
 # Parts of points, of channels and of orders have the same sum; directions of them below this share of the largest are
 # what differences and rounding leave of that (an estimate).
-ROUNDING = 1e-3
+LEAST_PART = 1e-3
 
 
 @dataclass(frozen=True)
@@ -156,7 +156,7 @@ def coherence(fitted: Fitted, number: int) -> Coherence:
     if not np.any(split):
         return Coherence(0.0, 0.0, 0.0)
     U, s, _ = svd(split)
-    seen = s > ROUNDING * max(float(s.max()), 1e-12)
+    seen = s > LEAST_PART * max(float(s.max()), 1e-12)
     u, s = (U.T @ whole.whiten(fitted.from_start))[seen], s[seen]
 
     chance = float(chi2.sf((u**2 / (1 + (FORM_TOLERANCE * s) ** 2)).sum(), len(s)))

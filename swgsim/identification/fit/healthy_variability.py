@@ -12,7 +12,7 @@ from swgsim.effects.frozen import FULL_SPEED
 from swgsim.identification.data.features import Layout
 from swgsim.identification.data.model import Model, Situation
 from swgsim.identification.fit.priors import Declared
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 # Standard deviations, all estimates. Of a lag behind the angle [s]: a filter of 10 kHz has 16 us, one of 3 kHz 50.
 LAG = 5e-5

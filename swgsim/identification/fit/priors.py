@@ -24,7 +24,7 @@ STRAINED = 0.01
 # Of each part of the kinematic error [rad], of a gauge's zero [mV/V], of its position and direction [rad]; estimates.
 ERROR_PART, ZERO, PLACED = 0.3e-4, 0.02, 0.01
 # A position or shape of an effect that is not seen at all stays within its range over this; an estimate.
-NEAR = 20.0
+UNSEEN_SHARE = 20.0
 # Below this share of its nominal value, a stiffness, a friction or the stroke of the wave generator is that of no gear;
 # nor is a stiffness, a friction or what belongs to the bench beyond so many times it.
 LEAST, MOST = 0.05, 5.0
@@ -181,7 +181,7 @@ def of_effects(model: Model, another_structure: bool = False) -> dict[str, Decla
             span = 2 * np.pi if angular else quantity.high - quantity.low
             bounds = {} if angular else {"low": quantity.low, "high": quantity.high}
             # A size is free; where a position or a shape is not seen at all it stays near where the search left it.
-            sd = span if quantity.role in (Role.SIZE, Role.PHASE) else span / NEAR
+            sd = span if quantity.role in (Role.SIZE, Role.PHASE) else span / UNSEEN_SHARE
             found[name_of(effect, number, name)] = Declared(
                 quantity.unit, sd, _reader(number, name), _mover(number, name), **bounds, scale=quantity.scale
             )

@@ -10,7 +10,7 @@ from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.priors import name_of
 
 # Shapes over all of the range, and about the one that was found out to so many of its standard deviations.
-EVERYWHERE, NEAR, REACH = 25, 25, 6.0
+EVERYWHERE, ABOUT_FIT, REACH = 25, 25, 6.0
 
 
 def over_shapes(fitted: Fitted, number: int) -> dict[str, float]:
@@ -35,7 +35,7 @@ def over_shapes(fitted: Fitted, number: int) -> dict[str, float]:
     (shape,) = searched
     of_size, of_shape = (name_of(effect, number, name) for name in (size, shape))
     here, near, q = getattr(effect, shape), REACH * fitted.deviation[of_shape], declared[shape]
-    close = np.clip(here + np.linspace(-near, near, NEAR), q.low, q.high)
+    close = np.clip(here + np.linspace(-near, near, ABOUT_FIT), q.low, q.high)
     tried = np.unique([*np.linspace(q.low, q.high, EVERYWHERE), *close])
     found, unsure, likely = _sizes(fitted, number, tried, (of_size, of_shape))
     weight = np.exp(likely - likely.max())

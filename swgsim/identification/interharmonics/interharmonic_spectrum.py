@@ -15,7 +15,7 @@ from swgsim.effects.quantity import Role, quantities
 from swgsim.identification.data.features import FITTED, Layout, basis
 from swgsim.identification.data.noise import GUARD, Floor, floors, step_of
 from swgsim.recordings.recording import CHANNELS, Recording
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 # Share of a pattern that must lie between the orders, and of its largest direction; less is rounding.
 SEEN = 1e-3

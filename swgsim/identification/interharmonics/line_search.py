@@ -15,12 +15,12 @@ from swgsim.identification.interharmonics.interharmonic_spectrum import Between,
 from swgsim.identification.interharmonics.named_interharmonics import Sideline, nearby, ranked
 from swgsim.identification.interharmonics.unattributed_lines import Unnamed, unnamed
 from swgsim.recordings.recording import Recording
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 # Lines that are found at most, with a name or without.
 MOST = 4
 # Shapes below this share of the largest one are rounding; above the other one they are seen as well as it.
-ROUNDING, WELL_SEEN = 1e-3, 0.5
+LEAST_SHAPE, WELL_SEEN = 1e-3, 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,7 +129,7 @@ def _part(
     Q = np.linalg.qr(orders)[0]
     left, beside = (each - Q @ (Q.T @ each) for each in (signal, seen))
     U, s, V = svd(beside)
-    shown = s > ROUNDING * max(float(s[0]), 1e-300)
+    shown = s > LEAST_SHAPE * max(float(s[0]), 1e-300)
     U, s, V = U[:, shown], s[shown], V[shown]
     along = U.T @ left
     noise = (left @ left - along @ along) / (len(left) - orders.shape[1] - len(s))

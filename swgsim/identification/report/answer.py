@@ -4,26 +4,26 @@ import logging
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from swgsim.chain.steady_state_cache import forget
 from swgsim.common.outcome import FOUND, NOTHING, UNKNOWN
 from swgsim.effects.base import Effect
 from swgsim.effects.line_between import LineBetween
 from swgsim.effects.regularity import Regularity
-from swgsim.identification.search.high_orders import above
-from swgsim.identification.interharmonics.interharmonic_spectrum import between
+from swgsim.identification.data.measured import Measured
+from swgsim.identification.decide.candidate import Trial
+from swgsim.identification.decide.empirical_terms import patched
 from swgsim.identification.decide.selection import Closed
 from swgsim.identification.decide.stepwise_selection import close
-from swgsim.identification.search.shortlist import ALPHA
-from swgsim.identification.interharmonics.line_search import cleaned, search
-from swgsim.identification.decide.empirical_terms import patched
-from swgsim.identification.search.screening import Score
-from swgsim.identification.data.measured import Measured
-from swgsim.identification.interharmonics.named_interharmonics import Sideline
-from swgsim.identification.decide.candidate import Trial
 from swgsim.identification.fit.unit import Unit
+from swgsim.identification.interharmonics.interharmonic_spectrum import between
+from swgsim.identification.interharmonics.line_search import cleaned, search
+from swgsim.identification.interharmonics.named_interharmonics import Sideline
 from swgsim.identification.interharmonics.unattributed_lines import Unnamed
+from swgsim.identification.search.high_orders import above
 from swgsim.identification.search.regularities import Described
+from swgsim.identification.search.screening import Score
+from swgsim.identification.search.shortlist import ALPHA
 from swgsim.recordings.recording import Recording
-from swgsim.chain.steady_state_cache import forget
 
 # Largest number of regularities that are described at high orders.
 MOST_ABOVE = 3

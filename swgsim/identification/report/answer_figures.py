@@ -1,7 +1,7 @@
 """Pictures of the answer: the residual before and after, the scores, the errors, the parameters.
 
-The residual is measured minus predicted, by the chain at the reported parameters. Nuisance parameters, such as zeros and
-gains of a session, are estimated and subtracted.
+The residual is measured minus predicted, by the chain at the reported parameters. Nuisance parameters, such as zeros
+and gains of a session, are estimated and subtracted.
 """
 
 from collections.abc import Mapping, Sequence
@@ -12,16 +12,16 @@ from jaxtyping import Float
 from matplotlib.figure import Figure
 
 from swgsim.common import style
-from swgsim.identification.report.answer import Answer
-from swgsim.identification.fit.errors import repeat_noise
-from swgsim.identification.data.features import ORDERS, basis
-from swgsim.identification.fit.fitted import Fitted
-from swgsim.identification.search.shortlist import ALPHA
 from swgsim.common.numbers import NORMAL
-from swgsim.identification.report.prediction_errors import WHAT
+from swgsim.identification.data.features import ORDERS, basis
 from swgsim.identification.data.measured import Measured
+from swgsim.identification.fit.errors import repeat_noise
+from swgsim.identification.fit.fitted import Fitted
+from swgsim.identification.report.answer import Answer
+from swgsim.identification.report.prediction_errors import WHAT
+from swgsim.identification.search.shortlist import ALPHA
 from swgsim.recordings.recording import CHANNELS
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 BEFORE, AFTER, FLOOR, GREY = "#D55E00", "#0072B2", "#000000", "#bbbbbb"
 POINTS = 360
@@ -40,11 +40,7 @@ def pictures(answer: Answer, report: Mapping[str, Any]) -> dict[str, tuple[style
     drawn = {
         "residual": (
             "Measured minus predicted over one revolution",
-            (
-                "Orange: the model without the effect. Blue: with it. "
-                if found
-                else ""
-            )
+            ("Orange: the model without the effect. Blue: with it. " if found else "")
             + "Grey band: noise (two standard deviations). The picture shows the channel and the operating point with "
             "the largest residual, as the mean of the repeats.",
             over_angle(answer, largest_only=True),
@@ -64,16 +60,16 @@ def pictures(answer: Answer, report: Mapping[str, Any]) -> dict[str, tuple[style
         ),
         "scores": (
             "Score of every effect of the library in the first search",
-            "Reduction of the residual's sum of squares by each effect, in units of the noise, with nuisance parameters "
-            "marginalised. Orange: significant in a search of the whole library. Grey names: absorbed, these recordings "
-            "cannot test the effect. Similar effects have similar scores; accepted is only an effect that also predicts "
-            "left-out operating points.",
+            "Reduction of the residual's sum of squares by each effect, in units of the noise, with nuisance "
+            "parameters marginalised. Orange: significant in a search of the whole library. Grey names: absorbed, "
+            "these recordings cannot test the effect. Similar effects have similar scores; accepted is only an effect "
+            "that also predicts left-out operating points.",
             scores(report),
         ),
         "errors": (
             "Error before and after",
-            "Errors of fitted recordings, of left-out repeats and of left-out operating points, relative to the root mean "
-            "square of the channel. Black lines: noise floor from the repeats.",
+            "Errors of fitted recordings, of left-out repeats and of left-out operating points, relative to the root "
+            "mean square of the channel. Black lines: noise floor from the repeats.",
             errors(report),
         ),
     }

@@ -8,7 +8,7 @@ import numpy as np
 
 from swgsim.common import style
 from swgsim.common.html import environment
-from swgsim.common.numbers import figure
+from swgsim.common.numbers import significant
 from swgsim.common.outcome import FOUND
 from swgsim.effects.library import named
 from swgsim.identification.report import engineering_units
@@ -29,14 +29,14 @@ def page(report: Mapping[str, Any], pictures: Mapping[str, style.Picture]) -> st
     """
     templates = environment("swgsim")
     templates.filters["words"] = style.words
-    templates.filters["figure"] = figure
+    templates.filters["significant"] = significant
     texts = ("parameter_words", "value_text", "interval_text", "effect_text")
     return templates.get_template(TEMPLATE).render(
         report=report,
         pictures=pictures,
         next_steps=next_steps(report),
         about=about,
-        degrees=lambda angle: figure(None if angle is None else float(np.rad2deg(angle))),
+        degrees=lambda angle: significant(None if angle is None else float(np.rad2deg(angle))),
         separation_text=separation_text,
         **{name: getattr(engineering_units, name) for name in texts},
     )

@@ -3,14 +3,14 @@
 import hashlib
 import sys
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from swgsim.bench import truth
 from swgsim.common.files import require_writable
-from swgsim.common.numbers import figure
+from swgsim.common.numbers import significant
 from swgsim.common.outcome import NOTHING, Outcome
 from swgsim.common.style import words
 from swgsim.dataset.faults import FAULTS
@@ -19,8 +19,7 @@ from swgsim.effects.library import SEARCHED, listed, named
 from swgsim.effects.line_between import LineBetween
 from swgsim.effects.regularity import Regularity
 from swgsim.effects.text import from_entries
-from swgsim.identification.data.features import COMPARED
-from swgsim.identification.identify import (
+from swgsim.identification.calls import (
     commission,
     identify,
     nominal_unit,
@@ -28,12 +27,13 @@ from swgsim.identification.identify import (
     require_same_gear,
     with_channels,
 )
+from swgsim.identification.data.features import COMPARED
 from swgsim.identification.report.engineering_units import effect_in_words, effect_text, value_text
 from swgsim.jobs import settings
-from swgsim.recordings.checks.defect import Defect
 from swgsim.recordings.files.file_defect import read_for
 from swgsim.recordings.read import read_recordings
 from swgsim.recordings.recording import Recording
+from swgsim.recordings.recording_set import RecordingSet
 
 
 def run(config: Mapping[str, Any]) -> Outcome:
@@ -65,18 +65,16 @@ def _run(config: Mapping[str, Any]) -> Outcome:
     require_writable(Path(config["out"]))
     hidden = None if config["truth"] is None else _hidden(Path(config["truth"]), source)
     _progress(f"reading {source}")
-    recordings, defects = _read(source, "recordings", config["mapping"])
+    recordings = _read(source, "recordings", config["mapping"])
     gear, declared = settings.gear(config["gear"]), settings.effects(config["effects"])
     if healthy_source is None:
         unit = nominal_unit(gear, declared)
     else:
         _progress(f"reading {healthy_source}")
-        healthy, more = _read(healthy_source, "commissioning", config["commissioning_mapping"] or config["mapping"])
-        defects = (*defects, *more)
+        healthy = _read(healthy_source, "commissioning", config["commissioning_mapping"] or config["mapping"])
+        recordings = replace(recordings, defects=(*recordings.defects, *healthy.defects))
         unit = commission(_comparable(recordings, healthy), gear, declared=declared, progress=_progress)
-    found = identify(
-        recordings, unit, effects=kinds, seed=config["seed"], defects=defects, source=source, progress=_progress
-    )
+    found = identify(recordings, unit, effects=kinds, seed=config["seed"], progress=_progress)
     report = {
         **found.report,
         "made": {**found.report["made"], "commissioning": healthy_source},
@@ -134,7 +132,9 @@ def _detection_limits(detectable: Mapping[str, Mapping[str, Any]]) -> str:
     """The detection limits of the five faults."""
     limits = {name: detectable[name] for name in FAULTS if name in detectable}
     known = {name: each for name, each in limits.items() if each["value"] is not None}
-    return ", ".join(f"{words(name)} ({value_text(name, e['parameter'], e)})" for name, e in known.items()) or "no fault"
+    return (
+        ", ".join(f"{words(name)} ({value_text(name, e['parameter'], e)})" for name, e in known.items()) or "no fault"
+    )
 
 
 def _errors(error: Mapping[str, float | None]) -> str:
@@ -143,14 +143,14 @@ def _errors(error: Mapping[str, float | None]) -> str:
 
 
 def _interval(interval: Sequence[float] | None) -> str:
-    return "" if interval is None else f" (95 %: {figure(interval[0])} to {figure(interval[1])})"
+    return "" if interval is None else f" (95 %: {significant(interval[0])} to {significant(interval[1])})"
 
 
 def _percent(value: float | None) -> str:
-    return figure(value) + ("" if value is None else " %")
+    return significant(value) + ("" if value is None else " %")
 
 
-def digest(recordings: Sequence[Recording]) -> str:
+def digest(recordings: Iterable[Recording]) -> str:
     """Sixteen hexadecimal digits that change with the recordings."""
     digest_ = hashlib.sha256()
     for each in recordings:
@@ -159,14 +159,15 @@ def digest(recordings: Sequence[Recording]) -> str:
     return digest_.hexdigest()[:16]
 
 
-def _read(path: str, what: str, mapping: str | None) -> tuple[tuple[Recording, ...], tuple[Defect, ...]]:
+def _read(path: str, what: str, mapping: str | None) -> RecordingSet:
     """Recordings of one gear with the channels that an identification needs."""
     with read_for(what, path):
-        recordings, defects = read_recordings(Path(path), Path(mapping) if mapping else None)
-    return require_comparable(recordings, f"{what}={path}"), defects
+        recordings = read_recordings(path, mapping or None)
+    require_comparable(recordings.recordings, f"{what}={path}")
+    return recordings
 
 
-def _comparable(recordings: Sequence[Recording], healthy: Sequence[Recording]) -> tuple[Recording, ...]:
+def _comparable(recordings: RecordingSet, healthy: RecordingSet) -> tuple[Recording, ...]:
     """Recordings of the commissioning, with the channels that the recordings in question have too.
 
     Raises
@@ -181,8 +182,8 @@ def _comparable(recordings: Sequence[Recording], healthy: Sequence[Recording]) -
             f"recordings ({', '.join(one)}) and commissioning ({', '.join(other)}) share no channel besides the angle: "
             "record the same channels"
         )
-    require_same_gear(recordings, healthy)
-    return with_channels(healthy, common)
+    require_same_gear(recordings.recordings, healthy.recordings)
+    return with_channels(healthy.recordings, common)
 
 
 def _hidden(path: Path, recordings: str) -> str:

@@ -3,24 +3,29 @@
 from collections.abc import Mapping
 from typing import Any
 
+from swgsim.common.numbers import estimate, number, probability
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities
 from swgsim.effects.text import path_of
-from swgsim.identification.report.answer import Answer
-from swgsim.identification.fit.priors import name_of
-from swgsim.identification.fit.errors import Errors
-from swgsim.identification.fit.form_error import LEAST_GAIN, NO_SIZE
 from swgsim.identification.covariance.low_rank_covariance import as_squares
-from swgsim.common.numbers import estimate, number, probability
-from swgsim.identification.report.prediction_errors import overall
-from swgsim.identification.interharmonics.named_interharmonics import Sideline
 from swgsim.identification.decide.accepted import Step, chosen
 from swgsim.identification.decide.candidate import LEAST_EVIDENCE, LIKELIER, Trial
+from swgsim.identification.fit.errors import Errors
+from swgsim.identification.fit.form_error import LEAST_GAIN, NO_SIZE
+from swgsim.identification.fit.priors import name_of
+from swgsim.identification.interharmonics.named_interharmonics import Sideline
+from swgsim.identification.report.answer import Answer
+from swgsim.identification.report.prediction_errors import overall
 
 
 def names(trial: Trial) -> str:
     """The registered names of the effects of a trial."""
     return " and ".join(path_of(type(effect)) for effect in trial.effects)
+
+
+def found_effects(answer: Answer) -> list[dict[str, Any]]:
+    """All found effects as in ``report.json``."""
+    return [*accepted(answer), *(of_line(line) for line in answer.lines)]
 
 
 def accepted(answer: Answer) -> list[dict[str, Any]]:
@@ -136,8 +141,8 @@ def why(trial: Trial, answer: Answer, better: Trial | None = None) -> str:
     if trial.disowned:
         share = 100 * trial.own / as_squares(trial.evidence)
         return (
-            f"its library form explains {share:.0f} % of its gain; the remainder comes from nuisance parameters for this "
-            "gear's other structure, which could fit other causes as well"
+            f"its library form explains {share:.0f} % of its gain; the remainder comes from nuisance parameters for "
+            "this gear's other structure, which could fit other causes as well"
         )
     if not trial.pays:
         return (
@@ -150,8 +155,8 @@ def why(trial: Trial, answer: Answer, better: Trial | None = None) -> str:
     if better is None:
         return "another effect explains more but was not accepted; a runner-up is never accepted instead"
     return (
-        f"it explains less than {' and '.join(e.title() for e in better.effects)}: log-likelihood of left-out operating "
-        f"points {trial.heldout_gain:+.0f} against {better.heldout_gain:+.0f}, of all recordings "
+        f"it explains less than {' and '.join(e.title() for e in better.effects)}: log-likelihood of left-out "
+        f"operating points {trial.heldout_gain:+.0f} against {better.heldout_gain:+.0f}, of all recordings "
         f"{trial.evidence:+.0f} against {better.evidence:+.0f}"
     )
 
@@ -201,13 +206,13 @@ def _evidence(step: Step, which: int) -> dict[str, Any]:
     if trial.imperfect:
         test = (
             f"nuisance parameters of the gear absorb all but {100 * score.visible:.2g} % of its library form; the "
-            f"recordings show it by a deviation of {100 * agreement.form_error:.0f} % from that form, which explains the "
-            "whole lack of fit and is more probable than regularities"
+            f"recordings show it by a deviation of {100 * agreement.form_error:.0f} % from that form, which explains "
+            "the whole lack of fit and is more probable than regularities"
         )
     else:
         test = (
-            f"the p-value of its score in the whole library is {probability(score.chance)}; one size fits all operating "
-            f"points, channels and orders, with parts that differ by {100 * agreement.form_error:.0f} %{without}"
+            f"the p-value of its score in the whole library is {probability(score.chance)}; one size fits all "
+            f"operating points, channels and orders, with parts that differ by {100 * agreement.form_error:.0f} %{without}"
         )
     return {
         "words": f"adding it{together} raises the log-likelihood of {raised}; {test}",

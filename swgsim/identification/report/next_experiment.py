@@ -11,16 +11,16 @@ import numpy as np
 from jaxtyping import Float
 from scipy.linalg import solve_triangular
 
-from swgsim.common.numbers import figure
+from swgsim.common.numbers import significant
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import OperatingPoint
 from swgsim.identification.covariance import scatter
-from swgsim.identification.report.answer import Answer
-from swgsim.identification.report.engineering_units import names_in_words
-from swgsim.identification.fit.form_error import FORM_TOLERANCE, allowance
-from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.covariance.low_rank_covariance import without_what_noise_hides
 from swgsim.identification.data.model import Model, Situation, predict
+from swgsim.identification.fit.fitted import Fitted
+from swgsim.identification.fit.form_error import FORM_TOLERANCE, allowance
+from swgsim.identification.report.answer import Answer
+from swgsim.identification.report.engineering_units import names_in_words
 
 # Operating points and conditions of a test bench: as it stands, with a warm gear, or after an hour.
 FEASIBLE = tuple(OperatingPoint(n, T) for n in (300.0, 1000.0, 2000.0, 3000.0, 4000.0) for T in (3.0, 20.0, 45.0, 70.0))
@@ -79,7 +79,7 @@ def separation_text(separation: float) -> str:
     >>> separation_text(40.24), separation_text(1e-7)
     ('40', 'less than 0.1')
     """
-    return "less than 0.1" if separation < 0.1 else figure(separation, 2)
+    return "less than 0.1" if separation < 0.1 else significant(separation, 2)
 
 
 def next_experiments(answer: Answer) -> tuple[Experiment, ...]:

@@ -3,17 +3,17 @@
 from collections.abc import Sequence
 from typing import Any
 
+from swgsim.common.numbers import number
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities
 from swgsim.effects.text import entries, path_of
-from swgsim.identification.report.answer import Answer
-from swgsim.identification.report.next_experiment import Experiment
-from swgsim.identification.report.found import names, why
-from swgsim.common.numbers import number
-from swgsim.identification.search.screening import Score
 from swgsim.identification.interharmonics.named_interharmonics import acts_on_signals, is_random
 from swgsim.identification.interharmonics.unattributed_lines import Unnamed
+from swgsim.identification.report.answer import Answer
+from swgsim.identification.report.found import names, why
+from swgsim.identification.report.next_experiment import Experiment
 from swgsim.identification.search.regularities import Atom, Described
+from swgsim.identification.search.screening import Score
 
 
 def unknown(answer: Answer) -> dict[str, Any] | None:

@@ -8,19 +8,19 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.recordings.checks.defect import Defect
-from swgsim.effects.base import Effect
-from swgsim.identification.report.answer import Answer
-from swgsim.identification.fit.errors import noise_floor
-from swgsim.identification.report.next_experiment import Experiment
-from swgsim.identification.fit.fitted import Fitted
-from swgsim.identification.report.found import accepted, of_line, rejected
 from swgsim.common.numbers import estimate
+from swgsim.effects.base import Effect
+from swgsim.identification.data.measured import Measured
+from swgsim.identification.fit.errors import noise_floor
+from swgsim.identification.fit.fitted import Fitted
+from swgsim.identification.fit.unit import UNHEARD
+from swgsim.identification.report.answer import Answer
+from swgsim.identification.report.found import found_effects, rejected
+from swgsim.identification.report.next_experiment import Experiment
 from swgsim.identification.report.open_questions import absorbed, detectable, next_experiment, scored, unknown, untried
 from swgsim.identification.report.prediction_errors import error, named
 from swgsim.identification.report.sentence import sentence
-from swgsim.identification.data.measured import Measured
-from swgsim.identification.fit.unit import UNHEARD
+from swgsim.recordings.checks.defect import Defect
 from swgsim.recordings.recording import CHANNELS
 
 
@@ -52,7 +52,7 @@ def report(
     measured = before.measured
     unheard = _orders(before, before.unit.inflation, UNHEARD / 2)
     less_certain = _orders(before, before.unit.inflation, 1.0)
-    effects = [*accepted(answer), *(of_line(line) for line in answer.lines)]
+    effects = found_effects(answer)
     return {
         "verdict": answer.verdict,
         "sentence": sentence(answer, effects),

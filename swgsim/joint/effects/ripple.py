@@ -1,4 +1,4 @@
-"""Effect: a wave over the angle of the joint, through the joint's resonance or its sensor's filter."""
+"""Effects: waves over the angle of the joint, filtered by a resonance or by the sensor."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -10,9 +10,9 @@ from swgsim.effects.quantity import choice, shape
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.term import Term
 
-# Frequency at which the amplitudes of waves that grow with speed are stated [Hz].
+# Frequency at which the amplitudes of waves that grow with speed are given [Hz].
 STATED = 100.0
-# A corner so high that nothing is filtered [Hz].
+# A corner frequency so high that nothing is filtered [Hz].
 OPEN = 2000.0
 
 
@@ -20,21 +20,21 @@ OPEN = 2000.0
 class Ripple(Term):
     """A wave of a fixed number per revolution of the output, A cos(order q) + B sin(order q).
 
-    What makes it may be a deviation of the wave generator, the teeth, the motor or the output bearing (kinematic
-    error, physics.md DY7; ripple of a torque sensor by gauges off their places; cogging, DY9), constant in amplitude
-    or growing with the first or second power of speed, as a position error seen by damping or inertia does. The
-    signal follows it as a second-order system does, a resonance of the joint or the filter of its sensor.
+    Causes are deviations of the wave generator, the teeth, the motor or the output bearing (kinematic error,
+    physics.md DY7; misplaced gauges of a torque sensor; cogging, DY9). The amplitude is constant, or grows with the
+    first or second power of speed, as a position error does through damping or inertia. The signal follows the wave as
+    a second-order system does: a resonance of the joint or the filter of its sensor.
 
     Attributes
     ----------
     order : float
         Waves per revolution of the output.
     power : int
-        Of the speed in its amplitude, from 0 to 2.
+        Power of the speed in the amplitude, from 0 to 2.
     corner : float
-        Of resonance or filter [Hz], from 20 to 2000, where nothing is filtered.
+        Frequency of resonance or filter [Hz], from 20 to 2000; at 2000 nothing is filtered.
     damping : float
-        Of resonance or filter, as a share of the critical one, from 0.1 to 1.5.
+        Damping ratio of resonance or filter, from 0.1 to 1.5.
     """
 
     explains: ClassVar[tuple[str, ...]] = ("current", "T_sensor")
@@ -52,23 +52,46 @@ class Ripple(Term):
     def response(
         self, omega: Float[np.ndarray, "*speed"], lower: Float[np.ndarray, "*speed"] | float = 1.0
     ) -> np.ndarray:
-        """Complex amplitude at speeds of the output [rad/s], for one of 1 before the filter at STATED, where the corner
-        is so many times ``lower``.
+        """Complex amplitude at speeds of the output [rad/s] for a wave of amplitude 1 at the frequency STATED before
+        the filter. ``lower`` divides the corner frequency.
         """
         frequency = self.order * omega / (2 * np.pi)
         x = frequency * lower / self.corner if self.corner < OPEN else 0.0
         return (1j * frequency / STATED) ** self.power / (1 - x**2 + 2j * self.damping * x)
 
-    def units(self, of: str) -> tuple[str, ...]:
-        """Of both amplitudes: as they are, or at 100 Hz if they grow with speed."""
-        return (of,)
-
     @property
     def amplitude(self) -> float:
-        """Of the wave, in the unit of the signal."""
+        """Amplitude in the unit of the signal; at 100 Hz if it grows with speed."""
         return float(np.linalg.norm(self.weights))
 
     @property
     def phase(self) -> float:
-        """At which angle order * q it is largest [rad], before the filter."""
+        """Angle order * q of the maximum [rad], before the filter."""
         return float(np.arctan2(self.weights[1], self.weights[0]))
+
+
+@dataclass(frozen=True)
+class InertiaRipple(Ripple):
+    """A ripple through a resonance between a spring (the gear or the speed control) and the inertia J of the arm. Its
+    frequency goes with 1 / sqrt(J), its amplitude with 1 / J (an estimate of form).
+
+    Amplitude and corner frequency are given for 1 kg m^2. The effect is for a joint with an upright axis, where
+    rigid-body torque and posture give the inertia (:mod:`swgsim.joint.inertia`).
+    """
+
+    explains = ("current",)
+    needs = ("q", "omega", "T_rigid")
+    per = (" kg m^2",)
+
+    def columns(self, recording: JointRecording) -> Float[np.ndarray, "time column"]:
+        """Cosine and sine, as the signal follows them at the inertia of each moment."""
+        J = recording.inertia
+        if J is None:
+            raise ValueError(f"recording {recording.name} gives no inertia of {recording.joint}: use a ripple")
+        wave = np.exp(1j * self.order * recording.signals["q"]) * self.response(recording.speed, np.sqrt(J)) / J
+        return np.stack([wave.real, wave.imag], axis=1)
+
+    @classmethod
+    def possible(cls, recording: JointRecording) -> bool:
+        """Whether the inertia is known."""
+        return super().possible(recording) and recording.inertia is not None

@@ -7,19 +7,19 @@ from matplotlib.figure import Figure
 from swgsim.common import style
 from swgsim.common.numbers import NORMAL
 from swgsim.joint.days import OF_SPEED, Days, rising
-from swgsim.joint.figures.parts import face, pieces, session_key, sessions, short, tables, unit
+from swgsim.joint.figures.parts import WIDTH, face, pieces, session_key, sessions, short, tables, unit
 from swgsim.joint.judged import Judged
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.textbook import Zero
 
-# Below, a probability rests on assumptions that nobody can check.
+# Smaller p-values are not shown as numbers.
 SMALL = 1e-6
 
 
 def friction(judged: Judged, days: Days) -> Figure:
-    """Left friction at the mean speeds of stretches and the curve of every session, right its part that rises."""
-    picture = style.figure(11, 4.4)
-    over, beside = picture.subplots(1, 2, width_ratios=[2, 1])
+    """Above: friction at mean speeds, and the curve of every session. Below: its speed-dependent part."""
+    picture = style.figure(WIDTH, 6.6)
+    over, below = picture.subplots(2, 1, height_ratios=[3, 2])
     look, speeds = sessions(judged), _points(judged, over)
     for place, day in enumerate(days.days):
         colour, marker = look[day.session]
@@ -28,21 +28,24 @@ def friction(judged: Judged, days: Days) -> Figure:
         at = _at(grid)
         curve = day.coulomb * at.sense + day.zero + day.share * rising(at, judged.ladder.top.terms)
         over.plot(grid, curve, color=colour, linewidth=1.2)
-        beside.errorbar(place, day.share, yerr=NORMAL * day.deviation, color=colour, marker=marker, capsize=4)
-    beside.set_xticks(
+        below.errorbar(place, day.share, yerr=NORMAL * day.deviation, color=colour, marker=marker, capsize=4)
+    below.set_xticks(
         range(len(days.days)), short([day.session for day in days.days]), rotation=30, ha="right", fontsize=8
     )
-    beside.set_xlim(-0.6, len(days.days) - 0.4)
+    below.set_xlim(-0.6, len(days.days) - 0.4)
     style.label(over, "speed of the joint [rad/s]", f"friction [{unit(judged)}]")
     style.label(
-        beside, "", "rising friction, share of all sessions", f"all the same: probability {_chance(days.chance)}"
+        below,
+        "",
+        "relative to all sessions",
+        f"speed-dependent friction, p-value {_chance(days.chance)}",
     )
     session_key(picture, judged)
     return picture
 
 
 def _at(speeds: np.ndarray) -> JointRecording:
-    """A joint at these speeds."""
+    """A recording of a joint at these speeds."""
     return JointRecording("", "", "", "", 0.01 * np.arange(len(speeds)), {"q": np.zeros(len(speeds)), "omega": speeds})
 
 
@@ -51,7 +54,7 @@ def _chance(value: float) -> str:
 
 
 def _points(judged: Judged, axes: Axes) -> dict[str, tuple[float, float]]:
-    """Draw friction at mean speeds; the lowest and the highest speed of every session."""
+    """Draw friction at mean speeds; return the lowest and the highest speed of every session."""
     others = [term for term in judged.ladder.top.terms if not isinstance(term, (*OF_SPEED, Zero))]
     look = sessions(judged)
     found: dict[str, tuple[float, float]] = {}

@@ -1,4 +1,4 @@
-"""What the pictures of a joint have in common: colours, and stretches of recordings at like speed."""
+"""Common parts of the pictures of a joint: colours, legends, and stretches of recordings at similar speed."""
 
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
@@ -15,48 +15,45 @@ from swgsim.joint.recording import SIGNALS, JointRecording
 from swgsim.joint.regression import Table
 
 BEFORE, AFTER, FLOOR, GREY = "#D55E00", "#0072B2", "#000000", "#8c8c8c"
-# Of sessions; neighbours differ in brightness too.
+# Width of all pictures [inch]: text is readable on a narrow screen, so panels are stacked.
+WIDTH = 6.2
+# Colours of sessions; neighbours differ in brightness too.
 COLOURS = ("#000000", "#E69F00", "#0072B2", "#009E73", "#D55E00", "#56B4E9")
 MARKERS = "os^D"
-# What is written at axes of a signal.
+# Signal names at axes.
 SHORT = {"T_sensor": "torque", "current": "current"}
-# Of a motion in one direction, the net way is at least this share of the angles that it covers.
+# A motion is in one direction if it ends at least this share of its range away from its start.
 ONE_WAY = 0.9
-# Classes of speed to which each direction of a motion to and fro is cut, and fewest samples that say anything of one.
+# Classes of speed in each direction of a joint that reverses, and least samples of a class.
 CLASSES, FEWEST = 5, 50
 # Letters that fit in a line of a legend.
-LINE = 110
+LINE = 62
 
 
 def unit(judged: Judged) -> str:
-    """Unit of the signal that is explained."""
+    """Unit of the signal to explain."""
     return SIGNALS[judged.table.of].unit
 
 
 def one_way(recording: JointRecording) -> bool:
-    """Whether the joint turned in one direction only; noise at a creep does not count."""
+    """Whether the joint turned in one direction only, but for noise."""
     q = recording.signals["q"]
     return bool(abs(q[-1] - q[0]) > ONE_WAY * np.ptp(q))
 
 
-def steady(judged: Judged) -> bool:
-    """Whether most held-out recordings are runs in one direction, not trajectories to and fro."""
-    return bool(np.mean([one_way(each) for each in judged.heldout.recordings]) > 0.5)
-
-
 def tables(judged: Judged) -> tuple[tuple[Table, bool], ...]:
-    """What was fitted and what was held out, each with whether it was held out."""
+    """Fitted and held-out recordings, each with whether it was held out."""
     return (judged.table, False), (judged.heldout, True)
 
 
 def pieces(recording: JointRecording) -> Iterator[Bool[np.ndarray, " time"]]:
-    """Samples of like speed: all of a run in one direction, classes of speed in each direction of a trajectory."""
+    """Samples of similar speed: a whole run in one direction, or classes of speed in each direction of a trajectory."""
     if one_way(recording):
         yield np.ones(len(recording), bool)
         return
     speed = recording.speed
     edges = np.linspace(0, np.abs(speed).max(), CLASSES + 2)
-    # The lowest class holds the turns, where the speed is not like anything.
+    # The lowest class contains the reversals and is left out.
     for low, high in pairwise(edges[1:]):
         for side in (-1, 1):
             chosen = (side * speed > low) & (side * speed <= high)
@@ -74,7 +71,7 @@ def sessions(judged: Judged) -> dict[str, tuple[str, str]]:
 
 
 def session_key(picture: Figure, judged: Judged) -> None:
-    """A legend for sessions and for what was held out."""
+    """A legend for sessions, and for fitted and held-out recordings."""
     look = sessions(judged)
     names = short(list(look))
     entries = [dot(colour, name, True, marker) for name, (colour, marker) in zip(names, look.values(), strict=True)]
@@ -96,12 +93,12 @@ def logarithmic(axis: Axis) -> None:
 
 
 def face(colour: str, filled: bool) -> str:
-    """What a marker is filled with."""
+    """Fill of a marker."""
     return colour if filled else "white"
 
 
 def short(names: Sequence[str]) -> list[str]:
-    """Names without what all of them begin with, up to a separator.
+    """Names without their common beginning, up to a separator.
 
     >>> short(["ur-20_01", "ur-20_02"]), short(["a"])
     (['01', '02'], ['a'])

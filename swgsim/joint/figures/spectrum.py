@@ -6,18 +6,18 @@ from matplotlib.figure import Figure
 from scipy.signal import welch
 
 from swgsim.common import style
-from swgsim.joint.figures.parts import AFTER, BEFORE, FLOOR, logarithmic, unit
+from swgsim.joint.figures.parts import AFTER, BEFORE, FLOOR, WIDTH, logarithmic, unit
 from swgsim.joint.judged import Judged
 from swgsim.joint.regression import Table
 from swgsim.joint.slow import SLOW
 
-# Stretch of a recording to one spectrum [s]; a shorter recording is one stretch.
+# Length of a segment of the spectrum [s]; a shorter recording is one segment.
 STRETCH = 4.0
 
 
 def spectrum(judged: Judged) -> Figure:
-    """Density of what both models leave of the held-out recordings."""
-    picture = style.figure(11, 3.8)
+    """Spectral density of the residuals of both models on held-out recordings."""
+    picture = style.figure(WIDTH, 3.6)
     axes = picture.subplots()
     for fit, colour, label in (
         (judged.ladder.textbook, BEFORE, "textbook model"),
@@ -36,15 +36,15 @@ def spectrum(judged: Judged) -> Figure:
     axes.margins(x=0)
     logarithmic(axes.xaxis)
     logarithmic(axes.yaxis)
-    style.label(axes, "frequency [Hz]", f"density of what is left [{unit(judged)}/√Hz]")
-    picture.legend(*axes.get_legend_handles_labels(), ncols=3, loc="outside upper center")
+    style.label(axes, "frequency [Hz]", f"density of the residual [{unit(judged)}/√Hz]")
+    picture.legend(*axes.get_legend_handles_labels(), ncols=2, loc="outside upper center", fontsize=9)
     return picture
 
 
 def density(
     table: Table, residual: Float[np.ndarray, " row"]
 ) -> tuple[Float[np.ndarray, " frequency"], Float[np.ndarray, " frequency"]]:
-    """Power density over all recordings up to the lowest of their limits, each by its length; without the mean."""
+    """Power spectral density without the mean, averaged over all recordings by their lengths."""
     stretch = min(STRETCH, min(float(each.time[-1] - each.time[0]) for each in table.recordings))
     highest = min(each.rate for each in table.recordings) / 2
     grid = np.arange(1, int(highest * stretch)) / stretch

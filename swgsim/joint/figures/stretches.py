@@ -1,4 +1,4 @@
-"""Picture: measured and predicted signals of some held-out recordings, and what is left of them close up."""
+"""Picture: measured and predicted signals of some held-out recordings, and close-ups."""
 
 import numpy as np
 from jaxtyping import Float
@@ -7,20 +7,20 @@ from matplotlib.figure import Figure
 
 from swgsim.common import style
 from swgsim.joint.effects.ripple import Ripple
-from swgsim.joint.figures.parts import AFTER, BEFORE, FLOOR, SHORT, one_way, unit
+from swgsim.joint.figures.parts import AFTER, BEFORE, FLOOR, SHORT, WIDTH, one_way, unit
 from swgsim.joint.judged import Judged
 from swgsim.joint.recording import JointRecording
 
 SHOWN = 3
-# Waves of the strongest fast ripple in a close-up, orders that are fast, and the share of a recording without one.
+# Waves of the strongest fast ripple in a close-up, least fast order, and share of a recording without a fast ripple.
 CLOSE_WAVES, FAST, SHARE = 12, 40, 0.1
-# A close-up shows no more than this share of a recording.
+# Largest share of a recording in a close-up.
 LARGEST = 0.4
-# That of a motion to and fro shows this share, about a turn.
+# Share in a close-up around a reversal.
 TURNING = 0.25
-# A step of the angle by this share of all its way is a jump.
+# A step of the angle by this share of its range is a jump.
 JUMP = 0.02
-# Colours, names and widths of what is measured and of both models.
+# Colours, names and widths of the measured signal and of both models.
 LOOK = ((FLOOR, "measured", 0.7), (BEFORE, "textbook model", 1.4), (AFTER, "with the effects found", 1.2))
 
 
@@ -29,13 +29,13 @@ def stretches(judged: Judged) -> Figure:
     recordings = judged.heldout.recordings
     by_speed = sorted(range(len(recordings)), key=lambda number: float(np.abs(recordings[number].speed).mean()))
     middle = np.linspace(0, len(by_speed) - 1, min(SHOWN, len(by_speed))).round().astype(int)
-    picture = style.figure(11, 2.4 * len(middle) + 0.4)
-    panels = picture.subplots(len(middle), 2, squeeze=False)
+    picture = style.figure(WIDTH, 4.2 * len(middle) + 0.4)
+    panels = picture.subplots(2 * len(middle), 1).reshape(-1, 2)
     measured = judged.heldout.signal
-    left = [fit.missed(judged.heldout) for fit in (judged.ladder.textbook, judged.ladder.top)]
+    residuals = [fit.missed(judged.heldout) for fit in (judged.ladder.textbook, judged.ladder.top)]
     for (whole, close), number in zip(panels, [by_speed[i] for i in middle], strict=True):
         own, each = judged.heldout.run == number, recordings[number]
-        curves = [measured[own], *(measured[own] - missed[own] for missed in left)]
+        curves = [measured[own], *(measured[own] - missed[own] for missed in residuals)]
         x, name = _along(each)
         chosen = _close(judged, each)
         _draw(whole, x, curves)
@@ -43,7 +43,7 @@ def stretches(judged: Judged) -> Figure:
         if one_way(each):
             _draw(close, x[chosen], [curve[chosen] for curve in curves])
         else:
-            for missed, (colour, _, width) in zip(left, LOOK[1:], strict=True):
+            for missed, (colour, _, width) in zip(residuals, LOOK[1:], strict=True):
                 close.plot(x[chosen], missed[own][chosen], color=colour, linewidth=width)
             close.axhline(0, color=FLOOR, linewidth=0.7)
             close.margins(x=0)
@@ -51,23 +51,24 @@ def stretches(judged: Judged) -> Figure:
         style.label(
             whole, name, f"{SHORT[judged.table.of]} [{unit(judged)}]", f"{each.name}, {speed:.2g} rad/s on average"
         )
-        style.label(close, name, "", "close up" if one_way(each) else "measured less predicted, close up")
-    picture.legend(*panels[0, 0].get_legend_handles_labels(), ncols=3, loc="outside upper center")
+        signal = f"{SHORT[judged.table.of]} [{unit(judged)}]"
+        style.label(close, name, signal, "close-up" if one_way(each) else "close-up: measured minus predicted")
+    picture.legend(*panels[0, 0].get_legend_handles_labels(), ncols=3, loc="outside upper center", fontsize=9)
     return picture
 
 
 def _along(recording: JointRecording) -> tuple[Float[np.ndarray, " time"], str]:
-    """What a recording is drawn over."""
+    """Horizontal axis of a recording."""
     if one_way(recording):
         q = recording.signals["q"]
-        # Where rows were lost the curve is broken, not drawn through.
+        # The curve is interrupted where rows are missing.
         jumps = np.abs(np.diff(q, prepend=q[0])) > JUMP * np.ptp(q)
         return np.where(jumps, np.nan, np.rad2deg(q)), "angle of the joint [degrees]"
     return recording.time - recording.time[0], "time [s]"
 
 
 def _close(judged: Judged, recording: JointRecording) -> slice:
-    """A stretch in which single waves can be seen; around a turn of the motion, if it turns."""
+    """A stretch in which single waves are visible, or around a reversal."""
     number = len(recording)
     fast = [step.term for step in judged.ladder.steps if isinstance(step.term, Ripple) and step.term.order > FAST]
     if not one_way(recording):

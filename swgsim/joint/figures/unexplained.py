@@ -1,4 +1,4 @@
-"""Picture: lines that remain in the residual, over speed, with the laws that they follow."""
+"""Picture: lines that remain in the residual, over speed, and their laws."""
 
 from collections.abc import Sequence
 
@@ -7,12 +7,12 @@ from matplotlib.figure import Figure
 from scipy.signal import find_peaks, periodogram
 
 from swgsim.common import style
-from swgsim.joint.figures.parts import one_way, tables, unit
+from swgsim.joint.figures.parts import WIDTH, one_way, tables, unit
 from swgsim.joint.judged import Judged
 from swgsim.joint.remaining import RemainingLine
 from swgsim.joint.slow import SLOW
 
-# Lines of a recording that are shown, and the smallest one as a share of the largest of all.
+# Largest number of lines of a recording, and smallest line as a share of the largest of all.
 STRONGEST, SMALLEST = 10, 0.08
 LARGEST_DOT = 220.0
 LAWS = ("#D55E00", "#0072B2", "#009E73")
@@ -23,7 +23,7 @@ def unexplained(judged: Judged, lines: Sequence[RemainingLine]) -> Figure:
     """Frequency of the strongest lines of every run in one direction over its speed, with the laws found."""
     speed, frequency, size = (np.array(part) for part in zip(*_peaks(judged), strict=True))
     shown = size > SMALLEST * size.max()
-    picture = style.figure(11, 4.8)
+    picture = style.figure(WIDTH, 4.8)
     axes = picture.subplots()
     area = LARGEST_DOT * (size / size.max())[shown]
     axes.scatter(speed[shown], frequency[shown], s=area, color="#777777", alpha=0.6, linewidths=0)
@@ -38,12 +38,12 @@ def unexplained(judged: Judged, lines: Sequence[RemainingLine]) -> Figure:
     style.label(
         axes, "mean speed of the joint [rad/s]", "frequency [Hz]", f"largest dot: {size.max():.2g} {unit(judged)}"
     )
-    picture.legend(*axes.get_legend_handles_labels(), ncols=2, loc="outside upper center")
+    picture.legend(*axes.get_legend_handles_labels(), ncols=1, loc="outside upper center", fontsize=9)
     return picture
 
 
 def _law(line: RemainingLine) -> str:
-    """A law as people write it."""
+    """A law as a formula."""
     if not line.fixed:
         return f"order {line.order:.4g} per revolution of the output"
     if not line.order:
@@ -52,7 +52,7 @@ def _law(line: RemainingLine) -> str:
 
 
 def _peaks(judged: Judged) -> list[tuple[float, float, float]]:
-    """Speed, frequency and amplitude of the strongest lines that the model leaves of runs in one direction."""
+    """Speed, frequency and amplitude of the strongest lines in the residual of runs in one direction."""
     found = []
     for table, _ in tables(judged):
         missed = judged.ladder.top.missed(table)

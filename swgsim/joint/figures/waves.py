@@ -1,4 +1,4 @@
-"""Picture: amplitude and phase of every ripple that was found, as measured in each recording and as modelled."""
+"""Picture: amplitude and phase of the ripples, measured in each recording and modelled."""
 
 from dataclasses import dataclass
 from typing import Any, TypeGuard
@@ -8,23 +8,22 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from swgsim.common import style
-from swgsim.joint.effects.inertia_ripple import InertiaRipple
-from swgsim.joint.effects.ripple import Ripple
-from swgsim.joint.figures.parts import face, logarithmic, pieces, session_key, sessions, tables, unit
+from swgsim.joint.effects.ripple import InertiaRipple, Ripple
+from swgsim.joint.figures.parts import WIDTH, face, logarithmic, pieces, session_key, sessions, tables, unit
 from swgsim.joint.judged import Judged
 from swgsim.joint.naming import part_of
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.term import Term
 
-# Orders that are shown, those that gained most; panels beside one another.
-MOST, BESIDE = 9, 3
-# Waves that a stretch must hold, and share of the rate up to which a wave is seen well.
+# Largest number of orders; those with the largest gain are shown.
+MOST = 9
+# Least waves in a stretch, and highest frequency as a share of the sampling rate.
 WAVES, SEEN = 1.0, 0.45
-# Places of the neighbouring orders that say what noise there is, in resolutions of the stretch.
+# Distances of the neighbouring orders that give the noise, in resolutions of the stretch.
 NEIGHBOURS = (-5, -4, -3, -2, 2, 3, 4, 5)
-# A phase is shown from so many times the noise on.
+# Least amplitude for a phase, in units of the noise.
 CLEAR = 2.0
-# Least range of the phase axis [degrees], so that small differences look small.
+# Least range of the phase axis [degrees].
 LEAST_PHASE = 90.0
 # Least range of the frequency axis, in its natural logarithm: a factor of 10.
 LEAST_DECADE = 2.3
@@ -32,7 +31,7 @@ LEAST_DECADE = 2.3
 
 @dataclass(frozen=True)
 class Seen:
-    """An order in a stretch: frequency [Hz], complex amplitude, what neighbouring orders have, and whence it comes."""
+    """An order in a stretch: frequency [Hz], complex amplitude, noise, session, whether held out."""
 
     frequency: float
     value: complex
@@ -42,24 +41,17 @@ class Seen:
 
 
 def waves(judged: Judged) -> Figure | None:
-    """Amplitude and phase of the ripples over their frequency; None where there is none, or none can be seen."""
+    """Amplitude and phase of the ripples over their frequency; None without a visible ripple."""
     steps = sorted(judged.ladder.steps, key=lambda step: -step.gain)
     orders = list(dict.fromkeys(step.term.order for step in steps if _of_speed(step.term)))[:MOST]
     measured = {order: seen(judged, order) for order in sorted(orders)}
     measured = {order: points for order, points in measured.items() if points}
     if not measured:
         return None
-    columns = min(BESIDE, len(measured))
-    rows = -(-len(measured) // columns)
-    picture = style.figure(11, 4.1 * rows + 0.4)
-    panels = picture.subplots(2 * rows, columns, squeeze=False, height_ratios=[1.15, 1.0] * rows)
-    for number, (order, points) in enumerate(measured.items()):
-        row, column = divmod(number, columns)
-        _draw(panels[2 * row, column], panels[2 * row + 1, column], judged, order, points)
-    for number in range(len(measured), rows * columns):
-        row, column = divmod(number, columns)
-        panels[2 * row, column].set_visible(False)
-        panels[2 * row + 1, column].set_visible(False)
+    picture = style.figure(WIDTH, 3.8 * len(measured) + 0.6)
+    panels = picture.subplots(2 * len(measured), 1, height_ratios=[1.15, 1.0] * len(measured)).reshape(-1, 2)
+    for (above, below), (order, points) in zip(panels, measured.items(), strict=True):
+        _draw(above, below, judged, order, points)
     session_key(picture, judged)
     return picture
 
@@ -73,7 +65,7 @@ def modelled(judged: Judged, order: float, omega: np.ndarray) -> np.ndarray:
 
 
 def _of_speed(term: Term) -> TypeGuard[Ripple]:
-    """Whether a term is a ripple whose amplitude and phase follow from the speed alone."""
+    """Whether a term is a ripple whose amplitude and phase depend on the speed only."""
     return isinstance(term, Ripple) and not isinstance(term, InertiaRipple)
 
 
@@ -82,7 +74,7 @@ def _at(judged: Judged, order: float) -> list[Ripple]:
 
 
 def seen(judged: Judged, order: float) -> list[Seen]:
-    """An order in all recordings, by least squares on what all other terms leave."""
+    """An order in all recordings, by least squares on the residual of all other terms."""
     found = []
     for table, heldout in tables(judged):
         terms = _at(judged, order)
@@ -95,7 +87,7 @@ def seen(judged: Judged, order: float) -> list[Seen]:
                     speed, value, noise = point
                     base = complex(modelled(judged, order, np.array([abs(speed)]))[0])
                     if speed < 0 and base:
-                        # A lag turns the phase the other way; about that of the wave itself it is a mirror image.
+                        # A lag has the opposite sign: the phase is mirrored about that of the wave.
                         itself = sum(t.weights[0] - 1j * t.weights[1] for t in terms)
                         value = itself * np.conj(value / itself)
                     found.append(Seen(order * abs(speed) / (2 * np.pi), value, noise, each.session, heldout))
@@ -105,7 +97,7 @@ def seen(judged: Judged, order: float) -> list[Seen]:
 def _point(
     recording: JointRecording, rest: np.ndarray, chosen: np.ndarray, order: float
 ) -> tuple[float, complex, float] | None:
-    """Mean speed, complex amplitude and noise of an order in a stretch; None if it holds too little of it."""
+    """Mean speed, complex amplitude and noise of an order in a stretch; None if it has too few waves."""
     q, speed = recording.signals["q"][chosen], float(recording.speed[chosen].mean())
     way = abs(speed) * chosen.sum() / recording.rate
     if order * way < WAVES * 2 * np.pi or order * abs(speed) > SEEN * 2 * np.pi * recording.rate:
@@ -117,7 +109,7 @@ def _point(
 
 
 def _fitted(q: np.ndarray, signal: np.ndarray, order: float) -> complex:
-    """Complex amplitude of a wave beside a constant."""
+    """Complex amplitude of a wave, fitted together with a constant."""
     columns = np.stack([np.cos(order * q), np.sin(order * q), np.ones(len(q))], axis=1)
     a, b, _ = np.linalg.lstsq(columns, signal)[0].tolist()
     return complex(a, -b)

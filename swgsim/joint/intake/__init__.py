@@ -1,1 +1,1 @@
-"""Recordings of robot joints in: files of any maker through a column map, checked on the way."""
+"""Reading of joint recordings: files of any maker through a column map (a source), with checks."""

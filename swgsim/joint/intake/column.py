@@ -1,14 +1,23 @@
-"""One column of a file: what it is called there, and what its numbers mean."""
+"""One column of a file: its name there, and the meaning of its numbers."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi
 
 from swgsim.common.checks import require_known
-from swgsim.joint.intake.units import FACTORS
 from swgsim.joint.recording import SIGNALS
+from swgsim.recordings.files.units import FACTORS as OF_CHANNELS
 
-# A file with more columns than this is no table of joints; six joints of a UR10e have 31.
+# No table of joints has more columns; six joints of a UR10e have 31.
 MOST_COLUMNS = 10_000
+# Factor from the unit of a column to the SI unit of its signal, by SI unit.
+FACTORS: Mapping[str, Mapping[str, float]] = {
+    "s": OF_CHANNELS["s"],
+    "rad": OF_CHANNELS["rad"],
+    "rad/s": {"rad/s": 1.0, "deg/s": pi / 180, "rpm": pi / 30, "rev/s": 2 * pi},
+    "N m": OF_CHANNELS["N m"],
+    "A": {"A": 1.0, "mA": 1e-3},
+}
 
 
 @dataclass(frozen=True)
@@ -22,11 +31,11 @@ class Column:
     column : str or int
         Its name, or its number from 1 where the files have no header.
     unit : str
-        In which it is written.
+        Unit of its numbers.
     inverted : bool
-        Whether its sign is to be turned.
+        Whether the sign is changed.
     wraps : bool
-        Of an angle: whether it is kept within one revolution, so that its jumps are to be taken out.
+        Whether an angle is wrapped to one revolution, so that its jumps are removed.
 
     Raises
     ------
@@ -44,21 +53,21 @@ class Column:
         require_known("signals", [self.quantity], ["time", *SIGNALS])
         require_known(f"the unit of {self.quantity}", [self.unit], FACTORS[self._target])
         if self.wraps and self.quantity != "q":
-            raise ValueError(f"wraps is said of {self.quantity}, but only the angle q can wrap: leave it out")
+            raise ValueError(f"wraps is set for {self.quantity}, but only the angle q can wrap: leave it out")
         numbered = isinstance(self.column, int)
         if numbered and not 1 <= int(self.column) <= MOST_COLUMNS:
             raise ValueError(f"column {self.column} of {self.quantity} must be a number from 1 to {MOST_COLUMNS}")
         if not numbered and not self.column:
-            raise ValueError(f"the column of {self.quantity} has no name: give that of the file")
+            raise ValueError(f"the column of {self.quantity} has no name: give the name in the file")
 
     @property
     def factor(self) -> float:
-        """From the number in the file to the signal's."""
+        """Factor from the number in the file to the signal."""
         return (-1.0 if self.inverted else 1.0) * FACTORS[self._target][self.unit]
 
     @property
     def revolution(self) -> float:
-        """One revolution in the numbers of the file, of an angle."""
+        """One revolution of an angle in the unit of the file."""
         return 2 * pi / FACTORS["rad"][self.unit]
 
     @property

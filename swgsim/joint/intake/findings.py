@@ -1,29 +1,92 @@
-"""All that the numbers of joints show of how they were recorded: findings refuse or warn, and nothing is mended."""
+"""Findings on the motion of a run: unusable numbers, wrapped angles, wrong velocities, start-up, standstill, copies."""
 
 import hashlib
 from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from swgsim.joint.intake.rows import row_findings
 from swgsim.joint.intake.run import Run
-from swgsim.joint.intake.signals import signal_findings
-from swgsim.joint.intake.start import start_findings
-from swgsim.joint.intake.thresholds import LEAST_MOVED
-from swgsim.joint.intake.velocity import velocity_findings
+from swgsim.joint.intake.signals import row_findings, signal_findings
+from swgsim.joint.intake.thresholds import (
+    APART_REFUSES,
+    APART_WARNS,
+    FASTEST_JOINT,
+    FEWEST_SAMPLES,
+    LEAST_MOVED,
+    PARTS,
+    PARTS_USUAL,
+    SET_SHARE,
+    START_BLOCKS,
+    START_OFF,
+    START_SCATTER,
+    STEADY,
+    WRAP_STEP,
+    WRAPPED,
+)
 from swgsim.joint.recording import PREDICTED, JointRecording
-from swgsim.recordings.checks.defect import Defect
+from swgsim.recordings.checks.defect import Defect, Severity
+from swgsim.recordings.files.assembly import no_numbers, standing
+from swgsim.recordings.files.limits import LARGEST_NUMBER
+
+
+def unusable(run: Run) -> Iterator[Defect]:
+    """Numbers that are not finite, a time that does not increase, too few samples."""
+    if len(run) < FEWEST_SAMPLES:
+        found, expected = f"{len(run)} samples after the start", f"at least {FEWEST_SAMPLES}"
+        yield Defect("too_short", "refuse", run.label, "", found, expected, "record longer, or cut less of the start")
+    columns = {"t": run.time, **run.signals} if run.time is not None else dict(run.signals)
+    columns |= {f"posture {number}": values for number, values in enumerate(run.posture, 1)}
+    for name, values in columns.items():
+        bad = no_numbers(np.asarray(values))
+        if len(bad):
+            yield Defect(
+                "not_finite", "refuse", run.label, name,
+                f"{np.asarray(values)[bad[0]]} and {len(bad) - 1} more of {len(run)} samples",
+                f"finite numbers within {LARGEST_NUMBER:g}", "record again, or leave the signal out of the source",
+                int(bad[0]) + run.first_row,
+            )  # fmt: skip
+    back = standing(run.time) if run.time is not None else np.empty(0, int)
+    if run.time is not None and len(back):
+        yield Defect(
+            "clock_backwards", "refuse", run.label, "t",
+            f"{run.time[back[0]]} after {run.time[back[0] - 1]}", "later times",
+            "use a clock that always increases, or write the time with more digits", int(back[0]) + run.first_row,
+        )  # fmt: skip
+
+
+def wrap_findings(run: Run) -> Iterator[Defect]:
+    """An angle that wraps although the source does not say so, or that has another unit than the source says."""
+    if len(run) < FEWEST_SAMPLES:
+        return
+    column = next(column for column in run.joint.signals if column.quantity == "q")
+    if column.wraps and run.span > WRAPPED:
+        degrees = column.unit == "rad" and run.span <= 180 / np.pi * WRAPPED
+        yield Defect(
+            "angle_in_degrees" if degrees else "angle_beyond_revolution", "refuse", run.label, "q",
+            f"numbers that span {run.span:.4g} revolutions of {column.revolution:.4g} {column.unit}",
+            "at most one, because the source says that the angle wraps",
+            "set unit: deg if the angle is in degrees, or remove wraps if it is continuous",
+        )  # fmt: skip
+    with np.errstate(invalid="ignore"):  # numbers that are not finite have a finding of their own
+        steps = np.abs(np.diff(run.signals["q"])) / (2 * np.pi)
+    wraps = np.flatnonzero(np.abs(steps - 1) < WRAP_STEP)
+    if not column.wraps and len(wraps) and np.median(steps) < WRAP_STEP:
+        yield Defect(
+            "angle_wraps", "refuse", run.label, "q", f"{len(wraps)} steps by about one revolution",
+            "a continuous angle", "set wraps: true for q in the source", int(wraps[0]) + 1 + run.first_row,
+        )  # fmt: skip
 
 
 def moving_findings(run: Run, recording: JointRecording) -> Iterator[Defect]:
-    """Of one joint in motion whose rate is known."""
+    """All findings of one joint in motion with a known rate."""
     yield from _short(run)
-    for detect in (velocity_findings, row_findings, signal_findings, start_findings):
+    for detect in (_velocity, row_findings, signal_findings):
         yield from detect(run, recording)
+    yield from _start(run)
 
 
 def at_rest_findings(run: Run) -> Iterator[Defect]:
-    """Of one joint at standstill: it must not move, and its signals must show their noise."""
+    """Findings of one joint at standstill: it must not move, and its signals must have noise."""
     moved = float(np.ptp(run.signals["q"]))
     if moved > LEAST_MOVED:
         yield Defect(
@@ -34,12 +97,12 @@ def at_rest_findings(run: Run) -> Iterator[Defect]:
         if name in run.signals and not np.ptp(run.signals[name]):
             yield Defect(
                 "no_noise", "refuse", run.label, name, f"{run.signals[name][0]:.5g} throughout",
-                "the noise of a sensor", "leave the file out: its noise floor would be 0",
+                "the noise of a sensor", "leave the file out: its noise would be 0",
             )  # fmt: skip
 
 
-def copy_findings(runs: Sequence[Run]) -> Iterator[Defect]:
-    """The same numbers under two names: on either side of a split they would be known beforehand."""
+def duplicate_findings(runs: Sequence[Run]) -> Iterator[Defect]:
+    """Equal numbers under two names: one could be fitted and the other be held out."""
     first: dict[str, str] = {}
     for run in runs:
         digest = hashlib.sha256()
@@ -48,13 +111,13 @@ def copy_findings(runs: Sequence[Run]) -> Iterator[Defect]:
         label = first.setdefault(digest.hexdigest(), run.label)
         if label != run.label:
             yield Defect(
-                "same_twice", "refuse", run.label, "", f"the very numbers of {label}", "a run of its own",
+                "same_twice", "refuse", run.label, "", f"the same numbers as in {label}", "different runs",
                 "leave one of the files out",
             )  # fmt: skip
 
 
-def unsaid_findings(files: Sequence[str]) -> Iterator[Defect]:
-    """Files that the source says nothing of."""
+def unmatched_findings(files: Sequence[str]) -> Iterator[Defect]:
+    """Files that match no pattern of the source."""
     if files:
         more = f" and {len(files) - 1} more" if len(files) > 1 else ""
         yield Defect(
@@ -64,12 +127,82 @@ def unsaid_findings(files: Sequence[str]) -> Iterator[Defect]:
 
 
 def _short(run: Run) -> Iterator[Defect]:
-    """Fewer than one revolution of the motor, if its gear ratio is known."""
+    """Less than one revolution of the motor, if the gear ratio is known."""
     if run.joint.gear_ratio is None:
         return
     turns = float(np.ptp(run.signals["q"])) * run.joint.gear_ratio / (2 * np.pi)
     if turns < 1:
         yield Defect(
             "short_way", "warn", run.label, "q", f"{turns:.2f} revolutions of the motor", "at least 1",
-            "record longer or faster: the ripple of the gear cannot be told apart from the zero of a sensor",
+            "record longer or faster: the ripple of the gear cannot be separated from the zero of a sensor",
+        )  # fmt: skip
+
+
+def _velocity(run: Run, recording: JointRecording) -> Iterator[Defect]:
+    """A velocity that is constant, set, implausibly fast, or different from the angle in parts of the run."""
+    q, omega, time = run.signals["q"], run.signals["omega"], recording.time
+    fast = float(np.median(np.abs(omega)))
+    if fast > FASTEST_JOINT:
+        yield Defect(
+            "implausible_speed", "warn", run.label, "omega", f"{fast:.3g} rad/s in the median",
+            f"at most {FASTEST_JOINT:g} at the output of a robot joint",
+            "if angle and velocity are in degrees, or are those of the motor, convert them in the source",
+        )  # fmt: skip
+    if np.ptp(q) < LEAST_MOVED:
+        return
+    if not np.ptp(omega):
+        yield Defect(
+            "velocity_constant", "refuse", run.label, "omega", f"{omega[0]:.5g} rad/s throughout",
+            f"a velocity that fits an angle of {np.ptp(q):.3g} rad",
+            "map a measured velocity; runs without it cannot be used", run.first_row,
+        )  # fmt: skip
+        return
+    turns = np.diff(q) != 0
+    held = float(np.mean(np.diff(omega)[turns] == 0)) if turns.any() else 0.0
+    if held > SET_SHARE:
+        yield Defect(
+            "velocity_set", "refuse", run.label, "omega",
+            f"a velocity that keeps its value in {100 * held:.3g} % of the steps of the angle", "a measured velocity",
+            "this is a set value, or it is sampled too rarely: map a measured velocity; runs without it cannot be used",
+        )  # fmt: skip
+        return
+    yield from _apart(run, q, omega, time)
+
+
+def _apart(run: Run, q: np.ndarray, omega: np.ndarray, time: np.ndarray) -> Iterator[Defect]:
+    """Whether angle and velocity agree in most parts of the run, up to one common factor."""
+    areas = np.concatenate([[0.0], np.cumsum((omega[1:] + omega[:-1]) / 2 * np.diff(time))])
+    edges = np.linspace(0, len(q) - 1, PARTS + 1).astype(int)
+    by_angle, by_velocity = np.diff(q[edges]), np.diff(areas[edges])
+    scale = float(by_angle @ by_velocity / (by_velocity @ by_velocity)) if by_velocity.any() else 0.0
+    beyond = np.abs(by_angle - scale * by_velocity)
+    usual = beyond <= np.quantile(beyond, PARTS_USUAL)
+    apart = float(np.linalg.norm(beyond[usual]) / np.linalg.norm(by_angle))
+    if apart > APART_WARNS:
+        severity: Severity = "refuse" if apart > APART_REFUSES else "warn"
+        yield Defect(
+            "velocity_against_angle", severity, run.label, "omega",
+            f"parts of the run in which angle and velocity differ by {100 * apart:.2g} % rms",
+            f"at most {100 * APART_WARNS:g} %", "check that angle and velocity are of the same joint and time",
+        )  # fmt: skip
+
+
+def _start(run: Run) -> Iterator[Defect]:
+    """A start-up that was not cut, in a run with a steady velocity later."""
+    if np.ptp(run.signals["q"]) < LEAST_MOVED:
+        return
+    edges = np.linspace(0, len(run), START_BLOCKS + 1).astype(int)
+    blocks = np.add.reduceat(run.signals["omega"], edges[:-1]) / np.diff(edges)
+    later = blocks[START_BLOCKS // 2 :]
+    usual, scatter = float(np.median(later)), float(np.std(later))
+    if scatter > STEADY * abs(usual):
+        return
+    steady = np.abs(blocks - usual) <= max(START_OFF * abs(usual), START_SCATTER * scatter)
+    if not steady[0]:
+        until = int(edges[np.argmax(steady)])
+        yield Defect(
+            "start_up", "warn", run.label, "omega",
+            f"a velocity that starts at {blocks[0]:.3g} rad/s and is at {usual:.3g} rad/s after {until} samples",
+            "a steady velocity, as it is later", f"cut about {until} samples more by start_up of the source",
+            run.first_row,
         )  # fmt: skip

@@ -1,43 +1,43 @@
-"""What the path of a file says: its session, its run and perhaps the joint that was moved.
+"""Session, run and perhaps joint from the path of a file.
 
-The regular expressions of Python may take for ever on a short text, as ``(a+)+b`` does. Those of RE2, which come with
-Arrow, take a time in proportion to the text, refuse expressions that would need much memory, and know no back
-references and no look-around; so an expression from anybody can be tried on the path of any file.
+A regular expression of Python may never end on a short text, such as ``(a+)+b``. Those of RE2, which come with Arrow,
+take a time in proportion to the text and refuse expressions that need much memory. They have no back references and no
+look-around.
 """
 
 from swgsim.common.checks import require_known
 from swgsim.recordings.files.file_defect import FileDefect, shown
 
 GROUPS = ("session", "run", "joint")
-# What RE2 compiles grows with the expression; those of the shipped sources have less than 150 characters.
+# RE2's memory grows with the expression; those of the shipped sources have less than 150 characters.
 LONGEST_PATTERN = 1000
 
 
 def require_pattern(pattern: str) -> None:
-    """Raise a ValueError unless a pattern has the groups ``session`` and ``run``, and no others but ``joint``."""
+    """Raise a ValueError unless a pattern has the groups ``session`` and ``run``, and at most ``joint`` besides."""
     if len(pattern) > LONGEST_PATTERN:
         raise ValueError(f"path has {len(pattern)} characters, must have at most {LONGEST_PATTERN}")
     _, groups = _found(pattern, "")
     require_known("the groups of path", groups, GROUPS)
     for name in ("session", "run"):
         if name not in groups:
-            raise ValueError(f"path {pattern!r} has no group (?P<{name}>...): it is the part that says the {name}")
+            raise ValueError(f"path {pattern!r} has no group (?P<{name}>...): mark the part that is the {name}")
 
 
-def said_by(pattern: str, name: str) -> dict[str, str]:
-    """The groups of a path, without those that are empty.
+def path_groups(pattern: str, name: str) -> dict[str, str]:
+    """The groups of a path, without empty ones.
 
     Parameters
     ----------
     pattern : str
-        Of the whole path.
+        Regular expression for the whole path.
     name : str
         Path relative to the folder, with slashes.
 
     Raises
     ------
     FileDefect
-        If the path is not as the pattern says, or says no session or run.
+        If the path does not match the pattern, or session or run are empty.
     """
     found, _ = _found(rf"\A(?:{pattern})\z", name)
     if found is None:
@@ -49,7 +49,7 @@ def said_by(pattern: str, name: str) -> dict[str, str]:
 
 
 def _found(pattern: str, text: str) -> tuple[dict[str, str] | None, list[str]]:
-    """What a text says, if it matches, and the names of all groups."""
+    """The groups of a text, None if it does not match, and the names of all groups."""
     import pyarrow  # type: ignore[import-untyped]
     from pyarrow import compute
 

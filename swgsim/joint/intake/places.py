@@ -1,4 +1,4 @@
-"""The files of a folder that a source means: none outside of it, and none that is left unsaid."""
+"""The files of a folder by the patterns of a source; files outside the folder are refused."""
 
 import os
 from collections.abc import Iterator
@@ -11,7 +11,7 @@ from swgsim.recordings.files.file_defect import FileDefect
 from swgsim.recordings.files.limits import inside, require_file_count
 
 ENDINGS = (".csv", ".csv.gz", ".parquet", ".mat")
-# Folders and files that are looked at to find those that are meant.
+# Largest number of folders and files in a folder of recordings.
 MOST_ENTRIES = 200_000
 
 
@@ -20,20 +20,20 @@ class Places(NamedTuple):
 
     moving: tuple[str, ...]
     resting: tuple[str, ...]
-    unsaid: tuple[str, ...]
+    unmatched: tuple[str, ...]
 
 
 def places(folder: Path, source: JointSource) -> Places:
-    """Where the files are.
+    """Sort the files of a folder by the patterns of a source.
 
     Raises
     ------
     FileDefect
-        If there is none, or too many, or one of them leads out of the folder.
+        If no file matches, there are too many, or one of them is a link out of the folder.
     """
     if not folder.is_dir():
         raise FileDefect(str(folder), "no folder", f"the folder with the recordings of {source.robot}")
-    kinds: dict[str, list[str]] = {"moving": [], "resting": [], "unsaid": []}
+    kinds: dict[str, list[str]] = {"moving": [], "resting": [], "unmatched": []}
     for name in sorted(_names(folder)):
         kind = _kind(name, source)
         if kind in ("moving", "resting"):
@@ -48,7 +48,7 @@ def places(folder: Path, source: JointSource) -> Places:
 
 
 def _names(folder: Path) -> Iterator[str]:
-    """Every file that has an ending that is read; links to folders are not followed."""
+    """Files with a known ending; links to folders are not followed."""
     entries = 0
     for place, folders, files in os.walk(folder):
         entries += len(folders) + len(files)
@@ -60,8 +60,8 @@ def _names(folder: Path) -> Iterator[str]:
 
 
 def _kind(name: str, source: JointSource) -> str:
-    """Which of :class:`Places` a file is in; empty if it is left out."""
+    """Field of :class:`Places` for a file; empty if it is left out."""
     for kind, patterns in (("", source.leave_out), ("resting", source.rest), ("moving", source.files)):
         if any(fnmatchcase(name if "/" in pattern else name.rsplit("/", 1)[-1], pattern) for pattern in patterns):
             return kind
-    return "unsaid"
+    return "unmatched"

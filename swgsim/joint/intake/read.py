@@ -1,5 +1,6 @@
-"""The one way in for recordings of joints: files through a source, with what their numbers say of the recording."""
+"""Reading of joint recordings: files through a source, with the findings on their numbers."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
@@ -7,43 +8,75 @@ from pathlib import Path
 
 import numpy as np
 
-from swgsim.joint.intake.clock import measured_rates, usual_rates
-from swgsim.joint.intake.findings import at_rest_findings, copy_findings, moving_findings, unsaid_findings
+from swgsim.joint.intake.findings import (
+    at_rest_findings,
+    duplicate_findings,
+    moving_findings,
+    unmatched_findings,
+    unusable,
+    wrap_findings,
+)
 from swgsim.joint.intake.places import places
-from swgsim.joint.intake.rows import gap_findings
 from swgsim.joint.intake.run import Run, read_runs
-from swgsim.joint.intake.scale import clock_findings, no_rate, rate_findings
+from swgsim.joint.intake.scale import clock_findings, measured_rates, no_rate, rate_findings, usual_rates
+from swgsim.joint.intake.signals import gap_findings
 from swgsim.joint.intake.source import JointSource
 from swgsim.joint.intake.source_file import read_source
-from swgsim.joint.intake.unusable import unusable
-from swgsim.joint.intake.wrapping import wrap_findings
 from swgsim.joint.recording import JointRecording
-from swgsim.recordings.checks.defect import Defect
+from swgsim.recordings.checks.defect import Defect, summary
 from swgsim.recordings.files.file_defect import FileDefect, shown
 
 
-@dataclass(frozen=True)
-class JointFiles:
-    """What was read of a folder.
+@dataclass(frozen=True, repr=False)
+class JointRecordings:
+    """Recordings of a folder, with the findings on them.
 
     Attributes
     ----------
     recordings, at_rest : tuple of JointRecording
-        Those that may be used, in motion and at standstill, in the order of session, name and joint.
+        Usable recordings in motion and at standstill, in the order of session, name and joint.
     defects : tuple of Defect
-        All that was found; a recording with one that refuses is in neither of the others.
+        All findings; a recording with a finding that refuses it is in none of the other fields.
     standing : tuple of JointRecording
-        Joints that stood while the one moved that the path of their file names, for the noise of their signals.
+        Joints that stood while the joint in the path of their file moved; they show the noise of their signals.
+    refused : tuple of (str, str, str)
+        Session, run and joint of every refused recording in motion.
+    folder : Path
     """
 
     recordings: tuple[JointRecording, ...]
     at_rest: tuple[JointRecording, ...]
     defects: tuple[Defect, ...]
     standing: tuple[JointRecording, ...] = ()
+    refused: tuple[tuple[str, str, str], ...] = ()
+    folder: Path = Path()
+
+    def __repr__(self) -> str:
+        robots = ", ".join(sorted({each.robot for each in self.recordings})) or "none usable"
+        lines = [f"{len(self.recordings)} joint recordings of {robots} in {self.folder}"]
+        for name in sorted({each.joint for each in self.recordings}):
+            own = [each for each in self.recordings if each.joint == name]
+            sessions, signals = sorted({e.session for e in own}), list(dict.fromkeys(s for e in own for s in e.signals))
+            lines.append(f"  {name}: {len(own)} runs of sessions {', '.join(sessions)}; signals {', '.join(signals)}")
+        lines.append(f"  at rest: {len(self.at_rest)}; refused: {len(self.refused)}; findings: {len(self.defects)}")
+        return "\n".join(lines)
+
+    def findings(self) -> str:
+        """The findings as text, one line for each kind and channel."""
+        return summary(self.defects)
+
+    def require_usable(self) -> None:
+        """Raise a ValueError if every recording was refused; it names the most frequent reason."""
+        if not self.recordings:
+            kinds = Counter(each.kind for each in self.defects if each.severity == "refuse")
+            kind, number = kinds.most_common(1)[0] if kinds else ("no file in motion", 0)
+            first = next((str(each) for each in self.defects if each.kind == kind), "")
+            count = f"all {len(self.refused)} recordings in {self.folder} were refused"
+            raise ValueError(f"{count}, {number} of them for {kind}: {first}")
 
 
-def read_joints(folder: Path, source: JointSource | Path) -> JointFiles:
-    """Recordings of the joints of a robot.
+def read_joints(folder: Path, source: JointSource | Path) -> JointRecordings:
+    """Read the recordings of the joints of a robot.
 
     Parameters
     ----------
@@ -59,12 +92,12 @@ def read_joints(folder: Path, source: JointSource | Path) -> JointFiles:
     source = read_source(source) if isinstance(source, Path) else source
     found = places(folder, source)
     in_motion = [run for name in found.moving for run in read_runs(folder, name, source, start=True)]
-    moving = [run for run in in_motion if not run.stands]
-    # Nobody asked for these: one that moved after all, or has no numbers, is no finding.
+    every = moving = [run for run in in_motion if not run.stands]
+    # Standing joints only give noise: one that is unusable or moves is left out without a finding.
     standing = [run for run in in_motion if run.stands and not any(chain(unusable(run), at_rest_findings(run)))]
     resting = [run for name in found.resting for run in read_runs(folder, name, source, start=False)]
-    _require_names_of_their_own([*moving, *resting])
-    defects = [*unsaid_findings(found.unsaid)]
+    _require_unique([*moving, *resting])
+    defects = [*unmatched_findings(found.unmatched)]
     defects += [defect for run in [*moving, *resting] for defect in chain(unusable(run), wrap_findings(run))]
     refused = {defect.recording for defect in defects}
     moving, resting = ([run for run in runs if run.label not in refused] for runs in (moving, resting))
@@ -72,7 +105,7 @@ def read_joints(folder: Path, source: JointSource | Path) -> JointFiles:
     usual = usual_rates([*moving, *resting], measured, source)
     if source.rate_from_motion and not usual:
         defects += [no_rate(run) for run in [*moving, *resting]]
-        return JointFiles((), (), tuple(defects))
+        return JointRecordings((), (), tuple(defects), (), _names(every), folder)
     if source.rate_from_motion:
         defects += rate_findings(moving, measured, source)
     else:
@@ -83,30 +116,24 @@ def read_joints(folder: Path, source: JointSource | Path) -> JointFiles:
         defects += moving_findings(run, recording)
     defects += [defect for run in {run.name: run for run in moving}.values() for defect in gap_findings(run)]
     defects += [defect for run in resting for defect in at_rest_findings(run)]
-    defects += copy_findings([*moving, *resting])
+    defects += duplicate_findings([*moving, *resting])
     refused |= {defect.recording for defect in defects if defect.severity == "refuse"}
-    return JointFiles(
+    return JointRecordings(
         _kept(moving, recordings, refused),
         _kept(resting, at_rest, refused),
         tuple(defects),
         tuple(_recording(run, usual | measured, source.robot) for run in standing),
+        _names([run for run in every if {run.label, run.name} & refused]),
+        folder,
     )
 
 
 def _recording(run: Run, rates: Mapping[str, float], robot: str) -> JointRecording:
-    """A run with its time, which begins at 0 where no clock was recorded."""
+    """A run with its time, which begins at 0 if no clock was recorded."""
     time = np.arange(len(run)) / rates[run.name] if run.time is None else run.time
-    joint = run.joint
+    joint, posture = run.joint, run.posture if len(run.posture) else None
     return JointRecording(
-        run.name,
-        robot,
-        joint.name,
-        run.session,
-        time,
-        run.signals,
-        run.posture if len(run.posture) else None,
-        joint.gear_ratio,
-        joint.torque_constant,
+        run.name, robot, joint.name, run.session, time, run.signals, posture, joint.gear_ratio, joint.torque_constant
     )
 
 
@@ -115,10 +142,16 @@ def _kept(runs: Sequence[Run], recordings: Sequence[JointRecording], refused: se
     return tuple(sorted(kept, key=lambda each: (each.session, each.name, each.joint)))
 
 
-def _require_names_of_their_own(runs: Sequence[Run]) -> None:
+def _names(runs: Sequence[Run]) -> tuple[tuple[str, str, str], ...]:
+    return tuple((run.session, run.name, run.joint.name) for run in runs)
+
+
+def _require_unique(runs: Sequence[Run]) -> None:
     """Raise a FileDefect if two files have the same run of a joint."""
     seen: set[str] = set()
     for run in runs:
         if run.label in seen:
-            raise FileDefect(run.file, f"the run {shown(run.label)} twice", "a name of its own: let 'path' say more")
+            raise FileDefect(
+                run.file, f"the run {shown(run.label)} twice", "a unique name: let 'path' use more of the file name"
+            )
         seen.add(run.label)

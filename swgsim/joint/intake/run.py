@@ -1,4 +1,4 @@
-"""One joint in one file, as it was read and before it has a time of its own."""
+"""One joint in one file, before its time is known."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.joint.intake.column import Column
-from swgsim.joint.intake.path_pattern import said_by
+from swgsim.joint.intake.path_pattern import path_groups
 from swgsim.joint.intake.source import JointColumns, JointSource
 from swgsim.joint.intake.table import Columns, read_table
 from swgsim.recordings.files.file_defect import FileDefect, shown
@@ -16,7 +16,7 @@ from swgsim.recordings.files.file_defect import FileDefect, shown
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """What a file says of one joint after its start, in SI units.
+    """Signals of one joint in one file after its start-up, in SI units.
 
     Attributes
     ----------
@@ -27,7 +27,7 @@ class Run:
     signals : mapping
         Name of :data:`swgsim.joint.recording.SIGNALS` to array (time,); a wrapped angle is unwrapped.
     posture : array (joint, time)
-        [rad], of no joint if the source names none.
+        [rad]; of zero joints if the source has no posture.
     time : array (time,), optional
         [s].
     span : float
@@ -51,7 +51,7 @@ class Run:
 
     @property
     def label(self) -> str:
-        """What findings call it."""
+        """Name in findings."""
         return f"{self.name} {self.joint.name}"
 
     def __len__(self) -> int:
@@ -59,7 +59,7 @@ class Run:
 
 
 def read_runs(folder: Path, name: str, source: JointSource, start: bool) -> list[Run]:
-    """Every joint of a file, or the one that the path names and, if the source says that they stand, the others.
+    """All joints of a file, or the joint that the path names, with the others if the source says that they stand.
 
     Parameters
     ----------
@@ -68,18 +68,18 @@ def read_runs(folder: Path, name: str, source: JointSource, start: bool) -> list
         Path in the folder.
     source : JointSource
     start : bool
-        Whether the run has a start, which is cut.
+        Whether the run has a start-up, which is cut.
 
     Raises
     ------
     FileDefect
         If the file cannot be read, or its path names a joint that the source does not have.
     """
-    said = said_by(source.path, name)
-    moved = [joint for joint in source.joints if said.get("joint", joint.name) == joint.name]
+    groups = path_groups(source.path, name)
+    moved = [joint for joint in source.joints if groups.get("joint", joint.name) == joint.name]
     if not moved:
         known = ", ".join(joint.name for joint in source.joints)
-        raise FileDefect(name, f"the joint {shown(said['joint'])}", f"one of {known}")
+        raise FileDefect(name, f"the joint {shown(groups['joint'])}", f"one of {known}")
     joints = source.joints if source.others_stand else moved
     signals = [column for joint in joints for column in joint.signals]
     times = [source.time] if source.time else []
@@ -97,7 +97,7 @@ def read_runs(folder: Path, name: str, source: JointSource, start: bool) -> list
     first_row = cut + (2 if source.header else 1)
     return [
         Run(
-            name, said["run"], said["session"], joint,
+            name, groups["run"], groups["session"], joint,
             {column.quantity: _values(table, column) for column in joint.signals},
             posture, time, _span(table, joint), first_row, joint not in moved,
         )
@@ -106,7 +106,7 @@ def read_runs(folder: Path, name: str, source: JointSource, start: bool) -> list
 
 
 def _start(table: Columns, source: JointSource) -> int:
-    """Samples to cut at the start."""
+    """Number of samples to cut at the start."""
     if source.time:
         late = np.diff(_values(table, source.time), prepend=np.nan)
         late = np.cumsum(np.nan_to_num(late)) >= source.start_seconds
@@ -119,7 +119,7 @@ def _start(table: Columns, source: JointSource) -> int:
 def _values(table: Columns, column: Column) -> Float[np.ndarray, " time"]:
     """One signal in its unit."""
     values = table[column.column]
-    # A number beyond all limits, and one that is none, is named by the findings.
+    # Numbers that are not finite have a finding.
     with np.errstate(over="ignore", invalid="ignore"):
         if column.wraps and np.isfinite(values).all():
             values = np.unwrap(values, period=column.revolution)
@@ -127,7 +127,7 @@ def _values(table: Columns, column: Column) -> Float[np.ndarray, " time"]:
 
 
 def _span(table: Columns, joint: JointColumns) -> float:
-    """How far the angle goes as it is written [revolutions]; 0 if it is no number somewhere."""
+    """Range of the angle as it is written [revolutions]; 0 if a value is not finite."""
     column = next(column for column in joint.signals if column.quantity == "q")
     values = table[column.column]
     with np.errstate(over="ignore", invalid="ignore"):

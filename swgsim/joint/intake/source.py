@@ -1,4 +1,4 @@
-"""A source: where the files of a robot are, and which of their columns is which signal of which joint."""
+"""A source: the files of a robot, and the signal of each of their columns."""
 
 from dataclasses import dataclass
 
@@ -6,7 +6,7 @@ from swgsim.common.checks import require, require_integer
 from swgsim.joint.intake.column import Column
 from swgsim.joint.intake.path_pattern import require_pattern
 
-# Of one time, and of what is cut at the start of a run [Hz, s].
+# Limits of the sampling rate [Hz] and of the cut at the start of a run [s].
 SLOWEST, FASTEST = 1e-3, 1e9
 LONGEST_START = 1e6
 
@@ -34,7 +34,7 @@ class JointColumns:
         names = [column.quantity for column in self.signals]
         for needed in ("q", "omega"):
             if needed not in names:
-                raise ValueError(f"{self.name} has no signal {needed}: angle and velocity of a joint are always needed")
+                raise ValueError(f"{self.name} has no signal {needed}: angle and velocity of a joint are mandatory")
         columns = [column.column for column in self.signals]
         for column in columns:
             if columns.count(column) > 1:
@@ -46,31 +46,31 @@ class JointColumns:
 
 @dataclass(frozen=True)
 class JointSource:
-    """A source (docs/joint_recordings.md); a file is of the first kind whose patterns it matches.
+    """A source (docs/joint_recordings.md). A file belongs to the first kind whose patterns it matches.
 
     Attributes
     ----------
     robot : str
     path : str
-        Regular expression of RE2 on the path of a file in its folder, with the groups ``session``, ``run`` and perhaps
-        ``joint``.
+        Regular expression of RE2 for the path of a file in its folder, with the groups ``session``, ``run`` and
+        optionally ``joint``.
     leave_out, rest, files : tuple of str
-        Patterns of files that are not read, of those at standstill and of those in motion: ``*`` and ``?``, on the
-        name of a file, or on its path in the folder where the pattern has a slash.
+        Patterns of ignored files, of files at standstill and of files in motion, with ``*`` and ``?``. They apply to
+        the name of a file, or to its path in the folder if the pattern has a slash.
     joints : tuple of JointColumns
     header : bool
         Whether the first row of a CSV file has the names of the columns.
     time : Column, optional
     rate_hz : float, optional
-        Sampling rate [Hz]; beside ``rate_from_motion`` what it is expected to be about.
+        Sampling rate [Hz]; with ``rate_from_motion`` the expected one.
     rate_from_motion : bool
         Whether the rate of each run is mean velocity over mean step of the angle.
     start_samples, start_seconds : int, float
-        What is cut at the start of each run in motion.
+        Cut at the start of each run in motion.
     posture : tuple of Column
         Angles of all joints from base to tip.
     others_stand : bool
-        Whether the joints that the path of a file does not name stand in it, and show the noise of their signals.
+        Whether joints that the path of a file does not name stand still and give the noise of their signals.
     """
 
     robot: str
@@ -111,6 +111,6 @@ class JointSource:
 
     @property
     def columns(self) -> tuple[Column, ...]:
-        """All that are read of a file."""
+        """All columns that are read from a file."""
         time = (self.time,) if self.time else ()
         return (*time, *(column for joint in self.joints for column in joint.signals), *self.posture)

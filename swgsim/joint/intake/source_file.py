@@ -1,4 +1,4 @@
-"""A source from YAML: plain data only, and every key that is not known is refused with those that are."""
+"""Reading of a source from plain YAML; an unknown key is refused with the list of known keys."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -23,7 +23,7 @@ def read_source(path: Path) -> JointSource:
     Raises
     ------
     FileDefect
-        If it is no YAML or says something that no source says; the choices are listed.
+        If it is not YAML, or has an unknown key or value; the choices are listed.
     """
     return described(path, "a source", "conf/sources/kinova_gen3.yaml", _source)
 

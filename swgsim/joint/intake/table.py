@@ -1,4 +1,4 @@
-"""Some columns of one file, by their names or their numbers: CSV, also compressed, Parquet and MATLAB."""
+"""Columns of one file by names or numbers: CSV, also compressed, Parquet and MATLAB."""
 
 import gzip
 import zlib
@@ -16,24 +16,24 @@ from swgsim.recordings.files.file_defect import FileDefect, shown
 from swgsim.recordings.files.foreign import read_columns
 from swgsim.recordings.files.limits import MOST_ROWS, most_expanded, require_readable
 
-# Six joints with five signals of 20 characters have 600; a line without end is no table.
+# Six joints with five signals of 20 characters need 600 characters.
 LONGEST_LINE = 100_000
 
-# What recorders write where they have no number; the findings name it if the signal is one that is used.
+# Texts of recorders in place of a number; they lead to a finding.
 NO_NUMBERS = ("nan", "inf", "-inf")
 
 Columns = dict[str | int, Float[np.ndarray, " time"]]
 
 
 def read_table(path: Path, name: str, wanted: Sequence[str | int], header: bool) -> Columns:
-    """Some columns of a file.
+    """Columns of a file.
 
     Parameters
     ----------
     path : Path
-        Its ending says what it is.
+        Its ending gives the format.
     name : str
-        What messages call the file.
+        Name of the file in messages.
     wanted : sequence of str or int
         Names, or numbers from 1.
     header : bool
@@ -42,8 +42,8 @@ def read_table(path: Path, name: str, wanted: Sequence[str | int], header: bool)
     Raises
     ------
     FileDefect
-        If the file is damaged, decompresses to more than :func:`limits.most_expanded` allows, or a column
-        is not there or holds no numbers.
+        If the file is damaged, is larger after decompression than :func:`limits.most_expanded` allows, or a column
+        is missing or has no numbers.
     """
     require_readable(path)
     wanted = list(dict.fromkeys(wanted))
@@ -88,7 +88,7 @@ def _read_csv(stream: TextIOWrapper, name: str, wanted: list[str | int], header:
 
 
 def _lines(stream: TextIOWrapper, name: str, most: int, most_rows: int) -> Iterator[tuple[int, str]]:
-    """Lines with their numbers from 1, within so many characters and rows; blank ones are allowed at the end only."""
+    """Lines with their numbers from 1, up to a limit of characters and rows; blank lines only at the end."""
     size = row = blank = 0
     while line := stream.readline(LONGEST_LINE + 1):
         row += 1
@@ -107,7 +107,7 @@ def _lines(stream: TextIOWrapper, name: str, most: int, most_rows: int) -> Itera
 
 
 def _named(cells: list[str], name: str, wanted: list[str | int]) -> list[int]:
-    """Where the wanted columns are, by the names in the header."""
+    """Positions of the wanted columns by the names in the header."""
     for column in wanted:
         if cells.count(str(column)) != 1:
             found = f"{cells.count(str(column))} columns {shown(column)} among {', '.join(map(shown, cells[:20]))}"
@@ -116,7 +116,7 @@ def _named(cells: list[str], name: str, wanted: list[str | int]) -> list[int]:
 
 
 def _numbered(cells: list[str], name: str, wanted: list[str | int]) -> list[int]:
-    """Where the wanted columns are, by their numbers."""
+    """Positions of the wanted columns by their numbers."""
     for column in wanted:
         if int(column) > len(cells):
             raise FileDefect(name, f"{len(cells)} columns", f"column {column}, as the source says", 1)

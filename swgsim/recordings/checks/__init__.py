@@ -1,1 +1,1 @@
-"""Checks for defects that a test bench leaves in its recordings: they are reported, never silently corrected."""
+"""Checks for defects of a test bench in its recordings; they report defects and never correct them."""

@@ -1,4 +1,4 @@
-"""What a set of recordings lacks or has twice."""
+"""Missing and duplicate items of a set of recordings."""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -17,20 +17,20 @@ def set_defects(recordings: Sequence[Recording]) -> Iterator[Defect]:
     if recordings and all(each.conditions.temperature == REFERENCE_TEMPERATURE for each in recordings):
         yield Defect(
             "no_temperature", "warn", recordings[0].name, "",
-            f"{REFERENCE_TEMPERATURE:g} degrees for all recordings, which also stands for none",
+            f"{REFERENCE_TEMPERATURE:g} degrees for all recordings, the default of a missing temperature",
             "a measured temperature", "measure it: friction depends on it, and effects of warmth look like faults",
         )  # fmt: skip
 
 
 def _copies(recordings: Sequence[Recording]) -> Iterator[Defect]:
-    """The same numbers under two names would pass for repeats without noise."""
+    """The same numbers under two names would count as repeats without noise."""
     first: dict[str, str] = {}
     for each in recordings:
         name = first.setdefault(each.numbers, each.name)
         if name != each.name:
             yield Defect(
-                "same_twice", "refuse", each.name, "", f"the very numbers of recording {name}",
-                "recordings of their own", "leave one out: a copy is no repeat",
+                "same_twice", "refuse", each.name, "", f"the same numbers as recording {name}",
+                "different recordings", "leave one out: a copy is no repeat",
             )  # fmt: skip
 
 
@@ -40,12 +40,12 @@ def _short(recordings: Sequence[Recording]) -> Iterator[Defect]:
         if turns < WHOLE_TURNS - 0.01:
             yield Defect(
                 "short", "warn", each.name, "", f"{turns:.2f} revolutions", f"at least {WHOLE_TURNS}",
-                "record longer: fractional orders such as those of the cage cannot be told apart",
+                "record longer: fractional orders such as those of the cage cannot be separated",
             )  # fmt: skip
 
 
 def _repeats(recordings: Sequence[Recording]) -> Iterator[Defect]:
-    """Repeats of the same session and operating point, and their numbers."""
+    """Missing repeats of the same session and operating point, and duplicate numbers of repeats."""
     settings = Counter((each.gear, each.session, each.point) for each in recordings)
     if settings and max(settings.values()) == 1:
         yield Defect(

@@ -1,4 +1,4 @@
-"""What the angle of the wave generator shows: unit, sense, reversals, and samples lost at even steps of time."""
+"""Checks of the angle of the wave generator: unit, sense, reversals, and lost samples at even time steps."""
 
 from collections.abc import Iterator
 
@@ -22,10 +22,10 @@ from swgsim.recordings.recording import Recording
 
 
 def speed_of_angle(recording: Recording) -> float:
-    """Mean speed that the angle says, over the one that was set.
+    """Mean speed of the angle, relative to the set speed.
 
-    Over sixteenths of a revolution, and without the quarter that is fastest and slowest: so neither the steps of an
-    encoder matter nor wraps, in whatever unit.
+    The speed is a trimmed mean over sixteenths of a revolution, without the fastest and slowest quarter. So neither
+    steps of an encoder nor wraps of any unit matter.
     """
     phi, time = unwrapped(recording.channels["phi_in"]), recording.time
     lag = min(max(1, round(60 / recording.point.n_in_rpm * recording.rate / 16)), len(time) // 2)
@@ -34,7 +34,7 @@ def speed_of_angle(recording: Recording) -> float:
 
 
 def angle_is_sound(recording: Recording) -> bool:
-    """Whether there is an angle that turns about as fast as was set, in radians."""
+    """Whether there is an angle in radians that turns about as fast as the set speed."""
     return "phi_in" in recording.channels and abs(speed_of_angle(recording) - 1) < SPEED_REFUSES
 
 
@@ -52,12 +52,12 @@ def angle_defects(recording: Recording) -> Iterator[Defect]:
 
 def _wrong_speed(recording: Recording, ratio: float) -> Iterator[Defect]:
     """The angle against the set speed."""
-    found = f"an angle that turns {ratio:.4g} times as fast as was set"
+    found = f"an angle that turns {ratio:.4g} times as fast as the set speed"
     expected = f"{recording.point.omega_in:.4g} rad/s, which are {recording.point.n_in_rpm:g} rpm"
     if ratio < 0:
         yield Defect(
             "angle_backwards", "refuse", recording.name, "phi_in", found, f"{expected}, in the positive sense",
-            "turn the sign of the angle, and number the gauges in the sense of rotation",
+            "change the sign of the angle, and number the gauges in the sense of rotation",
         )  # fmt: skip
     if ratio and abs(abs(ratio) - 1) > SPEED_WARNS:
         kind, reason = mistake(abs(ratio), ANGLE_MISTAKES, "angle_against_set_speed")
@@ -67,7 +67,7 @@ def _wrong_speed(recording: Recording, ratio: float) -> Iterator[Defect]:
 
 
 def _reversals(recording: Recording) -> Iterator[Defect]:
-    """Turning back by more than jitter."""
+    """Rotation backwards by more than jitter."""
     phi = unwrapped(recording.channels["phi_in"])
     back = np.maximum.accumulate(phi) - phi
     if back.max() > TURNED_BACK:
@@ -79,7 +79,7 @@ def _reversals(recording: Recording) -> Iterator[Defect]:
 
 
 def _jumps(recording: Recording) -> Iterator[Defect]:
-    """Steps of the angle that miss a sample or more, which the steps before and after do not make up for."""
+    """Steps of the angle that miss a sample or more, without compensation by the neighbouring steps."""
     steps = np.diff(unwrapped(recording.channels["phi_in"])) / np.diff(recording.time)
     excess = steps - median_filter(steps, JUMP_MEDIAN, mode="nearest")
     scatter = float(np.quantile(np.abs(excess), JUMP_QUANTILE))
@@ -90,6 +90,6 @@ def _jumps(recording: Recording) -> Iterator[Defect]:
         yield Defect(
             "angle_jumps", "refuse", recording.name, "phi_in",
             f"{len(jumps)} steps of the angle that are off by a sample or more while the time steps are even",
-            "an angle that goes on evenly", "samples were lost or repeated: record again, or cut before the first",
+            "even steps of the angle", "samples were lost or repeated: record again, or cut before the first",
             int(jumps[0]) + 1 + FIRST_ROW,
         )  # fmt: skip

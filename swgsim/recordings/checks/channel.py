@@ -1,4 +1,4 @@
-"""Channels that are clipped or stuck."""
+"""Checks of every channel: clipped, stuck or constant values."""
 
 from collections.abc import Iterator
 
@@ -9,11 +9,11 @@ from swgsim.recordings.checks.defect import Defect
 from swgsim.recordings.checks.thresholds import CLIPPED_EDGE, CLIPPED_REFUSES, CLIPPED_RUN, STUCK_RUN, STUCK_TURN
 from swgsim.recordings.files.file_defect import FIRST_ROW
 from swgsim.recordings.recording import Recording
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 
 def channel_defects(recording: Recording) -> Iterator[Defect]:
-    """Defects that every channel may have."""
+    """Defects of every channel of a recording."""
     turn = 60 / recording.point.n_in_rpm * recording.rate
     for name, values in recording.channels.items():
         if not np.ptp(values):
@@ -25,7 +25,7 @@ def channel_defects(recording: Recording) -> Iterator[Defect]:
         plateau = [row for sign in (1, -1) if (row := _plateau(sign * values, starts, lengths)) is not None]
         if plateau:
             share = float(np.isin(values, values[plateau]).mean())
-            mild = name in SENSORS and share < CLIPPED_REFUSES  # The library has an effect for it, which can be found.
+            mild = name in SENSORS and share < CLIPPED_REFUSES  # The library has an effect of it.
             yield Defect(
                 "clipped", "warn" if mild else "refuse", recording.name, name,
                 f"{values[plateau[0]]:.5g} in a row between steep flanks, {100 * share:.2g} % of the samples cut",
@@ -41,7 +41,7 @@ def channel_defects(recording: Recording) -> Iterator[Defect]:
 
 
 def _constant(recording: Recording, name: str, value: float) -> Defect:
-    """A gauge or an angle that never changes is broken; a torque or speed may be the set value."""
+    """Refusal of a constant gauge or angle, warning for a constant torque or speed, which may be the set value."""
     if name in (*SENSORS, "phi_in"):
         return Defect(
             "stuck", "refuse", recording.name, name, f"{value:.5g} throughout", "a signal that changes",
@@ -54,7 +54,7 @@ def _constant(recording: Recording, name: str, value: float) -> Defect:
 
 
 def runs(values: Float[np.ndarray, " time"]) -> tuple[np.ndarray, np.ndarray]:
-    """Where each run of equal values starts, and how long it is.
+    """Start and length of each run of equal values.
 
     >>> runs(np.array([3.0, 3.0, 1.0]))
     (array([0, 2]), array([2, 1]))
@@ -64,11 +64,11 @@ def runs(values: Float[np.ndarray, " time"]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _plateau(values: Float[np.ndarray, " time"], starts: np.ndarray, lengths: np.ndarray) -> int | None:
-    """First sample of the longest run at the maximum, if the signal was cut there.
+    """First sample of the longest run at the maximum, if the signal is clipped there.
 
-    The peak of a digitised signal is flat as well, by one step of the converter. A parabola falls three times as much
-    from the edge of a plateau to twice the distance from its middle as it rises above the edge; so the height that a
-    plateau hides is a third of that fall, and in a cut peak it is more than the step to the next level below.
+    The peak of a digitised signal is flat too, within one step of the converter. Let a parabola be cut at a plateau.
+    Its hidden height is a third of its fall from the edge of the plateau to twice the distance from the middle. For a
+    clipped peak, this height exceeds the step to the next lower level.
     """
     top = lengths * (values[starts] == values.max())
     start, length = int(starts[np.argmax(top)]), int(top.max())

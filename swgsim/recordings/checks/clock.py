@@ -1,4 +1,4 @@
-"""What the time of a recording shows: lost samples, and a clock that jitters."""
+"""Checks of the time: lost samples and jitter of the clock."""
 
 from collections.abc import Iterator
 
@@ -11,7 +11,7 @@ from swgsim.recordings.recording import Recording
 
 
 def clock_defects(recording: Recording) -> Iterator[Defect]:
-    """Steps of time that are not even."""
+    """Defects of uneven time steps."""
     steps = np.diff(recording.time)
     usual = float(np.median(steps))
     ratio = steps / usual

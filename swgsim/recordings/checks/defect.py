@@ -1,4 +1,4 @@
-"""A defect of recordings that only their numbers show: it is reported, never silently mended."""
+"""A defect in the numbers of recordings; it is reported and never silently corrected."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,20 +10,20 @@ Severity = Literal["refuse", "warn"]
 
 @dataclass(frozen=True)
 class Defect:
-    """What was detected in one recording.
+    """Finding in one recording.
 
     Attributes
     ----------
     kind : str
-        In one word, such as ``angle_in_degrees``.
+        Short name, such as ``angle_in_degrees``.
     severity : "refuse" or "warn"
     recording : str
-        Its name.
+        Name of the recording.
     channel : str
-        Name of the channel, or ``t`` for the time; empty where it is of none.
+        Name of the channel, or ``t`` for the time; empty for defects of no single channel.
     found, expected, remedy : str
     row : int, optional
-        First row that shows it, as in the CSV form: the header is row 1, the first sample row 2.
+        First affected row of a CSV file: the header is row 1, the first sample row 2.
     """
 
     kind: str
@@ -42,7 +42,7 @@ class Defect:
 
 
 def summary(defects: Sequence[Defect]) -> str:
-    """One line for each kind and channel, with the first recording that shows it and the names of the others."""
+    """One line for each kind and channel, with the first affected recording and the names of the others."""
     alike: dict[tuple[str, str], list[Defect]] = {}
     for defect in defects:
         alike.setdefault((defect.kind, defect.channel), []).append(defect)

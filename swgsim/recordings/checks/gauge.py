@@ -1,4 +1,4 @@
-"""What the size of the gauge signals shows: the unit, a gain that is far from the others', a gauge that is dead."""
+"""Checks of the size of gauge signals: wrong units, gains far from those of the others, dead gauges."""
 
 from collections.abc import Iterator
 
@@ -15,11 +15,11 @@ from swgsim.recordings.checks.thresholds import (
     ORDER_2_SHARE,
 )
 from swgsim.recordings.recording import Recording
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 
 def gauge_defects(recording: Recording) -> Iterator[Defect]:
-    """Defects of the channels s0 to s4, each recording by itself."""
+    """Defects of the channels s0 to s4 of one recording."""
     lines = {sensor: abs(line) for sensor, line in order_2(recording).items()}
     usual = float(np.median(list(lines.values()))) if lines else 0.0
     for sensor in (sensor for sensor in SENSORS if sensor in recording.channels):
@@ -45,12 +45,8 @@ def gauge_defects(recording: Recording) -> Iterator[Defect]:
 
 def _wrong_size(recording: Recording, sensor: str, size: float) -> Defect:
     """A signal far too small or too large for mV/V."""
-    if size > GAUGE_LARGEST:
-        kind, remedy = "gauge_in_um_m", "it is in um/m, uV/V or volts: convert it, or read it through a column map"
-    else:
-        kind, remedy = (
-            "gauge_in_v_v",
-            "it is in V/V (or dead): convert it, or read it through a column map",
-        )
+    large = size > GAUGE_LARGEST
+    kind, unit = ("gauge_in_um_m", "um/m, uV/V or volts") if large else ("gauge_in_v_v", "V/V (or dead)")
+    remedy = f"it is in {unit}: convert it, or read it through a column map"
     expected = f"from {GAUGE_SMALLEST:g} to {GAUGE_LARGEST:g} mV/V"
     return Defect(kind, "refuse", recording.name, sensor, f"a size of {size:.3g} mV/V", expected, remedy)

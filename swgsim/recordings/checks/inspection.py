@@ -1,4 +1,4 @@
-"""All defects that the numbers of recordings show."""
+"""All checks of the numbers of recordings."""
 
 from collections.abc import Iterator, Sequence
 
@@ -20,9 +20,9 @@ OF_ONE = (clock_defects, angle_defects, speed_defects, torque_defects, channel_d
 
 
 def inspect(recordings: Sequence[Recording]) -> tuple[Defect, ...]:
-    """Everything that is wrong with recordings as far as their numbers show it; empty if nothing is.
+    """All defects in the numbers of recordings, in the order of the checks.
 
-    A recording whose numbers cannot be computed with is named and left out of all further checks.
+    A recording with numbers that are unfit for computation is reported and excluded from the other checks.
     """
     unusable = {recording.name: found for recording in recordings if (found := list(_unusable(recording)))}
     sound = [recording for recording in recordings if recording.name not in unusable]
@@ -52,5 +52,5 @@ def _unusable(recording: Recording) -> Iterator[Defect]:
     if len(back):
         before, after = recording.time[back[0] - 1], recording.time[back[0]]
         row = int(back[0]) + FIRST_ROW
-        remedy = "sample by a clock that only goes on"
+        remedy = "sample by a clock that never runs back"
         yield Defect("clock_backwards", "refuse", name, "t", f"{after} after {before}", "later times", remedy, row)

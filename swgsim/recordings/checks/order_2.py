@@ -1,4 +1,4 @@
-"""The order-2 line of each gauge: the wave generator's two lobes, which every healthy or faulty gear shows most."""
+"""Order-2 line of each gauge: the two lobes of the wave generator, the largest line of healthy and faulty gears."""
 
 import numpy as np
 from jaxtyping import Complex, Float
@@ -6,20 +6,20 @@ from jaxtyping import Complex, Float
 from swgsim.recordings.checks.angle import angle_is_sound
 from swgsim.recordings.files.assembly import unwrapped
 from swgsim.recordings.recording import Recording
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 ORDERS = 4
 
 
 def angle_of(recording: Recording) -> Float[np.ndarray, " time"]:
-    """The recorded angle where it is sound, else that of the set speed [rad]."""
+    """The recorded angle if it is sound, otherwise that of the set speed [rad]."""
     if angle_is_sound(recording):
         return unwrapped(recording.channels["phi_in"])
     return recording.point.omega_in * (recording.time - recording.time[0])
 
 
 def order_2(recording: Recording) -> dict[str, Complex[np.ndarray, ""]]:
-    """Order-2 line of the gauges s1 to s4 that are there [mV/V]; empty for less than one revolution."""
+    """Order-2 line of the recorded gauges of s1 to s4 [mV/V]; empty for less than one revolution."""
     angle = angle_of(recording)
     gauges = [sensor for sensor in SENSORS[1:] if sensor in recording.channels]
     if not gauges or angle[-1] - angle[0] < 2 * np.pi * 0.99:

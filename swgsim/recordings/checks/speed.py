@@ -1,4 +1,4 @@
-"""What the recorded speed shows: unit, sense, gear ratio, and whether it agrees with the angle."""
+"""Checks of the recorded speed: unit, sense, gear ratio, and agreement with the angle."""
 
 from collections.abc import Iterator
 
@@ -21,7 +21,7 @@ def speed_defects(recording: Recording) -> Iterator[Defect]:
     if ratio < 0:
         yield Defect(
             "speed_backwards", "refuse", recording.name, "n_in", f"a mean of {mean:.4g}", expected,
-            "turn the sign of the speed",
+            "change the sign of the speed",
         )  # fmt: skip
     if ratio == 0:
         yield Defect("no_speed", "refuse", recording.name, "n_in", "a mean of 0", expected, "connect the signal")

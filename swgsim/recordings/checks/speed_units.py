@@ -1,4 +1,4 @@
-"""Which mistake explains that a speed is not the one that was set."""
+"""Likely reasons for a deviation from the set speed."""
 
 from math import pi
 
@@ -16,7 +16,7 @@ SPEED_MISTAKES = (
     ("speed_in_rev_s", 1 / 60, "the speed is in revolutions per second"),
     ("speed_in_deg_s", 6.0, "the speed is in degrees per second"),
 )
-# Mistakes in what was set show in the angle and in the speed alike.
+# Mistakes of the set speed affect angle and speed alike.
 SET_MISTAKES = (
     (60 / (2 * pi), "the set speed is in rad/s"),
     (60.0, "the set speed is in revolutions per second"),
@@ -33,9 +33,9 @@ def mistake(ratio: float, mistakes: tuple[tuple[str, float, str], ...], otherwis
     ratio : float
         Found speed over set speed, without its sign.
     mistakes : tuple
-        Those of the quantity.
+        Mistakes of the quantity.
     otherwise : str
-        Kind where the reason is another one.
+        Kind for any other reason.
 
     >>> mistake(57.3, ANGLE_MISTAKES, "angle_against_set_speed")
     ('angle_in_degrees', 'the angle is in degrees')
@@ -46,7 +46,7 @@ def mistake(ratio: float, mistakes: tuple[tuple[str, float, str], ...], otherwis
     reasons = [reason for factor, reason in SET_MISTAKES if abs(ratio / factor - 1) < NAMED]
     low, high = RATIOS
     if low <= 1 / ratio <= high:
-        reasons.append(f"it is that of the output of a gear of ratio {1 / ratio:.0f}")
+        reasons.append(f"it is the speed of the output of a gear of ratio {1 / ratio:.0f}")
     if low <= ratio <= high:
         reasons.append(f"the set speed is that of the output of a gear of ratio {ratio:.0f}")
     return otherwise, "; or ".join(reasons) or "unit, encoder lines or set point are wrong"

@@ -1,4 +1,4 @@
-"""What the torques show: unit, sign and size against the set load."""
+"""Checks of the torques: unit, sign, and size against the set load."""
 
 from collections.abc import Iterator
 
@@ -15,7 +15,7 @@ from swgsim.recordings.checks.thresholds import (
 )
 from swgsim.recordings.recording import Recording
 
-# Found torque / torque in N m, and which unit that is. Tried within the limits of a torque that is far off only.
+# Found torque over torque in N m, and its unit. They are compared only for torques far from the set load.
 UNITS = ((1e3, "mN m"), (1e-3, "kN m"), (100.0, "N cm"), (8.8507, "pound-inches"), (0.73756, "pound-feet"))
 
 
@@ -29,7 +29,7 @@ def torque_defects(recording: Recording) -> Iterator[Defect]:
 
 
 def _output(recording: Recording, mean: float, load: float) -> Iterator[Defect]:
-    """The mean must be the set load."""
+    """Deviation of the mean from the set load."""
     off = abs(mean - load)
     if off < max(TORQUE_WARNS[0] * load, TORQUE_WARNS[1]):
         return
@@ -37,7 +37,7 @@ def _output(recording: Recording, mean: float, load: float) -> Iterator[Defect]:
     units = [unit for factor, unit in UNITS if load and abs(abs(mean) / load / factor - 1) < 2.5 * NAMED]
     turned = bool(load) and mean < 0 and abs(abs(mean) / load - 1) < TORQUE_REFUSES[0]
     kind = "torque_unit" if units else "torque_sign" if turned else "torque_against_set_load"
-    reason = f"it is in {units[0]}" if units else "its sign is the other one" if turned else "zero, scale or set load"
+    reason = f"it is in {units[0]}" if units else "its sign is wrong" if turned else "zero, scale or set load is wrong"
     yield Defect(
         kind, severity, recording.name, "T_out", f"a mean of {mean:.4g} N m", f"about the set {load:g} N m",
         f"{reason}; correct the torque or the set load",
@@ -45,11 +45,11 @@ def _output(recording: Recording, mean: float, load: float) -> Iterator[Defect]:
 
 
 def _input(recording: Recording, mean: float, load: float) -> Iterator[Defect]:
-    """The mean must drive the load through some gear; which one is not known."""
+    """Deviation of the mean from the range that drives the load through a gear of any ratio."""
     low, high = load / RATIOS[1], load / RATIOS[0] / POOREST_EFFICIENCY + RUNNING_TORQUE
     if low * (1 - TORQUE_REFUSES[0]) <= mean <= high:
         return
-    reason = "it is in mN m, or that of the output" if mean > high else "it is in kN m, or its sign is the other one"
+    reason = "it is in mN m, or that of the output" if mean > high else "it is in kN m, or its sign is wrong"
     yield Defect(
         "torque_unit", "refuse", recording.name, "T_in", f"a mean of {mean:.4g} N m",
         f"from {low:.3g} to {high:.3g} N m at a load of {load:g} N m", f"{reason}; correct the torque",

@@ -1,10 +1,10 @@
-"""Gauges that are inverted or swapped, from how they rise with load and from their phases at order 2.
+"""Checks of the wiring: inverted and swapped gauges, from their rise with load and their phases at order 2.
 
-In every gear s1 and s3 see the two lobes in phase, s2 and s4 as well, and s2 a quarter of a turn after s1, which at
-order 2 is in opposite phase; and every gauge rises with load. So an inverted gauge falls with load and has the opposite
-phase, and one of a swapped pair of neighbours rises with load and has the opposite phase. Order 2 cannot tell s1 from
-s3, s2 from s4, the pair that was swapped from the pair that was not, nor a ring of gauges turned by a quarter; nor does
-it show the sense of rotation.
+In every gear, s1 and s3 see the two lobes in phase, and so do s2 and s4. s2 follows s1 by a quarter of a turn, which is
+the opposite phase at order 2. All gauges rise with load. So an inverted gauge falls with load and has the opposite
+phase. A gauge of a swapped pair of neighbours rises with load and has the opposite phase. Order 2 separates neither s1
+from s3 nor s2 from s4. It does not show which pair was swapped, a ring of gauges turned by a quarter, or the sense of
+rotation.
 """
 
 from collections.abc import Iterator, Sequence
@@ -24,14 +24,14 @@ from swgsim.recordings.checks.thresholds import (
     S0_SCALE,
 )
 from swgsim.recordings.recording import Recording
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 # Phase of order 2 against s1, in half turns.
 OPPOSITE = {"s1": 0, "s2": 1, "s3": 0, "s4": 1}
 
 
 def wiring_defects(recordings: Sequence[Recording]) -> Iterator[Defect]:
-    """Defects of gauges against each other, for each gear and session."""
+    """Defects of gauges relative to each other, for each gear and session."""
 
     def wired(recording: Recording) -> tuple[str, str]:
         return recording.gear, recording.session
@@ -71,7 +71,7 @@ def _against_load(name: str, rises: dict[str, float], inverted: set[str]) -> Ite
     for sensor in sorted(inverted):
         yield Defect(
             "gauge_inverted", "refuse", name, sensor, f"{rises[sensor]:.3g} mV/V per N m", expected,
-            "turn its sign, in the file or by 'inverted: true' in a column map",
+            "change its sign, in the file or by 'inverted: true' in a column map",
         )  # fmt: skip
     others = [abs(rise) for sensor, rise in rises.items() if sensor != "s0"]
     if "s0" in rises and others and not 1 / S0_SCALE < abs(rises["s0"]) / np.median(others) < S0_SCALE:
@@ -82,14 +82,14 @@ def _against_load(name: str, rises: dict[str, float], inverted: set[str]) -> Ite
 
 
 def _phases(recording: Recording, inverted: set[str], loads_differ: bool) -> Iterator[Defect]:
-    """Phases at order 2 once the gauges that fall with load are turned."""
+    """Defects of the phases at order 2, after correction of gauges that fall with load."""
     lines = {sensor: line for sensor, line in order_2(recording).items() if abs(line) > GAUGE_SMALLEST / 2}
     if len(lines) < 2:
         return
     sensors = list(lines)
     turned = [OPPOSITE[sensor] + (sensor in inverted) for sensor in sensors]
     unit = np.array([line / abs(line) for line in lines.values()]) * np.exp(1j * np.pi * np.array(turned))
-    # The axis on which the phases lie, whatever their signs; then the side on which most of them are.
+    # The axis of the phases, independent of their signs; then the side of most of them.
     axis = np.exp(0.5j * np.angle(np.sum(unit**2)))
     side = np.sign(np.real(unit / axis))
     axis = axis * (np.sign(side.sum()) or 1.0)
@@ -99,27 +99,27 @@ def _phases(recording: Recording, inverted: set[str], loads_differ: bool) -> Ite
         if PHASE_WARNS < abs(degrees) <= PHASE_OPPOSITE:
             yield Defect(
                 "gauge_position", "warn", recording.name, sensor, f"order 2 off by {degrees:.0f} degrees",
-                "the phase that the other gauges have", "check where it is bonded, and the skew of its channel",
+                "the phase of the other gauges", "check its position, and the skew of its channel",
             )  # fmt: skip
     if opposite:
         yield _opposite(recording, sensors, opposite, loads_differ)
 
 
 def _opposite(recording: Recording, sensors: list[str], opposite: list[str], loads_differ: bool) -> Defect:
-    """What the gauges that are in opposite phase to the rest may have."""
+    """Possible defects of gauges in opposite phase to the others."""
     rest = [sensor for sensor in sensors if sensor not in opposite]
     sides = " and ".join(opposite), " and ".join(rest)
     neighbours = len(opposite) == len(rest) == 2 and OPPOSITE[opposite[0]] != OPPOSITE[opposite[1]]
     swapped = f"{sides[0]} are swapped, or {sides[1]}"
-    if loads_differ:  # Inverted gauges are turned already.
+    if loads_differ:  # Inverted gauges are corrected already.
         kind = "gauges_swapped" if neighbours else "gauges_misplaced"
-        remedy = swapped if neighbours else f"{sides[0]} or {sides[1]} lie a quarter of a turn from where they should"
+        remedy = swapped if neighbours else f"{sides[0]} or {sides[1]} are a quarter of a turn off their positions"
     elif len(opposite) == len(rest):
         kind = "gauges_swapped_or_inverted"
         remedy = f"{sides[0]} or {sides[1]} are inverted{', or ' + swapped if neighbours else ''}"
-        remedy += "; recordings at two loads tell which"
+        remedy += "; recordings at two loads separate these cases"
     else:
-        kind, remedy = "gauge_inverted", f"{sides[0]} is inverted or bonded a quarter of a turn from where it should be"
+        kind, remedy = "gauge_inverted", f"{sides[0]} is inverted or bonded a quarter of a turn off its position"
     return Defect(
         kind, "refuse", recording.name, " ".join(opposite), f"{sides[0]} in opposite phase to {sides[1]} at order 2",
         "the lobes at s1, s2, s3 and s4 in turn", remedy,

@@ -1,1 +1,1 @@
-"""Readers: folders with a manifest, HDF5, MATLAB, Parquet and CSV with a column map; limits against hostile files."""
+"""Readers of folders with a manifest, HDF5, MATLAB, Parquet and CSV files, with limits against hostile ones."""

@@ -1,4 +1,4 @@
-"""From facts and columns to a recording: the checks that every form on disk shares."""
+"""From facts and columns to a recording, with the checks that all formats share."""
 
 from collections.abc import Mapping, Sequence
 
@@ -11,17 +11,19 @@ from swgsim.recordings.files.file_defect import FIRST_ROW, FileDefect, shown
 from swgsim.recordings.files.limits import LARGEST_NUMBER, SMALLEST_STEP, require_rows
 from swgsim.recordings.recording import CHANNELS, Recording
 
-# What a wrapped angle may span beyond one revolution, as the jitter of an encoder at its index does.
+# Span of an angle that is wrapped to one revolution, with the jitter of an encoder at its index [rad].
 WRAPPED = 2 * np.pi * 1.001
+
+ONE_TABLE = "one file must hold all channels of a recording: join files of single channels, as columns of one table"
 
 
 def assemble(file: str, facts: Mapping, columns: Mapping[str, Float[np.ndarray, " time"]]) -> Recording:
-    """A recording of one file, with an angle that does not wrap.
+    """A recording of one file, with a continuous angle.
 
     Parameters
     ----------
     file : str
-        For messages.
+        Its name in messages.
     facts : mapping
         As :func:`swgsim.recordings.files.facts.parse` returns them.
     columns : mapping
@@ -30,7 +32,7 @@ def assemble(file: str, facts: Mapping, columns: Mapping[str, Float[np.ndarray, 
     Raises
     ------
     FileDefect
-        If a number is not finite or the time does not increase; it names row and column.
+        If a number is not finite or the time does not increase, with row and column.
     """
     require_sound(file, columns)
     channels = {name: columns[name] for name in CHANNELS if name in columns}
@@ -50,7 +52,7 @@ def assemble(file: str, facts: Mapping, columns: Mapping[str, Float[np.ndarray, 
 
 
 def require_sound(file: str, columns: Mapping[str, Float[np.ndarray, " time"]]) -> None:
-    """Raise a FileDefect unless there are channels, rows enough, finite numbers and an increasing time."""
+    """Raise a FileDefect unless there are channels, enough rows, finite numbers and an increasing time."""
     if set(columns) <= {"t"}:
         raise FileDefect(file, "no channel", f"at least one of {', '.join(each.column for each in CHANNELS.values())}")
     require_rows(file, len(columns["t"]))
@@ -66,26 +68,26 @@ def require_sound(file: str, columns: Mapping[str, Float[np.ndarray, " time"]]) 
 
 
 def no_numbers(values: Float[np.ndarray, " time"]) -> Int[np.ndarray, " bad"]:
-    """Samples that cannot be computed with."""
+    """Samples that are not finite or too large for computation."""
     return np.flatnonzero(~(np.abs(values) <= LARGEST_NUMBER))
 
 
 def standing(time: Float[np.ndarray, " time"]) -> Int[np.ndarray, " bad"]:
-    """Samples that are not later than the one before."""
+    """Samples that are not later than their predecessor."""
     return np.flatnonzero(~(np.diff(time) >= SMALLEST_STEP)) + 1
 
 
 def require_alike(recordings: Sequence[Recording]) -> None:
-    """Raise a FileDefect unless all recordings have names of their own and the same channels."""
+    """Raise a FileDefect unless all recordings have different names and the same channels."""
     first, names = recordings[0], set()
     for each in recordings:
         if each.name in names:
-            raise FileDefect(f"recording {each.name}", f"the name {shown(each.name)} twice", "a name of its own")
+            raise FileDefect(f"recording {each.name}", f"the name {shown(each.name)} twice", "different names")
         names.add(each.name)
         if set(each.channels) != set(first.channels):
             found = ", ".join(map(column_of, each.channels))
-            expected = ", ".join(map(column_of, first.channels))
-            raise FileDefect(f"recording {each.name}", f"the channels {found}", f"those of {first.name}: {expected}")
+            expected = f"those of {first.name}: {', '.join(map(column_of, first.channels))}"
+            raise FileDefect(f"recording {each.name}", f"the channels {found}", f"{expected}; {ONE_TABLE}")
 
 
 def column_of(name: str) -> str:
@@ -94,7 +96,7 @@ def column_of(name: str) -> str:
 
 
 def unwrapped(angle: Float[np.ndarray, " time"]) -> Float[np.ndarray, " time"]:
-    """The angle without the jumps by one revolution of an angle that is kept within one [rad]; else as it is.
+    """A wrapped angle without its jumps by one revolution [rad]; any other angle unchanged.
 
     >>> unwrapped(np.array([6.0, 6.2, 0.1])).round(3)
     array([6.   , 6.2  , 6.383])

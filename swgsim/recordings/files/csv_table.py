@@ -12,7 +12,7 @@ from swgsim.recordings.files.file_defect import FIRST_ROW, FileDefect, shown
 from swgsim.recordings.files.limits import MOST_ROWS, require_readable
 
 LONGEST_HEADER = 10_000
-# A row has at most as many cells as the header; what has no end of line is no table.
+# A row has as many cells as the header, so a longer line is no row of a table.
 LONGEST_LINE = 100_000
 
 
@@ -23,12 +23,12 @@ def read_table(path: Path, name: str) -> dict[str, Float[np.ndarray, " time"]]:
     ----------
     path : Path
     name : str
-        What messages call the file.
+        Name of the file in messages.
 
     Raises
     ------
     FileDefect
-        If it is empty, not text, has columns without or of the same name, or a cell that is no number.
+        If the file is empty or not text, a column has no name or that of another, or a cell is no number.
     """
     require_readable(path)
     try:
@@ -56,12 +56,12 @@ def _header(stream: TextIO, name: str) -> list[str]:
     header = [cell.strip() for cell in line.split(",")]
     for number, column in enumerate(header, 1):
         if not column or column in header[: number - 1]:
-            raise FileDefect(name, f"{shown(column)} as column {number}", "a name of its own for each column", 1)
+            raise FileDefect(name, f"{shown(column)} as column {number}", "different names of all columns", 1)
     return header
 
 
 def _lines(stream: TextIO, name: str) -> Iterator[str]:
-    """The rows after the header; blank lines are allowed at the end only."""
+    """The rows after the header; blank lines are allowed only at the end."""
     blank = 0
     rows = 0
     for row, line in enumerate(iter(lambda: stream.readline(LONGEST_LINE + 1), ""), FIRST_ROW):
@@ -81,10 +81,10 @@ def _lines(stream: TextIO, name: str) -> Iterator[str]:
 
 
 def _no_text(path: Path, name: str) -> FileDefect:
-    """Where a file stops to be text."""
+    """The first row that is not text."""
     with path.open("rb") as raw:
         row = next(row for row, line in enumerate(raw, 1) if not _is_text(line))
-    return FileDefect(name, "bytes that are no text", "a CSV file in UTF-8", row)
+    return FileDefect(name, "bytes that are not text", "a CSV file in UTF-8", row)
 
 
 def _is_text(line: bytes) -> bool:
@@ -97,7 +97,7 @@ def _is_text(line: bytes) -> bool:
 
 
 def _first_bad_cell(path: Path, name: str, header: list[str]) -> FileDefect | None:
-    """What kept the table from being read; None if the reason is another one."""
+    """The first row or cell that is not numbers; None if there is no such row."""
     with path.open(encoding="utf-8-sig") as stream:
         _header(stream, name)
         for row, line in enumerate(stream, FIRST_ROW):

@@ -1,4 +1,4 @@
-"""The facts that belong to a recording, from the text of a manifest, the attributes of a file or a column map."""
+"""Facts of a recording, from a manifest, the attributes of a file or a column map."""
 
 import re
 from collections.abc import Mapping
@@ -18,26 +18,26 @@ KNOWN = (*NEEDED, *OPTIONAL)
 LONGEST_TEXT = 200
 MOST_REPEATS = 1_000_000
 
-# Digits can be split in one way only: else a cell of many digits that is no number would take their number squared.
+# Digits can be split in one way only. Otherwise a cell of many digits would take quadratic time.
 NUMBER = re.compile(r"\s*[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\s*", re.ASCII)
 
 
 def parse(given: Mapping[str, object], file: str, row: int | None = None) -> dict[str, object]:
-    """Facts of the right types and within their limits; optional ones that are not given get their defaults.
+    """Facts with the right types and within their limits; missing optional ones get their defaults.
 
     Parameters
     ----------
     given : mapping
         Fact to text or number.
     file : str
-        Which file says so.
+        File that holds the facts.
     row : int, optional
-        Where.
+        Its row.
 
     Raises
     ------
     FileDefect
-        If one is missing, unknown, of the wrong type or beyond its limits.
+        If a fact is missing, unknown, of the wrong type or beyond its limits.
     """
     missing = [name for name in NEEDED if name not in given]
     if missing:
@@ -58,7 +58,7 @@ def parse(given: Mapping[str, object], file: str, row: int | None = None) -> dic
         OperatingPoint(facts["n_in_rpm"], facts["T_out_nm"])  # type: ignore[arg-type]
         Conditions(facts["temperature_c"], facts["elapsed_s"])  # type: ignore[arg-type]
     except ValueError as error:
-        raise FileDefect(file, f"a fact beyond its limits ({error})", "one within them", row) from None
+        raise FileDefect(file, f"a fact beyond its limits ({error})", "a value within them", row) from None
     return facts
 
 
@@ -78,7 +78,7 @@ def of(recording: Recording) -> dict[str, object]:
 
 
 def _text(value: object, file: str, row: int | None, column: str, empty: bool = False) -> str:
-    """Printable text without blanks around it; whole numbers of a column map count as text."""
+    """Printable text without blanks around it; a whole number of a column map becomes text."""
     if isinstance(value, int) and not isinstance(value, bool):
         value = str(value)
     sound = isinstance(value, str) and value.isprintable() and value == value.strip() and len(value) <= LONGEST_TEXT
@@ -96,5 +96,5 @@ def _number(value: object, file: str, row: int | None, column: str) -> float:
     except OverflowError:  # of an integer
         number = nan
     if not isfinite(number):
-        raise FileDefect(file, shown(value), "a finite number; leave out the column if it is not known", row, column)
+        raise FileDefect(file, shown(value), "a finite number; leave out the column if it is unknown", row, column)
     return number

@@ -1,29 +1,29 @@
-"""What is wrong with a file: always named by file, row, column, what was found and what was expected."""
+"""Defect of a file, with file, row, column, found and expected value."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from reprlib import Repr
 
-# Rows are counted as an editor counts the lines of a CSV file: the header is row 1, the first sample row 2.
+# Rows are numbered as lines of an editor: the header is row 1, the first sample row 2.
 FIRST_ROW = 2
 
 # A found value is shown up to this many characters.
 SHOWN = 60
-# What is no text may be nested so that it fills the memory when it is written out.
+# Nested values could fill the memory as text, so they are abbreviated.
 _SHORT = Repr()
 _SHORT.maxlong = _SHORT.maxother = _SHORT.maxstring = 2 * SHOWN
 
 
 class FileDefect(ValueError):
-    """A file that cannot be read as recordings.
+    """Error for a file that cannot be read as recordings.
 
     Parameters
     ----------
     file : str
     found, expected : str
     row : int, optional
-        Counted from :data:`FIRST_ROW`.
+        Row of the file; samples begin at :data:`FIRST_ROW`.
     column : str, optional
     """
 
@@ -35,7 +35,7 @@ class FileDefect(ValueError):
 
 @contextmanager
 def read_for(choice: str, path: str) -> Iterator[None]:
-    """Say for which choice a file was read: files of one name are in many folders.
+    """Add the choice and the folder to a FileDefect, as many folders hold files of the same name.
 
     Raises
     ------
@@ -50,7 +50,7 @@ def read_for(choice: str, path: str) -> Iterator[None]:
 
 
 def shown(value: object) -> str:
-    """A found value in quotes, cut where it is long.
+    """A found value in quotes, abbreviated if it is long.
 
     >>> shown("3,14")
     "'3,14'"

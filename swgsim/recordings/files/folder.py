@@ -1,4 +1,4 @@
-"""Recordings as a folder: one CSV file for each, and a manifest; what people with a test bench write."""
+"""Recordings as a folder: one CSV file each, and a manifest. It is the format for people with a test bench."""
 
 import os
 import shutil
@@ -12,44 +12,45 @@ from swgsim.recordings.files.file_defect import FileDefect, shown
 from swgsim.recordings.files.limits import require_file_count
 from swgsim.recordings.recording import CHANNELS, Recording
 
+OR_MAPPING = "or give other names and units in a column map, with mapping="
 CHANNEL_OF = {"t_s": "t", **{channel.column: name for name, channel in CHANNELS.items()}}
 
 
 def read_folder(folder: Path) -> tuple[Recording, ...]:
     """The recordings of a folder, in the order of its manifest.
 
-    An angle that is kept within one revolution comes back without its jumps; every other number as it is in the file.
-    What the numbers say of the bench is for :func:`swgsim.recordings.checks.inspection.inspect`.
+    A wrapped angle is unwrapped; all other numbers are those of the files. The checks of the numbers are in
+    :func:`swgsim.recordings.checks.inspection.inspect`.
 
     Raises
     ------
     FileDefect
-        If anything is missing, unknown or no number; it names file, row, column, what was found and expected.
+        If anything is missing, unknown or not a number.
     """
     recordings = []
-    for path, said in manifest.read(folder):
+    for path, known in manifest.read(folder):
         name = str(path.relative_to(folder))
         table = read_table(path, name)
         for column in table:
             if column not in CHANNEL_OF:
                 raise FileDefect(name, f"unknown column {shown(column)}", _choices(column), 1)
         if "t_s" not in table:
-            raise FileDefect(name, "no column t_s", "the time of each sample in seconds", 1)
-        recordings.append(assemble(name, said, {CHANNEL_OF[column]: values for column, values in table.items()}))
+            raise FileDefect(name, "no column t_s", f"the time of each sample in seconds, {OR_MAPPING}", 1)
+        recordings.append(assemble(name, known, {CHANNEL_OF[column]: values for column, values in table.items()}))
     require_alike(recordings)
     return tuple(recordings)
 
 
 def write_folder(folder: Path, recordings: Sequence[Recording]) -> None:
-    """Write recordings as a folder, which is complete or absent; reading gives back every number exactly.
+    """Write recordings as a folder, which is complete or absent; reading returns every number exactly.
 
     Raises
     ------
     ValueError
-        If the folder is there already, or a recording is one that could not be read back.
+        If the folder exists, or a recording could not be read back.
     """
     if folder.exists():
-        raise ValueError(f"{folder} is there already: remove it or choose another folder")
+        raise ValueError(f"{folder} exists: remove it or choose another folder")
     require_file_count(folder, len(recordings))
     require_alike(recordings)
     aside = folder.with_name(f".{folder.name}.tmp")
@@ -58,11 +59,11 @@ def write_folder(folder: Path, recordings: Sequence[Recording]) -> None:
     try:
         rows = []
         for number, recording in enumerate(recordings, 1):
-            said = facts.of(recording)
-            facts.parse(said, f"recording {recording.name}")
+            known = facts.of(recording)
+            facts.parse(known, f"recording {recording.name}")
             file = f"recording_{number:04d}.csv"
             _write_table(aside / file, recording)
-            rows.append((file, said))
+            rows.append((file, known))
         (aside / manifest.NAME).write_text(manifest.text(rows), encoding="utf-8", newline="")
         os.replace(aside, folder)
     finally:
@@ -70,7 +71,7 @@ def write_folder(folder: Path, recordings: Sequence[Recording]) -> None:
 
 
 def _write_table(path: Path, recording: Recording) -> None:
-    """One file; repr gives the shortest text from which the same number is read."""
+    """One file; repr writes the shortest text of a number that is read back exactly."""
     columns = {
         "t": recording.time,
         **{name: recording.channels[name] for name in CHANNELS if name in recording.channels},
@@ -83,8 +84,8 @@ def _write_table(path: Path, recording: Recording) -> None:
 
 
 def _choices(column: str) -> str:
-    """What to write in place of an unknown column; a quantity in another unit is named as such."""
+    """The expected columns; for a quantity in another unit, its unit."""
     for name, channel in CHANNELS.items():
         if column.lower().startswith(name.lower()):
-            return f"{channel.column} in {channel.unit}: convert it, or read it through a column map"
-    return f"some of {','.join(CHANNEL_OF)}"
+            return f"{channel.column} in {channel.unit}: convert it, {OR_MAPPING}"
+    return f"some of {','.join(CHANNEL_OF)}; rename it, {OR_MAPPING}"

@@ -1,6 +1,7 @@
-"""The named columns of files from elsewhere: MATLAB, Parquet and CSV. Only numbers are read, never objects."""
+"""Named columns of MATLAB, Parquet and CSV files. Only numbers are read, never objects."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from contextlib import nullcontext
 from math import prod
 from pathlib import Path
 
@@ -8,42 +9,49 @@ import h5py
 import numpy as np
 from jaxtyping import Float
 
+from swgsim.recordings.files.assembly import ONE_TABLE
 from swgsim.recordings.files.csv_table import read_table
 from swgsim.recordings.files.file_defect import FileDefect, shown
 from swgsim.recordings.files.limits import require_expansion, require_readable, require_rows
-from swgsim.recordings.files.mat_elements import NUMBERS
-from swgsim.recordings.files.mat_variables import variables
+from swgsim.recordings.files.matlab import MatlabReader
 from swgsim.recordings.files.recording_file import numbers
 
 Columns = dict[str, Float[np.ndarray, " time"]]
+# Classes of MATLAB that are numbers; all others are refused by their name.
+MATLAB_NUMBERS = ("double", "single", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)))
 
 
-def read_columns(path: Path, name: str, wanted: Sequence[str]) -> Columns:
-    """Some columns of a file, each as long as it is in the file.
+def read_columns(path: Path, name: str, wanted: Sequence[str], matlab: MatlabReader | None = None) -> Columns:
+    """Some columns of a file, each with as many samples as in the file.
 
     Parameters
     ----------
     path : Path
-        Its ending says what it is.
+        Its suffix gives the format.
     name : str
-        What messages call the file.
+        Name of the file in messages.
     wanted : sequence of str
+    matlab : MatlabReader, optional
+        Reader that the files of a folder share; without it, each old MATLAB file starts one (0.3 s).
 
     Raises
     ------
     FileDefect
-        If the file is damaged or of an unknown kind, or a column is not there or holds no real numbers.
+        If the file is damaged or of an unknown format, or a column is missing or holds no real numbers.
     """
     require_readable(path)
-    reader = READERS.get(path.suffix.lower())
-    if reader is None:
+    suffix = path.suffix.lower()
+    if suffix not in READERS:
         raise FileDefect(name, shown(path.suffix), f"a file that ends in {', '.join(READERS)}")
     try:
-        return reader(path, name, wanted)
-    except (FileDefect, KeyboardInterrupt):
+        if suffix == ".mat" and not h5py.is_hdf5(path):
+            with nullcontext(matlab) if matlab else MatlabReader() as reader:
+                return _read_matlab(path, name, wanted, reader)
+        return READERS[suffix](path, name, wanted)
+    except FileDefect:
         raise
-    except Exception as error:  # The libraries answer damaged bytes with errors of many kinds, also of their own.
-        raise FileDefect(name, f"a damaged file ({type(error).__name__}: {error})", f"a sound {path.suffix}") from error
+    except Exception as error:  # The libraries raise errors of many kinds for damaged bytes, also their own.
+        raise FileDefect(name, f"a damaged file ({type(error).__name__}: {error})", f"a sound {suffix}") from error
 
 
 def _read_csv(path: Path, name: str, wanted: Sequence[str]) -> Columns:
@@ -52,35 +60,32 @@ def _read_csv(path: Path, name: str, wanted: Sequence[str]) -> Columns:
     return {column: table[column] for column in wanted}
 
 
-def _read_matlab(path: Path, name: str, wanted: Sequence[str]) -> Columns:
-    """A .mat file; version 7.3 is HDF5 behind a text of 512 bytes."""
-    if h5py.is_hdf5(path):
-        with h5py.File(path, "r") as file:
-            _require_present(name, wanted, file)
-            for column in wanted:
-                link = file.get(column, getlink=True)
-                if not isinstance(link, h5py.HardLink) or not isinstance(file[column], h5py.Dataset):
-                    raise FileDefect(name, "a link or a struct", "a variable with numbers", column=column)
-            require_expansion(path, name, sum(file[column].size or 0 for column in wanted))
-            return {column: numbers(file[column], name, column) for column in wanted}
-    from scipy.io import loadmat
+def _read_matlab_73(path: Path, name: str, wanted: Sequence[str]) -> Columns:
+    """A MATLAB file of version 7.3, which is HDF5 behind a text of 512 bytes."""
+    with h5py.File(path, "r") as file:
+        _require_present(name, wanted, file)
+        for column in wanted:
+            link = file.get(column, getlink=True)
+            if not isinstance(link, h5py.HardLink) or not isinstance(file[column], h5py.Dataset):
+                raise FileDefect(name, "a link or a struct", "a variable with numbers", column=column)
+        require_expansion(path, name, sum(file[column].size or 0 for column in wanted))
+        return {column: numbers(file[column], name, column) for column in wanted}
 
-    # Shapes first: what is compressed may be far larger than the file.
-    there = variables(path, name)
-    names = [variable.name for variable in there]
+
+def _read_matlab(path: Path, name: str, wanted: Sequence[str], reader: MatlabReader) -> Columns:
+    """A MATLAB file of version 4 or 5. Shapes are checked first, as compressed numbers may exceed the file by far."""
+    variables = reader.variables(path, name)
+    names = [variable.name for variable in variables]
     _require_present(name, wanted, names)
-    sizes = []
-    for variable, shape, kind in there:
-        if variable in wanted and names.count(variable) > 1:
-            raise FileDefect(name, f"{names.count(variable)} variables of this name", "one", column=variable)
-        if variable in wanted and kind not in NUMBERS.values():
-            raise FileDefect(name, f"{shown(kind)} of shape {shown(shape)}", "real numbers", column=variable)
-        if variable in wanted:
-            sizes.append(prod(shape))
-            require_rows(name, sizes[-1])
-    require_expansion(path, name, sum(sizes))
-    content = loadmat(path, variable_names=list(wanted))
-    return {column: _real(content[column], name, column) for column in wanted}
+    chosen = [variable for variable in variables if variable.name in wanted]
+    for column, shape, kind in chosen:
+        if names.count(column) > 1:
+            raise FileDefect(name, f"{names.count(column)} variables of this name", "one", column=column)
+        if kind not in MATLAB_NUMBERS:
+            raise FileDefect(name, f"{shown(kind)} of shape {shown(shape)}", "real numbers", column=column)
+        require_rows(name, prod(shape))
+    require_expansion(path, name, sum(prod(variable.shape) for variable in chosen))
+    return {column: _real(values, name, column) for column, values in reader.numbers(path, name, wanted).items()}
 
 
 def _read_parquet(path: Path, name: str, wanted: Sequence[str]) -> Columns:
@@ -92,7 +97,7 @@ def _read_parquet(path: Path, name: str, wanted: Sequence[str]) -> Columns:
             if file.schema_arrow.names.count(column) > 1:
                 raise FileDefect(name, "several columns of this name", "one", column=column)
             kind = file.schema_arrow.field(column).type
-            # A text or a list may be long and there once for all rows.
+            # One long text or list may be stored once for all rows.
             if not (types.is_integer(kind) or types.is_floating(kind)):
                 raise FileDefect(name, shown(str(kind)), "real numbers", column=column)
         groups = range(file.num_row_groups)
@@ -103,12 +108,13 @@ def _read_parquet(path: Path, name: str, wanted: Sequence[str]) -> Columns:
     return {column: _real(table[column].to_numpy(), name, column) for column in wanted}
 
 
-def _require_present(name: str, wanted: Sequence[str], there: object) -> None:
-    """Raise unless all that the map names is there."""
-    names = list(there)  # type: ignore[call-overload]
+def _require_present(name: str, wanted: Sequence[str], present: Iterable[str]) -> None:
+    """Raise a FileDefect unless a file has all columns of the map."""
+    names = list(present)
     for column in wanted:
         if column not in names:
-            raise FileDefect(name, f"columns {', '.join(map(str, names[:20]))}", f"{shown(column)}, as the map says")
+            found, expected = f"columns {', '.join(names[:20])}", f"{shown(column)}, as in the column map (mapping=)"
+            raise FileDefect(name, found, expected + (f"; {ONE_TABLE}" if len(names) <= 2 else ""))
 
 
 def _real(values: object, name: str, column: str) -> Float[np.ndarray, " time"]:
@@ -120,4 +126,4 @@ def _real(values: object, name: str, column: str) -> Float[np.ndarray, " time"]:
     return values.astype("f8").ravel()
 
 
-READERS = {".mat": _read_matlab, ".parquet": _read_parquet, ".csv": _read_csv}
+READERS = {".mat": _read_matlab_73, ".parquet": _read_parquet, ".csv": _read_csv}

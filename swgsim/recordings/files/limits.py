@@ -1,37 +1,31 @@
-"""What is read at most, and from where: no file outside the folder that was given, none beyond a declared size."""
+"""Limits of what is read: sizes of files and tables, and no file outside of the given folder."""
 
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
 from swgsim.recordings.files.file_defect import FileDefect, shown
 
-# Of one file. A CSV of 5e7 rows would be larger, so that this limit is the one for text and the next for binary files.
+# Of one file [byte] and [row]. The first limits text files, the second binary ones.
 LARGEST_FILE = 2 * 2**30
 MOST_ROWS = 50_000_000
 MOST_FILES = 10_000
 
-# Numbers may lie compressed: to 8 bytes each they may grow so many times, or to so many bytes whatever the file's size.
-# Measured signals shrink by less than 10; a file of a few kilobytes that fills the memory was made for that.
+# Compressed numbers of 8 bytes may expand to so many times the size of the file, or to so many bytes of any file.
+# Measured signals are compressed by less than 10; only a hostile file of a few kilobytes fills the memory.
 MOST_EXPANSION = 100
 ALWAYS_EXPANDED = 256 * 2**20
 
-# No channel in its unit comes near it, and squares of it can still be computed with.
+# Far beyond every channel in its unit; squares are still finite.
 LARGEST_NUMBER = 1e15
 
-# No clock resolves less [s].
+# Finest step of a clock [s].
 SMALLEST_STEP = 1e-12
 
-# Medians and order lines of fewer samples say nothing.
+# Fewer samples give no median and no order lines.
 FEWEST_ROWS = 16
 
 
 def require_readable(path: Path) -> None:
-    """Raise unless a path is a regular file of a size that is read.
-
-    Raises
-    ------
-    FileDefect
-        Also where there is no such file.
-    """
+    """Raise a FileDefect unless a path is a regular file within the size limit."""
     if not path.is_file():
         raise FileDefect(str(path), "no file", "a regular file of that name")
     size = path.stat().st_size
@@ -40,26 +34,26 @@ def require_readable(path: Path) -> None:
 
 
 def require_rows(file: str, rows: int) -> None:
-    """Raise a FileDefect unless that many rows are enough and not too many."""
+    """Raise a FileDefect unless a number of rows is within its limits."""
     if not FEWEST_ROWS <= rows <= MOST_ROWS:
         raise FileDefect(file, f"{rows} samples", f"from {FEWEST_ROWS} to {MOST_ROWS}")
 
 
 def most_expanded(path: Path) -> int:
-    """Bytes that what lies compressed in a file may grow to."""
+    """Bytes to which the compressed contents of a file may expand."""
     return min(LARGEST_FILE, max(ALWAYS_EXPANDED, MOST_EXPANSION * path.stat().st_size))
 
 
 def require_expansion(path: Path, file: str, count: int) -> None:
-    """Raise a FileDefect if a file says that it holds more numbers than one of its size does.
+    """Raise a FileDefect if a file claims more numbers than a file of its size holds.
 
     Parameters
     ----------
     path : Path
     file : str
-        What messages call it.
+        Name of the file in messages.
     count : int
-        Numbers that are to be read from it.
+        Numbers to read from it.
     """
     most = most_expanded(path)
     if 8 * count > most:
@@ -68,28 +62,28 @@ def require_expansion(path: Path, file: str, count: int) -> None:
 
 
 def require_file_count(folder: Path, count: int) -> None:
-    """Raise a FileDefect unless a folder holds at least one recording and not too many."""
+    """Raise a FileDefect unless the number of recordings of a folder is within its limits."""
     if not 1 <= count <= MOST_FILES:
         raise FileDefect(str(folder), f"{count} recordings", f"from 1 to {MOST_FILES}")
 
 
 def inside(folder: Path, name: str, table: str, row: int | None = None) -> Path:
-    """The path of a file that a table names, which must lie in its folder, links followed.
+    """The path of a file that a table names; it must be in the folder, also through links.
 
     Parameters
     ----------
     folder : Path
     name : str
-        As the table says it.
+        Its entry in the table.
     table : str
-        Which table says it.
+        Name of the table in messages.
     row : int, optional
-        Where it says it.
+        Its row.
 
     Raises
     ------
     FileDefect
-        If the name is absolute, leads outside or names no readable file.
+        If the name is absolute, leads out of the folder or names no readable file.
     """
     parts = PurePosixPath(name.replace("\\", "/")).parts
     outside = ".." in parts or PurePosixPath(name).is_absolute() or PureWindowsPath(name).drive or "\\" in name

@@ -1,4 +1,4 @@
-"""``manifest.csv``: which file holds which recording, and the facts that belong to it."""
+"""``manifest.csv``: file and facts of every recording of a folder."""
 
 import csv
 import io
@@ -10,7 +10,7 @@ from swgsim.recordings.files.file_defect import FIRST_ROW, FileDefect, shown
 from swgsim.recordings.files.limits import inside, require_file_count, require_readable
 
 NAME = "manifest.csv"
-# It is read at once; the facts of 10 000 recordings have less.
+# Bytes, more than the facts of 10 000 recordings have; it is read at once.
 LARGEST = 32 * 2**20
 
 # Columns in the order in which they are written.
@@ -23,8 +23,8 @@ def read(folder: Path) -> list[tuple[Path, dict[str, object]]]:
     Raises
     ------
     FileDefect
-        If the manifest is missing or no table, lacks a column, has an unknown one or a fact of the wrong kind, or if
-        its files and those of the folder are not the same.
+        If the manifest is missing or not a table, lacks a column, has an unknown column or a wrong fact, or if its
+        files and those of the folder differ.
     """
     path = folder / NAME
     require_readable(path)
@@ -42,16 +42,15 @@ def read(folder: Path) -> list[tuple[Path, dict[str, object]]]:
             raise FileDefect(NAME, f"{len(cells)} cells", f"{len(header)}, as the header has", row)
         given: dict[str, object] = dict(zip(header, (cell.strip() for cell in cells), strict=True))
         file = inside(folder, str(given.pop("file")), NAME, row)
-        said = facts.parse(given, NAME, row)
+        known = facts.parse(given, NAME, row)
         first = taken.setdefault(file.resolve(), row)
         if first != row:
-            raise FileDefect(NAME, f"{shown(file.name)} as in row {first}", "a file of its own", row, "file")
-        first = names.setdefault(said["recording"], row)
+            raise FileDefect(NAME, f"{shown(file.name)} as in row {first}", "another file", row, "file")
+        first = names.setdefault(known["recording"], row)
         if first != row:
-            raise FileDefect(
-                NAME, f"{shown(said['recording'])} as in row {first}", "a name of its own", row, "recording"
-            )
-        found.append((file, said))
+            found_name = f"{shown(known['recording'])} as in row {first}"
+            raise FileDefect(NAME, found_name, "another name", row, "recording")
+        found.append((file, known))
     for file in sorted(folder.rglob("*")):
         if file.suffix.lower() == ".csv" and _place(file) not in taken and file != path:
             raise FileDefect(str(file.relative_to(folder)), "no row for this file in the manifest", "one row per file")
@@ -59,7 +58,7 @@ def read(folder: Path) -> list[tuple[Path, dict[str, object]]]:
 
 
 def _place(file: Path) -> Path:
-    """Where a file is; one that cannot be found, as links in a circle cannot, is at no place of another one."""
+    """Resolved path of a file; links in a circle have none and stay as they are."""
     try:
         return file.resolve()
     except (OSError, RuntimeError):
@@ -71,13 +70,13 @@ def text(rows: Iterable[tuple[str, dict[str, object]]]) -> str:
     stream = io.StringIO()
     writer = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
     writer.writeheader()
-    for file, said in rows:
-        writer.writerow({"file": file, **said})
+    for file, known in rows:
+        writer.writerow({"file": file, **known})
     return stream.getvalue()
 
 
 def _rows(path: Path) -> list[list[str]]:
-    """Cells of all rows that are not blank at the end."""
+    """Cells of all rows but blank ones at the end."""
     try:
         rows = list(csv.reader(io.StringIO(path.read_text(encoding="utf-8-sig"), newline=""), strict=True))
     except (csv.Error, UnicodeDecodeError) as error:
@@ -90,7 +89,7 @@ def _rows(path: Path) -> list[list[str]]:
 
 
 def _require_header(header: list[str]) -> None:
-    """Raise unless the header has the columns that are needed, each once, and no unknown ones."""
+    """Raise unless the header has all needed columns, none twice and none unknown."""
     missing = [name for name in ("file", *facts.NEEDED) if name not in header]
     if missing:
         raise FileDefect(NAME, f"no column {', '.join(missing)}", f"the columns {','.join(COLUMNS)}", 1)

@@ -1,4 +1,4 @@
-"""Something described by a YAML file from outside."""
+"""Description in a YAML file of a user."""
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -15,22 +15,22 @@ T = TypeVar("T")
 
 
 def described(path: Path, what: str, example: str, make: Callable[[Any], T]) -> T:
-    """What a YAML file describes.
+    """Object that a YAML file describes.
 
     Parameters
     ----------
     path : Path
     what : str
-        Such a file, for messages.
+        Kind of file, for messages.
     example : str
-        One that a user can look at.
+        Path of an example, for messages.
     make : callable
-        From the plain data of the file; what it raises is raised with the name of the file.
+        Makes the object from the plain data of the file; its errors get the name of the file.
 
     Raises
     ------
     FileDefect
-        If the file is too large, no YAML, or ``make`` refuses what it says.
+        If the file is too large, is not YAML, or ``make`` refuses its contents.
     """
     require_readable(path)
     if path.stat().st_size > LARGEST:
@@ -42,7 +42,7 @@ def described(path: Path, what: str, example: str, make: Callable[[Any], T]) -> 
 
 
 def require_names(owner: str, value: Any, known: Sequence[str] | None = None) -> None:
-    """Raise a ValueError unless a value is names with values, and known ones where they are listed."""
+    """Raise a ValueError unless a value is a mapping of names, all of them known where they are listed."""
     if not isinstance(value, Mapping) or not all(isinstance(key, str) for key in value):
         raise ValueError(f"{owner} is {shown(value)}, must be names with values")
     if known is not None:

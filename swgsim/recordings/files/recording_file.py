@@ -1,4 +1,4 @@
-"""Recordings as one HDF5 file laid out as NetCDF-4: a group for each, sealed as data sets are (swgsim/storage)."""
+"""Recordings as one HDF5 file in NetCDF-4 layout: one group each, with the seal of data sets (swgsim/storage)."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -25,7 +25,7 @@ def write_file(path: Path, recordings: Sequence[Recording]) -> None:
     Raises
     ------
     ValueError
-        If a recording is one that could not be read back.
+        If a recording could not be read back.
     """
     require_file_count(path, len(recordings))
     require_alike(recordings)
@@ -43,7 +43,7 @@ def read_file(path: Path) -> tuple[Recording, ...]:
     Raises
     ------
     ValueError
-        If it is damaged or no file of recordings; the message names it.
+        If the file is damaged or holds no recordings.
     """
     require_readable(path)
     verify(path)
@@ -51,25 +51,25 @@ def read_file(path: Path) -> tuple[Recording, ...]:
         with h5py.File(path, "r") as file:
             title = attribute(file, "title")
             if title != TITLE:
-                expected = f"a file titled {TITLE!r}; a data set of generate.py is another thing"
+                expected = f"a file titled {TITLE!r}; data sets of swg generate have another layout"
                 raise FileDefect(str(path), f"the title {shown(title)}", expected)
             require_file_count(path, len(file))
             _require_all_inside(path, file)
             recordings = tuple(_read_group(file, name, f"{path}:{name}") for name in sorted(file))
     except FileDefect:
         raise
-    # The library answers damaged bytes with errors of many kinds; a seal can be put on any.
+    # The library raises errors of many kinds for damaged bytes; anybody can seal those.
     except (OSError, RuntimeError, LookupError, TypeError, ValueError) as error:
-        raise FileDefect(str(path), f"no HDF5 file of recordings ({error})", "one that write_file made") from None
+        raise FileDefect(str(path), f"no HDF5 file of recordings ({error})", "a file of write_file") from None
     require_alike(recordings)
     return recordings
 
 
 def _require_all_inside(path: Path, file: h5py.File) -> None:
-    """Raise unless all numbers lie in the file as they are.
+    """Raise unless the file has room for all its numbers.
 
-    write_file compresses nothing. So if they are more than the file is large, they are compressed, left out for a fill
-    value, or there under several names, and may fill the memory.
+    write_file compresses nothing. If the numbers exceed the size of the file, they are compressed, replaced by a fill
+    value or stored under several names, and may fill the memory.
     """
     size = path.stat().st_size
     for name in file:
@@ -83,24 +83,24 @@ def _require_all_inside(path: Path, file: h5py.File) -> None:
 
 def _write_group(group: h5py.Group, recording: Recording) -> None:
     """Time as a coordinate, channels along it, facts as attributes."""
-    said = facts.of(recording)
-    facts.parse(said, f"recording {recording.name}")
+    known = facts.of(recording)
+    facts.parse(known, f"recording {recording.name}")
     require_sound(f"recording {recording.name}", {"t": recording.time, **recording.channels})
-    say(group, **said)
+    say(group, **known)
     time = group.create_dataset("time", data=recording.time, dtype="f8", chunks=True, fletcher32=True)
     time.make_scale("time")
     say(time, units="s", long_name="time")
     for name, values in recording.channels.items():
         variable = group.create_dataset(name, data=values, dtype="f8", chunks=True, fletcher32=True)
-        say(variable, units=CHANNELS[name].unit, long_name=CHANNELS[name].says)
+        say(variable, units=CHANNELS[name].unit, long_name=CHANNELS[name].meaning)
         variable.dims[0].attach_scale(time)
 
 
 def _read_group(file: h5py.File, name: str, where: str) -> Recording:
-    """One recording; units must be those that were written."""
+    """One recording; its units must be those of the channels."""
     group = _plain(file, name, h5py.Group, where)
     attributes = {key: attribute(group, key) for key in facts.KNOWN if key in group.attrs}
-    said = facts.parse(attributes, where)
+    known = facts.parse(attributes, where)
     columns = {}
     for key in group:
         if key != "time" and key not in CHANNELS:
@@ -113,26 +113,26 @@ def _read_group(file: h5py.File, name: str, where: str) -> Recording:
     lengths = {key: len(values) for key, values in columns.items()}
     if "t" not in columns or len(set(lengths.values())) != 1:
         raise FileDefect(where, f"lengths {lengths}", "a time and as many values of every channel")
-    return assemble(where, said, columns)
+    return assemble(where, known, columns)
 
 
 def _plain(group: h5py.Group, name: str, kind: type, where: str) -> h5py.Group | h5py.Dataset:
-    """What lies under a name, unless it is a link that may lead out of the file."""
+    """Group or data set of a name; links are refused, as they may lead out of the file."""
     if not isinstance(group.get(name, getlink=True), h5py.HardLink) or not isinstance(group[name], kind):
         raise FileDefect(where, f"{shown(name)}, which is a link or of another kind", f"a {kind.__name__.lower()}")
     return group[name]
 
 
 def numbers(variable: h5py.Dataset, where: str, column: str) -> np.ndarray:
-    """The values of one variable, as long as they lie in the file itself and are real numbers in one row or column.
+    """The values of one variable: real numbers in one row or column.
 
     Raises
     ------
     FileDefect
-        Otherwise.
+        If the variable holds anything else, or its data are in another file.
     """
     if variable.is_virtual or variable.external:
-        raise FileDefect(where, "data that lie in another file", "data in the file itself", column=column)
+        raise FileDefect(where, "data in another file", "data in the file itself", column=column)
     if variable.dtype.kind not in "fiu" or sum(length != 1 for length in variable.shape) != 1:
         found = f"{variable.dtype} of shape {variable.shape}"
         raise FileDefect(where, found, "real numbers in one row or column", column=column)

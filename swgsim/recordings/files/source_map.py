@@ -1,4 +1,4 @@
-"""A column map: which column of a foreign file is which channel, in which unit, and the facts that it does not say."""
+"""A column map: channel and unit of each column of a foreign file, and the facts that the file lacks."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -14,12 +14,12 @@ from swgsim.recordings.files.file_defect import shown
 from swgsim.recordings.files.plain_file import described, require_names
 from swgsim.recordings.files.units import FACTORS, STRAIN, bridge_factor
 from swgsim.recordings.recording import CHANNELS
-from swgsim.storage.gauge_set import SENSORS
+from swgsim.storage.labelled_signals import SENSORS
 
 
 @dataclass(frozen=True)
 class ColumnSource:
-    """Where a channel comes from.
+    """Column of a channel.
 
     Attributes
     ----------
@@ -28,18 +28,19 @@ class ColumnSource:
     column : str
         Column of the table or variable of the file.
     unit : str
-        In which it is written.
+        Its unit in the file.
     inverted : bool
-        Whether its sign is to be turned.
+        Whether the sign is changed.
     gauge_factor, active_arms : float and int, optional
-        Of a bridge that is given as strain.
+        Properties of a bridge that is given as strain.
     zero_rad : float
-        Of the angle: what its column reads, in rad and with its sign, where the major axis is at s1.
+        Zero of the angle: value of the column, in rad and with its sign, where the major axis is at s1.
 
     Raises
     ------
     ValueError
-        If channel or unit is unknown, a zero is that of no angle, or a strain lacks what its bridge signal depends on.
+        If channel or unit is unknown, another channel than the angle has a zero, or a strain has no gauge factor and
+        arms.
     """
 
     channel: str
@@ -67,7 +68,7 @@ class ColumnSource:
 
     @property
     def factor(self) -> float:
-        """From the number in the file to the channel's."""
+        """Factor from the unit of the file to that of the channel."""
         sign = -1.0 if self.inverted else 1.0
         if self.gauge_factor is not None and self.active_arms is not None:
             return sign * bridge_factor(self.gauge_factor, self.active_arms)
@@ -90,11 +91,16 @@ class SourceMap:
     ----------
     channels : tuple of ColumnSource
     facts : mapping
-        Facts of every file, as in a manifest.
+        Facts of all files, as in a manifest.
     files : mapping
-        Name of a file to the facts that are its own; empty if the files are just those that are there.
+        Name of a file to its own facts; empty for all files of the folder.
     sampling_rate_hz : float, optional
-        In place of a column with the time [Hz].
+        Replaces a column with the time [Hz].
+
+    Raises
+    ------
+    ValueError
+        If there is no time or it is given twice, or two channels have the same column.
     """
 
     channels: tuple[ColumnSource, ...]
@@ -111,7 +117,7 @@ class SourceMap:
         columns = [source.column for source in self.channels]
         for column in columns:
             if columns.count(column) > 1:
-                raise ValueError(f"column {column!r} is mapped to two channels: give each its own")
+                raise ValueError(f"column {column!r} is mapped to two channels: give each another column")
 
 
 def read_map(path: Path) -> SourceMap:
@@ -120,7 +126,7 @@ def read_map(path: Path) -> SourceMap:
     Raises
     ------
     FileDefect
-        If it is no YAML or says something that no map says; the choices are listed.
+        If the file is not YAML or has an unknown entry; the choices are listed.
     """
     return described(path, "a column map", "conf/sources/example.yaml", _source_map)
 

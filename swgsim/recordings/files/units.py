@@ -1,9 +1,9 @@
-"""Units that a column map may name, and the factors to the units of the channels."""
+"""Units of column maps, and their factors to the units of the channels."""
 
 from collections.abc import Mapping
 from math import pi
 
-# From the unit of a column to that of the channel (swgsim/recordings/recording.py), by the channel's unit.
+# Unit of the channel (swgsim/recordings/recording.py) to unit of the column and factor between them.
 FACTORS: Mapping[str, Mapping[str, float]] = {
     "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6},
     "rad": {"rad": 1.0, "deg": pi / 180, "rev": 2 * pi},

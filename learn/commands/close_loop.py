@@ -1,0 +1,60 @@
+"""The command ``swg close-loop``: the answer of a loop on gauges or on a robot joint, kept as a run in MLflow."""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from swgsim.common.outcome import Outcome
+from swgsim.identification.report import close_loop as of_gauges
+from swgsim.joint import close_joint_loop as of_joint
+
+EXPERIMENT = "loop"
+# What is asked of recordings of a robot joint, and of no others; and of gauges only.
+OF_JOINT = ("joint", "signal", "holdout", "without")
+OF_GAUGES = ("commissioning", "mapping", "commissioning_mapping", "effects", "truth")
+
+
+def require_one_kind(config: Mapping[str, Any]) -> None:
+    """Raise a ValueError for a choice that is for recordings of the other kind: nothing would look at it."""
+    source = config["source"]
+    to_leave = f"is for strain gauges, source={source} for robot joints: leave one out"
+    others, said = (OF_JOINT, "is for robot joints: give source= as well") if source is None else (OF_GAUGES, to_leave)
+    for name in others:
+        if config[name] not in (None, []):
+            raise ValueError(f"{name}= {said}")
+
+
+def record(config: Mapping[str, Any], outcome: Outcome) -> None:
+    """Keep the answer as an MLflow run."""
+    import pandas as pd
+
+    from learn import tracking
+    from learn.jobs import settings
+
+    said = outcome.report
+    store = settings.store({**config["tracking"], "experiment": EXPERIMENT})
+    asked = ("recordings", "commissioning", "seed") if config["source"] is None else ("recordings", "source", *OF_JOINT)
+    chosen = {name: config[name] for name in asked}
+    key = hashlib.sha256(json.dumps([config, outcome.digest], sort_keys=True).encode()).hexdigest()[:16]
+    tags = {"data_digest": outcome.digest, "verdict": said["verdict"], "sentence": said["sentence"][:5000]}
+    with tracking.job_run(store, said["verdict"], key, chosen, config, tags) as job:
+        tables = {f"tables/{name}.parquet": pd.DataFrame(said[name]) for name in ("scores", "rungs") if name in said}
+        job.record(metrics(said), {f"figures/{n}.png": f for n, f in outcome.figures.items()}, tables)
+
+
+def metrics(said: Mapping[str, Any]) -> dict[str, float]:
+    """The figures of a report that are known: errors [%], sizes of the effects, seconds."""
+    error = said["error"]
+    found = {f"error_{when}_{what}": value for when in ("before", "after") for what, value in error[when].items()}
+    found |= {"noise_floor": error["noise_floor"], "effects": len(said["effects"]), "seconds": said["seconds"]}
+    for effect in said["effects"]:
+        name = effect["name"].replace(":", ".")
+        found |= {f"{name}/{key}": each["value"] for key, each in effect["parameters"].items()}
+    return {name: float(value) for name, value in found.items() if value is not None}
+
+
+def run(config: Mapping[str, Any]) -> None:
+    """Close the loop on a folder of recordings and keep the answer as a run in MLflow."""
+    require_one_kind(config)
+    record(config, (of_gauges if config["source"] is None else of_joint).run(config))

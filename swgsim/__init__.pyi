@@ -1,0 +1,37 @@
+from . import effects
+from .api import SimulatedRun, generate, record, simulate
+from .chain import Run, simulate_runs
+from .common.version import __version__
+from .gear import Conditions, Gear, KinematicError, OperatingPoint, Population, Transmission, WaveGenerator, Window
+from .identification import Identification, Unit, commission, identify
+from .joint import JointRecordings, recordings_of
+from .recordings import Recording, RecordingSet, read_recordings, write_folder
+
+__all__ = [
+    "Conditions",
+    "Gear",
+    "Identification",
+    "JointRecordings",
+    "KinematicError",
+    "OperatingPoint",
+    "Population",
+    "Recording",
+    "RecordingSet",
+    "Run",
+    "SimulatedRun",
+    "Transmission",
+    "Unit",
+    "WaveGenerator",
+    "Window",
+    "__version__",
+    "commission",
+    "effects",
+    "generate",
+    "identify",
+    "read_recordings",
+    "record",
+    "recordings_of",
+    "simulate",
+    "simulate_runs",
+    "write_folder",
+]

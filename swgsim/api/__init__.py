@@ -1,0 +1,9 @@
+"""The front door: the verbs of ``import swgsim as swg``, for one gear or one folder at a time.
+
+Imports every room but ``commands``.
+"""
+
+from swgsim.api.data_set import generate, record
+from swgsim.api.simulate import SimulatedRun, simulate
+
+__all__ = ["SimulatedRun", "generate", "record", "simulate"]

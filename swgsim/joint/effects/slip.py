@@ -1,0 +1,74 @@
+"""Effects: friction with memory, which builds up over a distance after each reversal."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.effects.quantity import shape
+from swgsim.joint.kinematics import play
+from swgsim.joint.recording import JointRecording
+from swgsim.joint.term import Term
+
+# Each element slips at so many times the distance of the element before.
+NEXT, ELEMENTS = 5.0, 2
+# An element below this share of the larger one counts as absent, whatever its sign.
+ABSENT = 0.1
+
+
+@dataclass(frozen=True)
+class LoadDependentFriction(Term):
+    """The load presses on flanks and balls, mu |T|: Coulomb friction of the mesh (physics.md DY4) and Palmgren's M1 of
+    the wave generator's bearing, as in the effects load dependent friction and bearing friction of the chain. Its sign
+    follows the distance since the last reversal, because the flanks stick to one another before they slide.
+
+    Signature: a residual that changes its sign with the direction of motion and is large where the load is large. An
+    axis without load does not show it. Typical: 5 to 20 % of the current of the load.
+
+    Attributes
+    ----------
+    distance : float
+        Distance at which the flanks slide [rad], from 2e-4, which is a plain sign, to 0.05.
+    """
+
+    needs = ("q", "T_rigid")
+    per = ("/(N m)",)
+    brakes = True
+    distance: float = shape(2e-3, unit="rad", low=2e-4, high=5e-2, points=8)
+
+    def columns(self, recording: JointRecording) -> Float[np.ndarray, "time column"]:
+        """Size of the load with the sign of the friction."""
+        return (np.abs(recording.signals["T_rigid"]) * play(recording.signals["q"], self.distance))[:, None]
+
+
+@dataclass(frozen=True)
+class MaxwellSlip(Term):
+    """Hysteresis and lost motion: flex spline, seals and grease bend elastically before they slip, so that friction
+    follows the distance since the last reversal and not the speed (Maxwell slip; physics.md DY1, DY12).
+
+    The model has two elements; the second slips at five times the distance of the first.
+
+    Attributes
+    ----------
+    distance : float
+        Distance at which the first element slips [rad], from 2e-4 to 0.05.
+    """
+
+    needs = ("q",)
+    weight_names = ("first element", "second element")
+    distance: float = shape(2e-3, unit="rad", low=2e-4, high=5e-2, points=8)
+
+    @classmethod
+    def title(cls) -> str:
+        """With the capital of a person's name."""
+        return "Maxwell slip"
+
+    def columns(self, recording: JointRecording) -> Float[np.ndarray, "time column"]:
+        """Strain of each element, as a share of the strain at which it slips."""
+        q = recording.signals["q"]
+        return np.stack([play(q, self.distance * NEXT**number) for number in range(ELEMENTS)], axis=1)
+
+    @property
+    def sound(self) -> bool:
+        """Friction brakes; one of the elements may be almost absent."""
+        return min(self.weights) > -ABSENT * max(self.weights)
