@@ -77,7 +77,7 @@ def pictures(answer: Answer, report: Mapping[str, Any]) -> dict[str, tuple[style
         drawn["parameters"] = (
             "Declared parameters",
             "Deviation from the nominal value in units of the spread of a series, with 95 % intervals. Parameters with "
-            "orange names moved by more than two standard deviations when the effect was added: they were biased before.",
+            "orange names moved by more than two standard deviations when the effect was added.",
             parameters(answer, report),
         )
     return {

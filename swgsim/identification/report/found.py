@@ -122,7 +122,7 @@ def why(trial: Trial, answer: Answer, better: Trial | None = None) -> str:
     if trial in answer.closed.outweighed:
         return "it gains less than ten times the unexplained remainder: it is probably a part of another cause"
     if trial in answer.closed.withdrawn:
-        return "accepted at first, but with all other effects in the model another effect, or no effect, is significant instead"
+        return "accepted at first; with all others in the model, another effect or no effect is significant instead"
     if not trial.fitted.calibrated.settled:
         return "its fit did not converge"
     split, effect = max(zip(trial.coherence, trial.effects, strict=True), key=lambda each: each[0].disagreement)
@@ -212,7 +212,7 @@ def _evidence(step: Step, which: int) -> dict[str, Any]:
     else:
         test = (
             f"the p-value of its score in the whole library is {probability(score.chance)}; one size fits all "
-            f"operating points, channels and orders, with parts that differ by {100 * agreement.form_error:.0f} %{without}"
+            f"operating points, channels and orders; its parts differ by {100 * agreement.form_error:.0f} %{without}"
         )
     return {
         "words": f"adding it{together} raises the log-likelihood of {raised}; {test}",
