@@ -26,12 +26,12 @@ from swgsim.effects.library import SEARCHED, listed, named
 from swgsim.gear.acquisition import Window
 from swgsim.gear.gear import Gear, OperatingPoint
 from swgsim.gear.population import Population
-from swgsim.identification.commissioning.commissioning import commission
+from swgsim.identification.commissioning.commissioning import learn_unit
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model
 from swgsim.identification.fit.unit import Unit
-from swgsim.identification.report import close_loop as loop_job
 from swgsim.identification.report.answer import answer
+from swgsim.identification.report.identification import Identification
 from swgsim.identification.report.report_fields import report
 from swgsim.jobs import generate_data_set as generation
 from swgsim.jobs import settings
@@ -59,7 +59,7 @@ def study_all(config: Mapping[str, Any], store: tracking.Store) -> list[Finished
     if missing:
         with threadpool_limits(1):
             bench = TestBench.of(config)
-            unit = commission(Measured.of(bench.recorded((), "commissioning")), Unit(Model(bench.nominal)))
+            unit = learn_unit(Measured.of(bench.recorded((), "commissioning")), Unit(Model(bench.nominal)))
         for whose, gear, mesh in _sides(config, bench, unit):
             data_set(config, f"{whose}-none", gear, (), mesh, number=whose == "bench")
         tasks = ((config, store, name, keys[name], bench, unit) for name in missing)
@@ -162,8 +162,8 @@ def closed(
     """Effects that the loop finds in recordings of a commissioned unit, and its report; writes the loop's page."""
     kinds = SEARCHED if config["searched"] is None else tuple(map(named, listed(config["searched"])))
     found = answer(recordings, unit, kinds, seed=config["seed"])
-    fields = report(found, kinds)
-    loop_job.write(Path(config["out"]) / STUDY / name, found, fields)
+    fields = report(found, kinds, source=f"virtual bench with {name}")
+    Identification(found, fields).save(Path(config["out"]) / STUDY / name)
     shown = {
         **{each: fields[each] for each in ("verdict", "sentence", "error")},
         "found": text.entries(found.effects),

@@ -26,7 +26,9 @@ from swgsim.identification.fit.priors import name_of
 from swgsim.identification.fit.unit import Unit
 from swgsim.identification.interharmonics.named_interharmonics import is_random
 from swgsim.identification.report.answer import Answer, answer
+from swgsim.identification.report.found import found_effects
 from swgsim.identification.report.prediction_errors import heldout
+from swgsim.identification.report.sentence import sentence
 from swgsim.recordings.recording import Recording
 
 
@@ -53,7 +55,7 @@ def what_was_said(found: Answer, recordings: Sequence[Recording], library: Seque
     return {
         "recordings": len(recordings),
         "verdict": found.verdict,
-        "sentence": found.sentence,
+        "sentence": sentence(found, found_effects(found)),
         "accepted": [_names(step.accepted) for step in closed.steps],
         "rivals": [[_names(trial) for trial in step.rivals] for step in closed.steps],
         "lines": [line.effect.name() for line in found.lines],

@@ -13,7 +13,7 @@ from swgsim.blind.strength import likeness, sized
 from swgsim.common.seeds import generator, seed_hash
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities, size_of
-from swgsim.identification.commissioning.commissioning import commission
+from swgsim.identification.commissioning.commissioning import learn_unit
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model, predict
 from swgsim.identification.fit.errors import per_channel
@@ -91,7 +91,7 @@ def draw(plan: Plan, setting: Setting) -> Sealed:
 def unit_known(case: Sealed, setting: Setting) -> Unit:
     """What is known of the unit before the recordings in question."""
     nominal = Unit(Model(setting.gear))
-    return commission(Measured.of(commissioning(case, setting)), nominal) if case.commissioned else nominal
+    return learn_unit(Measured.of(commissioning(case, setting)), nominal) if case.commissioned else nominal
 
 
 def drawn_inner(kind: type[Effect], rng: np.random.Generator) -> Effect:

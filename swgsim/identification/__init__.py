@@ -1,22 +1,13 @@
-"""Closing the loop: the physical effect that explains the residual between model and measurement.
+"""Identification (closing the loop): the physical effects that explain the residual between model and measurement.
 
 ``data`` prepares measurements, ``covariance`` and ``fit`` hold the statistics, ``commissioning`` learns the healthy
-gear, ``search`` proposes effects, ``decide`` accepts them, ``interharmonics`` treats lines between the orders,
-``report`` writes.
+gear, ``search`` proposes effects, ``decide`` accepts them, ``interharmonics`` treats interharmonic lines, ``report``
+writes; ``calls`` has the two functions for users.
 Imports ``bench``, ``chain``, ``recordings`` and rooms below these; robot joints (``joint``) do not need it.
 """
 
-from swgsim.identification.commissioning.commissioning import commission
-from swgsim.identification.data.measured import Measured
-from swgsim.identification.data.model import Model
+from swgsim.identification.calls import commission, identify
 from swgsim.identification.fit.unit import Unit
-from swgsim.identification.report.answer import Answer, answer
+from swgsim.identification.report.identification import Identification
 
-__all__ = [
-    "Answer",
-    "Measured",
-    "Model",
-    "Unit",
-    "answer",
-    "commission",
-]
+__all__ = ["Identification", "Unit", "commission", "identify"]

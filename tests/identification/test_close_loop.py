@@ -1,4 +1,4 @@
-"""The command from end to end on a small bench: recordings in, the answer out."""
+"""The command and the two calls from end to end on a small bench: recordings in, the answer out."""
 
 import json
 import re
@@ -8,6 +8,7 @@ from functools import partial
 from html import unescape
 from pathlib import Path
 
+import matplotlib.figure
 import numpy as np
 import pytest
 import yaml
@@ -31,27 +32,26 @@ from swgsim.effects.thermal_growth import ThermalGrowth
 from swgsim.gear.acquisition import Window
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import OperatingPoint
+from swgsim.identification import Unit, commission, identify
+from swgsim.identification.calls import require_comparable, require_same_gear
 from swgsim.identification.data import model
-from swgsim.identification.data.measured import Measured
-from swgsim.identification.fit.unit import UNHEARD, Unit
+from swgsim.identification.fit.unit import UNHEARD
 from swgsim.identification.interharmonics.line_pattern import Part
 from swgsim.identification.interharmonics.unattributed_lines import Unnamed
 from swgsim.identification.report import close_loop as job
-from swgsim.identification.report.answer import MOST_NAMED, Answer, answer
+from swgsim.identification.report.answer import Answer
+from swgsim.identification.report.identification import Identification
 from swgsim.identification.report.next_experiment import RECORDINGS, SEPARATED, next_experiments
 from swgsim.identification.report.open_questions import next_experiment
 from swgsim.identification.report.report_fields import report
+from swgsim.identification.report.sentence import MOST_NAMED, sentence
 from swgsim.identification.search.screening import Score
 from swgsim.jobs import settings
 from swgsim.jobs.settings import gear
 from swgsim.recordings.files.folder import write_folder
 from swgsim.recordings.recording import Recording
+from swgsim.recordings.recording_set import RecordingSet
 
-PARTS = (
-    Part(FractionalOrder(2e-3, pattern="in s2 alone", order=5.37), ("proportional to the load",)),
-    Part(FractionalOrder(1e-3, pattern="in s0 alone", order=5.37), ()),
-)
-WHISTLE = Unnamed("order", 5.37, 1e-9, 100.0, 0.01, 10.0, PARTS)
 pytestmark = pytest.mark.end_to_end
 CONF = Path(__file__).parents[2] / "conf"
 GEAR = yaml.safe_load((CONF / "gear" / "gear1.yaml").read_text())
@@ -59,10 +59,15 @@ SECTORS = 40
 POINTS = tuple(OperatingPoint(n, T) for n in (2000.0, 4000.0) for T in (10.0, 70.0))
 SEARCHED = ["eccentric_wave_generator", "cam_form", "reduced_damping", "gauge_gain", "channel_skew", "sub_orders"]
 HIDDEN = EccentricWaveGenerator(3e-5, 1.0)
+PARTS = (
+    Part(FractionalOrder(2e-3, pattern="in s2 alone", order=5.37), ("proportional to the load",)),
+    Part(FractionalOrder(1e-3, pattern="in s0 alone", order=5.37), ()),
+)
+WHISTLE = Unnamed("order", 5.37, 1e-9, 100.0, 0.01, 10.0, PARTS)
 KEYS = {
     "verdict", "sentence", "noise_floor", "calibrated", "effects", "rejected", "error", "unknown", "next_experiment",
     "moved", "absorbed", "detectable", "scores", "commissioned", "structure", "learned", "less_certain", "unheard",
-    "zeros", "channels", "recordings", "defects", "seconds",
+    "zeros", "channels", "recordings", "defects", "seconds", "made",
 }  # fmt: skip
 
 
@@ -79,7 +84,7 @@ def _small_mesh():
 
 def recorded(*effects: Effect, seed: int, points: tuple[OperatingPoint, ...] = POINTS) -> tuple[Recording, ...]:
     plan = Sessions(points, repeats=2, revolutions=5)
-    # Five revolutions are too few to tell slow noise of an amplifier from lines between the orders.
+    # With five revolutions, slow noise of an amplifier could not be separated from interharmonic lines.
     still = Instruments(wander=0.0)
     return record_sessions(
         gear(GEAR), effects, plan, Bench(), seed=seed, window=Window(), sectors=SECTORS, name="A", instruments=still
@@ -88,49 +93,59 @@ def recorded(*effects: Effect, seed: int, points: tuple[OperatingPoint, ...] = P
 
 @pytest.fixture(scope="module")
 def folders(tmp_path_factory):
-    """Recordings with and without a hidden effect, and of the healthy gear before."""
+    """Recordings with a hidden effect, and of the healthy gear before."""
     place = tmp_path_factory.mktemp("bench")
-    for name, effects, seed in (("sick", (HIDDEN,), 2), ("sound", (), 3), ("healthy", (), 1)):
+    for name, effects, seed in (("sick", (HIDDEN,), 2), ("healthy", (), 1)):
         write_folder(place / name, recorded(*effects, seed=seed))
     (place / "sick.json").write_text(json.dumps({"hidden": [{"eccentric_wave_generator": {"r": 3e-5, "theta": 1.0}}]}))
     return place
 
 
+@pytest.fixture(scope="module")
+def unit() -> Unit:
+    return commission(recorded(seed=1), gear(GEAR))
+
+
 def choices(folders: Path, recordings: str, **changes: object) -> dict:
     plain = {
         "recordings": str(folders / recordings), "commissioning": str(folders / "healthy"), "mapping": None,
-        "commissioning_mapping": None,
-        "gear": GEAR, "effects": [], "out": str(folders / f"{recordings}-answer"), "searched": SEARCHED, "library": [],
-        "truth": None, "seed": 0,
+        "commissioning_mapping": None, "gear": GEAR, "effects": [], "out": str(folders / f"{recordings}-answer"),
+        "searched": SEARCHED, "library": [], "truth": None, "seed": 0,
     }  # fmt: skip
     return plain | changes
 
 
 @pytest.fixture(scope="module")
 def sick(folders):
-    """The answer to recordings of the sick gear."""
+    """The answer of the command to recordings of the sick gear."""
     return job.run(choices(folders, "sick", truth=str(folders / "sick.json")))
 
 
-def read(folders: Path, name: str) -> dict:
-    def refuse(word: str) -> None:
-        raise ValueError(f"{word} is no JSON")
-
-    return json.loads((folders / name / "report.json").read_text(), parse_constant=refuse)
+@pytest.fixture(scope="module")
+def healthy(unit) -> tuple[Identification, list[str]]:
+    """The answer to recordings of a healthy gear, and the steps on the way."""
+    steps: list[str] = []
+    return identify(recorded(seed=3), unit, effects=[named(each) for each in SEARCHED], progress=steps.append), steps
 
 
 def test_report_names_the_hidden_effect_with_its_size_and_evidence(folders, sick):
-    said = read(folders, "sick-answer")
+    def refuse(word: str) -> None:
+        raise ValueError(f"{word} is not JSON")
+
+    said = json.loads((folders / "sick-answer" / "report.json").read_text(), parse_constant=refuse)
     assert set(said) == KEYS | {"hidden"}
     (effect,) = said["effects"]
     r = effect["parameters"]["r"]
     assert said["verdict"] == "effect_found"
+    assert said["sentence"].startswith("The model lacks an eccentric wave generator: ")
+    assert re.search(r"\d+\.\d µm \(95 %: .* off centre, towards \d+° from gauge s1", said["sentence"])
     assert (effect["name"], effect["place"], r["unit"]) == ("eccentric_wave_generator", "wave generator", "m")
     assert r["ci95"][0] < HIDDEN.r < r["ci95"][1]
     assert effect["evidence"]["heldout_gain"] > 3
     assert said["commissioned"]
     assert set(said["calibrated"]) >= {"k1", "b1", "gain of s0"}
     assert said["recordings"]["repeats"] == {"fewest": 2, "most": 2}
+    assert said["made"]["commissioning"] == str(folders / "healthy")
 
 
 def test_error_falls_to_the_noise_floor(sick):
@@ -140,25 +155,25 @@ def test_error_falls_to_the_noise_floor(sick):
     assert set(error["per_channel"]) == {"n_in", "T_in", "T_out", "s0", "s1", "s2", "s3", "s4"}
 
 
-def test_page_opens_with_the_sentence_and_holds_all_it_needs(folders, sick):
+def test_page_opens_with_the_sentence_and_folds_the_details(folders, sick):
     page = (folders / "sick-answer" / "page.html").read_text()
     first = re.search(r"<body>\s*<h1>(.*?)</h1>", page, re.DOTALL)
     assert first is not None
     assert unescape(first[1]) == sick.report["sentence"]
-    assert page.count("data:image/png;base64,") == len(sick.figures) >= 4
+    summary, details = page.split('<h2 id="details">')
+    assert summary.count("data:image/png;base64,") == 1
+    assert page.count("data:image/png;base64,") == len(sick.figures) >= 5
     assert not re.search(r'(src|href)="(?!data:|#)', page)
-    assert "Effect that was hidden" in page
+    for fact in ("Effect that was hidden", "Check the gear: wave generator", str(folders / "sick"), "eccentric wave"):
+        assert fact in summary
+    assert details.count("<details") == details.count("</details>") > 7
+    assert not re.search(r"\d(\.\d+)?e-0\d m\b", summary)
 
 
 def test_effects_are_given_back_as_they_were_found(folders, sick):
     (found,) = from_text((folders / "sick-answer" / "effects.yaml").read_text(), "effects.yaml")
     (effect,) = sick.report["effects"]
-    assert isinstance(found, EccentricWaveGenerator)
-    assert {name: p["value"] for name, p in effect["parameters"].items()} == {
-        "r": found.r,
-        "theta": found.theta,
-        "unequal": found.unequal,
-    }
+    assert found == EccentricWaveGenerator(**{name: p["value"] for name, p in effect["parameters"].items()})
 
 
 def test_the_answer_is_kept_as_a_run(folders, sick, tmp_path):
@@ -177,7 +192,7 @@ def test_the_answer_is_kept_as_a_run(folders, sick, tmp_path):
     assert len(tracking.table_of(store, run.info.run_id, "tables/scores.parquet")) == len(said["scores"])
 
 
-def test_an_effect_of_a_user_is_found_and_may_then_be_declared(folders, tmp_path, monkeypatch):
+def test_an_effect_of_a_user_is_found_and_may_then_be_declared(unit, tmp_path, monkeypatch):
     """The one that docs/recording.md shows, hidden and searched by its import path."""
     docs = (CONF.parent / "docs" / "recording.md").read_text(encoding="utf-8")
     shown = re.search(r"```python\n# my_bench\.py\n(.*?)```", docs, re.DOTALL)
@@ -185,80 +200,102 @@ def test_an_effect_of_a_user_is_found_and_may_then_be_declared(folders, tmp_path
     (tmp_path / "my_bench.py").write_text(shown[1])
     monkeypatch.syspath_prepend(tmp_path)
     softening = named("my_bench:Softening")
-    write_folder(folders / "soft", recorded(softening(0.02), seed=5))
-    (effect,) = job.run(choices(folders, "soft", library=["my_bench:Softening"])).report["effects"]
+    soft, kinds = recorded(softening(0.02), seed=5), [*map(named, SEARCHED), softening]
+    found = identify(soft, unit, effects=kinds)
+    (effect,) = found.report["effects"]
     share = effect["parameters"]["share"]
     assert effect["name"] == "my_bench:Softening"
     assert share["ci95"][0] < 0.02 < share["ci95"][1]
-    written = str(folders / "soft-answer" / "effects.yaml")
-    assert settings.effects(written) == (softening(share["value"]),)
-    assert job.run(choices(folders, "soft", effects=written)).report["verdict"] == NOTHING
+    table = found.table().set_index("parameter").loc["relative change"]
+    assert (table["value"], table["unit"]) == (pytest.approx(100 * share["value"]), "%")
+    found.save(tmp_path / "answer")
+    declared = settings.effects(str(tmp_path / "answer" / "effects.yaml"))
+    assert declared == (softening(share["value"]),)
+    own = commission(recorded(seed=1), gear(GEAR), declared=declared)
+    assert identify(soft, own, effects=kinds).verdict == NOTHING
 
 
-def test_gauges_that_are_exchanged_against_the_commissioning_are_refused(folders):
+def test_gauges_that_are_exchanged_against_the_commissioning_are_refused():
+    own = commission(recorded(GaugeGain(1, 0.01), seed=1), gear(GEAR))
     exchanged = [
         replace(each, channels={**each.channels, "s1": each.channels["s3"], "s3": each.channels["s1"]})
         for each in recorded(GaugeGain(1, 0.01), seed=3)
     ]
-    write_folder(folders / "exchanged", exchanged)
-    write_folder(folders / "own", recorded(GaugeGain(1, 0.01), seed=1))
-    with pytest.raises(ValueError, match=r"exchanged: .*\n- refuse: .* s1 s3: .*swap their columns"):
-        job.run(choices(folders, "exchanged", commissioning=str(folders / "own")))
+    with pytest.raises(ValueError, match=r"recordings: .*\n- refuse: .* s1 s3: .*swap their columns"):
+        identify(exchanged, own)
 
 
-def test_nothing_is_missing_in_a_sound_gear(folders, capsys):
-    said = job.run(choices(folders, "sound")).report
-    printed = capsys.readouterr().out.splitlines()
+def test_nothing_is_missing_in_a_healthy_gear(healthy):
+    found, steps = healthy
+    said, printed = found.report, job.lines(found.report)
     assert (said["verdict"], said["effects"], said["unknown"]) == (NOTHING, [], None)
     assert printed[0].startswith("Nothing is missing")
-    assert [line.split("  ")[0] for line in printed[1:]] == [
-        "error before",
-        "error after",
-        "noise floor",
-        "effect found",
-        "would be seen",
-    ]
-    assert "eccentric wave generator (r " in printed[-1]
+    names = ["error before", "error after", "noise floor", "would be seen"]
+    assert [line.split("  ")[0] for line in printed[1:]] == names
+    assert re.search(r"eccentric wave generator \(\S+ µm\)", printed[-1])
     assert said["detectable"]["eccentric_wave_generator"]["value"] < HIDDEN.r
     assert said["error"]["before"] == said["error"]["after"]
+    assert [step.split()[0] for step in steps] == ["searching", "screening", "describing", "report:"]
+
+
+def test_results_show_themselves(unit, healthy, sick):
+    found, _ = healthy
+    assert "commissioned on 8 recordings of 'A'" in repr(unit)
+    assert repr(found).startswith("Identification of 'A' from 8 recordings: Nothing is missing")
+    assert found._repr_html_().startswith("<b>Identification of")
+    assert found.table().empty
+    assert isinstance(found.plot_residual(), matplotlib.figure.Figure)
+    with pytest.raises(ValueError, match="recordings has no s0, which the unit was commissioned with"):
+        identify([_without(each, "s0") for each in unit.healthy], unit)
+
+
+def test_an_interrupted_command_says_that_it_keeps_nothing(folders, monkeypatch):
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(job, "read_recordings", interrupted)
+    with pytest.raises(KeyboardInterrupt, match="nothing is kept"):
+        job.run(choices(folders, "sick", out=str(folders / "interrupted")))
 
 
 @pytest.fixture(scope="module")
 def found() -> Answer:
-    """The answer to recordings of one operating point of a gear never seen."""
-    unit = Unit(model.Model(gear(GEAR)))
-    return answer(recorded(seed=4, points=POINTS[2:3]), unit, [LoadSharing, ReducedDamping, ThermalGrowth])
+    """The answer to recordings of one operating point without commissioning."""
+    return identify(
+        recorded(seed=4, points=POINTS[2:3]), gear(GEAR), effects=[LoadSharing, ReducedDamping, ThermalGrowth]
+    ).answer
 
 
-def test_what_is_not_listened_to_is_said(found):
+def test_ripple_that_is_not_used_is_reported(found):
     before, layout = found.closed.before, found.closed.before.measured.layout
-    heard = np.where((layout.channel == "T_out") & (layout.order > 0), UNHEARD, 1.0)
-    heard[(layout.channel == "s1") & (layout.order == 4)] = 5.0
-    deaf = replace(before, unit=replace(before.unit, inflation=heard))
-    said = report(replace(found, closed=replace(found.closed, before=deaf)), ())
+    inflation = np.where((layout.channel == "T_out") & (layout.order > 0), UNHEARD, 1.0)
+    inflation[(layout.channel == "s1") & (layout.order == 4)] = 5.0
+    unused = replace(before, unit=replace(before.unit, inflation=inflation))
+    said = report(replace(found, closed=replace(found.closed, before=unused)), ())
     assert (said["unheard"], said["less_certain"]) == (["T_out"], {"s1": [4]})
 
 
-def test_what_cannot_be_decided_is_named_where_nothing_is_missing(found):
+def test_untestable_effects_are_named_where_nothing_is_missing(found):
     scores = found.closed.scores
 
-    def ends(*absorbed: Score) -> str:
-        return replace(found, verdict=NOTHING, absorbed=absorbed).sentence.partition(" stands out of it")[2]
+    def end(*absorbed: Score) -> str:
+        return sentence(replace(found, verdict=NOTHING, absorbed=absorbed), ()).partition(" is significant")[2]
 
     titles = [score.hypothesis.kind.title() for score in scores]
-    beginning = "; cannot be decided, as these recordings absorb them: "
-    assert ends() == "."
-    assert ends(*scores[:2]) == f"{beginning}{titles[0]}, {titles[1]}."
+    assert end() == "."
+    assert end(*scores[:2]) == f"; these recordings cannot test {titles[0]}, {titles[1]}."
     many = scores[:1] * (MOST_NAMED + 3)
-    assert ends(*many) == f"{beginning}{', '.join(titles[:1] * MOST_NAMED)} and 3 more."
+    assert end(*many) == f"; these recordings cannot test {', '.join(titles[:1] * MOST_NAMED)} and 3 more."
 
 
 def test_next_experiment_is_named_where_one_helps(found):
     """Load sharing shows at another speed, and so does growth with heat, for which the gear need not be warmed; less
     damping is what b1 of the series may be as well, at any point.
     """
-    asked = replace(found, absorbed=found.closed.scores)
-    experiments = {each.between[0].split(" of ")[0]: each for each in next_experiments(asked)}
+    experiments = {
+        each.between[0].split(" of ")[0]: each
+        for each in next_experiments(replace(found, absorbed=found.closed.scores))
+    }
     helpful, helpless = experiments["load sharing"], experiments["reduced damping"]
     assert helpful.recordings in RECORDINGS
     assert helpful.separation >= SEPARATED
@@ -268,19 +305,19 @@ def test_next_experiment_is_named_where_one_helps(found):
     assert growth.separation >= SEPARATED
     assert growth.situation.conditions == Conditions()
     warm = replace(growth, situation=replace(growth.situation, conditions=Conditions(45.0)))
-    assert "with the gear at 45 degC" in str(warm)
+    assert "with the gear at 45 °C" in str(warm)
     assert helpless.recordings is None
-    assert "no recording on the bench tells reduced damping" in str(helpless)
+    assert "no recordings on this bench can detect reduced damping" in str(helpless)
     assert next_experiments(replace(found, absorbed=())) == ()
-    # What is unknown in a gear never commissioned may be what it has always had.
+    # Without commissioning, an unknown remainder may have been there from the start.
     assert next_experiment((), found) is None
     assert "commissioning=FOLDER" in next_experiment((), replace(found, unnamed=(WHISTLE,)))["words"]
 
 
-def test_lines_that_nothing_explains_are_reported_and_given_back_as_effects(found, tmp_path):
+def test_unknown_lines_are_reported_and_given_back_as_effects(found, tmp_path):
     """With the declared effects of their kind; the strongest part leads."""
     whistling = replace(found, unnamed=(WHISTLE,))
-    said = report(whistling, [LoadSharing], (), (), 1.0)
+    said = report(whistling, [LoadSharing])
     unknown = said["unknown"]
     assert (unknown["orders"], unknown["pattern"], unknown["law"]) == ([5.37], "in s2 alone", "constant")
     (line,) = unknown["lines"]
@@ -290,21 +327,20 @@ def test_lines_that_nothing_explains_are_reported_and_given_back_as_effects(foun
         {"fractional_order": {"amplitude": a, "phase": 0.0, "pattern": p, "law": "constant", "order": 5.37}}
         for a, p in ((2e-3, "in s2 alone"), (1e-3, "in s0 alone"))
     ]
-    job.write(tmp_path, whistling, said)
+    Identification(whistling, said).save(tmp_path)
     assert from_text((tmp_path / "effects.yaml").read_text(), "answer") == tuple(p.effect for p in WHISTLE.parts)
 
 
-def test_recordings_that_do_not_belong_together_are_refused(folders, tmp_path):
-    other = tuple(replace(each, gear="B") for each in recorded(seed=1, points=POINTS[:1]))
-    write_folder(tmp_path / "other", other)
+def test_recordings_that_do_not_belong_together_are_refused(folders):
+    recordings = recorded(seed=1, points=POINTS[:1])
     with pytest.raises(ValueError, match="gear 'A', those of the commissioning of 'B': commission the same gear"):
-        job.run(choices(folders, "sound", commissioning=str(tmp_path / "other")))
-    bare = tuple(replace(each, channels={"s1": each.channels["s1"]}) for each in other)
-    write_folder(tmp_path / "bare", bare)
-    with pytest.raises(ValueError, match="has no phi_in_rad"):
-        job.run(choices(tmp_path, "sound") | {"recordings": str(tmp_path / "bare")})
-    with pytest.raises(ValueError, match=r"no truth of scripts/record\.py"):
-        job.run(choices(folders, "sound", truth=str(CONF / "gear" / "gear1.yaml")))
+        require_same_gear(recordings, [replace(each, gear="B") for each in recordings])
+    with pytest.raises(ValueError, match="folder has no phi_in_rad"):
+        require_comparable((replace(recordings[0], channels={"s1": recordings[0].channels["s1"]}),), "folder")
+    with pytest.raises(ValueError, match="folder holds recordings of the gears A, B"):
+        require_comparable((recordings[0], replace(recordings[1], gear="B")), "folder")
+    with pytest.raises(ValueError, match="not a truth of swg record"):
+        job.run(choices(folders, "sick", truth=str(CONF / "gear" / "gear1.yaml")))
 
 
 def test_a_message_about_a_file_says_of_which_folder(folders, tmp_path):
@@ -317,16 +353,18 @@ def test_a_message_about_a_file_says_of_which_folder(folders, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["regularity", "fractional_order", "fixed_frequency"])
-def test_what_a_loop_writes_for_the_unknown_is_not_searched_for(name):
-    with pytest.raises(ValueError, match=f"{name} cannot be searched for"):
+def test_descriptions_of_the_unknown_are_not_searched(name):
+    with pytest.raises(ValueError, match=f"{name} cannot be searched"):
         job.library({"searched": ["cam_form", name], "library": []})
 
 
-@pytest.mark.parametrize("searched", ["cam_form, gauge_gain", ["cam_form", "gauge_gain"]])
-@pytest.mark.parametrize("library", ["reduced_damping", ["reduced_damping"]])
-def test_names_are_a_list_or_a_text_with_commas(searched, library):
-    kinds = job.library({"searched": searched, "library": library})
-    assert [kind.name() for kind in kinds] == ["cam_form", "gauge_gain", "reduced_damping"]
+def test_names_are_a_list_or_a_text_with_commas():
+    for searched, library in (
+        ("cam_form, gauge_gain", "reduced_damping"),
+        (["cam_form", "gauge_gain"], ["reduced_damping"]),
+    ):
+        kinds = job.library({"searched": searched, "library": library})
+        assert [kind.name() for kind in kinds] == ["cam_form", "gauge_gain", "reduced_damping"]
     assert job.library({"searched": None, "library": None}) == LIBRARY_SEARCHED
 
 
@@ -336,19 +374,22 @@ def test_a_folder_that_cannot_be_written_is_refused_before_anything_is_read(fold
         job.run(choices(folders, "lost", out=str(folders / out)))
 
 
-def test_a_recording_does_not_commission_itself(folders, tmp_path):
-    """All that it shows would be learned as healthy, and nothing found missing."""
-    with pytest.raises(ValueError, match=r"is in both recordings=.* and commissioning=.*of the healthy state"):
-        job.run(choices(folders, "sick", commissioning=str(folders / "sick")))
-    healthy, *others = recorded(seed=1, points=POINTS[:1])
-    copy = replace(healthy, name="renamed", channels={n: v for n, v in healthy.channels.items() if n != "s0"})
-    with pytest.raises(ValueError, match=f"recording renamed is in both .* there as {healthy.name}"):
-        job._alike([copy], [healthy, *others])
+def test_a_recording_does_not_commission_itself():
+    """Its effects would be learned as healthy, and nothing found missing."""
+    one, *others = recorded(seed=1, points=POINTS[:1])
+    copy = replace(_without(one, "s0"), name="renamed")
+    with pytest.raises(ValueError, match=rf"recording renamed is also in the commissioning, as {one.name}: .*healthy"):
+        require_same_gear([copy], [one, *others])
 
 
-def test_channels_that_only_one_side_has_are_left_out(folders):
+def test_channels_that_only_one_side_has_are_left_out():
     recordings, others = (recorded(seed=seed, points=POINTS[:1]) for seed in (1, 2))
-    fewer = tuple(replace(r, channels={n: v for n, v in r.channels.items() if n != "s0"}) for r in others)
-    one, other = job._alike(recordings, fewer)
-    assert Measured.of(one).layout == Measured.of(other).layout
-    assert "s0" not in one[0].channels
+    healthy = job._comparable(RecordingSet(recordings), RecordingSet(tuple(_without(each, "s0") for each in others)))
+    assert "s0" not in healthy[0].channels
+    assert list(
+        job._comparable(RecordingSet(tuple(_without(r, "s1") for r in recordings)), RecordingSet(others))[0].channels
+    ) == [name for name in others[0].channels if name != "s1"]
+
+
+def _without(recording: Recording, channel: str) -> Recording:
+    return replace(recording, channels={name: v for name, v in recording.channels.items() if name != channel})

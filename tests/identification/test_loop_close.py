@@ -18,7 +18,7 @@ from swgsim.effects.regularity import Regularity
 from swgsim.gear.acquisition import Window
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import Gear, OperatingPoint
-from swgsim.identification.commissioning.commissioning import _drive_alone, commission
+from swgsim.identification.commissioning.commissioning import _drive_alone, learn_unit
 from swgsim.identification.data.measured import OF_SESSION, Measured
 from swgsim.identification.data.model import Model
 from swgsim.identification.decide.selection import Closed
@@ -65,7 +65,7 @@ def _coarse_mesh() -> Iterator[None]:
 @pytest.fixture(scope="module")
 def unit(_coarse_mesh) -> Unit:
     """The gear as commissioned."""
-    return commission(recorded((), seed=1), Unit(Model(GEAR)))
+    return learn_unit(recorded((), seed=1), Unit(Model(GEAR)))
 
 
 def accepted(closed: Closed) -> list[Effect]:
@@ -83,7 +83,7 @@ def test_a_gear_of_another_flex_spline_is_commissioned_as_accurately_as_it_can_b
     """Its wall and collar are thicker, its sleeve shorter; an eccentricity is found all the same, and nothing else."""
     hat = replace(GEAR.flex_spline, length=22e-3, collar=0.9e-3, wall=0.47e-3)
     other = replace(GEAR, flex_spline=hat, gauges=replace(GEAR.gauges, radius=27e-3))
-    own = commission(recorded((), seed=1, gear=other), Unit(Model(GEAR)))
+    own = learn_unit(recorded((), seed=1, gear=other), Unit(Model(GEAR)))
     assert own.structure > unit.structure == STRUCTURE
     assert accepted(close(recorded((), seed=2, gear=other), own, SEARCHED)) == []
     (found,) = accepted(close(recorded((ECCENTRIC,), seed=2, gear=other), own, [*SEARCHED, LIBRARY["tilting_moment"]]))
@@ -106,7 +106,7 @@ def test_gauges_on_another_flex_spline_do_not_lead_the_drive_astray():
 def test_a_gear_is_commissioned_with_a_declared_effect_on_its_drive():
     """It and the friction that it changes are told together."""
     acting, declared = (LIBRARY["flank_friction"](ratio) for ratio in (1.3, 1.1))
-    own = commission(recorded((acting,), seed=1), Unit(Model(GEAR, (declared,))))
+    own = learn_unit(recorded((acting,), seed=1), Unit(Model(GEAR, (declared,))))
     (found,) = own.model.effects
     assert own.model.gear.transmission.mu * found.mu_ratio == pytest.approx(1.3 * GEAR.transmission.mu, rel=0.05)
 
@@ -117,7 +117,7 @@ def test_friction_far_from_the_nominal_is_the_gears_own_and_no_line_that_is_lear
     hat = replace(GEAR.flex_spline, length=22e-3, collar=0.9e-3, wall=0.47e-3)
     other = replace(GEAR, flex_spline=hat, transmission=replace(GEAR.transmission, **friction))
     healthy = recorded((), seed=1, gear=other)
-    found = calibrated(fit(healthy, commission(healthy, Unit(Model(GEAR)))))
+    found = calibrated(fit(healthy, learn_unit(healthy, Unit(Model(GEAR)))))
     for name, value in friction.items():
         low, high = found[name]["ci95"]
         assert low < value < high < low + 0.3 * value
@@ -128,7 +128,7 @@ def test_a_gear_is_known_as_it_was_recorded_where_most_of_a_line_is_learned():
     hat = replace(GEAR.flex_spline, length=22e-3, collar=0.9e-3, wall=0.47e-3)
     gauges = replace(GEAR.gauges, radius=27e-3, gain=(3.0,) * 5, position=tuple(0.01 * np.array([0, 2, 3, 1, 2])))
     healthy = recorded((), seed=1, gear=replace(GEAR, flex_spline=hat, gauges=gauges))
-    own = commission(healthy, Unit(Model(GEAR)))
+    own = learn_unit(healthy, Unit(Model(GEAR)))
     predicted, shift, *_ = own.left_open(own.model, healthy.situations, healthy.layout, {})
     off = (healthy.values - (predicted + shift)[healthy.of_recording]).mean(axis=0)
     lobes = np.isin(healthy.layout.channel, SENSORS[1:]) & (healthy.layout.order == 2)
@@ -143,7 +143,7 @@ def test_a_bench_with_another_drive_and_stronger_gauges_is_commissioned():
     drive = {"J_in": 1.4e-4, "rotor_share": 0.8, "error_lever": 0.0, "control_frequency": 25.0, "control_damping": 1.7}
     gauges = replace(GEAR.gauges, gain=tuple(1.25 * gain for gain in GEAR.gauges.gain))
     other = replace(GEAR, transmission=replace(GEAR.transmission, **drive), gauges=gauges)
-    own = commission(recorded((), seed=1, gear=other), Unit(Model(GEAR)))
+    own = learn_unit(recorded((), seed=1, gear=other), Unit(Model(GEAR)))
     found = own.model.gear.transmission
     assert {name: getattr(found, name) for name in drive} == pytest.approx(drive, rel=0.1, abs=0.1)
     damped = LIBRARY["reduced_damping"](0.8)
@@ -161,7 +161,7 @@ def test_what_the_healthy_gear_did_as_well_is_not_missing():
     )
     searched = [*SEARCHED, *map(type, habits)]
     healthy = recorded(habits, seed=1, warming=10.0)
-    own = commission(healthy, Unit(Model(GEAR)))
+    own = learn_unit(healthy, Unit(Model(GEAR)))
     lobes = (healthy.layout.channel == "s2") & (healthy.layout.order == 2)
     assert own.inflated(healthy.variance)[:, lobes] == pytest.approx(healthy.variance[:, lobes])
     assert accepted(close(recorded(habits, seed=2, warming=10.0), own, searched)) == []
@@ -172,7 +172,7 @@ def test_what_the_healthy_gear_did_as_well_is_not_missing():
 def test_a_line_that_the_truss_has_quite_different_is_learned():
     """In s0 the arms of four pairs cancel; what is left of them says nothing of how accurate it is."""
     own_line = Regularity(4, 3e-3, 0.4, "in s0 alone", "constant")
-    own = commission(recorded((own_line,), seed=1), Unit(Model(GEAR)))
+    own = learn_unit(recorded((own_line,), seed=1), Unit(Model(GEAR)))
     layout = recorded((), seed=1).layout
     here = (layout.channel == "s0") & (layout.order == 4)
     assert own.learned[here].max() > 1e-3
@@ -245,8 +245,8 @@ def test_two_effects_at_once_are_both_found(unit):
 def test_a_declared_effect_stays_where_commissioning_found_it():
     """One that is seen well enough: the maps, which are known to 1 %, hide 7 um."""
     strong = replace(ECCENTRIC, r=100e-6)
-    unit = commission(recorded((strong,), seed=5), Unit(Model(GEAR, (strong,))))
-    assert unit.reach.shape == commission(recorded((), seed=5), Unit(Model(GEAR))).reach.shape
+    unit = learn_unit(recorded((strong,), seed=5), Unit(Model(GEAR, (strong,))))
+    assert unit.reach.shape == learn_unit(recorded((), seed=5), Unit(Model(GEAR))).reach.shape
     found = fit(recorded((strong,), seed=6), unit)
     (known,), (stayed,) = unit.model.effects, found.model.effects
     assert stayed.r == pytest.approx(known.r, rel=0.03)
@@ -256,7 +256,7 @@ def test_a_declared_effect_stays_where_commissioning_found_it():
 def test_what_is_declared_is_not_missing_beside_lines_that_were_learned():
     """A declared gain acts on them as well, in the commissioning as in what is asked later."""
     declared, own_line = LIBRARY["gauge_gain"](0, 0.03), Regularity(4, 3e-3, 0.4, "in s0 alone", "constant")
-    own = commission(recorded((own_line, declared), seed=1), Unit(Model(GEAR, (declared,))))
+    own = learn_unit(recorded((own_line, declared), seed=1), Unit(Model(GEAR, (declared,))))
     assert own.model.own_lines is not None
     closed = close(recorded((own_line, declared), seed=2), own, [*SEARCHED, type(declared)])
     assert closed.steps == closed.rejected == ()
@@ -268,7 +268,7 @@ def test_load_and_speed_control_of_the_bench_are_found_by_commissioning():
     """They are nobody's fault, and make half of the ripple of speed and torque."""
     t = GEAR.transmission
     own = replace(GEAR, transmission=replace(t, J_out=0.75 * t.J_out, control_frequency=0.8 * t.control_frequency))
-    unit = commission(recorded((), seed=7, gear=own), Unit(Model(GEAR)))
+    unit = learn_unit(recorded((), seed=7, gear=own), Unit(Model(GEAR)))
     found = unit.model.gear.transmission
     assert found.J_out == pytest.approx(own.transmission.J_out, rel=0.05)
     assert found.control_frequency == pytest.approx(own.transmission.control_frequency, rel=0.05)
@@ -289,7 +289,7 @@ def test_the_torque_of_a_brake_is_told_from_that_of_the_gear():
     def of_brake(recording: Recording) -> np.ndarray:
         return np.full(len(recording.time), recording.channels["T_out"].mean())
 
-    own = commission(_shown(recorded((), seed=9), of_brake), Unit(Model(GEAR)))
+    own = learn_unit(_shown(recorded((), seed=9), of_brake), Unit(Model(GEAR)))
     assert own.model.gear.transmission.load_share == pytest.approx(1, abs=0.01)
     softer = LIBRARY["reduced_stiffness"](0.8)
     closed = close(_shown(recorded((softer,), seed=8), of_brake), own, [*SEARCHED, type(softer)])
@@ -303,7 +303,7 @@ def test_a_ripple_that_is_none_of_the_gear_is_not_listened_to():
     def shaken(recording: Recording) -> np.ndarray:
         return recording.channels["T_out"] + 5 * np.cos(5 * recording.channels["phi_in"] + recording.point.T_out)
 
-    own = commission(_shown(recorded((), seed=9), shaken), Unit(Model(GEAR)))
+    own = learn_unit(_shown(recorded((), seed=9), shaken), Unit(Model(GEAR)))
     ripple = (recorded((), seed=9).layout.channel == "T_out") & (recorded((), seed=9).layout.order > 0)
     assert (own.inflation[ripple] >= UNHEARD).all()
     assert (own.inflation[~ripple] < UNHEARD).all()

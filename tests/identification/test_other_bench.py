@@ -21,7 +21,7 @@ from other_bench.specimen import Crack, Specimen, draw
 
 from swgsim.effects.base import Effect as Found
 from swgsim.effects.library import LIBRARY
-from swgsim.identification.commissioning.commissioning import commission
+from swgsim.identification.commissioning.commissioning import learn_unit
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model
 from swgsim.identification.decide.stepwise_selection import close
@@ -49,7 +49,7 @@ def healthy(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def unit(healthy: Path) -> Unit:
     """That unit as commissioned on the first of them."""
-    return commission(measured(healthy / "commissioning"), Unit(Model(GEAR)))
+    return learn_unit(measured(healthy / "commissioning"), Unit(Model(GEAR)))
 
 
 def measured(folder: Path) -> Measured:

@@ -89,7 +89,7 @@ def test_a_second_run_computes_nothing_and_says_the_same(config, finished, monke
     def refuse(*_: object, **__: object) -> None:
         raise AssertionError("computed again")
 
-    monkeypatch.setattr(study, "commission", refuse)
+    monkeypatch.setattr(study, "learn_unit", refuse)
     monkeypatch.setattr(study, "study", refuse)
     again = study.study_all(config, settings.store({**config["tracking"], "experiment": study.STUDY}))
     for one, other in zip(finished, again, strict=True):

@@ -35,7 +35,7 @@ ANOTHER, WORST = 2 * STRUCTURE, 0.3
 DRIVES, TIMES = 4, 2
 
 
-def commission(measured: Measured, unit: Unit) -> Unit:
+def learn_unit(measured: Measured, unit: Unit) -> Unit:
     """The unit with what recordings of its healthy state say about it.
 
     Raises

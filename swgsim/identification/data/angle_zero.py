@@ -10,11 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
+from swgsim.identification.data.features import Layout, features
+from swgsim.identification.data.model import Model, Situation, predict
 from swgsim.recordings.checks.defect import Defect
 from swgsim.recordings.checks.thresholds import ANGLE_ZERO
 from swgsim.recordings.read import require_usable
-from swgsim.identification.data.features import Layout, features
-from swgsim.identification.data.model import Model, Situation, predict
 from swgsim.recordings.recording import Recording
 from swgsim.storage.labelled_signals import SENSORS
 

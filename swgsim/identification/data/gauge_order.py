@@ -10,9 +10,9 @@ from dataclasses import astuple
 import numpy as np
 from jaxtyping import Complex
 
-from swgsim.recordings.checks.defect import Defect
 from swgsim.gear.gear import OperatingPoint
 from swgsim.identification.data.features import Layout, features
+from swgsim.recordings.checks.defect import Defect
 from swgsim.recordings.recording import Recording
 
 OPPOSITE = (("s1", "s3"), ("s2", "s4"))

@@ -7,10 +7,10 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.chain.chain import SECTORS, Run, distinct, simulate_turns
-from swgsim.gear.conditions import Conditions
-from swgsim.effects.base import Effect, overrides
-from swgsim.gear.gear import Gear, OperatingPoint
 from swgsim.chain.influence import lobes
+from swgsim.effects.base import Effect, overrides
+from swgsim.gear.conditions import Conditions
+from swgsim.gear.gear import Gear, OperatingPoint
 from swgsim.identification.data.features import Layout, features_alike
 from swgsim.identification.data.unit_lines import Lines, OwnLines
 

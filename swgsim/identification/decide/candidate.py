@@ -1,5 +1,6 @@
 """A hypothesis fitted with everything else, and what speaks for it."""
 
+import logging
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -42,6 +43,7 @@ NOTHING = 0.1
 OWN = 1 / 3
 # Directions below this share of the largest one are rounding.
 LEAST_DIRECTION = 1e-6
+STEPS = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,6 +166,7 @@ def tried(now: Fitted, score: Score, added: tuple[Effect, ...], start: Fitted) -
     start : Fitted
         The same model where the fit begins.
     """
+    STEPS.info("fitting %s", " with ".join(effect.title() for effect in added))
     known = len(now.model.effects)
     fitted = extended(start, added)
     effects = fitted.model.effects[known:]

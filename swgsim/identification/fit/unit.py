@@ -1,4 +1,4 @@
-"""What is known of a unit before its recordings are asked, and how far it may still lie elsewhere."""
+"""A unit: its model, and the posterior covariance of its parameters and of its lines."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.effects.base import overrides
+from swgsim.effects.base import Effect, overrides
 from swgsim.gear.gear import Gear
 from swgsim.identification.covariance.influence_map_error import (
     Sizes,
@@ -24,49 +24,50 @@ from swgsim.identification.fit.map_fit import linearised
 from swgsim.identification.fit.priors import ANY_FRICTION, SERIES, Declared, of_unit
 from swgsim.recordings.recording import Recording
 
-# Declared accuracy of the structural model before the gear itself has been recorded: the mesh alone makes up to 2 %.
+# Declared structural error of a gear without commissioning; the mesh of the truss makes up to 2 %.
 STRUCTURE = 0.01
-# An effect's signature is known so many times less well than the maps of the healthy gear, whose lines were learned.
+# Ratio of the error of an effect's signature to that of the healthy influence maps, whose lines were learned.
 LESS = 2.0
-# Variance of a ripple that is none of this gear, in that of noise: so much that it tells nothing.
+# Factor on the noise variance of ripple that the model of this gear does not describe; it then has no weight.
 UNHEARD = 1e8
 
 
 @dataclass(frozen=True, eq=False)
 class Unit:
-    """What is known of a unit before the recordings in question.
+    """A unit before the recordings in question.
 
     Attributes
     ----------
     model : Model
-        At its nominal or commissioned parameters, then with the lines that are its own.
+        With nominal parameters, or with commissioned parameters and the unit's own lines.
     reach : array (direction, direction) or None
-        After commissioning, how far the directions (declared parameters, what a healthy bench does a little of,
-        deviations of lines) may still lie from where they were found, as columns of one standard deviation; None for
-        a unit never seen.
+        Square root of the posterior covariance after commissioning, one column per standard deviation. The directions
+        are declared parameters, healthy variability and deviations of lines. None without commissioning.
     shift : array (direction,) or None
-        Where commissioning found them beside the model, in spreads; while it goes on, less what the model has of their
-        lines already.
+        Posterior mean of the directions relative to the model, in prior standard deviations. During commissioning,
+        lines that are already in the model are subtracted.
     structure : float
-        How well the model knows the signatures of what acts on the structure, as a share of a gauge's largest line: as
-        declared, or as far as commissioning found the lines of s1 to s4 to lie off.
+        Structural error relative to a gauge's largest line: the declared value, or that of the lines of s1 to s4 as
+        found by commissioning.
     seen_healthy : bool
-        Whether recordings of the healthy gear tell more of it, and so more is open, than can be of a gear never seen.
+        Whether healthy recordings determine the unit; more nuisance parameters are then free.
     scatter : Scatter or None
         Errors of single recordings found by commissioning.
     nominal : Gear or None
-        After commissioning, the gear by whose spread the declared parameters are counted.
+        After commissioning, the nominal gear, whose prior standard deviations scale the declared parameters.
     largest : mapping or None
-        From commissioning on, the largest line of each gauge by the model alone, by which deviations of the maps are
-        counted.
+        From commissioning on, the model's largest line of each gauge, which scales deviations of the influence maps.
     learned : array (feature,) or None
-        After commissioning, how far the lines lie from the model's that this has quite different (standard deviation, 0
-        for all others): so far that recordings of the healthy gear have to tell.
+        After commissioning, prior standard deviation of the lines that lie far from the model and were learned; 0 for
+        all others.
     inflation : array (feature,) or None
-        After commissioning, factor by which the variance of each line is larger than that of noise, by what the model
-        misses of the healthy gear; for as many repeats as commissioning had.
+        After commissioning, factor on the noise variance of each line, from the lack of fit of the healthy gear.
     healthy : tuple of Recording
-        By which it was commissioned.
+        Recordings of the commissioning, with their angle counted from the zero of the model.
+    zero : float
+        Angle by which the recorded angle is ahead of the model's [rad].
+    interharmonics : tuple of Effect
+        Declared effects that make interharmonic lines; the model of the order lines has no part of them.
     """
 
     model: Model
@@ -80,6 +81,21 @@ class Unit:
     learned: Float[np.ndarray, " feature"] | None = None
     inflation: Float[np.ndarray, " feature"] | None = None
     healthy: tuple[Recording, ...] = ()
+    zero: float = 0.0
+    interharmonics: tuple[Effect, ...] = ()
+
+    def __repr__(self) -> str:
+        name = f"gear {self.model.gear.number}"
+        declared = ", ".join(each.title() for each in (*self.model.effects, *self.interharmonics))
+        state = (
+            f"commissioned on {len(self.healthy)} recordings of {self.healthy[0].gear!r}, "
+            f"structural error {100 * self.structure:.2g} %"
+            if self.commissioned and self.healthy
+            else "commissioned"
+            if self.commissioned
+            else "not commissioned: the prior is the spread of a series"
+        )
+        return f"Unit of {name}, {state}; declared effects: {declared or 'none'}"
 
     @property
     def commissioned(self) -> bool:

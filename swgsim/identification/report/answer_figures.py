@@ -1,7 +1,7 @@
 """Pictures of the answer: the residual before and after, the scores, the errors, the parameters.
 
-All curves are of the chain at the printed parameters; a commissioned gear's include the lines that commissioning found.
-What the recordings say of zeros and gains of a session, and of what is left open of the gear, is taken out.
+The residual is measured minus predicted, by the chain at the reported parameters. Nuisance parameters, such as zeros
+and gains of a session, are estimated and subtracted.
 """
 
 from collections.abc import Mapping, Sequence
@@ -12,14 +12,14 @@ from jaxtyping import Float
 from matplotlib.figure import Figure
 
 from swgsim.common import style
-from swgsim.identification.report.answer import Answer
-from swgsim.identification.fit.errors import repeat_noise
-from swgsim.identification.data.features import ORDERS, basis
-from swgsim.identification.fit.fitted import Fitted
-from swgsim.identification.search.shortlist import ALPHA
 from swgsim.common.numbers import NORMAL
-from swgsim.identification.report.prediction_errors import WHAT
+from swgsim.identification.data.features import ORDERS, basis
 from swgsim.identification.data.measured import Measured
+from swgsim.identification.fit.errors import repeat_noise
+from swgsim.identification.fit.fitted import Fitted
+from swgsim.identification.report.answer import Answer
+from swgsim.identification.report.prediction_errors import WHAT
+from swgsim.identification.search.shortlist import ALPHA
 from swgsim.recordings.recording import CHANNELS
 from swgsim.storage.labelled_signals import SENSORS
 
@@ -36,43 +36,48 @@ def pictures(answer: Answer, report: Mapping[str, Any]) -> dict[str, tuple[style
     report : mapping
         As :func:`swgsim.identification.report.report_fields.report` makes it.
     """
+    found = bool(report["effects"])
     drawn = {
+        "residual": (
+            "Measured minus predicted over one revolution",
+            ("Orange: the model without the effect. Blue: with it. " if found else "")
+            + "Grey band: noise (two standard deviations). The picture shows the channel and the operating point with "
+            "the largest residual, as the mean of the repeats.",
+            over_angle(answer, largest_only=True),
+        ),
         "residual_over_angle": (
             "Residual over one revolution of the wave generator",
-            "Measured less predicted, the mean of the repeats at the operating point where the model without the found "
-            "effects is wrong most; zeros of the session and what is left open of the gear are taken out. Look at "
-            "orange turning into blue: what is left should lie within the grey band, two standard deviations of what "
-            "noise and the errors of single recordings do to it.",
+            "Measured minus predicted, as the mean of the repeats at the operating point with the largest residual. "
+            "Zeros of the session and other nuisance parameters are estimated and subtracted. Grey band: two standard "
+            "deviations of noise and of the errors of single recordings.",
             over_angle(answer),
         ),
         "residual_spectrum": (
             "Residual over the orders of the wave generator",
-            "Root mean square over all recordings of every order line. Where blue is down at the black line, the noise "
-            "floor by repeats, the model explains all that can be explained; order 0 is the mean of the channel.",
+            "Root mean square of every order line over all recordings. Where blue reaches the noise floor from the "
+            "repeats (black line), the model explains the recordings completely. Order 0 is the mean of the channel.",
             spectrum(answer),
         ),
         "scores": (
             "Score of every effect of the library in the first search",
-            "How much of the residual's sum of squares, in units of the noise, an effect of this kind would explain "
-            "beside the declared parameters. Orange: more than luck in a search of this extent. Grey: absorbed, these "
-            "recordings cannot show it. A long bar alone proves nothing: neighbours imitate one another, and only the "
-            "effect that also predicts operating points left out is accepted.",
+            "Reduction of the residual's sum of squares by each effect, in units of the noise, with nuisance "
+            "parameters marginalised. Orange: significant in a search of the whole library. Grey names: absorbed, "
+            "these recordings cannot test the effect. Similar effects have similar scores; accepted is only an effect "
+            "that also predicts left-out operating points.",
             scores(report),
         ),
         "errors": (
             "Error before and after",
-            "Of what was fitted, of repeats left out and of operating points left out, channel by channel, as a share "
-            "of the channel's root mean square. The black lines are the noise floor by repeats, below which no model "
-            "comes but by luck.",
+            "Errors of fitted recordings, of left-out repeats and of left-out operating points, relative to the root "
+            "mean square of the channel. Black lines: noise floor from the repeats.",
             errors(report),
         ),
     }
     if answer.closed.after.declared:
         drawn["parameters"] = (
             "Declared parameters",
-            "Deviation from the nominal value in units of the spread over a series, with intervals that hold the true "
-            "value in 95 of 100 cases. Names in orange moved by more than two standard deviations when the effect was "
-            "added: calibration had bent them to hide what was missing.",
+            "Deviation from the nominal value in units of the spread of a series, with 95 % intervals. Parameters with "
+            "orange names moved by more than two standard deviations when the effect was added.",
             parameters(answer, report),
         )
     return {
@@ -81,16 +86,26 @@ def pictures(answer: Answer, report: Mapping[str, Any]) -> dict[str, tuple[style
     }
 
 
-def over_angle(answer: Answer) -> Figure:
-    """Residual of every gauge over the angle, before and after; of the other channels if there is no gauge."""
+def over_angle(answer: Answer, *, largest_only: bool = False) -> Figure:
+    """Residual of every gauge over the angle, before and after; of the other channels if there is no gauge.
+
+    Parameters
+    ----------
+    answer : Answer
+    largest_only : bool
+        Draw only the channel with the largest residual.
+    """
     before, after = answer.closed.before, answer.closed.after
     measured = before.measured
     channels = measured.layout.channels
     shown = [i for i, name in enumerate(channels) if name in SENSORS] or list(range(len(channels)))
     rows = worst(before, after)
+    if largest_only:
+        square = _white(before, after)[rows].mean(axis=0) ** 2
+        shown = [max(shown, key=lambda i: float(_of_channel(square, i).sum()))]
     psi = np.linspace(0, 2 * np.pi, POINTS)
     noise = _of_mean(before, rows)
-    picture = style.figure(11, 2.1 * len(shown))
+    picture = style.figure(5.6, 3.2) if largest_only else style.figure(11, 2.1 * len(shown))
     all_axes = np.atleast_1d(picture.subplots(len(shown), 1, sharex=True))
     for axes, i in zip(all_axes, shown, strict=True):
         band = 2 * np.linalg.norm(basis(psi, ORDERS) @ _of_channel(noise, i), axis=1)
@@ -108,9 +123,8 @@ def over_angle(answer: Answer) -> Figure:
 
 
 def worst(fitted: Fitted, after: Fitted) -> list[int]:
-    """The recordings of the operating point at which a model is wrong most, in units of the noise."""
-    measured = fitted.measured
-    white = ((fitted.residual - after.nuisance) / np.sqrt(fitted.errors.variance)).reshape(measured.values.shape)
+    """The recordings of the operating point with the largest residual, in units of the noise."""
+    measured, white = fitted.measured, _white(fitted, after)
     gauges = np.isin(measured.layout.channel, SENSORS)
     size = (white[:, gauges if gauges.any() else slice(None)] ** 2).sum(axis=1)
     points = [recording.point for recording in measured.recordings]
@@ -118,8 +132,14 @@ def worst(fitted: Fitted, after: Fitted) -> list[int]:
     return max(groups, key=lambda rows: float(size[rows].mean()))
 
 
+def _white(fitted: Fitted, after: Fitted) -> Float[np.ndarray, "recording feature"]:
+    """The residual in standard deviations of the noise, without nuisance parameters."""
+    white = (fitted.residual - after.nuisance) / np.sqrt(fitted.errors.variance)
+    return white.reshape(fitted.measured.values.shape)
+
+
 def _of_mean(fitted: Fitted, rows: Sequence[int]) -> Float[np.ndarray, "feature column"]:
-    """Errors of the mean of some recordings that are theirs alone, one standard deviation each."""
+    """Errors of single recordings in the mean of some of them, one standard deviation per column."""
     measured = fitted.measured
     white = np.diag(np.sqrt(measured.variance[rows].mean(axis=0) / len(rows)))
     return np.hstack([white, *fitted.errors.alone.C[rows] / len(rows)])
@@ -163,13 +183,13 @@ def lines(measured: Measured, rows: Float[np.ndarray, "recording feature"]) -> F
 
 
 def repeat_lines(measured: Measured) -> Float[np.ndarray, "channel order"] | None:
-    """What repeats differ by in every order line; None where nothing was repeated."""
+    """Noise of every order line from the repeats; None without repeats."""
     noise = repeat_noise(measured)
     return None if noise is None else lines(measured, noise)
 
 
 def scores(report: Mapping[str, Any]) -> Figure:
-    """Score of every effect, those that stand out in colour, those absorbed in grey."""
+    """Score of every effect: significant ones orange, names of absorbed ones grey."""
     absorbed = {each["name"] for each in report["absorbed"]}
     found = [score for score in report["scores"] if score["name"] not in absorbed]
     found = sorted(found, key=lambda score: score["score"])
@@ -188,7 +208,7 @@ def scores(report: Mapping[str, Any]) -> Figure:
     axes.set_xscale("log")
     axes.set_xlim(left=shortest)
     axes.set_ylim(-0.7, len(names) - 0.3)
-    style.label(axes, "score: fall of the residual's sum of squares [noise variance]", "")
+    style.label(axes, "score: reduction of the sum of squares [noise variance]", "")
     return picture
 
 
@@ -197,7 +217,7 @@ def errors(report: Mapping[str, Any]) -> Figure:
     per_channel = report["error"]["per_channel"]
     picture = style.figure(12, 3.8)
     panels = picture.subplots(1, len(WHAT), sharey=True)
-    titles = ("recordings that were fitted", "repeats left out", "operating points left out")
+    titles = ("fitted recordings", "left-out repeats", "left-out operating points")
     for axes, what, title in zip(panels, WHAT, titles, strict=True):
         for i, each in enumerate(per_channel.values()):
             share = 100 / each["root_mean_square"]
@@ -206,11 +226,11 @@ def errors(report: Mapping[str, Any]) -> Figure:
                     label = when if i == 0 else None
                     axes.bar(i + side, share * each[when][what], 0.4, color=colour, label=label)
             if each["noise_floor"] is not None:
-                label = "noise floor by repeats" if i == 0 else None
+                label = "noise floor" if i == 0 else None
                 height = share * each["noise_floor"]
                 axes.hlines(height, i - 0.45, i + 0.45, color=FLOOR, linewidth=2, label=label)
         if all(each["before"][what] is None for each in per_channel.values()):
-            axes.text(0.5, 0.5, "nothing that can be left out", ha="center", transform=axes.transAxes)
+            axes.text(0.5, 0.5, "no recording can be left out", ha="center", transform=axes.transAxes)
         axes.set_xticks(range(len(per_channel)), list(per_channel), fontsize=8)
         style.label(axes, "", "error [% of the root mean square]" if what == "fit" else "", title)
         axes.set_yscale("log")
@@ -234,5 +254,5 @@ def parameters(answer: Answer, report: Mapping[str, Any]) -> Figure:
     for name, tick in zip(names, axes.get_yticklabels(), strict=True):
         tick.set_color(BEFORE if name in report["moved"] else "#000000")
     axes.legend(fontsize=8)
-    style.label(axes, "deviation from the nominal value [spread over a series]", "")
+    style.label(axes, "deviation from the nominal value [spread of a series]", "")
     return picture

@@ -1,23 +1,70 @@
-"""The answer as one HTML page with its pictures inside; its first line is the verdict."""
+"""The answer as one HTML page with its pictures inside: a summary to forward, and folded details."""
 
-from collections.abc import Mapping, Sequence
+import inspect
+from collections.abc import Mapping
 from typing import Any
+
+import numpy as np
 
 from swgsim.common import style
 from swgsim.common.html import environment
 from swgsim.common.numbers import significant
+from swgsim.common.outcome import FOUND
+from swgsim.effects.library import named
+from swgsim.identification.report import engineering_units
+from swgsim.identification.report.next_experiment import HELPLESS, separation_text
+
+TEMPLATE = "identification/report/answer_page.html.jinja"
 
 
-def page(report: Mapping[str, Any], pictures: Sequence[style.Picture]) -> str:
+def page(report: Mapping[str, Any], pictures: Mapping[str, style.Picture]) -> str:
     """The page of a report.
 
     Parameters
     ----------
     report : mapping
         As :func:`swgsim.identification.report.report_fields.report` makes it.
-    pictures : sequence of Picture
+    pictures : mapping
+        Pictures by name; ``residual`` is part of the summary.
     """
     templates = environment("swgsim")
     templates.filters["words"] = style.words
-    templates.filters["figure"] = significant
-    return templates.get_template("identification/report/answer_page.html.jinja").render(report=report, pictures=pictures)
+    templates.filters["significant"] = significant
+    texts = ("parameter_words", "value_text", "interval_text", "effect_text")
+    return templates.get_template(TEMPLATE).render(
+        report=report,
+        pictures=pictures,
+        next_steps=next_steps(report),
+        about=about,
+        degrees=lambda angle: significant(None if angle is None else float(np.rad2deg(angle))),
+        separation_text=separation_text,
+        **{name: getattr(engineering_units, name) for name in texts},
+    )
+
+
+def about(name: str) -> list[str]:
+    """The paragraphs of an effect's docstring before its parameters: physics, signature and typical size."""
+    text, _, _ = (inspect.getdoc(named(name)) or "").partition("\nAttributes\n")
+    return [" ".join(paragraph.split()) for paragraph in text.split("\n\n") if paragraph.strip()]
+
+
+def next_steps(report: Mapping[str, Any]) -> list[str]:
+    """Recommendations for the reader, most useful first."""
+    steps = []
+    if report["verdict"] == FOUND:
+        places = dict.fromkeys(effect["place"] for effect in report["effects"])
+        steps.append(f"Check the gear: {', '.join(places)}.")
+        steps.append("To simulate the gear with the effects that were found, declare them with effects=effects.yaml.")
+    if experiment := report["next_experiment"]:
+        steps += [_sentence(words) for words in experiment["words"].split("; ") if not words.startswith(HELPLESS)]
+    if report["defects"]:
+        steps.append(f"Correct the recordings: {len(report['defects'])} warnings, listed under Unit and recordings.")
+    if report["error"]["noise_floor"] is None:
+        steps.append("Record every operating point at least twice, so that the noise floor is known.")
+    if not steps:
+        steps.append("No open question: nothing further needs to be recorded. Detection limits are listed below.")
+    return steps
+
+
+def _sentence(words: str) -> str:
+    return words[:1].upper() + words[1:] + "."

@@ -1,36 +1,41 @@
-"""The effects that were found, with their evidence and rivals, and those that were fitted and not accepted."""
+"""The accepted effects with their evidence and rivals, and the effects that were fitted but not accepted."""
 
 from collections.abc import Mapping
 from typing import Any
 
+from swgsim.common.numbers import estimate, number, probability
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities
 from swgsim.effects.text import path_of
-from swgsim.identification.report.answer import Answer
-from swgsim.identification.fit.priors import name_of
-from swgsim.identification.fit.errors import Errors
-from swgsim.identification.fit.form_error import LEAST_GAIN, NO_SIZE
 from swgsim.identification.covariance.low_rank_covariance import as_squares
-from swgsim.common.numbers import estimate, number, probability
-from swgsim.identification.report.prediction_errors import overall
-from swgsim.identification.interharmonics.named_interharmonics import Sideline
 from swgsim.identification.decide.accepted import Step, chosen
 from swgsim.identification.decide.candidate import LEAST_EVIDENCE, LIKELIER, Trial
+from swgsim.identification.fit.errors import Errors
+from swgsim.identification.fit.form_error import LEAST_GAIN, NO_SIZE
+from swgsim.identification.fit.priors import name_of
+from swgsim.identification.interharmonics.named_interharmonics import Sideline
+from swgsim.identification.report.answer import Answer
+from swgsim.identification.report.prediction_errors import overall
 
 
 def names(trial: Trial) -> str:
-    """The effects of a trial by their registered names."""
+    """The registered names of the effects of a trial."""
     return " and ".join(path_of(type(effect)) for effect in trial.effects)
 
 
+def found_effects(answer: Answer) -> list[dict[str, Any]]:
+    """All found effects as in ``report.json``."""
+    return [*accepted(answer), *(of_line(line) for line in answer.lines)]
+
+
 def accepted(answer: Answer) -> list[dict[str, Any]]:
-    """The effects that were added, with their evidence and their rivals."""
+    """The accepted effects with their evidence and their rivals."""
     after, found = answer.closed.after, []
     at = len(answer.closed.before.model.effects)
     for step in answer.closed.steps:
         for which in range(len(step.accepted.effects)):
             effect = after.model.effects[at]
-            # A rival of a pair that has this effect as well is another explanation of the other one.
+            # A rival pair that contains this effect too is a rival of the other effect of the pair.
             rivals = [r for r in step.rivals if chosen(step.accepted.effects[which]) not in map(chosen, r.effects)]
             found.append({
                 "name": path_of(type(effect)),
@@ -45,7 +50,7 @@ def accepted(answer: Answer) -> list[dict[str, Any]]:
 
 
 def of_line(line: Sideline) -> dict[str, Any]:
-    """An effect between the orders; its phase is another one in every recording."""
+    """An effect that makes interharmonic lines, with a random phase in every recording."""
     effect = line.effect
     parameters = {}
     for name, q in quantities(type(effect)).items():
@@ -60,8 +65,8 @@ def of_line(line: Sideline) -> dict[str, Any]:
         "parameters": parameters,
         "evidence": {
             "words": (
-                f"lines between the integer orders that come by luck with probability {probability(line.chance)}; "
-                f"its law over load and speed agrees with all recordings (probability {line.agrees:.2g})"
+                f"its interharmonic lines are significant (p-value {probability(line.chance)}); its law over load and "
+                f"speed agrees with all recordings (p-value {line.agrees:.2g})"
             ),
             "score": number(line.gain),
             "chance": number(line.chance),
@@ -73,20 +78,20 @@ def of_line(line: Sideline) -> dict[str, Any]:
 
 
 def rejected(answer: Answer) -> list[dict[str, Any]]:
-    """Effects that were fitted but not added."""
+    """Effects that were fitted but not accepted."""
     steps = answer.closed.steps
-    # What was put off in one step may be found, or be a rival, in a later one.
+    # An effect that was rejected in one step may be accepted, or be a rival, in a later one.
     held = {path_of(type(e)) for step in steps for trial in (step.accepted, *step.rivals) for e in trial.effects}
 
-    def elsewhere(trial: Trial) -> bool:
+    def accepted_later(trial: Trial) -> bool:
         return held.issuperset(path_of(type(effect)) for effect in trial.effects)
 
     tried: dict[str, tuple[Trial, Trial | None]] = {
-        names(trial): (trial, step.accepted) for step in steps for trial in step.others if not elsewhere(trial)
+        names(trial): (trial, step.accepted) for step in steps for trial in step.others if not accepted_later(trial)
     }
-    put_off = (*answer.closed.rejected, *(trial for trial in answer.closed.withdrawn if not elsewhere(trial)))
-    # Of two of a kind the first one is told, which came nearer.
-    tried |= {names(trial): (trial, None) for trial in reversed(put_off)}
+    rejected_last = (*answer.closed.rejected, *(t for t in answer.closed.withdrawn if not accepted_later(t)))
+    # Of two trials of the same effects, the first one is better.
+    tried |= {names(trial): (trial, None) for trial in reversed(rejected_last)}
     return [
         {
             "name": name,
@@ -98,7 +103,7 @@ def rejected(answer: Answer) -> list[dict[str, Any]]:
 
 
 def _heldout(trial: Trial) -> float | None:
-    """Error of operating points left out by a model with what was tried."""
+    """Error at left-out operating points of a model with the effects of a trial."""
     fitted = trial.fitted.strict
     return overall(fitted.measured, Errors(fitted, fitted).heldout)
 
@@ -108,54 +113,56 @@ def why(trial: Trial, answer: Answer, better: Trial | None = None) -> str:
     outdone_by = answer.closed.outdone_by
     if better is None and outdone_by and trial is answer.closed.best_rejected:
         return (
-            f"a bare regularity explains the same thing better, or far more beside it: {outdone_by} (fall of the sum "
+            f"a regularity explains the same lines better, or explains much more: {outdone_by} (reduction of the sum "
             f"of squares {outdone_by.gain:.0f} against {trial.explained(answer.closed.asked):.0f})"
         )
     if trial in answer.closed.cancelling:
-        which = "its effects" if len(trial.effects) > 1 else "it and another one"
-        return f"{which} cancel much of one another: together they imitate something else"
+        which = "its effects" if len(trial.effects) > 1 else "it and another effect"
+        return f"{which} largely cancel each other: together they imitate another cause"
     if trial in answer.closed.outweighed:
-        return "it brings less than ten times what it leaves, which no effect explains: a part of something else"
+        return "it gains less than ten times the unexplained remainder: it is probably a part of another cause"
     if trial in answer.closed.withdrawn:
-        return "accepted at first; once the others were in the model, another one, or nothing, stood in its place"
+        return "accepted at first; with all others in the model, another effect or no effect is significant instead"
     if not trial.fitted.calibrated.settled:
-        return "its fit did not come to rest"
+        return "its fit did not converge"
     split, effect = max(zip(trial.coherence, trial.effects, strict=True), key=lambda each: each[0].disagreement)
     if split.disagreement >= NO_SIZE:
         size = f"the size of {effect.title()}" if len(trial.effects) > 1 else "its size"
-        return f"operating points, channels and orders leave {size} in doubt by {100 * split.disagreement:.0f} %"
+        return (
+            f"operating points, channels and orders disagree: {size} is uncertain by {100 * split.disagreement:.0f} %"
+        )
     poorest = min(trial.coherence, key=lambda each: each.chance)
     if not poorest.holds:
-        form = f"; its form differs by {100 * poorest.form_error:.0f} %" if poorest.form_error else ""
+        form = f"; its form deviates by {100 * poorest.form_error:.0f} %" if poorest.form_error else ""
         return (
-            "one size does not serve all operating points, channels and orders "
-            f"(probability {probability(poorest.chance)}{form})"
+            "no single size fits all operating points, channels and orders "
+            f"(p-value {probability(poorest.chance)}{form})"
         )
     if trial.disowned:
         share = 100 * trial.own / as_squares(trial.evidence)
         return (
-            f"as the library has it, it explains {share:.0f} % of what it gains; the rest is explained by what is left "
-            "open for this gear's other structure, which fits much else as well"
+            f"its library form explains {share:.0f} % of its gain; the remainder comes from nuisance parameters for "
+            "this gear's other structure, which could fit other causes as well"
         )
     if not trial.pays:
         return (
-            "it does not help to predict operating points left out, or the whole is hardly likelier with it: "
-            f"log-likelihood {trial.heldout_gain:+.1f} and {trial.evidence:+.1f}, at least {LEAST_GAIN:g} and "
-            f"{LIKELIER:g} are asked for, or {LEAST_EVIDENCE:g} of the whole"
+            "it does not improve the prediction of left-out operating points, or hardly raises the likelihood of all "
+            f"recordings: log-likelihood {trial.heldout_gain:+.1f} and {trial.evidence:+.1f}; required are "
+            f"{LEAST_GAIN:g} and {LIKELIER:g}, or {LEAST_EVIDENCE:g} for all recordings"
         )
     if better is None and trial is answer.closed.best_rejected and answer.closed.apart:
-        return "it may be part of a disturbance that was set apart, or leaves more of that channel without a name"
+        return "it may be part of a disturbance of one channel, or leaves a larger remainder in that channel"
     if better is None:
-        return "another effect explains more, which was not accepted, and the runner-up is never taken instead"
+        return "another effect explains more but was not accepted; a runner-up is never accepted instead"
     return (
-        f"it explains less than {' and '.join(e.title() for e in better.effects)}: log-likelihood of operating points "
-        f"left out {trial.heldout_gain:+.0f} against {better.heldout_gain:+.0f}, of all recordings "
+        f"it explains less than {' and '.join(e.title() for e in better.effects)}: log-likelihood of left-out "
+        f"operating points {trial.heldout_gain:+.0f} against {better.heldout_gain:+.0f}, of all recordings "
         f"{trial.evidence:+.0f} against {better.evidence:+.0f}"
     )
 
 
 def _parameters(effect: Effect, deviation: Mapping[str, float], number_: int) -> dict[str, dict[str, Any]]:
-    """Parameters of the effect with that number in its model; those that were chosen or fixed have no interval."""
+    """Parameters of the effect with that number in its model; chosen or fixed parameters have no interval."""
     found = {}
     for name, q in quantities(type(effect)).items():
         value = getattr(effect, name)
@@ -170,7 +177,7 @@ def _parameters(effect: Effect, deviation: Mapping[str, float], number_: int) ->
 
 
 def _rival(trial: Trial) -> dict[str, Any]:
-    """Another explanation that these recordings cannot rule out, at its likeliest parameters."""
+    """A rival explanation at its most probable parameters."""
     first = len(trial.fitted.model.effects) - len(trial.effects)
     return {
         "effects": [
@@ -183,33 +190,32 @@ def _rival(trial: Trial) -> dict[str, Any]:
 
 
 def _evidence(step: Step, which: int) -> dict[str, Any]:
-    """Why an effect is believed."""
+    """The evidence for an effect, in words and numbers."""
     trial, score = step.accepted, step.accepted.score
     agreement = trial.coherence[which]
     together = " (together with the other effect of the pair)" if len(trial.effects) > 1 else ""
     raised = (
-        f"operating points left out by {trial.heldout_gain:.0f} and that of all together by {trial.evidence:.0f} (at "
-        f"least {LEAST_GAIN:g} and {LIKELIER:g} are asked for)"
+        f"left-out operating points by {trial.heldout_gain:.0f} and that of all recordings by {trial.evidence:.0f} "
+        f"(required: {LEAST_GAIN:g} and {LIKELIER:g})"
         if trial.heldout_gain > LEAST_GAIN
-        else f"all recordings together by {trial.evidence:.0f} (at least {LEAST_EVIDENCE:g} are asked for; every "
-        "operating point shows it alike, so those left out do not tell)"
+        else f"all recordings by {trial.evidence:.0f} (required: {LEAST_EVIDENCE:g}; all operating points show the "
+        "effect alike, so left-out points give no additional evidence)"
     )
-    beside = "; ".join(map(str, trial.beside))
-    once = f", once what has nothing to do with it is taken out: {beside}" if beside else ""
+    unrelated = "; ".join(map(str, trial.beside))
+    without = f", after unrelated regularities were removed: {unrelated}" if unrelated else ""
     if trial.imperfect:
-        why_believed = (
-            f"in the library's own form, what is open of the gear absorbs all but {100 * score.visible:.2g} % of it; "
-            f"it shows by how it differs from that form, by {100 * agreement.form_error:.0f} %, which tells all that "
-            "is missing and is likelier than bare regularities"
+        test = (
+            f"nuisance parameters of the gear absorb all but {100 * score.visible:.2g} % of its library form; the "
+            f"recordings show it by a deviation of {100 * agreement.form_error:.0f} % from that form, which explains "
+            "the whole lack of fit and is more probable than regularities"
         )
     else:
-        why_believed = (
-            f"so high a score comes by luck with probability {probability(score.chance)} in the whole library; one "
-            "size serves all operating points, channels and orders, with parts that differ by "
-            f"{100 * agreement.form_error:.0f} %{once}"
+        test = (
+            f"the p-value of its score in the whole library is {probability(score.chance)}; one size fits all "
+            f"operating points, channels and orders; its parts differ by {100 * agreement.form_error:.0f} %{without}"
         )
     return {
-        "words": f"adding it{together} raises the log-likelihood of {raised}; {why_believed}",
+        "words": f"adding it{together} raises the log-likelihood of {raised}; {test}",
         "heldout_gain": number(trial.heldout_gain),
         "evidence": number(trial.evidence),
         "score": number(score.gain),

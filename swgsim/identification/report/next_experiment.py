@@ -1,8 +1,7 @@
-"""The next experiment: operating point and conditions at which two explanations that look alike so far come apart.
+"""The next experiment: operating point and conditions that separate two explanations (T-optimal design).
 
-Two models are compared as a referee would: the one is the truth, the other adjusts everything that it does not know
-exactly to the recordings there are and to those that would be made. What is left of their difference, in units of the
-noise, is the separation (T-optimality).
+One model is taken as the truth. The other model is fitted, with all its nuisance parameters, to the existing recordings
+and to the planned ones. The squared distance that remains, in units of the noise, is the separation.
 """
 
 from collections.abc import Sequence
@@ -12,40 +11,45 @@ import numpy as np
 from jaxtyping import Float
 from scipy.linalg import solve_triangular
 
+from swgsim.common.numbers import significant
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import OperatingPoint
 from swgsim.identification.covariance import scatter
-from swgsim.identification.report.answer import Answer
-from swgsim.identification.fit.form_error import FORM_TOLERANCE, allowance
-from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.covariance.low_rank_covariance import without_what_noise_hides
 from swgsim.identification.data.model import Model, Situation, predict
+from swgsim.identification.fit.fitted import Fitted
+from swgsim.identification.fit.form_error import FORM_TOLERANCE, allowance
+from swgsim.identification.report.answer import Answer
+from swgsim.identification.report.engineering_units import names_in_words
 
-# What a test bench can run, and that it can do as it stands, with a warm gear, or after an hour.
+# Operating points and conditions of a test bench: as it stands, with a warm gear, or after an hour.
 FEASIBLE = tuple(OperatingPoint(n, T) for n in (300.0, 1000.0, 2000.0, 3000.0, 4000.0) for T in (3.0, 20.0, 45.0, 70.0))
 CONDITIONS = (Conditions(), Conditions(temperature=45.0), Conditions(elapsed=3600.0))
-# To heat a gear or to wait is worth it only if it separates clearly better than another operating point.
+# Heating or waiting must separate clearly better than another operating point.
 EASIER = 0.8
 # Numbers of further recordings at one operating point, in one session.
 RECORDINGS = (1, 2, 3, 6, 12)
-# Separation at which two explanations are told apart: five standard deviations.
+# Sufficient separation of two explanations: five standard deviations, squared.
 SEPARATED = 25.0
+# In place of a second explanation: the model without the first one.
+ABSENCE = "its absence"
+HELPLESS = "no recordings on this bench"
 
 
 @dataclass(frozen=True)
 class Experiment:
-    """Further recordings, and what they would tell apart.
+    """Further recordings, and the two explanations that they would separate.
 
     Attributes
     ----------
     between : (str, str)
         The two explanations.
     situation : Situation
-        Where they differ most.
+        Operating point and conditions with the largest separation.
     recordings : int or None
-        That bring the separation to SEPARATED; None if as many as can be asked for do not.
+        Number that brings the separation to SEPARATED; None if the largest number does not.
     separation : float
-        Of so many recordings, or of the largest number asked for.
+        With this number of recordings, or with the largest number.
     """
 
     between: tuple[str, str]
@@ -57,38 +61,44 @@ class Experiment:
         one, other = self.between
         point, conditions = self.situation.point, self.situation.conditions
         where = f"at {point.n_in_rpm:g} rpm and {point.T_out:g} N m"
-        where += f" with the gear at {conditions.temperature:g} degC" if conditions.warmer else ""
+        where += f" with the gear at {conditions.temperature:g} °C" if conditions.warmer else ""
         where += f" {conditions.elapsed / 3600:g} h after the session began" if conditions.elapsed else ""
+        aim = f"detect {one}" if other == ABSENCE else f"separate {one} from {other}"
         if self.recordings is None:
             return (
-                f"no recording on the bench tells {one} from {other}: {RECORDINGS[-1]} recordings {where} would "
-                f"separate them by {self.separation:.2g}, {SEPARATED:g} are needed"
+                f"{HELPLESS} can {aim}: even {RECORDINGS[-1]} recordings {where} "
+                f"give a separation of {separation_text(self.separation)}, {SEPARATED:g} are needed"
             )
         count = f"{self.recordings} recording{'s' if self.recordings > 1 else ''}"
-        return f"to tell {one} from {other}, make {count} {where}: separation {self.separation:.3g}"
+        return f"to {aim}, make {count} {where} (separation {self.separation:.0f})"
+
+
+def separation_text(separation: float) -> str:
+    """A separation for a text; far below one standard deviation, its value has no meaning.
+
+    >>> separation_text(40.24), separation_text(1e-7)
+    ('40', 'less than 0.1')
+    """
+    return "less than 0.1" if separation < 0.1 else significant(separation, 2)
 
 
 def next_experiments(answer: Answer) -> tuple[Experiment, ...]:
-    """What would separate every accepted effect from its rivals, and show every effect that is absorbed so far."""
+    """Recordings that separate every accepted effect from its rivals, and that test every absorbed effect."""
     found = []
     for step in answer.closed.steps:
         for rival in step.rivals:
-            names = (_names(step.accepted.effects), _names(rival.effects))
+            names = (names_in_words(step.accepted.effects), names_in_words(rival.effects))
             found += _best(rival.fitted, [step.accepted.fitted.model], [names])
     after = answer.closed.after
     effects = [score.hypothesis.effect() for score in answer.absorbed]
     if effects:
-        between = [(_names((effect,)) + " of typical size", "its absence") for effect in effects]
+        between = [(f"{effect.title()} of typical size", ABSENCE) for effect in effects]
         found += _best(after, [after.model.plus(effect) for effect in effects], between)
     return tuple(found)
 
 
-def _names(effects: Sequence) -> str:
-    return " and ".join(effect.title() for effect in effects)
-
-
 def _best(adjusting: Fitted, truths: Sequence[Model], between: Sequence[tuple[str, str]]) -> list[Experiment]:
-    """For every truth the least number of recordings that shows a fitted model to be wrong, and where."""
+    """For every truth, the smallest number of recordings that refutes a fitted model, and their operating point."""
     further = _Further.of(adjusting, truths)
     found: dict[int, Experiment] = {}
     for recordings in RECORDINGS:
@@ -104,7 +114,7 @@ def _best(adjusting: Fitted, truths: Sequence[Model], between: Sequence[tuple[st
 
 
 def easiest(separations: Float[np.ndarray, " candidate"]) -> int:
-    """The candidate that separates best, an operating point as the bench stands if it does nearly as well."""
+    """The candidate with the largest separation; one without heating or waiting if it is nearly as good."""
     plain = int(separations[: len(FEASIBLE)].argmax())
     best = int(separations.argmax())
     needed = SEPARATED if separations[best] >= SEPARATED else EASIER * separations[best]
@@ -113,17 +123,17 @@ def easiest(separations: Float[np.ndarray, " candidate"]) -> int:
 
 @dataclass(frozen=True, eq=False)
 class _Further:
-    """A fitted model before recordings that have not been made yet.
+    """A fitted model and planned recordings.
 
     Attributes
     ----------
     candidates : tuple of Situation
     known : array (truth,)
-        Separation by the recordings there are, to which all that the model may adjust is adjusted.
+        Separation by the existing recordings, with all nuisance parameters fitted.
     differences : array (candidate, feature, truth)
-        What is left of the difference when it is.
+        Difference that remains after this fit.
     spread : array (candidate, feature, feature)
-        Covariance of the features as it may still adjust, with errors that further recordings share.
+        Posterior covariance of the features, with errors that the planned recordings share.
     variance : array (feature,)
         White noise of one recording.
     single : array (candidate, feature, kind)
@@ -139,7 +149,7 @@ class _Further:
 
     @classmethod
     def of(cls, fitted: Fitted, truths: Sequence[Model]) -> "_Further":
-        """All that does not depend on the number of recordings."""
+        """The part that does not depend on the number of recordings."""
         measured = fitted.measured
         count = len(measured.situations)
         candidates = tuple(Situation(point, conditions) for conditions in CONDITIONS for point in FEASIBLE)
@@ -147,7 +157,7 @@ class _Further:
         predicted, directions = _directions(fitted, situations)
         seen = predict(truths, situations, measured.layout) - predicted
         differences = np.moveaxis(seen, 0, -1)
-        # A difference that what was set free absorbs, or within the tolerance of form, told nothing so far.
+        # Differences within the form tolerance, or absorbed by free regularities, gave no information so far.
         errors = fitted.errors.with_columns(fitted.allowed.free)
         for number in _added(fitted):
             errors = errors.with_columns(without_what_noise_hides(allowance(fitted, number), errors.variance))
@@ -171,7 +181,7 @@ class _Further:
 
     def separations(self, recordings: int) -> Float[np.ndarray, "candidate truth"]:
         """Separation of all truths by so many recordings at each candidate."""
-        # The mean of the recordings says all; what is theirs alone averages out, what they share does not.
+        # The mean of the recordings is sufficient: their own errors average out, shared errors do not.
         alone = self.single @ self.single.transpose(0, 2, 1) + np.diag(self.variance)
         further = np.linalg.solve(self.spread + alone / recordings, self.differences)
         return self.known + (self.differences * further).sum(axis=1)
@@ -180,7 +190,7 @@ class _Further:
 def _directions(
     fitted: Fitted, situations: Sequence[Situation]
 ) -> tuple[Float[np.ndarray, "situation feature"], Float[np.ndarray, "situation feature direction"]]:
-    """Prediction of a model anywhere, and all directions in which it may still adjust, one standard deviation each."""
+    """Prediction of a model in any situation, and its nuisance directions, one standard deviation each."""
     unsure = fitted.unit.left_open(fitted.model, situations, fitted.measured.layout, fitted.parameters)
     return unsure.predicted, np.concatenate([unsure.columns, unsure.J], axis=-1)
 
@@ -193,9 +203,7 @@ def _added(fitted: Fitted) -> range:
 def _tolerance(
     fitted: Fitted, candidates: Sequence[Situation], predicted: Float[np.ndarray, "candidate feature"]
 ) -> Float[np.ndarray, "candidate feature column"]:
-    """What an imperfect form of the fitted effects leaves open at a new operating point: of each channel and order a
-    share, and what an inaccurate structural model does.
-    """
+    """Errors of the form of fitted effects at a new operating point: by channel, by order, and by structural error."""
     layout = fitted.measured.layout
     effects = _added(fitted)
     if not effects:
@@ -205,7 +213,7 @@ def _tolerance(
     masks += [layout.channel == channel for channel in layout.channels]
     masks += [layout.order == order for order in np.unique(layout.order)]
     shares = np.stack([FORM_TOLERANCE * (predicted - each) * mask for each in without for mask in masks], axis=-1)
-    # At one operating point the same line of several effects is off together by the root of their squares.
+    # At one operating point, the errors of one line by several effects add in squares.
     structural = [fitted.model.effects[number].structural for number in effects]
     acting = [acts * (predicted - each) for acts, each in zip(structural, without, strict=True)]
     structure = np.sqrt(sum(fitted.unit.open_of(each, layout) ** 2 for each in acting))

@@ -1,26 +1,26 @@
-"""What remains open: the unknown, what cannot be tested, what would have been seen, and what to record next."""
+"""Open questions: the unknown remainder, untestable effects, detection limits, and the next experiment."""
 
 from collections.abc import Sequence
 from typing import Any
 
+from swgsim.common.numbers import number
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities
 from swgsim.effects.text import entries, path_of
-from swgsim.identification.report.answer import Answer
-from swgsim.identification.report.next_experiment import Experiment
-from swgsim.identification.report.found import names, why
-from swgsim.common.numbers import number
-from swgsim.identification.search.screening import Score
 from swgsim.identification.interharmonics.named_interharmonics import acts_on_signals, is_random
 from swgsim.identification.interharmonics.unattributed_lines import Unnamed
+from swgsim.identification.report.answer import Answer
+from swgsim.identification.report.found import names, why
+from swgsim.identification.report.next_experiment import Experiment
 from swgsim.identification.search.regularities import Atom, Described
+from swgsim.identification.search.screening import Score
 
 
 def unknown(answer: Answer) -> dict[str, Any] | None:
-    """What no effect of the library explains, in words and numbers, and as effects that can be added.
+    """The remainder that no effect of the library explains, in words and numbers, and as effects that can be declared.
 
-    ``orders`` are those of regularities and of lines between them, ``pattern`` and ``law`` those of the first
-    regularity, or of the first line if there is none.
+    ``orders`` are the orders of regularities and of interharmonic lines; ``pattern`` and ``law`` are those of the first
+    regularity, or of the first interharmonic line if there is no regularity.
     """
     if not answer.unexplained:
         return None
@@ -83,13 +83,13 @@ def _line(line: Unnamed) -> dict[str, Any]:
 
 
 def next_experiment(experiments: Sequence[Experiment], answer: Answer) -> dict[str, Any] | None:
-    """What to record next, the question that needs the fewest recordings first; None if nothing is open."""
+    """The next recordings, those with the fewest recordings first; None without an open question."""
     helpful = sorted((e for e in experiments if e.recordings), key=lambda e: (e.recordings or 0, -e.separation))
     helpless = [e for e in experiments if not e.recordings]
     words = [str(e) for e in (*helpful, *helpless)]
     commission = bool(helpless or answer.unexplained) and not answer.closed.before.unit.commissioned
     if commission:
-        words.append("recordings of the healthy gear, given as commissioning=FOLDER, tell what it has always had")
+        words.append("commission the gear with recordings of its healthy state (commissioning=FOLDER)")
     if not words:
         return None
     return {
@@ -111,26 +111,26 @@ def next_experiment(experiments: Sequence[Experiment], answer: Answer) -> dict[s
 
 
 def absorbed(score: Score) -> dict[str, Any]:
-    """An effect that these recordings cannot show."""
+    """An effect that these recordings cannot test."""
     return {
         "name": path_of(score.hypothesis.kind),
         "visible": number(score.visible),
         "why": (
-            "these recordings do not show it: the channels do not see it at the recorded operating points"
+            "it does not change the recorded channels at the recorded operating points"
             if score.visible <= 0
-            else "no size within its bounds would stand out at the recorded operating points: "
-            f"{100 * score.visible:.2g} % of its signature is left beside the declared parameters"
+            else "no size within its bounds would be significant at the recorded operating points; nuisance parameters "
+            f"absorb {100 * (1 - score.visible):.3g} % of its signature"
         ),
     }
 
 
 def untried(answer: Answer, kinds: Sequence[type[Effect]]) -> list[dict[str, Any]]:
-    """Effects that no test looks at."""
+    """Effects for which there is no test."""
     gauges = any(channel.startswith("s") for channel in answer.closed.before.measured.layout.channels)
     whys = {
-        kind: "its phase is another one in every recording and no gauge was recorded in all of them"
+        kind: "its phase is random in every recording, and no gauge is in all recordings"
         if acts_on_signals(kind)
-        else "its phase is another one in every recording and it acts inside the chain: there is no test for it"
+        else "its phase is random in every recording and it acts inside the chain: there is no test for it"
         for kind in kinds
         if is_random(kind) and not (gauges and acts_on_signals(kind))
     }
@@ -138,9 +138,7 @@ def untried(answer: Answer, kinds: Sequence[type[Effect]]) -> list[dict[str, Any
 
 
 def detectable(score: Score) -> dict[str, Any]:
-    """The smallest size that would have been seen, counted from the one that changes nothing; None if none within the
-    bounds would.
-    """
+    """The detection limit, relative to the size without effect; None if it lies beyond the bounds."""
     q = quantities(score.hypothesis.kind)[score.hypothesis.size]
     return {
         "parameter": score.hypothesis.size,

@@ -6,12 +6,12 @@ import numpy as np
 from jaxtyping import Float, Int
 from scipy.stats import chi2
 
+from swgsim.common.numbers import number
+from swgsim.common.seeds import generator
+from swgsim.identification.data.measured import Measured
 from swgsim.identification.fit.errors import Errors, noise_floor, per_channel, relative, rms
 from swgsim.identification.fit.fitted import Fitted
-from swgsim.common.numbers import number
-from swgsim.identification.data.measured import Measured
 from swgsim.recordings.recording import CHANNELS
-from swgsim.common.seeds import generator
 
 UNIT = "% of the root mean square of each channel, root mean square over the channels"
 # What errors are of: all that was fitted, repeats left out, operating points left out.

@@ -1,23 +1,26 @@
-"""The answer as ``report.json``: what was found, how well it is known, what it changes, and what remains open."""
+"""The answer as ``report.json``: effects with intervals, errors before and after, and open questions."""
 
 from collections.abc import Sequence
+from datetime import datetime
+from importlib.metadata import version
 from typing import Any
 
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.recordings.checks.defect import Defect
-from swgsim.effects.base import Effect
-from swgsim.identification.report.answer import Answer
-from swgsim.identification.fit.errors import noise_floor
-from swgsim.identification.report.next_experiment import Experiment
-from swgsim.identification.fit.fitted import Fitted
-from swgsim.identification.report.found import accepted, of_line, rejected
 from swgsim.common.numbers import estimate
+from swgsim.effects.base import Effect
+from swgsim.identification.data.measured import Measured
+from swgsim.identification.fit.errors import noise_floor
+from swgsim.identification.fit.fitted import Fitted
+from swgsim.identification.fit.unit import UNHEARD
+from swgsim.identification.report.answer import Answer
+from swgsim.identification.report.found import found_effects, rejected
+from swgsim.identification.report.next_experiment import Experiment
 from swgsim.identification.report.open_questions import absorbed, detectable, next_experiment, scored, unknown, untried
 from swgsim.identification.report.prediction_errors import error, named
-from swgsim.identification.data.measured import Measured
-from swgsim.identification.fit.unit import UNHEARD
+from swgsim.identification.report.sentence import sentence
+from swgsim.recordings.checks.defect import Defect
 from swgsim.recordings.recording import CHANNELS
 
 
@@ -27,8 +30,9 @@ def report(
     experiments: Sequence[Experiment] = (),
     defects: Sequence[Defect] = (),
     seconds: float = 0.0,
+    source: str = "recordings",
 ) -> dict[str, Any]:
-    """All that closing the loop says, as plain numbers and text; what is not known is None.
+    """The answer as plain numbers and text; unknown values are None.
 
     Parameters
     ----------
@@ -36,22 +40,25 @@ def report(
     kinds : sequence of effect classes
         The library that was searched.
     experiments : sequence of Experiment
-        What would separate what these recordings cannot.
+        Recordings that would separate rivals or test absorbed effects.
     defects : sequence of Defect
-        What was detected in the recordings.
+        Warnings about the recordings.
     seconds : float
-        That the answer took.
+        Computing time of the answer.
+    source : str
+        Name of the recordings, such as their folder.
     """
     before, after = answer.closed.before, answer.closed.after
     measured = before.measured
     unheard = _orders(before, before.unit.inflation, UNHEARD / 2)
     less_certain = _orders(before, before.unit.inflation, 1.0)
+    effects = found_effects(answer)
     return {
         "verdict": answer.verdict,
-        "sentence": answer.sentence,
+        "sentence": sentence(answer, effects),
         "noise_floor": named(measured, noise_floor(measured)),
         "calibrated": calibrated(after),
-        "effects": [*accepted(answer), *(of_line(line) for line in answer.lines)],
+        "effects": effects,
         "rejected": rejected(answer),
         "error": error(before, after),
         "unknown": unknown(answer),
@@ -70,26 +77,33 @@ def report(
         "recordings": _recordings(measured),
         "defects": [str(defect) for defect in defects],
         "seconds": round(seconds, 1),
+        "made": {
+            "date": datetime.now().astimezone().strftime("%Y-%m-%d %H:%M"),
+            "recordings": source,
+            "commissioning": None,
+            "nominal": f"gear {(before.unit.nominal or before.model.gear).number}",
+            "version": version("swg-workbench"),
+        },
     }
 
 
-def _orders(fitted: Fitted, values: Float[np.ndarray, " feature"] | None, least: float) -> dict[str, list[int]]:
-    """Orders of every channel at which a value is more than the least one."""
+def _orders(fitted: Fitted, values: Float[np.ndarray, " feature"] | None, limit: float) -> dict[str, list[int]]:
+    """Orders of every channel at which a value exceeds a limit."""
     if values is None:
         return {}
-    layout, more = fitted.measured.layout, values > least
+    layout, more = fitted.measured.layout, values > limit
     found = {channel: layout.order[more & (layout.channel == channel)] for channel in layout.channels}
     return {channel: np.unique(orders).tolist() for channel, orders in found.items() if len(orders)}
 
 
 def calibrated(fitted: Fitted) -> dict[str, dict[str, Any]]:
-    """The declared parameters at which the chain ran, with what is left open of them."""
+    """The declared parameters of the model with their 95 % intervals."""
     unit = fitted.unit
     if unit.reach is None or unit.nominal is None:
         declared = fitted.declared
         deviations = [fitted.deviation[name] for name in declared]
     else:
-        # By whose spread the reach of commissioning is counted.
+        # In units of the prior standard deviations of the nominal gear.
         declared = unit.declared
         spread = np.sqrt((unit.reach**2).sum(axis=1))[: len(declared)].tolist()
         deviations = [s * p.sd for s, p in zip(spread, declared.values(), strict=True)]
@@ -100,10 +114,7 @@ def calibrated(fitted: Fitted) -> dict[str, dict[str, Any]]:
 
 
 def moved(before: Fitted, after: Fitted) -> dict[str, dict[str, Any]]:
-    """Declared parameters that adding the effects has moved by more than two standard deviations.
-
-    Calibration had bent them to hide what was missing.
-    """
+    """Declared parameters that the effects moved by more than two standard deviations; they were biased before."""
     found = {}
     for name, parameter in before.declared.items():
         was, now = parameter.value(before.model), parameter.value(after.model)
@@ -113,7 +124,7 @@ def moved(before: Fitted, after: Fitted) -> dict[str, dict[str, Any]]:
 
 
 def _recordings(measured: Measured) -> dict[str, Any]:
-    """What was recorded."""
+    """Number, gear, sessions, operating points and repeats of the recordings."""
     groups = [measured.repeats.count(group) for group in dict.fromkeys(measured.repeats)]
     points = dict.fromkeys(recording.point for recording in measured.recordings)
     return {

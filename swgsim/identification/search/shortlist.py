@@ -1,5 +1,6 @@
-"""What of a screening is worth a fit."""
+"""Screening of the library, and the shortlist of effects that are fitted."""
 
+import logging
 from collections.abc import Iterable, Sequence
 
 import numpy as np
@@ -12,27 +13,29 @@ from swgsim.identification.search.screening import Score, best_of_kind, screen
 
 # Probability of a false effect on recordings in which nothing is missing.
 ALPHA = 0.005
-# Leaders that are fitted, and those that are as good but for this share of the gain and may be rivals.
+# Best scores that are fitted; and up to how many, if they lie within this share of the best score (possible rivals).
 LEADERS, NEARLY, NEARLY_LEADERS = 4, 0.05, 8
+STEPS = logging.getLogger(__name__)
 
 
 def screened(fitted: Fitted, kinds: Sequence[type[Effect]], rng: np.random.Generator) -> tuple[Score, ...]:
-    """The best hypothesis of every effect that was not added yet."""
+    """The best hypothesis of every effect that is not in the model yet."""
     found = offered(fitted, kinds)
     if not found:
         return ()
+    STEPS.info("screening %d hypotheses, %d effects in the model", len(found), len(fitted.added))
     fitted = unbent(fitted)
     return tuple(best_of_kind(screen(found, signatures(found, fitted.model, fitted.measured), fitted, rng)))
 
 
 def offered(fitted: Fitted, kinds: Iterable[type[Effect]]) -> list[Hypothesis]:
-    """All hypotheses of the effects that were not added yet."""
+    """All hypotheses of the effects that are not in the model yet."""
     found = hypotheses(kinds, fitted.unit.of_another_structure)
     return [each for each in found if not any(map(each.repeats, fitted.added))]
 
 
 def leaders(scores: Sequence[Score]) -> list[Score]:
-    """What is fitted: the best scores that are no luck, and those hardly worse than the very best."""
-    real = [score for score in scores if score.chance <= ALPHA]
-    nearly = [s for s in real[LEADERS:NEARLY_LEADERS] if s.gain > (1 - NEARLY) * real[0].gain]
-    return [*real[:LEADERS], *nearly]
+    """The shortlist: the best significant scores, and those that are nearly as high as the best one."""
+    significant = [score for score in scores if score.chance <= ALPHA]
+    nearly = [s for s in significant[LEADERS:NEARLY_LEADERS] if s.gain > (1 - NEARLY) * significant[0].gain]
+    return [*significant[:LEADERS], *nearly]

@@ -1,0 +1,1 @@
+"""Measurements and predictions as order lines: features, noise, sessions, zero of the angle."""

@@ -1,0 +1,1 @@
+"""The answer: verdict, report.json, page, pictures, the next experiment, and the command."""
