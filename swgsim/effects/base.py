@@ -70,7 +70,7 @@ class Instant(NamedTuple):
 
 
 class Extra(NamedTuple):
-    """Torques [N m] that an effect adds to the equations of motion, each an array like those of the instant or a number.
+    """Torques [N m] that an effect adds to the equations of motion: arrays as in :class:`Instant`, or numbers.
 
     ``T_motor`` drives the input, and its torque flange shows it. ``T_loss`` brakes the input behind the flange.
     ``T_stiff`` and ``T_fric`` add to eqs. (2) and (5), ``T_load`` to the load torque.

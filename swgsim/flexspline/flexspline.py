@@ -64,7 +64,7 @@ class FlexSpline:
 
     @cached_property
     def band_compliance(self) -> Float[np.ndarray, "sector band band"]:
-        """Displacement [m/N] of a band's degrees of freedom under unit forces on the band a number of sectors before."""
+        """Displacement [m/N] of a band's degrees of freedom under unit forces on a band some sectors before."""
         return np.fft.irfft(self.fields[:, self.band, BAND:], self.sector.count, axis=0)
 
     def displacement(

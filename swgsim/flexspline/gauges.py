@@ -67,8 +67,8 @@ class GaugeSet:
 def strain_rows(sector: Sector, radius: float) -> Complex[np.ndarray, "order 3 dof"]:
     """Strains on the back of the collar at angle 0 per nodal displacement of circumferential order n [1/m].
 
-    eps_rr = du_r/dr, eps_tt = (u_r + i n u_t) / r, gamma_rt = i n u_r / r + du_t/dr - u_t / r. They are exact around the
-    circumference, and quadratic through the three nearest rings along the radius.
+    eps_rr = du_r/dr, eps_tt = (u_r + i n u_t) / r, gamma_rt = i n u_r / r + du_t/dr - u_t / r. They are exact around
+    the circumference, and quadratic through the three nearest rings along the radius.
 
     Raises
     ------
@@ -124,7 +124,7 @@ def bridges(gauges: GaugeSet, strain: Complex[np.ndarray, "order 3 load"]) -> Co
 
 
 def waves(number: int) -> Complex[np.ndarray, "5 1"]:
-    """Signal of each bridge in a field of ``number`` waves exp(i number beta) around the collar, averaged over its grids."""
+    """Mean over the grids of each bridge of a field of ``number`` waves, exp(i number beta), around the collar."""
     return np.array([[np.exp(1j * number * angles).mean()] for angles in LAYOUT])
 
 
