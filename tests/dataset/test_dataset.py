@@ -72,7 +72,9 @@ def kill(program: str, path: Path, lines: int) -> None:
         "import sys, time; sys.path[:0] = ['tests']\n"
         "from pathlib import Path\n"
         "from chain_fixtures import small_plan\n"
-        "from swgsim import compute, dataset, plan, storage\n"
+        "from swgsim.common import compute\n"
+        "from swgsim.dataset import dataset, plan\n"
+        "from swgsim.storage import storage\n"
         "plan.BLOCK = 10\n"
     )
     command = [sys.executable, "-c", head + program, str(path)]
