@@ -22,7 +22,7 @@ from swgsim.storage.labelled_signals import SENSORS
 
 SECTORS = 100
 
-# Orders of an influence map below this share of the largest one are left out.
+# Orders of an influence map below this share of the largest one are omitted.
 NEGLIGIBLE = 1e-8
 
 
@@ -36,7 +36,7 @@ class Run:
     point : OperatingPoint
     effects : tuple of Effect
     start_angle : float
-        Wave-generator angle at which the window opens [rad].
+        Wave-generator angle at the start of the window, from gauge s1 [rad].
     conditions : Conditions
     """
 
@@ -48,24 +48,24 @@ class Run:
 
     @cached_property
     def acting(self) -> tuple[Effect, ...]:
-        """The effects as they are at the operating point and under the conditions of the run."""
+        """The effects at the operating point and under the conditions of the run."""
         return tuple(effect.at(self.point, self.conditions) for effect in self.effects)
 
     @cached_property
     def driving(self) -> tuple[Effect, ...]:
-        """Those of them that add torques."""
+        """The effects that add torques."""
         return tuple(effect for effect in self.acting if overrides(effect, "drive"))
 
     @cached_property
     def affected_gear(self) -> Gear:
-        """The gear with the parameters that the effects change."""
+        """The gear with its parameters changed by the effects."""
         changing = tuple(effect for effect in self.acting if overrides(effect, "gear"))
         return _affected(self.gear, changing) if changing else self.gear
 
 
 @lru_cache(maxsize=4096)
 def _affected(gear: Gear, effects: tuple[Effect, ...]) -> Gear:
-    """A gear with what effects change of it: the same in many runs."""
+    """A gear changed by effects; many runs share it."""
     return reduce(lambda gear, effect: effect.gear(gear), effects, gear)
 
 
@@ -98,9 +98,9 @@ class Simulation:
 
 @threadpool_limits.wrap(limits=1)
 def simulate(runs: Sequence[Run], window: Window, sectors: int = SECTORS) -> Simulation:
-    """Simulate many runs; what runs have in common is computed once.
+    """Simulate many runs; motions and structures that runs share are computed once.
 
-    One thread: the matrices are small, and the result must not depend on the number of cores.
+    It uses one thread: the matrices are small, and the result must not depend on the number of cores.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def simulate(runs: Sequence[Run], window: Window, sectors: int = SECTORS) -> Sim
     Returns
     -------
     Simulation
-        Ideal signals: noise, quantisation and disturbance are for the acquisition.
+        Ideal signals, without noise, quantisation and disturbance of the acquisition.
     """
     driven, of_run = _driven(runs)
     drive, state = settled(driven)
@@ -133,8 +133,8 @@ def simulate(runs: Sequence[Run], window: Window, sectors: int = SECTORS) -> Sim
 def simulate_turns(runs: Sequence[Run], revolutions: int, points: int, sectors: int = SECTORS) -> list[Recording]:
     """Recordings of whole revolutions of the wave generator in the steady state.
 
-    One revolution is found, unless it is remembered, and repeated; effects on gauges and acquisition then act on
-    all of them in time.
+    One revolution is computed, or taken from a cache, and repeated. Then effects on gauges and acquisition act on all
+    of them in time.
 
     Parameters
     ----------
@@ -159,14 +159,14 @@ def simulate_turns(runs: Sequence[Run], revolutions: int, points: int, sectors: 
 
 
 def _before_effects(each: Run, time: Float[np.ndarray, " time"], simulation: Simulation, i: int) -> Ideal:
-    """A run of a simulation as it is before effects act on gauges and acquisition."""
+    """A run of a simulation before effects act on gauges and acquisition."""
     channels = channels_of(simulation, i, len(time))
     transmitted = simulation.motion.T_out[simulation.of_run[i], : len(time)]
     return Ideal(each.acting, Scene(time, channels["phi_in"], transmitted, each.point, each.conditions), channels)
 
 
 def _driven(runs: Sequence[Run]) -> tuple[list[Driven], np.ndarray]:
-    """The distinct motions, and which of them belongs to each run."""
+    """The distinct motions, and the index of the motion of each run."""
     if not runs:
         raise ValueError(
             "no runs to simulate: the grid is empty; give it gears, classes, variants and operating points"
@@ -177,7 +177,7 @@ def _driven(runs: Sequence[Run]) -> tuple[list[Driven], np.ndarray]:
 def _gauge_signals(
     runs: Sequence[Run], motion: Motion, of_run: np.ndarray, samples: int, sectors: int
 ) -> Float[np.ndarray, "run 5 time"]:
-    """The bridge signals of every run along its motion."""
+    """The bridge signals of every run along its motion [mV/V]."""
     structures, structure_of_run = distinct([Structure.of(r.affected_gear, r.acting) for r in runs])
     maps = [map_of(structure, sectors) for structure in structures]
     signals = np.empty((len(runs), 5, samples))
@@ -189,7 +189,7 @@ def _gauge_signals(
 
 
 def channels_of(simulation: Simulation, i: int, samples: int) -> dict[str, np.ndarray]:
-    """All channels of a run."""
+    """All channels of a run: phi_in [rad], n_in [rpm], T_in and T_out [N m], s0 to s4 [mV/V]."""
     if i in simulation.seen:
         return {name: values[:samples].copy() for name, values in simulation.seen[i].items()}
     motion, m = simulation.motion, simulation.of_run[i]
@@ -205,7 +205,16 @@ def channels_of(simulation: Simulation, i: int, samples: int) -> dict[str, np.nd
 def evaluate(
     maps: Sequence[InfluenceMap], psi: Float[np.ndarray, " time"], T_out: Float[np.ndarray, " time"]
 ) -> Float[np.ndarray, "map 5 time"]:
-    """The signals of several structures along one motion, s = A(psi) + T_out B(psi)."""
+    """Gauge signals of several structures along one motion, s = A(psi) + T_out B(psi) [mV/V].
+
+    Parameters
+    ----------
+    maps : sequence of InfluenceMap
+    psi : array (time,)
+        Angle of the wave generator, phi_in [rad].
+    T_out : array (time,)
+        Output torque [N m].
+    """
     kept = _significant(maps, np.abs(T_out).max())
     turns = harmonics(psi, kept)
     real = np.concatenate([turns.real, -turns.imag])
@@ -216,7 +225,7 @@ def evaluate(
 
 
 def _significant(maps: Sequence[InfluenceMap], T_out: float) -> np.ndarray:
-    """The orders that matter relative to the largest signal; sound gears have even ones only, and few of them."""
+    """Orders above NEGLIGIBLE relative to the largest one; sound gears have few, and only even ones."""
     size = (np.array([m.largest for m in maps]).max(axis=0) * [[1.0], [T_out]]).max(axis=0)
     return np.flatnonzero(size > NEGLIGIBLE * size.max())
 

@@ -1,4 +1,4 @@
-"""The obvious way: the whole truss, one sparse solve per instant. The chain is checked and timed against it."""
+"""Direct solution of the whole truss, one sparse solve per instant: the reference for tests and benchmarks."""
 
 from collections.abc import Sequence
 
@@ -21,10 +21,10 @@ class DirectSolver:
     Parameters
     ----------
     flex : FlexSpline
-        Names the mesh; its solution is not used.
+        Gives the mesh; its solution is not used.
     gear : Gear
     effects : sequence of Effect
-        Those that touch wave generator, mesh or structure.
+        Effects on wave generator, mesh or structure.
     """
 
     def __init__(self, flex: FlexSpline, gear: Gear, effects: Sequence[Effect] = ()) -> None:

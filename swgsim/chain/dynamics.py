@@ -1,15 +1,27 @@
-"""Dynamic input/output model of the gear, eqs. (1)-(6), batched over runs.
+"""Dynamic input/output model of the gear, eqs. (1) to (6), for many runs at once.
 
-Frame. The flex spline is clamped, so phi_in is the angle of the wave generator relative to the flex spline (the angle
-the gauges see) and phi_out that of the circular spline, the output. Eqs. (3) and (6) are written for angles relative to
-the circular spline, phi_in - phi_out and -phi_out. The equations of motion follow by virtual work of T_stiff on
-Delta phi_k and of T_fric on phi_b; as phi_err is a function of phi_in, its slope is part of the input's lever, unless a
-gear's error_lever is not 1 but 0, as in equations that are found in print:
+========  ==================================  ==============================
+equation  quantity                            where
+========  ==================================  ==============================
+(1)       accelerations phi_in'', phi_out''   :meth:`Drive.derivative`
+(2)       stiffness torque T_stiff            :meth:`Drive.stiffness_torque`
+(3)       twist Delta phi_k                   :meth:`Drive.twist`
+(4)       wedge angle alpha_in                :class:`Drive`, ``tan_in``
+(5)       friction torque T_fric              :meth:`Drive.friction_torque`
+(6)       sliding speed phi_b'                :meth:`Drive.sliding_speed`
+========  ==================================  ==============================
+
+Frame: the flex spline is clamped. phi_in is the angle of the wave generator relative to the flex spline, which is the
+angle that the gauges feel. phi_out is the angle of the circular spline, the output. The paper writes eqs. (3) and (6)
+for angles relative to the circular spline, so phi_in - phi_out and -phi_out replace phi_in and phi_out.
+
+The equations of motion follow from virtual work of T_stiff on Delta phi_k and of T_fric on phi_b. As phi_err depends on
+phi_in, its slope is part of the input's lever. Some published equations leave it out; ``error_lever`` is 0 then:
 
     J_in  phi_in''  = T_motor - (tan(alpha_in) + error_lever dphi_err/dphi_in) T_stiff
     J_out phi_out'' = T_out - T_load,   T_out = T_stiff / tan(alpha_tooth) - T_fric / sin(alpha_tooth)
 
-Effects may add to T_stiff, T_fric and T_load, brake the input, or drive it beside the speed control.
+Effects may add to T_stiff, T_fric and T_load, brake the input, or add to the torque of the motor.
 """
 
 from collections.abc import Sequence
@@ -19,23 +31,32 @@ import numpy as np
 from jaxtyping import Complex, Float
 
 from swgsim.effects.base import Effect, Extra, Instant, overrides
+from swgsim.effects.sense import sense
 from swgsim.gear.gear import OperatingPoint, Transmission
 
-# Friction changes its sign smoothly below this sliding speed [rad/s], far under that of any operating point.
-SLIDING_SPEED = 1e-3
-
 PHI_IN, OMEGA_IN, PHI_OUT, OMEGA_OUT, SPEED_ERROR = range(5)
-# Of runs at one instant, or at several times (time, run).
+# Arrays (run,) at one instant, or (time, run) at several.
 State = Float[np.ndarray, "5 *any run"]
 
 
 @dataclass(frozen=True)
 class Torques:
-    """Torques [N m] and sliding speed [rad/s], each an array (run,), or (time, run); a steady load may stay (run,).
+    """Torques [N m] and sliding speed [rad/s], each an array (run,) or (time, run); a constant load may stay (run,).
 
-    ``T_motor`` drives the input, ``T_wedge`` brakes it: the wave generator and losses beside it. ``T_in`` is what a
-    torque flange feels that has a share of J_in, the rotor's, before it. ``T_out`` is what the gear transmits, and
-    ``T_flange`` what a flange feels that has a share of J_out before it.
+    Attributes
+    ----------
+    T_motor, T_wedge : array
+        Torque that drives the input, and torque that brakes it: wave generator and losses.
+    T_in : array
+        Torque at the input flange, behind the rotor with its share of J_in.
+    T_stiff, T_fric : array
+        Eqs. (2) and (5).
+    T_out, T_flange : array
+        Torque that the gear transmits, and torque at the output flange, behind a share of J_out.
+    T_load : array
+        Torque of the load.
+    sliding : array
+        Eq. (6).
     """
 
     T_motor: Float[np.ndarray, "*any run"]
@@ -52,15 +73,15 @@ class Torques:
 class Drive:
     """The equations of motion of many runs at once.
 
-    The rows of the state are phi_in, omega_in, phi_out, omega_out and the integral of the speed error that the speed
-    control of the input keeps.
+    The rows of a state are phi_in [rad], omega_in [rad/s], phi_out [rad], omega_out [rad/s] and the integral of the
+    speed error [rad], which belongs to the speed control of the input.
 
     Parameters
     ----------
     transmissions, points : sequences of equal length
         One gear and one operating point per run.
     effects : sequence of tuples of Effect, optional
-        What acts on the drive of each run.
+        The effects on the drive of each run.
     """
 
     def __init__(
@@ -89,7 +110,7 @@ class Drive:
         self.acting = [(effect, _together(sorted({i for i, each in acting if each == effect}))) for effect in distinct]
 
     def _error_amplitudes(self) -> dict[int, Complex[np.ndarray, " run"]]:
-        """Amplitude and phase of the kinematic error per order, in the unit of the twist."""
+        """Complex amplitude of the kinematic error per order, as a twist [rad]."""
         amplitudes: dict[int, np.ndarray] = {}
         for i, transmission in enumerate(self.transmissions):
             for term in transmission.kinematic_error:
@@ -106,13 +127,16 @@ class Drive:
         return 2 * np.pi / self.omega
 
     def repeated(self, times: int) -> "Drive":
-        """Every run so many times, one after another."""
+        """Every run ``times`` times, repeats next to each other."""
         several = [run for run in range(len(self)) for _ in range(times)]
         transmissions, points = [self.transmissions[run] for run in several], [self.points[run] for run in several]
         return Drive(transmissions, points, [self.effects[run] for run in several])
 
     def phi_err(self, phi_in: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Kinematic error [rad] in the unit of the twist, where e at the output is e / tan(alpha), and its slope."""
+        """Kinematic error phi_err of eq. (3) as a twist [rad], and its slope over phi_in.
+
+        An error e at the output is e / tan(alpha_tooth) as a twist.
+        """
         error, slope = np.zeros_like(phi_in), np.zeros_like(phi_in)
         turns = {1: np.exp(1j * phi_in)}
         for order, amplitude in self.error.items():
@@ -121,24 +145,80 @@ class Drive:
             slope += order * term.real
         return error, slope
 
+    def twist(self, phi_in: np.ndarray, phi_out: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Twist of the stiffness, eq. (3).
+
+        Delta phi_k = tan(alpha_in) phi_in - phi_out / tan(alpha_tooth) + phi_err: with phi_in - phi_out for phi_in and
+        -phi_out for phi_out the terms of phi_out add up to this.
+
+        Parameters
+        ----------
+        phi_in, phi_out : arrays
+            Angles of wave generator and output relative to the flex spline [rad].
+
+        Returns
+        -------
+        twist : array
+            Delta phi_k [rad].
+        slope : array
+            dphi_err / dphi_in [-].
+        """
+        phi_err, slope = self.phi_err(phi_in)
+        return self.tan_in * phi_in - phi_out / self.tan_t + phi_err, slope
+
+    def stiffness_torque(self, twist: np.ndarray) -> np.ndarray:
+        """T_stiff = k1 Delta phi_k + k2 (Delta phi_k)^3 [N m], eq. (2).
+
+        Parameters
+        ----------
+        twist : array
+            Delta phi_k [rad]; k1 is in N m/rad, k2 in N m/rad^3.
+        """
+        return (self.p["k1"] + self.p["k2"] * twist * twist) * twist
+
+    def sliding_speed(self, omega_out: np.ndarray) -> np.ndarray:
+        """Sliding speed along the flank, eq. (6): phi_b' = omega_out / sin(alpha_tooth) [rad/s].
+
+        The paper's minus sign belongs to its phi_out relative to the circular spline.
+        """
+        return omega_out / self.sin_t
+
+    def friction_torque(
+        self, sliding: np.ndarray, phi_out: np.ndarray, T_stiff: np.ndarray, added: np.ndarray | float
+    ) -> np.ndarray:
+        """Friction torque at the flank, eq. (5) [N m].
+
+        T_fric = b0 + b1 phi_b' + b2 phi_b'^3 + b3 sin(theta_b - phi_out) + mu F_n; the terms without phi_b' have its
+        sign. The massless tooth is in equilibrium on the driving flank, T_stiff = F_n sin(alpha_tooth) + T_fric
+        cos(alpha_tooth), which gives the normal force F_n [N m].
+
+        Parameters
+        ----------
+        sliding : array
+            phi_b' [rad/s]; b1 is in N m s/rad, b2 in N m s^3/rad^3, b0 and b3 in N m, mu has no unit.
+        phi_out : array
+            Angle of the output [rad]; theta_b is in rad.
+        T_stiff : array
+            Eq. (2), with effects [N m].
+        added : array or float
+            Friction torque of effects [N m].
+        """
+        p, sign = self.p, sense(sliding)
+        friction = (p["b1"] + p["b2"] * sliding * sliding) * sliding
+        friction += sign * (p["b0"] + p["b3"] * np.sin(p["theta_b"] - phi_out)) + added
+        F_n = np.abs(T_stiff - friction * self.cos_t) / (self.sin_t + p["mu"] * sign * self.cos_t)
+        return friction + p["mu"] * sign * F_n
+
     def torques(self, state: State) -> Torques:
-        """All torques: eqs. (2), (3), (5), (6) and the control law."""
+        """All torques of a state: eqs. (2), (3), (5), (6), the effects and the speed control."""
         phi_in, omega_in, phi_out, omega_out, speed_error = state
         p = self.p
-        # Eq. (3) with phi_in - phi_out and -phi_out in place of phi_in and phi_out.
-        phi_err, slope = self.phi_err(phi_in)
-        twist = self.tan_in * phi_in - phi_out / self.tan_t + phi_err
-        T_stiff = (p["k1"] + p["k2"] * twist * twist) * twist
-        sliding = omega_out / self.sin_t
+        twist, slope = self.twist(phi_in, phi_out)
+        T_stiff, sliding = self.stiffness_torque(twist), self.sliding_speed(omega_out)
         twist_rate = (self.tan_in + slope) * omega_in - omega_out / self.tan_t
         extra = self.extra(Instant(phi_in, omega_in, phi_out, omega_out, twist, twist_rate, T_stiff, sliding))
         T_stiff = T_stiff + extra.T_stiff
-        sense = np.tanh(sliding / SLIDING_SPEED)
-        friction = (p["b1"] + p["b2"] * sliding * sliding) * sliding
-        friction += sense * (p["b0"] + p["b3"] * np.sin(p["theta_b"] - phi_out)) + extra.T_fric
-        # The massless tooth is in equilibrium, T_stiff = F_n sin(alpha) + T_fric cos(alpha), on the driving flank.
-        F_n = np.abs(T_stiff - friction * self.cos_t) / (self.sin_t + p["mu"] * sense * self.cos_t)
-        T_fric = friction + p["mu"] * sense * F_n
+        T_fric = self.friction_torque(sliding, phi_out, T_stiff, extra.T_fric)
         T_out = T_stiff / self.tan_t - T_fric / self.sin_t
         T_motor = self.gain_p * (self.omega - omega_in) + self.gain_i * speed_error + extra.T_motor
         T_wedge = (self.tan_in + p["error_lever"] * slope) * T_stiff + extra.T_loss
@@ -148,7 +228,7 @@ class Drive:
         return Torques(T_motor, T_in, T_wedge, T_stiff, T_fric, T_out, T_flange, T_load, sliding)
 
     def extra(self, now: Instant) -> Extra:
-        """What all effects together add."""
+        """Sum of the torques of all effects."""
         if not self.acting:
             return Extra()
         instants, total = np.stack(now), np.zeros((len(Extra._fields), *now.phi_in.shape))
@@ -160,7 +240,14 @@ class Drive:
         return Extra(*total)
 
     def derivative(self, state: State, torques: Torques) -> State:
-        """Eq. (1)."""
+        """Rates of the state, eq. (1): phi'' = f(phi, phi', n_in,d, T_out,d) [rad/s^2].
+
+        Parameters
+        ----------
+        state : array (5, run) or (5, time, run)
+        torques : Torques
+            Those of the state; J_in and J_out are in kg m^2.
+        """
         rate = np.empty_like(state)
         rate[PHI_IN] = state[OMEGA_IN]
         rate[OMEGA_IN] = (torques.T_motor - torques.T_wedge) / self.p["J_in"]
@@ -182,7 +269,7 @@ class Drive:
 
     @property
     def resonance(self) -> Float[np.ndarray, " run"]:
-        """Natural frequency of input and output against the gear's stiffness at the load [Hz]."""
+        """Natural frequency of the two inertias on the gear's stiffness at the load [Hz]."""
         _, _, phi_out, _, _ = self.at_rest_in_rotating_frame()
         twist = -phi_out / self.tan_t + self.phi_err(np.zeros_like(phi_out))[0]
         stiffness = (self.p["k1"] + 3 * self.p["k2"] * twist**2) / self.tan_t**2
@@ -190,7 +277,7 @@ class Drive:
         return np.sqrt(stiffness * (1 / reflected + 1 / self.p["J_out"])) / (2 * np.pi)
 
     def at_rest_in_rotating_frame(self) -> State:
-        """Uniform rotation with the load in equilibrium, phi_in = 0: the start of the search for the steady state."""
+        """State of uniform rotation in equilibrium with the load at phi_in = 0; the steady-state search starts here."""
         p, speed = self.p, self.omega / (self.p["N"] + 1)
         sliding = speed / self.sin_t
         friction = (p["b1"] + p["b2"] * sliding**2) * sliding + p["b0"] + p["b3"] * np.sin(p["theta_b"])
@@ -204,13 +291,13 @@ class Drive:
 
 
 def _power(known: dict[int, np.ndarray], order: int) -> np.ndarray:
-    """An integer power by repeated multiplication (a complex power is much slower); keeps what it finds."""
+    """An integer power by repeated multiplication, as a complex power is much slower; results are kept in ``known``."""
     if order not in known:
         known[order] = _power(known, order // 2) * _power(known, order - order // 2)
     return known[order]
 
 
 def _together(runs: list[int]) -> slice | np.ndarray:
-    """Runs of a batch; as a slice, which copies nothing, where no other run lies between them."""
+    """Indices of runs; a slice, which copies nothing, if they are consecutive."""
     first, last = runs[0], runs[-1]
     return slice(first, last + 1) if last - first == len(runs) - 1 else np.array(runs)

@@ -1,7 +1,11 @@
-"""Influence maps: a gauge signal as a periodic function of the wave-generator angle, s(psi, T) = A(psi) + T B(psi).
+"""Influence maps: gauge signals over the wave-generator angle, s(psi, T_out) = A(psi) + T_out B(psi).
 
-For one structure the truss is linear, so its answer to the wave generator (A) and to a unit output torque (B) is
-computed once over the angle and a recording is the evaluation of both along phi_in(t) and T_out(t).
+The truss of one structure is linear. Its response to the wave generator (A) and to a unit output torque (B) is computed
+once over the angle; a recording evaluates both along phi_in(t) and T_out(t). Three faults of the paper act here:
+
+- eccentric wave generator: :func:`boundary_conditions` adds u_ecc to the imposed displacement,
+- tip tooth crack: :func:`boundary_conditions` reduces F_tooth,
+- root tooth crack: :func:`_cracked` reduces k_bar of the truss.
 """
 
 from collections.abc import Sequence
@@ -63,9 +67,17 @@ def harmonics(psi: Float[np.ndarray, " time"], orders: Int[np.ndarray, " order"]
 def ellipse(
     wave_generator: WaveGenerator, radius: float, psi: Float[np.ndarray, " psi"], theta: Float[np.ndarray, " theta"]
 ) -> Float[np.ndarray, "psi theta"]:
-    """Radial displacement [m] of the sleeve by the elliptical wave generator whose major axis is at psi.
+    """Radial displacement u_elliptical of the sleeve by the wave generator with its major axis at psi [m] (Fig. 5).
 
-    The semi-axes are radius +- w0; the mean is taken off, as the rim bends without stretching.
+    The semi-axes are radius +- w0. The mean is subtracted, as the rim bends without stretching.
+
+    Parameters
+    ----------
+    wave_generator : WaveGenerator
+    radius : float
+        Mid-surface radius of the sleeve [m].
+    psi, theta : arrays
+        Angles of the major axis, and positions around the flex spline, from gauge s1 [rad].
     """
     a, b = radius + wave_generator.w0, radius - wave_generator.w0
 
@@ -84,14 +96,15 @@ def fine_angles(sectors: int) -> Float[np.ndarray, " theta"]:
 
 @lru_cache(maxsize=16)
 def _sampled_ellipse(wave_generator: WaveGenerator, radius: float, sectors: int) -> Float[np.ndarray, "psi theta"]:
-    """The ellipse at the angles at which maps are sampled; the same for all structures of a gear."""
+    """The ellipse at the angles of the maps, for all structures of a gear."""
     return ellipse(wave_generator, radius, PSI, fine_angles(sectors))
 
 
 @lru_cache(maxsize=4096)
 def lobes(wave_generator: WaveGenerator, radius: float, effects: tuple[Effect, ...]) -> complex:
-    """How effects change the two lobes, as order 2 of the displacement that turns with the wave generator: the size is
-    their stroke, in that of the ideal ellipse, and half of the angle [rad] is how far they are ahead.
+    """Change of the two lobes by effects, as order 2 of the displacement that turns with the wave generator.
+
+    The modulus is their stroke relative to the ideal ellipse; half of the angle [rad] is their lead.
     """
     psi, theta = (np.linspace(0, 2 * np.pi, points, endpoint=False) for points in (16, 64))
     ideal = displacement = ellipse(wave_generator, radius, psi, theta)
@@ -107,17 +120,17 @@ def boundary_conditions(
     effects: Sequence[Effect],
     psi: Float[np.ndarray, " psi"],
 ) -> tuple[Float[np.ndarray, "psi sector"], Float[np.ndarray, "psi sector"]]:
-    """Imposed radial displacement [m] and tangential tooth force per output torque [N/(N m)] of each sector.
+    """Loads of the truss (Fig. 5): displacement u_elliptical + u_ecc [m] and tooth force F_tooth per T_out [N/(N m)].
 
-    The load sharing follows the local engagement depth, which is the imposed displacement where it points outwards:
-    for the ideal gear F ~ cos 2 theta over +-45 degrees of each lobe. A sector takes the force over its width, so that
-    the signals do not ripple with the passing of nodes.
+    The teeth share the force in proportion to the engagement depth, which is the imposed displacement where it points
+    outwards. For the ideal gear F_tooth ~ cos 2 theta over +-45 degrees of each lobe. A sector gets the force over its
+    width, so that the signals do not ripple as nodes pass.
 
     Parameters
     ----------
     flex : FlexSpline
     displacement : array (psi, theta)
-        By the ideal wave generator, at :func:`fine_angles` [m].
+        Of the ideal wave generator, at :func:`fine_angles` [m].
     effects : sequence of Effect
     psi : array (psi,)
         Wave-generator angles relative to the flex spline [rad].
@@ -150,7 +163,7 @@ def influence_map(
     wave_generator : WaveGenerator
     gauges : GaugeSet
     effects : sequence of Effect
-        Those that touch wave generator, mesh or structure.
+        Effects on wave generator, mesh or structure.
     """
     loading = tuple(effect for effect in effects if overrides(effect, "wave_generator", "engaged", "mesh", "carried"))
     amplitudes = _load_amplitudes(flex, wave_generator, loading)
@@ -170,8 +183,9 @@ def influence_map(
 def _load_amplitudes(
     flex: FlexSpline, wave_generator: WaveGenerator, effects: tuple[Effect, ...]
 ) -> Complex[np.ndarray, "2 psi order"]:
-    """Circumferential orders of the displacement [m] that the wave generator imposes, and of the force of the teeth per
-    output torque [N/(N m)]; the same for all gauges that see it.
+    """Circumferential orders of the imposed displacement [m] and of the tooth force per output torque [N/(N m)].
+
+    Gears that differ in their gauges only share them.
     """
     sectors = flex.sector.count
     displacement = _sampled_ellipse(wave_generator, flex.sector.hat.radius, sectors)
@@ -186,11 +200,27 @@ def _cracked(
     load: int,
     cracks: Sequence[Crack],
 ) -> Float[np.ndarray, "psi 5"] | float:
-    """What the cracks add to the signals under one load.
+    """Change of the signals by root tooth cracks (reduced k_bar, section II-B) under one load.
 
-    A crack takes the stiffness D from the columns of nodes on its two sides. With the compliance C between these nodes
-    and their displacements u0 in the sound structure, u = (1 - C D)^-1 u0 and D u are the forces that act on the sound
-    structure in place of the crack (Woodbury: no new factorisation).
+    A crack removes the stiffness D [N/m] between the columns of nodes on its two sides. C [m/N] is the compliance
+    between these nodes, and u0 [m] their displacement in the sound structure. Then u = (1 - C D)^-1 u0, and the forces
+    D u on the sound structure replace the crack (Woodbury), so no new factorisation is needed.
+
+    Parameters
+    ----------
+    flex : FlexSpline
+    response : array (order, 5, load)
+        Bridge signals per load [mV/V per m, per N].
+    amplitude : array (psi, order)
+        Circumferential orders of the load.
+    load : int
+        WAVE_GENERATOR or TEETH.
+    cracks : sequence of Crack
+
+    Returns
+    -------
+    array (psi, 5)
+        [mV/V], or [mV/V per N m] for the teeth.
     """
     if not cracks:
         return 0.0
@@ -206,6 +236,6 @@ def _cracked(
 
 
 def remaining_stiffness(crack: Crack, flex: FlexSpline) -> float:
-    """Remaining stiffness of the bars across a crack: one tooth pitch of their length is weakened."""
+    """Remaining stiffness of the bars across a crack, of which one tooth pitch of the length is weakened [-]."""
     tooth_pitch = 2 * np.pi / flex.sector.hat.teeth
     return flex.sector.pitch / (flex.sector.pitch + (1 / crack.stiffness_ratio - 1) * tooth_pitch)

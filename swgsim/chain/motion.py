@@ -1,4 +1,4 @@
-"""Motion of many runs: the periodic steady state and the window that is integrated from it."""
+"""Motion of many runs: the periodic steady state, and the integration over a window."""
 
 from dataclasses import dataclass, fields
 from math import ceil
@@ -8,11 +8,11 @@ from jaxtyping import Float
 
 from swgsim.chain.dynamics import OMEGA_IN, OMEGA_OUT, PHI_IN, PHI_OUT, SPEED_ERROR, Drive, State, Torques
 
-# Steps of the integrator, at least: 24 per cycle of the kinematic error's order 4, and 40 per cycle of the resonance.
+# Least numbers of integration steps: 24 per cycle of order 4 of the kinematic error, and 40 per cycle of the resonance.
 STEPS_PER_REVOLUTION = 96
 STEPS_PER_OSCILLATION = 40
 MOST_STEPS = 20_000
-# Relative correction below which a steady state counts as found all the same where rounding lets none settle further.
+# Relative correction below which a steady state is accepted although rounding stops the convergence.
 STALLED = 1e-6
 
 
@@ -27,7 +27,7 @@ class Motion:
     omega_in, omega_out : arrays
         Angular speeds [rad/s].
     T_in, T_out, T_flange : arrays
-        Torque at the input, transmitted to the output, and felt by a flange there [N m].
+        Torque at the input, torque transmitted to the output, and torque at the output flange [N m].
     dt : float or array (run,)
         Time between points [s].
     """
@@ -41,7 +41,7 @@ class Motion:
     dt: float | Float[np.ndarray, " run"]
 
     def repeated(self, times: int) -> "Motion":
-        """One revolution of the wave generator in the steady state, so many times."""
+        """``times`` repetitions of one revolution of the wave generator in the steady state."""
         points = self.phi_in.shape[1] - 1
         turn, within = np.divmod(np.arange(times * points + 1), points)
         omega_in, omega_out, T_in, T_out, T_flange = (
@@ -52,7 +52,7 @@ class Motion:
 
     @property
     def efficiency(self) -> Float[np.ndarray, " run"]:
-        """P_out / P_in over the largest whole number of wave-generator revolutions in the window."""
+        """Efficiency eta = P_out / P_in (section II-A), over the whole wave-generator revolutions of the window [-]."""
         angle = self.phi_in - self.phi_in[:, :1]
         turns = np.floor(angle[:, -1] / (2 * np.pi) + 1e-9)
         if turns.min() < 1:
@@ -63,19 +63,19 @@ class Motion:
 
 
 def _energy(power: np.ndarray, angle: np.ndarray, end: np.ndarray) -> np.ndarray:
-    """Integral of each row's power up to the angle ``end``, in units of the time step."""
+    """Integral of each row's power up to the angle ``end`` [W per time step]."""
     total = np.zeros_like(power)
     np.cumsum(0.5 * (power[:, 1:] + power[:, :-1]), axis=1, out=total[:, 1:])
     return np.array([np.interp(e, row_angle, row) for e, row_angle, row in zip(end, angle, total, strict=True)])
 
 
 def steps_per_revolution(drive: Drive) -> int:
-    """Steps that every run of a batch takes per revolution of the wave generator.
+    """Integration steps of a batch per revolution of the wave generator.
 
     Raises
     ------
     ValueError
-        If a run turns so slowly, or is so stiff, that it would need more than MOST_STEPS.
+        If a run is so slow or stiff that it needs more than MOST_STEPS.
     """
     needed = np.ceil(STEPS_PER_OSCILLATION * drive.resonance * drive.period)
     i = int(needed.argmax())
@@ -88,7 +88,7 @@ def steps_per_revolution(drive: Drive) -> int:
 
 
 def advance(drive: Drive, state: State, angle: Float[np.ndarray, " run"]) -> State:
-    """The state of each run when the wave generator has turned on by about an angle [rad], which may be negative."""
+    """The state of each run after a rotation of the wave generator by about an angle [rad], positive or negative."""
     steps = int(np.ceil(np.abs(angle).max() / (2 * np.pi) * steps_per_revolution(drive)))
     for _ in range(steps):
         state = drive.step(state, drive.torques(state), angle / drive.omega / steps)
@@ -108,7 +108,7 @@ def revolve(drive: Drive, state: State, points: int) -> Motion:
 
 
 def _integrate(drive: Drive, state: State, dt: float | Float[np.ndarray, " run"], substeps: int, count: int) -> Motion:
-    """``count`` points ``dt`` apart, with ``substeps`` steps of the integrator between them."""
+    """Motion at ``count`` + 1 points ``dt`` apart, with ``substeps`` integration steps between them."""
     step = np.full(len(drive), dt / substeps)
     kept = np.empty((len(fields(Motion)) - 1, count + 1, len(drive)))  # all but the time between points
     for i in range(count + 1):
@@ -123,21 +123,21 @@ def _integrate(drive: Drive, state: State, dt: float | Float[np.ndarray, " run"]
 
 
 def kept_of(state: State, torques: Torques) -> tuple[np.ndarray, ...]:
-    """What a motion keeps of an instant, in its order."""
+    """Quantities of an instant that a motion keeps, in its order."""
     return state[PHI_IN], state[OMEGA_IN], state[OMEGA_OUT], torques.T_in, torques.T_out, torques.T_flange
 
 
-@np.errstate(over="ignore", invalid="ignore")  # of runs that do not settle
+@np.errstate(over="ignore", invalid="ignore")  # of runs that do not converge
 def steady_state(drive: Drive, tolerance: float = 1e-8) -> State:
     """The state at phi_in = 0 that repeats after one revolution of the wave generator (shooting).
 
-    The friction that varies over an output revolution (b3) changes so slowly that it counts as constant here. The last
-    correction is below the tolerance, relatively; where the drive is nearly linear, each leaves a hundredth of itself.
+    The friction over an output revolution (b3) changes so slowly that it counts as constant here. The last relative
+    correction is below the tolerance; for a nearly linear drive each is a hundredth of the one before.
 
     Raises
     ------
     RuntimeError
-        If Newton's method does not settle; it names the worst run.
+        If Newton's method does not converge; the message names the worst run.
     """
     unknown = [OMEGA_IN, PHI_OUT, OMEGA_OUT, SPEED_ERROR]
     size, runs = len(unknown), len(drive)

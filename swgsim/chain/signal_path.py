@@ -1,4 +1,4 @@
-"""What effects on gauges and acquisition make of the channels of runs."""
+"""Effects on gauges and acquisition, applied to the channels of runs."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -10,10 +10,9 @@ from scipy.signal import resample
 from swgsim.effects.base import Effect, Scene
 from swgsim.storage.labelled_signals import SENSORS
 
-# Where effects make corners, so many samples are taken for each one that is kept: an error of order lines below a tenth
-# of the noise of a recording.
+# Oversampling where effects make corners; the error of order lines stays below a tenth of the noise of a recording.
 DENSER = 8
-# Runs that are sampled so densely at once: as many as a cache of the processor holds.
+# Number of runs that are oversampled at once, as many as fit the processor's cache.
 AT_ONCE = 32
 
 
@@ -24,10 +23,10 @@ class Ideal:
     Attributes
     ----------
     effects : tuple of Effect
-        As they act in the run.
+        The effects at the operating point of the run.
     scene : Scene
     channels : mapping
-        All of them, arrays (time,).
+        All channels, arrays (time,).
     """
 
     effects: tuple[Effect, ...]
@@ -41,7 +40,7 @@ class Ideal:
 
 
 def as_seen(ideal: Ideal) -> Mapping[str, Float[np.ndarray, " time"]]:
-    """The channels with what the effects make of gauges and acquisition."""
+    """The recorded channels, after the effects on gauges and acquisition."""
     signals = np.array([ideal.channels[sensor] for sensor in SENSORS])
     for effect in ideal.effects:
         signals = effect.gauge(signals, ideal.scene)
@@ -52,10 +51,10 @@ def as_seen(ideal: Ideal) -> Mapping[str, Float[np.ndarray, " time"]]:
 
 
 def all_as_seen(turns: Sequence[Ideal]) -> list[Mapping[str, Float[np.ndarray, " time"]]]:
-    """The same of many runs of whole revolutions, all of as many samples, with corners where they belong.
+    """The recorded channels of many runs of whole revolutions with equal numbers of samples.
 
-    A run with an effect that makes corners is sampled so densely that they lie where they belong, and what its effects
-    change is filtered before samples are taken, else the high orders of a corner would pass for low ones.
+    Runs with an effect that makes corners are oversampled. The change by their effects is filtered before it is sampled
+    again, as the high orders of a corner would alias to low ones.
     """
     sharp = [ideal for ideal in turns if ideal.sharp]
     some = (sharp[i : i + AT_ONCE] for i in range(0, len(sharp), AT_ONCE))
@@ -64,11 +63,11 @@ def all_as_seen(turns: Sequence[Ideal]) -> list[Mapping[str, Float[np.ndarray, "
 
 
 def _filtered(turns: Sequence[Ideal]) -> Iterator[Mapping[str, Float[np.ndarray, " time"]]]:
-    """The channels of runs with corners, from signals that were sampled densely and filtered."""
+    """The channels of runs with corners, from oversampled and filtered signals."""
     names, samples = list(turns[0].channels), len(turns[0].scene.time)
     time = np.array([ideal.scene.time for ideal in turns])
     dense = np.arange(DENSER * samples) / DENSER * time[:, 1:2]
-    # The angle goes on from one revolution to the next; what it has beside the mean speed repeats.
+    # The angle grows from revolution to revolution; its deviation from uniform rotation is periodic.
     turning = np.array([[ideal.scene.point.omega_in * (name == "phi_in") for name in names] for ideal in turns])
     ideals = np.array([[ideal.channels[name] for name in names] for ideal in turns])
     torques = np.array([[ideal.scene.T_out] for ideal in turns])

@@ -1,4 +1,4 @@
-"""One revolution in the steady state, remembered: fitting a model asks for the same motions again and again."""
+"""Cache of steady states: a fit needs the same motions many times."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -11,12 +11,12 @@ from swgsim.chain.motion import Motion, advance, revolve, steady_state
 from swgsim.effects.base import Effect
 from swgsim.gear.gear import OperatingPoint, Transmission
 
-# Motions that are remembered at most, 3 kB each.
+# Largest number of cached motions, 3 kB each.
 MOST = 20_000
 
 
 class Driven(NamedTuple):
-    """All that a motion depends on; ``start_angle`` is that of the wave generator at its beginning [rad]."""
+    """Everything that a motion depends on; ``start_angle`` is the angle of the wave generator at its start [rad]."""
 
     transmission: Transmission
     point: OperatingPoint
@@ -28,22 +28,22 @@ _remembered: dict[tuple[Driven, int], tuple[np.ndarray, ...]] = {}
 
 
 def forget() -> None:
-    """Begin anew, so that what follows depends in no digit on what was asked before.
+    """Empty the cache, so that later results do not depend on earlier calls in any digit.
 
-    Motions that are computed together are corrected until the last of them has settled.
+    Motions that are computed together are corrected until the last of them has converged.
     """
     _remembered.clear()
 
 
 def settled(driven: Sequence[Driven]) -> tuple[Drive, State]:
-    """The drive of some motions, and their state where they begin."""
+    """The drive of some motions, and their states at the start."""
     drive, start = _drive(driven)
     state = steady_state(drive)
     return drive, advance(drive, state, start) if start.any() else state
 
 
 def one_turn(driven: Sequence[Driven], points: int) -> Motion:
-    """One revolution of the wave generator of each, in so many even steps of time.
+    """One revolution of the wave generator for each motion, in ``points`` even steps of time.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def one_turn(driven: Sequence[Driven], points: int) -> Motion:
         new = list(driven)
     if new:
         found, balanced = one_revolution(*_drive(new), points)
-        # Too far from linear, as close to a resonance that is hardly damped.
+        # Not converged, such as close to a resonance with little damping.
         left = [each for each, known in zip(new, balanced, strict=True) if not known]
         integrated = revolve(*settled(left), points) if left else None
         _remember(new, found)
@@ -66,7 +66,7 @@ def one_turn(driven: Sequence[Driven], points: int) -> Motion:
 
 
 def _drive(driven: Sequence[Driven]) -> tuple[Drive, np.ndarray]:
-    """The drive of some motions, and the angles where they begin."""
+    """The drive of some motions, and their start angles."""
     transmissions, points, effects, start = zip(*driven, strict=True)
     return Drive(transmissions, points, effects), np.array(start)
 

@@ -1,7 +1,7 @@
-"""Influence maps of structures, remembered: a second question to the same gear finds them made.
+"""Cache of influence maps of structures.
 
-An effect that follows temperature or speed scales the imposed displacement by another factor in every recording. Maps
-are smooth in the factor, so those of factors close to one another are interpolated between the same few.
+An effect of temperature or speed scales the imposed displacement by another factor in every recording. Maps are smooth
+in the factor, so maps of close factors are interpolated between a few common ones.
 """
 
 from collections.abc import Sequence
@@ -21,12 +21,12 @@ from swgsim.flexspline.gauges import GaugeSet
 from swgsim.flexspline.silk_hat import SilkHat
 from swgsim.gear.gear import Gear, WaveGenerator
 
-# Distance of the factors whose maps are computed, and how many around one are interpolated: right to 1e-8 mV/V.
+# Distance of the factors whose maps are computed, and those around a factor for interpolation, exact to 1e-8 mV/V.
 STEP, AROUND = 0.01, np.arange(-1, 3)
 
 
 class Structure(NamedTuple):
-    """All that an influence map depends on, but for the mesh."""
+    """Everything that an influence map depends on, except the mesh."""
 
     hat: SilkHat
     alpha_tooth: float
@@ -36,14 +36,14 @@ class Structure(NamedTuple):
 
     @classmethod
     def of(cls, gear: Gear, effects: Sequence[Effect]) -> "Structure":
-        """Of a gear, with those of some effects that touch it."""
+        """The structure of a gear, with the effects that act on it."""
         places = ("wave_generator", "engaged", "mesh", "carried", "cracks")
         touching = tuple(effect for effect in effects if overrides(effect, *places))
         return cls(gear.flex_spline, gear.transmission.alpha_tooth, gear.wave_generator, gear.gauges, touching)
 
 
 def map_of(structure: Structure, sectors: int) -> InfluenceMap:
-    """The influence map of a structure, of so many sectors."""
+    """The influence map of a structure with a number of sectors."""
     effects = structure.effects
     scaling = [number for number, effect in enumerate(effects) if isinstance(effect, ScaledDisplacement)]
     in_a_row = scaling == list(range(scaling[0], scaling[-1] + 1)) if scaling else False

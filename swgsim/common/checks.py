@@ -1,4 +1,4 @@
-"""Checks of values and their physical limits; every message names the value, the limit and so the remedy."""
+"""Checks of values against limits; every message names the value and the limit."""
 
 from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
@@ -9,7 +9,7 @@ from typing import Any
 
 # Names that the message about an unknown choice lists at most.
 LISTED = 20
-# Of a value from a file, which may be nested so that it fills the memory when it is written out.
+# Short text of a value from a file; a nested value could fill the memory as text.
 _SHORT = Repr()
 _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 200
 
@@ -72,12 +72,12 @@ def nearest(name: str, known: Iterable[str]) -> list[str]:
     >>> nearest("ecentric_wave_generator", ["coning", "eccentric_wave_generator"])
     ['eccentric_wave_generator']
     """
-    return get_close_matches(str(name), [str(each) for each in known])
+    return get_close_matches(str(name), [str(each) for each in known], cutoff=0.75)
 
 
 def _is_number(value: Any) -> bool:
-    """Whether a value is a real number that a float can hold; integers of Python know no limit."""
-    if type(value) is float:  # most are, and to ask for any real number takes ten times as long
+    """Whether a value is a real number that a float can hold; integers of Python have no limit."""
+    if type(value) is float:  # the usual case; the check below takes ten times as long
         return True
     if not isinstance(value, Real) or isinstance(value, bool):
         return False

@@ -1,11 +1,18 @@
-"""Probabilities far out in the tail of a chi-squared distribution, where SciPy has run out of numbers."""
+"""Tail probabilities of chi-squared distributions, also where they are too small for a float."""
 
 import numpy as np
 from scipy.special import chdtrc, gammaln
 
 
 def log_tail(value: np.ndarray | float, freedom: np.ndarray | int) -> np.ndarray:
-    """Logarithm of the probability that noise gives a sum of squares of at least this value.
+    """Logarithm of the survival function of chi-squared: noise gives a sum of squares of at least this value.
+
+    Parameters
+    ----------
+    value : array
+        Sum of squares, in units of the noise variance.
+    freedom : array
+        Degrees of freedom.
 
     >>> float(log_tail(2000.0, 2))
     -1000.0
@@ -20,7 +27,7 @@ def log_tail(value: np.ndarray | float, freedom: np.ndarray | int) -> np.ndarray
 
 
 def surprise(value: float, freedom: int) -> float:
-    """How unlikely a sum of squares is by luck: the sum of two squares that is as unlikely; 0 of no freedom at all.
+    """Chi-squared value with two degrees of freedom of the same p-value; 0 for no degrees of freedom.
 
     >>> surprise(2000.0, 2), surprise(0.0, 0)
     (2000.0, 0.0)

@@ -1,4 +1,4 @@
-"""A Dask cluster whose workers have the code, the libraries and the folder of the process that hands out tasks."""
+"""Tasks on a Dask cluster whose workers have the code, libraries and folder of this process."""
 
 import logging
 import os
@@ -16,45 +16,45 @@ from swgsim.common.version import code_version, rooms
 if TYPE_CHECKING:
     from distributed import Client, Future, Worker
 
-PRESENCE = 10  # s, within which a scheduler answers, and has a first worker
-ANSWER = 60  # s, within which all workers do
+PRESENCE = 10  # s, within which a scheduler answers and has a worker
+ANSWER = 60  # s, within which all workers answer
 REMEDY = "install this project there as it is here, and start it anew"
 
 
 class Place(NamedTuple):
-    """What a process has that results depend on, and the folder in which it works."""
+    """Code and libraries of a process, on which results depend, and the folder in which it works."""
 
     installed: str
     folder: str
 
 
-def here(beside: Callable[[], str]) -> Place:
-    """That of this process, with what results depend on beside this package."""
+def own_place(further: Callable[[], str]) -> Place:
+    """Place of this process; ``further`` gives the version of code besides this package."""
     libraries = ", ".join(f"{name} {version(name)}" for name in ("numpy", "scipy", "h5py"))
     code = code_version(*rooms())
-    installed = f"swgsim {code}, Python {platform.python_version()}, {libraries} {beside()}"
+    installed = f"swgsim {code}, Python {platform.python_version()}, {libraries} {further()}"
     return Place(installed.rstrip(), os.getcwd())
 
 
 def results(
-    scheduler: str, function: Callable[..., Any], tasks: Iterable[tuple], beside: Callable[[], str]
+    scheduler: str, function: Callable[..., Any], tasks: Iterable[tuple], further: Callable[[], str]
 ) -> Iterator[Any]:
-    """What a function gives for every task; see :meth:`swgsim.common.compute.Engine.results`.
+    """Results of a function for every task; see :meth:`swgsim.common.compute.Engine.results`.
 
-    Joblib's way to Dask keeps to the workers of its first moment, and does all tasks itself if there is but one.
+    Joblib's backend for Dask ignores workers that join later, and works alone if the cluster has one worker.
     """
-    with _connected(scheduler, beside) as client:
+    with _connected(scheduler, further) as client:
         from distributed import as_completed
 
-        place, left = here(beside), enumerate(tasks)
-        numbers: dict[Any, int] = {}  # of the tasks that are handed out
+        place, left = own_place(further), enumerate(tasks)
+        numbers: dict[Any, int] = {}  # of the tasks that are submitted
         done: dict[int, Any] = {}
 
         def more() -> Iterator["Future"]:
-            """As many as make two for every worker that is there now; one waits for a worker where there is none."""
+            """Submit tasks until every worker of now has two; without a worker one task waits."""
             most = max(2 * len(client.ncores()) - len(numbers), 0 if numbers else 1)
             for number, task in islice(left, most):
-                future = client.submit(task_of_another, place, beside, function, task, pure=False)
+                future = client.submit(task_of_another, place, further, function, task, pure=False)
                 numbers[future.key] = number
                 yield future
 
@@ -68,8 +68,8 @@ def results(
 
 
 @contextmanager
-def _connected(scheduler: str, beside: Callable[[], str]) -> Iterator["Client"]:
-    """A client of the cluster; what Dask says of one that is absent, not fit or lost becomes one sentence.
+def _connected(scheduler: str, further: Callable[[], str]) -> Iterator["Client"]:
+    """A client of the cluster; errors of Dask on an absent, unfit or lost cluster become one sentence.
 
     Raises
     ------
@@ -81,7 +81,7 @@ def _connected(scheduler: str, beside: Callable[[], str]) -> Iterator["Client"]:
         from distributed.comm import CommClosedError
     except ImportError:
         raise ValueError("compute=dask needs Dask: pip install 'swg-workbench[dask]', or use compute=local") from None
-    logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # pages of what is said below in a sentence
+    logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
     try:
         client = Client(scheduler, timeout=PRESENCE, set_as_default=False)
     except (OSError, ValueError) as error:
@@ -90,31 +90,31 @@ def _connected(scheduler: str, beside: Callable[[], str]) -> Iterator["Client"]:
             "the address, or use compute=local"
         ) from None
     with client, dask.config.set({"distributed.admin.large-graph-warning-threshold": "1GiB"}):  # of the oracle's tasks
-        _require_fit(client, scheduler, beside)
+        _require_fit(client, scheduler, further)
         try:
             yield client
         except (CancelledError, CommClosedError):
             raise ValueError(
-                f"the Dask scheduler at {scheduler} was lost; what had been done is kept: start it again, or use "
+                f"the Dask scheduler at {scheduler} was lost; finished parts are kept: start it again, or use "
                 "compute=local, and give the same command"
             ) from None
         except KilledWorker as error:
             raise ValueError(
-                f"one task killed several workers of {scheduler}, perhaps it needs more memory: {error}"
+                f"one task killed several workers of {scheduler}; it may need more memory: {error}"
             ) from None
 
 
-def _require_fit(client: "Client", scheduler: str, beside: Callable[[], str]) -> None:
-    """Raise a ValueError unless there are workers, and all of them and the scheduler can do the tasks.
+def _require_fit(client: "Client", scheduler: str, further: Callable[[], str]) -> None:
+    """Raise a ValueError unless the cluster has workers, and all of them and the scheduler can do the tasks.
 
-    Dask would wait for ever where there is no worker, and where one or the scheduler cannot import what it is sent.
+    Dask would wait for ever without a worker, or if a worker or the scheduler could not import this package.
     """
-    own = here(beside)
+    own = own_place(further)
     try:
         client.wait_for_workers(1, timeout=PRESENCE)
         client.sync(client.run_on_scheduler, import_module, __name__, callback_timeout=ANSWER)
         client.sync(client.run, import_module, __name__, callback_timeout=ANSWER)
-        found = client.sync(client.run, _fitness, own.folder, beside, callback_timeout=ANSWER)
+        found = client.sync(client.run, _fitness, own.folder, further, callback_timeout=ANSWER)
     except TimeoutError:
         raise ValueError(
             f"{scheduler} has no worker, or one that does not answer within {ANSWER} s: start them with "
@@ -135,13 +135,13 @@ def _require_same(worker: str, installed: str, expected: str) -> None:
         raise ValueError(f"{worker} has {installed}, must have {expected}: {REMEDY}")
 
 
-def _fitness(folder: str, beside: Callable[[], str], dask_worker: "Worker") -> tuple[str, bool, int]:
-    """What a worker has installed, whether it sees a folder, and its threads."""
-    return here(beside).installed, os.path.isdir(folder), dask_worker.state.nthreads
+def _fitness(folder: str, further: Callable[[], str], dask_worker: "Worker") -> tuple[str, bool, int]:
+    """Code and libraries of a worker, whether it sees the folder, and its number of threads."""
+    return own_place(further).installed, os.path.isdir(folder), dask_worker.state.nthreads
 
 
-def task_of_another(place: Place, beside: Callable[[], str], function: Callable[..., Any], task: tuple) -> Any:
-    """Do a task on a worker, which may have joined after the others were looked at, as in the place it comes from."""
-    _require_same(f"a worker on {socket.gethostname()}", here(beside).installed, place.installed)
+def task_of_another(place: Place, further: Callable[[], str], function: Callable[..., Any], task: tuple) -> Any:
+    """Do a task on a worker in the folder of its place; a worker that joined late is checked here."""
+    _require_same(f"a worker on {socket.gethostname()}", own_place(further).installed, place.installed)
     with chdir(place.folder):
         return function(*task)

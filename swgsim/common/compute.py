@@ -1,6 +1,6 @@
-"""Where tasks are worked off: by processes of this machine, or by a Dask cluster; the results are the same.
+"""Engines for many tasks: processes of this machine or a Dask cluster, with equal results.
 
-Every job hands out its tasks here, and keeps what they give as files, so that a run that breaks off goes on from them.
+Jobs keep the results of their tasks as files, so that an interrupted run resumes from them.
 """
 
 import re
@@ -20,14 +20,14 @@ from swgsim.common.checks import require_known
 
 @dataclass(frozen=True)
 class Engine:
-    """What works off tasks.
+    """Processes of this machine or a Dask cluster that do tasks.
 
     Attributes
     ----------
     workers : int or None
-        Processes of this machine; None: one per core.
+        Number of processes of this machine; None for one per core.
     scheduler : str or None
-        Address of a Dask scheduler, all of whose workers are used instead of this machine.
+        Address of a Dask scheduler; all its workers are used instead of this machine.
     """
 
     workers: int | None = None
@@ -40,12 +40,12 @@ class Engine:
 
     @classmethod
     def of(cls, config: Mapping[str, Any]) -> "Engine":
-        """That of ``compute``, ``scheduler`` and ``workers`` of a configuration.
+        """The engine of ``compute``, ``scheduler`` and ``workers`` of a configuration.
 
         Raises
         ------
         ValueError
-            If they are unknown, or do not go together.
+            If a choice is unknown, or they contradict each other.
         """
         workers, compute, scheduler = config["workers"], config.get("compute", "local"), config.get("scheduler")
         if workers is not None and (not isinstance(workers, int) or isinstance(workers, bool) or workers < 1):
@@ -59,47 +59,46 @@ class Engine:
         return cls(workers, scheduler and str(scheduler))
 
     def results(
-        self, function: Callable[..., Any], tasks: Iterable[tuple], count: int, beside: Callable[[], str] = str
+        self, function: Callable[..., Any], tasks: Iterable[tuple], count: int, further: Callable[[], str] = str
     ) -> Iterator[Any]:
-        """What a function gives for every task, in their order, as soon as it is there.
+        """Yield the results of a function for all tasks, in order, as soon as they are ready.
 
         Parameters
         ----------
         function : callable
         tasks : iterable of tuple
-            Its arguments; they are taken as workers get free.
+            Arguments of the function; they are taken when workers become free.
         count : int
-            How many there are.
+            Number of tasks.
         beside : callable
-            Says what results depend on beside this package; a worker where it says something else is refused.
+            Returns the version of code besides this package; a worker with another version is refused.
 
         Raises
         ------
         ValueError
-            If the cluster does not answer, is not fit or is lost; it names the address and the remedy.
+            If the cluster does not answer, is unfit or is lost; the message names address and remedy.
         """
         if self.scheduler is None:
-            # A worker that has grown by 300 MiB is replaced, and says so as if it were an error.
+            # Joblib warns when it replaces a worker that has grown by 300 MiB, and when it is interrupted.
             warnings.filterwarnings("ignore", "A worker stopped while some jobs were given", UserWarning)
-            # So does whoever breaks off.
             warnings.filterwarnings("ignore", ".*You could benefit from adjusting the input task iterator", UserWarning)
             pool = joblib.Parallel(min(self.workers or joblib.cpu_count(), max(count, 1)), return_as="generator")
             with ExitStack() as stack:
-                with _workers_deaf_to_interrupts():
+                with _interrupts_blocked_in_workers():
                     results = pool(joblib.delayed(function)(*task) for task in tasks)
                     stack.callback(results.close)
                 yield from results
             return
-        yield from cluster.results(self.scheduler, function, tasks, beside)
+        yield from cluster.results(self.scheduler, function, tasks, further)
 
 
 @contextmanager
-def _workers_deaf_to_interrupts() -> Iterator[None]:
-    """Workers started meanwhile do not hear Ctrl-C: this process, which does, ends them.
+def _interrupts_blocked_in_workers() -> Iterator[None]:
+    """Workers that start in this context ignore Ctrl-C; this process receives it and ends them.
 
-    Heard at any place of theirs, it would be lost in a destructor, or be reported as an error while they start.
+    In a worker it would be lost in a destructor, or reported as an error while the worker starts.
     """
-    resource_tracker.ensure_running()  # in Python 3.11 its start lets Ctrl-C through again
+    resource_tracker.ensure_running()  # in Python 3.11 its start unblocks Ctrl-C
     before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
     try:
         yield

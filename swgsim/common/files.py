@@ -1,4 +1,7 @@
-"""Files that are complete or absent, and that one process at a time makes."""
+"""Files that are complete or absent, and that only one process at a time makes.
+
+Locks are those of Linux and macOS (flock). The kernel releases them when a process dies.
+"""
 
 import errno
 import fcntl
@@ -10,7 +13,7 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import IO, Any
 
-# What to do where a file cannot be written.
+# Remedies where a file cannot be written.
 ROOM = "make room and start again, what is finished is kept"
 OTHER_FOLDER = "choose a folder that can be written"
 OTHER_FOLDER_WITH_LOCKS = "choose a folder on a disk that has locks (flock)"
@@ -24,20 +27,20 @@ REMEDIES = {
     errno.ENOLCK: OTHER_FOLDER_WITH_LOCKS,
     errno.EOPNOTSUPP: OTHER_FOLDER_WITH_LOCKS,
 }
-# Where a folder cannot be made. Of a file these say as well that one is missing that is read meanwhile.
+# Remedies where a folder cannot be made; for a file these errors may mean that another file is missing.
 NO_FOLDER = dict.fromkeys((errno.ENOENT, errno.EEXIST, errno.ENOTDIR, errno.ENAMETOOLONG), "choose another folder")
 
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """A file aside to write; when that has succeeded it takes the place of ``path``.
+    """A temporary file to write, which replaces ``path`` on success.
 
-    Its name is always the same, so that what a killed process leaves is overwritten and not kept for ever.
+    Its name is always the same, so the next process overwrites the remains of a killed one.
 
     Raises
     ------
     OSError
-        If the disk is full or the folder cannot be written; it names the file and the remedy.
+        If the disk is full or the folder cannot be written; the message names file and remedy.
     """
     aside = path.with_name(f".{path.name}.tmp")
     with remedied(path):
@@ -53,20 +56,20 @@ def replacing(path: Path) -> Iterator[Path]:
 
 @contextmanager
 def sole_maker(path: Path, *, wait: bool = False) -> Iterator[None]:
-    """Be the only process that makes ``path``; a process that is killed gives this up by itself.
+    """Be the only process that makes ``path``; the lock of a killed process is released.
 
     Parameters
     ----------
     path : Path
     wait : bool
-        Wait for another process that is making it, which may leave nothing to do.
+        Wait for another process that is making it; then the file may be complete already.
 
     Raises
     ------
     RuntimeError
-        If another process is making it, and this one does not wait.
+        If another process is making it and ``wait`` is false.
     OSError
-        If the folder cannot be written; it names the file and the remedy.
+        If the folder cannot be written; the message names file and remedy.
     """
     lock = path.with_name(f".{path.name}.lock")
     with remedied(path):
@@ -81,7 +84,7 @@ def sole_maker(path: Path, *, wait: bool = False) -> Iterator[None]:
 
 @contextmanager
 def remedied(path: Path, remedies: Mapping[int, str] = REMEDIES) -> Iterator[None]:
-    """Say which file, or in which folder, could not be written and what to do."""
+    """Add the file or folder and a remedy to the message of an OSError."""
     try:
         yield
     except OSError as error:
@@ -92,24 +95,24 @@ def remedied(path: Path, remedies: Mapping[int, str] = REMEDIES) -> Iterator[Non
 
 
 def make_folder(folder: Path) -> None:
-    """Make a folder unless it is there.
+    """Make a folder unless it exists.
 
     Raises
     ------
     OSError
-        If that cannot be; it names the folder and the remedy.
+        If it cannot be made; the message names folder and remedy.
     """
     with remedied(folder, {**REMEDIES, **NO_FOLDER}):
         folder.mkdir(parents=True, exist_ok=True)
 
 
 def require_writable(folder: Path) -> None:
-    """Make a folder, and a file in it that is gone at once: better refused before a long computation than after it.
+    """Make a folder and test that it can be written, before a long computation.
 
     Raises
     ------
     OSError
-        If the folder cannot be written; it names it and the remedy.
+        If the folder cannot be written; the message names folder and remedy.
     """
     make_folder(folder)
     with remedied(folder), TemporaryFile(dir=folder):
@@ -127,7 +130,7 @@ def _locked(lock: Path, path: Path, wait: bool) -> IO[bytes]:
             raise RuntimeError(f"another process is making {path}: wait for it, or choose another folder") from None
         if _is_at(raw, lock):
             return raw
-        # Its last owner removed it after it was opened here: such a lock keeps nobody out.
+        # Its last owner removed the file after it was opened here, so this lock would not exclude anybody.
         raw.close()
 
 
@@ -140,11 +143,11 @@ def _is_at(raw: IO[bytes], path: Path) -> bool:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write aside, then rename."""
+    """Write a text; the file is complete or absent."""
     with replacing(path) as aside:
         aside.write_text(text, encoding="utf-8")
 
 
 def write_json(path: Path, value: Any) -> None:
-    """Readable JSON; NaN is refused."""
+    """Write indented JSON; NaN is an error."""
     write_text(path, json.dumps(value, indent=2, allow_nan=False) + "\n")

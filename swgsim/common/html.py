@@ -1,4 +1,4 @@
-"""How pages are made: one file each, with the style and the pictures inside."""
+"""Templates of pages; each page is one file that contains style and pictures."""
 
 import base64
 
@@ -6,7 +6,7 @@ from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 
 
 def environment(package: str) -> Environment:
-    """Templates of a package, which may include ``style.css.jinja`` of this one; text is escaped.
+    """Jinja templates of a package, which may include ``style.css.jinja`` of this one; text is escaped.
 
     The filter ``data_uri`` puts the PNG of a picture into the page.
     """

@@ -1,16 +1,16 @@
-"""Numbers and intervals as the report has them; what is not known is None."""
+"""Numbers and intervals of reports; an unknown number is None."""
 
 from math import isfinite
 from typing import Any
 
 import numpy as np
 
-# Standard deviations to either side of a value that hold it in 95 of 100 cases.
+# Half width of a 95 % interval of a Gaussian, in standard deviations.
 NORMAL = 1.96
 
 
 def number(value: float) -> float | None:
-    """A number as JSON knows it: None for one that is not finite."""
+    """A number for JSON: None if it is not finite."""
     return float(value) if isfinite(value) else None
 
 
@@ -24,13 +24,13 @@ def probability(value: float) -> str:
 
 
 def estimate(value: float, deviation: float, unit: str, low: float = -np.inf, high: float = np.inf) -> dict[str, Any]:
-    """A value with its interval, which ends where the parameter's bounds are."""
+    """A value with its 95 % interval, cut at the bounds of the parameter."""
     interval = [max(value - NORMAL * deviation, low), min(value + NORMAL * deviation, high)]
     return {"value": number(value), "ci95": [number(end) for end in interval], "unit": unit}
 
 
 def significant(value: float | None, digits: int = 3) -> str:
-    """A number as people read it.
+    """A number as text with some significant digits.
 
     >>> significant(0.00012345), significant(None), significant(4810.8), significant(999.7)
     ('0.000123', 'not known', '4811', '1000')

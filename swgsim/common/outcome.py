@@ -1,4 +1,4 @@
-"""What closing the loop gives, for gears and for robot joints alike: a verdict, a report and its pictures."""
+"""Result of an identification of a gear or a robot joint: verdict, report and figures."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,16 +12,16 @@ NOTHING, FOUND, UNKNOWN = "nothing_missing", "effect_found", "unknown_effect"
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """What closing the loop on a folder gave.
+    """Result of an identification with the recordings of a folder.
 
     Attributes
     ----------
     report : mapping
-        ``report.json``.
+        Content of ``report.json``.
     figures : mapping
-        The pictures of the page by name.
+        Figures of the page by name.
     digest : str
-        Of the recordings.
+        SHA-256 of the recordings.
     """
 
     report: Mapping[str, Any]

@@ -1,4 +1,4 @@
-"""YAML that is plain data only: no tags that make objects, no aliases, no key twice."""
+"""YAML with plain data only: without tags that make objects, aliases and repeated keys."""
 
 from typing import Any
 
@@ -6,7 +6,7 @@ import yaml
 
 
 class PlainLoader(yaml.SafeLoader):
-    """Without aliases, which make a short file very long, and without a key twice, of which one is lost."""
+    """Loader that refuses aliases, which can make a short file very long, and repeated keys, of which one is lost."""
 
     def compose_node(self, parent: Any, index: Any) -> Any:
         if self.check_event(yaml.AliasEvent):
@@ -28,10 +28,10 @@ def plain(text: str | bytes, loader: type[PlainLoader] = PlainLoader) -> Any:
     Raises
     ------
     ValueError
-        If it is no YAML, or more than plain data.
+        If it is not YAML, or not only plain data.
     """
     try:
         return yaml.load(text, loader)  # derived from the safe one
-    # A date that there is not and an integer of too many digits are no errors of YAML.
+    # An invalid date and an integer with too many digits raise errors that are not those of YAML.
     except (yaml.YAMLError, RecursionError, ValueError, OverflowError, TypeError) as error:
         raise ValueError(f"no YAML: {error or 'nested too deep'}") from error

@@ -1,4 +1,4 @@
-"""Seeds derived from what a draw is for, so that adding a draw never moves another one."""
+"""Seeds from the purpose of a draw, so that a new draw does not change the others."""
 
 import hashlib
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 def seed_hash(*purpose: object) -> int:
-    """A 64-bit seed from the words that say what the draw is for.
+    """A 64-bit seed from the words of a purpose.
 
     >>> seed_hash("disturbance", 1, "healthy") == seed_hash("disturbance", 1, "healthy")
     True
@@ -16,5 +16,5 @@ def seed_hash(*purpose: object) -> int:
 
 
 def generator(*purpose: object) -> np.random.Generator:
-    """A random generator of its own for one purpose."""
+    """The random generator of one purpose."""
     return np.random.default_rng(seed_hash(*purpose))

@@ -1,4 +1,4 @@
-"""One look for all pictures: colours that colour-blind readers tell apart (Okabe and Ito), labels, PNG."""
+"""Style of all figures: colours for colour-blind readers (Okabe and Ito), labels, PNG."""
 
 import base64
 import html
@@ -30,7 +30,7 @@ DOTS_PER_INCH = 130
 
 @dataclass(frozen=True)
 class Picture:
-    """A picture as PNG with its title and a caption that says what to see."""
+    """A picture as PNG with title and caption."""
 
     title: str
     caption: str
@@ -38,7 +38,7 @@ class Picture:
 
 
 def words(name: str) -> str:
-    """A class name as people write it.
+    """A class name in words.
 
     >>> words("root_tooth_crack")
     'root tooth crack'
@@ -47,7 +47,7 @@ def words(name: str) -> str:
 
 
 def figure(width: float, height: float) -> Figure:
-    """An empty figure [inch] that belongs to no window, so nothing has to be closed."""
+    """An empty figure [inch] without a window, which need not be closed."""
     return Figure(figsize=(width, height), layout="constrained")
 
 
@@ -61,7 +61,7 @@ def label(axes: Axes, x: str, y: str, title: str = "") -> None:
 
 
 def png(picture: Figure) -> bytes:
-    """The picture as PNG; the same figure gives the same bytes."""
+    """The figure as PNG; equal figures give equal bytes."""
     buffer = io.BytesIO()
     with matplotlib.rc_context({"savefig.facecolor": "white"}):
         picture.savefig(buffer, format="png", dpi=DOTS_PER_INCH, metadata={"Software": None})

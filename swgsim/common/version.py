@@ -1,4 +1,4 @@
-"""Which code made a result."""
+"""Version of the code that made a result."""
 
 import hashlib
 from functools import cache
@@ -7,7 +7,7 @@ from pathlib import Path
 
 from swgsim.common.checks import require_known
 
-# The rooms that make recordings; all others show, check or question what these make.
+# The rooms on which recordings depend.
 MAKING = ("bench", "chain", "common", "dataset", "effects", "flexspline", "gear", "storage")
 
 
@@ -31,7 +31,7 @@ def code_version(*also: str) -> str:
     Raises
     ------
     ValueError
-        If there is no such room; it lists the choices.
+        If a room is unknown; the message lists the choices.
     """
     require_known("code_version", also, rooms())
     digest = hashlib.sha256()

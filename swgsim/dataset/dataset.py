@@ -1,7 +1,7 @@
-"""Data sets on disk: generated block by block, in parallel, resumable, the same bytes whatever happened on the way.
+"""Data sets on disk, generated block by block and in parallel; interrupted runs resume and give the same bytes.
 
-Every block is one part, a file of recordings like the data set itself. When all parts are there they are joined to one
-file. Where a run was killed, the next one keeps the parts that are whole and of the same plan, and makes the others.
+Each block is one part: a file of recordings like the data set. Complete parts are joined to one file. After a killed
+run the next one keeps the valid parts of the same plan and makes the others.
 """
 
 import os
@@ -29,7 +29,7 @@ from swgsim.storage.labelled_signals import LabelledSignals
 
 @dataclass(frozen=True)
 class Usage:
-    """Memory that a process has needed so far."""
+    """Peak memory of a process."""
 
     process: str
     peak_memory_mib: float
@@ -37,14 +37,14 @@ class Usage:
 
 @dataclass(frozen=True)
 class Part:
-    """A part that is there now.
+    """A complete part.
 
     Attributes
     ----------
     rows : int
-        Its recordings.
+        Number of recordings.
     flaw : str
-        Why the file that a killed run left had to be made again; empty where it had not.
+        Reason why the part of a killed run was made again; empty if it was not.
     usage : Usage
     """
 
@@ -54,12 +54,12 @@ class Part:
 
 
 def usage() -> Usage:
-    """That of this process."""
+    """Peak memory of this process."""
     return Usage(f"{socket.gethostname()} {os.getpid()}", resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
 
 
 def generate(plan: Plan, path: Path, engine: Engine, progress: Callable[[int], object]) -> float:
-    """Generate a data set; one process at a time may (:func:`swgsim.common.files.sole_maker`).
+    """Generate a data set.
 
     Parameters
     ----------
@@ -67,9 +67,9 @@ def generate(plan: Plan, path: Path, engine: Engine, progress: Callable[[int], o
     path : Path
         The file to make.
     engine : Engine
-        What makes the blocks; the file is the same for any. Its workers need to see the folder of ``path``.
+        Processes that make the blocks; the file is the same for any. Workers need access to the folder of ``path``.
     progress : callable
-        Called with the number of recordings whenever that many more are done.
+        Called with the number of recordings that were finished since the last call.
 
     Returns
     -------
@@ -82,7 +82,7 @@ def generate(plan: Plan, path: Path, engine: Engine, progress: Callable[[int], o
     peak: dict[str, float] = {}
 
     def made() -> Generator[LabelledSignals, None, None]:
-        """The parts in their order: they are joined while the workers make the next ones."""
+        """The parts in order; they are joined while the workers make the next ones."""
         for part, file in zip(engine.results(_part, tasks, len(files)), files, strict=True):
             if part.flaw:
                 print(f"{part.flaw}; it has been made again")
@@ -94,29 +94,31 @@ def generate(plan: Plan, path: Path, engine: Engine, progress: Callable[[int], o
         with closing(made()) as blocks:
             storage.write(path, blocks, len(plan))
     except BaseException:
-        # Workers of this machine were ended while they wrote; those of a cluster finish their parts.
+        # Workers of this machine may have ended while writing; those of a cluster finish their parts.
         for left in parts.glob(".*.tmp") if engine.scheduler is None else ():
             left.unlink(missing_ok=True)
         raise
-    shutil.rmtree(parts, ignore_errors=True)  # where a worker of a killed run may be at its last part
+    shutil.rmtree(parts, ignore_errors=True)  # a worker of a killed run may still write its last part
     own = usage()
     peak[own.process] = own.peak_memory_mib
     return sum(peak.values())
 
 
 def disturb(source: Path, path: Path, disturbance: Disturbance, configuration: str, progress: Callable) -> None:
-    """Make the disturbed data set from the clean one: its recordings plus eq. (10).
+    """Make the disturbed data set from the clean one: its recordings plus the disturbance of eq. (10).
+
+    Eq. (10) is :meth:`swgsim.bench.disturbance.Disturbance.draw`.
 
     Parameters
     ----------
     source, path : Path
         The clean file and the one to make.
     disturbance : Disturbance
-        Drawn anew for every recording, from its seed.
+        Amplitudes a_j [mV/V] of eq. (10); drawn for every recording from its seed.
     configuration : str
-        The choices that the made file says it is of.
+        Configuration that is written to the file.
     progress : callable
-        Called with the number of recordings whenever that many more are done.
+        Called with the number of recordings that were finished since the last call.
     """
     rows, sensors, samples = storage.shape(source)
 
@@ -135,18 +137,18 @@ def disturb(source: Path, path: Path, disturbance: Disturbance, configuration: s
 
 
 def _part(plan: Plan, cases: list[Case], file: Path) -> Part:
-    """Simulate one block and keep it, unless that is done."""
+    """Simulate one block and write it, unless a valid part exists."""
     flaw = _flaw(plan, cases, file) if file.exists() else ""
     if flaw or not file.exists():
         with threadpool_limits(1):  # so that the bytes do not depend on the number of cores
             recordings = record(plan, cases)
-        with sole_maker(file, wait=True):  # A worker of a killed run may be at this very part.
+        with sole_maker(file, wait=True):  # a worker of a killed run may write this part
             storage.write(file, [recordings], len(recordings))
     return Part(len(cases), flaw, usage())
 
 
 def _read(plan: Plan, file: Path) -> LabelledSignals:
-    """A part, which a worker of a killed run with another plan may have replaced meanwhile."""
+    """Read a part; a worker of a killed run with another plan may have replaced it."""
     part = storage.read(file)
     if not plan.attributes.items() <= part.attributes.items():
         raise ValueError(f"{file}: made by other choices or code")
@@ -154,7 +156,7 @@ def _read(plan: Plan, file: Path) -> LabelledSignals:
 
 
 def _flaw(plan: Plan, cases: list[Case], file: Path) -> str:
-    """Why a part that was found is not what the plan says; empty if it is."""
+    """Reason why an existing part does not fit the plan; empty if it does."""
     try:
         part = _read(plan, file)
     except ValueError as damage:

@@ -16,7 +16,7 @@ from swgsim.effects import (
 )
 from swgsim.storage.labelled_signals import CLASSES
 
-# A class name to its effect at (severity, position).
+# The effect of each class (Table I) at a severity and a position from gauge s1 [rad].
 FAULTS: Mapping[str, Callable[[float, float], Effect]] = {
     "reduced_damping": lambda severity, _: ReducedDamping(severity),
     "reduced_stiffness": lambda severity, _: ReducedStiffness(severity),
@@ -36,9 +36,9 @@ class Variant:
     label : str
     number : int
     severity : float
-        The effect's own size, NaN when healthy.
+        Size of the effect in its unit; NaN when healthy.
     position : float
-        Angle around the flex spline [rad], NaN where the class has none.
+        Angle around the flex spline, from gauge s1 [rad]; NaN for classes without one.
     effects : tuple of Effect
     """
 
@@ -51,16 +51,16 @@ class Variant:
 
 @dataclass(frozen=True)
 class Variants:
-    """How the variants of every class are made.
+    """Severities and positions of the variants of every class (Table V).
 
     Attributes
     ----------
     count : int
         Variants per class.
     positions : int
-        Equally spaced circumferential positions; times the number of severities this must give ``count``.
+        Number of equally spaced positions; times the number of severities it must equal ``count``.
     severities : mapping
-        Class to levels. Classes without a position take ``count`` values evenly from the first to the last.
+        Severities of each class. Classes without a position have ``count`` even values from the first to the last.
     drawn : bool
         Whether severities (between the extremes) and positions are drawn continuously instead.
     """
@@ -92,12 +92,12 @@ class Variants:
                 )
 
     def of(self, label: str, rng: np.random.Generator) -> Iterator[Variant]:
-        """The variants of one class; ``rng`` is used only where they are drawn.
+        """The variants of one class; ``rng`` is used only if they are drawn.
 
         Raises
         ------
         ValueError
-            If the class is unknown; it lists the classes.
+            If the class is unknown; the message lists the classes.
         """
         require_known("the classes", [label], CLASSES)
         for number in range(self.count):

@@ -1,4 +1,4 @@
-"""Grids: which gear runs with which variant of which class at which operating point."""
+"""Grids: combinations of gears, fault variants and operating points."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -23,9 +23,9 @@ class Case:
     run : Run
     variant : Variant
     reference : bool
-        Whether it is a separate healthy acquisition that serves as the gear's reference.
+        Whether it is a reference recording of the gear.
     seed : int
-        Of every random draw that belongs to this recording.
+        Seed of every random draw of this recording.
     """
 
     run: Run
@@ -46,8 +46,8 @@ class Grid:
     references : int
         Healthy reference acquisitions per gear and operating point.
     scatter : float
-        Relative standard deviation of b1 and k1 from one recording to the next; 0 in the paper's grid, where all
-        healthy recordings of a gear are the same.
+        Relative standard deviation of b1 and k1 between recordings; 0 in the paper's grid, where all healthy
+        recordings of a gear are equal.
     seed : int
     """
 

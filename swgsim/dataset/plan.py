@@ -1,4 +1,4 @@
-"""The plan of a data set: all that determines its recordings, in blocks of bounded size."""
+"""The plan of a data set: everything that determines its recordings, in blocks of bounded size."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -13,15 +13,15 @@ from swgsim.effects.base import Effect
 from swgsim.gear.acquisition import Window
 from swgsim.gear.gear import Gear
 
-# Recordings per block: bounds the memory whatever the size of the grid, and splits the paper's grid evenly over cores.
+# Recordings per block: it bounds the memory for any grid, and splits the paper's grid evenly over cores.
 BLOCK = 1140
-# Samples up to which a block holds that many recordings; of longer windows it holds fewer.
+# Longest window [samples] with so many recordings per block; blocks of longer windows have fewer.
 BLOCK_SAMPLES = 600
 
 
 @dataclass(frozen=True)
 class Plan:
-    """All that determines the recordings of a data set.
+    """Everything that determines the recordings of a data set.
 
     Attributes
     ----------
@@ -29,13 +29,13 @@ class Plan:
     grid : Grid
     window : Window
     bench : Bench or None
-        The imperfections of a real test bench, if any.
+        Errors of a test bench, if any.
     sectors : int
         Sectors of the flex spline's truss.
     effects : tuple of Effect
-        What every run of every gear is under, beside its fault; part of what the gears are declared to be.
+        Declared effects of every run, in addition to its fault.
     configuration : str
-        The choices as text; kept in the file.
+        Configuration as text; it is written to the file.
     """
 
     gears: tuple[Gear, ...]
@@ -58,7 +58,7 @@ class Plan:
 
     @property
     def attributes(self) -> dict[str, str]:
-        """What the file says of itself; parts of a killed run are used only where it is the same."""
+        """Attributes of the file; a run resumes only from parts with equal attributes."""
         return provenance(self.configuration)
 
     @property
@@ -75,7 +75,7 @@ class Plan:
 
 
 def block_size(samples: int) -> int:
-    """Recordings per block of a window of so many samples."""
+    """Recordings per block for a window of ``samples``."""
     return max(1, min(BLOCK, BLOCK * BLOCK_SAMPLES // samples))
 
 

@@ -1,4 +1,4 @@
-"""From planned cases to recordings: bench, chain, acquisition and facts."""
+"""From planned cases to labelled signals: bench, chain, acquisition and table."""
 
 from dataclasses import replace
 
@@ -14,7 +14,7 @@ from swgsim.storage.labelled_signals import LabelledSignals, facts
 
 
 def record(plan: Plan, cases: list[Case]) -> LabelledSignals:
-    """The recordings of some cases of a plan."""
+    """Simulate some cases of a plan."""
     runs = [replace(case.run, effects=(*_declared(plan, case), *case.run.effects)) for case in cases]
     temperature = np.full(len(cases), np.nan)
     if plan.bench:
@@ -44,14 +44,14 @@ def record(plan: Plan, cases: list[Case]) -> LabelledSignals:
 
 
 def _declared(plan: Plan, case: Case) -> tuple[Effect, ...]:
-    """The effects of the plan as they are in one recording."""
+    """The declared effects of the plan in one recording, with its random phases."""
     return tuple(
         effect.drawn(generator("declared effect", case.seed, number)) for number, effect in enumerate(plan.effects)
     )
 
 
 def _acquire(plan: Plan, cases: list[Case], simulation: Simulation) -> tuple[np.ndarray, np.ndarray]:
-    """Signals (float32) and efficiency as the acquisition delivers them."""
+    """Recorded signals (float32) [mV/V] and efficiency [-]."""
     signals = np.empty(simulation.signals.shape, "f4")
     efficiency = simulation.efficiency.copy()
     motion = simulation.motion

@@ -1,4 +1,14 @@
-"""The idea of an effect: what it may change, and that it changes nothing else."""
+"""The base class of effects: the places of the chain that an effect may change.
+
+Angles and signs, for all effects:
+
+- ``theta`` is a position around the flex spline [rad]. It is 0 at gauge s1, pi/2 at s2, pi at s3 and 3 pi/2 at s4.
+- ``psi`` or ``phi_in`` is the angle of the wave generator relative to the flex spline [rad]: the position of its major
+  axis. It grows with positive rotation, which goes from s1 to s2.
+- An effect with a ``theta`` is fixed to the flex spline. A wave cos(order phi_in + phase) has its phase at phi_in = 0.
+- Torques are positive in the sense of rotation at the input, and against it at the load. ``T_out`` is positive when
+  the gear drives the load.
+"""
 
 import re
 from collections.abc import Mapping
@@ -27,12 +37,14 @@ PLACES = ("gear", "drive", "wave generator", "mesh", "structure", "gauge", "acqu
 
 @dataclass(frozen=True)
 class Crack:
-    """The bars of the toothed band that cross from one sector to the next lost stiffness.
+    """A root tooth crack: bars of the toothed band that cross from one sector to the next have less stiffness.
+
+    :func:`swgsim.chain.influence._cracked` applies it to the truss.
 
     Attributes
     ----------
     angle : float
-        Circumferential position of the crack [rad].
+        Position of the crack, from gauge s1 [rad].
     stiffness_ratio : float
         Remaining stiffness of one tooth pitch of the rim, above 0 up to 1.
     """
@@ -42,9 +54,9 @@ class Crack:
 
 
 class Instant(NamedTuple):
-    """The drive of some runs at one instant or at several, arrays (run,) or (time, run).
+    """State of the drive of several runs at one instant or at several: arrays (run,) or (time, run).
 
-    Angles [rad], speeds [rad/s], torque [N m].
+    Angles and twist [rad], speeds [rad/s], torque [N m].
     """
 
     phi_in: np.ndarray
@@ -58,10 +70,10 @@ class Instant(NamedTuple):
 
 
 class Extra(NamedTuple):
-    """Torques [N m] that an effect adds to the equations of motion, each an array like those or a number.
+    """Torques [N m] that an effect adds to the equations of motion: arrays as in :class:`Instant`, or numbers.
 
-    ``T_motor`` drives the input and is felt by its torque flange, ``T_loss`` brakes the input behind the flange,
-    ``T_stiff`` and ``T_fric`` add to eqs. (2) and (5), ``T_load`` to the load.
+    ``T_motor`` drives the input, and its torque flange shows it. ``T_loss`` brakes the input behind the flange.
+    ``T_stiff`` and ``T_fric`` add to eqs. (2) and (5), ``T_load`` to the load torque.
     """
 
     T_motor: np.ndarray | float = 0.0
@@ -73,7 +85,7 @@ class Extra(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """What goes on while signals are recorded.
+    """State of the gear while signals are recorded.
 
     Attributes
     ----------
@@ -96,18 +108,23 @@ class Scene:
 
 @dataclass(frozen=True)
 class Effect:
-    """A physical effect; a subclass overrides only the places of the chain that it touches.
+    """A physical effect; a subclass overrides the methods of the places at which it acts.
 
     The methods of this base class change nothing. Fields over the circumference are sampled at the wave-generator
-    angles ``psi`` (relative to the flex spline) and at equally spaced angles ``theta`` around it. The parameters of a
-    subclass are declared by the functions of :mod:`swgsim.effects.quantity` and are checked against their bounds.
+    angles ``psi`` and at equally spaced positions ``theta``. A subclass declares its parameters by the functions of
+    :mod:`swgsim.effects.quantity`, which check them against their bounds.
 
     Attributes
     ----------
     place : str
-        Of :data:`PLACES`.
+        One of :data:`PLACES`.
     sharp : bool
-        Whether signals have corners with it, whose order lines only a dense sampling shows as they are.
+        Whether the effect makes corners in signals. Only dense sampling gives their order lines correctly.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is beyond its bounds; the message names value and bounds.
     """
 
     place: ClassVar[str] = ""
@@ -130,20 +147,20 @@ class Effect:
 
     @property
     def structural(self) -> bool:
-        """Whether it acts on what deforms the flex spline, of which the maps of a truss make its signature."""
+        """Whether it acts on the load or the stiffness of the truss, so that influence maps make its signature."""
         return self.place in ("wave generator", "mesh", "structure")
 
     def at(self, point: OperatingPoint, conditions: Conditions) -> "Effect":
-        """The effect as it is at an operating point and under the conditions of a recording."""
+        """The effect at an operating point and under the conditions of a recording."""
         return self
 
     def drawn(self, rng: np.random.Generator) -> "Effect":
-        """The effect as it is in one recording, where something of it is another one every time."""
+        """The effect in one recording: phases that differ from recording to recording are drawn."""
         random = [name for name, quantity in quantities(type(self)).items() if quantity.role is Role.RANDOM]
         return replace(self, **{name: float(rng.uniform(0, 2 * np.pi)) for name in random})
 
     def parts(self) -> tuple["Effect", ...]:
-        """What of it may be of any size beside the others, such as a hum in the cable of each gauge."""
+        """Independent parts of the effect, each with its own size, such as hum in the cable of each gauge."""
         return (self,)
 
     def gear(self, gear: Gear) -> Gear:
@@ -151,7 +168,7 @@ class Effect:
         return gear
 
     def drive(self, now: Instant) -> Extra:
-        """Torques to add to the equations of motion; they repeat with each revolution of the wave generator."""
+        """Torques to add to the equations of motion; they have the period of one wave-generator revolution."""
         return Extra()
 
     def wave_generator(self, displacement: Field, psi: Psi, theta: Theta) -> Field:
@@ -159,19 +176,19 @@ class Effect:
         return displacement
 
     def engaged(self, depth: Field, psi: Psi, theta: Theta) -> Field:
-        """Depth [m] to which teeth engage, by which they share the force: the imposed displacement if nothing else."""
+        """Depth of engagement [m], in proportion to which teeth share the force; by default the displacement."""
         return depth
 
     def mesh(self, share: Field, psi: Psi, theta: Theta) -> Field:
-        """Share of the tangential force that is carried at each angle; the chain scales the shares to sum to one."""
+        """Share of the tangential force at each angle; the chain scales the shares to the sum 1."""
         return share
 
     def carried(self, share: Field, psi: Psi, theta: Theta) -> Field:
-        """Of these shares, what each angle passes on; no other angle takes over what is lost."""
+        """Share of the tangential force at each angle after a loss that other angles do not take over."""
         return share
 
     def cracks(self) -> tuple[Crack, ...]:
-        """Places where the rim lost stiffness."""
+        """Root cracks: positions where the rim has less stiffness."""
         return ()
 
     def gauge(self, signals: Signals, scene: Scene) -> Signals:

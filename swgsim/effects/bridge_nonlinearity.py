@@ -26,7 +26,6 @@ class BridgeNonlinearity(Effect):
     share : float
         [1/(mV/V)], from -0.2 to 0.2 (of an amplifier out of order).
     sensor : int
-        Number of the gauge, from 0 to 4.
         Number of the gauge, from 0 to 4; 5 for all of them.
     power : int
         2 or 3.

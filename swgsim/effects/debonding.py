@@ -22,7 +22,6 @@ class Debonding(Effect):
     ----------
     sensor : int
         Number of the gauge, from 0 to 4.
-        From 0 to 4.
     rate : float
         [1/h], from -0.2 to 0.2 (beyond, nothing is left of a long session).
     """

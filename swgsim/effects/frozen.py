@@ -1,4 +1,4 @@
-"""What effects that follow load, speed or temperature are at one operating point; their bounds hold any of them."""
+"""Effects with a fixed size, which effects of load, speed or temperature become at one operating point."""
 
 from dataclasses import dataclass
 
@@ -7,8 +7,8 @@ import numpy as np
 from swgsim.effects.base import Effect, Field, Psi, Theta
 from swgsim.effects.quantity import size
 
-# Load [N m] and speed [rpm] to which laws in them refer: the limit for repeated peaks of a size 17, ratio 100 gear, and
-# the higher speed of the paper.
+# Reference load [N m] and speed [rpm] of laws: the limit for repeated peaks of a size 17, ratio 100 gear, and the
+# higher speed of the paper.
 FULL_LOAD, FULL_SPEED = 70.0, 4000.0
 
 

@@ -22,7 +22,6 @@ class GaugeGain(Effect):
     Attributes
     ----------
     sensor : int
-        Number of the gauge, from 0 to 4.
         Number of the gauge, from 0 to 4; 5 for all of them.
     share : float
         From -1 (the gauge is off) to 0.5 (beyond, another gauge or amplifier setting, not an error).

@@ -81,7 +81,7 @@ from swgsim.effects.warm_grease import WarmGrease
 from swgsim.effects.worn_wave_generator import WornWaveGenerator
 from swgsim.effects.zero_offset import ZeroOffset
 
-# By the place of the chain at which they act; all of them are searched when a loop is closed.
+# Effects that the identification searches, by the place of the chain at which they act.
 SEARCHED: tuple[type[Effect], ...] = (
     # gear
     AgedGrease,
@@ -160,7 +160,7 @@ SEARCHED: tuple[type[Effect], ...] = (
     MotorPickup,
     SubOrders,
 )
-# Effects that vary from one recording to the next, stand for several others, or have no cause.
+# Effects that vary between recordings, stand for several others, or have no known cause.
 OTHERS: tuple[type[Effect], ...] = (
     FixedFrequency,
     FractionalOrder,
@@ -187,7 +187,7 @@ def named(name: str) -> type[Effect]:
     Raises
     ------
     ValueError
-        If there is none; it names those that are spelt alike.
+        If there is no such effect; the message names similar ones.
     """
     if name in LIBRARY:
         return LIBRARY[name]
@@ -200,7 +200,7 @@ def named(name: str) -> type[Effect]:
             "own needs its import path module:Class"
         )
     if module.partition(".")[0] in sys.stdlib_module_names:
-        # Not imported: some of them act when they are.
+        # Not imported, because some modules of Python act when they are imported.
         raise ValueError(f"{name!r} is no effect: it must be a class derived from {Effect.__module__}.Effect")
     try:
         found = getattr(importlib.import_module(module), kind)

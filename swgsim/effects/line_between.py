@@ -1,6 +1,6 @@
-"""What no physical effect explains between the integer orders, as an effect all the same: one line, pattern and law.
+"""An interharmonic line without a known cause, as an effect: one line, one pattern, one law.
 
-It is what a loop that was closed gives back where no effect of the library fits; it names no cause.
+The identification returns it where no effect of the library fits.
 """
 
 from abc import ABC, abstractmethod
@@ -19,12 +19,12 @@ GAUGE_PATTERNS = {name: pattern for name, pattern in PATTERNS.items() if set(pat
 
 @dataclass(frozen=True)
 class LineBetween(Effect, ABC):
-    """A line in the gauges, with another phase in every recording; where it lies, a subclass says.
+    """A line in the gauges whose phase differs in every recording; a subclass gives its frequency.
 
     Attributes
     ----------
     amplitude : float
-        At 70 N m, 4000 rpm, 10 K above 25 degC or after 1 h, where the law has them [mV/V], from 0 to 100.
+        At 70 N m, 4000 rpm, 10 K above 25 degC or after 1 h, as the law needs them [mV/V], from 0 to 100.
     phase : float
         Of cos(angle - phase) [rad].
     pattern : str
@@ -46,7 +46,7 @@ class LineBetween(Effect, ABC):
 
     @abstractmethod
     def angle(self, scene: Scene) -> Samples:
-        """How far the line has turned [rad]."""
+        """Phase angle of the line [rad]."""
 
     def acquisition(self, channels: Channels, scene: Scene) -> Channels:
         """The channels with the line on the gauges of the pattern."""
@@ -56,9 +56,9 @@ class LineBetween(Effect, ABC):
 
 @dataclass(frozen=True)
 class FractionalOrder(LineBetween):
-    """A line that turns with the wave generator, such as of a bearing or a gearbox in front of it that nobody declared.
+    """A line that turns with the wave generator, such as of a bearing or of a gearbox at the input.
 
-    Signature: as its parameters say. Typical: a hundredth of order 2.
+    Signature: as the parameters say. Typical: one hundredth of order 2.
 
     Attributes
     ----------
@@ -69,15 +69,15 @@ class FractionalOrder(LineBetween):
     order: float = shape(0.5, unit="-", low=0, high=50, points=501)
 
     def angle(self, scene: Scene) -> Samples:
-        """How far the line has turned [rad]."""
+        """Phase angle of the line [rad]."""
         return self.order * scene.phi_in
 
 
 @dataclass(frozen=True)
 class FixedFrequency(LineBetween):
-    """A line that keeps its frequency at all speeds, such as of a resonance, a converter or a machine nearby.
+    """A line with one frequency at all speeds, such as of a resonance, a converter or a machine nearby.
 
-    Signature: as its parameters say. Typical: a hundredth of order 2.
+    Signature: as the parameters say. Typical: one hundredth of order 2.
 
     Attributes
     ----------
@@ -88,5 +88,5 @@ class FixedFrequency(LineBetween):
     frequency: float = shape(25.0, unit="Hz", low=0, high=4000, points=4001)
 
     def angle(self, scene: Scene) -> Samples:
-        """How far the line has turned since the trigger [rad]."""
+        """Phase angle of the line since the trigger [rad]."""
         return 2 * np.pi * self.frequency * scene.time

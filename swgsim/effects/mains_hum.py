@@ -29,7 +29,6 @@ class MainsHum(Effect):
     phase : float
         At the trigger [rad].
     sensor : int
-        Number of the gauge, from 0 to 4.
         Number of the gauge, from 0 to 4; 5 for all of them.
     deviation : float
         Share by which the grid is faster, from -0.004 to 0.004, what large grids allow themselves.

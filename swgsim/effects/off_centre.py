@@ -1,4 +1,4 @@
-"""What an axis off centre does to the wave generator and to how its two lobes share the load."""
+"""Base of effects with an axis off centre: displacement of the sleeve, and load sharing of the two lobes."""
 
 from abc import abstractmethod
 from typing import Any
@@ -8,10 +8,10 @@ from swgsim.effects.quantity import shape
 
 
 def unequal_lobes() -> Any:
-    """What the shift adds to the share of a lobe, beside what its depth does for the whole ellipse (an estimate).
+    """Declare how unequally the two lobes share the load (an estimate).
 
-    0 if the teeth give way so far that both lobes carry alike, 1 in proportion to depth, as in the paper's chain, more
-    if they are stiff. A search leaves it open where commissioning finds another structure than the model's.
+    0: soft teeth, both lobes carry alike. 1: in proportion to the depth of engagement, as in the paper's chain. Above:
+    stiff teeth. A search tries several values if commissioning finds another structure than the model's.
     """
     return shape(1.0, unit="-", low=0, high=3, points=4, of_structure=True)
 
@@ -22,7 +22,7 @@ class OffCentre(Effect):
     Attributes
     ----------
     unequal : float
-        Of :func:`unequal_lobes`; a subclass declares it behind its own parameters.
+        See :func:`unequal_lobes`; a subclass declares it after its own parameters.
     """
 
     place = "wave generator"
@@ -30,12 +30,12 @@ class OffCentre(Effect):
 
     @abstractmethod
     def shift(self, psi: Psi, theta: Theta) -> Field | Theta:
-        """The radial part of the shift [m]."""
+        """Radial displacement by the shift of the axis [m]."""
 
     def wave_generator(self, displacement: Field, psi: Psi, theta: Theta) -> Field:
         """The displacement plus the shift."""
         return displacement + self.shift(psi, theta)
 
     def engaged(self, depth: Field, psi: Psi, theta: Theta) -> Field:
-        """The depth, with as much of the shift as loads the lobes unequally."""
+        """The depth, with the share of the shift that loads the lobes unequally."""
         return depth + (self.unequal - 1) * self.shift(psi, theta)

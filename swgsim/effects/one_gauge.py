@@ -1,4 +1,4 @@
-"""One bridge of a gear's gauge set, or all of them alike."""
+"""Effects on one gauge, or on all gauges alike."""
 
 from dataclasses import replace
 from typing import Any
@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from swgsim.gear.gear import Gear
 
-# In place of the number of a gauge: all of them.
+# Number of a gauge that stands for all of them.
 ALL = 5
 
 

@@ -1,4 +1,4 @@
-"""Parameters of effects: unit, physical bounds, typical value, and what a search for the effect may do with them."""
+"""Parameters of effects: unit, physical bounds, typical value, and the role in the identification."""
 
 from collections.abc import Mapping
 from dataclasses import MISSING, Field, dataclass, field, fields
@@ -13,13 +13,13 @@ from swgsim.common.checks import require, require_integer, require_one_of
 
 
 class Role(Enum):
-    """What a parameter is to a search for the effect."""
+    """Role of a parameter in a search for the effect."""
 
-    SIZE = "size"  # how much of the effect there is; at one value it changes nothing
-    PHASE = "phase"  # of a wave: sizes along cosine and sine span every phase
-    ANGLE = "angle"  # a position around the circumference, to be searched
-    RANDOM = "random"  # a phase that is another one in every recording
-    SHAPE = "shape"  # a number that shapes the effect, to be searched
+    SIZE = "size"  # amount of the effect; at one value it changes nothing
+    PHASE = "phase"  # of a wave: the amplitudes of cosine and sine give every phase
+    ANGLE = "angle"  # a position around the circumference; a search tries several
+    RANDOM = "random"  # a phase that differs in every recording
+    SHAPE = "shape"  # a number that shapes the effect; a search may try several
     CHOICE = "choice"  # an integer, such as an order or a gauge, or one of a list
 
 
@@ -33,21 +33,21 @@ class Quantity:
     unit : str
         SI, "-" for a share.
     low, high : float
-        Beyond, the model does not hold or the gear would be broken otherwise.
+        Bounds; beyond, the model does not hold or the gear is broken in another way.
     typical : float
-        The size that the literature names, or the middle of what is plausible; of a choice, its default or lowest.
+        Size in the literature, or the middle of the plausible range; of a choice, its default or lowest value.
     nothing : float
         Of a size: the value at which the effect changes nothing.
     points : int
-        Values that a search tries, evenly from low to high; a choice tries all.
+        Number of values that a search tries, evenly from low to high; a choice tries all.
     among : tuple of float
-        Of a choice: all values that there are; if empty, every integer from low to high.
+        Of a choice: all its values; if empty, every integer from low to high.
     further : tuple of float
-        Of a size: those that a search tries beside the typical one, where their signatures are of another shape.
+        Of a size: further values that a search tries, because their signatures have another shape.
     of_structure : bool
-        Of a shape: it is the typical one, unless the gear's structure is found to be another one than the model's.
+        Of a shape: a search keeps it typical unless the gear has another structure than the model.
     scale : float
-        Of a size: what signals do over a hundredth of it is linear; nearly always so over its whole span.
+        Of a size: signals are linear in it over a hundredth of this; infinite where they are linear over all its range.
     """
 
     role: Role
@@ -63,11 +63,11 @@ class Quantity:
     scale: float = np.inf
 
     def open(self, another_structure: bool) -> bool:
-        """Whether a search may choose a value of its own, of a gear of the model's structure or of another one."""
+        """Whether a search may choose a value, for a gear of the model's structure or of another structure."""
         return self.points > 1 and (another_structure or not self.of_structure)
 
     def check(self, owner: str, name: str, value: Any) -> None:
-        """Raise a ValueError unless the value is a number within the bounds, or one of those that there are."""
+        """Raise a ValueError unless the value is a number within the bounds, or one of the choices."""
         if self.among:
             require_one_of(owner, name, value, self.among)
         elif self.role is Role.CHOICE:
@@ -99,37 +99,37 @@ def size(
     further: tuple[float, ...] = (),
     scale: float = np.inf,
 ) -> Any:
-    """How much of the effect there is; every effect has one."""
+    """Declare the size: the amount of the effect; every effect has one."""
     return _parameter(Quantity(Role.SIZE, unit, low, high, typical, nothing, further=further, scale=scale))
 
 
 def phase(default: float = 0.0) -> Any:
-    """Phase of a wave whose amplitude is the size [rad]."""
+    """Declare the phase [rad] of a wave whose amplitude is the size."""
     return _parameter(Quantity(Role.PHASE, "rad", 0, 2 * np.pi, default), default)
 
 
 def random_phase(default: float = 0.0) -> Any:
-    """Phase that differs from recording to recording [rad]."""
+    """Declare a phase [rad] that differs from recording to recording."""
     return _parameter(Quantity(Role.RANDOM, "rad", 0, 2 * np.pi, default), default)
 
 
 def angle(default: Any = MISSING, *, points: int = 24) -> Any:
-    """Position around the circumference [rad]."""
+    """Declare a position around the circumference, from gauge s1 [rad]."""
     return _parameter(Quantity(Role.ANGLE, "rad", 0, 2 * np.pi, 0.0, points=points), default)
 
 
 def shape(default: float, *, unit: str, low: float, high: float, points: int = 1, of_structure: bool = False) -> Any:
-    """A number that shapes the effect; its default is the typical value."""
+    """Declare a number that shapes the effect; its default is the typical value."""
     return _parameter(Quantity(Role.SHAPE, unit, low, high, default, points=points, of_structure=of_structure), default)
 
 
 def choice(default: Any = MISSING, *, low: int, high: int) -> Any:
-    """An integer such as an order, or the number of a gauge."""
+    """Declare an integer such as an order or the number of a gauge."""
     return _parameter(Quantity(Role.CHOICE, "-", low, high, low if default is MISSING else default), default)
 
 
 def choice_among(*among: float, unit: str) -> Any:
-    """One of a list of values, by default the first."""
+    """Declare a choice from a list of values; the default is the first."""
     return _parameter(Quantity(Role.CHOICE, unit, min(among), max(among), among[0], among=among), among[0])
 
 
@@ -144,12 +144,12 @@ def _declared(kind: type) -> Mapping[str, Quantity]:
 
 
 def size_of(kind: type) -> str:
-    """Name of the parameter that says how much of an effect there is."""
+    """Name of the parameter that is the size of an effect."""
     return next(name for name, quantity in quantities(kind).items() if quantity.role is Role.SIZE)
 
 
 def beyond_nothing(effect: object) -> float:
-    """How far the size of an effect lies from the one that changes nothing, in its unit; of either sign."""
+    """Size of an effect minus the size that changes nothing, in its unit."""
     name = size_of(type(effect))
     return float(getattr(effect, name) - quantities(type(effect))[name].nothing)
 

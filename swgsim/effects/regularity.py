@@ -1,4 +1,4 @@
-"""What no physical effect explains, as an effect all the same: one order, one pattern over the channels, one law."""
+"""A regularity without a known cause, as an effect: one order, one pattern over the channels, one law."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -24,13 +24,13 @@ PATTERNS: Mapping[str, Mapping[str, complex]] = {
     "opposite in s2 and s4": {"s2": 1, "s4": -1},
     **{f"in {name} alone": {name: 1} for name in ("s0", "s1", "s2", "s3", "s4", "T_in", "T_out", "n_in")},
 }
-# Laws of what rises during a session, all together, and not so in another.
+# Laws of quantities that rise together during one session, and otherwise in another.
 OF_TEMPERATURE, OF_TIME = (
     "proportional to the temperature above 25 degC",
     "proportional to the time since the session began",
 )
 KELVIN, HOUR = 10.0, 3600.0
-# Highest order; a model of 64 samples per revolution that is given a higher one would take it for one below 13.
+# Highest order; with 64 samples per revolution a model would alias a higher one to an order below 13.
 HIGHEST = 50
 # Simple ones first.
 LAWS: Mapping[str, Callable[[OperatingPoint, Conditions], float]] = {
@@ -59,7 +59,7 @@ class Regularity(Effect):
     order : int
         Of the wave generator's revolution, from 0 (the mean) to 50.
     amplitude : float
-        At 70 N m, 4000 rpm, 10 K above 25 degC or after 1 h, where the law has them; in the unit of the channels, from
+        At 70 N m, 4000 rpm, 10 K above 25 degC or after 1 h, as the law needs them; in the unit of the channels, from
         -100 to 100.
     phase : float
         Of cos(order phi_in - phase) [rad].

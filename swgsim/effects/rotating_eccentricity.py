@@ -27,8 +27,8 @@ class RotatingEccentricity(OffCentre):
     phase : float
         Direction of the eccentricity, from the major axis in the sense of phi_in [rad].
     unequal : float
-        By how much more than the other the lobe is loaded that sinks deeper: 0 if both carry alike, 1 in proportion to
-        depth, as in the paper's chain, up to 3 for stiff teeth (an estimate).
+        How unequally the lobes share the load: 0 if both carry alike, 1 in proportion to their depth, as in the
+        paper's chain, up to 3 for stiff teeth (an estimate).
     """
 
     e: float = size(unit="m", low=0, high=0.15e-3, typical=15e-6)

@@ -1,11 +1,11 @@
-"""Which way something turns, without a jump, so that an integrator can follow."""
+"""Sign of a speed without a jump, so that an integrator can follow."""
 
 import numpy as np
 
-# The sense changes smoothly below this speed [rad/s], far under that of any operating point.
+# The sign changes smoothly below this speed [rad/s], far below the speed of any operating point.
 SMALL = 1e-3
 
 
 def sense(speed: np.ndarray, small: float = SMALL) -> np.ndarray:
-    """From -1 to 1, as the friction of eq. (5) changes its sign with the sliding speed."""
+    """Smooth sign of a speed, from -1 to 1; the friction of eq. (5) has the sign of the sliding speed of eq. (6)."""
     return np.tanh(speed / small)

@@ -1,7 +1,7 @@
-"""Effects as text, as a user writes them and as a loop that was closed gives them back.
+"""Effects as text: users write them, and the identification returns them.
 
-A list with one entry for each effect: its registered name, or for one from outside this project its import path
-``module:Class``, and its parameters::
+A list with one entry for each effect: its registered name and its parameters. An effect from outside this project has
+its import path ``module:Class`` as name::
 
     effects:
     - eccentric_wave_generator: {r: 1.0e-5, theta: 1.0}
@@ -26,11 +26,11 @@ EXAMPLE = "{eccentric_wave_generator: {r: 1.0e-5, theta: 1.0}}"
 
 
 class _Loader(PlainLoader):
-    """Takes 1e-5 for a number, as YAML 1.2 and everybody else does; PyYAML asks for 1.0e-5."""
+    """Reads 1e-5 as a number, as YAML 1.2 does; PyYAML alone needs 1.0e-5."""
 
 
 class _Dumper(yaml.SafeDumper):
-    """Quotes text that the loader would take for a number."""
+    """Quotes text that the loader would read as a number."""
 
 
 for _side in (_Loader, _Dumper):
@@ -38,7 +38,7 @@ for _side in (_Loader, _Dumper):
 
 
 def as_text(effects: Sequence[Effect]) -> str:
-    """The effects as YAML, from which :func:`from_text` makes the very same ones."""
+    """The effects as YAML, from which :func:`from_text` makes equal ones."""
     return yaml.dump({"effects": entries(effects)}, Dumper=_Dumper, sort_keys=False, default_flow_style=None, width=120)
 
 
@@ -49,12 +49,12 @@ def from_text(text: str, origin: str) -> tuple[Effect, ...]:
     ----------
     text : str
     origin : str
-        Where it comes from, for messages.
+        Name of the source, for messages.
 
     Raises
     ------
     ValueError
-        If it is no list of effects, or one of them cannot be made.
+        If it is not a list of effects, or one of them is invalid.
     """
     try:
         found = plain(text, _Loader)
@@ -93,7 +93,7 @@ def path_of(kind: type[Effect]) -> str:
     Raises
     ------
     ValueError
-        If it cannot be imported from anywhere.
+        If the effect cannot be imported.
     """
     if LIBRARY.get(kind.name()) is kind:
         return kind.name()
@@ -106,7 +106,7 @@ def path_of(kind: type[Effect]) -> str:
 
 
 def in_words(effect: Effect) -> str:
-    """An effect for a sentence, with its size, and the gauge if it is one of a gauge."""
+    """An effect in words, with its size, and its gauge if it has one."""
     name = size_of(type(effect))
     unit = quantities(type(effect))[name].unit
     sensor = getattr(effect, "sensor", None)
@@ -115,7 +115,7 @@ def in_words(effect: Effect) -> str:
 
 
 def sized(name: str, value: str, unit: str) -> str:
-    """A parameter for a sentence; a share has no unit."""
+    """A parameter in words; a share has no unit."""
     return f"{name.replace('_', ' ')} {value}" + ("" if unit == "-" else f" {unit}")
 
 

@@ -19,7 +19,6 @@ class ThermalOutput(Effect):
     Attributes
     ----------
     sensor : int
-        Number of the gauge, from 0 to 4.
         Number of the gauge, from 0 to 4; 5 for all of them.
     slope : float
         [mV/V per K], from -5e-3 to 5e-3 (10 um/m per K, bare foil on the wrong material).

@@ -1,4 +1,4 @@
-"""Revolutions of the wave generator and time within a recording, for effects that act while signals are recorded."""
+"""Revolutions and time within a recording, for effects on gauges and acquisition."""
 
 from collections.abc import Callable
 
@@ -27,5 +27,5 @@ def since_session(scene: Scene) -> Samples:
 
 
 def on_gauges(channels: Channels, change: Callable[[int, Samples], Samples]) -> Channels:
-    """The channels with each gauge signal as ``change(sensor, signal)`` makes it."""
+    """The channels, each gauge signal replaced by ``change(sensor, signal)``."""
     return {**channels, **{name: change(s, channels[name]) for s, name in enumerate(SENSORS)}}

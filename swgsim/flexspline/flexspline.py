@@ -1,7 +1,7 @@
-"""The flex spline as a linear structure: its answer to wave generator, teeth and cracks, per circumferential order.
+"""The flex spline as a linear structure: response to wave generator, teeth and cracks, per circumferential order.
 
-Fields are kept as discrete Fourier amplitudes over the sectors: a load that goes around as exp(i n theta) makes a
-displacement that does so too, so one solve per order n holds the answer to a load on any sector.
+Fields are discrete Fourier amplitudes over the sectors. A load exp(i n theta) around the circumference gives a
+displacement of the same form, so one solve per order n gives the response to a load on any sector.
 """
 
 from dataclasses import dataclass
@@ -64,7 +64,7 @@ class FlexSpline:
 
     @cached_property
     def band_compliance(self) -> Float[np.ndarray, "sector band band"]:
-        """Displacement [m/N] of a band's degrees of freedom under unit forces on a band some sectors behind."""
+        """Displacement [m/N] of a band's degrees of freedom under unit forces on a band some sectors before."""
         return np.fft.irfft(self.fields[:, self.band, BAND:], self.sector.count, axis=0)
 
     def displacement(
@@ -85,22 +85,25 @@ def gauge_response(flex: FlexSpline, gauges: GaugeSet) -> Complex[np.ndarray, "o
 
 @lru_cache(maxsize=4)
 def _strain(flex: FlexSpline, radius: float) -> Complex[np.ndarray, "order 3 load"]:
-    """Strains (rr, tt, rt) on the back of the collar at angle 0 [1/m, 1/N], of which every bridge there is made."""
+    """Strains (rr, tt, rt) on the back of the collar at angle 0 [1/m, 1/N], for all bridges at this radius."""
     return strain_rows(flex.sector, radius) @ flex.fields
 
 
 def prescribed(sector: Sector) -> Bool[np.ndarray, " dof"]:
-    """Fig. 5: the clamped edge is held; inner nodes on the wave generator follow it radially and slide along it."""
+    """Prescribed displacements of Fig. 5: the clamped edge is fixed, inner nodes of the band follow the wave generator.
+
+    They follow it radially and slide along it.
+    """
     given = np.repeat(sector.clamped, 3)
     given[0::3] |= sector.band & sector.layer(INNER)
     return given
 
 
 def tooth_forces(sector: Sector, alpha_tooth: float) -> Float[np.ndarray, " dof"]:
-    """Nodal forces of a unit tangential tooth force [N/N], even over the face width.
+    """Nodal forces F_tooth (Fig. 5) of a unit tangential tooth force [N/N], even over the face width.
 
-    The flex spline feels the reaction of the output torque, so the tangential force is negative for positive T_out;
-    the normal force on the flank, inclined alpha_tooth from the radial direction, also presses inwards.
+    The reaction of the output torque acts on the flex spline, so the tangential force is negative for positive T_out.
+    The flank is inclined by alpha_tooth [rad] from the radial direction, so its normal force also presses inwards.
     """
     rows = np.flatnonzero(sector.band & sector.layer(OUTER))
     share = np.full(len(rows), 1.0)
@@ -113,7 +116,7 @@ def tooth_forces(sector: Sector, alpha_tooth: float) -> Float[np.ndarray, " dof"
 
 @lru_cache(maxsize=4)
 def solve_flex_spline(hat: SilkHat, alpha_tooth: float, count: int) -> FlexSpline:
-    """Solve the flex spline once, for every load that the chain needs.
+    """Solve the flex spline for every load that the chain needs.
 
     Parameters
     ----------

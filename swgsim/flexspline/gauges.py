@@ -1,8 +1,8 @@
 """Strain-gauge bridges on the back of the collar (Fig. 3): from displacements to mV/V.
 
-The layout keeps the symmetry the paper states: s1 and s3, s2 and s4 are opposite pairs of +-45 degree grids. s0 is
-an all-round torque bridge, four such pairs half-way between s1 to s4 in one full bridge, so that the deflection by the
-wave generator cancels up to order 3.
+:func:`bridges` is the bridge equation; :func:`strain_rows` gives the strains. The layout has the symmetry of the paper:
+s1 and s3, s2 and s4 are opposite pairs of +-45 degree grids. s0 is an all-round torque bridge of four such pairs
+half-way between s1 to s4. In it the deflection by the wave generator cancels up to order 3.
 """
 
 from dataclasses import dataclass
@@ -19,13 +19,13 @@ from swgsim.storage.labelled_signals import SENSORS
 # Angles of the grid pairs of each sensor [rad] and the number of active bridge arms.
 LAYOUT = tuple(np.pi / 4 + np.pi / 2 * np.arange(4) if s == 0 else np.array([np.pi / 2 * (s - 1)]) for s in range(5))
 
-# What may be said of each gauge, in the units below.
+# Bounds of the errors of a gauge, in the units below.
 LIMITS = {"gain": (0.0, 10.0), "offset": (-10.0, 10.0), "position": (-0.8, 0.8), "grid_angle": (-0.8, 0.8)}
 
 
 @dataclass(frozen=True)
 class GaugeSet:
-    """The five bridges of one gear, with what differs from gear to gear.
+    """The five bridges of one gear, with the errors that differ from gear to gear.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class GaugeSet:
     offset : tuple of 5 float
         Zero of each bridge [mV/V].
     position : tuple of 5 float
-        Error of the circumferential position [rad].
+        Error of the position around the collar, positive from s1 towards s2 [rad].
     grid_angle : tuple of 5 float
         Error of the grid direction [rad].
     """
@@ -65,9 +65,10 @@ class GaugeSet:
 
 
 def strain_rows(sector: Sector, radius: float) -> Complex[np.ndarray, "order 3 dof"]:
-    """Rows that turn order-n displacements into the strains (rr, tt, rt) on the back of the collar at angle 0.
+    """Strains on the back of the collar at angle 0 per nodal displacement of circumferential order n [1/m].
 
-    Exact in the circumferential direction, quadratic through the three nearest rings in the radial one.
+    eps_rr = du_r/dr, eps_tt = (u_r + i n u_t) / r, gamma_rt = i n u_r / r + du_t/dr - u_t / r. They are exact around
+    the circumference, and quadratic through the three nearest rings along the radius.
 
     Raises
     ------
@@ -94,10 +95,22 @@ def strain_rows(sector: Sector, radius: float) -> Complex[np.ndarray, "order 3 d
 
 
 def bridges(gauges: GaugeSet, strain: Complex[np.ndarray, "order 3 load"]) -> Complex[np.ndarray, "order 5 load"]:
-    """Bridge signals [mV/V] per circumferential order from the strains at angle 0.
+    """Bridge equation: signals [mV/V] per circumferential order from the strains at angle 0.
 
-    A pair of grids at +-45 degrees feels the difference of their strains, in an ideal pair the shear strain; a grid
-    angle error adds the difference of radial and hoop strain.
+    A pair of grids at +-45 degrees, turned by the error delta, has the difference of strains
+    cos(2 delta) gamma_rt - sin(2 delta) (eps_rr - eps_tt). A bridge of a gauge factor k with 2 or 4 active arms gives
+    s = 1000 k / 4 (arms / 2) gain times this [mV/V], averaged over the positions beta of its pairs by exp(i n beta).
+
+    Parameters
+    ----------
+    gauges : GaugeSet
+    strain : array (order, 3, load)
+        eps_rr, eps_tt, gamma_rt [-], or per unit of the load.
+
+    Returns
+    -------
+    array (order, 5, load)
+        Without the zeros, which :func:`offsets` gives.
     """
     n = np.arange(len(strain))
     signals = np.empty((len(strain), len(SENSORS), strain.shape[2]), complex)
@@ -111,7 +124,7 @@ def bridges(gauges: GaugeSet, strain: Complex[np.ndarray, "order 3 load"]) -> Co
 
 
 def waves(number: int) -> Complex[np.ndarray, "5 1"]:
-    """What each bridge sees of so many waves around the collar, exp(i number beta): the mean over its grids."""
+    """Mean over the grids of each bridge of a field of ``number`` waves, exp(i number beta), around the collar."""
     return np.array([[np.exp(1j * number * angles).mean()] for angles in LAYOUT])
 
 

@@ -2,7 +2,7 @@
 
 Bars run in circumferential and meridional direction and along both diagonals of every cell, each direction once within
 the two layers and once crossing from one layer to the other, plus bars through the thickness. The areas follow from
-equating the strain energy of the lattice with that of an isotropic plate (A. Hrennikoff, J. Appl. Mech. 8 (1941) A169),
+equal strain energy of the lattice and of an isotropic plate (A. Hrennikoff, J. Appl. Mech. 8 (1941) A169),
 which for bars means Poisson's ratio 1/3. With two thirds of the stiffness in the crossing bars, which bending does not
 strain, both the membrane stiffness E t and the bending stiffness E t^3 / 12 of the plate come out right with the two
 layers on the two surfaces of the wall.
@@ -14,7 +14,7 @@ from jaxtyping import Float, Int
 CROSSING = 2 / 3
 INNER, OUTER = 0, 1
 
-# The bars through the thickness keep the layers apart; this many times as stiff as the wall they are all but rigid.
+# Stiffness of the bars through the thickness relative to the wall; they keep the layers apart, nearly rigid.
 RIGID = 100
 
 

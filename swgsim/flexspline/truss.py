@@ -1,4 +1,4 @@
-"""A space truss: nodes, elastic bars, stiffness, solve. General; knows nothing of gears."""
+"""A space truss: nodes, elastic bars, stiffness matrix, solution; without any property of a gear."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -20,7 +20,7 @@ class Truss:
     bars : array (bar, 2)
         The two nodes of each bar.
     stiffness : array (bar,)
-        Axial stiffness of each bar, E A / L [N/m].
+        Axial stiffness k_bar of each bar, E A / L [N/m].
 
     Raises
     ------
@@ -56,7 +56,7 @@ class Truss:
 
     @cached_property
     def matrix(self) -> sparse.csc_array:
-        """Stiffness matrix (3 node, 3 node) [N/m]."""
+        """Stiffness matrix K = sum of k_bar d d^T over the bars, with elongations d, (3 node, 3 node) [N/m]."""
         return (self.elongation.T @ (sparse.diags_array(self.stiffness) @ self.elongation)).tocsc()
 
 

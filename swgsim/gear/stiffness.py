@@ -1,4 +1,4 @@
-"""Torsional stiffness as a test bench measures it: torque at the output against its twist, input locked."""
+"""Torsional stiffness as a test bench measures it: output torque over twist, with the input locked."""
 
 from math import tan
 

@@ -1,4 +1,4 @@
-"""Configuration meets code: ``conf/`` becomes objects, and data sets and virtual recordings are made of them.
+"""From configuration (``conf/``) to objects, data sets and virtual recordings.
 
 Imports ``dataset`` and rooms below it.
 """

@@ -1,4 +1,4 @@
-"""The job of scripts/generate.py: a data set from a configuration, unless it is there already."""
+"""The job of ``swg generate``: a data set from a configuration, unless it exists."""
 
 import json
 import re
@@ -21,13 +21,13 @@ from swgsim.storage import storage
 def run(config: Mapping[str, Any]) -> dict[str, Any]:
     """Generate the data set ``<data>/<grid>-<condition>.h5``.
 
-    The disturbed one is made from the clean one of the same choices, which is generated first where it is missing. One
-    of the same name that was made by other choices or code is replaced.
+    The disturbed data set is made from the clean one of the same choices, which is generated first if it is missing. A
+    data set of the same name from other choices or code is replaced.
 
     Returns
     -------
     dict
-        path, recordings, seconds, recordings_per_second, peak_memory_mib, cores; also kept beside the data set as JSON.
+        path, recordings, seconds, recordings_per_second, peak_memory_mib, cores; also in a JSON file.
     """
     engine = Engine.of(config)
     path = Path(config["data"]) / f"{_name(config, 'grid')}-{_name(config, 'condition')}.h5"
@@ -44,7 +44,7 @@ def run(config: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _make(config: Mapping[str, Any], plan: Plan, path: Path, engine: Engine) -> dict[str, Any]:
-    """Make the data set and sum up what that took."""
+    """Make the data set; return its size, time and memory."""
     disturbance = settings.disturbance(config)
     if disturbance:
         clean = dict(config) | {"condition": {"name": "clean", "bench": None, "disturbance": None}}
@@ -68,7 +68,7 @@ def _make(config: Mapping[str, Any], plan: Plan, path: Path, engine: Engine) -> 
 
 
 def _name(config: Mapping[str, Any], group: str) -> str:
-    """The name of what is chosen from a group; it becomes part of the file's name."""
+    """The name of the choice of a group, which is part of the file name."""
     name = config[group]["name"]
     if not (isinstance(name, str) and re.fullmatch(r"[\w.-]+", name)):
         raise ValueError(f"name of the {group} is {name!r}, must be of letters, digits, '_', '-' and '.' only")
@@ -76,7 +76,7 @@ def _name(config: Mapping[str, Any], group: str) -> str:
 
 
 def is_current(path: Path, configuration: str) -> bool:
-    """Whether a file is whole and made by the same choices and code."""
+    """Whether a file is undamaged and made by the same choices and code."""
     if not path.exists():
         return False
     try:

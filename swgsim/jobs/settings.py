@@ -1,4 +1,4 @@
-"""Where configuration meets code: mappings (conf/*.yaml) to the objects of this package."""
+"""From configuration to objects: mappings of conf/*.yaml become objects of this package."""
 
 import hashlib
 import inspect
@@ -22,7 +22,7 @@ from swgsim.gear.gear import Gear, OperatingPoint
 from swgsim.gear.gear_file import gear_from as gear
 from swgsim.gear.population import Population
 
-# What a file of conf/grid holds.
+# Keys of a file of conf/grid.
 GRID = (
     "name",
     "speeds_rpm",
@@ -38,7 +38,7 @@ GRID = (
     "population",
 )
 
-# Choices that no recording depends on.
+# Choices on which no recording depends.
 WHEREABOUTS = ("data", "workers", "compute", "scheduler")
 
 T = TypeVar("T")
@@ -104,16 +104,15 @@ def plan(config: Config) -> Plan:
 
 
 def disturbance(config: Config) -> Disturbance | None:
-    """The disturbance of a condition, if it has one."""
+    """The disturbance of eq. (10) of a condition, if it has one."""
     chosen = config["condition"]["disturbance"]
     return build(Disturbance, chosen) if chosen else None
 
 
 def as_text(config: Config) -> str:
-    """The choices that recordings depend on, as YAML: all but where files lie and how many processes work.
+    """The choices on which recordings depend, as YAML: all except paths and processes.
 
-    Effects stand there in full, wherever they were read from, with a digest of code from outside this package; if there
-    are none, there is no word of them.
+    Effects are written in full, with a digest of code from outside this package; without effects the key is missing.
     """
     choices = {key: value for key, value in config.items() if key not in (*WHEREABOUTS, "effects")}
     declared = effects(config.get("effects", ()))
@@ -123,7 +122,7 @@ def as_text(config: Config) -> str:
 
 
 def _foreign_code(declared: Sequence[Effect]) -> dict[str, str]:
-    """A digest for every module with an effect from outside this package, whose version says nothing of it."""
+    """A digest of every module with an effect from outside this package, which its version does not include."""
     modules = {module for effect in declared if (module := inspect.getmodule(type(effect))) is not None}
     return {
         module.__name__: hashlib.sha256(inspect.getsource(module).encode()).hexdigest()[:12]

@@ -1,4 +1,4 @@
-"""Bayes' classifier that knows gear, faults and the statistics of the bench: the least error that is possible.
+"""Classifier by Bayes' rule that knows gear, faults and statistics of the bench; it has the lowest attainable error.
 
 Imports ``dataset``, ``jobs`` and rooms below these.
 """

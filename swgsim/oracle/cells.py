@@ -1,4 +1,4 @@
-"""Fault classes as even mixtures of cells in severity and position, for the oracle."""
+"""Fault classes of the oracle as even mixtures of cells in severity and position."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -18,26 +18,27 @@ UNIFORM = 1 / sqrt(12)
 # Classes whose signals change steadily with the position.
 TURNING = ("eccentric_wave_generator", "tip_tooth_crack")
 
-# Classes interpolated over the logarithm of the severity: a crack opens like one over its remaining stiffness. Of the
-# largest change, about 400 standard deviations of the noise, three nodes then miss 2 at most, instead of 20.
+# Classes that are interpolated over the logarithm of the severity, as a crack opens with the inverse of its remaining
+# stiffness. The largest change is about 400 standard deviations of the noise. The error with three nodes is then at
+# most 2 of them, instead of 20.
 RELATIVE = ("root_tooth_crack",)
 
 
 @dataclass(frozen=True)
 class Resolution:
-    """How finely the oracle knows what it knows.
+    """Resolution of the oracle's model.
 
     Attributes
     ----------
     draws : int
-        Healthy runs that give mean and covariance of a gear at an operating point.
+        Number of healthy runs for mean and covariance of a gear at an operating point.
     nodes : int
-        Severities of each class at which faults are simulated; between them a polynomial interpolates.
+        Number of simulated severities of each class; a polynomial interpolates between them.
     severities : mapping
-        Fault class to its number of cells between the extremes of the severity.
+        Number of cells of each fault class between the extremes of the severity.
     positions : mapping
-        Fault class to its number of cells around the flex spline, for the classes of TURNING; the root tooth crack has
-        one for each gap of the mesh, within which its position changes nothing.
+        Number of cells around the flex spline for the classes of TURNING. The root tooth crack has one for each gap of
+        the mesh, within which its position has no influence.
     """
 
     draws: int = 200
@@ -104,7 +105,7 @@ class Partition:
 
     @classmethod
     def of(cls, label: str, levels: tuple[float, ...], resolution: Resolution, sectors: int) -> "Partition":
-        """Of a class with these levels of severity, on a mesh."""
+        """Partition of a class with given severities on a mesh of ``sectors``."""
         positions = dict.fromkeys(WITHOUT_POSITION, 1) | {"root_tooth_crack": sectors} | dict(resolution.positions)
         return cls(label, min(levels), max(levels), resolution.severities[label], positions[label], resolution.nodes)
 

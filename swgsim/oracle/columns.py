@@ -1,3 +1,3 @@
-"""Columns of what the oracle says; for those who read it and need none of the chain."""
+"""Names of columns in the oracle's file."""
 
-KNOWN = "known:"  # before a class: its probability for an oracle that knows the session of the flanges as well
+KNOWN = "known:"  # prefix of a class: its probability for an oracle that also knows the session of the flanges

@@ -1,7 +1,7 @@
-"""What the oracle expects of a gear: healthy runs that vary as on the bench, and the changes by every fault.
+"""Expected observations of a gear: healthy runs with the scatter of the bench, and the changes by every fault.
 
-An observation holds the order lines 0 to ORDERS of the five gauges [mV/V], real parts before imaginary ones, then the
-logarithm of the efficiency and the temperature as shown [degC].
+An observation has the order lines 0 to ORDERS of the five gauges [mV/V], real parts first, then imaginary parts. The
+logarithm of the efficiency and the recorded temperature [degC] follow.
 """
 
 from collections.abc import Iterable, Mapping
@@ -24,10 +24,10 @@ from swgsim.oracle.cells import Cells, Partition, Resolution
 from swgsim.storage.labelled_signals import LabelledSignals
 from swgsim.storage.orders import lines_of
 
-# Highest order that the oracle looks at.
+# Highest order of an observation.
 ORDERS = 12
 
-# What is added to a recording after the chain, and what moves the run itself; a unit's imperfections are neither.
+# Errors of the bench that are added to a recording after the chain, and errors that change the run itself.
 ADDED = (
     "noise",
     "zero_drift",
@@ -43,15 +43,15 @@ MOVING = ("load", "speed", "index_angle", "output_angle", "temperature")
 
 @dataclass(frozen=True)
 class Expectation:
-    """Observations of one gear at one operating point before anything is added to them.
+    """Observations of one gear at one operating point without added errors.
 
     Attributes
     ----------
     point : OperatingPoint
     healthy : array (draw, feature)
-        Of healthy runs that vary as on the bench.
+        Observations of healthy runs with the scatter of the bench.
     faults : mapping
-        Fault class to its cells.
+        Cells of each fault class.
     """
 
     point: OperatingPoint
@@ -73,7 +73,7 @@ def bench_of(plan: Plan) -> Bench:
 
 
 def expectations(plan: Plan, gear: Gear, resolution: Resolution) -> list[Expectation]:
-    """What is to be expected of a gear at every operating point of the plan.
+    """Expected observations of a gear at every operating point of the plan.
 
     Raises
     ------
@@ -99,7 +99,7 @@ def expectations(plan: Plan, gear: Gear, resolution: Resolution) -> list[Expecta
         if label in plan.grid.classes
     }
     variants = {label: partition.variants() for label, partition in partitions.items()}
-    # All at once, as what runs have in common is computed once.
+    # All at once, as shared motions and structures are computed once.
     found = _observed(still, gear, [sound, *chain.from_iterable(variants.values())])
     ends = np.cumsum([len(each) for each in variants.values()], dtype=int)
     pieces = np.split(found[:, 1:] - found[:, :1], ends, axis=1)  # and an empty one after the last end
@@ -111,7 +111,7 @@ def expectations(plan: Plan, gear: Gear, resolution: Resolution) -> list[Expecta
 
 
 def observations(recordings: LabelledSignals) -> Float[np.ndarray, "sample feature"]:
-    """What the oracle looks at.
+    """Observations of recordings.
 
     Raises
     ------
@@ -128,14 +128,14 @@ def observations(recordings: LabelledSignals) -> Float[np.ndarray, "sample featu
 
 
 def _with_bench(plan: Plan, bench: Bench) -> Plan:
-    """The plan on another bench, without what the window adds."""
+    """The plan on another bench, without noise and quantisation of the window."""
     return replace(plan, bench=bench, window=replace(plan.window, noise=0.0, quantum=0.0))
 
 
 def _observed(
     plan: Plan, gear: Gear, variants: Iterable[Variant], scatter: float = 0.0
 ) -> Float[np.ndarray, "point variant feature"]:
-    """Observations of simulated recordings of a gear, whose draws are other ones than those of the data set."""
+    """Observations of simulated recordings of a gear, with other random draws than those of the data set."""
     cases = []
     for point, variant in product(plan.grid.points, variants):
         seed = seed_hash("oracle", plan.grid.seed, gear.number, variant.number, point.n_in_rpm, point.T_out)

@@ -1,6 +1,6 @@
-"""The oracle: probabilities of the classes for one who knows the gear, all faults and the statistics of the bench.
+"""The oracle: class probabilities with known gear, faults and statistics of the bench.
 
-On average no classifier errs less; the oracle's errors tell how much of a classifier's are those of the task itself.
+No classifier has a lower mean error. The oracle's error is the part of a classifier's error that the task causes.
 """
 
 from collections.abc import Sequence
@@ -17,27 +17,27 @@ from swgsim.oracle.point import PointModel
 from swgsim.storage.labelled_signals import CLASSES, SENSORS, LabelledSignals
 from swgsim.storage.orders import whole_revolutions
 
-# Where the logarithm of the efficiency and the temperature stand in an observation.
+# Indices of the logarithm of the efficiency and of the temperature in an observation.
 EFFICIENCY, TEMPERATURE = -2, -1
 
 
 def point_model(plan: Plan, gear: Gear, expected: Expectation, session_known: bool) -> PointModel:
-    """The distributions at one operating point: what is expected, plus all that is added to a recording.
+    """The distributions at one operating point: expected observations plus the errors that are added to a recording.
 
     Parameters
     ----------
     plan : Plan
-        Of the data set: its bench, window and seed.
+        Plan of the data set, with bench, window and seed.
     gear : Gear
     expected : Expectation
-        Of this gear at the operating point.
+        Expectation of this gear at the operating point.
     session_known : bool
         Whether the oracle also knows the bias of the torque flanges during the session of the gear's samples.
 
     Raises
     ------
     ValueError
-        If nothing random is added to some part of the observation, which would then tell all.
+        If a part of the observation has no random error, so that the classes would be certain.
     """
     bench, point = bench_of(plan), expected.point
     mean = expected.healthy.mean(axis=0)
@@ -68,17 +68,17 @@ def point_model(plan: Plan, gear: Gear, expected: Expectation, session_known: bo
 def judge(
     plan: Plan, gear: Gear, expected: Sequence[Expectation], samples: LabelledSignals, session_known: bool
 ) -> Float[np.ndarray, "sample class"]:
-    """Posterior probability of each of CLASSES for samples of one gear of which this is expected.
+    """Posterior probability of each of CLASSES for recordings of one gear.
 
     Parameters
     ----------
     plan : Plan
-        Of the data set that the samples are from.
+        Plan of the data set of the samples.
     gear : Gear
     expected : sequence of Expectation
-        Of this gear, at every operating point of its samples.
+        Expectations of this gear at every operating point of its samples.
     samples : LabelledSignals
-        None of them a reference.
+        Recordings without references.
     session_known : bool
         As in :func:`point_model`.
 

@@ -1,6 +1,5 @@
-"""The job of scripts/oracle.py: what the oracle says of a data set, unless that is there already."""
+"""The job of ``swg oracle``: class probabilities of the oracle for a data set, unless they exist."""
 
-import hashlib
 import json
 import shutil
 from collections.abc import Iterator, Mapping
@@ -30,9 +29,9 @@ from swgsim.storage.labelled_signals import CLASSES, LabelledSignals
 def run(config: Mapping[str, Any]) -> dict[str, float]:
     """Write ``<data>/<grid>-<condition>-oracle.parquet``.
 
-    Its columns are ``row``, the number among the data set's samples (all but the references, in the order of the
-    file), the posterior probability of every class, and the same with ``known:`` before it for an oracle that knows
-    the session's flange bias.
+    Columns: ``row``, the number among the data set's samples (all but the references, in the order of the file); the
+    posterior probability of every class; and the same with the prefix ``known:`` for an oracle that also knows the
+    flange bias of the session.
 
     Returns
     -------
@@ -42,8 +41,7 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
     Raises
     ------
     ValueError
-        If there is no such data set, if it is of other code than this one, or if it has not the gears that are asked
-        for.
+        If the data set is missing or made by other code, or lacks a chosen gear.
     """
     source = Path(config["data"]) / f"{config['grid']['name']}-{config['condition']['name']}.h5"
     plan = _plan(source)
@@ -51,7 +49,7 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
     resolution = settings.build(Resolution, config["resolution"])
     made_from = {
         "data": storage.digest(source),
-        "code": _code(),
+        "code": code_version("oracle"),
         "resolution": json.dumps(config["resolution"], sort_keys=True),
     }
     path = source.with_name(f"{source.stem}-oracle.parquet")
@@ -72,17 +70,15 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
 
 
 def _plan(source: Path) -> Plan:
-    """The plan that a data set says it was made by."""
+    """The plan of a data set, from its attributes."""
     if not source.is_file():
         grid, condition = source.stem.rsplit("-", 1)
-        raise ValueError(
-            f"no data set {source}; make it with 'python scripts/generate.py grid={grid} condition={condition}'"
-        )
+        raise ValueError(f"no data set {source}; make it with 'swg generate grid={grid} condition={condition}'")
     said = storage.attributes(source)
     if said["swgsim"] != code_version():
         raise ValueError(
             f"{source} was made by code {said['swgsim']}, while this is {code_version()}, whose gears may answer "
-            "otherwise: make the data set anew with scripts/generate.py"
+            "otherwise: make the data set again with swg generate"
         )
     return settings.plan(yaml.safe_load(said["configuration"]))
 
@@ -96,14 +92,6 @@ def _chosen(plan: Plan, gears: list[int] | None) -> list[int]:
     return [number for number in there if gears is None or number in gears]
 
 
-def _code() -> str:
-    """Version of the chain and of the oracle, which the former leaves out."""
-    digest = hashlib.sha256()
-    for file in sorted(Path(__file__).parent.glob("*.py")):
-        digest.update(file.read_bytes())
-    return f"{code_version()}+{digest.hexdigest()[:12]}"
-
-
 def _make(
     plan: Plan,
     source: Path,
@@ -113,7 +101,7 @@ def _make(
     path: Path,
     engine: Engine,
 ) -> pd.DataFrame:
-    """Judge the gears one by one, each of which is a part that a killed run leaves to the next one."""
+    """Judge the gears one by one; each is a part from which a killed run resumes."""
     files = {number: _parts(path) / f"{number:06d}.parquet" for number in chosen}
     parts = {number: part for number, file in files.items() if (part := _kept(file, made_from)) is not None}
     left = [number for number in chosen if number not in parts]
@@ -140,7 +128,7 @@ def _samples(plan: Plan, source: Path) -> Iterator[tuple[Gear, int, LabelledSign
 
 
 def _judged(plan: Plan, gear: Gear, resolution: Resolution, first: int, samples: LabelledSignals) -> pd.DataFrame:
-    """What both oracles say of one gear's samples."""
+    """Class probabilities of both oracles for one gear's samples."""
     with threadpool_limits(1):
         expected = expectations(plan, gear, resolution)
         both = np.hstack([judge(plan, gear, expected, samples, session_known) for session_known in (False, True)])
@@ -167,14 +155,14 @@ def _parts(path: Path) -> Path:
 
 
 def _keep(path: Path, table: pd.DataFrame, attributes: Mapping[str, Any]) -> None:
-    """Write a table with what it was made from; the file is complete or absent."""
+    """Write a table with its attributes; the file is complete or absent."""
     table.attrs = {name: value for name, value in attributes.items()}  # pandas keeps them in the file
     with replacing(path) as aside:
         table.to_parquet(aside, engine="pyarrow", index=False)
 
 
 def _kept(path: Path, attributes: Mapping[str, Any]) -> pd.DataFrame | None:
-    """The table of a file, if it is there and made from the same."""
+    """The table of a file, if it exists and has the same attributes."""
     if not path.exists():
         return None
     try:

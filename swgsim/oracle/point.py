@@ -1,4 +1,4 @@
-"""What the oracle knows of one gear at one operating point: the density of the observations in every class."""
+"""Densities of the observations of every class for one gear at one operating point."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -23,10 +23,10 @@ class PointModel:
     Attributes
     ----------
     mean : array (feature,)
-        Of healthy observations.
+        Mean of healthy observations.
     covariance : array (feature, feature)
     faults : mapping
-        Fault class to its cells.
+        Cells of each fault class.
     """
 
     mean: Float[np.ndarray, " feature"]
@@ -61,10 +61,10 @@ class PointModel:
 
 
 def _log_mixture(x: Float[np.ndarray, "sample feature"], cells: Cells) -> Float[np.ndarray, " sample"]:
-    """Logarithm of an even mixture of Gaussians in white units, but for the constant that healthy ones have as well.
+    """Logarithm of an even mixture of Gaussians in white units, without the constant of the healthy class.
 
     Cell m has the covariance I + U' U of its spread U; with A = I + U U' its inverse is I - U' A^-1 U and its
-    determinant that of A (Woodbury), so that nothing larger than the number of directions is solved.
+    determinant that of A (Woodbury), so that systems have the size of the number of directions.
     """
     shift, spread = cells.shift, cells.spread
     count, directions, features = spread.shape

@@ -1,4 +1,4 @@
-"""Labelled gauge signals in memory and on disk: arrays with a table of facts, HDF5 files with a seal, order spectra.
+"""Labelled gauge signals in memory and on disk: arrays with a table, sealed HDF5 files, order lines.
 
 Imports ``common`` only.
 """

@@ -1,6 +1,6 @@
-"""What an HDF5 file says of itself: texts and numbers of a length that is known before they are read.
+"""Attributes of HDF5 files: numbers, and texts of fixed length.
 
-A text of variable length lies in a heap, and a forged one makes HDF5 read without end (docs/reliability.md).
+HDF5 keeps a text of variable length in a heap, and a forged one makes it read for ever (docs/reliability.md).
 """
 
 import h5py
@@ -9,27 +9,27 @@ import numpy as np
 LONGEST = 64_000  # bytes; HDF5 keeps an attribute in a header of 64 KiB
 
 
-def say(owner: h5py.HLObject, **said: object) -> None:
-    """Keep attributes of a file, a group or a variable.
+def set_attributes(owner: h5py.HLObject, **values: object) -> None:
+    """Write attributes of a file, a group or a variable.
 
     Raises
     ------
     ValueError
         If a text is longer than :data:`LONGEST`.
     """
-    for name, value in said.items():
+    for name, value in values.items():
         owner.attrs[name] = _fixed(name, value) if isinstance(value, str) else value
 
 
 def attribute(owner: h5py.HLObject, name: str) -> str | float:
-    """One attribute.
+    """Read one attribute.
 
     Raises
     ------
     KeyError
-        If it is not there.
+        If it does not exist.
     ValueError
-        If it is neither one number nor one text of fixed length.
+        If it is not one number or one text of fixed length.
     """
     found = owner.attrs.get_id(name)
     text = h5py.check_string_dtype(found.dtype)
@@ -44,8 +44,8 @@ def attribute(owner: h5py.HLObject, name: str) -> str | float:
 
 
 def _fixed(name: str, text: str) -> np.ndarray:
-    """A text as HDF5 keeps it with its length."""
+    """A text as an array of fixed length."""
     raw = text.encode()
     if len(raw) > LONGEST:
-        raise ValueError(f"{name} has {len(raw)} bytes, a file says at most {LONGEST} of itself: choose less")
+        raise ValueError(f"{name} has {len(raw)} bytes, an attribute holds at most {LONGEST}: shorten it")
     return np.array(raw, h5py.string_dtype(length=max(len(raw), 1)))

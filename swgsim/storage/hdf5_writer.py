@@ -1,4 +1,4 @@
-"""HDF5 files to write, also on a disk that becomes full: HDF5 itself ends the process after a write that failed."""
+"""Writing of HDF5 files that survives a full disk; HDF5 itself ends the process after a failed write."""
 
 import io
 from collections.abc import Iterator
@@ -10,12 +10,12 @@ import h5py
 
 
 class Raw(io.FileIO):
-    """A file that keeps its first failure to itself, and from then on takes nothing more."""
+    """A file that stores its first failure and then ignores all writes."""
 
     failure: OSError | None = None
 
     def write(self, content: Any) -> int:
-        """Bytes of which HDF5 is to believe that they are written."""
+        """Write bytes; HDF5 gets their number even after a failure."""
         rest = memoryview(content)
         while len(rest) and not self.failure:
             try:
@@ -25,23 +25,23 @@ class Raw(io.FileIO):
         return len(content)
 
     def require_written(self) -> None:
-        """Raise what HDF5 was not told."""
+        """Raise the stored failure."""
         if self.failure:
             raise self.failure
 
 
 @contextmanager
 def created(path: Path, free: int) -> Iterator[tuple[h5py.File, Raw]]:
-    """A new HDF5 file whose first ``free`` bytes are left alone, and the file below it.
+    """A new HDF5 file with ``free`` bytes before it, and the raw file.
 
     Raises
     ------
     OSError
-        If something could not be written; at the end, or earlier with :meth:`Raw.require_written`.
+        If a write failed: at the end, or earlier by :meth:`Raw.require_written`.
     """
     with Raw(path, "w+") as raw:
         try:
             with h5py.File(raw, "w", userblock_size=free) as file:
                 yield file, raw
         finally:
-            raw.require_written()  # before all that followed from it
+            raw.require_written()  # before errors that follow from it

@@ -1,4 +1,4 @@
-"""Recordings: the one container for gauge signals, simulated or measured, with a row of facts per recording."""
+"""Labelled gauge signals, simulated or measured, with a table of one row per recording."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -20,7 +20,7 @@ SENSORS = ("s0", "s1", "s2", "s3", "s4")
 
 @dataclass(frozen=True)
 class Column:
-    """One column of the table of facts: its type on disk, its unit and what it says."""
+    """One column of the table: type on disk, unit and description."""
 
     dtype: str
     units: str
@@ -44,7 +44,7 @@ COLUMNS: Mapping[str, Column] = {
 
 @dataclass(frozen=True)
 class LabelledSignals:
-    """Gauge signals with their facts.
+    """Gauge signals with labels and conditions.
 
     Attributes
     ----------
@@ -56,12 +56,12 @@ class LabelledSignals:
     rate : float
         Sampling rate [Hz].
     attributes : mapping
-        Text that belongs to the whole set: version, configuration.
+        Texts of the whole set: version, configuration.
 
     Raises
     ------
     ValueError
-        If the table and the signals disagree or a signal is not finite; it names sample, sensor and value.
+        If table and signals disagree or a signal is not finite; the message names sample, sensor and value.
     """
 
     signals: Float[np.ndarray, "sample sensor time"]
@@ -71,7 +71,7 @@ class LabelledSignals:
 
     def __post_init__(self) -> None:
         if len(self.table) != len(self.signals):
-            raise ValueError(f"{len(self.signals)} recordings but {len(self.table)} rows of facts: one row each")
+            raise ValueError(f"{len(self.signals)} recordings but {len(self.table)} rows in the table: one row each")
         if list(self.table.columns) != list(COLUMNS):
             raise ValueError(f"columns {list(self.table.columns)} found, expected {list(COLUMNS)}")
         if self.signals.shape[1] != len(SENSORS):
@@ -97,17 +97,17 @@ class LabelledSignals:
 
     @property
     def samples(self) -> "LabelledSignals":
-        """The recordings that are to be judged: all but the references."""
+        """The recordings to classify: all but the references."""
         return self.where(~self.table["reference"])
 
     @property
     def references(self) -> "LabelledSignals":
-        """The separate healthy acquisitions of each gear."""
+        """The reference recordings of each gear."""
         return self.where(self.table["reference"])
 
 
 def facts(rows: Mapping[str, object]) -> pd.DataFrame:
-    """A table of facts with the columns, order and types of :data:`COLUMNS`.
+    """A table with the columns, order and types of :data:`COLUMNS`.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Order lines: the spectrum of signals over the angle of the wave generator, and one revolution made of them."""
+"""Order lines: spectrum of signals over the angle of the wave generator, and its inverse."""
 
 import numpy as np
 from jaxtyping import Complex, Float
@@ -7,7 +7,7 @@ from swgsim.storage.labelled_signals import LabelledSignals
 
 
 def whole_revolutions(speed_rpm: float, rate: float, length: int) -> int:
-    """Samples in the largest whole number of wave-generator revolutions that a window of `length` samples holds.
+    """Number of samples of the largest whole number of wave-generator revolutions in a window of ``length`` samples.
 
     >>> whole_revolutions(2000.0, rate=10_000.0, length=650)
     600
@@ -30,7 +30,7 @@ def whole_revolutions(speed_rpm: float, rate: float, length: int) -> int:
 def order_lines(
     signals: Float[np.ndarray, "sample channel time"], speed_rpm: float, rate: float, orders: int
 ) -> Complex[np.ndarray, "sample channel order"]:
-    """Complex amplitude of the signals at the orders 0 to `orders` of the speed n_in [unit of signals].
+    """Complex amplitude of signals at the orders 0 to ``orders`` of the speed n_in [unit of the signals].
 
     Over whole revolutions at angle theta, ``signals = Re(sum of lines[k] exp(i k theta))``: a cosine of amplitude a at
     an integer order gives a at that order and 0 at the others; the line of order 0 is the mean.
@@ -55,7 +55,7 @@ def order_lines(
 
 
 def lines_of(recordings: LabelledSignals, orders: int) -> Complex[np.ndarray, "sample sensor order"]:
-    """Order lines 0 to `orders` of recordings [mV/V], over the whole revolutions at each one's desired speed."""
+    """Order lines 0 to ``orders`` of recordings [mV/V], over whole revolutions at the desired speed of each."""
     speeds = recordings.table["n_in_rpm"].to_numpy()
     result = np.empty((len(recordings), recordings.signals.shape[1], orders + 1), dtype=np.complex128)
     for speed in np.unique(speeds):
@@ -69,14 +69,14 @@ def lines_of(recordings: LabelledSignals, orders: int) -> Complex[np.ndarray, "s
 def revolution(
     lines: Complex[np.ndarray, "sample channel order"], points: int
 ) -> Float[np.ndarray, "sample channel point"]:
-    """One revolution at equally spaced angles, made of its order lines; it is periodic.
+    """One periodic revolution at equally spaced angles, from its order lines.
 
-    This is the synchronous average over the revolutions of the window, limited to the orders that the lines hold.
+    It is the synchronous average over the revolutions of the window, limited to the orders of the lines.
 
     Raises
     ------
     ValueError
-        If there are not more than two points to a period of the highest order.
+        If a period of the highest order has two points or fewer.
     """
     orders = lines.shape[-1] - 1
     if not points > 2 * orders:

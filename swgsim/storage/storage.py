@@ -1,6 +1,9 @@
-"""Recordings on disk: one HDF5 file laid out as NetCDF-4, so that xarray opens it, sealed with a SHA-256.
+"""Labelled signals on disk: one HDF5 file in the layout of NetCDF-4, which xarray opens, sealed by a SHA-256.
 
-The first 512 bytes (the HDF5 user block) hold the SHA-256 of all that follows; every read checks it.
+The first 512 bytes (the HDF5 user block) hold the SHA-256 of the rest; every read checks it.
+
+>>> data = xarray.open_dataset("data/paper-clean.h5", engine="h5netcdf")  # doctest: +SKIP
+>>> cracked = data.where(data.label_name == "root_tooth_crack", drop=True)  # doctest: +SKIP
 """
 
 import hashlib
@@ -14,7 +17,7 @@ import numpy as np
 import pandas as pd
 
 from swgsim.common.files import replacing
-from swgsim.storage.attributes import attribute, say
+from swgsim.storage.attributes import attribute, set_attributes
 from swgsim.storage.hdf5_writer import created
 from swgsim.storage.labelled_signals import CLASSES, COLUMNS, SENSORS, LabelledSignals
 
@@ -30,14 +33,14 @@ def write(path: Path, blocks: Iterable[LabelledSignals], rows: int) -> None:
     ----------
     path : Path
     blocks : iterable of LabelledSignals
-        Of the same rate, window and attributes; those of the first count.
+        With the same rate and window; the attributes of the first are written.
     rows : int
         Number of recordings in all blocks together.
 
     Raises
     ------
     ValueError
-        If the blocks do not hold exactly ``rows`` recordings.
+        If the blocks do not have ``rows`` recordings together.
     OSError
         If the disk is full or the folder cannot be written; the message says what to do.
     """
@@ -65,8 +68,8 @@ def write(path: Path, blocks: Iterable[LabelledSignals], rows: int) -> None:
 def _lay_out(file: h5py.File, first: LabelledSignals, rows: int) -> None:
     """Create all variables with their dimensions, units and descriptions."""
     samples = first.signals.shape[2]
-    say(file, **{"Conventions": "CF-1.11", "title": "strain wave gear gauge signals", **first.attributes})
-    say(file, sampling_rate_hz=first.rate)
+    set_attributes(file, **{"Conventions": "CF-1.11", "title": "strain wave gear gauge signals", **first.attributes})
+    set_attributes(file, sampling_rate_hz=first.rate)
     coordinates = {
         "sample": (np.arange(rows), "1", "number of the recording"),
         "sensor": (np.array(SENSORS, dtype="S"), "1", "strain-gauge bridge"),
@@ -75,28 +78,28 @@ def _lay_out(file: h5py.File, first: LabelledSignals, rows: int) -> None:
     for name, (values, units, long_name) in coordinates.items():
         variable = file.create_dataset(name, data=values)
         variable.make_scale(name)
-        say(variable, units=units, long_name=long_name)
+        set_attributes(variable, units=units, long_name=long_name)
     shape, dimensions = (rows, len(SENSORS), samples), ("sample", "sensor", "time")
     signals = file.create_dataset("signals", shape, "f4", chunks=(1, *shape[1:]), fletcher32=True)
-    say(signals, units="mV/V", long_name="bridge signal")
+    set_attributes(signals, units="mV/V", long_name="bridge signal")
     variables: list[tuple[h5py.Dataset, tuple[str, ...]]] = [(signals, dimensions)]
     for name, column in COLUMNS.items():
         variable = file.create_dataset(name, (rows,), column.dtype, chunks=(min(rows, 4096),), fletcher32=True)
-        say(variable, units=column.units, long_name=column.long_name)
+        set_attributes(variable, units=column.units, long_name=column.long_name)
         variables.append((variable, ("sample",)))
     names = file.create_dataset("label_name", (rows,), f"S{max(map(len, CLASSES))}", chunks=(min(rows, 4096),))
-    say(names, units="1", long_name="condition of the gear as text; label has it as a number")
+    set_attributes(names, units="1", long_name="condition of the gear as text; label has it as a number")
     variables.append((names, ("sample",)))
-    say(file["label"], flag_values=np.arange(len(CLASSES), dtype="i1"), flag_meanings=" ".join(CLASSES))
+    set_attributes(file["label"], flag_values=np.arange(len(CLASSES), dtype="i1"), flag_meanings=" ".join(CLASSES))
     for text in (file["sensor"], names):
-        say(text, _Encoding="utf-8")  # so that xarray gives text
+        set_attributes(text, _Encoding="utf-8")  # so that xarray gives text
     for variable, dimensions in variables:
         for axis, name in enumerate(dimensions):
             variable.dims[axis].attach_scale(file[name])
 
 
 def seal(path: Path) -> None:
-    """Write the SHA-256 of all that follows into the first bytes of a file, where HDF5 leaves them free."""
+    """Write the SHA-256 of the rest of a file into its first bytes, which HDF5 leaves free."""
     with path.open("r+b") as raw:
         raw.seek(SEAL_SIZE)
         digest = hashlib.file_digest(raw, "sha256").hexdigest()
@@ -105,14 +108,14 @@ def seal(path: Path) -> None:
 
 
 def digest(path: Path) -> str:
-    """The SHA-256 that the file says it has.
+    """The SHA-256 in the seal of a file.
 
     Raises
     ------
     FileNotFoundError
         If there is no such file.
     ValueError
-        If it is not a file of recordings.
+        If it is not a sealed file of recordings.
     """
     with path.open("rb") as raw:
         start = raw.read(SEAL_SIZE)
@@ -125,14 +128,14 @@ def digest(path: Path) -> str:
 
 
 def verify(path: Path) -> None:
-    """Raise a ValueError naming the file unless its contents have the SHA-256 that its seal says."""
-    said = digest(path)
+    """Raise a ValueError with the name of the file unless its content has the SHA-256 of its seal."""
+    expected = digest(path)
     with path.open("rb") as raw:
         raw.seek(SEAL_SIZE)
         found = hashlib.file_digest(raw, "sha256").hexdigest()
-    if found != said:
+    if found != expected:
         raise ValueError(
-            f"{path}: damaged or truncated, SHA-256 found {found[:12]}…, expected {said[:12]}…; generate it again"
+            f"{path}: damaged or truncated, SHA-256 found {found[:12]}…, expected {expected[:12]}…; generate it again"
         )
 
 
@@ -144,15 +147,15 @@ def read(path: Path) -> LabelledSignals:
     FileNotFoundError
         If there is no such file.
     ValueError
-        If it is damaged or no file of recordings; the message names it.
+        If it is damaged or not a file of recordings; the message names it.
     """
     return next(blocks(path))
 
 
 def blocks(path: Path, rows: int | None = None) -> Iterator[LabelledSignals]:
-    """The recordings of a file in blocks of so many rows (all at once by default), checked first."""
+    """The recordings of a file in blocks of ``rows`` (by default one block); the seal is checked first."""
     verify(path)
-    said = attributes(path)
+    texts = attributes(path)
     with _opened(path) as file:
         _require_layout(path, file)
         rate = float(attribute(file, "sampling_rate_hz"))
@@ -164,14 +167,14 @@ def blocks(path: Path, rows: int | None = None) -> Iterator[LabelledSignals]:
                 raise ValueError(f"label is not from 0 to {len(CLASSES) - 1} in recordings from {start}")
             columns["label"] = pd.Categorical.from_codes(columns["label"], categories=pd.Index(CLASSES))
             columns["reference"] = columns["reference"].astype(bool)
-            yield LabelledSignals(file["signals"][where], pd.DataFrame(columns), rate, said)
+            yield LabelledSignals(file["signals"][where], pd.DataFrame(columns), rate, texts)
 
 
 def attributes(path: Path) -> dict[str, str]:
-    """What a file says of itself: configuration and version of the code."""
+    """Text attributes of a file, such as configuration and version of the code."""
     with _opened(path) as file:
-        said = {name: attribute(file, name) for name in file.attrs}
-    return {name: value for name, value in said.items() if isinstance(value, str)}
+        values = {name: attribute(file, name) for name in file.attrs}
+    return {name: value for name, value in values.items() if isinstance(value, str)}
 
 
 def shape(path: Path) -> tuple[int, int, int]:
@@ -185,7 +188,7 @@ def shape(path: Path) -> tuple[int, int, int]:
 
 @contextmanager
 def _opened(path: Path) -> Iterator[h5py.File]:
-    """A file to read; whatever the library says of one that is not as it was written becomes a ValueError."""
+    """A file to read; every error of the library about its content becomes a ValueError."""
     try:
         with h5py.File(path) as file:
             yield file
@@ -198,10 +201,10 @@ def _opened(path: Path) -> Iterator[h5py.File]:
 
 
 def _require_layout(path: Path, file: h5py.File) -> None:
-    """Raise a ValueError unless every variable lies in the file itself, as it was laid out, and has room in it.
+    """Raise a ValueError unless every variable is stored in the file itself with the expected layout.
 
-    A seal can be put on any file. What is compressed, left out for a fill value, or in another file, was not written
-    here, and might fill the memory or bring numbers from elsewhere.
+    Anybody can seal a file. Variables that are compressed, replaced by a fill value or stored in another file were not
+    written here; they could fill the memory or bring foreign numbers.
     """
     layout = {"signals": ("f4", 3)} | {name: (column.dtype, 1) for name, column in COLUMNS.items()}
     size = path.stat().st_size
@@ -217,4 +220,4 @@ def _require_layout(path: Path, file: h5py.File) -> None:
             )
         size -= variable.size * variable.dtype.itemsize
     if size < 0:
-        raise ValueError("more numbers than the file has room for")
+        raise ValueError("more numbers than the file can hold")

@@ -1,4 +1,4 @@
-"""Studies of the chain itself: convergence, benchmarks, claims C1 to C8 of the paper, the gallery of effects.
+"""Studies of the chain: convergence, benchmarks, claims C1 to C8 of the paper, the gallery of effects.
 
 Imports ``dataset``, ``identification`` and rooms below these.
 """

@@ -1,4 +1,4 @@
-"""The chain and its integrator against the obvious ways of doing the same, as ratios measured in one run."""
+"""Time and accuracy of the chain and its integrator against direct methods, as ratios measured in one run."""
 
 import time
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ from swgsim.gear.gear import OperatingPoint, Transmission
 from swgsim.identification.covariance.low_rank_covariance import Covariance
 from swgsim.identification.covariance.recording_covariance import Alone
 
-# Instants of each recording that the slow way solves; its time is scaled up to all of them.
+# Instants of each recording that the direct method solves; its time is scaled to all samples.
 INSTANTS = 40
 
 
@@ -145,12 +145,12 @@ def harmonic_balance_vs_integrating(
 def errors_by_recording_vs_dense(
     recordings: int = 18, features: int = 200, kinds: int = 15, common: int = 480
 ) -> dict[str, Any]:
-    """A covariance that keeps errors of single recordings by recording against one with all of them as dense columns.
+    """A covariance with errors of single recordings stored by recording, against one with all of them as dense columns.
 
     Returns
     -------
     dict
-        ratio of the times to set up and to weigh a residual; ratio_of_bytes; max_relative_difference of that.
+        ratio of the times to set up and to weigh a residual; ratio_of_bytes; max_relative_difference of the result.
     """
     rng = np.random.default_rng(0)
     noise, C = np.ones((recordings, features)), rng.standard_normal((recordings, features, kinds))
@@ -174,12 +174,12 @@ def errors_by_recording_vs_dense(
 def further_errors_vs_anew(
     recordings: int = 18, features: int = 200, kinds: int = 15, common: int = 560, more: int = 50
 ) -> dict[str, Any]:
-    """A covariance that is given further errors, as when an effect joins a model, against one that is set up with all.
+    """A covariance that is extended by errors, as when a model gains an effect, against one that is set up again.
 
     Returns
     -------
     dict
-        ratio of the times to weigh a residual; max_relative_difference of that.
+        ratio of the times to weigh a residual; max_relative_difference of the result.
     """
     rng = np.random.default_rng(0)
     alone = Alone(np.ones((recordings, features)), rng.standard_normal((recordings, features, kinds)))

@@ -1,4 +1,4 @@
-"""Claims C1 to C8 of the paper, measured on the chain. Every limit stands beside its claim with its reason."""
+"""Claims C1 to C8 of the paper, tested on the chain; every claim has a limit with its reason."""
 
 import numpy as np
 from jaxtyping import Float

@@ -1,4 +1,4 @@
-"""The library of effects as a page with pictures: what each one changes, by channel and order."""
+"""Page of the library of effects, with a picture of the signature of each effect by channel and order."""
 
 import inspect
 import sys
@@ -70,7 +70,7 @@ def picture(found: Sequence[Signature]) -> bytes:
 
 
 def title(signature: Signature) -> str:
-    """Name of the effect, how it grows, and where it is shown unless that is the usual place."""
+    """Name of the effect, its growth, and its operating point if it is not the usual one."""
     load, speed = signature.growth
     grows = f"10 x load: {load}, 2 x speed: {speed}"
     at = [] if signature.setting == USUAL else wrap(f"at {signature.setting}", 40)
@@ -85,7 +85,7 @@ def half_orders(share: Float[np.ndarray, "*batch line"]) -> Float[np.ndarray, "*
 
 
 def row(signature: Signature) -> str:
-    """A row of the table: sizes, the largest change, how it goes with load and speed, and the pattern over gauges."""
+    """A row of the table: sizes, largest change, growth with load and speed, and pattern over the gauges."""
     kind = signature.kind
     declared = quantities(kind)
     name = size_of(kind)

@@ -1,4 +1,4 @@
-"""The signature of an effect: what one of typical size changes, where it shows."""
+"""Signature of an effect: the change of order lines by an effect of typical size."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -32,15 +32,15 @@ OWN = 0.85
 
 @dataclass(frozen=True)
 class Setting:
-    """Where an effect is shown.
+    """Operating point at which the signature of an effect is computed.
 
     Attributes
     ----------
     point : OperatingPoint
     beside : tuple of Effect
-        That act as well, with the effect and without it.
+        Effects that act in both runs, with the effect and without it.
     reason : str
-        Why not at the usual setting.
+        Reason for another setting than the usual one.
     """
 
     point: OperatingPoint
@@ -59,7 +59,7 @@ class Setting:
 
 
 USUAL = Setting(OperatingPoint(2000, 70))
-# Effects that change nothing there.
+# Effects that change nothing at the usual setting.
 ELSEWHERE: Mapping[type[Effect], Setting] = {
     LostMotion: Setting(
         OperatingPoint(750, 0.7),
@@ -75,15 +75,15 @@ ELSEWHERE: Mapping[type[Effect], Setting] = {
 
 @dataclass(frozen=True, eq=False)
 class Signature:
-    """What an effect of typical size changes.
+    """Change of order lines by an effect of typical size.
 
     Attributes
     ----------
     kind : type of Effect
     change : array (point, channel, line)
-        At the points of the setting, of :data:`SHOWN`, at twelfths of an order [unit of the channel].
+        At the points of the setting, for the channels SHOWN, at twelfths of an order [unit of the channel].
     largest_line : array (point, channel)
-        Beside the mean, without the effect.
+        Largest line other than the mean, without the effect.
     """
 
     kind: type[Effect]
@@ -99,7 +99,7 @@ class Signature:
 
     @property
     def setting(self) -> Setting:
-        """Where it is shown."""
+        """Operating point of the signature."""
         return ELSEWHERE.get(self.kind, USUAL)
 
     @cached_property
@@ -115,12 +115,12 @@ class Signature:
 
     @property
     def top(self) -> Float[np.ndarray, "3"]:
-        """That change at the three points."""
+        """The largest change at the three points."""
         return self.share[:, *self.where]
 
     @property
     def growth(self) -> tuple[str, str]:
-        """By what factor it grows, in the unit of the channel, with ten times the load and with twice the speed."""
+        """Factors of growth with ten times the load and with twice the speed."""
         shown, light, fast = np.abs(self.change[:, *self.where])
         visible = self.top > LEAST
         return f"{shown / light:.2g}" if visible[1] else "-", f"{fast / shown:.2g}" if visible[2] else "0"
@@ -137,7 +137,7 @@ class Signature:
 
 
 def pattern(line: Complex[np.ndarray, " sensor"]) -> str:
-    """Name of the pattern that one line of all gauges is."""
+    """Name of the pattern of one line over all gauges."""
     shares = {}
     for name, weights in PATTERNS.items():
         wave = np.array([weights.get(sensor, 0) for sensor in SENSORS])
@@ -156,7 +156,7 @@ def typical(kind: type[Effect]) -> Effect:
 
 
 def signatures(kinds: Sequence[type[Effect]], gear: Gear, sectors: int = SECTORS) -> list[Signature]:
-    """What each effect changes, where it is shown."""
+    """Signatures of effects, all simulated at once."""
     runs = [
         Run(gear, point, effects, conditions=CONDITIONS)
         for kind in kinds

@@ -1,4 +1,4 @@
-"""The example of each fault that the pictures show and the claims are measured on: the severest of conf/grid/paper."""
+"""One example of each fault for figures and claims: the severest of conf/grid/paper."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -34,12 +34,12 @@ FIGURE_POINT = OperatingPoint(2000, 70)
 
 @dataclass(frozen=True)
 class Subject:
-    """What claims are measured on.
+    """Gears and operating points on which claims are tested.
 
     Attributes
     ----------
     gears : tuple of Gear
-        The first serves where one is enough.
+        The first one is used where one is enough.
     points : tuple of OperatingPoint
         The paper's by default, whatever grid the data set has.
     window : Window

@@ -1,4 +1,4 @@
-"""What was found about one claim of the paper."""
+"""Result of a test of one claim of the paper."""
 
 from dataclasses import dataclass
 
@@ -14,21 +14,21 @@ def percent(share: float, sign: str = "") -> str:
 
 @dataclass(frozen=True)
 class Finding:
-    """A claim of the paper beside our figure.
+    """A claim of the paper with our figure.
 
     Attributes
     ----------
     key : str
         C1 to C18, as numbered in the list of checkable claims.
     claim : str
-        What the paper says.
+        Statement of the paper.
     limit : str
-        When the claim counts as held, and why there.
+        Condition under which the claim holds, with its reason.
     holds : bool
     figure : str
         Our figure, with its unit.
     note : str
-        Where the figure comes from in the physics, or why the claim does not hold.
+        Physical cause of the figure, or reason why the claim does not hold.
     """
 
     key: str

@@ -63,7 +63,7 @@ def deformed(gear: Gear, sectors: int) -> Figure:
 
 
 def gauge_layout(gear: Gear) -> Figure:
-    """Where the grids of the five bridges lie on the back of the collar (Fig. 3)."""
+    """Positions of the grids of the five bridges on the back of the collar (Fig. 3)."""
     hat, gauges = gear.flex_spline, gear.gauges
     picture = style.figure(6.4, 6.2)
     axes = picture.add_subplot()

@@ -8,7 +8,7 @@ from chain_fixtures import GEAR, SECTORS, amplitude
 
 from swgsim.chain.chain import Run, simulate, simulate_turns
 from swgsim.chain.signal_path import AT_ONCE
-from swgsim.effects import EccentricWaveGenerator, Effect, ReducedDamping, RootToothCrack, TipToothCrack, WarmGrease
+from swgsim.effects import Effect, ReducedDamping, RootToothCrack, TipToothCrack, WarmGrease
 from swgsim.effects.axial_thrust import AxialThrust
 from swgsim.effects.clipping import Clipping
 from swgsim.effects.signal_hysteresis import SignalHysteresis
@@ -30,20 +30,6 @@ def test_signals_are_sinusoids_of_order_two() -> None:
     lines = np.abs(np.fft.rfft(s[1] - s[1].mean()))
     assert lines.argmax() == 2 * 2  # two revolutions in the window
     assert lines[4] > 5 * np.delete(lines, 4).max()
-
-
-def test_reduced_damping_leaves_gauges_and_raises_efficiency() -> None:
-    result = simulate([Run(GEAR, POINT), Run(GEAR, POINT, (ReducedDamping(2 / 3),))], WINDOW, SECTORS)
-    healthy, faulty = result.signals
-    assert np.abs(faulty - healthy).max() < 0.01 * amplitude(healthy[1])
-    assert result.efficiency[1] / result.efficiency[0] > 1.02
-
-
-def test_eccentricity_offsets_opposite_gauges_in_opposite_senses() -> None:
-    change = (signals(EccentricWaveGenerator(1e-4, np.pi / 2)) - signals()).mean(axis=1)
-    assert change[1] * change[3] < 0
-    assert abs(change[1]) > 0.1 * amplitude(signals()[1])
-    assert abs(change[0]) < 0.01 * abs(change[1])
 
 
 @pytest.mark.end_to_end
@@ -73,21 +59,10 @@ def test_shared_work_changes_nothing() -> None:
 
 
 @pytest.mark.end_to_end
-def test_gauge_errors_act_as_they_should() -> None:
-    gauges = GEAR.gauges
-    run = Run(GEAR, POINT)
-    changed = [
-        replace(gauges, gain=(1.0, 1.02, 1.0, 1.0, 1.0)),
-        replace(gauges, offset=(0.0, 0.01, 0.0, 0.0, 0.0)),
-        replace(gauges, active_arms=(4, 4, 2, 2, 2)),
-    ]
-    base, gain, offset, full = (
-        simulate([replace(run, gear=replace(GEAR, gauges=g))], WINDOW, SECTORS).signals[0, 1]
-        for g in (gauges, *changed)
-    )
-    np.testing.assert_allclose(gain, 1.02 * base, atol=1e-7)
-    np.testing.assert_allclose(offset, base + 0.01, atol=1e-12)
-    np.testing.assert_allclose(full, 2 * base, atol=1e-7)
+def test_a_full_bridge_has_twice_the_signal_of_a_half_bridge() -> None:
+    full = replace(GEAR, gauges=replace(GEAR.gauges, active_arms=(4, 4, 2, 2, 2)))
+    half, whole = simulate([Run(gear, POINT) for gear in (GEAR, full)], WINDOW, SECTORS).signals[:, 1]
+    np.testing.assert_allclose(whole, 2 * half, atol=1e-7)
 
 
 def test_empty_grid_is_refused() -> None:

@@ -57,31 +57,31 @@ def test_energy_balance_closes() -> None:
     assert np.ptp(energy) > 1e-3
 
 
-def test_a_flange_at_the_output_feels_no_more_than_what_lies_behind_it() -> None:
-    """Behind all of the load it feels the brake, which has no ripple; the motion is the same."""
-    drives = [Drive([replace(NOMINAL, load_share=share)], [POINTS[1]]) for share in (0.0, 0.4, 1.0)]
+@pytest.mark.parametrize(
+    ("share", "flange", "before", "behind"),
+    [("load_share", "T_flange", "T_out", "T_load"), ("rotor_share", "T_in", "T_motor", "T_wedge")],
+)
+def test_a_flange_feels_no_more_of_an_inertia_than_lies_before_it(
+    share: str, flange: str, before: str, behind: str
+) -> None:
+    """It feels the torque behind all of the inertia, which has no ripple at the output. The motion is the same."""
+    drives = [Drive([replace(NOMINAL, **{share: value})], [POINTS[1]]) for value in (0.0, 0.4, 1.0)]
     state = steady_state(drives[0])
     torques = [drive.torques(state) for drive in drives]
-    assert torques[0].T_flange == torques[0].T_out != torques[0].T_load
-    assert torques[2].T_flange == pytest.approx(torques[2].T_load)
-    assert torques[1].T_flange == pytest.approx(0.6 * torques[0].T_flange + 0.4 * torques[2].T_flange)
+    felt = [getattr(each, flange) for each in torques]
+    assert felt[0] == getattr(torques[0], before) != getattr(torques[0], behind)
+    assert felt[2] == pytest.approx(getattr(torques[2], behind))
+    assert felt[1] == pytest.approx(0.6 * felt[0] + 0.4 * felt[2])
     rates = [drive.derivative(state, each) for drive, each in zip(drives, torques, strict=True)]
     np.testing.assert_array_equal(rates[0], rates[2])
 
 
-def test_a_flange_feels_no_more_of_the_rotor_than_lies_before_it() -> None:
-    """It changes neither the motion nor the mean torque; all of the inertia before it, and it feels what brakes."""
-    drives = [Drive([replace(NOMINAL, rotor_share=share)], [POINTS[1]]) for share in (0.0, 0.4, 1.0)]
+def test_the_rotor_changes_the_ripple_of_the_input_flange_and_not_its_mean() -> None:
+    drives = [Drive([replace(NOMINAL, rotor_share=share)], [POINTS[1]]) for share in (0.0, 1.0)]
     state = steady_state(drives[0])
-    torques = [drive.torques(state) for drive in drives]
-    assert torques[0].T_in == torques[0].T_motor
-    assert torques[2].T_in == pytest.approx(torques[2].T_wedge)
-    assert torques[1].T_in == pytest.approx(0.6 * torques[0].T_in + 0.4 * torques[2].T_in)
-    rates = [drive.derivative(state, each) for drive, each in zip(drives, torques, strict=True)]
-    np.testing.assert_array_equal(rates[0], rates[2])
-    turns = [run(drive, state, drive.period[0] / 200, 200).T_in[0, :-1] for drive in drives]
-    assert turns[2].mean() == pytest.approx(turns[0].mean(), rel=1e-3)
-    assert np.ptp(turns[2]) != pytest.approx(np.ptp(turns[0]), rel=0.01)
+    none, all_of_it = (run(drive, state, drive.period[0] / 200, 200).T_in[0, :-1] for drive in drives)
+    assert all_of_it.mean() == pytest.approx(none.mean(), rel=1e-3)
+    assert np.ptp(all_of_it) != pytest.approx(np.ptp(none), rel=0.01)
 
 
 def test_an_error_without_a_lever_brakes_as_a_gear_without_one_does() -> None:
@@ -159,12 +159,12 @@ def test_an_effect_acts_on_its_own_runs_alone(own: tuple[int, ...]) -> None:
 
 
 @pytest.mark.end_to_end
-@pytest.mark.parametrize("n_in_rpm", [20, 60, 2000])
+@pytest.mark.parametrize("n_in_rpm", [20, 2000])
 def test_steady_state_repeats_at_any_speed(n_in_rpm: float) -> None:
-    """One revolution on, with steps five times as fine, the state is the same."""
+    """One revolution on, with steps twice as fine, the state is the same."""
     drive = Drive([replace(NOMINAL, b3=0.0)], [OperatingPoint(n_in_rpm, 39)])
     start = state = steady_state(drive)
-    steps = 5 * steps_per_revolution(drive)
+    steps = 2 * steps_per_revolution(drive)
     speeds = []
     for _ in range(steps):
         state = drive.step(state, drive.torques(state), drive.period / steps)

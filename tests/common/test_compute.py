@@ -166,20 +166,20 @@ def test_workers_that_are_not_fit_are_named(
 def test_workers_of_other_code_or_another_folder_are_named(
     other: dict[str, str], message: str, two_workers: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    place = cluster.here(str)._replace(**other)
-    monkeypatch.setattr(cluster, "here", lambda _: place)
+    place = cluster.own_place(str)._replace(**other)
+    monkeypatch.setattr(cluster, "own_place", lambda _: place)
     with pytest.raises(ValueError, match=message):
         list(Engine(scheduler=two_workers).results(neg, [(1,)], 1))
 
 
 def test_a_worker_of_other_code_that_joins_later_does_no_task() -> None:
     with pytest.raises(ValueError, match=r"a worker on .* must have swgsim of today"):
-        cluster.task_of_another(cluster.here(str)._replace(installed="swgsim of today"), str, neg, (1,))
+        cluster.task_of_another(cluster.own_place(str)._replace(installed="swgsim of today"), str, neg, (1,))
 
 
 def test_a_worker_that_differs_beside_the_chain_does_no_task() -> None:
     with pytest.raises(ValueError, match=r"a worker on .* has swgsim .* learn of today, must have swgsim"):
-        cluster.task_of_another(cluster.here(lambda: "learn of yesterday"), lambda: "learn of today", neg, (1,))
+        cluster.task_of_another(cluster.own_place(lambda: "learn of yesterday"), lambda: "learn of today", neg, (1,))
 
 
 @pytest.mark.parametrize(

@@ -4,12 +4,15 @@ import numpy as np
 import pytest
 from chain_fixtures import GEAR, SECTORS
 
+from swgsim import effects
 from swgsim.chain.influence import boundary_conditions, fine_angles
 from swgsim.dataset.faults import FAULTS, Variants
 from swgsim.effects import (
+    LIBRARY,
     CamForm,
     EccentricWaveGenerator,
     Effect,
+    OutputPosition,
     ParameterScatter,
     ReducedDamping,
     ReducedStiffness,
@@ -17,6 +20,7 @@ from swgsim.effects import (
     TipToothCrack,
     WarmGrease,
 )
+from swgsim.effects.quantity import Role, quantities
 from swgsim.flexspline.flexspline import solve_flex_spline
 
 EFFECTS = [
@@ -50,22 +54,33 @@ def test_an_effect_changes_its_place_and_nothing_else(effect: Effect) -> None:
     assert changed == {place: isinstance(effect, kinds) for place, kinds in PLACES.items()}
 
 
-@pytest.mark.parametrize(
-    ("make", "message"),
-    [
-        (lambda: ReducedDamping(0.1), "b1_ratio of reduced damping is 0.1, must be a finite number from 0.3 to 1"),
-        (lambda: ReducedStiffness(1.2), "k1_ratio of reduced stiffness is 1.2, must be .* from 0.5 to 1"),
-        (lambda: EccentricWaveGenerator(2e-4, 0.0), "r of eccentric wave generator is 0.0002, .* to 0.00015"),
-        (lambda: RootToothCrack(0.0, 0.0), "stiffness_ratio of root tooth crack is 0.0, .* from 0.001 to 1"),
-        (lambda: TipToothCrack(1.5, 0.0), "force_loss of tip tooth crack is 1.5, .* from 0 to 1"),
-        (lambda: TipToothCrack(0.5, float("nan")), "theta of tip tooth crack is nan"),
-        (lambda: CamForm(3, 1e-3), "amplitude of cam form is 0.001"),
-        (lambda: WarmGrease(200.0), "dT of warm grease is 200.0"),
-    ],
-)
-def test_beyond_physical_limits_the_error_names_the_limit(make: object, message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        make()
+def refused(kind: type[Effect], name: str, value: float, message: str) -> None:
+    parameters = {each: quantity.typical for each, quantity in quantities(kind).items()} | {name: value}
+    with pytest.raises(ValueError, match=f"{name} of {kind.title()} is .*, must be {message}"):
+        kind(**parameters)
+
+
+@pytest.mark.parametrize("kind", LIBRARY.values(), ids=list(LIBRARY))
+def test_beyond_its_bounds_an_effect_is_refused_with_them(kind: type[Effect]) -> None:
+    """Every parameter of every effect; sizes have a typical value and one that changes nothing within the bounds."""
+    assert kind.place in effects.base.PLACES
+    declared = quantities(kind)
+    assert [each.role for each in declared.values()].count(Role.SIZE) >= (kind is not OutputPosition)
+    for name, q in declared.items():
+        if q.role is Role.SIZE:
+            assert q.low <= q.nothing <= q.high
+        assert q.low <= q.typical <= q.high
+        if q.among:
+            message, bad = f"one of {q.low:g}, ", (q.low - 1, q.high + 1, np.nan)
+        elif q.role is Role.CHOICE:
+            message, bad = f"an integer from {q.low:g} to {q.high:g}", (int(q.low) - 1, int(q.high) + 1)
+        elif q.role in (Role.SIZE, Role.SHAPE):
+            step = 1e-3 * (q.high - q.low)
+            message, bad = f"a finite number from {q.low:g} to {q.high:g}", (q.low - step, q.high + step, np.nan)
+        else:
+            message, bad = "a finite number", (np.nan, np.inf)
+        for value in bad:
+            refused(kind, name, value, message)
 
 
 def test_tip_crack_takes_the_width_of_its_teeth() -> None:

@@ -280,7 +280,7 @@ def test_job_goes_on_from_the_gears_that_a_killed_run_left(data: Path, monkeypat
     ("change", "message"),
     [
         ({"gears": [1, 9]}, r"gears is \[1, 9\], the data set has \[1, 2\]: choose some of them, or null"),
-        ({"condition": {"name": "clean"}}, "make it with 'python scripts/generate.py grid=sampled condition=clean'"),
+        ({"condition": {"name": "clean"}}, "make it with 'swg generate grid=sampled condition=clean'"),
     ],
 )
 def test_job_names_what_is_missing(change: dict[str, Any], message: str, data: Path) -> None:
@@ -289,6 +289,6 @@ def test_job_names_what_is_missing(change: dict[str, Any], message: str, data: P
 
 
 def test_job_refuses_a_data_set_of_other_code(data: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(oracle_job, "code_version", lambda: "another")
-    with pytest.raises(ValueError, match=r"was made by code .*, while this is another.*make the data set anew"):
+    monkeypatch.setattr(oracle_job, "code_version", lambda *_: "another")
+    with pytest.raises(ValueError, match=r"was made by code .*, while this is another.*make the data set again"):
         oracle_job.run(composed("oracle", f"data={data}", *COARSE))

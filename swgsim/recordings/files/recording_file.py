@@ -12,7 +12,7 @@ from swgsim.recordings.files.assembly import assemble, require_alike, require_so
 from swgsim.recordings.files.file_defect import FileDefect, shown
 from swgsim.recordings.files.limits import require_file_count, require_readable, require_rows
 from swgsim.recordings.recording import CHANNELS, Recording
-from swgsim.storage.attributes import attribute, say
+from swgsim.storage.attributes import attribute, set_attributes
 from swgsim.storage.hdf5_writer import created
 from swgsim.storage.storage import SEAL_SIZE, seal, verify
 
@@ -31,7 +31,7 @@ def write_file(path: Path, recordings: Sequence[Recording]) -> None:
     require_alike(recordings)
     with replacing(path) as aside:
         with created(aside, SEAL_SIZE) as (file, _):
-            say(file, Conventions="CF-1.11", title=TITLE)
+            set_attributes(file, Conventions="CF-1.11", title=TITLE)
             for number, recording in enumerate(recordings, 1):
                 _write_group(file.create_group(f"recording_{number:04d}"), recording)
         seal(aside)
@@ -86,13 +86,13 @@ def _write_group(group: h5py.Group, recording: Recording) -> None:
     known = facts.of(recording)
     facts.parse(known, f"recording {recording.name}")
     require_sound(f"recording {recording.name}", {"t": recording.time, **recording.channels})
-    say(group, **known)
+    set_attributes(group, **known)
     time = group.create_dataset("time", data=recording.time, dtype="f8", chunks=True, fletcher32=True)
     time.make_scale("time")
-    say(time, units="s", long_name="time")
+    set_attributes(time, units="s", long_name="time")
     for name, values in recording.channels.items():
         variable = group.create_dataset(name, data=values, dtype="f8", chunks=True, fletcher32=True)
-        say(variable, units=CHANNELS[name].unit, long_name=CHANNELS[name].meaning)
+        set_attributes(variable, units=CHANNELS[name].unit, long_name=CHANNELS[name].meaning)
         variable.dims[0].attach_scale(time)
 
 
