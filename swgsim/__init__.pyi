@@ -1,16 +1,17 @@
 from . import effects
-from .api import SimulatedRun, generate, record, simulate
+from .api import SimulatedRun, generate, identify, record, simulate
 from .chain import Run, simulate_runs
 from .common.version import __version__
 from .gear import Conditions, Gear, KinematicError, OperatingPoint, Population, Transmission, WaveGenerator, Window
-from .identification import Identification, Unit, commission, identify
-from .joint import JointRecordings, recordings_of
+from .identification import Identification, Unit, commission
+from .joint import JointAnswer, JointRecordings, recordings_of
 from .recordings import Recording, RecordingSet, read_recordings, write_folder
 
 __all__ = [
     "Conditions",
     "Gear",
     "Identification",
+    "JointAnswer",
     "JointRecordings",
     "KinematicError",
     "OperatingPoint",

@@ -17,14 +17,14 @@ swg.record("bench/today", swg.effects.EccentricWaveGenerator(r=10e-6, theta=1.0)
 # %%
 # Recordings are checked while they are read; folders of your own have the same form.
 recordings = swg.read_recordings("bench/today")
-print(recordings.table().head())
+print(recordings.table().head(3).to_string(index=False))
 
 # %%
 # Commissioning fits the healthy gear. The answer names the effect, its size and its 95 % interval.
 unit = swg.commission(swg.read_recordings("bench/healthy"), swg.Gear())
 answer = swg.identify(recordings, unit)
 print(answer.sentence)
-print(answer.table())
+print(answer.table().to_string(index=False))
 
 # %%
 figure = answer.plot_residual()

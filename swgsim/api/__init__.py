@@ -4,6 +4,7 @@ Imports every room but ``commands``.
 """
 
 from swgsim.api.data_set import generate, record
+from swgsim.api.identify import identify
 from swgsim.api.simulate import SimulatedRun, simulate
 
-__all__ = ["SimulatedRun", "generate", "record", "simulate"]
+__all__ = ["SimulatedRun", "generate", "identify", "record", "simulate"]
