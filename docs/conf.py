@@ -21,11 +21,14 @@ extensions = [
 html_theme = "furo"
 html_title = f"Strain wave gear workbench {release}"
 html_show_sphinx = False
+html_show_copyright = False
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
-exclude_patterns = ["_build", "examples", "joints", "effects"]
+exclude_patterns = ["_build", "examples", "effects"]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 
+# Names of dimensions in the shapes of arrays look like references; the figure scraper is a function.
+suppress_warnings = ["ref.python", "config.cache"]
 myst_enable_extensions = ["colon_fence", "dollarmath"]
 myst_heading_anchors = 3
 autodoc_member_order = "bysource"
@@ -56,6 +59,8 @@ sphinx_gallery_conf = {
     "download_all_examples": False,
     "remove_config_comments": True,
     "show_memory": False,
+    "show_signature": False,
+    "write_computation_times": False,  # a page with scripts of other servers
     "abort_on_example_error": True,
     "run_stale_examples": False,
     "min_reported_time": 1e9,

@@ -132,7 +132,7 @@ def simulate(
     Raises
     ------
     ValueError
-        If the motion has no steady state, or a value is beyond its limits.
+        If the motion has no steady state, the window holds less than one revolution, or a value is beyond its limits.
 
     Examples
     --------
