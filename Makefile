@@ -27,6 +27,7 @@ LARGER := paper_forest paper_forest_selection_3 forest_20 extra_trees_10 extra_t
 # Recordings of real joints, where they are; no file of theirs may be in the project.
 MEASURED ?= $(firstword $(wildcard measured ../shared/measured))
 CORES := $(shell nproc)
+EXAMPLES ?= yes  # EXAMPLES= builds the site without running them
 # The four tables run side by side and share the cores; with two of them every table has one process.
 JOBS := $(shell echo $$(( ($(CORES) + 3) / 4 )))
 
@@ -137,7 +138,7 @@ docs: $(READY)  ## the picture of the README and the page of the effects
 	$(BIN)/python -m swgsim.studies.effect_gallery docs
 
 site: $(DEV)  ## the documentation site, docs/_build/html/index.html, built strictly and offline
-	$(BIN)/sphinx-build -W --keep-going -q -b html docs docs/_build/html
+	$(BIN)/sphinx-build -W --keep-going -q -b html $(if $(EXAMPLES),,-D plot_gallery=0) docs docs/_build/html
 	@echo "open docs/_build/html/index.html"
 
 ui: $(READY)  ## the runs in the MLflow page, on this machine only

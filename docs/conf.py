@@ -35,6 +35,7 @@ autodoc_member_order = "bysource"
 autodoc_typehints = "none"  # types stand in the docstrings, with shapes
 napoleon_google_docstring = False
 napoleon_use_rtype = False
+napoleon_use_ivar = True
 
 
 def figures(block: Any, variables: dict[str, Any], settings: dict[str, Any]) -> str:

@@ -16,7 +16,8 @@ point = swg.OperatingPoint(n_in_rpm=2000, T_out=39)
 # %%
 # One run is one gear at one operating point, with any number of effects.
 healthy = swg.simulate(gear, point)
-cracked = swg.simulate(gear, point, swg.effects.RootToothCrack(stiffness_ratio=0.03, theta=1.0))
+crack = swg.effects.RootToothCrack(stiffness_ratio=0.03, theta=1.0)
+cracked = swg.simulate(gear, point, crack)
 
 # %%
 # The result has the channels of a test bench, and draws itself; the healthy gear is grey.
