@@ -3,6 +3,8 @@
 import numpy as np
 import pandas as pd
 import pytest
+from learn.transfer_report.novelty import Novelty
+from learn.transfer_report.novelty_figure import novelty_beside_error
 
 from learn.evaluation.bootstrap import difference_to, gear_errors, paired_comparison
 from learn.evaluation.detection import recall_by_cell
@@ -11,8 +13,6 @@ from learn.evaluation.selective import risk_coverage
 from learn.protocols.fault_size import SIZES
 from learn.transfer_report import heat_figures
 from learn.transfer_report import judging_figures as figures
-from learn.transfer_report.novelty import Novelty
-from learn.transfer_report.novelty_figure import novelty_beside_error
 from swgsim.common.seeds import generator
 from swgsim.storage.gauge_set import CLASSES
 

@@ -12,6 +12,8 @@ import pytest
 import yaml
 from fabricated import recordings
 from hydra import compose, initialize_config_dir
+from learn.transfer_report.content import cnn_fit, content
+from learn.transfer_report.transfer_page import Table
 from omegaconf import OmegaConf
 
 from learn import tracking
@@ -25,8 +27,6 @@ from learn.transfer_report import judging as transfer_judging
 from learn.transfer_report import runs as transfer_runs
 from learn.transfer_report import studies as transfer_studies
 from learn.transfer_report import transfer_study as job
-from learn.transfer_report.content import cnn_fit, content
-from learn.transfer_report.transfer_page import Table
 from swgsim.common.seeds import generator
 from swgsim.oracle.columns import KNOWN
 from swgsim.storage import storage
