@@ -4,6 +4,7 @@ All are narrow, and panels lie below each other, so that they are readable on a 
 """
 
 from collections.abc import Mapping
+from textwrap import fill
 
 import numpy as np
 import pandas as pd
@@ -79,19 +80,20 @@ def shots(few: pd.DataFrame, levels: Mapping[str, float]) -> bytes:
 
 
 def pays(table: pd.DataFrame) -> bytes:
-    """Changes of :func:`.studies.transfer_map` with intervals; scenarios are headings."""
-    first = ~table["scenario"].duplicated().to_numpy()
-    heights = np.arange(len(table)) + 1.4 * np.cumsum(first)
+    """Changes of :func:`.studies.transfer_map` with intervals, one panel per scenario."""
     colours = {"yes": BLUE, "harms": ORANGE, "-": GREY}
-    picture = style.figure(WIDTH, 1.2 + 0.24 * (heights[-1] + 1))
-    axes = picture.add_subplot()
-    axes.axvline(0, color="black", linewidth=1)
-    intervals(axes, table, [colours.get(text, "black") for text in verdicts(table)], heights)
-    for height, scenario in zip(heights[first] - 1, table.loc[first, "scenario"], strict=True):
-        axes.annotate(scenario, (-0.3, height), xycoords=("axes fraction", "data"), va="center", fontweight="bold")
-    axes.set_yticks(heights, [f"{m}, K = {k}" for m, k in zip(table["method"], table["shots"], strict=True)])
-    axes.set_ylim(heights[-1] + 0.7, -0.6 + heights[0] - 1)
-    style.label(axes, "change of the error by adapting [points]; left is better", "")
+    coloured = table.assign(colour=[colours.get(text, "black") for text in verdicts(table)])
+    groups = list(coloured.groupby("scenario", sort=False))
+    picture = style.figure(WIDTH, 0.5 + 0.75 * len(groups) + 0.22 * len(table))
+    panels = picture.subplots(len(groups), sharex=True, squeeze=False)[:, 0]
+    for axes, (scenario, rows) in zip(panels, groups, strict=True):
+        heights = -np.arange(len(rows))
+        axes.axvline(0, color="black", linewidth=1)
+        intervals(axes, rows, list(rows["colour"]), heights)
+        axes.set_yticks(heights, [f"{m}, K = {k}" for m, k in zip(rows["method"], rows["shots"], strict=True)])
+        axes.set_ylim(0.6 - len(rows), 0.6)
+        style.label(axes, "", "", fill(str(scenario), 50))
+    panels[-1].set_xlabel("change of the error by adapting [points]; left is better")
     return style.png(picture)
 
 

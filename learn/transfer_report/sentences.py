@@ -19,8 +19,6 @@ from learn.transfer_report.tables import (
 )
 
 SHOTS = 5  # labelled variants of each class, of which the sentences speak
-SIMPLE = "logistic regression on harmonics"
-NETWORK = "MLP on harmonics"
 
 
 def listed(names: Iterable[str]) -> str:
@@ -43,8 +41,8 @@ def headline(zero: pd.DataFrame, gears: int) -> str:
     best = best_of(zero)
     ours, forest, oracle = (of_row(row_of(zero, name)) for name in (best, FOREST, ORACLE))
     return (
-        f"On bench recordings of {gears} gears never seen, with their healthy references known, {best} errs in {ours}. "
-        f"The paper's forest errs in {forest}, and the oracle, which knows the gear, in {oracle}."
+        f"On bench recordings of {gears} gears never seen, with their healthy references known, {best} errs in {ours} "
+        f"of the recordings. The paper's forest errs in {forest}, and the oracle, which knows the gear, in {oracle}."
     )
 
 

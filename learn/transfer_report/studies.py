@@ -191,7 +191,7 @@ def map_text(table: pd.DataFrame) -> pd.DataFrame:
                 f"{name}: {text}" if name else "-" for name, text in zip(table["reference"], to_best, strict=True)
             ],
         }
-    ).set_index(["scenario", "method", "K"])
+    ).set_index(["scenario", "method"])
 
 
 def map_sentence(table: pd.DataFrame) -> str:

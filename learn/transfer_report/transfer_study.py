@@ -19,6 +19,7 @@ from swgsim.common.html import environment
 from swgsim.storage import storage
 
 SHOTS = (1, 2, 5, 10)  # of transfer.json
+COMPARED = (FOREST, "logistic regression on harmonics", "MLP on harmonics", ORACLE)  # with the best, for calibration
 
 
 def run(config: Mapping[str, Any]) -> dict[str, float]:
@@ -71,12 +72,6 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
     seconds = time.time() - (started or began) + (0 if started else runs.seconds())
     kind = "measured" if started else "sum of the steps"
 
-    shown = [name for name in dict.fromkeys([best, FOREST, sentences.SIMPLE, sentences.NETWORK]) if name in predictions]
-    judged = {name: predictions[name] for name in shown} | {ORACLE: oracles[ORACLE]}
-    on_harmonics = zero["value"][zero.index.str.endswith(" on harmonics")]
-    refitted = str(on_harmonics.idxmin()) if len(on_harmonics) else best
-    drops, fold_gears = importance(runs, row_of(methods, refitted), bench)
-    novelty = confidence.novelty(bench, bench.with_name("far-bench.h5"), gear_errors(errors)[best])
     labelled = int(adapting["protocol.labelled"].iloc[0])
     variants = adapting["protocol.variants"]
     marks = {str(name): f" (trained on {count} variants)" for name, count in variants[variants != "None"].items()}
@@ -99,21 +94,49 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
         "gains": tables.shots_text(few, "gain", labelled, marks),
         "draws": adapting["draws"].iloc[0],
         "forgotten": tables.forgetting_text(forgotten),
-        "detection": confidence.detection_text(predictions[best]),
-        "alarms": confidence.alarms_text(predictions[best]),
-        "calibration": confidence.calibration_text(judged),
-        "confidence": figures.confidence(confidence.reliabilities(judged), confidence.risk_curves(judged)),
-        "sets": confidence.sets_text(predictions[best]),
-        "novelty": confidence.novelty_text(novelty, best),
-        "refitted": refitted,
-        "fold_gears": fold_gears,
-        "importance": importance_text(drops),
+        **practice(runs, methods, {**predictions, **oracles}, errors, best),
         "disturbed": cases.map("{:.1f}".format),
         "studies": studies_of(runs, inputs, input_errors),
         "command": runs.command,
         "facts": facts(runs, adapting.iloc[0], [*trials(methods), *trials(adapting)], f"{seconds:.0f} ({kind})"),
     }
     return page, content_of(zero, few, of_inputs, cases, gears, seconds)
+
+
+def practice(
+    runs: Runs, methods: pd.DataFrame, predictions: Mapping[str, pd.DataFrame], errors: pd.DataFrame, best: str
+) -> dict[str, Any]:
+    """Detection, confidence and feature importance of the best method.
+
+    Parameters
+    ----------
+    runs : Runs
+    methods : DataFrame
+        Run of every method without adaptation, by name.
+    predictions : mapping
+        Method or oracle to its predictions.
+    errors : DataFrame
+        Errors of specimens of the same methods and oracles [%].
+    best : str
+    """
+    bench, means = runs.paths["bench"], gear_errors(errors)
+    shown = {name: predictions[name] for name in dict.fromkeys([best, *COMPARED]) if name in predictions}
+    on_harmonics = [name for name in methods.index if name.endswith(" on harmonics")]
+    refitted = str(means[on_harmonics].mean().idxmin()) if on_harmonics else best
+    drops, fold_gears = importance(runs, row_of(methods, refitted), bench)
+    return {
+        "detection": confidence.detection_text(predictions[best]),
+        "alarms": confidence.alarms_text(predictions[best]),
+        "calibration": confidence.calibration_text(shown),
+        "confidence": figures.confidence(confidence.reliabilities(shown), confidence.risk_curves(shown)),
+        "sets": confidence.sets_text(predictions[best]),
+        "novelty": confidence.novelty_text(
+            confidence.novelty(bench, bench.with_name("far-bench.h5"), means[best]), best
+        ),
+        "refitted": refitted,
+        "fold_gears": fold_gears,
+        "importance": importance_text(drops),
+    }
 
 
 def studies_of(runs: Runs, inputs: pd.DataFrame, input_errors: Mapping[str, pd.DataFrame]) -> dict[str, Any]:
