@@ -32,7 +32,7 @@ TARGETS: Mapping[str, str] = {
 
 
 def inputs(runs: pd.DataFrame, errors: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
-    """Error of networks on different inputs: ``input``, ``method``, ``efficiency``, ``error``, ``low``, ``high`` [%].
+    """Error of networks on different inputs: ``input``, ``method``, ``efficiency``, ``value``, ``low``, ``high`` [%].
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def inputs(runs: pd.DataFrame, errors: Mapping[str, pd.DataFrame]) -> pd.DataFra
     ).set_axis(runs.index.astype(str))
     facts = facts.drop_duplicates().dropna()
     found = with_intervals({key: errors[key] for key in facts.index}, "inputs")
-    return facts.join(found).rename(columns={"value": "error"}).reset_index(drop=True)
+    return facts.join(found).reset_index(drop=True)
 
 
 def with_efficiency(runs: pd.DataFrame) -> pd.Series:
@@ -60,10 +60,7 @@ def with_efficiency(runs: pd.DataFrame) -> pd.Series:
 
 def inputs_text(table: pd.DataFrame) -> pd.DataFrame:
     """Result of :func:`inputs`: input and efficiency in rows, networks in columns."""
-    cells = table.assign(
-        text=text_of(table.rename(columns={"error": "value"})),
-        efficiency=table["efficiency"].map({True: "with", False: "without"}),
-    )
+    cells = table.assign(text=text_of(table), efficiency=table["efficiency"].map({True: "with", False: "without"}))
     wide = cells.pivot(index=["input", "efficiency"], columns="method", values="text")
     rows = pd.MultiIndex.from_product([INPUTS.values(), ["with", "without"]], names=["input", "efficiency"])
     names = {short: CLASSIFIERS[name] for name, short in NETWORKS.items()}
@@ -72,7 +69,7 @@ def inputs_text(table: pd.DataFrame) -> pd.DataFrame:
 
 def nested_inputs(table: pd.DataFrame, *, efficiency: bool) -> dict[str, dict[str, float | None]]:
     """Input to method to error [%], as in ``transfer.json``; None for what was not run."""
-    chosen = table[table["efficiency"] == efficiency].set_index(["input", "method"])["error"]
+    chosen = table[table["efficiency"] == efficiency].set_index(["input", "method"])["value"]
     return {
         kind: {m: round(float(chosen[kind, m]), 3) if (kind, m) in chosen.index else None for m in NETWORKS.values()}
         for kind in INPUTS.values()

@@ -42,7 +42,7 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
     write_json(folder / "transfer.json", content)
     write_text(folder / "transfer.html", html)
     seconds = time.time() - began
-    print(f"{folder / 'transfer.html'}: {page['headline']} {seconds:.1f} s")
+    print(f"{folder / 'transfer.html'}: {page['headline']} ({seconds:.1f} s)")
     return {"seconds": seconds}
 
 

@@ -70,7 +70,7 @@ def test_few_gears_have_no_interval_in_table_figure_and_json():
     errors, zero = zero_of(9.0, gears=3)
     few = few_of(errors, 5.0)
     assert tables.methods_text(zero, errors).loc[BEST, "error [%]"] == "9.1"
-    inputs = pd.DataFrame({"input": ["raw"], "method": ["cnn"], "efficiency": [True], "error": [12.0]})
+    inputs = pd.DataFrame({"input": ["raw"], "method": ["cnn"], "efficiency": [True], "value": [12.0]})
     content = transfer_study.content_of(zero, few, inputs, CASES, 3, 1.0)
     assert content["z1"]["ci95"] == [None, None]
     assert content["inputs"]["raw"] == {"mlp": None, "cnn": 12.0, "minirocket": None}
