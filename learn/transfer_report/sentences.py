@@ -101,10 +101,10 @@ def with_shots(zero: pd.DataFrame, few: pd.DataFrame, development: pd.Series) ->
     sentences = [text]
     scratch = few[few["method"].str.endswith(FROM_SCRATCH) & (few["shots"] > 0)]
     for shots, rows in scratch.groupby("shots"):
-        transfer, untransferred = best_adapted(few, int(str(shots))), least(rows)
-        if transfer is not None and untransferred["value"] <= transfer["value"]:
+        transfer, bare = best_adapted(few, int(str(shots))), least(rows)
+        if transfer is not None and bare["value"] <= transfer["value"]:
             sentences.append(
-                f"From {shots} labelled variants of each class on, {untransferred['method']} ({untransferred['value']:.1f} %) is as "
+                f"From {shots} labelled variants of each class on, {bare['method']} ({bare['value']:.1f} %) is as "
                 f"good as the best transfer ({transfer['value']:.1f} %) without any source gear."
             )
             break
