@@ -1,83 +1,120 @@
-"""Pictures of transfer to new gears, with the captions that say where to look."""
+"""Figures of the report as PNG: errors, error against shots, where transfer pays, and confidence.
 
-from typing import NamedTuple
+All are narrow, and panels lie below each other, so that they are readable on a phone.
+"""
 
+from collections.abc import Mapping
+from textwrap import fill
+
+import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
+from matplotlib.axes import Axes
 
-from learn.transfer_report import curve_figures, map_figures
+from learn.evaluation.probability_calibration import expected_calibration_error
+from learn.evaluation.selective import coverage_at
+from learn.transfer_report.studies import verdicts
+from learn.transfer_report.tables import FOREST, FROM_SCRATCH, ORACLES, row_of
 from swgsim.common import style
 
-
-class Words(NamedTuple):
-    """Title and caption of a picture, whatever its numbers."""
-
-    title: str
-    caption: str
-
-
-SHOTS = Words(
-    "What labelled variants of a new gear are worth",
-    "Error on new gears with its 95 % interval against the labelled variants given of each class. Look where a "
-    "curve falls below the dashed lines (known without any label) and how many labels the grey curve, trained on "
-    "the new gear alone, needs to get as low: that many are saved by transfer.",
-)
-SIZE = Words(
-    "Does a smaller model carry over better?",
-    "Accuracy on the gears of the training (dashed) and on a gear never seen (solid) against the model's size, one "
-    "colour per setting. Look at the gap below: if it grows to the right while the solid lines fall, large models "
-    "learn the gear instead of the fault.",
-)
-SPECTRUM = Words(
-    "On which orders the disturbance and the faults lie",
-    "Mean amplitude at the multiples of the wave generator's speed, on a logarithmic scale. Look where the grey "
-    "bars are high and where faults rise above healthy (even orders are shaded): where only the faults do, a "
-    "feature sees the fault and not the disturbance.",
-)
+WIDTH = 6.0  # inch
+GREY, BLUE, ORANGE = "#777777", "#0072B2", "#D55E00"
+COLOURS = ("#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#56B4E9", "#000000")
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")  # one more than colours, so that pairs repeat late
+FORESTS = ("random forest", "extra trees")  # begin the names of these methods
 
 
-def picture(words: Words, drawn: Figure) -> style.Picture:
-    """A figure below its title and above its caption."""
-    return style.Picture(*words, style.png(drawn))
+def intervals(axes: Axes, table: pd.DataFrame, colours: list[str], heights: np.ndarray) -> None:
+    """``value`` of every row with the interval from ``low`` to ``high``."""
+    for height, colour, (value, low, high) in zip(
+        heights, colours, table[["value", "low", "high"]].to_numpy(dtype=float), strict=True
+    ):
+        axes.plot([low, high], [height, height], color=colour, linewidth=1.6)
+        axes.plot(value, height, "o", color=colour, markersize=5)
 
 
-def forgotten_against_shots(curves: pd.DataFrame) -> style.Picture:
-    """Forgetting against labelled variants; the parameter is that of :func:`.curve_figures.forgotten`."""
-    drawn = curve_figures.forgotten(curves)
-    limit = curve_figures.FORGOTTEN_LIMIT
-    most = curves.groupby("method")["forgotten"].max().dropna()
-    return style.Picture(
-        "What adapting to one gear costs on the others",
-        f"Accuracy that the adapted model loses on the source gears. Look for curves above the dashed line: "
-        f"{(most > limit).sum()} of {len(most)} methods lose more than {limit:g} points somewhere, and their adapted "
-        "models serve one gear only.",
-        style.png(drawn),
-    )
+def errors(table: pd.DataFrame) -> bytes:
+    """Errors of :func:`.tables.zero_shot` with intervals; oracles are lines."""
+    methods = table.drop(index=ORACLES).sort_values("value", ascending=False)
+    picture = style.figure(WIDTH, 1.3 + 0.3 * len(methods))
+    axes = picture.add_subplot()
+    heights = np.arange(len(methods))
+    intervals(axes, methods, [ORANGE if name == FOREST else BLUE for name in methods.index], heights)
+    for name, dashes in zip(ORACLES, ("--", ":"), strict=True):
+        axes.axvline(row_of(table, name)["value"], color="black", linewidth=1.1, linestyle=dashes, label=name)
+    axes.set_yticks(heights, list(methods.index))
+    axes.set_xlim(0, None)
+    style.label(axes, "error [%]", "")
+    picture.legend(loc="outside upper center", ncols=2)
+    return style.png(picture)
 
 
-def inputs_map(inputs: pd.DataFrame) -> style.Picture:
-    """Error of all inputs and methods; the parameter is that of :func:`learn.transfer_report.map_figures.inputs`."""
-    drawn = map_figures.inputs(inputs)
-    best = inputs.sort_values("error").iloc[0]
-    return style.Picture(
-        "Which input a new gear needs",
-        f"Error on new gears of every input and method; two marks of a row differ only in whether the efficiency is "
-        f"given. The least error is that of {style.words(str(best['input']))} with {best['method']} "
-        f"({best['error']:.1f} %); look how long the bars are: so much hangs on the efficiency.",
-        style.png(drawn),
-    )
+def shots(few: pd.DataFrame, levels: Mapping[str, float]) -> bytes:
+    """Errors of :func:`.tables.few_shot` against the number of shots; networks above, forests below.
+
+    Parameters
+    ----------
+    few : DataFrame
+    levels : mapping
+        Name to error [%] of methods without labels, which are dashed lines.
+    """
+    labelled = few[few["shots"] > 0]
+    is_forest = labelled["method"].str.startswith(FORESTS)
+    groups = [group for group in (labelled[~is_forest], labelled[is_forest]) if len(group)]
+    ticks = {int(number): place for place, number in enumerate(sorted(labelled["shots"].unique()))}
+    picture = style.figure(WIDTH, 5.3 * len(groups))
+    for axes, group in zip(picture.subplots(len(groups), squeeze=False)[:, 0], groups, strict=True):
+        methods = list(group["method"].unique())
+        for number, name in enumerate(methods):
+            rows = group[group["method"] == name].sort_values("shots")
+            colour = GREY if name.endswith(FROM_SCRATCH) else COLOURS[number % len(COLOURS)]
+            x = rows["shots"].map(ticks).to_numpy() + 0.4 * (number - (len(methods) - 1) / 2) / len(methods)
+            axes.vlines(x, rows["low"], rows["high"], color=colour, linewidth=1.1, alpha=0.6)
+            axes.plot(x, rows["value"], f"{MARKERS[number % len(MARKERS)]}-", color=colour, markersize=5, label=name)
+        for dashes, (name, value) in zip(("--", "-.", ":"), levels.items(), strict=True):
+            axes.axhline(value, color="black", linewidth=1.1, linestyle=dashes, label=name)
+        axes.set_xticks(list(ticks.values()), [str(number) for number in ticks])
+        style.label(axes, "labelled variants of each class, K", "error [%]")
+        axes.set_ylim(0, None)
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=2, fontsize=9, frameon=False)
+    return style.png(picture)
 
 
-def where_transfer_pays(scenarios: pd.DataFrame) -> style.Picture:
-    """Gains and losses in every scenario; the parameter is that of :func:`learn.transfer_report.map_figures.pays`."""
-    drawn = map_figures.pays(scenarios)
-    rows = map_figures.beside_from_scratch(scenarios.dropna(subset=["error"]))
-    worse = int((rows["error"] > rows["unadapted"]).sum())
-    behind = int((rows["error"] > rows["scratch"]).sum())
-    return style.Picture(
-        "Where transfer pays and where it does not",
-        f"Every bar leads from the error without adaptation to that with it; differences are in points. Look for "
-        f"orange, pointing right ({worse} of {len(rows)} rows): adapting does harm there; and for crosses left of the "
-        f"triangle ({behind}): training on the new gear alone is better than any help of other gears.",
-        style.png(drawn),
-    )
+def pays(table: pd.DataFrame) -> bytes:
+    """Changes of :func:`.studies.transfer_map` with intervals, one panel per scenario."""
+    colours = {"yes": BLUE, "harms": ORANGE, "-": GREY}
+    coloured = table.assign(colour=[colours.get(text, "black") for text in verdicts(table)])
+    groups = list(coloured.groupby("scenario", sort=False))
+    picture = style.figure(WIDTH, 0.5 + 0.75 * len(groups) + 0.22 * len(table))
+    panels = picture.subplots(len(groups), sharex=True, squeeze=False)[:, 0]
+    for axes, (scenario, rows) in zip(panels, groups, strict=True):
+        heights = -np.arange(len(rows))
+        axes.axvline(0, color="black", linewidth=1)
+        intervals(axes, rows, list(rows["colour"]), heights)
+        axes.set_yticks(heights, [f"{m}, K = {k}" for m, k in zip(rows["method"], rows["shots"], strict=True)])
+        axes.set_ylim(0.6 - len(rows), 0.6)
+        style.label(axes, "", "", fill(str(scenario), 50))
+    panels[-1].set_xlabel("change of the error by adapting [points]; left is better")
+    return style.png(picture)
+
+
+def confidence(bins: Mapping[str, pd.DataFrame], curves: Mapping[str, pd.DataFrame]) -> bytes:
+    """Accuracy against confidence above, error against the share of decided recordings below; by method."""
+    picture = style.figure(WIDTH, 9.6)
+    upper, lower = picture.subplots(2)
+    upper.plot([0, 100], [0, 100], color=GREY, linewidth=1, linestyle=":")
+    for number, (name, table) in enumerate(bins.items()):
+        colour, text = COLOURS[number], f"{name} (calibration error {expected_calibration_error(table):.1f} points)"
+        upper.plot(100 * table["confidence"], 100 * table["accuracy"], f"{MARKERS[number]}-", color=colour, label=text)
+        text = f"{name} ({100 * coverage_at(curves[name], 0.05):.0f} % decided at 5 % error)"
+        coverage, risk = 100 * curves[name]["coverage"], 100 * curves[name]["risk"]
+        lower.step(coverage, risk, where="post", color=colour, label=text)
+    for error in (1, 5):
+        lower.axhline(error, color=GREY, linewidth=0.9, linestyle=":")
+    lowest = min(100 * min(table["confidence"].min(), table["accuracy"].min()) for table in bins.values())
+    upper.set(xlim=(max(0, lowest - 5), 101), ylim=(max(0, lowest - 5), 102))
+    lower.set(xlim=(0, 100), ylim=(0, None))
+    style.label(upper, "confidence: highest probability [%]", "accuracy [%]", "Calibration")
+    style.label(lower, "share of recordings decided, most confident first [%]", "error among these [%]", "Abstention")
+    for axes in (upper, lower):
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), fontsize=9, frameon=False)
+    return style.png(picture)

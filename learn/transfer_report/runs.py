@@ -1,35 +1,34 @@
-"""The runs that the report of the transfer study rests on: found by study, named by method, paired by specimen."""
+"""The data sets and finished runs of the report, as pandas frames: found by study, named by method."""
 
-import os
+import json
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
 import pandas as pd
+import yaml
 
+from learn.evaluation.bootstrap import specimens
 from learn.inputs.inputs import OPERATING_POINT, SPECIMEN
+from learn.jobs import settings
 from learn.jobs.identity import code_version
 from learn.tracking import Store, finished_runs, table_of
 from swgsim.common.style import words
 from swgsim.oracle.columns import KNOWN
+from swgsim.storage import storage
 from swgsim.storage.labelled_signals import CLASSES
 
-os.environ.setdefault("MLFLOW_ENABLE_ARTIFACTS_PROGRESS_BAR", "false")
-
-# A study to the experiments that make it, and whether they run on the paper's grid.
+# A study and the experiments that make it: on the gears never seen, and on the paper's grid.
 EXPERIMENTS: Mapping[str, tuple[str, ...]] = {
     "zero_shot": ("zero_shot", "zero_shot_lines", "zero_shot_signals"),
-    "zero_shot_disturbed": ("zero_shot_disturbed",),
     "inputs": ("inputs", "inputs_features"),
     "inputs_operating_point": ("inputs_operating_point",),
     "no_reference": ("no_reference",),
     "transfer": ("transfer_network", "transfer_forest", "transfer_extra_trees", "transfer_cnn"),
     "transfer_map": ("transfer_map", "transfer_map_foreign"),
-    "harder_splits": ("harder_splits",),
-    "forest_robustness": ("forest_robustness",),
-    "network_robustness": ("network_robustness",),
 }
-PAPER_GRID = ("zero_shot_disturbed", "forest_robustness", "network_robustness")
+PAPER_EXPERIMENTS: Mapping[str, tuple[str, ...]] = {"zero_shot_disturbed": ("zero_shot_disturbed",)}
 CLASSIFIERS: Mapping[str, str] = {
     "rf": "random forest",
     "knn": "nearest neighbours",
@@ -54,154 +53,182 @@ ADAPTATIONS: Mapping[str, str] = {"l2_sp": "L2-SP", "coral": "CORAL", "structure
 FACTS = ["row", *SPECIMEN, "severity", *OPERATING_POINT]
 
 
-def command(study: str, grids: Mapping[str, str]) -> str:
-    """The commands that make a study; `grids` names those of ``bench`` and ``disturbed``."""
-    grid = grids["disturbed" if study in PAPER_GRID else "bench"]
-    return " and ".join(f"'python scripts/train.py experiment={name} grid={grid}'" for name in EXPERIMENTS[study])
+@dataclass(frozen=True)
+class Runs:
+    """The data sets of the report and the finished runs on them.
+
+    Attributes
+    ----------
+    grids, paths, digests : mapping
+        ``bench`` and ``disturbed`` to the grid, the file and the digest of the data set.
+    store : Store
+    frame : DataFrame
+        One row per run, newest first: parameters, metrics and ``method``, see :func:`method_of`.
+    """
+
+    grids: Mapping[str, str]
+    paths: Mapping[str, Path]
+    digests: Mapping[str, str]
+    store: Store
+    frame: pd.DataFrame
+
+    def of_study(self, study: str) -> pd.DataFrame:
+        """The runs of one study, with the parameters and metrics that its runs have; empty if it was not run."""
+        runs = self.frame[self.frame["study"] == study]
+        return runs.dropna(axis="columns", how="all").reset_index(drop=True)
+
+    def required(self, study: str) -> pd.DataFrame:
+        """The runs of one study.
+
+        Raises
+        ------
+        ValueError
+            If there is none; the message names the commands that make them.
+        """
+        found = self.of_study(study)
+        if found.empty:
+            raise ValueError(
+                f"no finished run of the study {study} on the present data sets: run {self.command(study)}"
+            )
+        return found
+
+    def command(self, study: str) -> str:
+        """The commands that make a study."""
+        grid = self.grids["disturbed" if study in PAPER_EXPERIMENTS else "bench"]
+        names = {**EXPERIMENTS, **PAPER_EXPERIMENTS}[study]
+        return " and ".join(f"'swg train experiment={name} grid={grid}'" for name in names)
+
+    def tables(self, runs: pd.DataFrame, name: str) -> dict[str, pd.DataFrame]:
+        """The table ``predictions``, ``specimens`` or ``gears`` of every run, by the runs' index."""
+        return {
+            str(key): table_of(self.store, run_id, f"tables/{name}.parquet") for key, run_id in runs["run_id"].items()
+        }
+
+    def errors(self, runs: pd.DataFrame) -> dict[str, pd.DataFrame]:
+        """Error of every specimen [%] of every run without adaptation, by the runs' index."""
+        return {key: specimens(table) for key, table in self.tables(runs, "predictions").items()}
+
+    def configuration(self, run_id: str) -> dict[str, Any]:
+        """The resolved configuration of a run."""
+        import tempfile
+
+        with tempfile.TemporaryDirectory() as folder:
+            path = self.store.client.download_artifacts(run_id, "config.yaml", folder)
+            return cast(dict[str, Any], yaml.safe_load(Path(path).read_text(encoding="utf-8")))
+
+    def seconds(self) -> float:
+        """Time to generate the data sets and to fit all methods, as far as runs count it."""
+        made = {name: json.loads(path.with_suffix(".json").read_text()) for name, path in self.paths.items()}
+        generating = sum(each["seconds"] for each in made.values())
+        return float(generating + self.frame["fit_seconds"].sum() / made["bench"]["cores"])
+
+    def older_code(self) -> list[str]:
+        """Studies of the report with runs of older code."""
+        older = set(self.frame.loc[self.frame["code_version"] != code_version(), "study"])
+        return [study for study in {**EXPERIMENTS, **PAPER_EXPERIMENTS} if study in older]
+
+
+def collected(config: Mapping[str, Any]) -> Runs:
+    """The data sets and runs that a resolved ``conf/transfer_report.yaml`` names.
+
+    Raises
+    ------
+    ValueError
+        If a data set is missing, with the command to make it.
+    """
+    grids = {"bench": config["grid"]["name"], "disturbed": config["paper_grid"]}
+    paths = {
+        name: settings.data_set({"data": config["data"], "grid": grids[name], "condition": condition})
+        for name, condition in (("bench", config["condition"]), ("disturbed", "disturbed"))
+    }
+    digests = {name: storage.digest(path) for name, path in paths.items()}
+    foreign = [storage.digest(path) for path in Path(config["data"]).glob("*-*.h5")]
+    store = settings.store(config["tracking"])
+    return Runs(grids, paths, digests, store, present_runs(store, digests.values(), foreign))
 
 
 def present_runs(store: Store, digests: Iterable[str], foreign: Iterable[str] = ()) -> pd.DataFrame:
-    """The finished runs on the present data sets, newest first; of every study those of the present code, if any.
+    """The finished runs on the present data sets, newest first, with their ``method``.
+
+    If a study has runs of the present code, its runs of older code are left out.
 
     Parameters
     ----------
     store : Store
     digests, foreign : iterable of str
-        Of the data sets that a run may be on, and of those that it may take further gears from.
+        Digests of the data sets of the report, and of those from which a run may take further gears.
     """
     runs = finished_runs(store)
     if runs.empty:
-        return pd.DataFrame(columns=["study", "data_digest", "code_version", "run_id"])
+        return pd.DataFrame(columns=["study", "data_digest", "code_version", "run_id", "method"])
     known, others = set(digests), set(foreign)
     each = runs["data_digest"].str.split("+")
     runs = runs[[first in known and others.issuperset(rest) for first, *rest in each]]
     present = runs["code_version"] == code_version()
-    return runs[present | ~runs["study"].isin(runs.loc[present, "study"])].reset_index(drop=True)
-
-
-def of_older_code(runs: pd.DataFrame) -> list[str]:
-    """The studies of the report whose runs were made by older code."""
-    older = set(runs.loc[runs["code_version"] != code_version(), "study"])
-    return [study for study in EXPERIMENTS if study in older]
-
-
-def of_study(runs: pd.DataFrame, study: str) -> pd.DataFrame:
-    """The runs of one study, with the parameters and metrics that its runs have."""
-    return runs[runs["study"] == study].dropna(axis="columns", how="all").reset_index(drop=True)
-
-
-def required(runs: pd.DataFrame, study: str, grids: Mapping[str, str]) -> pd.DataFrame:
-    """The runs of one study.
-
-    Raises
-    ------
-    ValueError
-        If there is none; it names the commands that make them.
-    """
-    found = of_study(runs, study)
-    if found.empty:
-        raise ValueError(f"no finished run of the study {study} on the present data sets: run {command(study, grids)}")
-    return found
+    runs = runs[present | ~runs["study"].isin(runs.loc[present, "study"])].reset_index(drop=True)
+    return runs.assign(method=[method_of(cast(dict[str, object], run)) for run in runs.to_dict("records")])
 
 
 def method_of(run: Mapping[str, object]) -> str:
-    """Name of a run's method: the classifier with what it sees, or with its adaptation.
+    """Name of a run's method: the classifier with its representation, or with its adaptation.
 
     >>> method_of({"classifier": "rf", "features": "selection_1", "adaptation": "none"})
     'random forest on Selection 1'
     >>> method_of({"classifier": "perceptron", "features": "harmonics", "adaptation": "l2_sp"})
     'MLP: L2-SP'
     """
-    classifier, features = str(run["classifier"]), str(run["features"])
-    model, seen = CLASSIFIERS.get(classifier, words(classifier)), FEATURES.get(features, words(features))
-    adaptation = str(run.get("adaptation", "none"))
+    classifier, features, adaptation = (str(run.get(key, "none")) for key in ("classifier", "features", "adaptation"))
+    model, inputs = CLASSIFIERS.get(classifier, words(classifier)), FEATURES.get(features, words(features))
     if adaptation == "none":
-        return f"{model} on {seen}"
-    # Adaptations are compared on one representation; another one has to be said.
-    model = model if features == "harmonics" else f"{model} on {seen}"
+        return f"{model} on {inputs}"
+    # Adaptations are compared on harmonics; only another representation is named.
+    model = model if features == "harmonics" else f"{model} on {inputs}"
     return f"{model}: {ADAPTATIONS.get(adaptation, words(adaptation))}"
 
 
 def by_method(runs: pd.DataFrame) -> pd.DataFrame:
-    """The newest run of every method, with the method's name as index."""
-    names = [method_of(cast(dict[str, object], run)) for run in runs.to_dict("records")]
-    named = runs.assign(method=names)
-    return named.drop_duplicates("method").set_index("method")
+    """The newest run of every method, with the method's name as index and the run's own index as ``key``."""
+    return runs.rename(index=str).rename_axis("key").reset_index().drop_duplicates("method").set_index("method")
 
 
 def development_scores(runs: pd.DataFrame) -> pd.Series:
-    """The score of the options chosen on development gears [%], NaN for methods with nothing to choose."""
+    """Score on development gears of the options that were chosen on them [%]; NaN for methods without options."""
     return runs.filter(regex=r"^trial/").max(axis="columns").astype(float)
 
 
-def few_variants(runs: pd.DataFrame) -> dict[str, str]:
-    """Variants of each class and source gear that runs were trained on, where not on all, by the runs' index."""
-    variants = runs["protocol.variants"]
-    return {str(key): str(number) for key, number in variants[variants != "None"].items()}
-
-
 def trials(runs: pd.DataFrame) -> list[int]:
-    """How many options were tried, of every run that has options."""
+    """Number of options that were tried, of every run with options."""
     counts = runs.filter(regex=r"^trial/").notna().sum(axis="columns")
     return [int(count) for count in counts if count]
 
 
-def tables(store: Store, runs: pd.DataFrame, name: str) -> dict[str, pd.DataFrame]:
-    """A table, such as ``predictions``, of every run, by the runs' index."""
-    return {str(key): table_of(store, run_id, f"tables/{name}.parquet") for key, run_id in runs["run_id"].items()}
-
-
-def paired(specimens: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
-    """Errors of methods side by side: :data:`learn.evaluation.bootstrap.SPECIMEN` and one column per method [%].
-
-    Parameters
-    ----------
-    specimens : mapping
-        Method to its table with ``gear``, ``label``, ``variant`` and ``error``.
-
-    Raises
-    ------
-    ValueError
-        If a method was judged on other specimens than the first one.
-    """
-    columns = {name: rows.set_index(list(SPECIMEN))["error"] for name, rows in specimens.items()}
-    first, expected = next(iter(columns.items()))
-    for name, errors in columns.items():
-        if len(expected.index.symmetric_difference(errors.index)):
-            raise ValueError(
-                f"{name} was judged on {len(errors)} specimens that are not the {len(expected)} of {first}: run both "
-                "with the same protocol"
-            )
-    return pd.DataFrame(columns).reset_index()
-
-
 def oracle(path: Path, digest: str, predictions: pd.DataFrame) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """What the oracle, and the oracle that knows the session, say of the recordings that methods were judged on.
+    """Predictions of the oracle and of the oracle that knows the session, on the recordings of some predictions.
 
     Parameters
     ----------
     path : Path
         ``<grid>-<condition>-oracle.parquet``.
     digest : str
-        Of the data set.
+        Digest of the data set.
     predictions : DataFrame
-        Of any method, for the judged rows and their facts.
+        Predictions of any method, for the judged rows and their facts.
 
     Raises
     ------
     ValueError
-        If there is no oracle of this data set, or it has not said anything of some judged gear; with the command.
+        If the file is missing, belongs to another data set or lacks a judged gear, with the command that makes it.
     """
     grid, condition = path.stem.removesuffix("-oracle").rsplit("-", 1)
-    remedy = f"run 'python scripts/oracle.py grid={grid} condition={condition}'"
+    remedy = f"run 'swg oracle grid={grid} condition={condition}'"
     if not path.is_file():
         raise ValueError(f"no oracle {path}: {remedy}")
-    said = pd.read_parquet(path)
-    if said.attrs.get("data") != digest:
-        raise ValueError(f"{path} is of another data set than the present {grid}-{condition}.h5: {remedy}")
-    joined = predictions[FACTS].merge(said, on="row", how="left")
-    silent = joined[joined[CLASSES[0]].isna()]
-    if len(silent):
-        raise ValueError(f"{path} says nothing of gear {silent.iloc[0]['gear']}, which is judged: {remedy}")
+    table = pd.read_parquet(path)
+    if table.attrs.get("data") != digest:
+        raise ValueError(f"{path} belongs to another data set than the present {grid}-{condition}.h5: {remedy}")
+    joined = predictions[FACTS].merge(table, on="row", how="left")
+    missing = joined[joined[CLASSES[0]].isna()]
+    if len(missing):
+        raise ValueError(f"{path} lacks gear {missing.iloc[0]['gear']}, which is judged: {remedy}")
     known = joined[FACTS].join(joined[[KNOWN + label for label in CLASSES]].set_axis(list(CLASSES), axis="columns"))
     return joined[[*FACTS, *CLASSES]], known

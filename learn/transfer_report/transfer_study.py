@@ -1,166 +1,234 @@
-"""The report of the transfer study from its runs: what each part rests on is found, and both files are written."""
+"""The report of the transfer study: finds the runs, computes the tables and writes both files."""
 
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from learn.evaluation.bootstrap import gear_errors, specimens
 from learn.paper.paper_page import versions
-from learn.transfer_report import adapted, input_studies, optional, practice, results, sections, sentences, studies
-from learn.transfer_report import runs as runs_of
-from learn.transfer_report.carried import carried, refit
-from learn.transfer_report.content import cnn_fit, content, how_made
-from learn.transfer_report.evidence import Evidence, gathered
-from learn.transfer_report.novelty import novelty
-from learn.transfer_report.spectrum import disturbance_beside_faults
-from learn.transfer_report.transfer_page import Section, TransferReport
-from swgsim.common.files import write_text
+from learn.transfer_report import confidence, figures, sentences, studies, tables
+from learn.transfer_report.importance import importance, importance_text
+from learn.transfer_report.runs import Runs, by_method, collected, development_scores, oracle, trials
+from learn.transfer_report.tables import FOREST, ORACLE, ORACLE_OF_SESSION, best_adapted, best_of, highest, row_of
+from swgsim.common.files import write_json, write_text
+from swgsim.common.html import environment
 from swgsim.storage import storage
 
-
-@dataclass(frozen=True)
-class Unadapted:
-    """The main comparison: methods without adaptation on gears never seen.
-
-    Attributes
-    ----------
-    runs : DataFrame
-        By method.
-    predictions, oracles : mapping
-        Method or oracle to its table of predictions.
-    zero : ZeroShot
-    """
-
-    runs: pd.DataFrame
-    predictions: Mapping[str, pd.DataFrame]
-    oracles: Mapping[str, pd.DataFrame]
-    zero: results.ZeroShot
+SHOTS = (1, 2, 5, 10)  # of transfer.json
+COMPARED = (FOREST, "logistic regression on harmonics", "MLP on harmonics", ORACLE)  # with the best, for calibration
 
 
 def run(config: Mapping[str, Any]) -> dict[str, float]:
-    """Write ``transfer.html`` and ``transfer.json``, as a resolved ``conf/transfer_report.yaml`` says.
+    """Write ``transfer.html`` and ``transfer.json`` as a resolved ``conf/transfer_report.yaml`` says.
 
     Returns
     -------
     dict
-        Number of goals that were reached, and the seconds that the report took.
+        ``seconds`` that the report took.
 
     Raises
     ------
     ValueError
-        If a data set, the oracle or a study is missing, with the command to make it.
+        If a data set, the oracle or a required study is missing, with the command to make it.
     """
-    began = time.time()
-    report = report_of(gathered(config), Path(config["out"]) / "benchmark.json", began, config["started"])
-    folder = Path(config["out"])
+    began, folder = time.time(), Path(config["out"])
+    page, content = report(collected(config), began, config["started"])
+    html = environment("learn").get_template("transfer_report/transfer_page.html.jinja").render(page)
     folder.mkdir(parents=True, exist_ok=True)
-    write_text(folder / "transfer.json", report.json())
-    write_text(folder / "transfer.html", report.html())
-    reached = sum(goal.reached for goal in report.goals)
-    print(f"{folder / 'transfer.html'}: {reached} of {len(report.goals)} goals reached; {time.time() - began:.1f} s")
-    return {"goals_reached": reached, "seconds": time.time() - began}
+    write_json(folder / "transfer.json", content)
+    write_text(folder / "transfer.html", html)
+    seconds = time.time() - began
+    print(f"{folder / 'transfer.html'}: {page['headline']} ({seconds:.1f} s)")
+    return {"seconds": seconds}
 
 
-def report_of(evidence: Evidence, benchmark: Path, began: float, started: float | None) -> TransferReport:
-    """All that the report says.
+def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Variables of the template, and the content of ``transfer.json``.
 
     Parameters
     ----------
-    evidence : Evidence
-    benchmark : Path
-        ``benchmark.json``, which need not be there.
+    runs : Runs
     began, started : float
-        Unix times at which the report and the whole began; None adds up the seconds of the single steps.
+        Unix times at which the report and the whole study began; without `started`, seconds of the steps are added.
     """
-    main = unadapted(evidence)
-    zero = main.zero
-    by_adaptation = runs_of.by_method(evidence.required("transfer"))
-    few = results.few_shot(zero.errors, evidence.tables(by_adaptation, "specimens"))
-    forgotten = results.forgetting(evidence.tables(by_adaptation, "gears"))
-    of_inputs = evidence.required("inputs")
-    signals = evidence.tables(of_inputs, "predictions")
-    inputs = input_studies.inputs(of_inputs, signals)
-    cases = studies.disturbed_cases(evidence.required("zero_shot_disturbed"))
-    clean = evidence.beside(f"{evidence.grids['disturbed']}-clean")
-    spectrum, change = disturbance_beside_faults(clean, evidence.paths["disturbed"]) if clean else (None, None)
-    labelled = int(by_adaptation["protocol.labelled"].iloc[0])
-    parts = [
-        sections.disturbed(cases, spectrum, change),
-        sections.new_gears(zero, optional.no_reference(evidence, of_inputs, signals)),
-        sections.inputs(inputs, optional.operating_point(evidence)),
-        adapted.transfer(
-            zero,
-            few,
-            forgotten,
-            str(by_adaptation["draws"].iloc[0]),
-            labelled,
-            runs_of.few_variants(by_adaptation),
+    methods, adapting = by_method(runs.required("zero_shot")), by_method(runs.required("transfer"))
+    predictions = runs.tables(methods, "predictions")
+    bench = runs.paths["bench"]
+    oracle_path = bench.with_name(f"{bench.stem}-oracle.parquet")
+    both = oracle(oracle_path, runs.digests["bench"], next(iter(predictions.values())))
+    oracles = dict(zip(tables.ORACLES, both, strict=True))
+    errors = tables.paired({name: specimens(table) for name, table in {**predictions, **oracles}.items()})
+    zero = tables.zero_shot(errors, development_scores(methods), methods["fit_seconds"].astype(float))
+    few = tables.few_shot(errors, runs.tables(adapting, "specimens"))
+    forgotten = tables.forgetting(runs.tables(adapting, "gears"))
+    inputs, cases = runs.required("inputs"), studies.disturbed_cases(runs.required("zero_shot_disturbed"))
+    input_errors = runs.errors(inputs)
+    of_inputs = studies.inputs(inputs, input_errors)
+    best, gears = best_of(zero), int(errors["gear"].nunique())
+    seconds = time.time() - (started or began) + (0 if started else runs.seconds())
+    kind = "measured" if started else "sum of the steps"
+
+    labelled = int(adapting["protocol.labelled"].iloc[0])
+    variants = adapting["protocol.variants"]
+    marks = {str(name): f" (trained on {count} variants)" for name, count in variants[variants != "None"].items()}
+    levels = {
+        "paper's forest": row_of(zero, FOREST)["value"],
+        "best without adaptation": row_of(zero, best)["value"],
+        ORACLE_OF_SESSION: row_of(zero, ORACLE_OF_SESSION)["value"],
+    }
+    page = {
+        "grid": runs.grids["bench"],
+        "headline": sentences.headline(zero, gears),
+        "lead": sentences.lead(zero, few, development_scores(adapting), forgotten, cases),
+        "best": best,
+        "errors": figures.errors(zero),
+        "representations": tables.representations_text(zero),
+        "methods": tables.methods_text(zero, errors),
+        "inputs": studies.inputs_text(of_inputs),
+        "shots": figures.shots(few, levels) if (few["shots"] > 0).any() else None,
+        "few": tables.shots_text(few, "", labelled, marks),
+        "gains": tables.shots_text(few, "gain", labelled, marks),
+        "draws": adapting["draws"].iloc[0],
+        "forgotten": tables.forgetting_text(forgotten),
+        **practice(runs, methods, {**predictions, **oracles}, errors, best),
+        "disturbed": cases.map("{:.1f}".format),
+        "studies": studies_of(runs, inputs, input_errors),
+        "command": runs.command,
+        "facts": facts(runs, adapting.iloc[0], [*trials(methods), *trials(adapting)], f"{seconds:.0f} ({kind})"),
+    }
+    return page, content_of(zero, few, of_inputs, cases, gears, seconds)
+
+
+def practice(
+    runs: Runs, methods: pd.DataFrame, predictions: Mapping[str, pd.DataFrame], errors: pd.DataFrame, best: str
+) -> dict[str, Any]:
+    """Detection, confidence and feature importance of the best method.
+
+    Parameters
+    ----------
+    runs : Runs
+    methods : DataFrame
+        Run of every method without adaptation, by name.
+    predictions : mapping
+        Method or oracle to its predictions.
+    errors : DataFrame
+        Errors of specimens of the same methods and oracles [%].
+    best : str
+    """
+    bench, means = runs.paths["bench"], gear_errors(errors)
+    shown = {name: predictions[name] for name in dict.fromkeys([best, *COMPARED]) if name in predictions}
+    on_harmonics = [name for name in methods.index if name.endswith(" on harmonics")]
+    refitted = str(means[on_harmonics].mean().idxmin()) if on_harmonics else best
+    drops, fold_gears = importance(runs, row_of(methods, refitted), bench)
+    return {
+        "detection": confidence.detection_text(predictions[best]),
+        "alarms": confidence.alarms_text(predictions[best]),
+        "calibration": confidence.calibration_text(shown),
+        "confidence": figures.confidence(confidence.reliabilities(shown), confidence.risk_curves(shown)),
+        "sets": confidence.sets_text(predictions[best]),
+        "novelty": confidence.novelty_text(
+            confidence.novelty(bench, bench.with_name("far-bench.h5"), means[best]), best
         ),
-        optional.where_it_pays(evidence),
-        practice_of(evidence, main),
-        optional.harder(evidence),
-        optional.size(evidence),
-    ]
-    fit = cnn_fit(benchmark, evidence.made["bench"]["recordings"])
-    seconds = time.time() - (started or began) + (0 if started else evidence.seconds)
-    facts = how_made(
-        evidence.configuration,
-        by_adaptation.iloc[0],
-        zero.gears,
-        [*runs_of.trials(main.runs), *runs_of.trials(by_adaptation)],
-        fit,
-        seconds,
-        "on the clock" if started else "the steps added up",
-        versions(storage.attributes(evidence.paths["bench"])["swgsim"], evidence.digests),
-    )
-    facts.append(("studies with runs of older code", sentences.listed(runs_of.of_older_code(evidence.runs))))
-    return TransferReport(
-        grid=evidence.grids["bench"],
-        content=content(zero, few, inputs, cases, fit, seconds),
-        goals=sentences.goals(cases, zero, few, forgotten),
-        plain=[
-            *sentences.chosen_by(zero, runs_of.development_scores(by_adaptation), few),
-            *sentences.fancy_against_simple(zero, input_studies.networks_compared(of_inputs, signals), few),
-        ],
-        levels=sections.levels(labelled),
-        sections=[*parts, sections.made(facts)],
-    )
+        "refitted": refitted,
+        "fold_gears": fold_gears,
+        "importance": importance_text(drops),
+    }
 
 
-def unadapted(evidence: Evidence) -> Unadapted:
-    """The main comparison, with the oracles.
+def studies_of(runs: Runs, inputs: pd.DataFrame, input_errors: Mapping[str, pd.DataFrame]) -> dict[str, Any]:
+    """Tables and figures of the studies that need not be run, by study; a study without runs is missing."""
+    found: dict[str, Any] = {}
+    bare = runs.of_study("no_reference").rename(index="no reference {}".format)
+    if len(bare):
+        known = inputs[(inputs["features"] == "raw") & studies.with_efficiency(inputs)]
+        found["no_reference"] = studies.without_text(known, bare, {**input_errors, **runs.errors(bare)})
+    points = runs.of_study("inputs_operating_point")
+    if len(points):
+        given = points["features.operating_point"] == "True"
+        found["inputs_operating_point"] = studies.without_text(points[given], points[~given], runs.errors(points))
+    scenarios = runs.of_study("transfer_map")
+    adapts = scenarios[scenarios["adaptation"] != "none"] if len(scenarios) else scenarios
+    if len(adapts):
+        plain = scenarios.drop(index=adapts.index)
+        unadapted = studies.best_unadapted(plain, runs.errors(plain))
+        table = studies.transfer_map(adapts, runs.tables(adapts, "specimens"), unadapted)
+        found["transfer_map"] = {
+            "figure": figures.pays(table),
+            "table": studies.map_text(table),
+            "sentence": studies.map_sentence(table),
+        }
+    return found
 
-    Raises
-    ------
-    ValueError
-        If the study or the oracle is missing, with the command to make it.
+
+def facts(runs: Runs, adapting: pd.Series, tried: list[int], seconds: str) -> dict[str, str]:
+    """How the study was made.
+
+    Parameters
+    ----------
+    runs : Runs
+    adapting : Series
+        A run with adaptation, for the options of ``conf`` that all runs share.
+    tried : list of int
+        Number of options that were tried, of every method with options.
+    seconds : str
     """
-    runs = runs_of.by_method(evidence.required("zero_shot"))
-    predictions = evidence.tables(runs, "predictions")
-    bench = evidence.paths["bench"]
-    said = runs_of.oracle(
-        bench.with_name(f"{bench.stem}-oracle.parquet"), evidence.digests["bench"], next(iter(predictions.values()))
-    )
-    oracles = dict(zip(results.ORACLES, said, strict=True))
-    errors = runs_of.paired({name: specimens(table) for name, table in {**predictions, **oracles}.items()})
-    zero = results.zero_shot(errors, runs_of.development_scores(runs), runs["fit_seconds"].astype(float))
-    return Unadapted(runs, predictions, oracles, zero)
+    options = " or ".join(map(str, sorted(set(tried)))) or "none"
+    code = storage.attributes(runs.paths["bench"])["swgsim"]
+    shared = [name for name in adapting.index if name.startswith("protocol.")]
+    return {
+        **{name: str(adapting[name]) for name in [*shared, "shots", "draws", "seed"]},
+        "options": f"{options} tried on development gears for each of {len(tried)} methods with options",
+        "seconds": seconds,
+        "versions": ", ".join(f"{name} {text}" for name, text in versions(code, runs.digests).items()),
+        "studies with runs of older code": sentences.listed(runs.older_code()),
+    }
 
 
-def practice_of(evidence: Evidence, main: Unadapted) -> Section:
-    """What a practitioner reads, of the best method beside the forest, two simple ones and the oracle."""
-    shown = dict.fromkeys([main.zero.best, results.FOREST, sentences.SIMPLE, sentences.NETWORK])
-    judged = {name: main.predictions[name] for name in shown if name in main.predictions}
-    on_harmonics = main.zero.methods[main.zero.methods.index.str.endswith(" on harmonics")]["value"]
-    refitted = str(on_harmonics.idxmin()) if len(on_harmonics) else main.zero.best
-    return practice.section(
-        main.zero.best,
-        judged | {results.ORACLE: main.oracles[results.ORACLE]},
-        novelty(evidence.paths["bench"], evidence.beside("far-bench"), gear_errors(main.zero.errors)[main.zero.best]),
-        refitted,
-        carried(refit(evidence.store, results.row_of(main.runs, refitted), evidence.paths["bench"])),
-    )
+def content_of(
+    zero: pd.DataFrame, few: pd.DataFrame, inputs: pd.DataFrame, cases: pd.DataFrame, gears: int, seconds: float
+) -> dict[str, Any]:
+    """Content of ``transfer.json``: errors and accuracies [%]; None for an unknown number."""
+    best, chosen, solved = best_of(zero), highest(zero["development"]), studies.best_disturbed(cases)
+    adapted = {shots: row for shots in SHOTS if (row := best_adapted(few, shots)) is not None}
+    return {
+        "z1": {
+            "forest_error": finite(row_of(zero, FOREST)["value"]),
+            "best_method": best,
+            "best_error": finite(row_of(zero, best)["value"]),
+            "ratio": finite(row_of(zero, best)["ratio"]),
+            "ci95": [finite(row_of(zero, best)["ratio_low"]), finite(row_of(zero, best)["ratio_high"])],
+            "ratio_to_oracle": finite(row_of(zero, best)["oracle"]),
+            "chosen_on_development_gears": chosen,
+            "chosen_error": finite(row_of(zero, chosen)["value"]) if chosen else None,
+        },
+        "z3": {
+            str(shots): {
+                "best_method": row["method"],
+                "best_error": finite(row["value"]),
+                "ratio_to_forest": finite(row["ratio"]),
+                "ci95": [finite(row["ratio_low"]), finite(row["ratio_high"])],
+            }
+            for shots, row in adapted.items()
+        },
+        "oracle_error": finite(row_of(zero, ORACLE)["value"]),
+        "oracle_session_error": finite(row_of(zero, ORACLE_OF_SESSION)["value"]),
+        "gears": gears,
+        "inputs": studies.nested_inputs(inputs, efficiency=True),
+        "inputs_without_efficiency": studies.nested_inputs(inputs, efficiency=False),
+        "disturbed": {
+            "z1": row_of(cases, solved).round(3).tolist(),
+            "z1_method": solved,
+            "forest_paper": row_of(cases, studies.DISTURBED_FOREST).round(3).tolist(),
+            "forest_in_the_paper": cases.iloc[0].round(3).tolist(),
+        },
+        "seconds": round(seconds, 1),
+    }
+
+
+def finite(value: Any) -> float | None:
+    """A number for JSON, None if it is not finite."""
+    return round(float(value), 4) if np.isfinite(value) else None

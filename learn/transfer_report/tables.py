@@ -1,0 +1,235 @@
+"""The main tables: errors with intervals on gears never seen, without and with adaptation.
+
+Functions return numbers; those that end with ``_text`` return the text of a table of the page.
+"""
+
+from collections.abc import Mapping
+from typing import cast
+
+import numpy as np
+import pandas as pd
+
+from learn.evaluation.bootstrap import (
+    SPECIMEN,
+    difference_to,
+    hierarchical_bootstrap,
+    mean_error,
+    paired_comparison,
+    ratio_to,
+)
+from swgsim.common.seeds import generator
+
+FOREST = "random forest on Selection 1"  # the paper's best on Selection 1, depth 7
+ORACLE, ORACLE_OF_SESSION = "oracle", "oracle that knows the session"
+ORACLES = [ORACLE, ORACLE_OF_SESSION]
+FROM_SCRATCH = ": from scratch"  # end of the name of a method that uses no source gear
+
+
+def number(value: float, low: float = np.nan, high: float = np.nan, digits: int = 1, unit: str = "") -> str:
+    """A figure with its interval, if there is one.
+
+    >>> number(12.34, 10.0, 15.0, unit=" %"), number(0.5, digits=2), number(float("nan"))
+    ('12.3 % (10.0 to 15.0)', '0.50', '-')
+    """
+    if np.isnan(value):
+        return "-"
+    known = np.isfinite(low) and np.isfinite(high)
+    return f"{value:.{digits}f}{unit}" + (f" ({low:.{digits}f} to {high:.{digits}f})" if known else "")
+
+
+def row_of(table: pd.DataFrame, name: str) -> pd.Series:
+    """The row of a method."""
+    return cast(pd.Series, table.loc[name])
+
+
+def least(table: pd.DataFrame) -> pd.Series:
+    """The row with the smallest ``value``."""
+    return table.iloc[int(table["value"].to_numpy().argmin())]
+
+
+def text_of(table: pd.DataFrame, prefix: str = "", digits: int = 1) -> list[str]:
+    """``value``, ``low`` and ``high`` of every row as text; or ``ratio``, ``ratio_low`` and ``ratio_high``, ..."""
+    columns = [prefix or "value", *(f"{prefix}_{end}".removeprefix("_") for end in ("low", "high"))]
+    return [number(value, low, high, digits) for value, low, high in table[columns].to_numpy(dtype=float)]
+
+
+def paired(specimens: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
+    """Errors of all methods on the same specimens: ``gear``, ``label``, ``variant`` and one column per method [%].
+
+    Raises
+    ------
+    ValueError
+        If a method was judged on other specimens than the first one.
+    """
+    columns = {name: rows.set_index(list(SPECIMEN))["error"] for name, rows in specimens.items()}
+    first, expected = next(iter(columns.items()))
+    for name, errors in columns.items():
+        if len(expected.index.symmetric_difference(errors.index)):
+            raise ValueError(
+                f"{name} was judged on {len(errors)} specimens that are not the {len(expected)} of {first}: run both "
+                "with the same protocol"
+            )
+    return pd.DataFrame(columns).reset_index()
+
+
+def with_intervals(specimens: Mapping[str, pd.DataFrame], purpose: str) -> pd.DataFrame:
+    """Mean error of each method: ``value``, ``low``, ``high`` [%]."""
+    return hierarchical_bootstrap(paired(specimens), mean_error, generator("report", purpose))
+
+
+def difference(errors: pd.DataFrame, method: str, reference: str) -> pd.Series:
+    """Error of a method minus that of another on the same specimens: ``value``, ``low``, ``high`` [points]."""
+    rng = generator("report", "difference", method, reference)
+    both = errors[[*SPECIMEN, method, reference]]
+    return row_of(hierarchical_bootstrap(both, difference_to(reference), rng), method)
+
+
+def _named(prefix: str, table: pd.DataFrame) -> pd.DataFrame:
+    return table.rename(columns={"value": prefix, "low": f"{prefix}_low", "high": f"{prefix}_high"})
+
+
+def zero_shot(errors: pd.DataFrame, development: pd.Series, fit_seconds: pd.Series) -> pd.DataFrame:
+    """Methods without adaptation and oracles on gears never seen.
+
+    Parameters
+    ----------
+    errors : DataFrame
+        Result of :func:`paired`, with the columns :data:`FOREST` and :data:`ORACLE`.
+    development : Series
+        Score of each method on development gears [%].
+    fit_seconds : Series
+        Time to fit all folds of each method [s].
+
+    Returns
+    -------
+    DataFrame
+        Per method and oracle ``value``, ``low``, ``high`` [%]; ``ratio`` to the forest and ``oracle``, the ratio to the
+        oracle, with ``_low`` and ``_high``; ``development`` and ``fit_seconds``.
+
+    Raises
+    ------
+    ValueError
+        If the forest is not among the methods.
+    """
+    if FOREST not in errors:
+        raise ValueError(f"no run of the {FOREST}, the reference of all ratios: add classifier=rf features=selection_1")
+    rng = generator("report", "zero-shot")
+    table = hierarchical_bootstrap(errors, mean_error, rng)
+    table = table.join(_named("ratio", hierarchical_bootstrap(errors, ratio_to(FOREST), rng)))
+    table = table.join(_named("oracle", hierarchical_bootstrap(errors, ratio_to(ORACLE), rng)))
+    return table.assign(development=development, fit_seconds=fit_seconds)
+
+
+def best_of(table: pd.DataFrame) -> str:
+    """The method of :func:`zero_shot` with the smallest error on the judged gears."""
+    return str(table["value"].drop(ORACLES, errors="ignore").idxmin())
+
+
+def highest(scores: pd.Series) -> str | None:
+    """Name of the highest score, None without a score."""
+    known = scores.dropna()
+    return str(known.idxmax()) if len(known) else None
+
+
+def representations_text(table: pd.DataFrame) -> pd.DataFrame:
+    """Error of every classifier (rows) on every representation (columns); the oracles know everything."""
+    names = table.index.to_series().str.partition(" on ")
+    cells = table.assign(text=text_of(table), method=names[0], on=names[2].where(names[2] != "", "all that is known"))
+    wide = cells.pivot(index="method", columns="on", values="text").fillna("-")
+    least = {key: cells.groupby(key)["value"].min().sort_values().index for key in ("method", "on")}
+    return wide.loc[least["method"], least["on"]].rename_axis("error [%]")
+
+
+def methods_text(table: pd.DataFrame, errors: pd.DataFrame) -> pd.DataFrame:
+    """Every method in comparison with the paper's forest and with the oracle."""
+    compared = paired_comparison(errors.drop(columns=ORACLES), FOREST, generator("report", "against the forest"))
+    rows = table.join(_named("change", compared)).sort_values("value")
+    gears = [f"{b:.0f} of {g:.0f}" if g > 0 else "-" for b, g in rows[["better_gears", "gears"]].to_numpy()]
+    return pd.DataFrame(
+        {
+            "error [%]": text_of(rows),
+            "ratio to the paper's forest": text_of(rows, "ratio", 2),
+            "ratio to the oracle": text_of(rows, "oracle", 2),
+            "change to the paper's forest [points]": text_of(rows, "change"),
+            "p (Holm)": [number(p, digits=4) for p in rows["p_holm"]],
+            "better in gears": gears,
+            "error on development gears [%]": [number(100 - score) for score in rows["development"]],
+            "fit, all folds [s]": [number(seconds, digits=0) for seconds in rows["fit_seconds"]],
+        },
+        index=rows.index.rename("method"),
+    )
+
+
+def few_shot(errors: pd.DataFrame, adapted: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
+    """Adapted methods at every number of shots.
+
+    Parameters
+    ----------
+    errors : DataFrame
+        As of :func:`zero_shot`, for the forest.
+    adapted : mapping
+        Method to its table of specimens, with ``shots``, ``error`` and ``unadapted`` [%].
+
+    Returns
+    -------
+    DataFrame
+        One row per ``method`` and ``shots`` (0: without labels, level Z2): ``value``, ``low``, ``high`` [%]; ``ratio``
+        to the forest without transfer and ``gain``, the change of the source model by adapting [points], with
+        ``_low`` and ``_high``; ``unadapted`` [%].
+    """
+    forest = errors[[*SPECIMEN, FOREST]].rename(columns={FOREST: "error"})
+    rows = []
+    for shots in sorted({int(k) for table in adapted.values() for k in table["shots"].unique()}):
+        here = {name: part for name, table in adapted.items() if len(part := table[table["shots"] == shots])}
+        both = paired({FOREST: forest, **here})
+        changes = {name: part.assign(error=part["error"] - part["unadapted"]) for name, part in here.items()}
+        rng = generator("report", "few-shot", shots)
+        table = hierarchical_bootstrap(both, mean_error, rng).drop(index=FOREST)
+        table = table.join(_named("ratio", hierarchical_bootstrap(both, ratio_to(FOREST), rng)))
+        table = table.join(_named("gain", hierarchical_bootstrap(paired(changes), mean_error, rng)))
+        unadapted = pd.Series({name: part["unadapted"].mean() for name, part in here.items()})
+        rows.append(table.assign(shots=shots, unadapted=unadapted).rename_axis("method").reset_index())
+    return pd.concat(rows, ignore_index=True)
+
+
+def best_adapted(few: pd.DataFrame, shots: int) -> pd.Series | None:
+    """The row of :func:`few_shot` of the best method with source gears; None if none was run with so many shots."""
+    here = few[(few["shots"] == shots) & ~few["method"].str.endswith(FROM_SCRATCH)]
+    return None if here.empty else least(here)
+
+
+def shots_text(few: pd.DataFrame, prefix: str, labelled: int, marks: Mapping[str, str]) -> pd.DataFrame:
+    """A figure of :func:`few_shot`, ``gain`` or '' for the error, of every method (rows) and number of shots (columns).
+
+    `labelled` shots are all labels of the gear; `marks` are appended to names of methods.
+    """
+    wide = few.assign(text=text_of(few, prefix)).pivot(index="method", columns="shots", values="text").fillna("-")
+    wide = wide.loc[few.groupby("method")["value"].min().sort_values().index]
+    wide.insert(
+        0, "source model [%]", [number(error) for error in few.groupby("method")["unadapted"].first()[wide.index]]
+    )
+    names = {k: "Z2, no label" if k == 0 else f"K = {k}{' (Z4)' if k == labelled else ''}" for k in few["shots"]}
+    wide.index = pd.Index([f"{name}{marks.get(str(name), '')}" for name in wide.index], name="method")
+    return wide.rename(columns=names).rename_axis(None, axis="columns")
+
+
+def forgetting(gears: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
+    """Accuracy on the source gears lost by adapting [points]: ``method``, ``shots``, ``forgotten``, ``worst`` gear."""
+    rows = [
+        (name, int(str(shots)), float(part.mean()), float(part.max()))
+        for name, table in gears.items()
+        if not name.endswith(FROM_SCRATCH)  # it uses no source gear
+        for shots, part in table.groupby("shots")["forgotten"]
+    ]
+    return pd.DataFrame(rows, columns=["method", "shots", "forgotten", "worst"])
+
+
+def forgetting_text(forgotten: pd.DataFrame) -> pd.DataFrame | None:
+    """Result of :func:`forgetting` with a column per number of shots; None if it was not measured."""
+    kept = forgotten.dropna(subset=["forgotten"])
+    if kept.empty:
+        return None
+    wide = kept.pivot(index="method", columns="shots", values="forgotten")
+    wide.columns = pd.Index(["Z2" if k == 0 else f"K = {k}" for k in wide])
+    wide["worst gear"] = kept.groupby("method")["worst"].max()
+    return wide.map(lambda value: "-" if np.isnan(value) else f"{value:+.1f}")
