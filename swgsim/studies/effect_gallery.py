@@ -40,8 +40,8 @@ def picture(found: Sequence[Signature]) -> bytes:
     changes are left out.
     """
     shares = np.array([np.maximum(half_orders(each.share[0]), LEAST) for each in found])  # (effect, channel, half)
-    changed = (shares > LEAST).any(axis=(0, 2))
-    shares, channels = shares[:, changed], [name for name, some in zip(SHOWN, changed, strict=True) if some]
+    changed = np.flatnonzero((shares > LEAST).any(axis=(0, 2)))
+    shares, channels = shares[:, changed], [SHOWN[channel] for channel in changed]
     means = (shares[..., 1:] <= LEAST).all(axis=(1, 2))
     means &= means.sum() >= FEWEST_MEANS
     count = int((~means).sum() + means.any())
