@@ -72,7 +72,7 @@ def nearest(name: str, known: Iterable[str]) -> list[str]:
     >>> nearest("ecentric_wave_generator", ["coning", "eccentric_wave_generator"])
     ['eccentric_wave_generator']
     """
-    return get_close_matches(str(name), [str(each) for each in known], cutoff=0.75)
+    return get_close_matches(str(name), [str(each) for each in known], cutoff=0.8)
 
 
 def _is_number(value: Any) -> bool:

@@ -1,4 +1,6 @@
-"""The library of effects by their registered names."""
+"""The library of effects by their registered names: all classes that are imported here."""
+
+# ruff: noqa: F401
 
 import importlib
 import sys
@@ -9,7 +11,7 @@ from swgsim.effects.aged_grease import AgedGrease
 from swgsim.effects.amplifier_drift import AmplifierDrift
 from swgsim.effects.axial_thrust import AxialThrust
 from swgsim.effects.ball_pass import BallPass
-from swgsim.effects.base import Effect
+from swgsim.effects.base import PLACES, Effect
 from swgsim.effects.bearing_cage import BearingCage
 from swgsim.effects.bearing_friction import BearingFriction
 from swgsim.effects.bolt_preload import BoltPreload
@@ -81,85 +83,6 @@ from swgsim.effects.warm_grease import WarmGrease
 from swgsim.effects.worn_wave_generator import WornWaveGenerator
 from swgsim.effects.zero_offset import ZeroOffset
 
-# Effects that the identification searches, by the place of the chain at which they act.
-SEARCHED: tuple[type[Effect], ...] = (
-    # gear
-    AgedGrease,
-    CubicFriction,
-    FlankFriction,
-    GaugeDirection,
-    GaugeGain,
-    GaugePosition,
-    GreaseSettling,
-    GreaseTemperature,
-    KinematicErrorOrder,
-    LoadDependentFriction,
-    ReducedDamping,
-    ReducedStiffness,
-    StiffeningSpring,
-    WarmGrease,
-    ZeroOffset,
-    # drive
-    BearingFriction,
-    ChurningLoss,
-    ElasticHysteresis,
-    InputFriction,
-    InputUnbalance,
-    LoadTorqueRipple,
-    LostMotion,
-    MotorTorqueRipple,
-    PositionFriction,
-    SealFriction,
-    SpeedRipple,
-    StiffnessRipple,
-    StribeckFriction,
-    # wave generator
-    BallPass,
-    BearingCage,
-    CamForm,
-    Coning,
-    EccentricWaveGenerator,
-    LobeShift,
-    OutOfRound,
-    RotatingEccentricity,
-    SpeedDeformation,
-    ThermalGrowth,
-    TiltedWaveGenerator,
-    UnevenSleeve,
-    WornWaveGenerator,
-    # mesh
-    CircularSplineRunout,
-    LoadSharing,
-    MeshShift,
-    TipToothCrack,
-    UnevenTeeth,
-    # structure
-    RootToothCrack,
-    # gauge
-    AxialThrust,
-    BoltPreload,
-    BondCreep,
-    BridgeNonlinearity,
-    Debonding,
-    GaugeFactorTemperature,
-    SelfHeating,
-    SignalHysteresis,
-    ThermalOutput,
-    TiltingMoment,
-    TorqueNonlinearity,
-    # acquisition
-    AmplifierDrift,
-    ChannelCrosstalk,
-    ChannelSkew,
-    Clipping,
-    EncoderEccentricity,
-    FilterMismatch,
-    FlangeGain,
-    FlangeZero,
-    MainsHum,
-    MotorPickup,
-    SubOrders,
-)
 # Effects that vary between recordings, stand for several others, or have no known cause.
 OTHERS: tuple[type[Effect], ...] = (
     FixedFrequency,
@@ -168,6 +91,17 @@ OTHERS: tuple[type[Effect], ...] = (
     ParameterScatter,
     Regularity,
     RunIn,
+)
+# Effects that the identification searches, by place and name: all others.
+SEARCHED: tuple[type[Effect], ...] = tuple(
+    sorted(
+        (
+            kind
+            for kind in vars().values()
+            if isinstance(kind, type) and issubclass(kind, Effect) and kind is not Effect and kind not in OTHERS
+        ),
+        key=lambda kind: (PLACES.index(kind.place), kind.__name__),
+    )
 )
 LIBRARY: Mapping[str, type[Effect]] = {kind.name(): kind for kind in (*SEARCHED, *OTHERS)}
 
@@ -194,10 +128,10 @@ def named(name: str) -> type[Effect]:
     module, _, kind = name.partition(":")
     if not all(part.isidentifier() for part in (*module.split("."), kind)):
         near = nearest(name, LIBRARY)
-        meant = f"did you mean {' or '.join(near)}? T" if near else "t"
+        question = f" Did you mean {' or '.join(near)}?" if near else ""
         raise ValueError(
-            f"unknown effect {name!r}; {meant}he library has {len(LIBRARY)}: swg effects lists them; an effect of your "
-            "own needs its import path module:Class"
+            f"unknown effect {name!r}.{question} The library has {len(LIBRARY)}: swg effects lists them; an effect of "
+            "your own needs its import path module:Class"
         )
     if module.partition(".")[0] in sys.stdlib_module_names:
         # Not imported, because some modules of Python act when they are imported.

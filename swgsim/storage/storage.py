@@ -93,8 +93,8 @@ def _lay_out(file: h5py.File, first: LabelledSignals, rows: int) -> None:
     set_attributes(file["label"], flag_values=np.arange(len(CLASSES), dtype="i1"), flag_meanings=" ".join(CLASSES))
     for text in (file["sensor"], names):
         set_attributes(text, _Encoding="utf-8")  # so that xarray gives text
-    for variable, dimensions in variables:
-        for axis, name in enumerate(dimensions):
+    for variable, axes in variables:
+        for axis, name in enumerate(axes):
             variable.dims[axis].attach_scale(file[name])
 
 

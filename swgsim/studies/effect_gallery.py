@@ -29,43 +29,47 @@ from swgsim.studies.effect_signature import (
     signatures,
 )
 
+# Effects that change means only get a common panel if there are as many.
+FEWEST_MEANS = 3
+
 
 def picture(found: Sequence[Signature]) -> bytes:
     """One panel per effect: what it changes, over channels and orders, on a logarithmic scale.
 
-    Effects that change only means share the last panel, over effects and channels. Channels and orders that no effect
+    If several effects change means only, they share the last panel, over effects and channels. Channels that no effect
     changes are left out.
     """
     shares = np.array([np.maximum(half_orders(each.share[0]), LEAST) for each in found])  # (effect, channel, half)
-    shown = np.flatnonzero((shares > LEAST).any(axis=(0, 2)))
-    of_means = (shares[..., 1:] <= LEAST).all(axis=(1, 2))
-    if of_means.sum() < 2:
-        of_means[:] = False
-    panels = [(found[i], shares[i][shown]) for i in np.flatnonzero(~of_means)]
-    count = len(panels) + bool(of_means.any())
+    changed = np.flatnonzero((shares > LEAST).any(axis=(0, 2)))
+    shares, channels = shares[:, changed], [SHOWN[channel] for channel in changed]
+    means = (shares[..., 1:] <= LEAST).all(axis=(1, 2))
+    means &= means.sum() >= FEWEST_MEANS
+    count = int((~means).sum() + means.any())
     columns = min(4, count)
     rows = int(np.ceil(count / columns))
     drawing = style.figure(1.4 + 2.4 * columns, 0.8 + 2.0 * rows)
-    axes = drawing.subplots(rows, columns, squeeze=False).ravel()
-    for axis in axes[count:]:
+    alike = not means.any()
+    axes = drawing.subplots(rows, columns, squeeze=False, sharex=alike, sharey=alike)
+    for axis in axes.flat[count:]:
         axis.set_axis_off()
-    last = max(int(np.flatnonzero((shares > LEAST).any(axis=(0, 1))).max()), 2)  # half orders
     colours = {"norm": LogNorm(LEAST, 1), "aspect": "auto", "interpolation": "nearest"}
-    for axis, (signature, share) in zip(axes, panels, strict=False):
-        extent = (-0.25, last / 2 + 0.25, len(shown) - 0.5, -0.5)
-        image = axis.imshow(share[:, : last + 1], extent=extent, **colours)
-        axis.set_title(title(signature), fontsize=8, loc="left")
-        axis.set_yticks(range(len(shown)), [SHOWN[channel] for channel in shown], fontsize=7)
-        axis.set_xticks(range(0, last // 2 + 1, 2))
-        axis.set_xlabel("order", fontsize=8)
-    if of_means.any():
-        axis = axes[count - 1]
-        image = axis.imshow(shares[of_means][:, shown, 0], **colours)
+    for axis, number in zip(axes.flat, np.flatnonzero(~means), strict=False):
+        extent = (-0.25, ORDERS + 0.25, len(channels) - 0.5, -0.5)
+        image = axis.imshow(shares[number], extent=extent, **colours)
+        axis.set_title(title(found[number]), fontsize=8, loc="left")
+        axis.set_yticks(range(len(channels)), channels, fontsize=7)
+        axis.set_xticks(range(0, ORDERS + 1, 2))
+    for axis in axes.flat[max(count - columns, 0) : count]:
+        axis.tick_params(labelbottom=True)
+        axis.set_xlabel("order")
+    if means.any():
+        axis = axes.flat[count - 1]
+        axis.imshow(shares[means][..., 0], **colours)
         axis.set_title("order 0 only", fontsize=8, loc="left")
-        names = [found[i].kind.title() for i in np.flatnonzero(of_means)]
-        axis.set_yticks(range(len(names)), names, fontsize=7)
-        axis.set_xticks(range(len(shown)), [SHOWN[channel] for channel in shown], fontsize=7)
-    drawing.colorbar(image, ax=axes.tolist(), label="change, share of\nthe channel's largest line")
+        axis.set_yticks(range(means.sum()), [found[i].kind.title() for i in np.flatnonzero(means)], fontsize=7)
+        axis.set_xticks(range(len(channels)), channels, fontsize=7)
+        axis.set_xlabel("")
+    drawing.colorbar(image, ax=axes, label="change, share of\nthe channel's largest line")
     return style.png(drawing)
 
 

@@ -1,6 +1,8 @@
 """The input/output model: energy, limits, convergence, agreement with solve_ivp."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -193,23 +195,19 @@ def test_window_shorter_than_a_revolution_has_no_efficiency() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "value"), [("k1", -1.0), ("J_out", 0.0), ("b1", -0.1), ("mu", np.nan), ("b2", np.inf)]
-)
-def test_impossible_parameters_are_named(name: str, value: float) -> None:
-    with pytest.raises(ValueError, match=f"{name} of the transmission is {value!r}"):
-        replace(NOMINAL, **{name: value})
-
-
-@pytest.mark.parametrize(("order", "amplitude"), [(0, 1e-4), (-2, 1e-4), (2, np.nan), (2, -1e-4)])
-def test_kinematic_error_needs_whole_orders_and_amplitudes(order: int, amplitude: float) -> None:
-    with pytest.raises(ValueError, match="of the kinematic error is"):
-        KinematicError(order, amplitude)
-
-
-@pytest.mark.parametrize(("n", "T"), [(0, 39), (8000, 39), (2000, -1), (2000, 200), (np.nan, 39)])
-def test_operating_points_beyond_the_catalogue_are_refused(n: float, T: float) -> None:
-    with pytest.raises(ValueError, match="must be a finite number from"):
-        OperatingPoint(n, T)
+    ("make", "message"),
+    [
+        *((partial(replace, NOMINAL, **{name: value}), f"{name} of the transmission is {value!r}") for name, value in (
+            ("k1", -1.0), ("J_out", 0.0), ("b1", -0.1), ("mu", np.nan), ("b2", np.inf))),
+        *((partial(KinematicError, *term), "of the kinematic error is") for term in (
+            (0, 1e-4), (-2, 1e-4), (2, np.nan), (2, -1e-4))),
+        *((partial(OperatingPoint, *point), "must be a finite number from") for point in (
+            (0, 39), (8000, 39), (2000, -1), (2000, 200), (np.nan, 39))),
+    ],
+)  # fmt: skip
+def test_values_beyond_physical_limits_are_named(make: Callable[[], object], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        make()
 
 
 def test_gears_and_points_must_match() -> None:

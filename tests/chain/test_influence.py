@@ -22,8 +22,8 @@ FAULTS = [
 @pytest.mark.parametrize("effects", FAULTS)
 def test_chain_agrees_with_one_sparse_solve_per_instant(effects: tuple[Effect, ...]) -> None:
     psi, torque = np.linspace(0.1, 6.0, 12), np.linspace(7, 70, 12)
-    direct = DirectSolver(flex_spline(), GEAR, effects).signals(psi, torque)
-    A, B = map_of(*effects)(psi)
+    direct = DirectSolver(flex_spline(100), GEAR, effects).signals(psi, torque)
+    A, B = map_of(*effects, sectors=100)(psi)
     assert np.abs(A + torque * B - direct).max() < 1e-5 * amplitude(direct[1])
 
 

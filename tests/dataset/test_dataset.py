@@ -130,17 +130,27 @@ def test_same_bytes_with_two_workers(clean: Path, tmp_path: Path) -> None:
     assert again.read_bytes() == clean.read_bytes()
 
 
+BETWEEN_BLOCKS = """
+report = lambda n: (print(n, flush=True), time.sleep(0.5))
+dataset.generate(small_plan(), Path(sys.argv[1]), compute.Engine(1), report)
+"""
+WHILE_JOINING = """
+read = storage.read
+storage.read = lambda part: (print("joins", part, flush=True), time.sleep(0.5), read(part))[-1]
+dataset.generate(small_plan(), Path(sys.argv[1]), compute.Engine(1), lambda n: None)
+"""
+
+
 @pytest.mark.usefixtures("small_blocks")
-def test_a_run_killed_between_blocks_resumes(clean: Path, tmp_path: Path, made: list[int]) -> None:
+@pytest.mark.parametrize(("program", "joining"), [(BETWEEN_BLOCKS, False), (WHILE_JOINING, True)])
+def test_a_killed_run_resumes(program: str, joining: bool, clean: Path, tmp_path: Path, made: list[int]) -> None:
     path = tmp_path / "killed.h5"
-    program = (
-        "report = lambda n: (print(n, flush=True), time.sleep(0.5))\n"
-        "dataset.generate(small_plan(), Path(sys.argv[1]), compute.Engine(1), report)\n"
-    )
     kill(program, path, lines=3)
     assert not path.exists()
+    if joining:
+        assert {p.name for p in tmp_path.iterdir()} == {".killed.h5.parts", ".killed.h5.tmp"}
     kept = {seed for part in tmp_path.glob(".killed.h5.parts/*.h5") for seed in storage.read(part).table["seed"]}
-    assert len(kept) >= 10 + 10 + 8
+    assert joining or len(kept) >= 10 + 10 + 8
     generate(small_plan(), path, Engine(1), nothing)
     assert kept.isdisjoint(made)
     assert len(kept) + len(made) == len(small_plan())
@@ -148,49 +158,24 @@ def test_a_run_killed_between_blocks_resumes(clean: Path, tmp_path: Path, made: 
     assert list(tmp_path.iterdir()) == [path]
 
 
-@pytest.mark.usefixtures("small_blocks")
-def test_a_run_killed_while_blocks_are_joined_resumes(clean: Path, tmp_path: Path, made: list[int]) -> None:
-    path = tmp_path / "killed.h5"
-    program = (
-        "read, write = storage.read, storage.write\n"
-        "def slow(part):\n"
-        "    print('joins', part, flush=True)\n"
-        "    time.sleep(0.5)\n"
-        "    return read(part)\n"
-        "storage.read = slow\n"
-        "dataset.generate(small_plan(), Path(sys.argv[1]), compute.Engine(1), lambda n: None)\n"
-    )
-    kill(program, path, lines=3)
-    assert {p.name for p in tmp_path.iterdir()} == {".killed.h5.parts", ".killed.h5.tmp"}
-    kept = sum(len(storage.read(part)) for part in (tmp_path / ".killed.h5.parts").glob("*.h5"))
-    generate(small_plan(), path, Engine(1), nothing)
-    assert kept + len(made) == len(small_plan())
-    assert path.read_bytes() == clean.read_bytes()
-    assert list(tmp_path.iterdir()) == [path]
+def flipped(content: bytes) -> bytes:
+    middle = len(content) // 2
+    return content[:middle] + bytes([content[middle] ^ 1]) + content[middle + 1 :]
 
 
-def truncated(part: Path, _: Path) -> None:
-    part.write_bytes(part.read_bytes()[:-1])
-
-
-def emptied(part: Path, _: Path) -> None:
-    part.write_bytes(b"")
-
-
-def flipped(part: Path, _: Path) -> None:
-    content = bytearray(part.read_bytes())
-    content[len(content) // 2] ^= 1
-    part.write_bytes(content)
-
-
-def copied_from_another_block(part: Path, other: Path) -> None:
-    part.write_bytes(other.read_bytes())
+# Content of a damaged part from its own content and that of another block.
+DAMAGES: dict[str, Callable[[bytes, bytes], bytes]] = {
+    "truncated": lambda own, _: own[:-1],
+    "emptied": lambda *_: b"",
+    "flipped": lambda own, _: flipped(own),
+    "copied from another block": lambda _, other: other,
+}
 
 
 @pytest.mark.usefixtures("small_blocks")
-@pytest.mark.parametrize("damage", [truncated, emptied, flipped, copied_from_another_block])
+@pytest.mark.parametrize("damage", DAMAGES.values(), ids=list(DAMAGES))
 def test_a_bad_part_is_named_and_made_again(
-    damage: Callable[[Path, Path], None],
+    damage: Callable[[bytes, bytes], bytes],
     clean: Path,
     tmp_path: Path,
     made: list[int],
@@ -198,7 +183,7 @@ def test_a_bad_part_is_named_and_made_again(
 ) -> None:
     path = tmp_path / "a.h5"
     parts = stop(small_plan(), path, 3)
-    damage(parts[1], parts[2])
+    parts[1].write_bytes(damage(parts[1].read_bytes(), parts[2].read_bytes()))
     made.clear()
     generate(small_plan(), path, Engine(1), nothing)
     answer = capsys.readouterr().out.splitlines()

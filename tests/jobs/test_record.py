@@ -176,7 +176,7 @@ def test_commissioning_and_test_are_of_one_unit_on_other_days(clean: Path, riddl
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"hidden": [{"cam": {}}]}, "unknown effect 'cam'; the library has"),
+        ({"hidden": [{"cam": {}}]}, "unknown effect 'cam'. The library has"),
         ({"hidden": "nowhere.yaml"}, "no file of effects 'nowhere.yaml'; give a list such as"),
         ({"speeds_rpm": 2000}, r"speeds_rpm is 2000, must be a list such as \[2000\]"),
         ({"loads_nm": []}, r"operating points of the sessions are \(\), must be one or more"),

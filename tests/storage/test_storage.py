@@ -112,7 +112,7 @@ def test_what_a_file_says_of_itself_has_a_length(tmp_path: Path, recordings: Lab
     said = {"configuration": "größe: 1\n", "empty": ""}
     storage.write(tmp_path / "a.h5", [replace(recordings, attributes=said)], 6)
     assert said.items() <= storage.attributes(tmp_path / "a.h5").items()
-    with pytest.raises(ValueError, match="configuration has 64001 bytes, a file says at most 64000"):
+    with pytest.raises(ValueError, match="configuration has 64001 bytes, an attribute holds at most 64000"):
         storage.write(tmp_path / "b.h5", [replace(recordings, attributes={"configuration": 64_001 * "x"})], 6)
 
 
