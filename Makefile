@@ -14,7 +14,7 @@ FOREIGN := $(if $(SMALL),,far-bench few-bench few-noisy few-other_day)
 ON_GEARS := zero_shot $(if $(SMALL),inputs_small,inputs inputs_features) transfer_network transfer_forest \
             $(if $(SMALL),,zero_shot_lines zero_shot_signals inputs_operating_point no_reference) \
             $(if $(SMALL),,transfer_extra_trees transfer_cnn transfer_map transfer_map_foreign)
-ON_PAPER := zero_shot_disturbed $(if $(SMALL),,forest_robustness network_robustness)
+ON_PAPER := zero_shot_disturbed
 comma := ,
 QUICK := $(if $(SMALL),shots=[1$(comma)2] draws=1 protocol.folds=2 protocol.development=0 \
          protocol.labelled=2 protocol.unlabelled=1 protocol.kept_out=1)
@@ -75,7 +75,6 @@ transfer: data  ## beyond the paper: networks, transfer to gears never seen, rep
 	$(SWG) oracle grid=$(GEARS); \
 	for name in $(ON_PAPER); do $(SWG) train experiment=$$name grid=$(GRID); done; \
 	for name in $(ON_GEARS); do $(SWG) train experiment=$$name grid=$(GEARS) $(QUICK); done; \
-	$(if $(SMALL),,$(SWG) train experiment=harder_splits grid=$(GEARS);) \
 	$(SWG) transfer-report grid=$(GEARS) paper_grid=$(GRID) started=$(STARTED)
 	@echo "open report/transfer.html; 'make ui' shows the runs"
 
