@@ -31,6 +31,10 @@ def play(values: Float[np.ndarray, " time"], width: float) -> Float[np.ndarray, 
     """
     found, z = [0.0], 0.0
     for step in (np.diff(values) / width).tolist():
-        z = min(1.0, max(-1.0, z + step))
+        z += step
+        if z > 1.0:
+            z = 1.0
+        elif z < -1.0:
+            z = -1.0
         found.append(z)
     return np.array(found)

@@ -7,22 +7,19 @@ import pytest
 from joint_fixtures import strain
 from scipy.signal import lsim
 
-from swgsim.joint.effects.friction import AsymmetricFriction
-from swgsim.joint.effects.load import EncoderEccentricity
-from swgsim.joint.effects.load import GravityError
-from swgsim.joint.effects.load import InertiaError
-from swgsim.joint.effects.ripple import InertiaRipple
-from swgsim.joint.effects.load import LoadCurve
-from swgsim.joint.effects.slip import LoadDependentFriction
-from swgsim.joint.effects.friction import LoadViscosity
-from swgsim.joint.effects.slip import MaxwellSlip
-from swgsim.joint.effects.friction import PositionFriction
-from swgsim.joint.effects.friction import QuadraticFriction
-from swgsim.joint.effects.ripple import STATED, Ripple
-from swgsim.joint.effects.friction import StribeckFriction
-from swgsim.joint.effects.friction import SublinearFriction
-from swgsim.joint.kinematics import CREEP
 from swgsim.joint.effects import SEARCHED
+from swgsim.joint.effects.friction import (
+    AsymmetricFriction,
+    LoadViscosity,
+    PositionFriction,
+    QuadraticFriction,
+    StribeckFriction,
+    SublinearFriction,
+)
+from swgsim.joint.effects.load import EncoderEccentricity, GravityError, InertiaError, LoadCurve
+from swgsim.joint.effects.ripple import STATED, InertiaRipple, Ripple
+from swgsim.joint.effects.slip import LoadDependentFriction, MaxwellSlip
+from swgsim.joint.kinematics import CREEP
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.term import Term
 from swgsim.joint.textbook import Friction, RigidBody, Zero, textbook

@@ -29,7 +29,7 @@ from scipy.io import savemat
 
 from swgsim.joint.intake.read import read_joints
 from swgsim.joint.intake.source_file import read_source
-from swgsim.joint.split import chosen
+from swgsim.joint.split import select
 from swgsim.recordings.files import limits
 from swgsim.recordings.files.file_defect import FileDefect
 
@@ -81,11 +81,11 @@ def test_joints_that_stand_beside_the_moved_one_show_the_noise_of_their_currents
     files = read_joints(ur_folder(tmp_path, lambda _: table), UR)
     assert [each.joint for each in files.standing] == [f"joint_{i}" for i in (1, 3, 4, 5, 6)]
     for joint in ("joint_1", "joint_3"):
-        case = chosen(files, None, joint, "current", "*Load", None)
+        case = select(files, None, joint, "current", "*Load", None)
         white = 0.1 * np.sqrt(1 - 2 * 5 / 94)
         assert case.floor == pytest.approx(white, rel=0.05)
         assert case.floor_how.startswith("above 5 Hz")
-    assert chosen(files, None, "joint_2", "current", "*Load", "ur-1").floor is None
+    assert select(files, None, "joint_2", "current", "*Load", "ur-1").floor is None
 
 
 FULL = {

@@ -7,9 +7,8 @@ import pytest
 from joint_fixtures import TORQUE_NOISE, sessions, trajectories
 
 from swgsim.common.seeds import generator
-from swgsim.joint.effects.friction import AsymmetricFriction
+from swgsim.joint.effects.friction import AsymmetricFriction, QuadraticFriction
 from swgsim.joint.effects.load import GravityError
-from swgsim.joint.effects.friction import QuadraticFriction
 from swgsim.joint.effects.ripple import Ripple
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.regression import PARTS, Fit, Table, fit, rms

@@ -6,12 +6,9 @@ import numpy as np
 import pytest
 from joint_fixtures import Hidden, Wave, sessions, trajectories
 
-from swgsim.joint.effects.slip import LoadDependentFriction
-from swgsim.joint.effects.slip import MaxwellSlip
-from swgsim.joint.effects.friction import QuadraticFriction
+from swgsim.joint.effects.friction import QuadraticFriction, StribeckFriction, SublinearFriction
 from swgsim.joint.effects.ripple import Ripple
-from swgsim.joint.effects.friction import StribeckFriction
-from swgsim.joint.effects.friction import SublinearFriction
+from swgsim.joint.effects.slip import LoadDependentFriction, MaxwellSlip
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.regression import Fit, Table, fit
 from swgsim.joint.shaping import gain, shaped
