@@ -19,6 +19,7 @@ from swgsim.joint.figures import pictures
 from swgsim.joint.figures.friction import friction
 from swgsim.joint.figures.parts import pieces, short
 from swgsim.joint.figures.spectrum import density
+from swgsim.joint.figures.unexplained import unexplained
 from swgsim.joint.figures.waves import modelled, seen
 from swgsim.joint.judged import Judged
 from swgsim.joint.ladder import Ladder, Trial
@@ -97,7 +98,7 @@ def empty(figure: Figure) -> list[str]:
 def test_pictures_have_data_named_axes_and_stacked_panels(
     torque: tuple[Judged, dict[str, Any], Drawn], trajectory: tuple[dict[str, Any], Drawn]
 ) -> None:
-    assert list(torque[2]) == ["ladder", "stretches", "spectrum", "waves", "unexplained"]
+    assert list(torque[2]) == ["ladder", "stretches", "spectrum", "waves"]
     assert list(trajectory[1]) == ["ladder", "stretches", "spectrum", "friction"]
     assert trajectory[1]["stretches"][1].get_axes()[0].get_xlabel() == "time [s]"
     for name, (picture, figure) in [*torque[2].items(), *trajectory[1].items()]:
@@ -119,6 +120,20 @@ def test_ladder_shows_every_accepted_effect_and_the_noise(torque: tuple[Judged, 
     shown = np.concatenate([np.asarray(line.get_xdata(), float) for line in axes.lines])
     for value in (found.floor, *(rung[which] for rung in kept for which in ("fit", "heldout"))):
         assert np.isclose(shown, value).any()
+
+
+def test_lines_that_remain_are_drawn_with_their_laws(torque: tuple[Judged, dict[str, Any], Drawn]) -> None:
+    """The ripple without a model of it: one line of order 200 in every run."""
+    bare = replace(torque[0], ladder=Ladder(torque[0].ladder.textbook, (), ()))
+    law = RemainingLine(0.0, ORDER, SIZE, 0.6, ("A 0.6",), 0.1)
+    drawn = unexplained(bare, [law])
+    assert drawn is not None
+    (axes,) = drawn.get_axes()
+    speed, frequency = np.asarray(axes.collections[0].get_offsets(), float).T
+    np.testing.assert_allclose(np.unique(speed.round(1)), np.unique(np.abs(SPEEDS)))
+    assert np.abs(frequency - ORDER * speed / (2 * np.pi)).min() < 0.5
+    assert axes.lines[0].get_label() == "order 200 per revolution of the output"
+    assert unexplained(torque[0], [LINE]) is None
 
 
 def test_ripple_is_measured_in_every_run_as_it_was_made(torque: tuple[Judged, dict[str, Any], Drawn]) -> None:

@@ -48,7 +48,7 @@ FRICTION = (
 )
 UNEXPLAINED = (
     "Lines that no effect explains",
-    "Each dot is a line above 5 Hz in the residual of a recording in one direction; larger dots are stronger. A "
+    "Each dot is a significant line in the residual of a recording at steady speed; larger dots are stronger. A "
     "straight line through the origin is a wave fixed to the gear. A level line has a fixed frequency, such as an "
     "electric disturbance or a resonance. A falling line is an alias of sampling.",
 )
