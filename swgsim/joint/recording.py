@@ -16,7 +16,7 @@ class Signal(NamedTuple):
     """Unit and meaning of a signal."""
 
     unit: str
-    says: str
+    meaning: str
 
 
 SIGNALS: Mapping[str, Signal] = {
@@ -70,7 +70,7 @@ class JointRecording:
     def __post_init__(self) -> None:
         for name in ("q", "omega"):
             if name not in self.signals:
-                raise ValueError(f"recording {self.name} has no signal {name}: {SIGNALS[name].says} is needed")
+                raise ValueError(f"recording {self.name} has no signal {name}: {SIGNALS[name].meaning} is needed")
         for name, values in self.signals.items():
             if name not in SIGNALS:
                 raise ValueError(f"recording {self.name}: unknown signal {name!r}; choose from {', '.join(SIGNALS)}")

@@ -84,7 +84,7 @@ def report(judged: Judged, days: Days | None, lines: Sequence[RemainingLine]) ->
 def sentence(judged: Judged, remaining: Sequence[str]) -> str:
     """The verdict in one sentence."""
     ratio, of = judged.table.recordings[0].gear_ratio, SIGNALS[judged.table.of]
-    where = f"{judged.table.recordings[0].robot}, {judged.table.recordings[0].joint.replace('_', ' ')}, {of.says}"
+    where = f"{judged.table.recordings[0].robot}, {judged.table.recordings[0].joint.replace('_', ' ')}, {of.meaning}"
     more = "one regularity of the residual remains" if len(remaining) == 1 else f"{len(remaining)} regularities remain"
     rest = f"; {more} unexplained" if remaining else ""
     if not judged.ladder.steps:

@@ -141,7 +141,7 @@ def _only(what: str, wanted: str | None, available: Sequence[str], refused: set[
         return str(wanted)
     if wanted is None and len(available) == 1:
         return available[0]
-    choices = ", ".join(f"{name} ({SIGNALS[name].says})" if name in SIGNALS else name for name in available)
+    choices = ", ".join(f"{name} ({SIGNALS[name].meaning})" if name in SIGNALS else name for name in available)
     if not choices:
         raise ValueError(f"no recording has a signal to explain: map {' or '.join(PREDICTED)} in the source")
     if wanted is None:

@@ -18,7 +18,6 @@ from swgsim.joint.effects.slip import LoadDependentFriction
 from swgsim.joint.figures import pictures
 from swgsim.joint.figures.friction import friction
 from swgsim.joint.figures.parts import pieces, short
-from swgsim.joint.figures.spectrum import density
 from swgsim.joint.figures.unexplained import unexplained
 from swgsim.joint.figures.waves import modelled, seen
 from swgsim.joint.judged import Judged
@@ -38,6 +37,8 @@ SPEEDS = (-0.6, 0.2, 0.6, 1.0, 1.5)
 LINE = RemainingLine(120.0, -300.0, 0.01, 0.6, ("B 0.6",), -0.02)
 NASTY = "<script>alert('R&D')</script>"
 Drawn = dict[str, tuple[Picture, Figure]]
+Torque = tuple[Judged, dict[str, Any], Drawn]
+Trajectory = tuple[dict[str, Any], Drawn]
 
 
 def judged(fitted: tuple[JointRecording, ...], held: tuple[JointRecording, ...], of: str, *tried: Term) -> Judged:
@@ -62,7 +63,7 @@ def full(answer: dict[str, Any]) -> dict[str, Any]:
 
 
 @pytest.fixture(scope="module")
-def torque() -> tuple[Judged, dict[str, Any], Drawn]:
+def torque() -> Torque:
     wave = Ripple(order=ORDER, corner=CORNER, damping=DAMPING)
     found = judged(RUNS["A"], RUNS["B"], "T_sensor", wave, Ripple(order=3.0))
     answer = full(report(found, None, [LINE]))
@@ -70,7 +71,7 @@ def torque() -> tuple[Judged, dict[str, Any], Drawn]:
 
 
 @pytest.fixture(scope="module")
-def trajectory() -> tuple[dict[str, Any], Drawn]:
+def trajectory() -> Trajectory:
     recordings = trajectories("page", Hidden(load=0.02), seconds=10.0)
     found = judged(recordings[:3], recordings[3:], "current", LoadDependentFriction(), Ripple(order=101.0))
     assert days(found.ladder.top, (found.table, found.heldout)) is None, "one run gives no friction of its session"
@@ -95,11 +96,9 @@ def empty(figure: Figure) -> list[str]:
     ]
 
 
-def test_pictures_have_data_named_axes_and_stacked_panels(
-    torque: tuple[Judged, dict[str, Any], Drawn], trajectory: tuple[dict[str, Any], Drawn]
-) -> None:
-    assert list(torque[2]) == ["ladder", "stretches", "spectrum", "waves"]
-    assert list(trajectory[1]) == ["ladder", "stretches", "spectrum", "friction"]
+def test_pictures_have_data_named_axes_and_stacked_panels(torque: Torque, trajectory: Trajectory) -> None:
+    assert list(torque[2]) == ["ladder", "stretches", "waves"]
+    assert list(trajectory[1]) == ["ladder", "stretches", "friction"]
     assert trajectory[1]["stretches"][1].get_axes()[0].get_xlabel() == "time [s]"
     for name, (picture, figure) in [*torque[2].items(), *trajectory[1].items()]:
         assert picture.png.startswith(b"\x89PNG")
@@ -111,7 +110,7 @@ def test_pictures_have_data_named_axes_and_stacked_panels(
         assert all("[" in text for text in named), (name, named)
 
 
-def test_ladder_shows_every_accepted_effect_and_the_noise(torque: tuple[Judged, dict[str, Any], Drawn]) -> None:
+def test_ladder_shows_every_accepted_effect_and_the_noise(torque: Torque) -> None:
     found, answer, drawn = torque
     axes = drawn["ladder"][1].get_axes()[0]
     kept = [rung for rung in answer["rungs"] if rung["kept"]]
@@ -122,7 +121,7 @@ def test_ladder_shows_every_accepted_effect_and_the_noise(torque: tuple[Judged, 
         assert np.isclose(shown, value).any()
 
 
-def test_lines_that_remain_are_drawn_with_their_laws(torque: tuple[Judged, dict[str, Any], Drawn]) -> None:
+def test_lines_that_remain_are_drawn_with_their_laws(torque: Torque) -> None:
     """The ripple without a model of it: one line of order 200 in every run."""
     bare = replace(torque[0], ladder=Ladder(torque[0].ladder.textbook, (), ()))
     law = RemainingLine(0.0, ORDER, SIZE, 0.6, ("A 0.6",), 0.1)
@@ -136,7 +135,7 @@ def test_lines_that_remain_are_drawn_with_their_laws(torque: tuple[Judged, dict[
     assert unexplained(torque[0], [LINE]) is None
 
 
-def test_ripple_is_measured_in_every_run_as_it_was_made(torque: tuple[Judged, dict[str, Any], Drawn]) -> None:
+def test_ripple_is_measured_in_every_run_as_it_was_made(torque: Torque) -> None:
     points = seen(torque[0], ORDER)
     assert {point.session for point in points} == {"A", "B"}
     assert {point.heldout for point in points} == {False, True}
@@ -166,14 +165,6 @@ def test_friction_points_lie_on_the_lines_of_their_session() -> None:
     assert [tick.get_text() for tick in below.get_xticklabels()] == ["A", "B"]
 
 
-def test_density_has_the_power_of_white_noise_without_the_mean() -> None:
-    recordings = tuple(steady(v, "density", seconds=8.0) for v in (0.2, 0.5))
-    table = Table(recordings, "T_sensor")
-    residual = 3.0 + 0.1 * np.random.default_rng(5).normal(size=len(table.signal))
-    f, power = density(table, residual)
-    assert np.trapezoid(power, f) == pytest.approx(0.01, rel=0.1)
-
-
 def test_pieces_are_a_whole_run_or_parts_of_similar_speed_of_a_trajectory() -> None:
     assert [chosen.all() for chosen in pieces(steady(0.5, "pieces"))] == [True]
     recording = trajectories("pieces")[0]
@@ -193,7 +184,7 @@ def test_names_are_short_and_waves_of_a_kind_are_named_together() -> None:
     assert listed(terms, 100.0) == f"{both} and Stribeck friction"
 
 
-def test_page_begins_with_the_verdict_and_folds_the_details(torque: tuple[Judged, dict[str, Any], Drawn]) -> None:
+def test_page_begins_with_the_verdict_and_folds_the_details(torque: Torque) -> None:
     _, answer, drawn = torque
     html = html_of(answer, drawn)
     body = html[html.index("<body>") :]
@@ -232,9 +223,7 @@ def test_a_higher_error_on_recordings_not_seen_is_said_plainly() -> None:
     assert "falls from" in reversed_["sentence"]
 
 
-def test_parameters_have_names_and_units_and_limits_of_the_model_are_cautions(
-    torque: tuple[Judged, dict[str, Any], Drawn], trajectory: tuple[dict[str, Any], Drawn]
-) -> None:
+def test_parameters_have_names_and_units_and_limits_are_cautions(torque: Torque, trajectory: Trajectory) -> None:
     units = {name: each["unit"] for name, each in torque[1]["calibrated"].items()}
     assert units == {"inertia": "N m s^2/rad", "gravity cosine": "N m", "gravity sine": "N m"}
     units = {name: each["unit"] for name, each in trajectory[0]["calibrated"].items()}
@@ -246,7 +235,7 @@ def test_parameters_have_names_and_units_and_limits_of_the_model_are_cautions(
     assert trajectory[0]["cautions"] == []
 
 
-def test_all_text_of_the_page_is_escaped(trajectory: tuple[dict[str, Any], Drawn]) -> None:
+def test_all_text_of_the_page_is_escaped(trajectory: Trajectory) -> None:
     answer, drawn = trajectory
     answer = answer | {"next_experiment": {"words": NASTY}, "unknown": {"words": [NASTY], "lines": []}}
     answer |= dict.fromkeys(("sentence", "robot", "joint", "folder"), NASTY)
@@ -259,16 +248,14 @@ def test_all_text_of_the_page_is_escaped(trajectory: tuple[dict[str, Any], Drawn
     assert html.count("&lt;script&gt;") > 10
 
 
-def test_page_without_noise_or_remaining_lines(trajectory: tuple[dict[str, Any], Drawn]) -> None:
+def test_page_without_noise_or_remaining_lines(trajectory: Trajectory) -> None:
     html = page(trajectory[0] | {"days": None, "unknown": None, "next_experiment": None, "gear_ratio": None}, {})
     for text in ("No recording at rest", "no line that several recordings share", "No question is open"):
         assert text in html
     assert "None" not in html.replace("<li>None.</li>", "")
 
 
-def test_the_page_of_all_cases_names_missing_effects(
-    torque: tuple[Judged, dict[str, Any], Drawn], tmp_path: Path
-) -> None:
+def test_the_page_of_all_cases_names_missing_effects(torque: Torque, tmp_path: Path) -> None:
     (tmp_path / "ladder.png").write_bytes(b"")
     html = page_of_cases({"a case": torque[1]}, {"another": "it does not exist"}, {"a case": tmp_path})
     assert '<td class="text">ripple of 2 per revolution of the motor</td>' in html
