@@ -168,6 +168,12 @@ def identify_joint(
     ------
     ValueError
         If all recordings were refused, or a choice is unknown or missing; it lists the choices.
+
+    Examples
+    --------
+    >>> recordings = recordings_of("ur10e", "my_logs")  # doctest: +SKIP
+    >>> answer = identify_joint(recordings, joint="joint_2", holdout="*_12harm")  # doctest: +SKIP
+    >>> answer.sentence, answer.table(), answer.save("answer")  # doctest: +SKIP
     """
     start = time.perf_counter()
     kinds = effects_of(searched, library)

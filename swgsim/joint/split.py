@@ -9,8 +9,7 @@ import numpy as np
 from swgsim.joint.intake.read import JointRecordings
 from swgsim.joint.judged import noise_floor, standing_noise
 from swgsim.joint.recording import PREDICTED, SIGNALS, JointRecording
-from swgsim.joint.regression import Table
-from swgsim.joint.slow import SLOW
+from swgsim.joint.regression import SLOW, Table
 
 # A joint must move one revolution of its motor, or this angle [rad] if the gear ratio is unknown.
 LEAST_WAY = 0.05
