@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 from swgsim.common.files import replacing, write_json, write_text
 from swgsim.common.numbers import figure
 from swgsim.common.plain_yaml import plain
-from swgsim.common.style import Picture
 from swgsim.common.version import code_version
 from swgsim.effects.library import listed, named
 from swgsim.effects.text import as_text
@@ -30,6 +29,8 @@ from swgsim.joint.term import Term
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from pandas import DataFrame
+
+    from swgsim.common.style import Picture
 
 # Folder of the shipped column maps.
 SOURCES = Path(__file__).parents[2] / "conf" / "sources"
