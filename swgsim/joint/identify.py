@@ -13,7 +13,6 @@ from swgsim.common.configured import conf_folder
 from swgsim.common.files import replacing, write_json, write_text
 from swgsim.common.numbers import significant
 from swgsim.common.plain_yaml import plain
-from swgsim.common.style import Picture
 from swgsim.common.version import code_version
 from swgsim.effects.library import listed, named
 from swgsim.effects.text import as_text
@@ -31,6 +30,8 @@ from swgsim.joint.term import Term
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from pandas import DataFrame
+
+    from swgsim.common.style import Picture
 
 # Folder of the shipped column maps.
 SOURCES = conf_folder() / "sources"
@@ -169,6 +170,12 @@ def identify_joint(
     ------
     ValueError
         If all recordings were refused, or a choice is unknown or missing; it lists the choices.
+
+    Examples
+    --------
+    >>> recordings = recordings_of("ur10e", "my_logs")  # doctest: +SKIP
+    >>> answer = identify_joint(recordings, joint="joint_2", holdout="*_12harm")  # doctest: +SKIP
+    >>> answer.sentence, answer.table(), answer.save("answer")  # doctest: +SKIP
     """
     start = time.perf_counter()
     kinds = effects_of(searched, library)

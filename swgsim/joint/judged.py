@@ -6,8 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from swgsim.joint.ladder import Ladder, Trial
-from swgsim.joint.regression import Fit, Table, rms
-from swgsim.joint.slow import slow
+from swgsim.joint.regression import Fit, Table, rms, slow
 
 
 @dataclass(frozen=True, eq=False)

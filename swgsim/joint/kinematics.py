@@ -1,15 +1,19 @@
-"""Quantities from the motion of a joint: smoothed speed, acceleration, direction of friction."""
+"""Quantities from the motion of a joint: smoothed speed, acceleration, slip, and inertia about an upright axis."""
+
+from itertools import combinations_with_replacement
 
 import numpy as np
 from jaxtyping import Float
 from scipy.signal import savgol_filter
 
-from swgsim.effects.sense import sense
-
 # Window of the smoothing of speeds [s]; trajectories and speed controls are slower.
 SMOOTHED = 0.15
 # Friction changes its sign smoothly below this speed of the output [rad/s], the noise of a measured speed.
 CREEP = 0.01
+# Share of the rigid-body torque that the inertia must explain.
+EXPLAINED = 0.8
+# Least inertia, as a share of the mean: a fit may go below in postures with few samples.
+LEAST = 0.1
 
 
 def smooth(omega: Float[np.ndarray, " time"], rate: float, derivative: int) -> Float[np.ndarray, " time"]:
@@ -19,11 +23,6 @@ def smooth(omega: Float[np.ndarray, " time"], rate: float, derivative: int) -> F
     return savgol_filter(omega, length, 2, deriv=derivative, delta=1 / rate)
 
 
-def direction(omega: Float[np.ndarray, " time"]) -> Float[np.ndarray, " time"]:
-    """Sign of Coulomb friction, from -1 to 1."""
-    return sense(omega, CREEP)
-
-
 def play(values: Float[np.ndarray, " time"], width: float) -> Float[np.ndarray, " time"]:
     """An element of Maxwell's slip model, from -1 to 1: a spring that slips at the strain ``width``.
 
@@ -31,6 +30,42 @@ def play(values: Float[np.ndarray, " time"], width: float) -> Float[np.ndarray, 
     """
     found, z = [0.0], 0.0
     for step in (np.diff(values) / width).tolist():
-        z = min(1.0, max(-1.0, z + step))
+        z += step
+        if z > 1.0:
+            z = 1.0
+        elif z < -1.0:
+            z = -1.0
         found.append(z)
     return np.array(found)
+
+
+def inertia(
+    reach: Float[np.ndarray, "link time"],
+    speed: Float[np.ndarray, " time"],
+    acceleration: Float[np.ndarray, " time"],
+    time: Float[np.ndarray, " time"],
+    torque: Float[np.ndarray, " time"],
+) -> Float[np.ndarray, " time"] | None:
+    """Inertia [kg m^2] whose momentum changes at the rate of a rigid-body torque; None if there is none.
+
+    It is for a joint about an upright axis, and changes with the reach of the links beyond it.
+
+    The inertia of links in a plane through the axis is a sum of squares and products of their reaches.
+
+    Parameters
+    ----------
+    reach : array (link, time)
+        Cosine of the angle of every link to the horizontal.
+    speed, acceleration, time : array (time,)
+        Of the joint [rad/s], [rad/s^2], [s].
+    torque : array (time,)
+        Torque of the rigid-body model [N m].
+    """
+    pairs = combinations_with_replacement(reach, 2)
+    parts = np.stack([np.ones(len(time)), *(one * other for one, other in pairs)])
+    X = (parts * acceleration + np.gradient(parts, time, axis=1) * speed).T
+    weights = np.linalg.lstsq(X, torque, rcond=1e-6)[0]
+    left, found = torque - X @ weights, weights @ parts
+    if not left @ left < (1 - EXPLAINED) * (torque @ torque) or found.mean() <= 0:
+        return None
+    return np.maximum(found, LEAST * found.mean())

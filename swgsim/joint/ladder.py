@@ -132,7 +132,9 @@ def climb(
     while True:
         sought = [kind for kind in possible if kind not in {type(term) for term in now.terms}]
         candidates = _candidates(now, sought, known)
-        tested = tqdm(candidates, f"step {len(steps) + 1}", unit=" candidates", leave=False, disable=not bar)
+        tested = tqdm(
+            candidates, f"step {len(steps) + 1}", unit=" candidates", leave=False, disable=None if bar else True
+        )
         trials = sorted(tested, key=lambda trial: -trial.gain)
         best = next((trial for trial in trials if trial.pays), None)
         if best is None or len(steps) == MOST:

@@ -1,22 +1,22 @@
 """One recording of one joint of a robot: motion of the output, torque and motor current."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.joint.inertia import inertia
-from swgsim.joint.kinematics import CREEP, direction, smooth
+from swgsim.effects.sense import sense
+from swgsim.joint.kinematics import CREEP, inertia, smooth
 
 
 class Signal(NamedTuple):
     """Unit and meaning of a signal."""
 
     unit: str
-    says: str
+    meaning: str
 
 
 SIGNALS: Mapping[str, Signal] = {
@@ -70,7 +70,7 @@ class JointRecording:
     def __post_init__(self) -> None:
         for name in ("q", "omega"):
             if name not in self.signals:
-                raise ValueError(f"recording {self.name} has no signal {name}: {SIGNALS[name].says} is needed")
+                raise ValueError(f"recording {self.name} has no signal {name}: {SIGNALS[name].meaning} is needed")
         for name, values in self.signals.items():
             if name not in SIGNALS:
                 raise ValueError(f"recording {self.name}: unknown signal {name!r}; choose from {', '.join(SIGNALS)}")
@@ -96,7 +96,7 @@ class JointRecording:
     def sense(self) -> Float[np.ndarray, " time"]:
         """Sign of Coulomb friction, from -1 to 1; constant for a joint that never reverses."""
         if turns_back([self]):
-            return direction(self.signals["omega"])
+            return sense(self.signals["omega"], CREEP)
         return np.full(len(self), float(np.sign(self.speed.sum())))
 
     @cached_property
@@ -123,12 +123,6 @@ class JointRecording:
     def rate(self) -> float:
         """Sampling rate [Hz], the mean over the recording."""
         return (len(self.time) - 1) / float(self.time[-1] - self.time[0])
-
-    def cut(self, chosen: slice) -> "JointRecording":
-        """A stretch of the recording."""
-        signals = {name: values[chosen] for name, values in self.signals.items()}
-        posture = None if self.posture is None else self.posture[:, chosen]
-        return replace(self, time=self.time[chosen], signals=signals, posture=posture)
 
 
 def turns_back(recordings: Iterable[JointRecording]) -> bool:

@@ -6,12 +6,15 @@ from functools import cached_property
 
 import numpy as np
 from jaxtyping import Float, Int
+from scipy.signal import butter, sosfiltfilt
 from scipy.stats import t
 
 from swgsim.common.singular import svd
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.term import Term
 
+# Corner frequency of the slow part of a residual [Hz]: gravity, inertia and friction are below, ripples above.
+SLOW = 5.0
 # Length of a stretch [s]; errors of different stretches count as independent.
 STRETCH = 1.0
 # Groups for the cross-validation of a single recording.
@@ -163,6 +166,16 @@ def solved(X: Float[np.ndarray, "row column"], y: Float[np.ndarray, " row"]) -> 
     """Weights of columns by least squares; equal columns share their weight."""
     scale = _scale(X)
     return np.linalg.lstsq(X / scale, y, rcond=1e-9)[0] / scale
+
+
+def slow(table: Table, residual: Float[np.ndarray, " row"]) -> Float[np.ndarray, " row"]:
+    """The part of a residual below SLOW; the whole residual of a recording that is too coarse or too short."""
+    found = residual.copy()
+    for number, each in enumerate(table.recordings):
+        if each.rate > 4 * SLOW and len(each) > 100:
+            own = table.run == number
+            found[own] = sosfiltfilt(butter(4, SLOW, fs=each.rate, output="sos"), residual[own])
+    return found
 
 
 def rms(values: Float[np.ndarray, " row"]) -> float:

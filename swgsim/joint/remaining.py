@@ -80,7 +80,7 @@ class RemainingLine:
 
 
 @dataclass(frozen=True)
-class _Peak:
+class Peak:
     """One line of one run: frequency [Hz], amplitude; name, speed [rad/s] and resolution [Hz] of the run."""
 
     frequency: float
@@ -98,7 +98,7 @@ def remaining(fits: Sequence[tuple[Fit, Table]]) -> tuple[RemainingLine, ...]:
     fits : sequence of (Fit, Table)
         A model, and recordings with a residual.
     """
-    peaks = [peak for fit, table in fits for peak in _peaks(fit, table)]
+    peaks = [peak for fit, table in fits for peak in significant_peaks(fit, table)]
     by_chance = _by_chance(peaks, generator("remaining lines"))
     found: list[RemainingLine] = []
     while len(found) < MOST_LAWS:
@@ -129,7 +129,7 @@ def _gain(fits: Sequence[tuple[Fit, Table]], runs: Sequence[str], fixed: float, 
     return 1 - rms(np.concatenate(after)) / rms(np.concatenate(before))
 
 
-def _by_chance(peaks: Sequence[_Peak], rng: np.random.Generator) -> int:
+def _by_chance(peaks: Sequence[Peak], rng: np.random.Generator) -> int:
     """Largest number of runs that a law meets by chance, after permutations of the speeds of the runs."""
     speeds = {peak.run: peak.speed for peak in peaks}
     most = LEAST_RUNS - 1
@@ -140,7 +140,7 @@ def _by_chance(peaks: Sequence[_Peak], rng: np.random.Generator) -> int:
     return most
 
 
-def _best(peaks: Sequence[_Peak], *, moving: bool = False) -> tuple[list[_Peak], float, float] | None:
+def _best(peaks: Sequence[Peak], *, moving: bool = False) -> tuple[list[Peak], float, float] | None:
     """The law that meets lines of most runs, with the most power among these: its lines, fixed part and slope.
 
     A fixed frequency does not change with permuted speeds; ``moving`` excludes it.
@@ -166,11 +166,11 @@ def _best(peaks: Sequence[_Peak], *, moving: bool = False) -> tuple[list[_Peak],
     return (met, fixed, slope) if _runs(met) >= LEAST_RUNS else None
 
 
-def _runs(met: Sequence[_Peak]) -> int:
+def _runs(met: Sequence[Peak]) -> int:
     return len({peak.run for peak in met})
 
 
-def _peaks(fit: Fit, table: Table) -> list[_Peak]:
+def significant_peaks(fit: Fit, table: Table) -> list[Peak]:
     """Significant lines in the residual of runs at steady speed."""
     missed = fit.missed(table)
     found = []
@@ -185,11 +185,11 @@ def _peaks(fit: Fit, table: Table) -> list[_Peak]:
         places, _ = find_peaks(power / np.maximum(noise, 1e-300), height=STRONG)
         resolution = 2 / float(each.time[-1] - each.time[0])
         strongest = sorted((i for i in places if f[i] > WAVES * resolution), key=lambda i: -power[i])[:MOST_LINES]
-        found += [_Peak(float(f[i]), float(np.sqrt(2 * power[i])), each.name, abs(mean), resolution) for i in strongest]
+        found += [Peak(float(f[i]), float(np.sqrt(2 * power[i])), each.name, abs(mean), resolution) for i in strongest]
     return found
 
 
-def _laws(one: _Peak, other: _Peak) -> list[tuple[float, float]]:
+def _laws(one: Peak, other: Peak) -> list[tuple[float, float]]:
     """Laws through two lines: fixed frequency, order, or both; fixed part [Hz] and slope [Hz s/rad]."""
     found = [(0.0, one.frequency / one.speed), (one.frequency, 0.0)]
     if one.run != other.run and abs(one.speed - other.speed) > 0.1 * max(one.speed, other.speed):
@@ -201,22 +201,22 @@ def _laws(one: _Peak, other: _Peak) -> list[tuple[float, float]]:
     return found
 
 
-def _met(peaks: Sequence[_Peak], fixed: float, slope: float) -> list[_Peak]:
+def _met(peaks: Sequence[Peak], fixed: float, slope: float) -> list[Peak]:
     """The lines that a law meets, one of each run."""
-    met: dict[str, _Peak] = {}
+    met: dict[str, Peak] = {}
     for peak in peaks:
         if _off(peak, fixed, slope) < 1 and (peak.run not in met or peak.amplitude > met[peak.run].amplitude):
             met[peak.run] = peak
     return list(met.values())
 
 
-def _off(peak: _Peak, fixed: float, slope: float) -> float:
+def _off(peak: Peak, fixed: float, slope: float) -> float:
     """Distance of a line from a law, in units of its tolerance, which is relative to the larger part of the law."""
     tolerance = MET * max(abs(fixed), abs(slope) * peak.speed) + peak.resolution
     return abs(peak.frequency - fixed - slope * peak.speed) / tolerance
 
 
-def _refined(met: Sequence[_Peak], fixed: float, slope: float) -> tuple[float, float]:
+def _refined(met: Sequence[Peak], fixed: float, slope: float) -> tuple[float, float]:
     """Refine a law by least squares over all lines that it meets."""
     f, v = np.array([p.frequency for p in met]), np.array([p.speed for p in met])
     if not fixed:

@@ -84,7 +84,7 @@ def report(judged: Judged, days: Days | None, lines: Sequence[RemainingLine]) ->
 def sentence(judged: Judged, remaining: Sequence[str]) -> str:
     """The verdict in one sentence."""
     ratio, of = judged.table.recordings[0].gear_ratio, SIGNALS[judged.table.of]
-    where = f"{judged.table.recordings[0].robot}, {judged.table.recordings[0].joint.replace('_', ' ')}, {of.says}"
+    where = f"{judged.table.recordings[0].robot}, {judged.table.recordings[0].joint.replace('_', ' ')}, {of.meaning}"
     more = "one regularity of the residual remains" if len(remaining) == 1 else f"{len(remaining)} regularities remain"
     rest = f"; {more} unexplained" if remaining else ""
     if not judged.ladder.steps:
@@ -235,8 +235,8 @@ def _cautions(judged: Judged) -> list[str]:
             "there is no rigid-body torque (T_rigid), so the textbook model has the inertia and gravity of a single "
             "link; for a joint that carries several links, map T_rigid in the source"
         )
-    scatter = float(np.std(judged.heldout.signal))
-    if judged.before.heldout > scatter:
+    if _fails(judged):
+        scatter = float(np.std(judged.heldout.signal))
         found.append(
             f"the textbook model predicts the held-out recordings worse than a constant (error "
             f"{significant(judged.before.heldout)} {unit}, standard deviation of the signal {significant(scatter)} "
@@ -245,9 +245,16 @@ def _cautions(judged: Judged) -> list[str]:
     return found
 
 
+def _fails(judged: Judged) -> bool:
+    """Whether the textbook model predicts the held-out recordings worse than a constant."""
+    return judged.before.heldout > float(np.std(judged.heldout.signal))
+
+
 def _next(judged: Judged, days: Days | None) -> dict[str, Any] | None:
     """The next recordings that would answer an open question."""
     wishes = []
+    if _fails(judged):
+        wishes.append("record larger motions, map T_rigid, and check units and signs in the source")
     if judged.ladder.steps and not judged.helps:
         wishes.append("fit more sessions, such as the held-out ones: they differ from the fitted ones")
     if days and days.chance < DIFFERENT:

@@ -9,8 +9,7 @@ import numpy as np
 from swgsim.joint.intake.read import JointRecordings
 from swgsim.joint.judged import noise_floor, standing_noise
 from swgsim.joint.recording import PREDICTED, SIGNALS, JointRecording
-from swgsim.joint.regression import Table
-from swgsim.joint.slow import SLOW
+from swgsim.joint.regression import SLOW, Table
 
 # A joint must move one revolution of its motor, or this angle [rad] if the gear ratio is unknown.
 LEAST_WAY = 0.05
@@ -141,7 +140,7 @@ def _only(what: str, wanted: str | None, available: Sequence[str], refused: set[
         return str(wanted)
     if wanted is None and len(available) == 1:
         return available[0]
-    choices = ", ".join(f"{name} ({SIGNALS[name].says})" if name in SIGNALS else name for name in available)
+    choices = ", ".join(f"{name} ({SIGNALS[name].meaning})" if name in SIGNALS else name for name in available)
     if not choices:
         raise ValueError(f"no recording has a signal to explain: map {' or '.join(PREDICTED)} in the source")
     if wanted is None:

@@ -9,9 +9,8 @@ from swgsim.joint.effects.friction import PositionFriction
 from swgsim.joint.effects.ripple import InertiaRipple, Ripple
 from swgsim.joint.orders import NEIGHBOURS, Line, lines
 from swgsim.joint.recording import turns_back
-from swgsim.joint.regression import Fit
+from swgsim.joint.regression import Fit, slow
 from swgsim.joint.shaping import gain, shapes
-from swgsim.joint.slow import slow
 from swgsim.joint.term import Term
 
 Wave = Ripple | PositionFriction

@@ -1,4 +1,4 @@
-"""What a joint recording says against itself: each finding on a fabricated run, and none on sound ones."""
+"""Findings on joint recordings: each kind on a fabricated run, and none on sound ones."""
 
 import re
 from collections.abc import Callable
@@ -23,13 +23,12 @@ from fabricated_joints import (
     write_kinova,
 )
 
-from swgsim.joint.intake.mistakes import HALVES, MISTAKES, mistake
-from swgsim.joint.intake.motion import way
-from swgsim.joint.intake.read import JointFiles, read_joints
+from swgsim.joint.intake.read import JointRecordings, read_joints
+from swgsim.joint.intake.scale import HALVES, MISTAKES, mistake, way
 from swgsim.joint.intake.source_file import read_source
 
 
-def told(files: JointFiles) -> set[tuple[str, str, str]]:
+def kinds(files: JointRecordings) -> set[tuple[str, str, str]]:
     return {(each.kind, each.severity, each.recording) for each in files.defects}
 
 
@@ -57,11 +56,11 @@ def unwrapped(run: Table) -> np.ndarray:
 T, Q, V = "torque_sensor_Nm", "position_rad", "velocity_rad_s"
 LATER = slice(START + 600, START + 1300)
 
-# Of a run whose rate comes from its motion: what is done to it, and what is found, with the words that help.
+# Runs whose rate comes from their motion: change, and kind, severity and words of the finding.
 KINOVA_CASES: dict[str, tuple[Callable[[Table], Table], str, str, str]] = {
     "every other row is missing": (rows(lambda i: i[::2]), "half_rate", "refuse", "every other row is missing"),
     "every row twice": (rows(lambda i: np.repeat(i, 2)), "repeated_rows", "refuse", "rows that repeat the one before"),
-    "velocity twice too large": (of(V, lambda v: 2 * v), "double_rate", "refuse", "twice of what it was"),
+    "velocity twice too large": (of(V, lambda v: 2 * v), "double_rate", "refuse", "twice its true value"),
     "rows cut out": (rows(lambda i: np.delete(i, np.arange(900, 1000))), "angle_jumps", "warn", "usual steps too long"),
     "rows cut out in large parts": (
         rows(lambda i: np.delete(i, np.r_[700:1100, 1200:1500])), "angle_jumps", "refuse", "rows are missing",
@@ -78,15 +77,13 @@ KINOVA_CASES: dict[str, tuple[Callable[[Table], Table], str, str, str]] = {
         lambda run: {**run, V: 0.5 + 0.9 * np.sin(np.arange(len(run[V])) / 100)},
         "velocity_against_angle", "refuse", "of the same joint and time",
     ),
-    "velocity in degrees": (of(V, np.degrees), "velocity_in_deg_s", "refuse", "degrees per second"),
-    "velocity in rpm": (of(V, lambda v: v * 30 / np.pi), "velocity_in_rpm", "refuse", "revolutions per minute"),
     "velocity of the motor": (of(V, lambda v: 100 * v), "velocity_of_motor", "refuse", "100 times that of the output"),
     "velocity scaled": (of(V, lambda v: 1.5 * v), "velocity_scale", "refuse", "a factor of 0.66"),
     "velocity scaled a little": (of(V, lambda v: 1.15 * v), "velocity_scale", "warn", "a factor of 0.8"),
     "velocity backwards": (of(V, np.negative), "velocity_backwards", "refuse", "inverted: true"),
     "angle in degrees": (of(Q, np.degrees), "angle_in_degrees", "refuse", "unit: deg"),
     "angle that goes on": (
-        of(Q, lambda q: np.linspace(0, 600, len(q))), "angle_beyond_revolution", "refuse", "leave wraps out",
+        of(Q, lambda q: np.linspace(0, 600, len(q))), "angle_beyond_revolution", "refuse", "remove wraps",
     ),
     "angle frozen": (of(Q, lambda q: put(q, LATER, q[LATER.start])), "frozen", "refuse", "of the way"),
     "torque frozen": (of(T, lambda x: put(x, LATER, 0.11)), "frozen", "refuse", "check the connection"),
@@ -109,7 +106,7 @@ KINOVA_CASES: dict[str, tuple[Callable[[Table], Table], str, str, str]] = {
         lambda run: kinova_run(0.5, "long start", transient=3000), "start_up", "warn", "samples more by start_up",
     ),
     "the same as another": (
-        lambda run: kinova_run(0.3, "S1_2021-01-01"), "same_twice", "refuse", "the very numbers of",
+        lambda run: kinova_run(0.3, "S1_2021-01-01"), "same_twice", "refuse", "the same numbers as",
     ),
 }  # fmt: skip
 
@@ -134,7 +131,7 @@ def test_a_spoiled_run_is_named(tmp_path: Path, name: str) -> None:
     assert {each.recording for each in files.defects} == {blamed}
 
 
-# Of a run with a clock.
+# Runs with a clock.
 UR_Q, UR_V, UR_I, UR_RIGID = 2, 8, 14, 26  # of joint 2, counted from 0
 
 
@@ -150,7 +147,7 @@ def column(number: int, change: Callable[[np.ndarray], np.ndarray]) -> Callable[
 UR_CASES: dict[str, tuple[Callable[[np.ndarray], np.ndarray], str, str, str]] = {
     "angle in degrees": (column(UR_Q, np.degrees), "angle_in_degrees", "refuse", "57.3 times as far"),
     "velocity in degrees": (column(UR_V, np.degrees), "velocity_in_deg_s", "refuse", "0.01745 times"),
-    "velocity backwards": (column(UR_V, np.negative), "velocity_backwards", "refuse", "against the sense"),
+    "velocity backwards": (column(UR_V, np.negative), "velocity_backwards", "refuse", "opposite to the change"),
     "velocity half": (column(UR_V, lambda v: v / 2), "half_rate", "refuse", "the velocity is half"),
     "time in milliseconds": (column(0, lambda t: 1e3 * t), "time_unit", "refuse", "the time is in milliseconds"),
     "velocity of joint 3": (
@@ -187,8 +184,8 @@ def test_a_session_at_half_rate_is_seen_beside_the_declared_rate(tmp_path: Path)
         run = {name: values[::2] for name, values in kinova_run(speed, "half", rows=3000).items()}
         write_kinova(tmp_path / f"S3_v{speed}.csv", run)
     source = read_source(KINOVA)
-    assert {each[:2] for each in told(read_joints(tmp_path, source))} == {("half_rate", "refuse")}
-    assert told(read_joints(tmp_path, replace(source, rate_hz=None))) == set()
+    assert {each[:2] for each in kinds(read_joints(tmp_path, source))} == {("half_rate", "refuse")}
+    assert kinds(read_joints(tmp_path, replace(source, rate_hz=None))) == set()
 
 
 def test_a_wrong_declared_rate_is_named(tmp_path: Path) -> None:
@@ -200,10 +197,10 @@ def test_a_wrong_declared_rate_is_named(tmp_path: Path) -> None:
     assert [each.rate for each in files.at_rest] == pytest.approx([440])
 
 
-def test_a_start_that_was_not_cut_is_told(tmp_path: Path) -> None:
+def test_a_start_that_was_not_cut_is_reported(tmp_path: Path) -> None:
     source = replace(read_source(KINOVA), start_samples=0)
     files = read_joints(kinova_folder(tmp_path), source)
-    assert {each[:2] for each in told(files)} == {("start_up", "warn")}
+    assert {each[:2] for each in kinds(files)} == {("start_up", "warn")}
     assert len(files.recordings) == 4
 
 
@@ -212,16 +209,16 @@ def test_standstill_that_moves_or_has_no_noise_is_refused(tmp_path: Path) -> Non
     write_kinova(tmp_path / "standstill_noise_moves.csv", kinova_run(0.1, "moves"))
     write_kinova(tmp_path / "standstill_noise_set.csv", {**kinova_rest(), T: np.full(900, 0.1)})
     files = read_joints(tmp_path, KINOVA)
-    assert told(files) == {
+    assert kinds(files) == {
         ("moves_at_rest", "refuse", "standstill_noise_moves joint_7"),
         ("no_noise", "refuse", "standstill_noise_set joint_7"),
     }
     assert [each.name for each in files.at_rest] == ["standstill_noise_2021-01-02"]
 
 
-def test_a_file_that_the_source_says_nothing_of_is_told(tmp_path: Path) -> None:
+def test_a_file_that_matches_no_pattern_is_reported(tmp_path: Path) -> None:
     write_file(kinova_folder(tmp_path) / "other" / "x.csv", b"a,b\n1,1\n")
-    assert told(read_joints(tmp_path, KINOVA)) == {("not_in_source", "warn", "other/x.csv")}
+    assert kinds(read_joints(tmp_path, KINOVA)) == {("not_in_source", "warn", "other/x.csv")}
 
 
 def test_a_joint_that_turns_or_swings_goes_as_far_by_angle_as_by_velocity() -> None:

@@ -1,4 +1,4 @@
-"""Recordings of joints in: both shipped sources, every class of bad source and file by its name, and nothing else."""
+"""Reading of joint recordings: both shipped sources, and every kind of bad source and file."""
 
 import gzip
 import os
@@ -29,15 +29,12 @@ from scipy.io import savemat
 
 from swgsim.joint.intake.read import read_joints
 from swgsim.joint.intake.source_file import read_source
-from swgsim.joint.split import chosen
+from swgsim.joint.split import select
 from swgsim.recordings.files import limits
 from swgsim.recordings.files.file_defect import FileDefect
 
 CONFIG = yaml.safe_load(KINOVA.read_text())
 JOINT = CONFIG["joints"]["joint_7"]
-
-
-# Round trips.
 
 
 def test_a_kinova_folder_is_read(tmp_path: Path) -> None:
@@ -81,11 +78,11 @@ def test_joints_that_stand_beside_the_moved_one_show_the_noise_of_their_currents
     files = read_joints(ur_folder(tmp_path, lambda _: table), UR)
     assert [each.joint for each in files.standing] == [f"joint_{i}" for i in (1, 3, 4, 5, 6)]
     for joint in ("joint_1", "joint_3"):
-        case = chosen(files, None, joint, "current", "*Load", None)
+        case = select(files, None, joint, "current", "*Load", None)
         white = 0.1 * np.sqrt(1 - 2 * 5 / 94)
         assert case.floor == pytest.approx(white, rel=0.05)
         assert case.floor_how.startswith("above 5 Hz")
-    assert chosen(files, None, "joint_2", "current", "*Load", "ur-1").floor is None
+    assert select(files, None, "joint_2", "current", "*Load", "ur-1").floor is None
 
 
 FULL = {
@@ -181,9 +178,6 @@ def test_the_example_of_the_documentation_is_a_source(tmp_path: Path) -> None:
     assert (len(files.recordings[0]), len(files.at_rest[0])) == (2750, 3000)
 
 
-# Bad sources.
-
-
 def changed(**changes: object) -> dict:
     return {**CONFIG, **changes}
 
@@ -198,10 +192,8 @@ def signal(name: str, **changes: object) -> dict:
 
 BAD_SOURCES: dict[str, tuple[object, str]] = {
     "no mapping": ([1, 2], "the source is '[1, 2]', must be names with values"),
-    "nothing": (None, "must be names with values"),
     "unknown key": (changed(colour=1), "unknown choice 'colour' of the source; choose from robot, path, files"),
     "no joints": ({key: value for key, value in CONFIG.items() if key != "joints"}, "the source has no joints"),
-    "empty joints": (changed(joints={}), "must name at least one joint"),
     "a joint that is a list": (changed(joints={"a": [1]}), "a is '[1]', must be names with values"),
     "unknown key of a joint": (joint(mass=1), "unknown choice 'mass' of joint_7; choose from signals, gear_ratio"),
     "no angle": (joint(signals={"omega": JOINT["signals"]["omega"]}), "joint_7 has no signal q"),
@@ -210,7 +202,6 @@ BAD_SOURCES: dict[str, tuple[object, str]] = {
     "unknown unit": (signal("omega", unit="knots"), "'knots' of the unit of omega; choose from rad/s, deg/s, rpm"),
     "unknown key of a signal": (signal("q", scale=2), "unknown choice 'scale' of q; choose from column, unit"),
     "wraps": (signal("omega", unit="rad/s", wraps=True), "only the angle q can wrap"),
-    "wraps by a word": (signal("q", wraps="yes, it does"), "must be true or false"),
     "column by number": (signal("q", column=3), "column 3 of q must be its name"),
     "column by truth": (signal("q", column=True), "column of q is 'True'"),
     "one column twice": (signal("q", column="current_A"), "column 'current_A' is two signals of joint_7"),
@@ -218,7 +209,6 @@ BAD_SOURCES: dict[str, tuple[object, str]] = {
     "gear ratio in words": (joint(gear_ratio="100:1"), "gear_ratio of joint_7 is '100:1', must be a number"),
     "no rate": ({key: value for key, value in CONFIG.items() if not key.startswith("rate")}, "the source has no time"),
     "another rate": (changed(rate="fast"), "rate is 'fast', must be from_motion"),
-    "rate that is none": (changed(rate_hz=float("nan")), "rate_hz of the source is nan"),
     "time and rate": (changed(time={"column": "t", "unit": "s"}), "both time and a rate"),
     "time that wraps": (changed(time={"column": "t", "unit": "s", "wraps": True}), "'wraps' of time"),
     "start in seconds": (changed(start_up={"seconds": 1}), "give it in samples"),
@@ -227,12 +217,10 @@ BAD_SOURCES: dict[str, tuple[object, str]] = {
     "posture as a text": (changed(posture={"columns": "q", "unit": "rad"}), "columns of posture is 'q'"),
     "header in words": (changed(header="none"), "header is 'none', must be true or false"),
     "files outside": (changed(files=["../*.csv"]), "files has '../*.csv', must be a pattern inside the folder"),
-    "files from the root": (changed(files="/etc/*"), "must be a pattern inside the folder"),
     "no files": (changed(files=[]), "files is empty"),
     "a path without a run": (changed(path="(?P<session>.*)"), "has no group (?P<run>...)"),
     "a path with another group": (changed(path="(?P<session>.*)(?P<run>.*)(?P<day>.*)"), "unknown choice 'day'"),
     "a path with a group without a name": (changed(path="(?P<session>.*)(?P<run>(a+)+)"), "no regular expression"),
-    "a path that leaves its brackets": (changed(path="(?P<session>a)(?P<run>b))|(?:c"), "no regular expression"),
     "a path that is long": (changed(path="a" * 1001), "must be printable text of at most 1000"),
     "a path of much memory": (changed(path="(?P<session>(?:(?:a{99}){99}){99})(?P<run>b)"), "no regular expression"),
 }
@@ -247,21 +235,9 @@ def test_a_bad_source_is_named(tmp_path: Path, name: str) -> None:
     assert "expected a source such as conf/sources/kinova_gen3.yaml" in str(error.value)
 
 
-def test_a_source_is_plain_yaml(tmp_path: Path) -> None:
+def test_a_source_is_small_and_plain_yaml(tmp_path: Path) -> None:
     path = tmp_path / "source.yaml"
-    for text, message in (
-        ("robot: !!python/object/apply:os.system ['true']", "no YAML"),
-        ("a: [", "no YAML"),
-        ("a: &x [1]\nb: *x", "an alias"),
-        ("robot: a\nrobot: b", "the key 'robot' twice"),
-        ("[" * 5000, "no YAML"),
-        ("? [a, {b: c}]\n: 1", "no YAML"),
-        ("? {b: c}\n: 1", "no YAML"),
-    ):
-        path.write_text(text)
-        with pytest.raises(FileDefect, match=message):
-            read_source(path)
-    path.write_bytes(b"\xff\xfe\x00")
+    path.write_text("robot: !!python/object/apply:os.system ['true']")
     with pytest.raises(FileDefect, match="no YAML"):
         read_source(path)
     path.write_text("#" * (2**20 + 1))
@@ -276,8 +252,6 @@ def test_a_regular_expression_does_not_hang(tmp_path: Path) -> None:
         read_joints(tmp_path, path)
 
 
-# Bad files.
-
 GOOD_ROWS = csv_text("", np.column_stack([np.linspace(1, 2, 700), np.full((700, 3), 0.5)])).decode()
 HEADER = "position_rad,velocity_rad_s,torque_sensor_Nm,current_A\n"
 BAD_FILES: dict[str, tuple[bytes, str]] = {
@@ -287,7 +261,6 @@ BAD_FILES: dict[str, tuple[bytes, str]] = {
     "no such column": ((HEADER + GOOD_ROWS).replace("current_A", "amps").encode(), "0 columns 'current_A'"),
     "a column twice": ((HEADER + GOOD_ROWS).replace("current_A", "position_rad").encode(), "2 columns 'position_rad'"),
     "text": ((HEADER + "1,2,3,x\n" + GOOD_ROWS).encode(), "row 2, column current_A: found 'x', expected a number"),
-    "underscore": ((HEADER + "1,2,3,1_0\n" + GOOD_ROWS).encode(), "found '1_0'"),
     "a cell too few": ((HEADER + "1,2,3\n" + GOOD_ROWS).encode(), "row 2: found 3 cells, expected 4"),
     "blank line": ((HEADER + "\n" + GOOD_ROWS).encode(), "row 2: found a blank line"),
     "no text": (HEADER.encode() + b"\xff\xff\xff\n", "bytes that are no text"),
@@ -296,13 +269,12 @@ BAD_FILES: dict[str, tuple[bytes, str]] = {
 
 
 @pytest.mark.parametrize("name", list(BAD_FILES))
-@pytest.mark.parametrize("ending", [".csv", ".csv.gz"])
-def test_a_bad_file_is_named(tmp_path: Path, name: str, ending: str) -> None:
+def test_a_bad_file_is_named(tmp_path: Path, name: str) -> None:
     content, message = BAD_FILES[name]
-    write_file(tmp_path / f"S1_v1{ending}", content)
+    write_file(tmp_path / "S1_v1.csv", content)
     with pytest.raises(FileDefect) as error:
         read_joints(tmp_path, KINOVA)
-    assert str(error.value).startswith(f"S1_v1{ending}")
+    assert str(error.value).startswith("S1_v1.csv")
     assert message in str(error.value)
 
 
@@ -366,8 +338,6 @@ def test_runs_that_never_move_need_a_declared_rate(tmp_path: Path) -> None:
     assert [(each.kind, each.severity) for each in files.defects] == [("no_rate", "refuse")]
 
 
-# Anything else: a FileDefect, or a sound answer.
-
 PLAIN = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8),
     lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=8), inner, max_size=3),
@@ -389,35 +359,6 @@ def test_any_source_is_read_or_named(tmp_path: Path, changes: dict) -> None:
     except FileDefect:
         return
     assert source.columns
-
-
-@FUZZ
-@given(st.binary(max_size=300))
-def test_any_text_is_a_source_or_named(tmp_path: Path, content: bytes) -> None:
-    (tmp_path / "source.yaml").write_bytes(content)
-    with pytest.raises(FileDefect):
-        read_source(tmp_path / "source.yaml")
-
-
-CELL = st.floats().map(repr) | st.sampled_from(["", "1e999", "-", "nan", "0", "1.5", '"', "٣", "x", "1;2"])
-ROW = st.lists(CELL, min_size=4, max_size=4).map(",".join) | st.lists(CELL, max_size=5).map(",".join)
-
-
-@FUZZ
-@given(st.lists(ROW, max_size=6), st.integers(0, 700), st.booleans())
-def test_any_rows_are_read_or_named(tmp_path: Path, rows: list[str], kept: int, compressed: bool) -> None:
-    (tmp_path / "S1_v1.csv.gz").unlink(missing_ok=True)
-    (tmp_path / "S1_v1.csv").unlink(missing_ok=True)
-    lines = [*GOOD_ROWS.splitlines()[:kept], *rows]
-    content = (HEADER + "\n".join(lines) + "\n").encode()
-    write_file(tmp_path / ("S1_v1.csv.gz" if compressed else "S1_v1.csv"), content)
-    try:
-        files = read_joints(tmp_path, KINOVA)
-    except FileDefect:
-        return
-    assert files.recordings or any(each.severity == "refuse" for each in files.defects)
-    for each in files.recordings:
-        assert all(np.isfinite(values).all() for values in each.signals.values())
 
 
 RAMP = np.arange(750.0)

@@ -76,7 +76,7 @@ class InertiaRipple(Ripple):
     frequency goes with 1 / sqrt(J), its amplitude with 1 / J (an estimate of form).
 
     Amplitude and corner frequency are given for 1 kg m^2. The effect is for a joint with an upright axis, where
-    rigid-body torque and posture give the inertia (:mod:`swgsim.joint.inertia`).
+    rigid-body torque and posture give the inertia (:func:`swgsim.joint.kinematics.inertia`).
     """
 
     explains = ("current",)

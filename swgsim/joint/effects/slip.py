@@ -12,7 +12,7 @@ from swgsim.joint.term import Term
 
 # Each element slips at so many times the distance of the element before.
 NEXT, ELEMENTS = 5.0, 2
-# An element below this share of the larger one counts as absent, whatever its sign.
+# An element below this share of the larger one counts as absent, with any sign.
 ABSENT = 0.1
 
 

@@ -9,7 +9,6 @@ from swgsim.common import style
 from swgsim.joint.days import Days
 from swgsim.joint.figures.friction import friction
 from swgsim.joint.figures.rungs import rungs
-from swgsim.joint.figures.spectrum import spectrum
 from swgsim.joint.figures.stretches import stretches
 from swgsim.joint.figures.unexplained import unexplained
 from swgsim.joint.figures.waves import waves
@@ -28,11 +27,6 @@ STRETCHES = (
     "of its grey band: the same signal for a run in one direction, measured minus predicted for a joint that reverses. "
     "Where blue differs from black, or from zero, an effect is still missing.",
 )
-SPECTRUM = (
-    "Residual by frequency",
-    "Measured minus predicted, over all held-out recordings. Friction, gravity and inertia act at low frequency, "
-    "ripples at higher ones. The dashed line, if any, is the noise at rest, drawn as equal at all frequencies.",
-)
 WAVES = (
     "Amplitude and phase of the ripples",
     "Points: least-squares estimates in every recording, after all other effects were subtracted; bars: noise, from "
@@ -48,7 +42,7 @@ FRICTION = (
 )
 UNEXPLAINED = (
     "Lines that no effect explains",
-    "Each dot is a line above 5 Hz in the residual of a recording in one direction; larger dots are stronger. A "
+    "Each dot is a significant line in the residual of a recording at steady speed; larger dots are stronger. A "
     "straight line through the origin is a wave fixed to the gear. A level line has a fixed frequency, such as an "
     "electric disturbance or a resonance. A falling line is an alias of sampling.",
 )
@@ -72,7 +66,6 @@ def pictures(
     drawn = {
         "ladder": (*LADDER, rungs(report)),
         "stretches": (*STRETCHES, stretches(judged)),
-        "spectrum": (*SPECTRUM, spectrum(judged)),
         "waves": (*WAVES, waves(judged)),
         "friction": (*FRICTION, friction(judged, days) if days else None),
         "unexplained": (*UNEXPLAINED, unexplained(judged, lines) if lines else None),

@@ -103,8 +103,8 @@ def _point(
     if order * way < WAVES * 2 * np.pi or order * abs(speed) > SEEN * 2 * np.pi * recording.rate:
         return None
     resolution = 2 * np.pi / float(np.ptp(q))
-    beside = [order + place * resolution for place in NEIGHBOURS if order + place * resolution > 0]
-    noise = float(np.median([abs(_fitted(q, rest[chosen], each)) for each in beside]))
+    neighbours = [order + place * resolution for place in NEIGHBOURS if order + place * resolution > 0]
+    noise = float(np.median([abs(_fitted(q, rest[chosen], each)) for each in neighbours]))
     return speed, _fitted(q, rest[chosen], order), noise
 
 

@@ -22,7 +22,7 @@ from swgsim.joint.intake.scale import clock_findings, measured_rates, no_rate, r
 from swgsim.joint.intake.signals import gap_findings
 from swgsim.joint.intake.source import JointSource
 from swgsim.joint.intake.source_file import read_source
-from swgsim.joint.recording import JointRecording
+from swgsim.joint.recording import SIGNALS, JointRecording
 from swgsim.recordings.checks.defect import Defect, summary
 from swgsim.recordings.files.file_defect import FileDefect, shown
 
@@ -56,7 +56,8 @@ class JointRecordings:
         lines = [f"{len(self.recordings)} joint recordings of {robots} in {self.folder}"]
         for name in sorted({each.joint for each in self.recordings}):
             own = [each for each in self.recordings if each.joint == name]
-            sessions, signals = sorted({e.session for e in own}), list(dict.fromkeys(s for e in own for s in e.signals))
+            sessions = sorted({each.session for each in own})
+            signals = [signal for signal in SIGNALS if any(signal in each.signals for each in own)]
             lines.append(f"  {name}: {len(own)} runs of sessions {', '.join(sessions)}; signals {', '.join(signals)}")
         lines.append(f"  at rest: {len(self.at_rest)}; refused: {len(self.refused)}; findings: {len(self.defects)}")
         return "\n".join(lines)

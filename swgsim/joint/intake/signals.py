@@ -141,9 +141,9 @@ def _clipped(run: Run, name: str, values: Float[np.ndarray, " fresh"]) -> Iterat
     levels, counts = np.unique(values, return_counts=True)
     starts, lengths = runs(values)
     for end, inward in ((-1, slice(-1 - CLIPPED_LEVELS, -1)), (0, slice(1, 1 + CLIPPED_LEVELS))):
-        top, count, beside = levels[end], int(counts[end]), counts[inward]
+        top, count, near = levels[end], int(counts[end]), counts[inward]
         row = int(lengths[values[starts] == top].max())
-        piled = len(beside) and count >= max(CLIPPED_COUNT, CLIPPED_PILE * float(np.median(beside)))
+        piled = len(near) and count >= max(CLIPPED_COUNT, CLIPPED_PILE * float(np.median(near)))
         if piled and row >= CLIPPED_RUN:
             share = count / len(values)
             severity: Severity = "refuse" if share > CLIPPED_REFUSES else "warn"
