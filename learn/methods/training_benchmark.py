@@ -1,4 +1,4 @@
-"""The training loop against the bare step of the same network and against the usual loop, measured in one run."""
+"""Time of the training loop, compared with bare optimiser steps and with a loop over PyTorch's DataLoader."""
 
 import os
 import time
@@ -20,29 +20,30 @@ from learn.methods.training import Recipe, one_thread, train
 from swgsim.common.seeds import generator
 
 CLASSES = 6
-# What is compared takes turns, so that whatever else the machine does meets all alike.
+# Compared loops take turns, so that other load of the machine affects all of them.
 ROUNDS = 9
 THREAD_ROUNDS, THREAD_STEPS = 5, 4
 
 
-def measure(recordings: int = 4320, channels: int = 5, points: int = 64, side: int = 9) -> dict[str, Any]:
+def measure(recordings: int = 4320, channels: int = 5, points: int = 64, auxiliary: int = 9) -> dict[str, Any]:
     """Time the convolutional network on made-up rows.
 
     Parameters
     ----------
     recordings : int
-        Rows to train on.
-    channels, points, side : int
-        Of the signal, and columns beside it.
+        Number of rows.
+    channels, points, auxiliary : int
+        Size of the signal, and number of other columns.
 
     Returns
     -------
     dict
-        seconds of a whole fit and samples_per_second, each row counted in every epoch; over_bare_step, the time of an
-        epoch of :func:`training.train` over as many bare steps on one resident batch; dataloader_loop_over_ours,
-        an epoch of the usual loop over one of ours; threads, seconds of a bare step with 1 thread and with all cores.
+        ``seconds`` of a fit; ``samples_per_second``, where each epoch counts all rows; ``over_bare_step``, time of an
+        epoch of :func:`learn.methods.training.train` divided by that of equally many bare steps on one resident batch;
+        ``dataloader_loop_over_ours``, time of an epoch of a DataLoader loop divided by that of ours; ``threads``,
+        seconds of a bare step with 1 thread and with all cores; ``recordings``; ``cores``.
     """
-    X, y = _rows(recordings, channels, points, side)
+    X, y = _rows(recordings, channels, points, auxiliary)
     model = convolutional_network(channels, points, device="cpu")
     seconds = _seconds(lambda: model.fit(X, y), time.perf_counter)
 
@@ -58,14 +59,14 @@ def measure(recordings: int = 4320, channels: int = 5, points: int = 64, side: i
     def bare(count: int) -> None:
         _bare_steps(fresh(), [batch] * count, recipe)
 
-    # One thread, so the time of the process is that of the work, even where another process takes the core away.
+    # With one thread, the time of the process is that of the work even if another process uses the core.
     with one_thread():
-        ours, bared, usual = _in_turns(
+        ours, bare_steps, dataloader = _in_turns(
             ROUNDS,
             time.process_time,
             lambda: train(fresh(), rows, classes, recipe, seed=0),
             lambda: bare(steps),
-            lambda: _usual_epoch(fresh(), rows, classes, recipe),
+            lambda: _dataloader_epoch(fresh(), rows, classes, recipe),
         )
     one, all_cores = _in_turns(
         THREAD_ROUNDS,
@@ -77,8 +78,8 @@ def measure(recordings: int = 4320, channels: int = 5, points: int = 64, side: i
         "recordings": recordings,
         "seconds": seconds,
         "samples_per_second": recordings * model.recipe.epochs / seconds,
-        "over_bare_step": float(np.median(ours / bared)),
-        "dataloader_loop_over_ours": float(np.median(usual / ours)),
+        "over_bare_step": float(np.median(ours / bare_steps)),
+        "dataloader_loop_over_ours": float(np.median(dataloader / ours)),
         "threads": {"1": float(np.median(one)) / THREAD_STEPS, "all": float(np.median(all_cores)) / THREAD_STEPS},
         "cores": len(os.sched_getaffinity(0)),
     }
@@ -87,7 +88,7 @@ def measure(recordings: int = 4320, channels: int = 5, points: int = 64, side: i
 def _in_turns(
     rounds: int, clock: Callable[[], float], *works: Callable[[], object]
 ) -> Float[np.ndarray, "work round"]:  # fmt: skip
-    """Times of pieces of work that take turns [s]; an untimed turn comes first."""
+    """Times of functions that take turns [s], after one turn without timing."""
     times = [[_seconds(work, clock) for work in works] for _ in range(1 + rounds)]
     return np.array(times[1:]).T
 
@@ -104,16 +105,16 @@ def _seconds(work: Callable[[], object], clock: Callable[[], float]) -> float:
     return clock() - start
 
 
-def _rows(recordings: int, channels: int, points: int, side: int) -> tuple[np.ndarray, np.ndarray]:
+def _rows(recordings: int, channels: int, points: int, auxiliary: int) -> tuple[np.ndarray, np.ndarray]:
     """Noise with a pulse whose angle is the class."""
     rng = generator("training benchmark", recordings)
-    X, number = rng.standard_normal((recordings, channels * points + side)), np.arange(recordings) % CLASSES
+    X, number = rng.standard_normal((recordings, channels * points + auxiliary)), np.arange(recordings) % CLASSES
     X[np.arange(recordings), number * points // CLASSES] += 3.0
     return X, np.array([f"class {each}" for each in number])
 
 
 def _bare_steps(network: Network, batches: Iterable[Iterable[Tensor]], recipe: Recipe) -> None:
-    """Forward, backward and step, and nothing else."""
+    """Forward, backward and optimiser steps only."""
     optimiser = torch.optim.AdamW(network.parameters(), recipe.rate, weight_decay=recipe.decay, fused=True)
     network.train()
     for X, y in batches:
@@ -122,6 +123,6 @@ def _bare_steps(network: Network, batches: Iterable[Iterable[Tensor]], recipe: R
         optimiser.step()
 
 
-def _usual_epoch(network: Network, X: Tensor, y: Tensor, recipe: Recipe) -> None:
-    """The same, with PyTorch's loader of shuffled batches."""
+def _dataloader_epoch(network: Network, X: Tensor, y: Tensor, recipe: Recipe) -> None:
+    """One epoch with PyTorch's loader of shuffled batches."""
     _bare_steps(network, DataLoader(TensorDataset(X, y), recipe.batch, shuffle=True), recipe)

@@ -1,4 +1,4 @@
-"""Every method is given the same of a gear never seen, and nothing of what it is judged on."""
+"""All methods receive the same rows of a target gear, and none of the judged rows."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -46,13 +46,13 @@ def data(made):
 
 @pytest.fixture(scope="module")
 def numbered(data):
-    """Features from which the row can be told."""
+    """Features that give the number of the row."""
     rows = np.arange(len(data.table), dtype=float)
     return LearningSet(np.column_stack([rows, -rows]), data.table, ("row", "minus row"))
 
 
 class Spy:
-    """Remembers what it is given and what it is asked; it takes everything for healthy."""
+    """Records its arguments and predicts healthy."""
 
     classes_ = np.array(["healthy"])
 
@@ -82,45 +82,28 @@ def rows_of(X):
     return X[:, 0].astype(int)
 
 
-def test_methods_with_shots_are_given_those_of_their_draw_and_no_unlabelled_rows(numbered):
-    spy, _ = spied(numbered, shots=(1, 2))
-    wanted = [(e, t, k, d) for e, t in targets(numbered.table) for k in (1, 2) for d in range(3)]
+def test_methods_receive_the_shots_of_their_draw_or_the_unlabelled_rows_and_never_judged_ones(numbered):
     names = numbered.table["label"].astype(str).to_numpy()
-    assert len(spy.given) == len(wanted)
-    for (kept, shots, unlabelled, _), (episode, target, number, draw) in zip(spy.given, wanted, strict=True):
-        assert np.array_equal(rows_of(kept.X), episode.source)
-        assert np.array_equal(rows_of(shots.X), target.shots(numbered.table, number, draw))
-        assert np.array_equal(shots.y, names[rows_of(shots.X)])
-        assert np.array_equal(kept.y, names[rows_of(kept.X)])
-        assert len(unlabelled) == 0
-    assert len({seed for *_, seed in spy.given}) == len(wanted)
-
-
-def test_methods_without_labels_are_given_the_unlabelled_rows_only_and_once(numbered):
-    spy, _ = spied(numbered, shots=[0])
-    assert len(spy.given) == 4
-    for (_, shots, unlabelled, _), (_, target) in zip(spy.given, targets(numbered.table), strict=True):
-        assert len(shots.X) == 0
-        assert np.array_equal(rows_of(unlabelled), target.unlabelled)
-
-
-def test_nothing_that_is_judged_is_ever_given(numbered):
-    for shots in ([0], [1, 2]):
-        spy, _ = spied(numbered, shots)
-        per_target = len(spy.given) // 4
-        for number, (episode, target) in enumerate(targets(numbered.table)):
-            for kept, labelled, unlabelled, _ in spy.given[number * per_target : (number + 1) * per_target]:
-                given = np.concatenate([rows_of(each) for each in (kept.X, labelled.X, unlabelled)])
-                assert not np.intersect1d(given, np.append(target.judged, episode.kept_out)).size
+    for numbers in ([1, 2], [0]):
+        spy, _ = spied(numbered, numbers)
+        wanted = [(e, t, k, d) for e, t in targets(numbered.table) for k in numbers for d in range(3 if k else 1)]
+        assert len(spy.given) == len(wanted)
+        for (kept, shots, unlabelled, _), (episode, target, number, draw) in zip(spy.given, wanted, strict=True):
+            assert np.array_equal(rows_of(kept.X), episode.source)
+            assert np.array_equal(rows_of(shots.X), target.shots(numbered.table, number, draw))
+            assert np.array_equal(shots.y, names[rows_of(shots.X)])
+            assert np.array_equal(kept.y, names[rows_of(kept.X)])
+            assert np.array_equal(rows_of(unlabelled), [] if number else target.unlabelled)
+            given = np.concatenate([rows_of(each) for each in (kept.X, shots.X, unlabelled)])
+            assert not np.intersect1d(given, np.append(target.judged, episode.kept_out)).size
+        assert len({seed for *_, seed in spy.given}) == len(wanted)
         asked = set(np.concatenate(spy.asked))
         assert asked == {r for e, t in targets(numbered.table) for r in (*t.judged, *e.kept_out)}
 
 
-def test_two_methods_on_two_representations_are_given_the_same_rows(numbered):
-    other = LearningSet(
-        np.column_stack([numbered.features, numbered.features**2]), numbered.table, ("a", "b", "c", "d")
-    )
-    (one, _), (two, _) = spied(numbered, [0, 1, 2]), spied(other, [0, 1, 2])
+def test_two_representations_give_the_same_rows_and_seeds(numbered):
+    other = replace(numbered, features=np.column_stack([numbered.features, numbered.features**2]), names=tuple("abcd"))
+    (one, _), (two, _) = spied(numbered, [0, 1], draws=2), spied(other, [0, 1], draws=2)
     for (kept, shots, unlabelled, seed), (kept2, shots2, unlabelled2, seed2) in zip(one.given, two.given, strict=True):
         assert seed == seed2
         for X, X2 in ((kept.X, kept2.X), (shots.X, shots2.X), (unlabelled, unlabelled2)):
@@ -174,30 +157,21 @@ def test_the_source_model_itself_forgets_nothing_and_one_that_is_tuned_does(data
     def source_model(X, y):
         return neural_perceptron(neurons=16, epochs=20, batch=32, device="cpu").fit(X, y)
 
-    episodes = [next(PROTOCOL.episodes(data.table))]
-    still, tuned = (
-        adapt_and_judge(data, episodes, source_model, FineTuning(steps, rate=0.1), [1], draws=1).gears
-        for steps in (0, 20)
+    first, without = (next(replace(PROTOCOL, kept_out=number).episodes(data.table)) for number in (1, 0))
+    still, tuned, unknown = (
+        adapt_and_judge(data, [episode], source_model, FineTuning(steps, rate=0.1), [1], draws=1).gears
+        for episode, steps in ((first, 0), (first, 20), (without, 0))
     )
     assert (still["forgotten"] == 0).all()
     assert (still["error"] == still["unadapted"]).all()
     assert (tuned["forgotten"] != 0).any()
     assert (tuned["unadapted"] == still["unadapted"]).all()
-
-
-def test_without_rows_kept_out_nothing_is_said_of_forgetting(data):
-    episodes = list(replace(PROTOCOL, kept_out=0).episodes(data.table))
-    adapted = adapt_and_judge(data, episodes[:1], clone(FOREST).fit, FromScratch(), [1], draws=1)
-    assert adapted.gears["forgotten"].isna().all()
-    assert adapted.gears["error"].notna().all()
+    assert unknown["forgotten"].isna().all()
+    assert unknown["error"].notna().all()
 
 
 def configuration(path, shots=(1, 2)):
     return yaml.safe_load(path.read_text().replace("${shots}", str(list(shots))).replace("${seed}", "0"))
-
-
-def test_every_adaptation_has_its_file():
-    assert {path.stem for path in FILES} == set(ADAPTATIONS)
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
@@ -213,6 +187,7 @@ def test_every_adaptation_of_the_configuration_is_built_with_each_of_its_trials(
 
 
 def test_unknown_adaptations_and_options_are_answered_with_the_choices():
+    assert {path.stem for path in FILES} == set(ADAPTATIONS)
     with pytest.raises(ValueError, match="unknown adaptation 'magic'; choose from added_trees, batch_norm"):
         settings.adaptation({"name": "magic"})
     with pytest.raises(ValueError, match="unknown option 'speed' of adaptation fine_tuning; choose from steps"):
@@ -234,7 +209,7 @@ def folder(made, tmp_path_factory):
     return folder
 
 
-FOREST_JOB = ("classifier=rf", "classifier.trees=10")
+FOREST_JOB = ("classifier=rf", "classifier.trees=5")
 
 
 @pytest.fixture(scope="module")
