@@ -13,7 +13,6 @@ from omegaconf import OmegaConf
 from sklearn.base import clone
 from sklearn.ensemble import RandomForestClassifier
 
-from learn import tracking
 from learn.adaptation.adaptations import ADAPTATIONS
 from learn.adaptation.adapting import adapt_and_judge
 from learn.adaptation.fine_tuning import FineTuning
@@ -21,12 +20,10 @@ from learn.adaptation.retraining import FromScratch
 from learn.adaptation.transfer import Adaptation
 from learn.inputs.harmonics import Harmonics
 from learn.inputs.inputs import LearningSet
-from learn.jobs import few_shot, settings
-from learn.jobs import train_job as job
+from learn.jobs import few_shot, settings, zero_shot
 from learn.methods.neural import neural_perceptron
 from learn.protocols.levels import NewGears
 from swgsim.common.seeds import seed_hash
-from swgsim.storage import storage
 
 CONF = Path(__file__).parents[2] / "conf"
 FILES = sorted(path for path in (CONF / "adaptation").glob("*.yaml") if path.stem != "none")
@@ -35,13 +32,8 @@ FOREST = RandomForestClassifier(10, random_state=0)
 
 
 @pytest.fixture(scope="module")
-def made():
-    return recordings(gears=4, disturbance=0.002)
-
-
-@pytest.fixture(scope="module")
-def data(made):
-    return Harmonics("harmonics", 6).learning_set([made])
+def data():
+    return Harmonics("harmonics", 6).learning_set([recordings(gears=4, disturbance=0.002)])
 
 
 @pytest.fixture(scope="module")
@@ -194,81 +186,44 @@ def test_unknown_adaptations_and_options_are_answered_with_the_choices():
         settings.adaptation({"name": "fine_tuning", "speed": 1})
 
 
-def composed(folder, *overrides):
+def composed(models, *overrides):
     small = ["protocol=new_gears", "protocol.folds=2", "protocol.development=2", "protocol.labelled=2"]
     small += ["protocol.unlabelled=1", "protocol.kept_out=1", "shots=[1,2]", "draws=2", "features=harmonics"]
-    where = ["grid=small", f"data={folder}", f"models={folder / 'models'}", f"tracking.folder={folder / 'runs'}"]
+    small += ["classifier=rf", "classifier.trees=5", f"models={models}"]
     with initialize_config_dir(str(CONF), version_base="1.3"):
-        return OmegaConf.to_container(compose("train", [*small, *where, *overrides]), resolve=True)
+        return OmegaConf.to_container(compose("train", [*small, *overrides]), resolve=True)
 
 
-@pytest.fixture(scope="module")
-def folder(made, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("jobs")
-    storage.write(folder / "small-clean.h5", [made], len(made))
-    return folder
-
-
-FOREST_JOB = ("classifier=rf", "classifier.trees=5")
-
-
-@pytest.fixture(scope="module")
-def finished(folder):
-    """Configuration and metrics of a job."""
+def test_the_results_of_a_job_are_errors_by_specimen_and_gear_and_other_jobs_use_its_source_models(data, tmp_path):
     trials = "adaptation.trials=[{strength: 1.0}, {strength: 30.0}]"
-    config = composed(folder, *FOREST_JOB, "adaptation=leaf_relabelling", trials)
-    return config, job.run(config)
-
-
-def test_a_job_keeps_its_tables_and_is_done_once(finished, monkeypatch):
-    config, metrics = finished
+    metrics, _, tables = few_shot.results(composed(tmp_path, "adaptation=leaf_relabelling", trials), data)
     assert {"test_score", "error/1_shots", "error/2_shots", "forgotten/1_shots", "trial/1", "trial/2"} <= set(metrics)
-
-    store = tracking.local_store(config["tracking"]["folder"])
-    (run,) = tracking.finished_runs(store, adaptation="leaf_relabelling").itertuples()
-    gears = tracking.table_of(store, run.run_id, "tables/gears.parquet")
+    gears, specimens = tables["tables/gears.parquet"], tables["tables/specimens.parquet"]
     assert gears[["gear", "shots"]].to_numpy().tolist() == [[g, k] for g in (1, 2) for k in (1, 2)]
     assert 100 - gears["error"].mean() == pytest.approx(metrics["test_score"], abs=1e-3)
-    specimens = tracking.table_of(store, run.run_id, "tables/specimens.parquet")
     assert list(specimens.columns) == ["gear", "label", "variant", "shots", "error", "unadapted"]
     assert len(specimens) == 2 * 2 * 6 * 3  # gears, numbers of shots, classes, judged variants
     np.testing.assert_allclose(
         specimens.groupby(["gear", "shots"])["error"].mean(), gears.set_index(["gear", "shots"])["error"]
     )
 
-    monkeypatch.setattr(few_shot, "results", lambda *_: pytest.fail("done again"))
-    assert job.run(config) == pytest.approx(metrics)
-
-
-def test_another_method_adapts_the_same_source_models_and_one_without_labels_does_its_job_too(folder, finished):
-    def kept():
-        return {path.name: path.stat().st_mtime_ns for path in (folder / "models").iterdir()}
-
-    before = kept()
-    metrics = job.run(composed(folder, *FOREST_JOB, "adaptation=coral", "adaptation.trials=null"))
-    assert kept() == before
+    before = {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
+    other = few_shot.results(composed(tmp_path, "adaptation=coral", "adaptation.trials=null"), data)[0]
+    assert {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()} == before
     assert len(before) == 2 + 2  # folds of the judged gears and of the development gears
-    assert metrics["unadapted/0_shots"] == finished[1]["unadapted/1_shots"]
-    assert "error/1_shots" not in metrics
+    assert other["unadapted/0_shots"] == metrics["unadapted/1_shots"]
+    assert "error/1_shots" not in other
 
 
-def test_a_job_without_adaptation_is_judged_on_the_same_rows(folder):
-    config = composed(folder, *FOREST_JOB)
-    job.run(config)
-    store = tracking.local_store(config["tracking"]["folder"])
-    (run,) = tracking.finished_runs(store, adaptation="none").itertuples()
-    predictions = tracking.table_of(store, run.run_id, "tables/predictions.parquet")
-    data = job.learning_set_of(
-        folder / "small-clean.h5",
-        storage.digest(folder / "small-clean.h5"),
-        settings.representation(config["features"]),
-    )
+def test_a_job_without_adaptation_is_judged_on_the_same_rows(data, tmp_path):
+    config = composed(tmp_path)
+    predictions = zero_shot.results(config, data)[2]["tables/predictions.parquet"]
     protocol = settings.protocol(config["protocol"])
     judged = [row for e in protocol.episodes(data.table) for t in e.targets for row in t.judged]
     assert sorted(predictions["row"]) == sorted(judged)
 
 
-def test_a_protocol_that_leaves_no_gear_is_refused(folder, data):
+def test_a_protocol_that_leaves_no_gear_is_refused(data):
     config = {"protocol": {"name": "random_folds", "folds": 4}}
     with pytest.raises(ValueError, match="protocol random_folds leaves no gear to adapt to: take new_gears, or adapt"):
         few_shot.results(config, data)
