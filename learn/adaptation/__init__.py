@@ -1,4 +1,4 @@
-"""Transfer to a new gear: alignment, fine-tuning, prototypes, adapted forests, adversarial networks.
+"""Transfer to a target gear: alignment, fine-tuning, prototypes, adapted forests, adversarial networks.
 
 Imports ``inputs``, ``methods`` and ``protocols``.
 """

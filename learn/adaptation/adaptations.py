@@ -1,4 +1,4 @@
-"""All adaptations by their names in ``conf/adaptation``."""
+"""Registry of adaptations by their names in ``conf/adaptation``."""
 
 from collections.abc import Callable, Mapping
 
@@ -14,7 +14,7 @@ from learn.adaptation.transfer import Adaptation
 def probe_then_fine_tuning(
     probe_steps: int = 100, strength: float = 1e-3, steps: int = 100, rate: float = 1e-3
 ) -> ProbeThenFineTuning:
-    """LP-FT with flat options."""
+    """:class:`ProbeThenFineTuning` with flat options."""
     return ProbeThenFineTuning(LinearProbe(probe_steps, strength=strength), FineTuning(steps, rate=rate))
 
 

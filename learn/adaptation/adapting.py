@@ -1,4 +1,4 @@
-"""Transfer judged: a source model for each fold of gears, adapted to every gear left out with shots drawn for it."""
+"""Evaluation of transfer: a source model for each fold, adapted to every left-out gear with drawn shots."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
@@ -12,32 +12,32 @@ from learn.inputs.inputs import SPECIMEN, LearningSet
 from learn.protocols.levels import Episode, Target
 from swgsim.common.seeds import seed_hash
 
-SourceModel = Callable[[Any, Any], Any]  # of rows and class names, a model trained on them
+SourceModel = Callable[[Any, Any], Any]  # (rows, class names) to a trained model
 
 
 @dataclass(frozen=True)
 class Adapted:
-    """How adapted models did.
+    """Errors of adapted models.
 
     Attributes
     ----------
     specimens : DataFrame
-        ``gear``, ``label``, ``variant``, ``shots``, ``error``, the share of wrong decisions over the operating
-        points and draws [%], and ``unadapted``, that of the source model.
+        ``gear``, ``label``, ``variant``, ``shots``; ``error``, share of wrong decisions over operating points and draws
+        [%]; ``unadapted``, the same of the source model [%].
     gears : DataFrame
-        ``gear``, ``shots``, ``error`` and ``unadapted`` on the gear [%] and ``forgotten``, the accuracy on source gears
-        lost by adapting [points].
+        ``gear``, ``shots``; ``error`` and ``unadapted`` as above [%]; ``forgotten``, loss of accuracy on source gears
+        by the adaptation [points].
     """
 
     specimens: pd.DataFrame
     gears: pd.DataFrame
 
     def mean_error(self) -> float:
-        """Over gears and numbers of shots [%]."""
+        """Mean over gears and numbers of shots [%]."""
         return float(self.gears["error"].mean())
 
     def metrics(self) -> dict[str, float]:
-        """Mean over the gears for each number of shots, to three decimals, under names that MLflow accepts."""
+        """Means over gears for each number of shots, rounded to three decimals, by metric name."""
         means = self.gears.groupby("shots")[["error", "unadapted", "forgotten"]].mean()
         each = {f"{name}/{shots}_shots": value for name, column in means.items() for shots, value in column.items()}
         return {name: round(value, 3) for name, value in {"test_score": 100 - self.mean_error(), **each}.items()}
@@ -51,18 +51,19 @@ def adapt_and_judge(
     shots: Sequence[int],
     draws: int,
 ) -> Adapted:
-    """Adapt to every target of every episode, at each number of shots and each draw of them, and judge.
+    """Adapt to every target of every episode for each number and draw of shots, and evaluate.
 
     Parameters
     ----------
     data : LearningSet
     episodes : iterable of Episode
     source_model : callable
+        Trains a model on rows and class names.
     adaptation : Adaptation
     shots : sequence of int
-        Numbers K of labelled variants per class; 0 for methods of level Z2, which are run once.
+        Numbers K of labelled variants per class; 0 for methods of level Z2, which need one draw.
     draws : int
-        Draws of the shots; the same for all methods.
+        Number of draws of the shots; the draws are the same for all methods.
     """
     y = data.table["label"].astype(str).to_numpy()
     specimens, gears = [], []
@@ -98,5 +99,5 @@ def _adapted(
 
 
 def _accuracy(model: Any, data: LearningSet, y: np.ndarray, rows: np.ndarray) -> float:
-    """Share of right decisions [%]; NaN without rows."""
+    """Share of correct decisions [%]; NaN without rows."""
     return 100 * float(np.mean(model.predict(data.features[rows]) == y[rows])) if len(rows) else float("nan")

@@ -1,4 +1,4 @@
-"""Domain-adversarial training, the reference among methods that need no labels of the target gear (level Z2)."""
+"""Domain-adversarial training without labels of the target gear (level Z2)."""
 
 from dataclasses import dataclass
 from math import ceil, exp
@@ -9,7 +9,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
-from learn.adaptation.transfer import Labelled, copied_network, positions_in, require_rows
+from learn.adaptation.transfer import Features, Labelled, copied_network, positions_in, require_rows
 from learn.inputs.rows import as_tensor
 from learn.methods.networks import Network, seeded
 from learn.methods.neural import NeuralClassifier
@@ -20,20 +20,20 @@ from swgsim.common.seeds import generator, seed_hash
 
 @dataclass(frozen=True)
 class DomainAdversarial:
-    """DANN of Ganin et al., arXiv 1505.07818: features that tell the classes, but not source from target.
+    """DANN of Ganin et al., arXiv 1505.07818: features that separate classes, but not source and target.
 
-    A copy of the source network is trained further on the source gears while a second head, the discriminator, learns
-    to tell the gears from the features; its gradient reaches the body with the sign reversed. Statistics of batch
-    normalisation stay those of the source gears.
+    Training continues on a copy of the source network with rows of the source gears. A second head, the discriminator,
+    learns to separate source and target by the features. Its gradient enters the body with reversed sign. Batch
+    normalisation keeps the statistics of the source gears.
 
     Attributes
     ----------
     epochs, batch : int
-        Passes through the rows of the source gears, and rows per step of each side.
+        Passes through the source rows, and rows of source and of target in each step.
     rate : float
         Highest learning rate.
     weight : float
-        Of the reversed gradient at the end; it rises from 0 as in the paper.
+        Final weight of the reversed gradient; it rises from 0 as in that paper.
     """
 
     epochs: int = 1
@@ -48,10 +48,8 @@ class DomainAdversarial:
         require_positive(owner, rate=self.rate)
         require(owner, "weight", self.weight, low=0)
 
-    def adapt(
-        self, source: Any, kept: Labelled, shots: Labelled, unlabelled: Float[np.ndarray, "row column"], seed: int
-    ) -> NeuralClassifier:
-        """The source model with other parameters."""
+    def adapt(self, source: Any, kept: Labelled, shots: Labelled, unlabelled: Features, seed: int) -> NeuralClassifier:
+        """The source model with adapted parameters."""
         require_rows(self, "unlabelled", len(unlabelled))
         require_rows(self, "kept", len(kept.X))
         network = copied_network(source)
@@ -80,5 +78,5 @@ class DomainAdversarial:
 
 
 def reverse_gradient(features: Float[Tensor, "row width"], factor: float) -> Float[Tensor, "row width"]:
-    """The features as they are; backwards, their gradient times ``-factor``."""
+    """The unchanged features, whose gradient is multiplied by ``-factor``."""
     return (1 + factor) * features.detach() - factor * features

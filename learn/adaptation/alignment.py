@@ -1,7 +1,7 @@
-"""Source models adapted to the statistics of recordings of the target gear without labels (level Z2).
+"""Adaptation to the statistics of unlabelled recordings of the target gear (level Z2).
 
-Both methods take it that the classes are as frequent among these recordings as among the rows of the source gears: a
-target gear recorded healthy only would spoil them.
+Both methods assume equal class frequencies in these recordings and in the source rows. They fail if the target gear is
+recorded only in its healthy state.
 """
 
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Float
 
 from learn.adaptation.feature_space import Space, feature_space
-from learn.adaptation.transfer import FittedClassifier, Labelled, copied_network, require_rows, untrained
+from learn.adaptation.transfer import Features, FittedClassifier, Labelled, copied_network, require_rows, untrained
 from learn.inputs.rows import as_tensor
 from learn.methods.neural import NeuralClassifier
 from swgsim.common.checks import require
@@ -19,7 +19,7 @@ from swgsim.common.checks import require
 
 @dataclass(frozen=True)
 class InSpace:
-    """A classifier on features of the rows."""
+    """A classifier of features of the rows."""
 
     space: Space
     classifier: Any
@@ -34,21 +34,21 @@ class InSpace:
         return np.asarray(self.classifier.predict_proba(self.space(X)))
 
     def predict(self, X: Float[np.ndarray, "row column"]) -> np.ndarray:
-        """The class name of each row."""
+        """Class name of each row."""
         return np.asarray(self.classifier.predict(self.space(X)))
 
 
 @dataclass(frozen=True)
 class Coral:
-    """CORAL of Sun et al., arXiv 1511.05547, with the mean: source rows get mean and covariance of the target's.
+    """CORAL of Sun et al., arXiv 1511.05547: source rows receive the covariance of the target, and here its mean too.
 
-    A network keeps its body and gets a new head, a logistic regression on aligned features. Any other model is trained
-    anew on aligned, standardised input.
+    A network keeps its body and receives a new head, a logistic regression on aligned features. Another model is
+    trained anew on aligned, standardised inputs.
 
     Attributes
     ----------
     shrinkage : float
-        Of both covariances, from 0 for none to 1 for equal variances without correlation.
+        Shrinkage of both covariances, from 0 (none) to 1 (equal variances without correlation).
     """
 
     shrinkage: float = 0.1
@@ -56,10 +56,8 @@ class Coral:
     def __post_init__(self) -> None:
         require("CORAL", "shrinkage", self.shrinkage, 1e-9, 1)
 
-    def adapt(
-        self, source: Any, kept: Labelled, shots: Labelled, unlabelled: Float[np.ndarray, "row column"], seed: int
-    ) -> FittedClassifier:
-        """A classifier on the features of the target gear as they are."""
+    def adapt(self, source: Any, kept: Labelled, shots: Labelled, unlabelled: Features, seed: int) -> FittedClassifier:
+        """A classifier of unaligned features of the target gear."""
         from sklearn.linear_model import LogisticRegression
 
         require_rows(self, "unlabelled", len(unlabelled))
@@ -74,7 +72,7 @@ class Coral:
 def align(
     source: Float[np.ndarray, "row feature"], target: Float[np.ndarray, "other feature"], shrinkage: float
 ) -> Float[np.ndarray, "row feature"]:
-    """Source rows whitened by their own covariance and coloured by the target's, around the target's mean."""
+    """Source rows, whitened by their covariance and coloured by that of the target, around the mean of the target."""
     whiten = _power(_covariance(source, shrinkage), -0.5)
     colour = _power(_covariance(target, shrinkage), 0.5)
     return (source - source.mean(axis=0)) @ whiten @ colour + target.mean(axis=0)
@@ -94,12 +92,12 @@ def _power(covariance: np.ndarray, exponent: float) -> np.ndarray:
 
 @dataclass(frozen=True)
 class BatchNormAdaptation:
-    """AdaBN of Li et al., arXiv 1603.04779: batch normalisation takes its statistics from the target gear.
+    """AdaBN of Li et al., arXiv 1603.04779: batch normalisation with statistics of the target gear.
 
     Attributes
     ----------
     mixing : float
-        Weight of the target's mean and variance against the source's, from 0 to 1.
+        Weight of the mean and variance of the target, from 0 to 1; the rest is that of the source.
     """
 
     mixing: float = 1.0
@@ -107,10 +105,8 @@ class BatchNormAdaptation:
     def __post_init__(self) -> None:
         require("batch norm adaptation", "mixing", self.mixing, 0, 1)
 
-    def adapt(
-        self, source: Any, kept: Labelled, shots: Labelled, unlabelled: Float[np.ndarray, "row column"], seed: int
-    ) -> NeuralClassifier:
-        """The source model with other statistics.
+    def adapt(self, source: Any, kept: Labelled, shots: Labelled, unlabelled: Features, seed: int) -> NeuralClassifier:
+        """The source model with adapted statistics.
 
         Raises
         ------
@@ -132,7 +128,7 @@ class BatchNormAdaptation:
         momenta = [layer.momentum for layer in layers]
         for layer in layers:
             layer.train()
-            layer.momentum = self.mixing  # all rows pass once, so this is the weight of their statistics
+            layer.momentum = self.mixing  # in one pass of all rows, this is the weight of their statistics
         with torch.no_grad(), one_thread():
             network.embed(as_tensor(unlabelled).to(network.centre.device))
         for layer, momentum in zip(layers, momenta, strict=True):

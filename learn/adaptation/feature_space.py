@@ -1,4 +1,4 @@
-"""The space in which rows are compared: features of the source's network, or its standardised input."""
+"""Feature space for comparison of rows: features of the source network, or standardised inputs."""
 
 from collections.abc import Callable
 from typing import Any
@@ -13,13 +13,13 @@ Space = Callable[[np.ndarray], np.ndarray]  # (row, column) to (row, feature)
 
 
 def feature_space(source: Any, kept: Float[np.ndarray, "row column"]) -> Space:
-    """The map from rows to features.
+    """Map from rows to features.
 
     Parameters
     ----------
     source : fitted classifier
     kept : array (row, column)
-        Of the source gears; columns are standardised by them if the source model is no network.
+        Rows of the source gears, by which inputs are standardised if the source model is not a network.
     """
     if isinstance(source, NeuralClassifier):
         return lambda X: _embedded(source, X)

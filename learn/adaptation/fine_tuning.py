@@ -1,19 +1,18 @@
-"""Networks of the source gears trained further on the shots of the target gear (level Z3).
+"""Networks of the source gears, trained further on the shots of the target gear (level Z3).
 
-The number of steps is fixed, since there are no rows of the target gear to stop by.
-Statistics of batch normalisation stay those of the source gears: the shots are too few to estimate them.
+The number of steps is fixed, as the target gear has no rows for early stopping. Batch normalisation keeps the
+statistics of the source gears, which few shots cannot estimate.
 """
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import torch
-from jaxtyping import Float
 from torch import Tensor, nn
 
-from learn.adaptation.transfer import Labelled, copied_network, positions_in, require_rows
+from learn.adaptation.transfer import Features, Labelled, copied_network, positions_in, require_rows
 from learn.inputs.rows import as_tensor
 from learn.methods.networks import Network
 from learn.methods.neural import NeuralClassifier
@@ -25,50 +24,13 @@ Penalty = Callable[[Network], Tensor]
 
 
 @dataclass(frozen=True)
-class LinearProbe:
-    """Only the head is trained.
-
-    Attributes
-    ----------
-    steps, batch : int
-        Number of steps, and rows of the shots in each, at most.
-    rate : float
-        Highest learning rate.
-    strength : float
-        Of the pull towards the head of the source model.
-    """
-
-    steps: int = 100
-    batch: int = 64
-    rate: float = 1e-2
-    strength: float = 1e-3
-
-    def __post_init__(self) -> None:
-        require_integer("the linear probe", "steps", self.steps, 0, 1_000_000)
-        require_integer("the linear probe", "batch", self.batch, 2, 1_000_000)
-        require_positive("the linear probe", rate=self.rate)
-        require("the linear probe", "strength", self.strength, low=0)
-
-    def adapt(
-        self, source: Any, kept: Labelled, shots: Labelled, unlabelled: Float[np.ndarray, "row column"], seed: int
-    ) -> NeuralClassifier:
-        """The source model with another head."""
-        require_rows(self, "shots", len(shots.X))
-        network = copied_network(source)
-        pull = distance(self.strength, network.head.parameters(), lambda changed: changed.head.parameters())
-        numbers = positions_in(source.classes_, shots.y)
-        _train(network, shots.X, numbers, self, seed, pull, network.head.parameters())
-        return source.with_network(network)
-
-
-@dataclass(frozen=True)
 class FineTuning:
-    """All parameters are trained.
+    """Training of all parameters on the shots.
 
     Attributes
     ----------
     steps, batch : int
-        Number of steps, and rows of the shots in each, at most.
+        Number of steps, and largest number of shot rows in each.
     rate : float
         Highest learning rate.
     """
@@ -76,52 +38,83 @@ class FineTuning:
     steps: int = 100
     batch: int = 64
     rate: float = 1e-3
+    owner: ClassVar[str] = "fine-tuning"  # in messages
 
     def __post_init__(self) -> None:
-        require_integer("fine-tuning", "steps", self.steps, 0, 1_000_000)
-        require_integer("fine-tuning", "batch", self.batch, 2, 1_000_000)
-        require_positive("fine-tuning", rate=self.rate)
+        require_integer(self.owner, "steps", self.steps, 0, 1_000_000)
+        require_integer(self.owner, "batch", self.batch, 2, 1_000_000)
+        require_positive(self.owner, rate=self.rate)
 
-    def adapt(
-        self, source: Any, kept: Labelled, shots: Labelled, unlabelled: Float[np.ndarray, "row column"], seed: int
-    ) -> NeuralClassifier:
-        """The source model with other parameters."""
+    def adapt(self, source: Any, kept: Labelled, shots: Labelled, unlabelled: Features, seed: int) -> NeuralClassifier:
+        """The source model with adapted parameters."""
         require_rows(self, "shots", len(shots.X))
         network = copied_network(source)
-        penalty = self._penalty(source, kept, seed)
-        _train(network, shots.X, positions_in(source.classes_, shots.y), self, seed, penalty)
+        penalty, numbers = self._penalty(source, kept, seed), positions_in(source.classes_, shots.y)
+        if self.steps:
+            # The shots are repeated so that one epoch has the given number of steps.
+            batch = max(2, min(self.batch, len(shots.X)))
+            rows = np.resize(np.arange(len(shots.X)), self.steps * batch)
+            # Only penalties hold the weights, and no decay towards zero.
+            recipe = Recipe(epochs=1, batch=batch, rate=self.rate, decay=0.0)
+            train(
+                network, as_tensor(shots.X[rows]), torch.from_numpy(numbers[rows]), recipe, seed,
+                parameters=self._trained(network), penalty=penalty, frozen_statistics=True,
+            )  # fmt: skip
         return source.with_network(network)
 
+    def _trained(self, network: Network) -> Iterable[nn.Parameter]:
+        """Parameters to train."""
+        return network.parameters()
+
     def _penalty(self, source: NeuralClassifier, kept: Labelled, seed: int) -> Penalty | None:
-        """What each step adds to the loss."""
+        """Term that is added to the loss in each step."""
         return None
 
 
 @dataclass(frozen=True)
 class L2SP(FineTuning):
-    """Fine-tuning with a pull towards the source model: L2-SP of Li et al., arXiv 1802.01483.
+    """Fine-tuning with a penalty of the distance to the source model: L2-SP of Li et al., arXiv 1802.01483.
 
-    Target and source have the same classes, so the head is pulled as well, where the paper's is new.
+    Target and source have the same classes, so the head is penalised too; in that paper it is new.
 
     Attributes
     ----------
     strength : float
-        Half of it times the squared distance of all parameters to those of the source model is added to the loss.
+        Half of it, times the squared distance of all parameters to those of the source model, is added to the loss.
     """
 
     strength: float = 0.1
+    owner: ClassVar[str] = "L2-SP"
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require("L2-SP", "strength", self.strength, low=0)
+        require(self.owner, "strength", self.strength, low=0)
 
     def _penalty(self, source: NeuralClassifier, kept: Labelled, seed: int) -> Penalty:
-        return distance(self.strength, source.network_.parameters(), lambda changed: changed.parameters())
+        start = [parameter.detach().clone() for parameter in self._trained(source.network_)]
+
+        def penalty(network: Network) -> Tensor:
+            pairs = zip(self._trained(network), start, strict=True)
+            return self.strength / 2 * torch.stack([(now - before).square().sum() for now, before in pairs]).sum()
+
+        return penalty
+
+
+@dataclass(frozen=True)
+class LinearProbe(L2SP):
+    """Training of the head alone, with a penalty of its distance to the head of the source model."""
+
+    rate: float = 1e-2
+    strength: float = 1e-3
+    owner: ClassVar[str] = "the linear probe"
+
+    def _trained(self, network: Network) -> Iterable[nn.Parameter]:
+        return network.head.parameters()
 
 
 @dataclass(frozen=True)
 class Replay(FineTuning):
-    """Fine-tuning in which each step also takes ``batch`` random rows of the source gears."""
+    """Fine-tuning in which each step also has ``batch`` random rows of the source gears."""
 
     def _penalty(self, source: NeuralClassifier, kept: Labelled, seed: int) -> Penalty:
         require_rows(self, "kept", len(kept.X))
@@ -139,44 +132,12 @@ class Replay(FineTuning):
 
 @dataclass(frozen=True)
 class ProbeThenFineTuning:
-    """LP-FT of Kumar et al., arXiv 2202.10054: a head that already fits lets fine-tuning distort the features less."""
+    """LP-FT of Kumar et al., arXiv 2202.10054: linear probe, then fine-tuning, which then distorts features less."""
 
     probe: LinearProbe = field(default_factory=LinearProbe)
     tuning: FineTuning = field(default_factory=FineTuning)
 
-    def adapt(
-        self, source: Any, kept: Labelled, shots: Labelled, unlabelled: Float[np.ndarray, "row column"], seed: int
-    ) -> NeuralClassifier:
-        """The source model with a probed head, all of it then trained further."""
+    def adapt(self, source: Any, kept: Labelled, shots: Labelled, unlabelled: Features, seed: int) -> NeuralClassifier:
+        """The source model, adapted by both stages."""
         probed = self.probe.adapt(source, kept, shots, unlabelled, seed)
         return self.tuning.adapt(probed, kept, shots, unlabelled, seed)
-
-
-def distance(
-    strength: float, start: Iterable[nn.Parameter], chosen: Callable[[Network], Iterable[nn.Parameter]]
-) -> Penalty:
-    """A penalty of half the strength times the squared distance of the chosen parameters to where they start."""
-    origin = [parameter.detach().clone() for parameter in start]
-
-    def penalty(network: Network) -> Tensor:
-        squares = [(now - before).square().sum() for now, before in zip(chosen(network), origin, strict=True)]
-        return strength / 2 * torch.stack(squares).sum()
-
-    return penalty
-
-
-def _train(
-    network: Network, X: np.ndarray, numbers: np.ndarray, method: LinearProbe | FineTuning, seed: int,
-    penalty: Penalty | None, parameters: Iterable[nn.Parameter] | None = None,
-) -> None:  # fmt: skip
-    if method.steps == 0:
-        return
-    # Steps are counted, not passes through the shots: the shots are repeated to make up one pass of so many steps.
-    batch = max(2, min(method.batch, len(X)))
-    rows = np.resize(np.arange(len(X)), method.steps * batch)
-    # Weights are held by a pull towards the source, if by anything, and not by decay towards zero.
-    recipe = Recipe(epochs=1, batch=batch, rate=method.rate, decay=0.0)
-    train(
-        network, as_tensor(X[rows]), torch.from_numpy(numbers[rows]), recipe, seed,
-        parameters=parameters, penalty=penalty, frozen_statistics=True,
-    )  # fmt: skip

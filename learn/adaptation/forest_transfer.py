@@ -1,4 +1,4 @@
-"""Forests of the source gears adapted to the target gear by its shots (level Z3)."""
+"""Adaptation of forests by shots of the target gear (level Z3)."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -7,20 +7,20 @@ import numpy as np
 from jaxtyping import Float
 from scipy.special import entr
 
-from learn.adaptation.transfer import Labelled, positions_in, require_rows, untrained
-from learn.methods.flat_forest import FlatForest, as_trees_see, flatten
+from learn.adaptation.transfer import Features, Labelled, positions_in, require_rows, untrained
+from learn.methods.flat_forest import FlatForest, flatten, single_precision
 from swgsim.common.checks import require, require_integer, require_positive
 
 
 @dataclass(frozen=True)
 class LeafRelabelling:
-    """Splits stay as they are; the class frequencies in the leaves are updated by the rows of the shots there.
+    """Update of the class frequencies in the leaves by the shots; the splits stay.
 
     Attributes
     ----------
     strength : float
-        Number of rows of the target gear that the source's frequencies in a leaf are worth. A shot gives one row at
-        each operating point, so the shots weigh more against the source the more points there are.
+        Weight of the source frequencies in a leaf, in rows of the target gear. A shot has one row at each operating
+        point, so the weight of the shots grows with the number of points.
     """
 
     strength: float = 3.0
@@ -28,10 +28,8 @@ class LeafRelabelling:
     def __post_init__(self) -> None:
         require_positive("leaf relabelling", strength=self.strength)
 
-    def adapt(
-        self, source: Any, kept: Labelled, shots: Labelled, unlabelled: Float[np.ndarray, "row column"], seed: int
-    ) -> FlatForest:
-        """Posterior mean of the frequencies in every leaf, the source's being the prior."""
+    def adapt(self, source: Any, kept: Labelled, shots: Labelled, unlabelled: Features, seed: int) -> FlatForest:
+        """A forest with the posterior mean of the frequencies, with those of the source as the prior."""
         require_rows(self, "shots", len(shots.X))
         forest = flatten(source)
         counts = np.zeros_like(forest.probabilities)
@@ -42,14 +40,14 @@ class LeafRelabelling:
 
 @dataclass(frozen=True)
 class AddedTrees:
-    """Trees grown on the shots vote with those of the source.
+    """Trees grown on the shots vote together with those of the source.
 
     Attributes
     ----------
     count : int
-        Number of trees that are added.
+        Number of added trees.
     share : float
-        Their share in the vote.
+        Their share of the vote.
     """
 
     count: int = 100
@@ -59,10 +57,8 @@ class AddedTrees:
         require_integer("added trees", "count", self.count, 1, 100_000)
         require("added trees", "share", self.share, 0, 1)
 
-    def adapt(
-        self, source: Any, kept: Labelled, shots: Labelled, unlabelled: Float[np.ndarray, "row column"], seed: int
-    ) -> FlatForest:
-        """The source's trees followed by the new ones, which are of the same kind."""
+    def adapt(self, source: Any, kept: Labelled, shots: Labelled, unlabelled: Features, seed: int) -> FlatForest:
+        """The source trees followed by new ones of the same kind."""
         require_rows(self, "shots", len(shots.X))
         old = flatten(source)
         fresh = untrained(source, seed).set_params(n_estimators=self.count)
@@ -86,20 +82,18 @@ class AddedTrees:
 class StructureTransfer:
     """STRUT of Segev et al., "Learn on source, refine on target", IEEE TPAMI 39 (2017).
 
-    Every tree keeps which feature it looks at where. From the root down, each threshold is chosen anew on the shots
-    that reach the node: among the local maxima of the information gain the one whose two sides look most like the
-    source's in their class frequencies (largest divergence gain). If they look more like the source's with the sides
-    exchanged, the subtrees are exchanged. The leaves hold the frequencies of the shots alone, and a node at which no
-    threshold parts the shots, or at which all are of one class, becomes a leaf.
+    The features of all nodes stay. From the root down, each threshold is chosen anew by the shots that reach the node.
+    Candidates are the local maxima of the information gain. The one with the largest divergence gain wins: the class
+    frequencies on its two sides are most similar to those of the source. If they are more similar with exchanged sides,
+    the subtrees are exchanged. Leaves hold the frequencies of the shots. A node becomes a leaf if no threshold
+    separates its shots or all are of one class.
     """
 
-    def adapt(
-        self, source: Any, kept: Labelled, shots: Labelled, unlabelled: Float[np.ndarray, "row column"], seed: int
-    ) -> FlatForest:
+    def adapt(self, source: Any, kept: Labelled, shots: Labelled, unlabelled: Features, seed: int) -> FlatForest:
         """The source forest with thresholds and leaves of the target gear."""
         require_rows(self, "shots", len(shots.X))
         forest = flatten(source)
-        X = as_trees_see(shots.X)
+        X = single_precision(shots.X)
         one_hot = np.eye(len(forest.classes_))[positions_in(forest.classes_, shots.y)]
         left, right, threshold = forest.left.copy(), forest.right.copy(), forest.threshold.copy()
         probabilities = forest.probabilities.copy()
@@ -123,16 +117,16 @@ class StructureTransfer:
 def choose_threshold(
     x: Float[np.ndarray, " row"], one_hot: Float[np.ndarray, "row class"], sides: Float[np.ndarray, "2 class"]
 ) -> tuple[float, bool]:
-    """The threshold of STRUT, and whether the source's two sides have to be exchanged.
+    """Threshold of STRUT, and whether the two sides of the source are exchanged.
 
     Parameters
     ----------
     x : array (row,)
-        The feature, with at least two values.
+        Feature with at least two values.
     one_hot : array (row, class)
-        The class of each row.
+        Class of each row.
     sides : array (2, class)
-        Class probabilities of the source below and above its own threshold.
+        Class probabilities of the source below and above its threshold.
     """
     order = np.argsort(x, kind="stable")
     x, one_hot = x[order].astype(np.float64), one_hot[order]
@@ -142,12 +136,12 @@ def choose_threshold(
     sizes = counts.sum(axis=-1)
     target = counts / sizes[..., None]
     weights = sizes / len(x)
-    remaining = (weights * entropy(target)).sum(axis=0)  # the information gain is a constant less this
+    remaining = (weights * entropy(target)).sum(axis=0)  # information gain = constant - remaining
     around = np.concatenate([[np.inf], remaining, [np.inf]])
     peaks = np.flatnonzero((remaining <= around[:-2]) & (remaining <= around[2:]))
     source = np.array([sides, sides[::-1]])[:, :, None]  # order of the sides, side, threshold, class
     divergence = (weights[:, peaks] * jensen_shannon(target[:, peaks], source)).sum(axis=1)
-    exchange, best = divmod(int(np.argmin(divergence)), len(peaks))  # 1 - divergence is the divergence gain
+    exchange, best = divmod(int(np.argmin(divergence)), len(peaks))  # divergence gain = 1 - divergence
     row = last[peaks[best]]
     return float(x[row] + x[row + 1]) / 2, bool(exchange)
 

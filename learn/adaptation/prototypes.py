@@ -1,4 +1,4 @@
-"""Prototypes: a row belongs to the class whose mean is nearest (level Z3)."""
+"""Classification by the nearest class mean, the prototype (level Z3)."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -7,13 +7,13 @@ import numpy as np
 from jaxtyping import Float
 
 from learn.adaptation.feature_space import Space, feature_space
-from learn.adaptation.transfer import Labelled, positions_in, require_rows
+from learn.adaptation.transfer import Features, Labelled, positions_in, require_rows
 from swgsim.common.checks import require_positive
 
 
 @dataclass(frozen=True)
 class NearestPrototype:
-    """Probabilities by distance to one point per class.
+    """Class probabilities by the distance to one prototype per class.
 
     Attributes
     ----------
@@ -23,9 +23,9 @@ class NearestPrototype:
         Maps rows (row, column) to features (row, feature).
     prototypes : array (class, feature)
     scale : array (feature,)
-        Unit in which distances along each feature are measured.
+        Unit of the distance along each feature.
     temperature : float
-        Mean squared distance per feature that makes a class less probable by a factor of e.
+        Mean squared distance per feature that divides the probability of a class by e.
     """
 
     classes_: np.ndarray
@@ -35,28 +35,27 @@ class NearestPrototype:
     temperature: float
 
     def predict_proba(self, X: Float[np.ndarray, "row column"]) -> Float[np.ndarray, "row class"]:
-        """Softmax of the negative mean squared distance over the temperature."""
+        """Softmax of the negative mean squared distance, divided by the temperature."""
         from scipy.special import softmax
 
         deviation = (self.space(X)[:, None] - self.prototypes) / self.scale
         return softmax(-np.square(deviation).mean(axis=2) / self.temperature, axis=1)
 
     def predict(self, X: Float[np.ndarray, "row column"]) -> np.ndarray:
-        """The class with the nearest prototype."""
+        """Class with the nearest prototype."""
         return self.classes_[np.argmax(self.predict_proba(X), axis=1)]
 
 
 @dataclass(frozen=True)
 class Prototypes:
-    """Class means of the source gears moved towards those of the shots.
+    """Class means of the source gears, moved towards those of the shots.
 
     Attributes
     ----------
     strength : float
-        Number of rows of the target gear that the mean of the source gears is worth. A shot gives one row at each
-        operating point, so the shots weigh more against the source the more points there are.
+        Weight of the source mean, in rows of the target gear. A shot has one row at each operating point.
     temperature : float
-        Of :class:`NearestPrototype`.
+        As in :class:`NearestPrototype`.
     """
 
     strength: float = 1.0
@@ -65,10 +64,8 @@ class Prototypes:
     def __post_init__(self) -> None:
         require_positive("prototypes", strength=self.strength, temperature=self.temperature)
 
-    def adapt(
-        self, source: Any, kept: Labelled, shots: Labelled, unlabelled: Float[np.ndarray, "row column"], seed: int
-    ) -> NearestPrototype:
-        """Distances are in standard deviations within the classes of the source gears.
+    def adapt(self, source: Any, kept: Labelled, shots: Labelled, unlabelled: Features, seed: int) -> NearestPrototype:
+        """A classifier with distances in standard deviations within the classes of the source gears.
 
         Raises
         ------
@@ -87,11 +84,11 @@ class Prototypes:
         within = np.sqrt(np.square(features - means[numbers]).mean(axis=0))
         total, count = _sums(space(shots.X), positions_in(source.classes_, shots.y), len(means))
         prototypes = (self.strength * means + total) / (self.strength + count)
-        scale = np.where(within > 0, within, 1.0)  # a unit of the network that never answers
+        scale = np.where(within > 0, within, 1.0)  # 0 for a unit of the network that is always inactive
         return NearestPrototype(source.classes_, space, prototypes, scale, self.temperature)
 
 
 def _sums(features: np.ndarray, numbers: np.ndarray, classes: int) -> tuple[np.ndarray, np.ndarray]:
-    """Sum of the features (class, feature) and number of rows (class, 1)."""
+    """Sums of the features (class, feature) and numbers of rows (class, 1)."""
     one_hot = np.eye(classes)[numbers]
     return one_hot.T @ features, one_hot.sum(axis=0)[:, None]

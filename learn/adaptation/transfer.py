@@ -1,7 +1,7 @@
-"""Transfer: a model trained on source gears is adapted to a gear that it has never seen.
+"""Transfer: adaptation of a model of source gears to a target gear that is not among them.
 
-The target gear gives either labelled shots (level Z3) or recordings without labels (level Z2); every method takes both
-and uses the one that it is made for.
+The target gear has either labelled shots (level Z3) or unlabelled recordings (level Z2). Every method receives both
+arguments and uses one of them.
 """
 
 from collections.abc import Sequence
@@ -19,35 +19,31 @@ if TYPE_CHECKING:
     from learn.methods.networks import Network
 
 
+Features = Float[np.ndarray, "row column"]
+
+
 class Labelled(NamedTuple):
-    """Rows with their class names.
+    """Rows X, array (row, column), with their class names y, array (row,)."""
 
-    Attributes
-    ----------
-    X : array (row, column)
-    y : array (row,)
-        Class names.
-    """
-
-    X: Float[np.ndarray, "row column"]
+    X: Features
     y: np.ndarray
 
 
 @runtime_checkable
 class FittedClassifier(Protocol):
-    """What an adaptation returns: a classifier that has learnt and is only asked."""
+    """A trained classifier, the result of an adaptation."""
 
     @property
     def classes_(self) -> np.ndarray:
-        """Names of the classes."""
+        """Sorted names of the classes."""
         ...
 
-    def predict_proba(self, X: Float[np.ndarray, "row column"]) -> Float[np.ndarray, "row class"]:
+    def predict_proba(self, X: Features) -> Float[np.ndarray, "row class"]:
         """Probability of each class, in the order of ``classes_``."""
         ...
 
-    def predict(self, X: Float[np.ndarray, "row column"]) -> np.ndarray:
-        """The class name of each row."""
+    def predict(self, X: Features) -> np.ndarray:
+        """Class name of each row."""
         ...
 
 
@@ -55,23 +51,21 @@ class FittedClassifier(Protocol):
 class Adaptation(Protocol):
     """A transfer method."""
 
-    def adapt(
-        self, source: Any, kept: Labelled, shots: Labelled, unlabelled: Float[np.ndarray, "row column"], seed: int
-    ) -> FittedClassifier:
+    def adapt(self, source: Any, kept: Labelled, shots: Labelled, unlabelled: Features, seed: int) -> FittedClassifier:
         """A classifier for the target gear.
 
         Parameters
         ----------
         source : fitted classifier
-            Trained on the source gears; it is never changed.
+            Trained on the source gears; must not be changed.
         kept : Labelled
-            Rows of the source gears that may be replayed or aligned.
+            Rows of the source gears.
         shots : Labelled
-            Labelled rows of the target gear; without rows for methods of level Z2.
+            Labelled rows of the target gear; none for methods of level Z2.
         unlabelled : array (row, column)
-            Recordings of the target gear without labels; without rows for methods of level Z3.
+            Unlabelled rows of the target gear; none for methods of level Z3.
         seed : int
-            Of all that is random.
+            Seed of all random numbers.
         """
         ...
 
@@ -82,7 +76,7 @@ def positions_in(classes: Sequence[str] | np.ndarray, y: np.ndarray) -> Int[np.n
     Raises
     ------
     ValueError
-        If a class is not among them.
+        If the source model does not have a class.
     """
     classes = np.asarray(classes)
     unknown = np.setdiff1d(y, classes)
@@ -95,18 +89,18 @@ def positions_in(classes: Sequence[str] | np.ndarray, y: np.ndarray) -> Int[np.n
 
 
 def require_rows(method: object, what: str, rows: int) -> None:
-    """Raise a ValueError if a method is given no row of what it learns from."""
+    """Raise a ValueError if a method receives none of the rows that it needs."""
     if rows == 0:
-        raise ValueError(f"{type(method).__name__} was given 0 rows of {what} and needs at least 1")
+        raise ValueError(f"{type(method).__name__} received 0 rows of {what} and needs at least 1")
 
 
 def copied_network(source: Any) -> "Network":
-    """A copy of the network of a trained neural classifier, which may be changed.
+    """A copy of the network of a trained neural classifier.
 
     Raises
     ------
     ValueError
-        If the source model is no neural classifier.
+        If the source model is another classifier.
     """
     if not isinstance(source, NeuralClassifier):
         raise ValueError(f"{type(source).__name__} has no network to adapt: give a trained NeuralClassifier")

@@ -1,4 +1,4 @@
-"""Scores with intervals: confusion, calibration of probabilities, detection curves, abstention, bootstrap over gears.
+"""Scores with intervals: confusion, calibration, probability of detection, abstention, bootstrap over gears.
 
 Imports ``inputs``, ``methods`` and ``protocols``.
 """

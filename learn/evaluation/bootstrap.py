@@ -1,8 +1,8 @@
-"""How sure a comparison of methods is: the hierarchical bootstrap over gears and specimens.
+"""Uncertainty of comparisons: the hierarchical bootstrap over gears and specimens.
 
-A specimen is one variant of one class of one gear, recorded at several operating points. Its recordings resemble each
-other, and so do the specimens of one gear; what is drawn independently, and what a claim about new gears rests on, is
-the gear. Gears are therefore resampled first, and then the specimens of each class within every drawn gear.
+A specimen is one variant of one class of one gear, recorded at several operating points. Recordings of a specimen are
+dependent, and so are specimens of a gear. Claims about new gears therefore rest on the number of gears. Gears are
+resampled first, then the specimens of each class within every drawn gear.
 """
 
 from collections import defaultdict
@@ -19,12 +19,12 @@ from learn.inputs.inputs import SPECIMEN
 FEWEST_GEARS = 5
 LEVEL = 0.95
 
-# From the mean errors (resample x method) to what is asked about them, one column per method.
+# From mean errors (resample x method) to a statistic, one column per method.
 Statistic = Callable[[pd.DataFrame], pd.DataFrame]
 
 
 def specimens(predictions: pd.DataFrame) -> pd.DataFrame:
-    """Share of wrong decisions of every specimen over its recordings, column ``error`` [%]."""
+    """Share of wrong decisions over the recordings of every specimen, column ``error`` [%]."""
     wrong = predictions[["gear", "variant"]].assign(
         label=truth(predictions), error=100.0 * (decisions(predictions) != truth(predictions))
     )
@@ -32,34 +32,34 @@ def specimens(predictions: pd.DataFrame) -> pd.DataFrame:
 
 
 def mean_error(means: pd.DataFrame) -> pd.DataFrame:
-    """The mean error of every method itself [%]."""
+    """Mean error of every method [%]."""
     return means
 
 
 def difference_to(reference: str) -> Statistic:
-    """Mean error minus that of the reference, of every other method [points]."""
+    """Mean error of every other method minus that of the reference [points]."""
     return lambda means: means.drop(columns=reference).sub(means[reference], axis=0)
 
 
 def ratio_to(reference: str) -> Statistic:
-    """Mean error divided by that of the reference, of every other method [-]; NaN where neither makes any."""
+    """Mean error of every other method divided by that of the reference [-]; NaN if both are 0."""
     return lambda means: means.drop(columns=reference).div(means[reference], axis=0)
 
 
 def gear_errors(errors: pd.DataFrame) -> pd.DataFrame:
-    """Mean error of every gear (index) for every method (column) [%]; all classes of a gear weigh the same.
+    """Mean error of every gear (index) and method (column) [%], with equal weights of the classes.
 
     Raises
     ------
     ValueError
-        If a specimen has two rows or an error is missing; paired methods need one finite error each per specimen.
+        If a specimen has two rows or an error is missing.
     """
     twice = errors.duplicated(list(SPECIMEN))
     if twice.any():
         raise ValueError(f"specimen {_name(errors[twice])} has two rows: keep one")
     missing = errors.isna().any(axis=1)
     if missing.any():
-        raise ValueError(f"specimen {_name(errors[missing])}: an error is missing, judge it by every method or by none")
+        raise ValueError(f"specimen {_name(errors[missing])}: an error is missing, judge it by all methods or none")
     values = errors.set_index(list(SPECIMEN))
     return values.groupby(["gear", "label"], observed=True).mean().groupby("gear").mean()
 
@@ -69,10 +69,9 @@ def _name(rows: pd.DataFrame) -> str:
 
 
 def resampled_means(errors: pd.DataFrame, rng: np.random.Generator, *, resamples: int = 2000) -> pd.DataFrame:
-    """Mean errors (resample x method) of gears drawn with replacement, each with its specimens drawn anew.
+    """Mean errors (resample x method) of gears and their specimens, both drawn with replacement.
 
-    A gear that is drawn twice gets two draws of its specimens. Specimens are drawn within their class, so that every
-    class keeps its number.
+    A gear that is drawn twice has two draws of its specimens. Specimens are drawn within their class.
     """
     methods = errors.columns.drop(list(SPECIMEN))
     values = errors[methods].to_numpy(dtype=float)
@@ -91,7 +90,7 @@ def resampled_means(errors: pd.DataFrame, rng: np.random.Generator, *, resamples
 def _drawn_means(
     values: Float[np.ndarray, "specimen method"], draws: int, rng: np.random.Generator
 ) -> Float[np.ndarray, "draw method"]:
-    """Mean over specimens drawn with replacement; how often each is drawn is multinomial."""
+    """Means over specimens drawn with replacement, with multinomial counts."""
     count = len(values)
     return rng.multinomial(count, np.full(count, 1 / count), size=draws) @ values / count
 
@@ -101,8 +100,8 @@ def hierarchical_bootstrap(
 ) -> pd.DataFrame:
     """A statistic of the mean errors with its 95 % interval, one row per method.
 
-    The percentiles are widened for few gears as Hesterberg (The American Statistician 69, 2015) does, so that a mean
-    over normal gears gets the width of Student's interval; the plain ones are too narrow by a quarter with 5 gears.
+    Percentiles are widened for few gears (Hesterberg, The American Statistician 69, 2015), so that a mean over normal
+    gears has the width of Student's interval. Plain percentiles are too narrow by a quarter with 5 gears.
 
     Parameters
     ----------
@@ -128,18 +127,17 @@ def hierarchical_bootstrap(
 def paired_comparison(
     errors: pd.DataFrame, reference: str, rng: np.random.Generator, *, resamples: int = 20_000
 ) -> pd.DataFrame:
-    """Every method against a reference on the same specimens, with p values corrected by Holm for their number.
+    """Comparison of every method with a reference on the same specimens, with p-values corrected by Holm.
 
-    The p value is two-sided and fits the interval: it is the level at which the interval would just touch zero. It
-    cannot fall below what the number of resamples resolves, hence ten times as many as for an interval. With 5 gears
-    even these end at 0.02.
+    The p-value is two-sided: the level at which the interval touches zero. The number of resamples limits how small it
+    can be, so there are ten times as many as for an interval. With 5 gears the smallest p-value is 0.02.
 
     Parameters
     ----------
     errors : DataFrame
         As for :func:`hierarchical_bootstrap`.
     reference : str
-        Name of the column that the others are compared to.
+        Column of the reference method.
     rng : Generator
     resamples : int
 
@@ -147,13 +145,13 @@ def paired_comparison(
     -------
     DataFrame
         One row per method: ``value`` (mean difference, negative is better) with ``low`` and ``high`` [points],
-        ``better_gears`` (gears in which the method makes fewer errors), ``gears``, ``p``, ``p_holm``. With fewer than
-        5 gears the interval and both p values are NaN.
+        ``better_gears`` (gears in which the method has fewer errors), ``gears``, ``p``, ``p_holm``. With fewer than
+        5 gears the interval and both p-values are NaN.
 
     Raises
     ------
     ValueError
-        If the reference is not among the methods.
+        If the reference is not one of the methods.
     """
     methods = errors.columns.drop(list(SPECIMEN))
     if reference not in methods:
@@ -174,7 +172,7 @@ def paired_comparison(
 
 
 def _with_interval(table: pd.DataFrame, draws: pd.DataFrame, gears: int) -> pd.DataFrame:
-    """The table with the percentiles of its statistic's draws; order statistics, as a ratio may be infinite."""
+    """The table with percentiles of the draws, as order statistics, since a ratio may be infinite."""
     from scipy.stats import norm, t
 
     tail = norm.sf(np.sqrt(gears / (gears - 1)) * t.isf((1 - LEVEL) / 2, gears - 1))
@@ -185,7 +183,7 @@ def _with_interval(table: pd.DataFrame, draws: pd.DataFrame, gears: int) -> pd.D
 
 
 def _two_sided_p(draws: Float[np.ndarray, "resample method"], gears: int) -> Float[np.ndarray, " method"]:
-    """The inverse of the interval's widening; the estimate itself counts as one more draw, so no p is 0."""
+    """p-values with the widening of the interval; the estimate counts as one more draw, so no p-value is 0."""
     from scipy.stats import norm, t
 
     beyond = np.minimum((draws <= 0).sum(axis=0), (draws >= 0).sum(axis=0))

@@ -1,4 +1,4 @@
-"""The confusion matrix as a picture."""
+"""Figure of the confusion matrix."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -7,7 +7,7 @@ from learn.evaluation.evaluate import Evaluation
 
 
 def picture(evaluation: Evaluation, title: str) -> Figure:
-    """Share of each true class that went to each predicted class, with the number of recordings in the cells."""
+    """Share of each true class by predicted class, with the numbers of recordings in the cells."""
     confusion = evaluation.confusion
     share = confusion / confusion.sum(axis=1, keepdims=True).clip(min=1)
     names = [name.replace("_", " ") for name in evaluation.classes]

@@ -1,7 +1,7 @@
-"""What a method says about every judged recording, read from its table of predictions.
+"""Decisions and true classes from a table of predictions.
 
-A table of predictions has one row per judged recording: ``gear``, ``label``, ``variant``, ``severity`` (NaN when
-healthy), ``n_in_rpm``, ``T_out_nm`` and one column per class with its predicted probability.
+A table of predictions has one row per judged recording: ``gear``, ``label``, ``variant``, ``severity`` (NaN if
+healthy), ``n_in_rpm``, ``T_out_nm``, and one column per class with its predicted probability.
 """
 
 import numpy as np
@@ -12,12 +12,12 @@ from swgsim.storage.labelled_signals import CLASSES
 
 
 def probabilities(predictions: pd.DataFrame) -> Float[np.ndarray, "row class"]:
-    """The predicted probability of every class, in the order of :data:`swgsim.storage.labelled_signals.CLASSES`.
+    """Predicted probabilities in the order of :data:`swgsim.storage.labelled_signals.CLASSES`.
 
     Raises
     ------
     ValueError
-        If a probability is not finite; it names the first such row.
+        If a probability is not finite.
     """
     values = predictions[list(CLASSES)].to_numpy(dtype=float)
     bad = np.flatnonzero(~np.isfinite(values).all(axis=1))
@@ -27,17 +27,17 @@ def probabilities(predictions: pd.DataFrame) -> Float[np.ndarray, "row class"]:
 
 
 def decisions(predictions: pd.DataFrame) -> np.ndarray:
-    """The class name with the highest probability for every row."""
+    """Most probable class name of every row."""
     return np.array(CLASSES)[probabilities(predictions).argmax(axis=1)]
 
 
 def truth(predictions: pd.DataFrame) -> np.ndarray:
-    """The true class name of every row."""
+    """True class name of every row."""
     return np.array(predictions["label"], dtype=str)
 
 
 def class_numbers(predictions: pd.DataFrame) -> Int[np.ndarray, " row"]:
-    """The true class of every row as its place in :data:`swgsim.storage.labelled_signals.CLASSES`.
+    """True class of every row as an index of :data:`swgsim.storage.labelled_signals.CLASSES`.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""How large a fault must be to be found, how often a healthy gear alarms, and where recognition is worst."""
+"""Probability of detection, false alarms, and the operating point and class with the lowest recall."""
 
 from collections.abc import Sequence
 from typing import cast
@@ -16,19 +16,19 @@ from swgsim.storage.labelled_signals import CLASSES
 
 
 def detected(predictions: pd.DataFrame) -> Bool[np.ndarray, " row"]:
-    """Whether a recording was taken for any fault."""
+    """Whether the decision is a fault, right or wrong."""
     return decisions(predictions) != "healthy"
 
 
 def identified(predictions: pd.DataFrame) -> Bool[np.ndarray, " row"]:
-    """Whether the decision is right."""
+    """Whether the decision is correct."""
     return decisions(predictions) == truth(predictions)
 
 
 def detection_table(
     predictions: pd.DataFrame, hits: Bool[np.ndarray, " row"], by: Sequence[str] = OPERATING_POINT
 ) -> pd.DataFrame:
-    """Sizes found per fault class and operating point, or over all of them with ``by=()``.
+    """Detectable sizes by fault class and operating point, or over all operating points with ``by=()``.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def detection_table(
     hits : array (row,) of bool
         :func:`detected` or :func:`identified` of these predictions.
     by : sequence of str
-        Columns whose values get a row of their own.
+        Columns whose values have separate rows.
 
     Returns
     -------
@@ -55,11 +55,11 @@ def detection_table(
 
 
 def false_alarm_rate(predictions: pd.DataFrame) -> dict[str, float]:
-    """Share of healthy recordings that alarm [%], with Wilson's 95 % interval at the effective number of recordings.
+    """Share of healthy recordings with an alarm [%], and Wilson's 95 % interval for the effective number of recordings.
 
-    That number is the one whose binomial variance is the variance between gears (Dean and Pagano, Journal of Survey
-    Statistics and Methodology 3, 2015), not more than there are healthy specimens and not fewer than gears. Without
-    any alarm nothing is known of how alarms cluster, and the specimens count as independent.
+    This number has a binomial variance equal to the variance between gears (Dean and Pagano, Journal of Survey
+    Statistics and Methodology 3, 2015). It lies between the numbers of gears and of healthy specimens. Without an
+    alarm, specimens count as independent.
 
     Returns
     -------
@@ -84,16 +84,16 @@ def false_alarm_rate(predictions: pd.DataFrame) -> dict[str, float]:
 
 
 def recall_by_cell(predictions: pd.DataFrame) -> pd.DataFrame:
-    """Share recognised [%] of every class (columns) at every operating point (rows)."""
+    """Recall [%] of every class (column) at every operating point (row)."""
     rows = predictions[list(OPERATING_POINT)].assign(label=truth(predictions), right=identified(predictions))
     shares = 100 * rows.groupby([*OPERATING_POINT, "label"])["right"].mean().unstack("label")
     return shares[[label for label in CLASSES if label in shares]]
 
 
 def worst_cell(predictions: pd.DataFrame) -> pd.Series:
-    """The operating point and class of which the smallest share is recognised; ``recall`` [%], ``recordings``.
+    """Operating point and class with the lowest recall; ``recall`` [%], ``recordings``.
 
-    As the smallest of many shares it lies below what that cell would show on new recordings.
+    As the minimum of many estimates, it is lower than the recall of that cell on new recordings.
     """
     recall = recall_by_cell(predictions).stack()
     speed, load, label = cast(tuple[float, float, str], recall.idxmin())

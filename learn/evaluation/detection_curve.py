@@ -1,4 +1,4 @@
-"""Probability of detection against fault size, fitted to hits and misses, and the sizes that are found."""
+"""Probability of detection over fault size, fitted to hits and misses, and detectable sizes."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,16 +15,16 @@ NAMES = ("a50", "a90", "a90_95")
 
 @dataclass(frozen=True)
 class DetectionCurve:
-    """Probability of detection against fault size: log-odds linear in log size (MIL-HDBK-1823A).
+    """Probability of detection over fault size, with log-odds linear in log size (MIL-HDBK-1823A).
 
     Attributes
     ----------
     intercept, slope : float
-        Of the log-odds against the natural logarithm of the size.
+        Coefficients of the log-odds over the natural logarithm of the size.
     covariance : array (coefficient, coefficient)
-        Of both, clustered by gear.
+        Covariance of the coefficients, clustered by gear.
     quantile : float
-        One-sided 95 % quantile for the confidence bounds; NaN with fewer than 5 gears.
+        One-sided 95 % quantile of the confidence bounds; NaN with fewer than 5 gears.
     """
 
     intercept: float
@@ -33,7 +33,7 @@ class DetectionCurve:
     quantile: float
 
     def log_odds(self, sizes: Float[np.ndarray, " size"], side: int = 0) -> Float[np.ndarray, " size"]:
-        """Log-odds of detection; its one-sided 95 % bound below with side -1, above with side 1."""
+        """Log-odds of detection, or their one-sided 95 % bound: lower with side -1, upper with side 1."""
         terms = np.column_stack([np.ones(len(sizes)), np.log(sizes)])
         middle = terms @ [self.intercept, self.slope]
         if side == 0:
@@ -41,13 +41,13 @@ class DetectionCurve:
         return middle + side * self.quantile * np.sqrt(np.einsum("si,ij,sj->s", terms, self.covariance, terms))
 
     def size_at(self, share: float) -> float:
-        """Size that is found with a probability of `share`: a50, a90."""
+        """Size that is detected with a probability of `share`: a50, a90."""
         return _from_log((np.log(share / (1 - share)) - self.intercept) / self.slope)
 
     def sure_size_at(self, share: float) -> float:
-        """Size from which the lower 95 % bound reaches `share`, a90/95; infinite if it never does, NaN if unknown.
+        """Size at which the lower 95 % bound reaches `share`, a90/95; infinite if it never does, NaN if unknown.
 
-        It is the larger root of (b0 + b1 x - logit share)^2 = quantile^2 var(b0 + b1 x) for the log size x.
+        It is the larger root of (b0 + b1 x - logit share)² = quantile² var(b0 + b1 x) for the log size x.
         """
         v, q2 = self.covariance, self.quantile**2
         gap = self.intercept - np.log(share / (1 - share))
@@ -60,17 +60,17 @@ class DetectionCurve:
 
 @dataclass(frozen=True)
 class Detection:
-    """Sizes that are found, with the reason where one cannot be given.
+    """Detectable sizes, with reasons for missing ones.
 
     Attributes
     ----------
     a50, a90, a90_95 : float
-        Sizes found in 50 % and 90 % of recordings, and the one from which 90 % are found with 95 % confidence. Only
-        sizes within those tried are given, as the curve says nothing outside; NaN otherwise.
+        Sizes that are detected in 50 % and 90 % of recordings, and in 90 % with 95 % confidence. NaN outside the tested
+        sizes, where the curve does not apply.
     reasons : mapping
-        Name of each size that is NaN to the reason.
+        From the name of each size that is NaN to the reason.
     curve : DetectionCurve or None
-        None where no curve can be fitted.
+        None if no curve can be fitted.
     """
 
     a50: float
@@ -81,14 +81,14 @@ class Detection:
 
     @property
     def reason(self) -> str:
-        """All reasons in one line, empty if every size is given."""
+        """All reasons in one line; empty if no size is missing."""
         return "; ".join(f"{name}: {why}" for name, why in self.reasons.items())
 
 
 def detection(
     sizes: Float[np.ndarray, " row"], hits: Bool[np.ndarray, " row"], gears: np.ndarray, unit: str = ""
 ) -> Detection:
-    """Fit the curve of detection to hits and misses; recordings of one gear count as dependent.
+    """Fit a detection curve to hits and misses, with recordings of a gear as dependent.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def detection(
     gears : array (row,)
         Clusters of the covariance.
     unit : str
-        Of the sizes, for the reasons.
+        Unit of the sizes in the reasons.
     """
     reason = _no_curve(sizes, hits, unit)
     if reason:
@@ -114,7 +114,7 @@ def detection(
 
 
 def _no_curve(sizes: np.ndarray, hits: np.ndarray, unit: str) -> str:
-    """Why no curve can be fitted: no misses, no hits, one size only, or hits and misses that a size separates."""
+    """Reason why no curve can be fitted: no misses, no hits, only one size, or hits and misses that do not overlap."""
     smallest, largest = f"{sizes.min():.3g}{unit}", f"{sizes.max():.3g}{unit}"
     if hits.all():
         return f"below the smallest size tried, {smallest}"
@@ -138,7 +138,7 @@ def _outside(value: float, sizes: np.ndarray, unit: str) -> str:
 
 
 def _fit(sizes: np.ndarray, hits: np.ndarray, gears: np.ndarray) -> DetectionCurve:
-    """Logistic regression on log size; with Student's quantile, as the covariance rests on few gears."""
+    """Logistic regression on log size, with Student's quantile because gears are few."""
     from scipy.stats import t
     from statsmodels.genmod.families import Binomial
     from statsmodels.genmod.generalized_linear_model import GLM
@@ -157,5 +157,5 @@ def _fit(sizes: np.ndarray, hits: np.ndarray, gears: np.ndarray) -> DetectionCur
 
 
 def _from_log(logarithm: float) -> float:
-    """The size itself; a curve that hardly rises would overflow, and such sizes are far beyond all tried anyway."""
+    """Size from its logarithm, clipped where a flat curve would overflow."""
     return float(np.exp(np.clip(logarithm, -700, 700)))

@@ -1,4 +1,4 @@
-"""One evaluation for every method: fit and score on each split."""
+"""Evaluation of all methods: fit and score on each split."""
 
 import time
 import warnings
@@ -19,7 +19,7 @@ FACTS = [*SPECIMEN, "severity", *OPERATING_POINT]
 
 @dataclass(frozen=True)
 class SplitScore:
-    """Accuracy on the two sides of a split [%], time to fit [s], and whether the optimiser came to its end."""
+    """Accuracy in training and test [%], time to fit [s], and whether the optimiser converged."""
 
     name: str
     train: float
@@ -37,13 +37,13 @@ class Evaluation:
     scores : tuple of SplitScore
         One per split.
     classes : tuple of str
-        Names of the classes in the order in which the data set has them, which is that of the confusion matrix.
+        Names of the classes in the order of the data set, which is that of the confusion matrix.
     confusion : array (true, predicted)
         Number of tested rows, summed over the splits.
     tested : array (test,)
-        Their row numbers, split by split.
+        Row numbers of the tested rows, split by split.
     probabilities : array (test, class)
-        What the method says of them; a method without probabilities is certain.
+        Predicted probabilities; a method without probabilities counts as certain.
     """
 
     scores: tuple[SplitScore, ...]
@@ -53,20 +53,20 @@ class Evaluation:
     probabilities: Float[np.ndarray, "test class"]
 
     def predictions(self, table: pd.DataFrame) -> pd.DataFrame:
-        """Facts of the tested rows of the data set's table, and one column per class with its probability."""
+        """Facts of the tested rows, and one column per class with its probability."""
         facts = table.loc[self.tested, FACTS].reset_index(names="row")
-        said = pd.DataFrame(self.probabilities.astype("f4"), columns=list(self.classes))
-        return facts.assign(label=facts["label"].astype(str)).join(said)
+        predicted = pd.DataFrame(self.probabilities.astype("f4"), columns=list(self.classes))
+        return facts.assign(label=facts["label"].astype(str)).join(predicted)
 
     def recall(self) -> Mapping[str, float]:
-        """Share of the tested rows of each class that were recognised [%]; classes that were tested only."""
+        """Recall of each tested class [%]."""
         tested = self.confusion.sum(axis=1)
         return {
             name: 100 * float(self.confusion[i, i] / tested[i]) for i, name in enumerate(self.classes) if tested[i] > 0
         }
 
     def metrics(self) -> dict[str, float]:
-        """All figures, to three decimals, under names that MLflow accepts; scores are averages over splits [%]."""
+        """All metrics, rounded to three decimals; scores are means over splits [%]."""
         recall = self.recall()
         exact = {
             "train_score": float(np.mean([s.train for s in self.scores])),
@@ -81,7 +81,7 @@ class Evaluation:
 
 
 def metric_key(split: str) -> str:
-    """The name of a split in the spelling of metrics, where neither ``,`` nor ``>`` may stand.
+    """Name of a split in the name of a metric, which must not contain ``,`` or ``>``.
 
     >>> metric_key("1,2->3")
     '1_2_to_3'
@@ -95,7 +95,7 @@ def evaluate(
     splits: Iterable[Split],
     method: Callable[[], Classifier],
 ) -> Evaluation:
-    """Train a fresh `method` on the training rows of every split and score it on both sides.
+    """Train a new classifier on the training rows of every split, and score it in training and test.
 
     Parameters
     ----------
@@ -104,11 +104,11 @@ def evaluate(
         Class names.
     splits : iterable of Split
     method : callable
-        Makes an untrained classifier.
+        Returns an untrained classifier.
     """
     classes = pd.Index(pd.unique(labels))
     confusion = np.zeros((len(classes), len(classes)), dtype=np.int64)
-    scores, tested, said = [], [], []
+    scores, tested, predictions = [], [], []
     for split in splits:
         classifier = method()
         start = time.perf_counter()
@@ -122,12 +122,14 @@ def evaluate(
         test_score = np.mean(predicted == truth)
         scores.append(SplitScore(split.name, 100 * float(train_score), 100 * float(test_score), seconds, converged))
         tested.append(split.test)
-        said.append(probabilities)
-    return Evaluation(tuple(scores), tuple(map(str, classes)), confusion, np.concatenate(tested), np.concatenate(said))
+        predictions.append(probabilities)
+    return Evaluation(
+        tuple(scores), tuple(map(str, classes)), confusion, np.concatenate(tested), np.concatenate(predictions)
+    )
 
 
 def _probabilities(classifier: Classifier, X: Inputs, classes: pd.Index) -> Float[np.ndarray, "row class"]:
-    """Probability of every class; 1 for the class that a method without probabilities names."""
+    """Probability of every class; 1 for the decision of a method without probabilities."""
     result = np.zeros((len(X), len(classes)))
     if hasattr(classifier, "predict_proba") and hasattr(classifier, "classes_"):
         result[:, classes.get_indexer(pd.Index(classifier.classes_))] = classifier.predict_proba(X)
@@ -137,7 +139,7 @@ def _probabilities(classifier: Classifier, X: Inputs, classes: pd.Index) -> Floa
 
 
 def fit(classifier: Classifier, features: Inputs, labels: np.ndarray) -> bool:
-    """Fit, and say whether the optimiser came to its end; one that stops at its bound is no warning here."""
+    """Fit, and return whether the optimiser converged, instead of a warning."""
     from sklearn.exceptions import ConvergenceWarning
 
     with warnings.catch_warnings(record=True) as caught:

@@ -1,4 +1,4 @@
-"""Which groups of features carry which fault: recall that is lost when a group says nothing any more."""
+"""Importance of groups of features: loss of recall when a group is permuted."""
 
 from collections.abc import Mapping, Sequence
 from typing import Protocol, runtime_checkable
@@ -13,7 +13,7 @@ class Predictor(Protocol):
     """A fitted classifier."""
 
     def predict(self, X: Float[np.ndarray, "row feature"]) -> np.ndarray:
-        """The class name of each row."""
+        """Class name of each row."""
         ...
 
 
@@ -27,11 +27,11 @@ def grouped_permutation(
     *,
     repeats: int = 10,
 ) -> pd.DataFrame:
-    """Drop of every class's recall when the columns of a group are permuted together among rows of a block.
+    """Drop of the recall of every class when the columns of a group are permuted together within blocks.
 
-    The columns of a group stay with each other, so features that repeat one another within it do not hide its worth;
-    what a second group knows as well counts for neither. Within a block (one operating point) the permuted values
-    remain possible ones. A small negative drop is chance.
+    Redundant features within a group do not hide its importance, as they are permuted together. Information that two
+    groups share counts for neither. Permuted values remain possible within a block, which is one operating point. Small
+    negative drops are chance.
 
     Parameters
     ----------
@@ -46,18 +46,17 @@ def grouped_permutation(
         Number of the operating point of each row.
     rng : Generator
     repeats : int
-        Permutations per group, 2 at least for a doubt.
+        Permutations per group; at least 2 for a standard error.
 
     Returns
     -------
     DataFrame
-        ``group``, ``label``, mean ``drop`` of recall and its ``doubt``, twice the standard error over the repeats
-        [points].
+        ``group``, ``label``, mean ``drop`` of recall [points], and ``doubt``, twice its standard error [points].
 
     Raises
     ------
     ValueError
-        If a group names a column that does not exist.
+        If a group has a column that does not exist.
     """
     for name, columns in groups.items():
         outside = [column for column in columns if not 0 <= column < X.shape[1]]
@@ -78,9 +77,6 @@ def grouped_permutation(
 
 
 def _recalls(model: Predictor, X: Float[np.ndarray, "copy row feature"], y: np.ndarray) -> pd.DataFrame:
-    """Share recognised of every class (column) in every copy (row) [%].
-
-    All copies are predicted at once: many methods take most of their time to begin.
-    """
+    """Recall of every class (column) in every copy (row) [%], with one call of predict, which saves time."""
     correct = model.predict(X.reshape(-1, X.shape[-1])).reshape(X.shape[:2]) == y
     return 100 * pd.DataFrame(correct.T).groupby(y).mean().T

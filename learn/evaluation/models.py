@@ -1,6 +1,6 @@
-"""Trained models on disk, so that every adaptation of a source model starts from the same one.
+"""Files of trained models, from which all adaptations of a source model start.
 
-Networks are kept by :mod:`methods.neural`, scikit-learn's estimators by skops; neither runs code when read.
+:mod:`learn.methods.neural` stores networks, skops stores scikit-learn's estimators; reading them runs no code.
 """
 
 import hashlib
@@ -14,7 +14,7 @@ from learn.methods import neural
 from learn.methods.archive import require_plain
 from swgsim.common.files import replacing, sole_maker
 
-# Types beyond skops' own list that may be in a file: parts of estimators that hold arrays and numbers.
+# Further types that skops may read: parts of estimators that hold arrays and numbers.
 TRUSTED = [
     "aeon.transformations.collection.convolution_based._minirocket.MiniRocket",
     "learn.methods.rocket.MiniRocket",
@@ -25,7 +25,7 @@ TRUSTED = [
 
 
 def save(model: Any, path: Path) -> None:
-    """Keep a trained classifier; the file is complete or absent."""
+    """Write a trained classifier to a file, which is complete or absent."""
     if isinstance(model, neural.NeuralClassifier):
         neural.save(model, path)
         return
@@ -36,12 +36,12 @@ def save(model: Any, path: Path) -> None:
 
 
 def load(path: Path, device: str = "auto") -> Any:
-    """A classifier that :func:`save` has kept; a network comes on the named device.
+    """Read a classifier from a file of :func:`save`, a network to the named device.
 
     Raises
     ------
     ValueError
-        If the file is damaged, a pickle, or holds types that are none of a classifier's; it names the file.
+        If the file is damaged, a pickle, or contains other types.
     """
     if path.suffix == neural.SUFFIX:
         return neural.load(path, device)
@@ -50,22 +50,22 @@ def load(path: Path, device: str = "auto") -> Any:
     try:
         require_plain(path)
         return skops.io.load(path, trusted=TRUSTED)
-    except Exception as error:  # skops raises what zip, JSON and NumPy raise
+    except Exception as error:  # skops raises many kinds
         raise ValueError(
             f"{path}: not a model of this project, or damaged ({error}); remove it to train anew"
         ) from error
 
 
 def trained(folder: Path, identity: str, model: Any, X: np.ndarray, y: np.ndarray) -> Any:
-    """The model trained on these rows: read from the folder if it is there, else trained and kept.
+    """The model trained on these rows, from its file in the folder or else trained and stored.
 
-    A classifier that is not part of this project or scikit-learn is trained anew and not kept.
+    Classifiers of other packages than this one and scikit-learn are not stored.
 
     Parameters
     ----------
     folder : Path
     identity : str
-        All that decides on the result beside the rows: configuration, code, libraries.
+        Everything else that affects the result: configuration, code, libraries.
     model : classifier
         Untrained.
     X, y : array (row, column), array (row,)
@@ -82,7 +82,7 @@ def trained(folder: Path, identity: str, model: Any, X: np.ndarray, y: np.ndarra
     digest.update("\x1f".join(map(str, y)).encode())
     is_network = isinstance(model, neural.NeuralClassifier)
     path = folder / f"{digest.hexdigest()[:24]}{neural.SUFFIX if is_network else '.skops'}"
-    # Jobs of a sweep that adapt the same source model start at the same time; the first one trains it.
+    # Jobs of a sweep with the same source model start together; the first one trains it.
     with sole_maker(path, wait=True):
         if not path.exists():
             fit(model, X, y)

@@ -1,10 +1,10 @@
-"""Whether a predicted probability is the share that is right, and one number that makes it more so: the temperature."""
+"""Calibration of predicted probabilities, and its improvement by a temperature."""
 
 import numpy as np
 import pandas as pd
 from jaxtyping import Float, Int
 
-# A class that a forest gives no vote at all has the probability 0, whose logarithm would be minus infinity.
+# Lower bound of probabilities in logarithms, as a forest may give a class no vote.
 SMALLEST = 1e-6
 COLDEST, HOTTEST = 0.05, 20.0
 
@@ -12,9 +12,9 @@ COLDEST, HOTTEST = 0.05, 20.0
 def reliability(
     probabilities: Float[np.ndarray, "row class"], y: Int[np.ndarray, " row"], bins: int = 15
 ) -> pd.DataFrame:
-    """Confidence against accuracy in bins of equally many rows.
+    """Confidence and accuracy in bins with equal numbers of rows.
 
-    Rows of the same confidence stay in one bin, so there may be fewer bins than asked for; a forest's votes tie often.
+    Rows of equal confidence share a bin, so there may be fewer bins; votes of a forest are often equal.
 
     Parameters
     ----------
@@ -22,6 +22,7 @@ def reliability(
     y : array (row,)
         Column of the true class.
     bins : int
+        Largest number of bins.
 
     Returns
     -------
@@ -36,22 +37,22 @@ def reliability(
 
 
 def expected_calibration_error(table: pd.DataFrame) -> float:
-    """Mean distance of confidence and accuracy over the rows of a reliability table [points].
+    """Mean difference of confidence and accuracy over a table of :func:`reliability` [points].
 
-    It is not 0 for a calibrated method: chance alone moves the accuracy of a bin of n rows by about 0.4 / sqrt(n).
+    It is above 0 for a calibrated method too, as chance changes the accuracy of a bin of n rows by about 0.4 / sqrt(n).
     """
     return 100 * float(np.average((table["confidence"] - table["accuracy"]).abs(), weights=table["count"]))
 
 
 def negative_log_likelihood(probabilities: Float[np.ndarray, "row class"], y: Int[np.ndarray, " row"]) -> float:
-    """Mean of minus the logarithm of the true class's probability [nat], which counts as at least 1e-6."""
+    """Mean negative logarithm of the probability of the true class, bounded below by 1e-6 [nat]."""
     return -float(np.mean(np.log(np.maximum(probabilities[np.arange(len(y)), y], SMALLEST))))
 
 
 def apply_temperature(
     probabilities: Float[np.ndarray, "row class"], temperature: float
 ) -> Float[np.ndarray, "row class"]:
-    """Probabilities to the power 1 / temperature, scaled to sum 1; above 1 they become more even.
+    """Probabilities to the power of 1 / temperature, normalised; temperatures above 1 make them more equal.
 
     Raises
     ------
@@ -66,9 +67,9 @@ def apply_temperature(
 
 
 def fit_temperature(probabilities: Float[np.ndarray, "row class"], y: Int[np.ndarray, " row"]) -> float:
-    """The temperature from 0.05 to 20 of the highest likelihood (Guo et al., ICML 2017).
+    """Temperature from 0.05 to 20 with the highest likelihood (Guo et al., ICML 2017).
 
-    Fit it on validation predictions of the source gears: those of the gear to be judged have no labels.
+    It needs predictions on labelled gears that are not judged.
 
     Parameters
     ----------
@@ -89,10 +90,10 @@ def fit_temperature(probabilities: Float[np.ndarray, "row class"], y: Int[np.nda
 def tempered_by_others(
     probabilities: Float[np.ndarray, "row class"], y: Int[np.ndarray, " row"], gears: np.ndarray
 ) -> tuple[Float[np.ndarray, "row class"], Float[np.ndarray, " gear"]]:
-    """Probabilities of every gear with the temperature that the predictions on all the other gears give.
+    """Probabilities of every gear with the temperature that fits the predictions on all other gears.
 
-    Predictions on a gear enter its own temperature nowhere. Its labels may still: where gears are judged in folds, the
-    models that judge the others have learnt from it.
+    Predictions on a gear do not affect its temperature. Its labels may: with folds, models for other gears were trained
+    on it.
 
     Parameters
     ----------
@@ -106,12 +107,12 @@ def tempered_by_others(
     -------
     array (row, class)
     array (gear,)
-        The temperatures, by the number of the gear.
+        Temperatures in ascending order of gear numbers.
 
     Raises
     ------
     ValueError
-        If there is one gear only.
+        If there is only one gear.
     """
     names = np.unique(gears)
     if len(names) < 2:

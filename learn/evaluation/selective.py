@@ -1,4 +1,4 @@
-"""Saying "I do not know": decide on sure recordings only, give sets of classes, and notice gears unlike the others."""
+"""Abstention: decisions on confident recordings only, sets of classes, and novelty of gears."""
 
 import numpy as np
 import pandas as pd
@@ -6,20 +6,20 @@ from jaxtyping import Bool, Float, Int
 
 
 def risk_coverage(confidence: Float[np.ndarray, " row"], correct: Bool[np.ndarray, " row"]) -> pd.DataFrame:
-    """Share of errors among the surest recordings, as ever more of them are decided.
+    """Share of errors among the most confident recordings, as a function of the share that is decided.
 
-    Rows of the same confidence are decided together or not at all.
+    Rows of equal confidence are decided together.
 
     Parameters
     ----------
     confidence : array (row,)
-        Higher is surer; for probabilities the highest one of the row.
+        Such as the highest probability of each row.
     correct : array (row,) of bool
 
     Returns
     -------
     DataFrame
-        ``confidence`` (lowest decided), ``coverage`` (share decided) and ``risk`` (share of these that is wrong).
+        ``confidence`` (threshold), ``coverage`` (share of decided rows) and ``risk`` (share of errors among them).
     """
     order = np.argsort(-confidence, kind="stable")
     decided = np.arange(1, len(order) + 1)
@@ -34,14 +34,14 @@ def risk_coverage(confidence: Float[np.ndarray, " row"], correct: Bool[np.ndarra
 
 
 def area_under_risk(curve: pd.DataFrame) -> float:
-    """Mean risk over all coverages; 0 for a method that is never wrong."""
+    """Mean risk over all coverages; 0 without errors."""
     return float((curve["risk"] * np.diff(curve["coverage"], prepend=0)).sum())
 
 
 def coverage_at(curve: pd.DataFrame, error: float) -> float:
-    """Largest share that can be decided with at most this share of errors, 0 if none can.
+    """Largest coverage with at most this share of errors; 0 if there is none.
 
-    The threshold is chosen with the labels of the same recordings, so it says what is possible, not what is promised.
+    The threshold uses the labels of the same recordings, so this is an upper limit for new recordings.
     """
     return float(curve.loc[curve["risk"] <= error, "coverage"].max()) if (curve["risk"] <= error).any() else 0.0
 
@@ -52,27 +52,27 @@ def conformal_threshold(
     gears: np.ndarray,
     nominal: float,
 ) -> float:
-    """The lowest probability with which a class still belongs to the set of a recording of a new gear.
+    """Lowest probability of the classes in the prediction set of a recording of a new gear.
 
-    Recordings of one gear are not exchangeable with those of another, gears are. Every calibration gear therefore
-    has the weight 1 / (gears + 1), spread over its recordings, and the new gear has the rest (Lee, Barber and
-    Willett 2023, arXiv 2306.06342). With one recording per gear this is split conformal prediction.
+    Gears are exchangeable, recordings of different gears are not. Every calibration gear therefore has the weight
+    1 / (gears + 1), shared by its recordings, and the new gear has the rest (Lee, Barber and Willett 2023, arXiv
+    2306.06342). With one recording per gear this is split conformal prediction.
 
     Parameters
     ----------
     probabilities : array (row, class)
-        Of calibration gears, on none of which the method was trained.
+        Predictions on calibration gears, which are not in training.
     y : array (row,)
         Column of the true class.
     gears : array (row,)
         Gear of each row.
     nominal : float
-        Share of recordings whose set shall hold the true class.
+        Nominal coverage: share of recordings whose set contains the true class.
 
     Returns
     -------
     float
-        Minus infinity where there are too few gears for the promise: then a set holds every class.
+        Minus infinity if there are too few gears for this coverage; sets then contain all classes.
 
     Raises
     ------
@@ -90,18 +90,18 @@ def conformal_threshold(
 
 
 def prediction_sets(probabilities: Float[np.ndarray, "row class"], threshold: float) -> Bool[np.ndarray, "row class"]:
-    """Which classes belong to the set of each recording."""
+    """Classes in the prediction set of each recording."""
     return probabilities >= threshold
 
 
 def set_figures(sets: Bool[np.ndarray, "row class"], y: Int[np.ndarray, " row"], gears: np.ndarray) -> pd.DataFrame:
-    """How often the sets hold the truth, and how large they are, one row per gear.
+    """Coverage and size of the prediction sets of each gear.
 
     Returns
     -------
     DataFrame
-        ``coverage`` (share of sets with the true class), ``mean_size`` and ``empty`` (share of sets without a class).
-        The promise is about the mean coverage over gears; single gears may lie far below.
+        ``coverage`` (share of sets with the true class), ``mean_size`` and ``empty`` (share of empty sets). The nominal
+        coverage applies to the mean over gears; single gears may have much less.
     """
     sizes = sets.sum(axis=1)
     rows = pd.DataFrame({"coverage": sets[np.arange(len(y)), y], "mean_size": sizes, "empty": sizes == 0})
@@ -111,17 +111,17 @@ def set_figures(sets: Bool[np.ndarray, "row class"], y: Int[np.ndarray, " row"],
 def gear_novelty(
     source: Float[np.ndarray, "gear feature"], target: Float[np.ndarray, "target feature"]
 ) -> Float[np.ndarray, " target"]:
-    """Mahalanobis distance of gears from the source gears, per square root of the number of features.
+    """Mahalanobis distance of gears to the source gears, divided by the root of the number of features.
 
-    There are fewer gears than features, so the covariance between gears is shrunk (Ledoit and Wolf, 2004), after every
-    feature is scaled by its spread over the source gears.
+    There are fewer gears than features, so the covariance between gears is shrunk (Ledoit and Wolf, 2004). Before,
+    every feature is divided by its standard deviation over the source gears.
 
     Parameters
     ----------
     source : array (gear, feature)
-        One row per source gear: the means of its healthy references, the operating points side by side.
+        One row per source gear: means of its healthy references at all operating points.
     target : array (target, feature)
-        The same of gears that are not among the source gears; the distance of a source gear would come out too small.
+        The same of other gears; the distance of a source gear would be too small.
 
     Raises
     ------
@@ -131,7 +131,7 @@ def gear_novelty(
     from sklearn.covariance import LedoitWolf
 
     if len(source) < 3:
-        raise ValueError(f"{len(source)} source gears, at least 3 are needed to tell how far gears differ")
+        raise ValueError(f"{len(source)} source gears, at least 3 are needed for the spread of gears")
     spread = source.std(axis=0)
     used = spread > 1e-12 * np.abs(source).max(axis=0)
     middle, spread = source.mean(axis=0)[used], spread[used]
@@ -140,12 +140,12 @@ def gear_novelty(
 
 
 def novelty_left_out(gears: Float[np.ndarray, "gear feature"]) -> Float[np.ndarray, " gear"]:
-    """Distance of every gear from all the others: what is usual for a gear of the same population."""
+    """Leave-one-out distance of every gear to all others: the usual distances within a population."""
     return np.concatenate([gear_novelty(np.delete(gears, g, axis=0), gears[[g]]) for g in range(len(gears))])
 
 
 def novelty_auroc(usual: Float[np.ndarray, " known"], novel: Float[np.ndarray, " novel"]) -> float:
-    """Probability that a novel gear scores above a usual one; 0.5 is chance, 1 tells all of them apart."""
+    """Probability that a novel gear has a larger distance than a usual one; 0.5 is chance, 1 is full separation."""
     from sklearn.metrics import roc_auc_score
 
     truth = np.concatenate([np.zeros(len(usual)), np.ones(len(novel))])

@@ -1,4 +1,4 @@
-"""Classifiers with the contract of scikit-learn: classical ones, forests, networks, and how networks are trained.
+"""Classifiers with the contract of scikit-learn: classical methods, forests, networks; training; own classifiers.
 
 Imports ``inputs``.
 """

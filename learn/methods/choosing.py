@@ -1,4 +1,4 @@
-"""Choosing hyper-parameters on development gears: the same number of trials for every method, no judged gear seen."""
+"""Choice of hyper-parameters on development gears, with equally many trials for every method."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -9,14 +9,14 @@ Options = Mapping[str, Any]
 
 
 def choose(trials: Sequence[Options], score: Callable[[Options], float]) -> tuple[Options, list[float]]:
-    """The options with the highest score, the first of equals, and the scores of all.
+    """The options with the highest score, and the scores of all options.
 
     Parameters
     ----------
     trials : sequence of mapping
-        A single one is taken without a score.
+        Options to compare. If there is only one, it is chosen without a score.
     score : callable
-        Of options, on development gears.
+        Score of options on development gears. The first of equal scores wins.
     """
     if len(trials) == 1:
         return trials[0], []
@@ -25,5 +25,5 @@ def choose(trials: Sequence[Options], score: Callable[[Options], float]) -> tupl
 
 
 def trial_metrics(scores: Sequence[float]) -> dict[str, float]:
-    """The scores of all trials [%] under names that MLflow accepts."""
+    """Scores of all trials [%] with the names of their metrics."""
     return {f"trial/{number}": round(score, 3) for number, score in enumerate(scores, start=1)}

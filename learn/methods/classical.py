@@ -1,6 +1,6 @@
-"""The five classifiers of Table VI, with scikit-learn's standard settings otherwise, on features as they are.
+"""The five classifiers of Table VI as scikit-learn estimators; other settings are scikit-learn's defaults.
 
-Like the paper, none scales its features. Each is a scikit-learn estimator: ``fit(X, y)`` and ``predict(X)``.
+As in the paper, none of them scales its features.
 """
 
 from learn.methods.contract import Classifier
@@ -9,10 +9,9 @@ from learn.methods.contract import Classifier
 def multi_layer_perceptron(
     hidden_layers: int = 3, neurons: int = 10, iterations: int = 200, seed: int = 0
 ) -> Classifier:
-    """MLP with ReLU units.
+    """Multi-layer perceptron (MLP) with ReLU units and at most `iterations` epochs.
 
-    `iterations` bounds the epochs; 200 is scikit-learn's standard. Whether the optimiser came to an end before is
-    reported as the metric ``converged``.
+    The metric ``converged`` reports whether the optimiser ended before; 200 epochs are scikit-learn's default.
     """
     from sklearn.neural_network import MLPClassifier
 
@@ -20,28 +19,28 @@ def multi_layer_perceptron(
 
 
 def support_vector_machine(kernel: str = "rbf") -> Classifier:
-    """SVM with one of scikit-learn's kernels."""
+    """Support vector machine (SVM) with a kernel of scikit-learn."""
     from sklearn.svm import SVC
 
     return SVC(kernel=kernel)
 
 
 def random_forest(trees: int = 100, depth: int = 7, seed: int = 0) -> Classifier:
-    """RF of `trees` trees of at most `depth` levels."""
+    """Random forest (RF) of `trees` trees with at most `depth` levels."""
     from sklearn.ensemble import RandomForestClassifier
 
     return RandomForestClassifier(trees, max_depth=depth, random_state=seed)
 
 
 def nearest_neighbours(neighbours: int = 3) -> Classifier:
-    """KNN with the majority of the nearest `neighbours`."""
+    """Nearest neighbours (KNN): majority of the `neighbours` nearest rows."""
     from sklearn.neighbors import KNeighborsClassifier
 
     return KNeighborsClassifier(neighbours)
 
 
 def naive_bayes() -> Classifier:
-    """NB with a Gaussian per class and feature."""
+    """Naive Bayes (NB) with a Gaussian for each class and feature."""
     from sklearn.naive_bayes import GaussianNB
 
     return GaussianNB()

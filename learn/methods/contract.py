@@ -33,7 +33,7 @@ class Classifier(Protocol):
     ``classes_``
         Sorted names of the classes in y, array (class,); set by ``fit``.
 
-    Options are arguments of ``__init__`` with ``++classifier.option=value``. If ``__init__`` has the arguments
+    Options are arguments of ``__init__``: ``classifier.option=value``. If ``__init__`` has the arguments
     ``channels``, ``points`` and ``periodic``, it receives the :class:`learn.inputs.inputs.Layout` of the signal with
     which each row begins. Data sets of 100 000 recordings and more arrive as :class:`learn.inputs.rows.Rows`, which
     ``np.asarray(X)`` reads.

@@ -1,4 +1,4 @@
-"""A forest of decision trees as plain arrays, which can be changed where scikit-learn's trees cannot."""
+"""A forest of decision trees as plain arrays, which can be changed, unlike the trees of scikit-learn."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -9,24 +9,24 @@ from jaxtyping import Float, Int
 
 @dataclass(frozen=True)
 class FlatForest:
-    """The nodes of all trees one after the other.
+    """The nodes of all trees, tree by tree.
 
     Attributes
     ----------
     classes_ : array (class,)
         Names of the classes.
     roots : array (tree,)
-        Node at which each tree begins.
+        First node of each tree.
     weights : array (tree,)
-        Share of each tree in the vote; the sum is 1.
+        Weight of each tree in the vote; the sum is 1.
     left, right : array (node,)
-        Node to go to where the feature is at most the threshold, and where it is above. A leaf leads to itself.
+        Next node if the feature is at most the threshold, and if it is above. In a leaf: the leaf itself.
     feature : array (node,)
-        Column that a node looks at; 0 in a leaf.
+        Column that a node compares; 0 in a leaf.
     threshold : array (node,)
-        In the units of the column.
+        In the unit of the column.
     probabilities : array (node, class)
-        Of each class among the training rows that reach a node.
+        Class frequencies of the training rows that reach a node.
     """
 
     classes_: np.ndarray
@@ -39,8 +39,8 @@ class FlatForest:
     probabilities: Float[np.ndarray, "node class"]
 
     def leaves(self, X: Float[np.ndarray, "row column"]) -> Int[np.ndarray, "row tree"]:
-        """The leaf of every tree that each row falls into."""
-        X = as_trees_see(X)
+        """Leaf of each row in every tree."""
+        X = single_precision(X)
         rows = np.arange(len(X))[:, None]
         node = np.tile(self.roots, (len(X), 1))
         while True:
@@ -51,26 +51,26 @@ class FlatForest:
             node = following
 
     def predict_proba(self, X: Float[np.ndarray, "row column"]) -> Float[np.ndarray, "row class"]:
-        """Weighted mean over the trees of the class probabilities in the leaves."""
+        """Class probabilities of the leaves, weighted mean over the trees."""
         return np.einsum("t,rtc->rc", self.weights, self.probabilities[self.leaves(X)])
 
     def predict(self, X: Float[np.ndarray, "row column"]) -> np.ndarray:
-        """The most probable class of each row."""
+        """Most probable class of each row."""
         return self.classes_[np.argmax(self.predict_proba(X), axis=1)]
 
 
-def as_trees_see(X: Float[np.ndarray, "row column"]) -> Float[np.ndarray, "row column"]:
-    """The columns in single precision, in which scikit-learn's trees compare them."""
+def single_precision(X: Float[np.ndarray, "row column"]) -> Float[np.ndarray, "row column"]:
+    """Rows in single precision, as scikit-learn's trees compare them."""
     return X.astype(np.float32)
 
 
 def flatten(forest: Any) -> FlatForest:
-    """The arrays of a fitted random forest or forest of extremely randomised trees.
+    """Arrays of a fitted random forest or of fitted extremely randomised trees.
 
     Raises
     ------
     ValueError
-        If the model is no such forest.
+        If the model is another one.
     """
     from sklearn.ensemble import ExtraTreesClassifier, RandomForestClassifier
 

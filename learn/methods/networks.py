@@ -1,7 +1,6 @@
-"""Networks on flat rows: first the signal, channel by channel over one revolution, then side columns.
+"""Networks on flat rows: first the signal, channel by channel over one revolution, then auxiliary columns.
 
-Whatever a network needs of the source gears, scaling included, is in its state dict, so that it travels with the
-weights.
+The state dict holds everything that depends on the source gears, including the scaling.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -18,27 +17,27 @@ from torch import Tensor, nn
 from swgsim.common.checks import require, require_integer, require_known
 from swgsim.common.seeds import seed_hash
 
-# Of a Gaussian: interquartile range and median absolute deviation to standard deviation.
+# Factors from interquartile range and median absolute deviation to the standard deviation of a Gaussian.
 QUARTILES, DEVIATION = 1 / 1.349, 1.4826
-# A column of which nothing but rounding is seen varies by less than this part of its typical value.
+# A column that varies by less than this share of its typical value contains rounding errors only.
 LEAST_SPREAD = 1e-6
-# Points that one shift of the convolutional network spans: three blocks halve the revolution.
+# Three blocks halve the number of points.
 STRIDE = 8
-FEATURES = 64  # at the end of the convolutional body
+FEATURES = 64  # at the output of the convolutional body
 
 
 class Network(nn.Module):
-    """A body that finds features and a linear head that tells classes from them.
+    """A body that computes features, and a linear head that classifies them.
 
     Parameters
     ----------
     body : Module
         Maps scaled rows (row, column) to features (row, width).
     width, classes, columns : int
-        Number of features, of classes and of columns of the input.
+        Numbers of features, of classes and of columns of the input.
     channels, points : int
-        Of the signal in the first channels*points columns, whose points are alike and share a scale; 0 channels if
-        there is none.
+        Size of the signal in the first channels*points columns. All points of a channel share a scale. 0 channels: no
+        signal.
     """
 
     def __init__(
@@ -57,26 +56,26 @@ class Network(nn.Module):
         return cast(Tensor, self.head(self.embed(X)))
 
     def embed(self, X: Float[Tensor, "row column"]) -> Float[Tensor, "row width"]:
-        """Features that the head sees.
+        """Input features of the head.
 
-        A single fault can be hundred times the noise: on a linear scale it would drown the small ones, so the rows
-        pass through asinh, which is linear up to about one standard deviation and logarithmic beyond.
+        A large fault can exceed the noise a hundredfold and would hide the small ones. Rows therefore pass through
+        asinh, which is linear up to about one standard deviation and logarithmic beyond.
         """
         return cast(Tensor, self.body(torch.asinh((X - self.centre) / self.scale)))
 
     def set_scaling(self, X: Float[np.ndarray, "row column"]) -> None:
-        """Take centre and scale from the rows of the source gears, robustly, because most rows are faults.
+        """Estimate centre and scale from the rows of the source gears, robustly, as most rows are faults.
 
-        Every column has its own median. A side column is divided by its interquartile range, a channel of the signal
-        by the median absolute deviation over all its points, for a scale per point would distort the waveform; both
-        are expressed as the standard deviation of a Gaussian. What does not vary is divided by 1.
+        The centre is the median of each column. The scale of an auxiliary column is its interquartile range, that of a
+        channel the median absolute deviation over all points, as a scale for each point would distort the waveform.
+        Both are converted to the standard deviation of a Gaussian. Constant columns have a scale of 1.
         """
         if X.shape[1] != len(self.centre):
             raise ValueError(f"rows have {X.shape[1]} columns, the network was made for {len(self.centre)}")
         centre = np.median(X, axis=0)
-        signal, side = np.split(X - centre, [self.channels * self.points], axis=1)
-        low, high = np.percentile(side, (25, 75), axis=0)
-        scale = _positive(QUARTILES * (high - low), side, X[:, signal.shape[1] :])
+        signal, auxiliary = np.split(X - centre, [self.channels * self.points], axis=1)
+        low, high = np.percentile(auxiliary, (25, 75), axis=0)
+        scale = _positive(QUARTILES * (high - low), auxiliary, X[:, signal.shape[1] :])
         if self.channels:
             deviation, values = self._by_channel(signal), self._by_channel(X[:, : signal.shape[1]])
             channel = _positive(DEVIATION * np.median(np.abs(deviation), axis=0), deviation, values)
@@ -93,18 +92,17 @@ def _positive(
     deviation: Float[np.ndarray, "row group"],
     values: Float[np.ndarray, "row group"],
 ) -> Float[np.ndarray, " group"]:
-    """The robust scale; the standard deviation where most rows are equal; 1 where all are, but for rounding."""
+    """The robust scale; the standard deviation if most rows are equal; 1 if all rows are equal, up to rounding."""
     least = LEAST_SPREAD * np.median(np.abs(values), axis=0)
     scale = np.where(robust > least, robust, deviation.std(axis=0))
     return np.where(scale > least, scale, 1.0)
 
 
 class Convolutions(nn.Module):
-    """Convolutions over the revolution, pooled over the angle and joined by the side columns.
+    """Convolutions over the revolution, pooled over the angle, and joined with the auxiliary columns.
 
-    A signal that is periodic in the angle is padded with itself. With strides of 2 in three blocks, the output stays
-    the same under circular shifts of the scaled signal by whole multiples of 8 points, and under no others. What is
-    not periodic is padded with zeros.
+    A periodic signal is padded circularly, another one with zeros. With strides of 2 in three blocks, circular shifts
+    of a periodic signal by multiples of 8 points do not change the output; other shifts do.
     """
 
     def __init__(self, channels: int, points: int, side: int, width: int, dropout: float, periodic: bool) -> None:
@@ -141,15 +139,15 @@ def perceptron(
     Parameters
     ----------
     columns, classes : int
-        Of the input, signal included, and of the output.
+        Numbers of columns of the input, signal included, and of classes.
     layers, neurons : int
-        Hidden layers and units in each.
+        Numbers of hidden layers, and of units in each.
     dropout : float
-        Share of the units that training leaves out at a time.
+        Share of the units that each training step leaves out.
     channels, points, periodic : int, int, bool
-        Of the signal; they matter for its scaling only: the points of a periodic one are alike and share a scale.
+        Layout of the signal. It affects the scaling only: all points of a periodic signal share a scale.
     seed : int
-        Of the initial weights.
+        Seed of the initial weights.
     """
     owner = "the perceptron"
     _require_common(owner, columns, classes, channels, points, dropout)
@@ -174,25 +172,24 @@ def convolutional(
     Parameters
     ----------
     channels, points : int
-        Of the signal; points of a periodic one are a multiple of 8.
+        Size of the signal; a periodic one has a multiple of 8 points.
     columns, classes : int
-        Of the input, signal included, and of the output.
+        Numbers of columns of the input, signal included, and of classes.
     width : int
-        Filters of the first block; the other two have twice as many.
+        Number of filters of the first block; the other two have twice as many.
     dropout : float
-        Share of the pooled features that training leaves out at a time.
+        Share of the pooled features that each training step leaves out.
     periodic : bool
-        Whether the points are angles of a revolution; else they are unlike, as features in a row are, and each has a
-        scale of its own.
+        Whether the points are angles of a revolution. Otherwise they are features, each with a separate scale.
     seed : int
-        Of the initial weights.
+        Seed of the initial weights.
     """
     owner = "the convolutional network"
     _require_common(owner, columns, classes, channels, points, dropout)
     if channels < 1 or (periodic and points % STRIDE):
         raise ValueError(
-            f"{owner} is given {channels} channels of {points} points, needs a signal whose points are a multiple of "
-            f"{STRIDE}, for three blocks halve the revolution; without a signal take the perceptron"
+            f"{owner} has {channels} channels of {points} points, needs a signal with a multiple of {STRIDE} points, "
+            "as three blocks halve their number; without a signal take the perceptron"
         )
     require_integer(owner, "width", width, low=1, high=1024)
     with seeded(seed_hash("initial weights", seed)):
@@ -218,7 +215,7 @@ ARCHITECTURES: Mapping[str, Callable[..., Network]] = {"perceptron": perceptron,
 
 @dataclass(frozen=True)
 class Architecture:
-    """A kind of network with its options: what can be written to a file, and made anew from it.
+    """A kind of network with its options, as stored in files.
 
     Attributes
     ----------
@@ -241,7 +238,7 @@ class Architecture:
 
 @contextmanager
 def seeded(seed: int, device: torch.device | None = None) -> Iterator[None]:
-    """PyTorch's global generators of the processor and of ``device``, seeded, and afterwards as they were before."""
+    """Seed PyTorch's global generators of the processor and of ``device``, and restore them afterwards."""
     accelerators = [device] if device is not None and device.type == "cuda" else []
     with torch.random.fork_rng(devices=accelerators):
         torch.default_generator.manual_seed(seed)

@@ -1,6 +1,6 @@
-"""Neural networks as classifiers with scikit-learn's contract, and the files that keep them.
+"""Neural networks as classifiers with scikit-learn's contract, and their files.
 
-PyTorch is imported where it is needed, because the command line scripts import this module for its factories.
+PyTorch is imported inside the functions, because all commands import this module for its factories.
 """
 
 from collections.abc import Mapping
@@ -23,26 +23,25 @@ if TYPE_CHECKING:
     from learn.methods.training import Recipe
 
 SUFFIX = ".pt"  # of the files
-# Rows from which the scaling is taken, at most: more would not change it, and may be too many for the memory.
-SCALED = 30_000
+SCALED = 30_000  # largest number of rows for the scaling; more rows would not change it
 
 
 @dataclass(eq=False)
 class NeuralClassifier:
-    """A network with the recipe to train it.
+    """A network and its training recipe.
 
     Attributes
     ----------
     architecture : Architecture
     recipe : Recipe
     seed : int
-        Of the initial weights and of training.
+        Seed of the initial weights and of training.
     device : str
         ``auto``, ``cpu`` or ``cuda``.
     classes_ : array (class,)
-        Names of the classes, sorted, in the order of the columns of :meth:`predict_proba`; after :meth:`fit`.
+        Sorted names of the classes; set by :meth:`fit`.
     network_ : Network
-        After :meth:`fit`.
+        Set by :meth:`fit`.
     """
 
     architecture: "Architecture"
@@ -53,12 +52,12 @@ class NeuralClassifier:
     network_: "Network" = field(init=False, repr=False)
 
     def fit(self, X: Inputs, y: np.ndarray) -> "NeuralClassifier":
-        """Train a new network on rows and their class names; scaling is taken from these rows too.
+        """Train a new network on rows and their class names, from which the scaling comes too.
 
         Raises
         ------
         ValueError
-            If a number is not finite, or there is one class only.
+            If a number is not finite, or there is only one class.
         """
         import torch
 
@@ -67,9 +66,9 @@ class NeuralClassifier:
         _require_finite(X)
         classes, numbers = np.unique(y, return_inverse=True)
         if len(classes) < 2:
-            raise ValueError(f"the rows are of {len(classes)} class ({', '.join(map(str, classes))}), 2 are needed")
+            raise ValueError(f"the rows have {len(classes)} class ({', '.join(map(str, classes))}), 2 are needed")
         network = self.architecture.network(X.shape[1], len(classes), self.seed)
-        network.set_scaling(self._some(X))
+        network.set_scaling(self._sample(X))
         network.to(choose_device(self.device))
         train(network, X if isinstance(X, Rows) else as_tensor(X), torch.from_numpy(numbers), self.recipe, self.seed)
         self.classes_, self.network_ = classes, network
@@ -81,7 +80,7 @@ class NeuralClassifier:
         Raises
         ------
         ValueError
-            If a number is not finite, the columns are not those of training, or there was no training.
+            If a number is not finite, the number of columns differs from training, or the network is not trained.
         """
         import torch
 
@@ -99,18 +98,18 @@ class NeuralClassifier:
             return np.asarray(torch.cat(logits).cpu().double().softmax(dim=1).numpy())
 
     def predict(self, X: Inputs) -> np.ndarray:
-        """The most probable class of each row."""
+        """Most probable class of each row."""
         most_probable = self.predict_proba(X).argmax(axis=1)
         return self.classes_[most_probable]
 
-    def _some(self, X: Inputs) -> Float[np.ndarray, "some column"]:
-        """All rows, or of too many a choice, drawn."""
+    def _sample(self, X: Inputs) -> Float[np.ndarray, "some column"]:
+        """All rows, or SCALED random ones."""
         if len(X) <= SCALED:
             return np.asarray(X)
         return np.asarray(X[np.sort(generator("scaling", self.seed).choice(len(X), SCALED, replace=False))])
 
     def with_network(self, network: "Network") -> "NeuralClassifier":
-        """The same classifier with another network for the same classes, such as one trained further."""
+        """A copy of the classifier with another network for the same classes."""
         other = replace(self)
         other.classes_, other.network_ = self.classes_, network
         return other
@@ -144,7 +143,7 @@ def convolutional_network(
 
 
 def save(model: NeuralClassifier, path: Path) -> None:
-    """Write a trained classifier, weights, scaling and class names included."""
+    """Write a trained classifier with weights, scaling and class names."""
     import torch
 
     content = {
@@ -155,18 +154,18 @@ def save(model: NeuralClassifier, path: Path) -> None:
         "seed": model.seed,
         "state": {name: value.cpu() for name, value in model.network_.state_dict().items()},
     }
-    # Through an open file, because PyTorch would otherwise write the name of the file into it.
+    # Through an open file, as PyTorch writes the name of a path into the file.
     with replacing(path) as aside, aside.open("wb") as raw:
         torch.save(content, raw)
 
 
 def load(path: Path, device: str = "auto") -> NeuralClassifier:
-    """Read a classifier that :func:`save` has written; nothing in the file is executed.
+    """Read a classifier from a file of :func:`save` without running code from the file.
 
     Raises
     ------
     ValueError
-        If the file is anything else.
+        If it is another file.
     """
     import torch
 
@@ -178,20 +177,18 @@ def load(path: Path, device: str = "auto") -> NeuralClassifier:
         architecture = Architecture(**content["architecture"])
         model = NeuralClassifier(architecture, Recipe(**content["recipe"]), content["seed"], device)
         model.classes_ = np.array(content["classes"])
-        with torch.device("meta"):  # without memory: a small file may speak of a large network
+        with torch.device("meta"):  # without memory, as a small file may describe a large network
             model.network_ = architecture.network(content["columns"], len(model.classes_), model.seed)
         _require_state(content["state"], model.network_.state_dict())
         model.network_.load_state_dict(content["state"], assign=True)
-    except Exception as error:  # PyTorch raises what zip, pickle and its own parts raise
-        raise ValueError(
-            f"{path} is no neural classifier: give a file that learn.methods.neural.save has written"
-        ) from error
+    except Exception as error:  # PyTorch raises many kinds
+        raise ValueError(f"{path} is no neural classifier: give a file of learn.methods.neural.save") from error
     model.network_.to(choose_device(device)).eval()
     return model
 
 
 def _content(path: Path) -> Mapping[str, Any]:
-    """What the archive holds; a bare pickle, which is no archive, is not read, nor is one whose sums do not agree."""
+    """Content of a sound archive; a bare pickle is refused."""
     import torch
 
     require_plain(path)
@@ -201,7 +198,7 @@ def _content(path: Path) -> Mapping[str, Any]:
 
 
 def _require_state(given: Mapping[str, "Tensor"], needed: Mapping[str, "Tensor"]) -> None:
-    """Raise unless all numbers are there, of the types and shapes that are needed, and finite."""
+    """Raise unless all needed tensors are given with their types and shapes, and finite."""
     for name, like in needed.items():
         value = given[name]
         if value.dtype != like.dtype or value.shape != like.shape or not value.is_contiguous():
@@ -217,6 +214,6 @@ def _require_finite(X: Inputs) -> None:
         if len(bad):
             row, column = bad[0]
             raise ValueError(
-                f"column {column} of row {start + row} is {rows[row, column]}: leave out or fill in what is missing"
+                f"column {column} of row {start + row} is {rows[row, column]}: leave out or fill in missing values"
             )
         start += len(rows)

@@ -1,4 +1,4 @@
-"""MiniRocket: thousands of fixed convolutions of the signal, pooled, and a ridge classifier on them (by aeon)."""
+"""MiniRocket of aeon: thousands of fixed convolutions of the signal, pooled, and a ridge classifier."""
 
 import warnings
 from dataclasses import dataclass, field
@@ -12,21 +12,19 @@ from learn.methods.strong import compression
 from swgsim.common.checks import require_integer
 
 SHORTEST = 9  # points: the length of MiniRocket's kernels
-STRENGTHS = np.logspace(-1, 5, 7)  # of the ridge; the classifier chooses by leave-one-out on its training rows
+STRENGTHS = np.logspace(-1, 5, 7)  # of the ridge; chosen by leave-one-out on the training rows
 
 
 @dataclass
 class MiniRocket:
-    """MiniRocket on the signal of each row, beside its side inputs.
+    """MiniRocket on the signal of each row, joined with the auxiliary inputs.
 
     Attributes
     ----------
-    channels, points : int
-        Each row begins with so many channels of so many points; side inputs follow.
-    periodic : bool
-        Whether the points of a channel are alike and share a scale.
+    channels, points, periodic : int, int, bool
+        :class:`learn.inputs.inputs.Layout` of the signal; all points of a periodic channel share a scale.
     kernels : int
-        Features that the convolutions make.
+        Number of features from convolutions.
     seed : int
 
     Raises
@@ -51,15 +49,15 @@ class MiniRocket:
             )
 
     def fit(self, X: Inputs, y: np.ndarray) -> "MiniRocket":
-        """Learn from rows and class names."""
+        """Train on rows and class names."""
         from sklearn.linear_model import LogisticRegression, RidgeClassifierCV
         from sklearn.preprocessing import StandardScaler
 
         signal, side = self._split(X)
-        # One scale for all rows: what differs between windows stays in them.
-        alike = (0, 2) if self.periodic else 0
-        self._centre = signal.mean(axis=alike, keepdims=True)
-        self._scale = signal.std(axis=alike, keepdims=True) + np.finfo(np.float32).tiny
+        # One scale for all rows keeps the differences between windows.
+        axes = (0, 2) if self.periodic else 0
+        self._centre = signal.mean(axis=axes, keepdims=True)
+        self._scale = signal.std(axis=axes, keepdims=True) + np.finfo(np.float32).tiny
         self._rocket = _transformer(self.kernels, self.seed)
         convolved = self._convolved(signal, fit=True)
         self._of_rocket = StandardScaler().fit(convolved)
@@ -77,7 +75,7 @@ class MiniRocket:
         return self._probability.predict_proba(self._ridge.decision_function(features))
 
     def predict(self, X: Inputs) -> np.ndarray:
-        """The class name of each row."""
+        """Most probable class of each row."""
         return self.classes_[self.predict_proba(X).argmax(axis=1)]
 
     def _split(self, X: Inputs) -> tuple[np.ndarray, np.ndarray]:
@@ -89,7 +87,7 @@ class MiniRocket:
     def _convolved(self, signal: np.ndarray, fit: bool = False) -> np.ndarray:
         scaled = (signal - self._centre) / self._scale
         with warnings.catch_warnings():
-            # A recording like its reference has a residual of zeros, which is as it should be.
+            # The residual of a recording that equals its reference is zero.
             warnings.filterwarnings(
                 "ignore", message="Data seen by instance of MiniRocket has one or more case/channel"
             )

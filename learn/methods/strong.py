@@ -1,4 +1,4 @@
-"""Strong classical methods beside the paper's five; each is a scikit-learn estimator with ``predict_proba``."""
+"""Classical methods that the paper does not have, as scikit-learn estimators."""
 
 from typing import TYPE_CHECKING
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def logistic_regression(strength: float = 1.0, iterations: int = 300, seed: int = 0) -> Classifier:
-    """Multinomial logistic regression on compressed features; `strength` is the inverse of the regularisation, C."""
+    """Multinomial logistic regression on compressed features; `strength` C is the inverse of the regularisation."""
     from sklearn.linear_model import LogisticRegression
     from sklearn.pipeline import make_pipeline
 
@@ -20,10 +20,7 @@ def logistic_regression(strength: float = 1.0, iterations: int = 300, seed: int 
 
 
 def compression() -> "Pipeline":
-    """Features scaled by median and quartiles and compressed by asinh.
-
-    A severe fault is hundreds of times the noise that a mild one stands in.
-    """
+    """Scaling by median and quartiles, then asinh, as a severe fault exceeds the noise hundreds of times."""
     from sklearn.pipeline import make_pipeline
     from sklearn.preprocessing import FunctionTransformer, RobustScaler
 
@@ -38,7 +35,7 @@ def gradient_boosting(
 
     return HistGradientBoostingClassifier(
         max_iter=rounds, learning_rate=rate, max_leaf_nodes=leaves, max_features=columns, random_state=seed,
-        early_stopping=False,  # which would set rows aside whose specimens are trained on
+        early_stopping=False,  # it would hold out rows of trained specimens
     )  # fmt: skip
 
 

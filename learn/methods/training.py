@@ -1,4 +1,4 @@
-"""One training loop for every network, from scratch and for transfer."""
+"""The training loop of all networks, from scratch and for transfer."""
 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
@@ -17,14 +17,14 @@ from swgsim.common.seeds import generator, seed_hash
 
 @dataclass(frozen=True)
 class Recipe:
-    """How long and how fast a network learns.
+    """Duration and rate of training.
 
     Attributes
     ----------
     epochs : int
         Passes through all rows.
     batch : int
-        Rows per step, at most.
+        Largest number of rows in a step.
     rate, decay : float
         Highest learning rate of the cycle, and weight decay of AdamW.
     """
@@ -47,31 +47,30 @@ def train(
     *, parameters: Iterable[nn.Parameter] | None = None, penalty: Callable[[Network], Tensor] | None = None,
     frozen_statistics: bool = False,
 ) -> None:  # fmt: skip
-    """Fit a network in place with AdamW on the cross entropy, for a fixed budget, and leave it ready to predict.
+    """Fit a network in place with AdamW on the cross entropy, and leave it in evaluation mode.
 
-    There is no early stopping: rows of the target gear must not decide when to stop, and rows to decide on from the
-    source gears would be lost to training.
+    The number of steps is fixed. Early stopping would need rows of the target gear, or source rows that training lacks.
 
     Parameters
     ----------
     network : Network
-        On the device on which it is to be trained.
-    X, y : tensor
+        Network on its device.
+    X, y : tensor (row, column), tensor (row,)
         Rows and numbers of their classes, on any device. Rows in a file are read batch by batch.
     recipe : Recipe
     seed : int
-        Of the order of the rows and of dropout.
+        Seed of the order of the rows and of dropout.
     parameters : iterable of Parameter, optional
-        What is trained, such as ``network.head.parameters()``; otherwise everything.
+        Parameters to train, such as ``network.head.parameters()``; all by default.
     penalty : callable, optional
-        Added to the loss in each step, such as a distance to the weights before fine-tuning.
+        Term that is added to the loss in each step, such as a distance to the initial weights.
     frozen_statistics : bool
-        Whether batch normalisation keeps the mean and variance that it has, which few rows would spoil.
+        Whether batch normalisation keeps its mean and variance, which few rows cannot estimate.
 
     Raises
     ------
     ValueError
-        If there is no row, or the loss ends as no finite number.
+        If there is no row, or the last loss is not finite.
     """
     if not len(X):
         raise ValueError("there are 0 rows to train on, at least 1 is needed")
@@ -89,13 +88,13 @@ def train(
                 module.eval()
     with one_thread(), seeded(seed_hash("training", seed), device):
         for _ in range(recipe.epochs):
-            # Batches of equal size, to one row: a small rest would unsettle batch normalisation.
+            # Batch sizes differ by at most one row, as batch normalisation needs no small batch.
             for rows in torch.from_numpy(order.permutation(len(X))).to(device).tensor_split(steps):
                 loss = nn.functional.cross_entropy(network(batch(rows)), y.index_select(0, rows))
                 if penalty is not None:
                     loss = loss + penalty(network)
                 optimiser.zero_grad()
-                loss.backward(inputs=trained)  # nothing is computed for weights that stay
+                loss.backward(inputs=trained)  # no gradients for fixed weights
                 optimiser.step()
                 schedule.step()
     network.eval()
@@ -104,11 +103,11 @@ def train(
 
 
 def _reader(X: Float[Tensor, "row column"] | Rows, device: torch.device) -> Callable[[Tensor], Tensor]:
-    """What gives the rows of a batch, on a device."""
+    """Function from row numbers to rows on a device."""
     if isinstance(X, Rows):
         return lambda rows: as_tensor(X[rows.cpu().numpy()]).to(device)
-    there = X.to(device)
-    return lambda rows: there.index_select(0, rows)
+    resident = X.to(device)
+    return lambda rows: resident.index_select(0, rows)
 
 
 def choose_device(device: str) -> torch.device:
@@ -117,7 +116,7 @@ def choose_device(device: str) -> torch.device:
     Raises
     ------
     ValueError
-        If PyTorch knows no such device, or finds none.
+        If the name is unknown or PyTorch does not find the device.
     """
     found = torch.cuda.is_available()
     try:
@@ -125,16 +124,16 @@ def choose_device(device: str) -> torch.device:
     except RuntimeError as error:
         raise ValueError(f"unknown device {device!r}; choose from auto, cpu, cuda") from error
     if chosen.type not in ("cpu", "cuda") or (chosen.type == "cuda" and not found):
-        raise ValueError(f"device {device!r} is not there for PyTorch; choose auto or cpu")
+        raise ValueError(f"PyTorch does not find device {device!r}; choose auto or cpu")
     return chosen
 
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """One thread of PyTorch inside, as many as before outside.
+    """Limit PyTorch to one thread inside the context.
 
-    Sweeps run jobs side by side, and two threads beside a busy core are several times slower than one. Also the order
-    of sums, and with it the last digit of every weight, does not depend on the number of cores.
+    Jobs of a sweep run in parallel, and more threads than cores are several times slower. The order of sums, and so
+    the last digit of every weight, is then independent of the number of cores.
     """
     before = torch.get_num_threads()
     torch.set_num_threads(1)

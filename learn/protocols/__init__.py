@@ -1,4 +1,4 @@
-"""Which recordings train and which judge: splits by gear, operating point or severity, and levels of target data.
+"""Splits into training and test by gear, operating point or fault size, and levels of target information.
 
 Imports ``inputs``.
 """

@@ -1,12 +1,12 @@
-"""The size of a fault: what grows with damage, whatever the severity of its class counts."""
+"""Size of a fault: a quantity that grows with damage for every class, unlike some severities."""
 
 from collections.abc import Callable, Mapping
 
 import numpy as np
 from jaxtyping import Float
 
-# A class to its fault's size, which is 0 without the fault and grows with it: the lost share of b1 and of k1, the
-# eccentricity [m], the compliance that the crack adds to a tooth pitch of the rim, and the lost share of tooth force.
+# From severity to size, which is 0 without the fault: lost share of b1 and of k1, eccentricity [m], compliance that the
+# crack adds to a tooth pitch of the rim, and lost share of the tooth force.
 SIZES: Mapping[str, Callable[[np.ndarray], np.ndarray]] = {
     "reduced_damping": lambda remaining: 1 - remaining,
     "reduced_stiffness": lambda remaining: 1 - remaining,
@@ -18,12 +18,12 @@ UNITS: Mapping[str, str] = {"eccentric_wave_generator": " m"}
 
 
 def size(label: str, severity: Float[np.ndarray, " row"]) -> Float[np.ndarray, " row"]:
-    """Size of the faults of one class from their severities, as :data:`SIZES` says.
+    """Sizes of faults of one class from their severities, by :data:`SIZES`.
 
     Raises
     ------
     ValueError
-        If the class is no fault, or a size is not above 0, as its logarithm is needed.
+        If the class is not a fault, or a size is not above 0, as evaluations need its logarithm.
     """
     if label not in SIZES:
         raise ValueError(f"{label!r} has no fault size; choose from {', '.join(SIZES)}")

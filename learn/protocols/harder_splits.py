@@ -1,7 +1,7 @@
-"""Harder questions of the same gears: faults milder or severer than any trained on, an operating point never seen.
+"""Splits with known gears that are harder than random folds: other fault sizes, or another operating point.
 
-A specimen (gear, class, variant) is on one side of a split only, with all its recordings. Gears are on both sides. In
-the clean grid all healthy rows are identical, and their recall is free.
+All recordings of a specimen (gear, class, variant) are on one side of a split. Gears are on both sides. In the clean
+grid all healthy rows are identical, so their recall means nothing.
 """
 
 from collections.abc import Iterator
@@ -21,25 +21,24 @@ from swgsim.common.seeds import generator
 
 @dataclass(frozen=True)
 class LeaveSeverityOut:
-    """Train on all parts of the fault sizes but one and test on that one: the mild, the medium or the severe faults.
+    """Leave out a part of the fault sizes for the test: the mild, the medium or the severe faults.
 
-    The specimens of each fault class, of all gears together, are ordered by fault size and cut into parts as equal in
-    number as can be. Equal sizes are never cut apart: each cut is put between the two neighbouring sizes where the
-    number of specimens below is nearest to an equal share, and every part has at least one size. With as many sizes as
-    parts, as the cracks of the paper's grid have, each part is one size. Specimens of healthy gears have no size; those
-    of each gear are dealt into the parts at random.
+    The specimens of each fault class, of all gears together, are ordered by fault size and cut into parts of nearly
+    equal number. Equal sizes stay together: each cut lies between two neighbouring sizes, where the number of specimens
+    below is nearest to an equal share. Every part has at least one size; the cracks of the paper's grid have one size
+    in each part. Healthy specimens have no size; those of each gear are distributed over the parts at random.
 
     Attributes
     ----------
     parts : int
     seed : int
-        Of the parts of healthy specimens.
+        Seed of the parts of healthy specimens.
 
     Raises
     ------
     ValueError
-        If there are fewer than 2 parts; when splitting, if a fault class has fewer sizes than parts, or a gear fewer
-        healthy specimens.
+        If there are fewer than 2 parts. In ``split``: if a class has fewer sizes than parts, or a gear fewer healthy
+        specimens.
     """
 
     parts: int = 3
@@ -56,12 +55,12 @@ class LeaveSeverityOut:
         return tuple(f"part {number} of {self.parts}" for number in range(1, self.parts + 1))
 
     def split(self, features: Inputs, table: pd.DataFrame) -> Iterator[Split]:
-        """One split per part, which is tested; every row is tested once."""
+        """One split per part; every row is tested once."""
         part = np.empty(len(table), dtype=int)
         for label, rows in table.groupby("label", observed=True).indices.items():
             of_class = table.iloc[rows]
             part[rows] = (
-                _dealt(of_class, self.parts, "parts", self.seed)
+                _random_groups(of_class, self.parts, "parts", self.seed)
                 if label == "healthy"
                 else self._parts_by_size(str(label), of_class)
             )
@@ -81,7 +80,7 @@ class LeaveSeverityOut:
 
 
 def _cuts(counts: Int[np.ndarray, " value"], parts: int) -> list[int]:
-    """For all parts but the first, the number of its first value; no part is empty."""
+    """Number of the first value of every part but the first; no part is empty."""
     below = np.append(0, np.cumsum(counts))
     cuts = [0]
     for part in range(1, parts):
@@ -92,25 +91,25 @@ def _cuts(counts: Int[np.ndarray, " value"], parts: int) -> list[int]:
 
 @dataclass(frozen=True)
 class LeaveOperatingPointOut:
-    """Train at all operating points but one and test at that one, on other specimens.
+    """Leave out an operating point, and test there on other specimens than those of training.
 
-    The specimens of each gear and class are dealt into groups at random. Trained are the rows of all groups but one at
-    the other points, tested the rows of that one group at the point left out. To save time there is one split to a
-    point and not one to each group and point: the points take the groups in turn, so that with 4 folds a quarter of the
-    rows of each point is tested. The features at the point left out are still relative to the healthy reference there.
+    The specimens of each gear and class are divided into groups at random. Each split leaves out one point and one
+    group: it trains on the other groups at the other points, and tests the one group at the one point. There is one
+    split per point, and the points use the groups in turn; with 4 folds, a quarter of the rows of a point is tested.
+    Features at the left-out point are still relative to its healthy reference.
 
     Attributes
     ----------
     folds : int
-        Groups of specimens.
+        Number of groups of specimens.
     seed : int
-        Of the groups.
+        Seed of the groups.
 
     Raises
     ------
     ValueError
-        If there are fewer than 2 folds; when splitting, if there are fewer than 2 operating points, or fewer specimens
-        of a gear and class than folds.
+        If there are fewer than 2 folds. In ``split``: if there are fewer than 2 operating points, or fewer specimens of
+        a gear and class than folds.
     """
 
     folds: int = 4
@@ -120,26 +119,26 @@ class LeaveOperatingPointOut:
         require_integer("the protocol", "folds", self.folds, low=2, high=10_000)
 
     def split(self, features: Inputs, table: pd.DataFrame) -> Iterator[Split]:
-        """One split per operating point, named as ``2000 rpm, 7 N m``, from low to high speed and load."""
+        """One split per operating point, such as ``2000 rpm, 7 N m``, in ascending order of speed and load."""
         points, point = np.unique(table[list(OPERATING_POINT)].to_numpy(), axis=0, return_inverse=True)
         if len(points) < 2:
             raise ValueError(
                 f"{len(points)} operating point found, leaving one out needs at least 2: take a grid with more"
             )
-        group = _dealt(table, self.folds, "folds", self.seed)
+        group = _random_groups(table, self.folds, "folds", self.seed)
         for number, (speed, load) in enumerate(points):
             here, chosen = point.ravel() == number, group == number % self.folds  # NumPy 2.0 gives a column
-            name = f"{_written(speed)} rpm, {_written(load)} N m"
+            name = f"{_decimal(speed)} rpm, {_decimal(load)} N m"
             yield Split(name, np.flatnonzero(~here & ~chosen), np.flatnonzero(here & chosen))
 
 
-def _written(value: float) -> str:
-    """All digits and no exponent, whose sign may not stand in the name of a metric."""
+def _decimal(value: float) -> str:
+    """All digits without an exponent, as names of metrics allow no plus sign."""
     return np.format_float_positional(value, trim="-")
 
 
-def _dealt(table: pd.DataFrame, number: int, what: str, seed: int) -> Int[np.ndarray, " row"]:
-    """Which of `number` groups each row's specimen is in; those of each gear and class are dealt evenly, at random."""
+def _random_groups(table: pd.DataFrame, number: int, what: str, seed: int) -> Int[np.ndarray, " row"]:
+    """Number of the random group of each row's specimen; groups of a gear and class have nearly equal sizes."""
     group = np.empty(len(table), dtype=int)
     for rows in table.groupby(["gear", "label"], observed=True).indices.values():
         gear, label = table["gear"].iloc[rows[0]], table["label"].iloc[rows[0]]

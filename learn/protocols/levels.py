@@ -1,11 +1,16 @@
-"""What is known of a gear never seen: the levels of target information, as pools of its recordings.
+"""Levels of target information, as pools of recordings of a gear that is not in training.
 
-Z0: nothing. Z1: healthy acquisitions of the gear, its reference (what the paper assumes). Z2: besides, recordings
-without labels. Z3: besides, K labelled variants of each class, the shots. Z4: the labels of the whole labelled pool.
-The representation decides between Z0 and Z1 (``reference``); the pools here hold what Z2 to Z4 give.
+====  ======================================================================
+Z0    nothing is known of the target gear
+Z1    its healthy reference, as the paper assumes
+Z2    Z1, and recordings without labels
+Z3    Z1, and K labelled variants of each class, the shots
+Z4    Z1, and all variants of the labelled pool
+====  ======================================================================
 
-A shot is one variant, a physical specimen, at all its operating points. The pools of a gear are disjoint, its reference
-acquisitions are recordings of their own, and every method is given the same pools, shots and judged recordings.
+The representation decides between Z0 and Z1 (``reference``); the pools serve Z2 to Z4. A shot is one variant, a
+physical specimen, at all its operating points. Pools of a gear are disjoint, and reference acquisitions are in none of
+them. All methods receive the same pools, shots and judged recordings.
 """
 
 from collections.abc import Iterator
@@ -24,17 +29,17 @@ DEVELOPMENT_FOLDS = 3
 
 @dataclass(frozen=True)
 class Target:
-    """The recordings of one gear that is not in training, as row numbers.
+    """Row numbers of one gear that is not in training.
 
     Attributes
     ----------
     gear : int
     labelled : array (row,)
-        From which shots are drawn; all of them are level Z4.
+        Pool of the shots; all of it is level Z4.
     unlabelled : array (row,)
-        Known without their labels, level Z2.
+        Pool of level Z2.
     judged : array (row,)
-        On which every method is judged.
+        Rows on which all methods are judged.
     """
 
     gear: int
@@ -43,26 +48,24 @@ class Target:
     judged: Int[np.ndarray, " judged"]
 
     def shots(self, table: pd.DataFrame, number: int, draw: int) -> Int[np.ndarray, " shot"]:
-        """All recordings of `number` variants of each class, of the labelled ones.
-
-        The variants of one draw are nested: those of 2 are among those of 5.
+        """Rows of `number` labelled variants of each class; within a draw, more shots include fewer.
 
         Raises
         ------
         ValueError
-            If there are fewer labelled variants of a class.
+            If a class has fewer labelled variants.
         """
         pool = table.iloc[self.labelled]
         if number and pool.empty:
             raise ValueError(
-                f"{number} shots asked for, gear {self.gear} has 0 labelled variants: give the protocol labelled ones"
+                f"{number} shots requested, gear {self.gear} has 0 labelled variants: set labelled of the protocol"
             )
         rows = [self.labelled[:0]]
         for label, of_class in pool.groupby("label", observed=True):
             variants = np.sort(of_class["variant"].unique())
             if number > len(variants):
                 raise ValueError(
-                    f"{number} shots of {label} asked for, gear {self.gear} has {len(variants)} labelled variants: "
+                    f"{number} shots of {label} requested, gear {self.gear} has {len(variants)} labelled variants: "
                     "take fewer shots or a larger share of labelled variants"
                 )
             order = generator("shots", self.gear, label, draw).permutation(variants)
@@ -73,10 +76,10 @@ class Target:
 
 @dataclass(frozen=True)
 class Episode:
-    """A split with its targets: train on `source`, adapt to each target and judge it.
+    """A split with targets: training on `source`, then adaptation to each target and its evaluation.
 
-    ``kept_out`` are rows of source gears that are not trained on: adapted models are judged on them as well, to see
-    what they forget.
+    ``kept_out`` are rows of source gears that are not in training. Adapted models are also evaluated on them, which
+    shows what they forget.
     """
 
     name: str
@@ -87,31 +90,30 @@ class Episode:
 
 @dataclass(frozen=True)
 class NewGears:
-    """Gears left out of training, in folds; the variants of each are dealt into pools.
+    """Gears left out of training, in folds, with their variants in pools.
 
     Attributes
     ----------
     folds : int
-        The judged gears are dealt into so many folds, each of which is left out in turn; at most one gear to a fold.
+        Number of folds of judged gears; each fold is left out in turn and has at least one gear.
     development : int
-        Gears, those of the highest numbers, that are in the training set of every fold and never judged.
-        Hyper-parameters are chosen on them, leaving some out in turn.
+        Number of development gears, those of the highest numbers. They are in every training set and never judged.
+        Hyper-parameters are chosen on them by leaving some out in turn.
     judged : int or None
-        Only so many gears, those of the lowest numbers, are judged, and none of them is in training: one fold. None for
-        all but the development gears.
+        Number of judged gears, those of the lowest numbers, as one fold; None: all but the development gears.
     labelled, unlabelled : int
-        Variants of each class and gear in these pools; the others are judged.
+        Variants of each class and gear in these pools; the other variants are judged.
     kept_out : int
-        Variants of each class and source gear that are not trained on.
+        Variants of each class and source gear that are not in training.
     variants : int or None
-        Variants of each class and source gear to train on; None for all but those.
+        Variants of each class and source gear in training; None: all but ``kept_out``.
     sources : int or None
-        Source gears to train on in each fold, development gears first; None for all.
+        Source gears in training in each fold, development gears first; None: all.
 
     Raises
     ------
     ValueError
-        If a number is out of its limits; when splitting, if there are too few gears or variants.
+        If a number is out of its limits. In ``split``: if there are too few gears or variants.
     """
 
     folds: int = 5
@@ -132,30 +134,30 @@ class NewGears:
                 require_integer("the protocol", name, getattr(self, name), low=1, high=1_000_000)
 
     def split(self, features: object, table: pd.DataFrame) -> Iterator[Split]:
-        """Zero-shot splits: the judged rows of each fold are tested."""
+        """Splits without adaptation: the judged rows of each fold are tested."""
         for episode in self.episodes(table):
             yield _zero_shot(episode)
 
     def episodes(self, table: pd.DataFrame) -> Iterator[Episode]:
-        """One episode per fold of judged gears."""
+        """One episode for each fold of judged gears."""
         gears = np.unique(table["gear"])
         judged = gears[: max(0, len(gears) - self.development)][: self.judged]
         yield from self._leaving_out(table, judged, gears, min(self.folds, len(judged)) if self.judged is None else 1)
 
     def development_splits(self, table: pd.DataFrame) -> Iterator[Split]:
-        """Zero-shot splits of the development episodes."""
+        """Splits without adaptation among development gears."""
         for episode in self.development_episodes(table):
             yield _zero_shot(episode)
 
     def development_episodes(self, table: pd.DataFrame) -> Iterator[Episode]:
-        """Episodes among the development gears alone, each of which is left out once."""
+        """Episodes among development gears, each of which is left out once."""
         gears = np.unique(table["gear"])[-self.development :] if self.development else np.empty(0, int)
         yield from self._leaving_out(table, gears, gears, min(DEVELOPMENT_FOLDS, len(gears)))
 
     def _leaving_out(self, table: pd.DataFrame, judged: np.ndarray, gears: np.ndarray, folds: int) -> Iterator[Episode]:
         if len(judged) < 1 or len(gears) < 2:
             raise ValueError(
-                f"{len(judged)} gears to judge of {len(gears)} in all, with {self.development} kept for development: "
+                f"{len(judged)} gears to judge of {len(gears)} in all, with {self.development} for development: "
                 "at least one must be left out and one remain; take a larger grid"
             )
         gear, variant = table["gear"].to_numpy(), table["variant"].to_numpy()
@@ -163,7 +165,7 @@ class NewGears:
         trained = ~kept_out if self.variants is None else ~kept_out & (variant < self.variants)
         if not trained.any():
             raise ValueError(
-                f"{variant.max() + 1} variants of which {self.kept_out} are kept out leave none to train on: "
+                f"{variant.max() + 1} variants, of which {self.kept_out} are kept out, leave 0 for training: "
                 "keep out fewer or take more variants"
             )
         for number in range(folds):
@@ -184,7 +186,7 @@ class NewGears:
             if len(variants) <= self.labelled + self.unlabelled:
                 raise ValueError(
                     f"gear {gear} has {len(variants)} variants of {label}, {self.labelled} labelled and "
-                    f"{self.unlabelled} unlabelled leave none to judge: take smaller pools or more variants"
+                    f"{self.unlabelled} unlabelled leave 0 to judge: take smaller pools or more variants"
                 )
             order = generator("pools", gear, label).permutation(variants)
             rank = np.argsort(order)[np.searchsorted(variants, variant)]

@@ -1,7 +1,4 @@
-"""What is trained on and what is tested: the paper's protocols, and folds that keep a variant on one side.
-
-Every protocol has one method, ``split(features, table)``, which yields named splits of row numbers.
-"""
+"""Splits of the rows into training and test: the paper's protocols, and folds that keep variants together."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -16,7 +13,7 @@ from learn.inputs.rows import Inputs
 
 
 class Split(NamedTuple):
-    """Row numbers to train on and to test on."""
+    """Row numbers of training and test."""
 
     name: str
     train: Int[np.ndarray, " train"]
@@ -25,19 +22,19 @@ class Split(NamedTuple):
 
 @runtime_checkable
 class Splitting(Protocol):
-    """A rule that divides the rows of a data set."""
+    """A protocol, which divides the rows of a data set."""
 
     def split(self, features: Inputs, table: pd.DataFrame) -> Iterator[Split]:
-        """The splits, one after another."""
+        """Named splits of row numbers."""
         ...
 
 
 @dataclass(frozen=True)
 class RandomFolds:
-    """The paper's cross-validation: shuffled folds of equal class shares.
+    """The paper's cross-validation: shuffled folds with equal shares of the classes.
 
-    A variant's other operating points, and rows identical to a tested one, may be trained on. In the clean grid all
-    healthy rows are identical, so their recall is free.
+    Other operating points of a tested variant, and copies of a tested row, may be in training. In the clean grid all
+    healthy rows are identical, so their recall means nothing.
 
     Raises
     ------
@@ -52,7 +49,7 @@ class RandomFolds:
         _at_least_two(self.folds)
 
     def split(self, features: Inputs, table: pd.DataFrame) -> Iterator[Split]:
-        """One split per fold, named ``fold 1`` and so on; every row is tested once."""
+        """One split per fold; every row is tested once."""
         from sklearn.model_selection import StratifiedKFold
 
         _enough(table["label"].value_counts(), self.folds, "rows")
@@ -63,17 +60,15 @@ class RandomFolds:
 
 @dataclass(frozen=True)
 class GroupedFolds:
-    """Folds that hold all recordings of a variant (gear, class, variant), and all rows with the same features.
+    """Folds that keep all recordings of a variant together, and all variants with an equal row of features.
 
-    Variants that share a row of features, to 9 decimals, count as one: a row is never on both sides, and neither is a
-    copy of it. Where all rows of a class hang together like this (in the clean grid every healthy row is the same row)
-    its recall cannot be measured: these rows are in the training set of every fold and never tested. They still count
-    against a method that takes a fault for healthy.
+    Rows are equal if they agree to 9 decimals. If all variants of a class are connected by equal rows, its recall
+    cannot be measured. Such rows, as all healthy rows of the clean grid, are always in training and never tested.
 
     Raises
     ------
     ValueError
-        If there are fewer than 2 folds; when splitting, if there are fewer independent groups of variants than folds.
+        If there are fewer than 2 folds. In ``split``: if there are fewer independent groups of variants than folds.
     """
 
     folds: int = 4
@@ -83,12 +78,12 @@ class GroupedFolds:
         _at_least_two(self.folds)
 
     def split(self, features: Inputs, table: pd.DataFrame) -> Iterator[Split]:
-        """One split per fold, named ``fold 1`` and so on; every row that can be tested is tested once."""
+        """One split per fold; every testable row is tested once."""
         from sklearn.model_selection import StratifiedGroupKFold
 
         label = table["label"].astype(str).to_numpy()
         group = independent_groups(features, table)
-        testable = ~np.isin(group, _groups_that_hold_a_whole_class(group, label))
+        testable = ~np.isin(group, _groups_of_a_whole_class(group, label))
         rows = np.flatnonzero(testable)
         if len(np.unique(group[rows])) < self.folds:
             raise ValueError(
@@ -102,39 +97,35 @@ class GroupedFolds:
 
 
 def independent_groups(features: Inputs, table: pd.DataFrame) -> Int[np.ndarray, " row"]:
-    """Number of each row's group: rows of one variant, and rows with equal features (to 9 decimals), belong together.
-
-    The groups are the connected components of the graph whose nodes are variants and distinct rows of features.
-    """
+    """Group number of each row: the connected components of the graph of variants and distinct rows of features."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
     variant = table.groupby(list(SPECIMEN), observed=True).ngroup().to_numpy()
     _, content = np.unique(np.round(features, 9), axis=0, return_inverse=True)
-    node = variant.max() + 1 + content.ravel()  # of NumPy 2.0 a column
+    node = variant.max() + 1 + content.ravel()  # a column in NumPy 2.0
     size = node.max() + 1
     graph = coo_array((np.ones(len(table)), (variant, node)), shape=(size, size))
     _, component = connected_components(graph, directed=False)
     return component[variant]
 
 
-def _groups_that_hold_a_whole_class(group: Int[np.ndarray, " row"], label: np.ndarray) -> np.ndarray:
+def _groups_of_a_whole_class(group: Int[np.ndarray, " row"], label: np.ndarray) -> np.ndarray:
     groups_of_class = pd.Series(group).groupby(label).unique()
     return np.array([groups[0] for groups in groups_of_class if len(groups) == 1], dtype=int)
 
 
 @dataclass(frozen=True)
 class LeaveOneGearOut:
-    """Train on all gears but one and test on that one, which is out of distribution; named as in Table IX: ``1,2->3``.
+    """Leave out one gear for the test, as in Table IX: 1,2->3; 2,3->1; 1,3->2.
 
-    With more gears than `folds`, the gears are dealt into that many folds and each fold is left out in turn. The order
-    is the paper's: 1,2->3; 2,3->1; 1,3->2. As in the paper, the features of the gear left out are relative to its own
-    healthy reference; healthy rows of the clean grid are therefore identical in all gears.
+    If there are more gears than `folds`, each fold has several gears. As in the paper, features of the left-out gear
+    are relative to its healthy reference, so healthy rows of the clean grid are identical in all gears.
 
     Raises
     ------
     ValueError
-        If there are fewer than 2 folds; when splitting, if there are fewer than 2 gears.
+        If there are fewer than 2 folds. In ``split``: if there are fewer than 2 gears.
     """
 
     folds: int = 5
@@ -143,7 +134,7 @@ class LeaveOneGearOut:
         _at_least_two(self.folds)
 
     def split(self, features: Inputs, table: pd.DataFrame) -> Iterator[Split]:
-        """One split per gear, or per fold of gears."""
+        """One split per gear or per fold of gears."""
         gear = table["gear"].to_numpy()
         gears = np.unique(gear)
         if len(gears) < 2:

@@ -1,4 +1,4 @@
-"""Every method is given the same of a gear never seen, and nothing of what it is judged on."""
+"""All methods receive the same rows of a target gear, and none of the judged rows."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -13,7 +13,6 @@ from omegaconf import OmegaConf
 from sklearn.base import clone
 from sklearn.ensemble import RandomForestClassifier
 
-from learn import tracking
 from learn.adaptation.adaptations import ADAPTATIONS
 from learn.adaptation.adapting import adapt_and_judge
 from learn.adaptation.fine_tuning import FineTuning
@@ -21,12 +20,10 @@ from learn.adaptation.retraining import FromScratch
 from learn.adaptation.transfer import Adaptation
 from learn.inputs.harmonics import Harmonics
 from learn.inputs.inputs import LearningSet
-from learn.jobs import few_shot, settings
-from learn.jobs import train_job as job
+from learn.jobs import few_shot, settings, zero_shot
 from learn.methods.neural import neural_perceptron
 from learn.protocols.levels import NewGears
 from swgsim.common.seeds import seed_hash
-from swgsim.storage import storage
 
 CONF = Path(__file__).parents[2] / "conf"
 FILES = sorted(path for path in (CONF / "adaptation").glob("*.yaml") if path.stem != "none")
@@ -35,24 +32,19 @@ FOREST = RandomForestClassifier(10, random_state=0)
 
 
 @pytest.fixture(scope="module")
-def made():
-    return recordings(gears=4, disturbance=0.002)
-
-
-@pytest.fixture(scope="module")
-def data(made):
-    return Harmonics("harmonics", 6).learning_set([made])
+def data():
+    return Harmonics("harmonics", 6).learning_set([recordings(gears=4, disturbance=0.002)])
 
 
 @pytest.fixture(scope="module")
 def numbered(data):
-    """Features from which the row can be told."""
+    """Features that give the number of the row."""
     rows = np.arange(len(data.table), dtype=float)
     return LearningSet(np.column_stack([rows, -rows]), data.table, ("row", "minus row"))
 
 
 class Spy:
-    """Remembers what it is given and what it is asked; it takes everything for healthy."""
+    """Records its arguments and predicts healthy."""
 
     classes_ = np.array(["healthy"])
 
@@ -82,45 +74,28 @@ def rows_of(X):
     return X[:, 0].astype(int)
 
 
-def test_methods_with_shots_are_given_those_of_their_draw_and_no_unlabelled_rows(numbered):
-    spy, _ = spied(numbered, shots=(1, 2))
-    wanted = [(e, t, k, d) for e, t in targets(numbered.table) for k in (1, 2) for d in range(3)]
+def test_methods_receive_the_shots_of_their_draw_or_the_unlabelled_rows_and_never_judged_ones(numbered):
     names = numbered.table["label"].astype(str).to_numpy()
-    assert len(spy.given) == len(wanted)
-    for (kept, shots, unlabelled, _), (episode, target, number, draw) in zip(spy.given, wanted, strict=True):
-        assert np.array_equal(rows_of(kept.X), episode.source)
-        assert np.array_equal(rows_of(shots.X), target.shots(numbered.table, number, draw))
-        assert np.array_equal(shots.y, names[rows_of(shots.X)])
-        assert np.array_equal(kept.y, names[rows_of(kept.X)])
-        assert len(unlabelled) == 0
-    assert len({seed for *_, seed in spy.given}) == len(wanted)
-
-
-def test_methods_without_labels_are_given_the_unlabelled_rows_only_and_once(numbered):
-    spy, _ = spied(numbered, shots=[0])
-    assert len(spy.given) == 4
-    for (_, shots, unlabelled, _), (_, target) in zip(spy.given, targets(numbered.table), strict=True):
-        assert len(shots.X) == 0
-        assert np.array_equal(rows_of(unlabelled), target.unlabelled)
-
-
-def test_nothing_that_is_judged_is_ever_given(numbered):
-    for shots in ([0], [1, 2]):
-        spy, _ = spied(numbered, shots)
-        per_target = len(spy.given) // 4
-        for number, (episode, target) in enumerate(targets(numbered.table)):
-            for kept, labelled, unlabelled, _ in spy.given[number * per_target : (number + 1) * per_target]:
-                given = np.concatenate([rows_of(each) for each in (kept.X, labelled.X, unlabelled)])
-                assert not np.intersect1d(given, np.append(target.judged, episode.kept_out)).size
+    for numbers in ([1, 2], [0]):
+        spy, _ = spied(numbered, numbers)
+        wanted = [(e, t, k, d) for e, t in targets(numbered.table) for k in numbers for d in range(3 if k else 1)]
+        assert len(spy.given) == len(wanted)
+        for (kept, shots, unlabelled, _), (episode, target, number, draw) in zip(spy.given, wanted, strict=True):
+            assert np.array_equal(rows_of(kept.X), episode.source)
+            assert np.array_equal(rows_of(shots.X), target.shots(numbered.table, number, draw))
+            assert np.array_equal(shots.y, names[rows_of(shots.X)])
+            assert np.array_equal(kept.y, names[rows_of(kept.X)])
+            assert np.array_equal(rows_of(unlabelled), [] if number else target.unlabelled)
+            given = np.concatenate([rows_of(each) for each in (kept.X, shots.X, unlabelled)])
+            assert not np.intersect1d(given, np.append(target.judged, episode.kept_out)).size
+        assert len({seed for *_, seed in spy.given}) == len(wanted)
         asked = set(np.concatenate(spy.asked))
         assert asked == {r for e, t in targets(numbered.table) for r in (*t.judged, *e.kept_out)}
 
 
-def test_two_methods_on_two_representations_are_given_the_same_rows(numbered):
-    other = LearningSet(
-        np.column_stack([numbered.features, numbered.features**2]), numbered.table, ("a", "b", "c", "d")
-    )
-    (one, _), (two, _) = spied(numbered, [0, 1, 2]), spied(other, [0, 1, 2])
+def test_two_representations_give_the_same_rows_and_seeds(numbered):
+    other = replace(numbered, features=np.column_stack([numbered.features, numbered.features**2]), names=tuple("abcd"))
+    (one, _), (two, _) = spied(numbered, [0, 1], draws=2), spied(other, [0, 1], draws=2)
     for (kept, shots, unlabelled, seed), (kept2, shots2, unlabelled2, seed2) in zip(one.given, two.given, strict=True):
         assert seed == seed2
         for X, X2 in ((kept.X, kept2.X), (shots.X, shots2.X), (unlabelled, unlabelled2)):
@@ -174,30 +149,21 @@ def test_the_source_model_itself_forgets_nothing_and_one_that_is_tuned_does(data
     def source_model(X, y):
         return neural_perceptron(neurons=16, epochs=20, batch=32, device="cpu").fit(X, y)
 
-    episodes = [next(PROTOCOL.episodes(data.table))]
-    still, tuned = (
-        adapt_and_judge(data, episodes, source_model, FineTuning(steps, rate=0.1), [1], draws=1).gears
-        for steps in (0, 20)
+    first, without = (next(replace(PROTOCOL, kept_out=number).episodes(data.table)) for number in (1, 0))
+    still, tuned, unknown = (
+        adapt_and_judge(data, [episode], source_model, FineTuning(steps, rate=0.1), [1], draws=1).gears
+        for episode, steps in ((first, 0), (first, 20), (without, 0))
     )
     assert (still["forgotten"] == 0).all()
     assert (still["error"] == still["unadapted"]).all()
     assert (tuned["forgotten"] != 0).any()
     assert (tuned["unadapted"] == still["unadapted"]).all()
-
-
-def test_without_rows_kept_out_nothing_is_said_of_forgetting(data):
-    episodes = list(replace(PROTOCOL, kept_out=0).episodes(data.table))
-    adapted = adapt_and_judge(data, episodes[:1], clone(FOREST).fit, FromScratch(), [1], draws=1)
-    assert adapted.gears["forgotten"].isna().all()
-    assert adapted.gears["error"].notna().all()
+    assert unknown["forgotten"].isna().all()
+    assert unknown["error"].notna().all()
 
 
 def configuration(path, shots=(1, 2)):
     return yaml.safe_load(path.read_text().replace("${shots}", str(list(shots))).replace("${seed}", "0"))
-
-
-def test_every_adaptation_has_its_file():
-    assert {path.stem for path in FILES} == set(ADAPTATIONS)
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
@@ -213,87 +179,51 @@ def test_every_adaptation_of_the_configuration_is_built_with_each_of_its_trials(
 
 
 def test_unknown_adaptations_and_options_are_answered_with_the_choices():
+    assert {path.stem for path in FILES} == set(ADAPTATIONS)
     with pytest.raises(ValueError, match="unknown adaptation 'magic'; choose from added_trees, batch_norm"):
         settings.adaptation({"name": "magic"})
     with pytest.raises(ValueError, match="unknown option 'speed' of adaptation fine_tuning; choose from steps"):
         settings.adaptation({"name": "fine_tuning", "speed": 1})
 
 
-def composed(folder, *overrides):
+def composed(models, *overrides):
     small = ["protocol=new_gears", "protocol.folds=2", "protocol.development=2", "protocol.labelled=2"]
     small += ["protocol.unlabelled=1", "protocol.kept_out=1", "shots=[1,2]", "draws=2", "features=harmonics"]
-    where = ["grid=small", f"data={folder}", f"models={folder / 'models'}", f"tracking.folder={folder / 'runs'}"]
+    small += ["classifier=rf", "classifier.trees=5", f"models={models}"]
     with initialize_config_dir(str(CONF), version_base="1.3"):
-        return OmegaConf.to_container(compose("train", [*small, *where, *overrides]), resolve=True)
+        return OmegaConf.to_container(compose("train", [*small, *overrides]), resolve=True)
 
 
-@pytest.fixture(scope="module")
-def folder(made, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("jobs")
-    storage.write(folder / "small-clean.h5", [made], len(made))
-    return folder
-
-
-FOREST_JOB = ("classifier=rf", "classifier.trees=10")
-
-
-@pytest.fixture(scope="module")
-def finished(folder):
-    """Configuration and metrics of a job."""
+def test_the_results_of_a_job_are_errors_by_specimen_and_gear_and_other_jobs_use_its_source_models(data, tmp_path):
     trials = "adaptation.trials=[{strength: 1.0}, {strength: 30.0}]"
-    config = composed(folder, *FOREST_JOB, "adaptation=leaf_relabelling", trials)
-    return config, job.run(config)
-
-
-def test_a_job_keeps_its_tables_and_is_done_once(finished, monkeypatch):
-    config, metrics = finished
+    metrics, _, tables = few_shot.results(composed(tmp_path, "adaptation=leaf_relabelling", trials), data)
     assert {"test_score", "error/1_shots", "error/2_shots", "forgotten/1_shots", "trial/1", "trial/2"} <= set(metrics)
-
-    store = tracking.local_store(config["tracking"]["folder"])
-    (run,) = tracking.finished_runs(store, adaptation="leaf_relabelling").itertuples()
-    gears = tracking.table_of(store, run.run_id, "tables/gears.parquet")
+    gears, specimens = tables["tables/gears.parquet"], tables["tables/specimens.parquet"]
     assert gears[["gear", "shots"]].to_numpy().tolist() == [[g, k] for g in (1, 2) for k in (1, 2)]
     assert 100 - gears["error"].mean() == pytest.approx(metrics["test_score"], abs=1e-3)
-    specimens = tracking.table_of(store, run.run_id, "tables/specimens.parquet")
     assert list(specimens.columns) == ["gear", "label", "variant", "shots", "error", "unadapted"]
     assert len(specimens) == 2 * 2 * 6 * 3  # gears, numbers of shots, classes, judged variants
     np.testing.assert_allclose(
         specimens.groupby(["gear", "shots"])["error"].mean(), gears.set_index(["gear", "shots"])["error"]
     )
 
-    monkeypatch.setattr(few_shot, "results", lambda *_: pytest.fail("done again"))
-    assert job.run(config) == pytest.approx(metrics)
-
-
-def test_another_method_adapts_the_same_source_models_and_one_without_labels_does_its_job_too(folder, finished):
-    def kept():
-        return {path.name: path.stat().st_mtime_ns for path in (folder / "models").iterdir()}
-
-    before = kept()
-    metrics = job.run(composed(folder, *FOREST_JOB, "adaptation=coral", "adaptation.trials=null"))
-    assert kept() == before
+    before = {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
+    other = few_shot.results(composed(tmp_path, "adaptation=coral", "adaptation.trials=null"), data)[0]
+    assert {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()} == before
     assert len(before) == 2 + 2  # folds of the judged gears and of the development gears
-    assert metrics["unadapted/0_shots"] == finished[1]["unadapted/1_shots"]
-    assert "error/1_shots" not in metrics
+    assert other["unadapted/0_shots"] == metrics["unadapted/1_shots"]
+    assert "error/1_shots" not in other
 
 
-def test_a_job_without_adaptation_is_judged_on_the_same_rows(folder):
-    config = composed(folder, *FOREST_JOB)
-    job.run(config)
-    store = tracking.local_store(config["tracking"]["folder"])
-    (run,) = tracking.finished_runs(store, adaptation="none").itertuples()
-    predictions = tracking.table_of(store, run.run_id, "tables/predictions.parquet")
-    data = job.learning_set_of(
-        folder / "small-clean.h5",
-        storage.digest(folder / "small-clean.h5"),
-        settings.representation(config["features"]),
-    )
+def test_a_job_without_adaptation_is_judged_on_the_same_rows(data, tmp_path):
+    config = composed(tmp_path)
+    predictions = zero_shot.results(config, data)[2]["tables/predictions.parquet"]
     protocol = settings.protocol(config["protocol"])
     judged = [row for e in protocol.episodes(data.table) for t in e.targets for row in t.judged]
     assert sorted(predictions["row"]) == sorted(judged)
 
 
-def test_a_protocol_that_leaves_no_gear_is_refused(folder, data):
+def test_a_protocol_that_leaves_no_gear_is_refused(data):
     config = {"protocol": {"name": "random_folds", "folds": 4}}
     with pytest.raises(ValueError, match="protocol random_folds leaves no gear to adapt to: take new_gears, or adapt"):
         few_shot.results(config, data)

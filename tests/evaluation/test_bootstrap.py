@@ -1,4 +1,4 @@
-"""Intervals cover known truths, and drawing gears before specimens gives the variance that theory says."""
+"""Intervals cover known true values, and resampling has the variance of gears and specimens in theory."""
 
 import gc
 
@@ -39,12 +39,8 @@ def test_error_of_a_specimen_is_its_share_of_wrong_recordings():
     table = pd.DataFrame({**rows, **{c: [float(p == c) for p in predicted] for c in CLASSES}})
     np.testing.assert_array_equal(decisions(table), predicted)
     assert specimens(table)["error"].tolist() == pytest.approx([100 / 3, 0])
-
-
-def test_missing_probability_is_refused():
-    table = pd.DataFrame({c: [0.1, np.nan] for c in CLASSES})
     with pytest.raises(ValueError, match="row 1: probabilities"):
-        decisions(table)
+        decisions(pd.DataFrame({c: [0.1, np.nan] for c in CLASSES}))
 
 
 def test_classes_weigh_the_same_whatever_their_number_of_specimens():
@@ -60,6 +56,7 @@ def all_three(means):
     return pd.DataFrame({**parts, "ratio": ratio_to("m0")(means)["m1"]})
 
 
+@pytest.mark.end_to_end
 def test_intervals_cover_the_truth():
     rng, true = generator("coverage"), np.array([30, 10, 1.5])
     hits = np.zeros(3)
@@ -78,6 +75,7 @@ def little_garbage():
     gc.unfreeze()
 
 
+@pytest.mark.end_to_end
 @pytest.mark.usefixtures("little_garbage")
 def test_null_is_rejected_at_most_as_often_as_promised():
     rng = generator("null")
@@ -118,15 +116,12 @@ def test_specimens_stay_in_their_gear_and_class():
 
 
 def test_methods_share_their_draws():
-    table = errors(generator("shared"), means=(20.0,)).assign(worse=lambda rows: rows["m0"] + 3)
-    comparison = paired_comparison(table, "m0", generator("shared draws"), resamples=200).loc["worse"]
-    assert comparison[["value", "low", "high"]].to_numpy(dtype=float) == pytest.approx([3, 3, 3])
-    assert comparison["better_gears"] == 0
-
-
-def test_equal_methods_have_p_1():
-    table = errors(generator("equal"), means=(20.0,)).assign(same=lambda rows: rows["m0"])
-    assert paired_comparison(table, "m0", generator("p"), resamples=200).loc["same", "p"] == 1
+    table = errors(generator("shared"), means=(20.0,))
+    table = table.assign(worse=table["m0"] + 3, same=table["m0"])
+    comparison = paired_comparison(table, "m0", generator("shared draws"), resamples=200)
+    assert comparison.loc["worse", ["value", "low", "high"]].to_numpy(dtype=float) == pytest.approx([3, 3, 3])
+    assert comparison.loc["worse", "better_gears"] == 0
+    assert comparison.loc["same", "p"] == 1
 
 
 def test_three_gears_give_numbers_but_no_interval():
@@ -148,7 +143,7 @@ def test_unpaired_tables_are_refused():
     table = errors(generator("unpaired"), gears=5)
     with pytest.raises(ValueError, match="specimen 0, healthy, 0 has two rows"):
         gear_errors(pd.concat([table, table.iloc[:1]]))
-    with pytest.raises(ValueError, match="judge it by every method or by none"):
+    with pytest.raises(ValueError, match="judge it by all methods or none"):
         gear_errors(table.assign(m1=table["m1"].where(table["gear"] > 0)))
     with pytest.raises(ValueError, match="reference 'best' is not among the methods"):
         paired_comparison(table, "best", generator("p"))

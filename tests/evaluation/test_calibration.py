@@ -40,22 +40,14 @@ def test_overconfidence_is_seen_and_its_temperature_found():
     assert negative_log_likelihood(cured, y) < negative_log_likelihood(sharp, y)
 
 
-def test_error_by_hand():
+def test_errors_by_hand():
     probabilities = np.array([[0.9, 0.1], [0.9, 0.1], [0.4, 0.6], [0.4, 0.6]])
     table = reliability(probabilities, np.array([0, 1, 1, 1]), bins=2)
     assert table["accuracy"].tolist() == [1, 0.5]
     assert expected_calibration_error(table) == pytest.approx(100 * (0.4 + 0.4) / 2)
-
-
-def test_ties_share_a_bin_whatever_the_order_of_rows():
-    probabilities = np.tile([0.7, 0.3], (60, 1))
-    y = np.repeat([0, 1], 30)
-    table = reliability(probabilities, y)
-    assert table["count"].tolist() == [60]
+    table = reliability(np.tile([0.7, 0.3], (60, 1)), np.repeat([0, 1], 30))
+    assert table["count"].tolist() == [60]  # rows of equal confidence share a bin
     assert expected_calibration_error(table) == pytest.approx(20)
-
-
-def test_impossible_classes_cost_much_but_not_everything():
     assert negative_log_likelihood(np.array([[1.0, 0.0]]), np.array([1])) == pytest.approx(6 * np.log(10))
 
 

@@ -1,4 +1,4 @@
-"""Detection against made-up gears whose probability of detection is known."""
+"""Detection on made-up gears with a known probability of detection."""
 
 import numpy as np
 import pandas as pd
@@ -56,14 +56,10 @@ def test_known_curve_is_found_again():
     assert fitted.a50 == pytest.approx(A50, rel=0.05)
     assert fitted.a90 == pytest.approx(A50 * 9 ** (1 / SLOPE), rel=0.08)
     assert fitted.a90 < fitted.a90_95 < 1.15 * fitted.a90
+    assert fitted.curve.log_odds(np.array([fitted.a90_95]), side=-1) == pytest.approx(np.log(9))
 
 
-def test_lower_bound_reaches_90_percent_at_a90_95():
-    fitted = detection(*hits_and_misses(generator("bound"), gears=8))
-    lower = fitted.curve.log_odds(np.array([fitted.a90_95]), side=-1)
-    assert lower == pytest.approx(np.log(9))
-
-
+@pytest.mark.end_to_end
 def test_sure_size_is_above_the_true_one_in_95_percent():
     rng, true = generator("sure"), A50 * 9 ** (1 / SLOPE)
     fits = [detection(*hits_and_misses(rng, gears=20, per_gear=40)) for _ in range(200)]
@@ -104,25 +100,13 @@ def test_sizes_outside_those_tried_are_not_given():
     assert "a90: not reached up to the largest size tried, 0.12" in fitted.reason
 
 
-def test_detection_that_falls_with_size_is_named():
+def test_falling_detection_few_gears_and_a_slope_that_may_be_zero_are_named():
     sizes, hits, gears = hits_and_misses(generator("falls"))
     assert "does not grow with size" in detection(sizes, ~hits, gears).reason
-
-
-def test_three_gears_give_no_confidence_bound():
     fitted = detection(*hits_and_misses(generator("three"), gears=3))
     assert np.isfinite(fitted.a90)
     assert fitted.reason == "a90_95: fewer than 5 gears, no confidence bound"
-
-
-def test_slope_that_may_be_zero_gives_no_sure_size():
     assert DetectionCurve(0.0, 1.0, np.eye(2), 1.7).sure_size_at(0.9) == np.inf
-
-
-def test_detected_is_not_yet_identified():
-    predictions = table([(1, "tip_tooth_crack", 0, 1.0, 2000, c) for c in CLASSES])
-    assert detected(predictions).sum() == 5
-    assert identified(predictions).sum() == 1
 
 
 def test_table_has_a_row_per_fault_and_operating_point():
@@ -137,6 +121,8 @@ def test_table_has_a_row_per_fault_and_operating_point():
     assert found.loc[1, "a50"] == pytest.approx(0.5, abs=0.15)
     assert found.loc[3, "a50"] == pytest.approx(0.5 ** (1 / 3), abs=0.15)
     assert len(detection_table(predictions, detected(predictions), by=())) == 1
+    one_of_each = table([(1, "tip_tooth_crack", 0, 1.0, 2000, c) for c in CLASSES])
+    assert (detected(one_of_each).sum(), identified(one_of_each).sum()) == (5, 1)
 
 
 def healthy(gears, alarm):
@@ -160,6 +146,8 @@ def test_no_false_alarm_is_no_proof_of_none():
     assert rate["rate"] == rate["low"] == 0
     assert rate["high"] == pytest.approx(100 * 3.8415 / (200 + 3.8415), rel=1e-3)  # Wilson, 0 of 200 specimens
     assert np.isnan(false_alarm_rate(healthy(3, lambda gear, variant: False))["high"])
+    with pytest.raises(ValueError, match="no healthy recording"):
+        false_alarm_rate(table([(1, "tip_tooth_crack", 0, 1.0, 2000, "healthy")]))
 
 
 def test_worst_cell_is_found():
@@ -170,8 +158,3 @@ def test_worst_cell_is_found():
         "n_in_rpm": 4000, "T_out_nm": 7.0, "label": "tip_tooth_crack", "recall": 75.0, "recordings": 4
     }  # fmt: skip
     assert (recall_by_cell(table(rows)).to_numpy() == 100).sum() == 11
-
-
-def test_false_alarms_need_a_healthy_recording():
-    with pytest.raises(ValueError, match="no healthy recording"):
-        false_alarm_rate(table([(1, "tip_tooth_crack", 0, 1.0, 2000, "healthy")]))

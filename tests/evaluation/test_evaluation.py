@@ -1,4 +1,4 @@
-"""Evaluation is honest: chance for a guesser, 100 % for a perfect memory, test rows never seen in training."""
+"""Evaluation gives chance for guesses and 100 % for memorised rows, and keeps test rows out of training."""
 
 import numpy as np
 import pandas as pd
@@ -24,7 +24,7 @@ class Guesser:
 
 
 class Spy:
-    """Remembers what it was trained on, and asks for nothing else."""
+    """Remembers its training rows; it has the methods fit and predict only."""
 
     def fit(self, X, y):
         self.seen = dict(zip(X[:, 0], y, strict=True))
@@ -41,16 +41,11 @@ def test_a_classifier_that_ignores_its_input_scores_chance():
     assert result.metrics()["balanced_accuracy"] == pytest.approx(100 / 6, abs=4 * deviation)
 
 
-def test_test_rows_are_not_trained_on():
+def test_test_rows_are_not_in_training_and_the_confusion_counts_each_once():
     features = np.arange(len(LABELS), dtype=float)[:, None]
     result = evaluate(features, LABELS, RandomFolds().split(features, TABLE), Spy)
     assert result.metrics()["train_score"] == 100.0
     assert result.metrics()["test_score"] == 16.667  # all taken for healthy
-
-
-def test_confusion_counts_every_tested_row_once():
-    features = np.arange(len(LABELS), dtype=float)[:, None]
-    result = evaluate(features, LABELS, RandomFolds().split(features, TABLE), Spy)
     assert result.classes == CLASSES
     assert result.confusion.sum(axis=1).tolist() == [200] * 6
     assert result.confusion[:, result.classes.index("healthy")].tolist() == [200] * 6
@@ -66,7 +61,7 @@ def test_a_class_that_is_not_tested_has_no_recall():
 
 
 @pytest.mark.parametrize(("iterations", "converged"), [(2, 0.0), (2000, 1.0)])
-def test_an_optimiser_that_stops_at_its_bound_is_told(iterations, converged):
+def test_an_optimiser_that_stops_at_its_bound_is_reported(iterations, converged):
     rng = np.random.default_rng(0)
     labels = np.repeat(["a", "b"], 20)
     features = rng.standard_normal((40, 2)) + 9 * (labels == "b")[:, None]

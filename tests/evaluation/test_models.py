@@ -1,4 +1,4 @@
-"""Trained models come back from disk as they were, and what is no model is refused before anything in it runs."""
+"""Trained models come back from their files unchanged, and harmful files are refused before any of it runs."""
 
 import pickle
 import time
@@ -28,11 +28,12 @@ ESTIMATORS = {
     "extra trees": ExtraTreesClassifier(5, random_state=0),
     "boosting": strong.gradient_boosting(rounds=3),
     "logistic regression": strong.logistic_regression(),
-    "mlp": multi_layer_perceptron(hidden_layers=1, iterations=2000),
+    "mlp": multi_layer_perceptron(hidden_layers=1, iterations=5),
     "knn": nearest_neighbours(),
 }
 
 
+@pytest.mark.filterwarnings("ignore:Stochastic Optimizer")
 @pytest.mark.parametrize("name", [*ESTIMATORS, *NETWORKS])
 def test_a_model_comes_back_with_the_same_probabilities(name, tmp_path):
     model = {**ESTIMATORS, **NETWORKS}[name].fit(X, Y)
@@ -43,17 +44,14 @@ def test_a_model_comes_back_with_the_same_probabilities(name, tmp_path):
     assert np.array_equal(back.predict(X), model.predict(X))
     (kept,) = tmp_path.iterdir()
     assert kept.suffix == (".pt" if name in NETWORKS else ".skops")
+    if name in NETWORKS:
+        assert (back.device, models.load(kept).device) == ("cpu", "auto")
 
 
 def test_a_model_without_probabilities_comes_back_too(tmp_path):
     model = support_vector_machine().fit(X, Y)
     models.save(model, tmp_path / "svm.skops")
     assert np.array_equal(models.load(tmp_path / "svm.skops").predict(X), model.predict(X))
-
-
-def test_networks_come_back_on_the_device_that_was_chosen(tmp_path):
-    assert models.trained(tmp_path, "identity", NETWORKS["perceptron"], X, Y).device == "cpu"
-    assert models.load(next(tmp_path.iterdir())).device == "auto"
 
 
 class Harmful:
@@ -79,15 +77,14 @@ class HarmfulState:
         Path(state["trace"]).touch()
 
 
-@pytest.mark.parametrize("suffix", [".skops", ".pt"])
-def test_a_pickle_that_would_run_code_is_refused_and_does_not_run(suffix, tmp_path):
-    path, trace = tmp_path / f"model{suffix}", tmp_path / "trace"
+def test_a_pickle_that_would_run_code_is_refused_and_does_not_run(tmp_path):
+    path, trace = tmp_path / "model.skops", tmp_path / "trace"
     path.write_bytes(pickle.dumps(Harmful(trace)))
-    with pytest.raises(ValueError, match=f"model{suffix}"):
+    with pytest.raises(ValueError, match=r"model\.skops"):
         models.load(path)
     assert not trace.exists()
     pickle.loads(path.read_bytes())
-    assert trace.exists()  # it would have
+    assert trace.exists()  # the file is harmful
 
 
 def test_a_type_that_is_none_of_a_classifiers_is_refused_and_does_not_run(tmp_path):
@@ -97,18 +94,18 @@ def test_a_type_that_is_none_of_a_classifiers_is_refused_and_does_not_run(tmp_pa
         models.load(path)
     assert not trace.exists()
     skops.io.load(path, trusted=skops.io.get_untrusted_types(file=path))
-    assert trace.exists()  # it would have
+    assert trace.exists()  # the file is harmful
 
 
 @pytest.mark.parametrize("model", [FOREST, NETWORKS["perceptron"]], ids=["forest", "network"])
-@pytest.mark.parametrize("share", [0.0, 0.5, 0.99])
-def test_a_truncated_file_is_refused(model, share, tmp_path):
+def test_a_truncated_file_is_refused(model, tmp_path):
     models.trained(tmp_path, "identity", model, X, Y)
     (path,) = tmp_path.iterdir()
     content = path.read_bytes()
-    path.write_bytes(content[: int(share * len(content))])
-    with pytest.raises(ValueError, match=path.name):
-        models.trained(tmp_path, "identity", model, X, Y)
+    for share in (0.0, 0.5, 0.99):
+        path.write_bytes(content[: int(share * len(content))])
+        with pytest.raises(ValueError, match=path.name):
+            models.trained(tmp_path, "identity", model, X, Y)
 
 
 def test_a_model_is_trained_once_for_the_same_rows_and_identity(tmp_path, monkeypatch):

@@ -1,4 +1,4 @@
-"""Harmonics keep what the symmetries of the gear say they keep, and change with what they should tell."""
+"""Harmonics are invariant under the symmetries of the gear, and depend on faults."""
 
 from dataclasses import replace
 
@@ -17,7 +17,7 @@ HARMONICS = Harmonics("harmonics", ORDERS)
 
 @pytest.fixture
 def nothing_taken_out(monkeypatch):
-    """The plain difference to the reference: the errors that are taken out beforehand know no symmetry of faults."""
+    """Replace the residual by the difference to the reference, as fitted errors do not share the symmetry of faults."""
 
     def difference(healthy):
         return healthy.lines - healthy.reference, np.zeros((len(healthy.lines), 3))
@@ -141,8 +141,6 @@ def test_columns_are_those_of_the_residual():
     made = HARMONICS.learning_set([data])
     column = dict(zip(made.names, made.features.T, strict=True))
     lines, errors = residual(healthy_lines([data], ORDERS))
-    assert len(column) == made.features.shape[1]
-    assert np.isfinite(made.features).all()
     np.testing.assert_array_equal(column["s3[0]"], lines[:, 3, 0].real)
     np.testing.assert_array_equal(column["Im s0[4]"], lines[:, 0, 4].imag)
     np.testing.assert_array_equal(column["angle error"], errors[:, 1])
@@ -151,10 +149,3 @@ def test_columns_are_those_of_the_residual():
     assert set(column) - set(bare.learning_set([data]).names) == {
         "log eta_rel", "root of log eta_rel", "viscous loss", "speed", "load", "temperature",
     }  # fmt: skip
-
-
-def test_harmonics_that_cannot_be_are_refused():
-    with pytest.raises(ValueError, match="orders of harmonics is 3, must be an integer from 4"):
-        replace(HARMONICS, orders=3)
-    with pytest.raises(ValueError, match="acquisitions of harmonics is 0, must be an integer from 1"):
-        replace(HARMONICS, acquisitions=0)

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from joint_fixtures import Hidden, Wave, steady, trajectories
 from matplotlib.figure import Figure
-from swgsim.joint.joint_page import page
 
 from swgsim.common.style import Picture
 from swgsim.joint.days import Day, Days, days

@@ -1,4 +1,4 @@
-"""Every classifier of conf/classifier learns what can be learnt; MiniRocket needs a signal and aeon."""
+"""Every classifier of conf/classifier beats chance; MiniRocket needs a signal and aeon."""
 
 import builtins
 from importlib.util import find_spec
@@ -15,7 +15,7 @@ from learn.evaluation import models
 from learn.evaluation.evaluate import evaluate
 from learn.inputs.signals import Signals
 from learn.jobs import settings
-from learn.methods import rocket, strong
+from learn.methods import classical, rocket, strong
 from learn.protocols.splits import Split
 
 CONF = Path(__file__).parents[2] / "conf" / "classifier"
@@ -64,28 +64,40 @@ def test_every_trial_of_a_classifier_makes_another_one(name, data):
     assert len(trials) in (1, 4)  # the same number for every method that has something to choose
 
 
-@pytest.mark.parametrize(
-    "make", [strong.logistic_regression, lambda: strong.gradient_boosting(rounds=3), lambda: strong.extra_trees(3)]
+SEEDED = (
+    strong.logistic_regression,
+    lambda: strong.gradient_boosting(rounds=3),
+    lambda: strong.extra_trees(3),
+    lambda: classical.random_forest(3),
 )
-def test_a_strong_method_is_an_estimator_that_gives_the_same_for_a_seed(make, data, names):
+
+
+@pytest.mark.parametrize("make", SEEDED)
+def test_a_method_is_an_estimator_that_gives_the_same_for_a_seed(make, data, names):
     one, other = make().fit(data.features, names), clone(make()).fit(data.features, names)
     assert np.array_equal(one.predict_proba(data.features), other.predict_proba(data.features))
     assert one.classes_.tolist() == sorted(set(names))
 
 
-def test_options_reach_the_estimators():
-    assert strong.logistic_regression(0.5, 7, 3)[-1].get_params().items() >= {
-        "C": 0.5, "max_iter": 7, "random_state": 3,
-    }.items()  # fmt: skip
-    boosting = strong.gradient_boosting(9, 0.2, 5, 0.7, 3).get_params()
-    wanted = {"max_iter": 9, "learning_rate": 0.2, "max_leaf_nodes": 5, "max_features": 0.7, "random_state": 3}
-    assert boosting.items() >= wanted.items()
-    trees = strong.extra_trees(9, 4, 0.7, 3).get_params()
-    assert trees.items() >= {"n_estimators": 9, "min_samples_leaf": 4, "max_features": 0.7, "random_state": 3}.items()
+def test_properties_of_table_6_and_options_reach_the_estimators():
+    mlp, svm, rf, knn, nb = (settings.CLASSIFIERS[name]().get_params() for name in ("mlp", "svm", "rf", "knn", "nb"))
+    assert (mlp["hidden_layer_sizes"], mlp["activation"]) == ((10, 10, 10), "relu")
+    assert svm["kernel"] == "rbf"
+    assert (rf["n_estimators"], rf["max_depth"]) == (100, 7)
+    assert knn["n_neighbors"] == 3
+    assert nb["priors"] is None
+    for estimator, wanted in (
+        (strong.logistic_regression(0.5, 7, 3)[-1], {"C": 0.5, "max_iter": 7, "random_state": 3}),
+        (strong.gradient_boosting(9, 0.2, 5, 0.7, 3), {"learning_rate": 0.2, "max_leaf_nodes": 5, "max_features": 0.7}),
+        (strong.gradient_boosting(9, 0.2, 5, 0.7, 3), {"max_iter": 9, "random_state": 3}),
+        (strong.extra_trees(9, 4, 0.7, 3), {"n_estimators": 9, "min_samples_leaf": 4, "max_features": 0.7}),
+        (strong.extra_trees(9, 4, 0.7, 3), {"random_state": 3}),
+    ):
+        assert estimator.get_params().items() >= wanted.items()
 
 
 def test_logistic_regression_is_not_drowned_by_one_severe_fault(data, names):
-    """A row that is thousands of times the others changes little of what the others are taken for."""
+    """A row that is thousands of times the others hardly changes their predictions."""
     severe = data.features.copy()
     severe[0] *= 1e4
     before, after = (
@@ -100,52 +112,47 @@ def minirocket(data, names):
     return rocket.MiniRocket(*data.layout, kernels=84).fit(data.features, names)
 
 
-def test_minirocket_says_of_every_row_what_it_is_most_probably(minirocket, data, names):
+def test_minirocket_gives_probabilities_uses_auxiliary_inputs_and_comes_back_from_its_file(
+    minirocket, data, names, tmp_path
+):
     probabilities = minirocket.predict_proba(data.features)
     np.testing.assert_allclose(probabilities.sum(axis=1), 1)
     assert np.array_equal(minirocket.classes_[probabilities.argmax(axis=1)], minirocket.predict(data.features))
     assert np.mean(minirocket.predict(data.features) == names) > 0.9
-
-
-def test_minirocket_uses_the_side_inputs(minirocket, data):
     moved = data.features.copy()
     moved[:, data.layout.columns :] += 0.5
-    assert not np.allclose(minirocket.predict_proba(moved), minirocket.predict_proba(data.features))
+    assert not np.allclose(minirocket.predict_proba(moved), probabilities)
+    models.save(minirocket, tmp_path / "model.skops")
+    assert np.array_equal(models.load(tmp_path / "model.skops").predict_proba(data.features), probabilities)
 
 
-def test_minirocket_does_without_side_inputs(minirocket, data, names):
+def test_minirocket_does_without_auxiliary_inputs(minirocket, data, names):
     bare = data.features[:, : data.layout.columns]
     model = untrained(minirocket, seed=1).fit(bare, names)
     assert (model.seed, minirocket.seed) == (1, 0)
     assert np.mean(model.predict(bare) == names) > 0.5
 
 
-def test_minirocket_comes_back_from_its_file(minirocket, data, tmp_path):
-    models.save(minirocket, tmp_path / "model.skops")
-    back = models.load(tmp_path / "model.skops")
-    assert np.array_equal(back.predict_proba(data.features), minirocket.predict_proba(data.features))
-
-
-@pytest.mark.parametrize(("channels", "points"), [(0, 0), (1, 8)])
-def test_minirocket_refuses_features_without_a_signal(channels, points):
-    with pytest.raises(
-        ValueError, match=f"at least 9 points, found {channels} channels of {points}: take features=raw"
-    ):
-        rocket.MiniRocket(channels, points)
-
-
-def test_minirocket_refuses_fewer_kernels_than_it_has():
-    with pytest.raises(ValueError, match="kernels of MiniRocket is 83, must be an integer from 84"):
-        rocket.MiniRocket(1, 16, kernels=83)
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ((0, 0), "at least 9 points, found 0 channels of 0: take features=raw"),
+        ((1, 8), "at least 9 points, found 1 channels of 8: take features=raw"),
+        ((1, 16, True, 83), "kernels of MiniRocket is 83, must be an integer from 84"),
+    ],
+)
+def test_minirocket_refuses_other_features_and_few_kernels(options, message):
+    with pytest.raises(ValueError, match=message):
+        rocket.MiniRocket(*options)
 
 
 def test_minirocket_names_the_library_that_is_missing(data, names, monkeypatch):
-    there = builtins.__import__
+    original = builtins.__import__
 
     def without_aeon(name, *rest):
         if name.startswith("aeon"):
             raise ImportError(name)
-        return there(name, *rest)
+        return original(name, *rest)
 
     monkeypatch.setattr(builtins, "__import__", without_aeon)
     with pytest.raises(ValueError, match=r"needs the library aeon: pip install 'swg-workbench\[rocket\]'"):
