@@ -56,7 +56,7 @@ def agreement(decisions: Decisions, probabilities: Float[np.ndarray, "recording 
     return Agreement(len(equal), int(decided.sum()), int(equal.sum()), float(difference.max(initial=0)))
 
 
-def together(parts: Sequence[Agreement]) -> Agreement:
+def combined(parts: Sequence[Agreement]) -> Agreement:
     """Agreement over several sets of recordings."""
     return Agreement(
         sum(part.recordings for part in parts),

@@ -38,7 +38,7 @@ def results(
     protocol = settings.protocol(config["protocol"])
     if not isinstance(protocol, NewGears):
         raise ValueError(
-            f"protocol={config['protocol']['name']} leaves no gear to adapt to: give protocol=new_gears, or adaptation=none"
+            f"protocol {config['protocol']['name']} leaves no gear to adapt to: take new_gears, or adaptation=none"
         )
     make, adaptation = settings.classifier(config["classifier"], data.layout), config["adaptation"]
     y = data.table["label"].astype(str).to_numpy()

@@ -159,7 +159,7 @@ def runs_of_tables(store: Store, grid: str, digests: Mapping[str, str], command:
     Raises
     ------
     ValueError
-        If there is none, with the command to make them.
+        If there are no such runs; it names the command that makes them.
     """
     runs = finished_runs(store, grid=grid)
     if len(runs):

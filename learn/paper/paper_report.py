@@ -16,7 +16,7 @@ from learn.paper import paper_page as report
 from learn.paper.choices import choices
 from learn.paper.claims import table_claims
 from learn.paper.feature_claims import SPECTRUM, feature_claims, features_of
-from learn.paper.published_tables import PROTOCOLS, compare, random_beside_grouped
+from learn.paper.published_tables import PROTOCOLS, compare, random_and_grouped
 from swgsim.common.files import write_text
 from swgsim.common.style import Picture
 from swgsim.jobs import settings as chain_settings
@@ -112,7 +112,7 @@ def report_of(config: Mapping[str, Any], began: float) -> report.Report:
         grid=grid,
         dataset={key: sets.made["clean"][key] for key in report.DATASET},
         tables=tables,
-        folds={name: random_beside_grouped(name, runs) for name in ("table7", "table8")},
+        folds={name: random_and_grouped(name, runs) for name in ("table7", "table8")},
         findings=findings,
         choices=decided,
         statistics=statistics,
