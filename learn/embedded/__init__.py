@@ -1,1 +1,1 @@
-"""Trained classifiers with their features as C for the microcontroller beside the gauges, or as ONNX for gateways."""
+"""Trained classifiers with their features as C for the microcontroller next to the gauges, or as ONNX for gateways."""

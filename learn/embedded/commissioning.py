@@ -1,7 +1,5 @@
 """Writes ``gear.c`` at the commissioning of a gear: its healthy numbers at every operating point."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from jaxtyping import Complex, Float, Int
 
@@ -26,24 +24,7 @@ LONGEST = 2**16  # samples of a window; beyond, the rounding of the waves shows
 FULL_SCALE = 20.0  # mV/V, beyond which a count would be coarser than what single precision resolves
 
 
-@dataclass(frozen=True)
-class _Clock:
-    """Sampling at one operating point: samples in whole revolutions, and revolutions from one to the next."""
-
-    samples: int
-    turns: float
-
-    def wave(self, orders: int) -> Complex[np.ndarray, " order"]:
-        """exp(-i k angle) of the angle between two samples, for k from 1."""
-        return np.exp(-2j * np.pi * self.turns * np.arange(1, orders + 1))
-
-    def offset(self, orders: int) -> Complex[np.ndarray, " order"]:
-        """Mean over the samples of the wave; it is 0 if a revolution is a whole number of samples."""
-        angle = 2 * np.pi * self.turns * np.outer(np.arange(self.samples), np.arange(1, orders + 1))
-        return np.exp(-1j * angle).mean(axis=0)
-
-
-def gear_source(references: LabelledSignals, front: Front, saturation: float) -> str:
+def gear_source(references: Recordings, front: Front, saturation: float) -> str:
     """C source with the healthy numbers of one gear.
 
     Parameters
@@ -95,10 +76,13 @@ def _signal(references: LabelledSignals, speed: float, orders: int) -> str:
     """Entries of one operating point for the signals."""
     length = whole_revolutions(speed, references.rate, references.signals.shape[-1])
     require("the window", "samples", length, low=QUARTERS, high=LONGEST)
-    clock = _Clock(length, speed / 60 / references.rate)
+    turns = speed / 60 / references.rate  # revolutions from one sample to the next
+    order = np.arange(1, max(orders, 1) + 1)
+    turn = np.exp(-2j * np.pi * turns * order)  # of the angle between two samples
+    # The mean over the samples is 0 if a revolution is a whole number of samples.
+    offset = np.exp(-1j * (2 * np.pi * turns * np.outer(np.arange(length), order))).mean(axis=0)
     signals = references.signals[:, :, :length].astype(np.float64)
     mean, extent = signals.mean(axis=(0, 2)), _least_movement(signals)
-    turn, offset = clock.wave(max(orders, 1)), clock.offset(max(orders, 1))
     return ", ".join([str(length), values(mean), values(extent), pairs(_fixed(turn, WAVE)), pairs(_parts(offset))])
 
 

@@ -12,7 +12,7 @@ from jaxtyping import Float
 
 from learn.embedded.export import export_c
 from learn.embedded.machines import HOST
-from learn.embedded.proof import Agreement, agreement, decisions_of, together
+from learn.embedded.proof import Agreement, agreement, combined, decisions_of
 from learn.evaluation.evaluate import fit
 from learn.inputs.inputs import SPECIMEN, Layout, Representation
 from learn.jobs.train_job import BLOCK, learning_set_of
@@ -122,4 +122,4 @@ def judged(fold: Fold, numbers: str) -> tuple[pd.DataFrame, Agreement]:
         wrong = names != samples.table["label"].astype(str).to_numpy()
         errors.append(samples.table[list(SPECIMEN)].assign(error=100.0 * wrong))
         agreements.append(agreement(decisions, fold.model.predict_proba(part.features)))
-    return pd.concat(errors, ignore_index=True), together(agreements)
+    return pd.concat(errors, ignore_index=True), combined(agreements)

@@ -53,7 +53,7 @@ def layers_of(model: Any) -> Layers:
     Raises
     ------
     ValueError
-        If the model is none of these.
+        If the model has another type.
     """
     from sklearn.linear_model import LogisticRegression
     from sklearn.neural_network import MLPClassifier

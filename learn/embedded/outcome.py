@@ -11,7 +11,7 @@ import pandas as pd
 
 from learn.embedded.fold import Fold, folds, judged
 from learn.embedded.machines import CORTEX_M4, CORTEX_M7, HOST_SANITIZED, Machine, build, missing
-from learn.embedded.proof import agreement, operations, together
+from learn.embedded.proof import agreement, combined, operations
 from learn.embedded.running import Decisions, decide
 from learn.embedded.sizes import sizes
 from learn.inputs.inputs import SPECIMEN, Layout
@@ -55,7 +55,7 @@ def _accuracy(new: Fold, others: list[Fold], numbers: str) -> dict[str, Any]:
     return {
         "specimens": specimens.astype({"label": str}).to_dict("list"),
         "disturbed": 100 - float(np.mean([table["error"].mean() for table in tables])),
-        "host": {"unseen": asdict(equal), "disturbed": asdict(together(agreements))},
+        "host": {"unseen": asdict(equal), "disturbed": asdict(combined(agreements))},
     }
 
 

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -56,7 +55,7 @@ def agreement(decisions: Decisions, probabilities: Float[np.ndarray, "recording 
     return Agreement(len(equal), int(decided.sum()), int(equal.sum()), float(difference.max(initial=0)))
 
 
-def together(parts: Sequence[Agreement]) -> Agreement:
+def combined(parts: Sequence[Agreement]) -> Agreement:
     """Agreement over several sets of recordings."""
     return Agreement(
         sum(part.recordings for part in parts),
@@ -75,8 +74,3 @@ def decisions_of(folder: Path, machine: Machine, recordings: LabelledSignals) ->
 def operations(table: pd.DataFrame) -> Float[np.ndarray, "recording quantity"]:
     """Quantities that the drive measures, :data:`learn.embedded.running.OPERATION`."""
     return table[FACTS].to_numpy(dtype=float)
-
-
-def prove(folder: Path, machine: Machine, model: Any, features: np.ndarray, recordings: LabelledSignals) -> Agreement:
-    """Run an exported method on recordings, and its original on their features."""
-    return agreement(decisions_of(folder, machine, recordings), model.predict_proba(features))

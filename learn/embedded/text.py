@@ -49,7 +49,7 @@ def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
 
 
 def _accuracy(row: pd.Series) -> list[str]:
-    interval = f" ({row['low']:.1f} to {row['high']:.1f})" if np.isfinite(row["low"]) else ""  # none of few gears
+    interval = f" ({row['low']:.1f} to {row['high']:.1f})" if np.isfinite(row["low"]) else ""  # few gears
     same = [_of(row, name) for name in ("unseen", "disturbed")]
     return [
         str(row.name),

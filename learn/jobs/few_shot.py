@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from learn.adaptation.adapting import Adapted
 
-TRIED_SHOTS = 5  # options are tried on development gears with so many shots at most, or else with the fewest
+TRIED_SHOTS = 5  # most shots with which options are tried on development gears; if all are more, the fewest
 
 
 def results(
@@ -57,7 +57,7 @@ def results(
         ]
         return 100 * float(np.mean(shares))
 
-    # The source model is the one that is judged without adaptation: its options are chosen in the same way.
+    # The options of the source model are chosen as without adaptation.
     source_trials = settings.trials(config["classifier"]) if protocol.development else [{}]
     source_options, _ = choose(source_trials, source_score)
     source = partial(source_model, **source_options)

@@ -1,4 +1,4 @@
-"""What makes two jobs the same: their configuration, their data and the code that judges it."""
+"""Identity of a job: its configuration, its data and the code that computes the result."""
 
 import hashlib
 import json
@@ -11,7 +11,7 @@ from typing import Any
 from learn.methods.contract import own_source_digests
 from swgsim.storage import orders
 
-# Parts of a configuration that no result depends on.
+# Parts of a configuration that do not change a result.
 WHEREABOUTS = ("data", "models", "tracking", "workers", "compute", "scheduler")
 # The rooms that the score of a job depends on.
 DECISIVE_ROOMS = ("adaptation", "evaluation", "inputs", "jobs", "methods", "protocols")
@@ -31,13 +31,13 @@ def job_key(config: Mapping[str, Any], data_digest: str) -> str:
 
 @cache
 def code_version() -> str:
-    """Digest of the sources of this package that scores depend on, and of the libraries below it."""
+    """Digest of the sources of this package that change scores, and of the versions of its libraries."""
     digest = hashlib.sha256()
     for library in ("numpy", "scipy", "pandas", "scikit-learn", "torch"):
         digest.update(f"{library} {version(library)}".encode())
     folder = Path(__file__).parents[1]
     sources = (source for room in DECISIVE_ROOMS for source in sorted((folder / room).rglob("*.py")))
-    # The one module of swgsim that is no part of a recording's making, which the data set's own version covers.
+    # A module of swgsim that only learning uses; the data set's own version covers the others.
     for source in [*sources, Path(orders.__file__)]:
         digest.update(source.read_bytes())
     return digest.hexdigest()[:16]

@@ -123,8 +123,8 @@ def data_set(config: Config) -> Path:
     if not path.is_file():
         existing = ", ".join(sorted(p.stem for p in folder.glob("*-*.h5"))) or "none"
         raise ValueError(
-            f"no data set {path}; data sets in {folder}: {existing}. Give another folder with data=..., or make it "
-            f"with 'swg generate grid={config['grid']} condition={config['condition']}{_elsewhere(config)}'"
+            f"no data set {path}; data sets in {folder}: {existing}. Give another folder with data=..., or make it: "
+            f"swg generate grid={config['grid']} condition={config['condition']}{_elsewhere(config)}"
         )
     return Path(config["data"]) / path.name
 

@@ -1,4 +1,4 @@
-"""What happens around the jobs of a sweep: the store is made ready before they start, their common run closed after."""
+"""Opens the common run of a sweep before its jobs start, and closes it afterwards."""
 
 from typing import Any
 
@@ -14,7 +14,7 @@ class Sweep(Callback):
     """Hydra's callback of ``conf/train.yaml``."""
 
     def on_multirun_start(self, config: DictConfig, **_: Any) -> None:
-        """Let the command line win over the experiment's own sweep, and open the study's run in a store that exists."""
+        """Let the command line override the experiment's own sweep, and open the study's run."""
         named = named_on_command_line(list(config.hydra.overrides.task))
         with open_dict(config.hydra.sweeper):
             swept = config.hydra.sweeper.params or {}  # None without an experiment
@@ -23,9 +23,9 @@ class Sweep(Callback):
         try:
             store = _store(config)
             self._run = tracking.open_sweep(store, config.study, named.get("grid", config.grid.name))
-        except ValueError as error:  # of which Hydra would make a warning, and start the jobs
+        except ValueError as error:  # Hydra would make it a warning, and start the jobs
             raise SystemExit(str(error)) from error
-        # Hydra composes every job anew where it is done, on whatever machine, from these words.
+        # Hydra composes every job from these words on the machine that runs it.
         config.hydra.overrides.hydra.append(f"+hydra.job.env_set.{tracking.SWEEP}={self._run}")
 
     def on_multirun_end(self, config: DictConfig, **_: Any) -> None:

@@ -1,4 +1,4 @@
-"""One job: a method on a representation of a data set under a protocol, kept as one MLflow run."""
+"""One job: trains and tests a method on the inputs of a data set under a protocol; keeps it as one MLflow run."""
 
 import logging
 from collections.abc import Mapping
@@ -17,7 +17,7 @@ from swgsim.storage import storage
 log = logging.getLogger(__name__)
 
 BLOCK = 1024  # recordings in memory at a time
-LARGE = 100_000  # recordings from which on their inputs lie in a file
+LARGE = 100_000  # number of recordings from which on the inputs are in a file
 
 
 @lru_cache(maxsize=4)
@@ -31,7 +31,7 @@ def learning_set_of(path: Path, digest: str, representation: Representation) -> 
 
 
 def run(config: Mapping[str, Any]) -> dict[str, float]:
-    """Do the job that a resolved configuration of ``conf/train.yaml`` describes, unless its result is there already.
+    """Do the job of a resolved configuration of ``conf/train.yaml``, unless it has a finished run.
 
     Returns
     -------
@@ -45,7 +45,7 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
     ValueError
         If a choice is unknown, with the list of choices, or the data set does not exist, with the command to make it.
     """
-    chosen = {group: config[group]["name"] for group in ("grid", "condition")}  # what is in them, the data set holds
+    chosen = {group: config[group]["name"] for group in ("grid", "condition")}  # their content is in the data set
     config = {**config, **chosen}
     representation = settings.representation(config["features"])
     settings.protocol(config["protocol"])
@@ -69,7 +69,7 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
         return done
 
     tags = {"data_digest": digest, "code_version": identity.code_version()}
-    # One thread to a job: jobs run side by side, and threads of several would wait for each other.
+    # One thread per job: jobs run in parallel, and their threads would wait for each other.
     with threadpool_limits(1), tracking.job_run(store, name, key, parameters, config, tags) as record:
         data, *foreign = [learning_set_of(*each, representation) for each in zip(paths, digests, strict=True)]
         for gears in foreign:

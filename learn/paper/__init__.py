@@ -1,4 +1,4 @@
-"""The paper's Tables VII to X and its claims beside ours: report/index.html.
+"""The paper's Tables VII to X and its claims compared with our results: report/index.html.
 
 Imports ``jobs`` and rooms below it, and ``swgsim.studies``.
 """

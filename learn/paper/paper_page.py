@@ -29,8 +29,11 @@ CLASSIFIERS = ("mlp", "svm", "rf", "knn", "nb")
 RELATIONS: Mapping[str, str] = {"about": "", "above": "> ", "at most": "≤ "}
 DATASET = ("recordings", "seconds", "recordings_per_second", "peak_memory_mib", "cores")
 FULL_COLOUR = 30  # points of difference at which a cell has its full colour
-# The spaces of "7 N m" and "2000 rpm".
-UNIT = re.compile(r"(?<=\d) (?=(?:m?N m|rpm|[mµ]V/V|Hz|µm|MiB|s|%)(?!\w))|(?<=[ \[m]N) (?=m(?!\w))")
+# The spaces of "7 N m", "2000 rpm", "Table X" and "eq. (10)".
+UNIT = re.compile(
+    r"(?<=\d) (?=(?:m?N m|rpm|[mµ]V/V|Hz|µm|MiB|s|%)(?!\w))|(?<=[ \[m]N) (?=m(?!\w))"
+    r"|(?<=Table) (?=[IVX])|(?<=eq\.) (?=\()"
+)
 
 
 @dataclass(frozen=True)
@@ -156,7 +159,7 @@ def runs_of_tables(store: Store, grid: str, digests: Mapping[str, str], command:
     Raises
     ------
     ValueError
-        If there is none, with the command to make them.
+        If there are no such runs; it names the command that makes them.
     """
     runs = finished_runs(store, grid=grid)
     if len(runs):

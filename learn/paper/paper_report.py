@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import pandas as pd
 import yaml
 
 from learn.jobs import settings
@@ -16,12 +15,10 @@ from learn.paper import paper_page as report
 from learn.paper.choices import choices
 from learn.paper.claims import table_claims
 from learn.paper.feature_claims import SPECTRUM, feature_claims, features_of
-from learn.paper.published_tables import PROTOCOLS, compare, random_beside_grouped
+from learn.paper.published_tables import PROTOCOLS, compare, random_and_grouped
 from swgsim.common.files import write_text
-from swgsim.common.style import Picture
 from swgsim.jobs import settings as chain_settings
 from swgsim.storage import storage
-from swgsim.storage.labelled_signals import LabelledSignals
 from swgsim.studies import figures as chain_figures
 from swgsim.studies.claims import chain_claims
 from swgsim.studies.examples import FIGURE_POINT, Subject
@@ -95,7 +92,9 @@ def report_of(config: Mapping[str, Any], began: float) -> report.Report:
     command = settings.train_command(config)
     runs = report.runs_of_tables(store, grid, sets.digests, command)
     tables = {name: report.complete(compare(name, runs), name, command) for name in PROTOCOLS}
-    subject = subject_of(sets.configurations["clean"])
+    configuration, made = sets.configurations["clean"], sets.made["clean"]
+    plan = chain_settings.plan(configuration)
+    subject = Subject(plan.gears, window=plan.window, sectors=plan.sectors)
     blocks = list(storage.blocks(sets.paths["clean"], BLOCK))
     features = features_of(blocks)
     findings = [
@@ -103,22 +102,33 @@ def report_of(config: Mapping[str, Any], began: float) -> report.Report:
         *feature_claims(features),
         *table_claims(tables, features, sets.disturbance["amplitude"]),
     ]
-    disturbed = next(storage.blocks(sets.paths["disturbed"], BLOCK))
-    pictures = _pictures(subject, blocks[0], disturbed, runs)
-    steps = _steps(sets, runs, began)
-    decided, statistics = _choices(sets, subject), report.statistics(blocks)
-    seconds, seconds_are = _seconds(config["started"], steps)
+    clean, disturbed = blocks[0], next(storage.blocks(sets.paths["disturbed"], BLOCK))
+    at_point = (clean.table["n_in_rpm"] == FIGURE_POINT.n_in_rpm) & (clean.table["T_out_nm"] == FIGURE_POINT.T_out)
+    healthy = at_point & (clean.table["label"] == "healthy")
+    pictures = [
+        *chain_figures.pictures(subject),
+        *learning_figures.pictures(
+            subject.examples, FIGURE_POINT.n_in_rpm, clean.where(healthy), disturbed.where(healthy), runs
+        ),
+    ]
+    catalogue = chain_figures.catalogue_comparison(subject)
+    steps = {
+        "generation": sum(each["seconds"] for each in sets.made.values()),
+        "fitting of the classifiers, on all cores": runs["fit_seconds"].sum() / made["cores"],
+        "report": time.time() - began,
+    }
+    started = config["started"]
     return report.Report(
         grid=grid,
-        dataset={key: sets.made["clean"][key] for key in report.DATASET},
+        dataset={key: made[key] for key in report.DATASET},
         tables=tables,
-        folds={name: random_beside_grouped(name, runs) for name in ("table7", "table8")},
+        folds={name: random_and_grouped(name, runs) for name in ("table7", "table8")},
         findings=findings,
-        choices=decided,
-        statistics=statistics,
+        choices=choices(configuration, sets.disturbance, catalogue, SPECTRUM.orders, SPECTRUM.floor),
+        statistics=report.statistics(blocks),
         pictures=pictures,
-        seconds=seconds,
-        seconds_are=seconds_are,
+        seconds=time.time() - started if started else sum(steps.values()),
+        seconds_are="on the clock, from the start of make paper" if started else "the steps added up",
         steps=steps,
         versions=report.versions(sets.code, sets.digests),
     )
@@ -145,50 +155,3 @@ def data_sets(data: str, grid: str) -> DataSets:
         made={c: json.loads(path.with_suffix(".json").read_text()) for c, path in paths.items()},
         configurations={c: yaml.safe_load(storage.attributes(path)["configuration"]) for c, path in paths.items()},
     )
-
-
-def subject_of(config: Mapping[str, Any]) -> Subject:
-    """The gears, window and mesh of a data set, at the paper's operating points."""
-    plan = chain_settings.plan(config)
-    return Subject(plan.gears, window=plan.window, sectors=plan.sectors)
-
-
-def example_rows(table: pd.DataFrame) -> pd.Series:
-    """Which healthy recordings are at the figures' operating point."""
-    at_point = (table["n_in_rpm"] == FIGURE_POINT.n_in_rpm) & (table["T_out_nm"] == FIGURE_POINT.T_out)
-    return at_point & (table["label"] == "healthy")
-
-
-def _pictures(
-    subject: Subject, clean: LabelledSignals, disturbed: LabelledSignals, runs: pd.DataFrame
-) -> list[Picture]:
-    """Pictures of the chain, then those of learning, with the same recordings of both data sets."""
-    healthy = example_rows(clean.table)
-    return [
-        *chain_figures.pictures(subject),
-        *learning_figures.pictures(
-            subject.examples, FIGURE_POINT.n_in_rpm, clean.where(healthy), disturbed.where(healthy), runs
-        ),
-    ]  # fmt: skip
-
-
-def _choices(sets: DataSets, subject: Subject) -> list[tuple[str, str]]:
-    """Choices where the paper gives no value."""
-    catalogue = chain_figures.catalogue_comparison(subject)
-    return choices(sets.configurations["clean"], sets.disturbance, catalogue, SPECTRUM.orders, SPECTRUM.floor)
-
-
-def _steps(sets: DataSets, runs: pd.DataFrame, began: float) -> dict[str, float]:
-    """Seconds of single steps."""
-    return {
-        "generation": sum(each["seconds"] for each in sets.made.values()),
-        "fitting of the classifiers, on all cores": runs["fit_seconds"].sum() / sets.made["clean"]["cores"],
-        "report": time.time() - began,
-    }
-
-
-def _seconds(started: float | None, steps: Mapping[str, float]) -> tuple[float, str]:
-    """Seconds of the whole, and how they were measured."""
-    if started:
-        return time.time() - started, "on the clock, from the start of make paper"
-    return sum(steps.values()), "the steps added up"

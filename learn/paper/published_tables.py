@@ -75,7 +75,7 @@ class Comparison:
 
     @property
     def mean_absolute_difference(self) -> float:
-        """Mean of |ours - paper| over :attr:`figures` [points]; NaN if there is none."""
+        """Mean of |ours - paper| over :attr:`figures` [points]; NaN without any."""
         return float((self.figures["ours"] - self.figures["paper"]).abs().mean())
 
     @property
@@ -136,7 +136,7 @@ def compare(table: str, runs: pd.DataFrame) -> Comparison:
     return Comparison(cells.assign(ours=np.array(ours, dtype=float)))
 
 
-def random_beside_grouped(table: str, runs: pd.DataFrame) -> pd.DataFrame:
+def random_and_grouped(table: str, runs: pd.DataFrame) -> pd.DataFrame:
     """Test scores [%] of the paper's random folds and of grouped folds, and the optimism of random folds [points].
 
     Both are means of the recall over the classes that the grouped folds test: of clean data the five faults, as all

@@ -29,7 +29,7 @@ class Pair:
     plain : Path
         Without the effect.
     acting : Path
-        With it; the same file where there is none.
+        With it; the same file if no effect acts.
     """
 
     plain: Path

@@ -149,7 +149,7 @@ def study(config: Mapping[str, Any], store: tracking.Store, name: str, key: str,
         }
         with tracking.job_run(store, f"{STUDY} {name}", key, parameters, config, tags) as job:
             predictions = judged(models, Pair(bench_plain, acting), config["methods"])
-            kept = pd.DataFrame({"said": [json.dumps({"hidden": text.entries(hidden), "loop": answered})]})
+            kept = pd.DataFrame({"answer": [json.dumps({"hidden": text.entries(hidden), "loop": answered})]})
             tables = {"predictions": predictions, "loop": kept}
             job.record(
                 metrics(scores(predictions)), {}, {f"tables/{each}.parquet": table for each, table in tables.items()}
@@ -225,6 +225,6 @@ def _finished(store: tracking.Store, key: str) -> pd.DataFrame:
 
 def _read(store: tracking.Store, name: str, runs: pd.DataFrame) -> Finished:
     run_id = str(runs.iloc[0]["run_id"])
-    kept = json.loads(tracking.table_of(store, run_id, "tables/loop.parquet")["said"].iloc[0])
+    kept = json.loads(tracking.table_of(store, run_id, "tables/loop.parquet")["answer"].iloc[0])
     predictions = tracking.table_of(store, run_id, "tables/predictions.parquet")
     return Finished(name, kept["hidden"], kept["loop"], scores(predictions))

@@ -22,38 +22,6 @@ if TYPE_CHECKING:
 log = logging.getLogger(__name__)
 
 
-@dataclass(frozen=True)
-class Job:
-    """Facts of a job that are known when it begins.
-
-    Attributes
-    ----------
-    name : str
-        Name of its run.
-    parameters : mapping
-    config : mapping
-    tags : mapping
-    start : int
-        Time at which it began [ms since 1970].
-    """
-
-    name: str
-    parameters: Mapping[str, Any]
-    config: Mapping[str, Any]
-    tags: Mapping[str, str]
-    start: int
-
-    def begin(self, store: Store) -> str:
-        """Open a run in a store and return its id."""
-        from mlflow.entities import Param
-
-        run = store.client.create_run(store.experiment_id, self.start, dict(self.tags), self.name)
-        run_id = str(run.info.run_id)
-        store.client.log_batch(run_id, params=[Param(name, str(value)) for name, value in self.parameters.items()])
-        store.client.log_dict(run_id, dict(self.config), "config.yaml")
-        return run_id
-
-
 @dataclass
 class Results:
     """Results of a job; the keys of figures and tables are their paths among the artifacts."""
@@ -107,45 +75,46 @@ def job_run(
     tags : mapping
         Further facts.
     """
-    parent = os.environ.get(SWEEP)
+    from mlflow.entities import Param
+
+    start, parent = _now(), os.environ.get(SWEEP)
     facts = {"kind": "job", "key": key, "origin": uuid.uuid4().hex, **tags}
-    job = Job(name, parameters, config, {**facts, **({"mlflow.parentRunId": parent} if parent else {})}, _now())
-    store, run_id = _begun(store, job)
+    facts |= {"mlflow.parentRunId": parent} if parent else {}
+
+    def begin(store: Store) -> str:
+        """Open a run in a store and return its id."""
+        run_id = str(store.client.create_run(store.experiment_id, start, facts, name).info.run_id)
+        store.client.log_batch(run_id, params=[Param(each, str(value)) for each, value in parameters.items()])
+        store.client.log_dict(run_id, dict(config), "config.yaml")
+        return run_id
+
+    try:
+        run_id = begin(store)
+    except lost() as error:
+        store = _pending(store, name, error)
+        run_id = begin(store)
     results = Results()
     try:
         yield results
-        _keep(store, run_id, job, results)
+        try:
+            results.write(store, run_id)
+        except lost() as error:
+            pending = _pending(store, name, error)
+            results.write(pending, begin(pending))
     except BaseException:
         with suppress(*lost()):
             store.client.set_terminated(run_id, "FAILED")
         raise
 
 
-def _begun(store: Store, job: Job) -> tuple[Store, str]:
-    """The store that has taken the run of a job, and the run's id."""
-    try:
-        return store, job.begin(store)
-    except lost() as error:
-        pending = _pending(store, job, error)
-        return pending, job.begin(pending)
-
-
-def _keep(store: Store, run_id: str, job: Job, results: Results) -> None:
-    try:
-        results.write(store, run_id)
-    except lost() as error:
-        pending = _pending(store, job, error)
-        results.write(pending, job.begin(pending))
-
-
-def _pending(store: Store, job: Job, error: Exception) -> Store:
+def _pending(store: Store, name: str, error: Exception) -> Store:
     """The store that keeps the job instead, with a warning; without one the error is raised again."""
     if store.pending is None:
         raise error
     log.warning(
         "%s: the MLflow server at %s has gone away; the results are kept in %s. When it is back, upload them with "
         "'swg upload tracking.uri=%s tracking.pending=%s'. The error was: %s",
-        job.name, store.uri, store.pending.folder, store.uri, store.pending.folder, str(error)[:300],
+        name, store.uri, store.pending.folder, store.uri, store.pending.folder, str(error)[:300],
     )  # fmt: skip
     return store.pending
 

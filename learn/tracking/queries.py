@@ -11,7 +11,7 @@ from learn.tracking.sweeps import SWEEP
 
 
 def finished_metrics(store: Store, key: str) -> dict[str, float] | None:
-    """The metrics of a finished job, whether it waits for upload or not, or None if there is none with this key.
+    """The metrics of a finished job, whether it waits for upload or not, or None if no job has this key.
 
     Raises
     ------

@@ -34,7 +34,7 @@ class Store:
     experiment : str
         Name of the MLflow experiment that holds all runs.
     folder : Path or None
-        Folder of a local store: its database and, beside it, the artifacts. None with a server.
+        Folder of a local store, with its database and artifacts. None with a server.
     pending : Store or None
         With a server, the local store of results that the server could not take.
     """
@@ -105,7 +105,7 @@ def _create(database: Path) -> None:
 
 
 def local_store(folder: str, experiment: str = EXPERIMENT) -> Store:
-    """A store in a folder of this machine: an SQLite database with the artifacts beside it."""
+    """A store in a folder of this machine: an SQLite database and the artifacts."""
     path = Path(folder).resolve()
     return Store(f"sqlite:///{path / DATABASE}", experiment, path)
 

@@ -18,7 +18,7 @@ def open_sweep(store: Store, study: str, grid: str) -> str:
 
 
 def find_sweep(store: Store, study: str, grid: str) -> str | None:
-    """The id of the run of a study on a grid, or None if there is none yet."""
+    """The id of the run of a study on a grid, or None before the first sweep."""
     query = f"tags.kind = 'sweep' and tags.study = '{study}' and tags.grid = '{grid}'"
     found = store.client.search_runs([store.experiment_id], query, order_by=["attributes.start_time DESC"])
     return str(found[0].info.run_id) if found else None

@@ -1,9 +1,6 @@
 """Configuration of data sets: every choice builds, wrong ones are answered with the choices."""
 
 import fcntl
-import json
-import subprocess
-import sys
 from pathlib import Path
 from typing import IO, Any
 
@@ -111,32 +108,6 @@ def test_a_data_set_of_other_choices_is_replaced_aloud(tmp_path: Path, capsys: p
     run(tiny(tmp_path, *point, "window.samples=700"))
     assert f"{path} was made by other choices and is replaced" in capsys.readouterr().out
     assert storage.read(path).signals.shape[2] == 700
-
-
-def test_two_processes_do_not_make_the_same_data_set(tmp_path: Path) -> None:
-    """The second is refused; when the first is killed with -9, another one may, and goes on from its parts."""
-    program = (
-        "import json, sys, time\n"
-        "from swgsim.jobs import generate_data_set as generation\n"
-        "def generate(plan, path, engine, progress):\n"
-        "    print('makes', path, flush=True)\n"
-        "    time.sleep(60)\n"
-        "generation.generate = generate\n"
-        "generation.run(json.loads(sys.argv[1]))\n"
-    )
-    config = tiny(tmp_path)
-    command = [sys.executable, "-c", program, json.dumps(config)]
-    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as first:
-        assert first.stdout is not None
-        assert "small-clean.h5" in first.stdout.readline()
-        with pytest.raises(
-            RuntimeError, match=r"another process is making .*small-clean\.h5: wait for it, or choose another folder$"
-        ):
-            run(config)
-        assert first.poll() is None
-        first.kill()
-    assert run(config)["recordings"] == 3 * 4 * (1 + 6 * 3)
-    assert {p.name for p in tmp_path.iterdir()} == {"small-clean.h5", "small-clean.json"}
 
 
 def test_a_lock_that_its_owner_removes_meanwhile_keeps_others_out(

@@ -64,7 +64,7 @@ def test_runs_that_are_missing_leave_gaps():
     assert json.loads(json.dumps(comparison.summary(), allow_nan=False)) == comparison.summary()
 
 
-def test_random_folds_beside_grouped_folds():
+def test_random_and_grouped_folds():
     """On the classes that grouped folds test: healthy, which they never test here, does not count for either."""
     cell = {"study": "table7", "features": "selection_1", "classifier": "rf"}
     faults = [f"recall/{label}" for label in CLASSES[1:]]
@@ -72,7 +72,7 @@ def test_random_folds_beside_grouped_folds():
         cell | {"protocol": "random_folds", "recall/healthy": 100.0} | dict.fromkeys(faults, 98.0),
         cell | {"protocol": "grouped_folds"} | dict.fromkeys(faults, 95.5),
     ]
-    row = paper.random_beside_grouped("table7", pd.DataFrame(both)).loc[("selection_1", "rf")]
+    row = paper.random_and_grouped("table7", pd.DataFrame(both)).loc[("selection_1", "rf")]
     assert row.tolist() == [98.0, 95.5, 2.5]
 
 

@@ -94,10 +94,6 @@ def join_in(uri, number):
     keep(tracking.server_store(uri), number)
 
 
-def finished_by_number(store, study):
-    return tracking.finished_runs(store, study=study).astype({"number": int}).set_index("number").sort_index()
-
-
 @pytest.mark.slow
 def test_many_jobs_at_once_lose_no_run_and_no_metric(server):
     jobs = [PROCESSES.Process(target=join_in, args=(server.uri, number)) for number in range(JOBS)]
@@ -107,12 +103,12 @@ def test_many_jobs_at_once_lose_no_run_and_no_metric(server):
         each.join()
     assert [each.exitcode for each in jobs] == [0] * JOBS
     store = server.store()
-    found = finished_by_number(store, "many")
+    found = tracking.finished_runs(store, study="many").astype({"number": int}).set_index("number").sort_index()
     assert list(found.index) == list(range(JOBS))
     for number, run in found.iterrows():
         assert [run[f"m/{i}"] for i in range(50)] == [number + i / 100 for i in range(50)]
         assert tracking.table_of(store, run["run_id"], "tables/t.parquet").to_numpy().tolist() == [[number, number**2]]
-    assert len(store.client.search_runs([store.experiment_id], "params.study = 'twenty'")) == JOBS
+    assert len(store.client.search_runs([store.experiment_id], "params.study = 'many'")) == JOBS
 
 
 @pytest.fixture(scope="module")
@@ -123,11 +119,15 @@ def data(tmp_path_factory):
     return folder
 
 
-def configured(data, *tracked, classifier="nb"):
+def configured(data, *tracked):
     few = [f"protocol.{part}" for part in ("development=0", "labelled=1", "unlabelled=1", "kept_out=1")]
-    where = ["grid=small", f"data={data}", "protocol=new_gears", f"classifier={classifier}"]
+    words = ["grid=small", f"data={data}", "protocol=new_gears", "classifier=nb", *few, *tracked]
     with initialize_config_dir(str(ROOT / "conf"), version_base="1.3"):
-        return OmegaConf.to_container(compose("train", [*where, *few, *tracked]), resolve=True)
+        return OmegaConf.to_container(compose("train", words), resolve=True)
+
+
+def on_server(data, uri, pending):
+    return configured(data, "tracking=server", f"tracking.uri={uri}", f"tracking.pending={pending}")
 
 
 def not_trained(*_):
@@ -138,7 +138,7 @@ def not_trained(*_):
 def lost(server, data, tmp_path_factory):
     """A job of a sweep whose server goes away while it works and is then started again; and its metrics."""
     pending = prepared(tmp_path_factory.mktemp("pending"))
-    config = configured(data, "tracking=server", f"tracking.uri={server.uri}", f"tracking.pending={pending}")
+    config = on_server(data, server.uri, pending)
     judge = zero_shot.results
     keep(server.store(), 5, study="before")
 
@@ -155,39 +155,25 @@ def lost(server, data, tmp_path_factory):
 
 
 @pytest.mark.slow
-def test_a_job_whose_server_goes_away_ends_as_it_would_without(server, data, lost, tmp_path):
+def test_a_job_whose_server_goes_away_ends_as_it_would_without_and_is_not_done_again(
+    server, data, lost, tmp_path, monkeypatch
+):
     pending, metrics = lost
-    waiting = tracking.local_store(str(pending))
     undisturbed = configured(data, f"tracking.folder={prepared(tmp_path)}")
-    expected = {**job.run(undisturbed), "fit_seconds": metrics["fit_seconds"]}
-    assert metrics == expected
+    assert metrics == {**job.run(undisturbed), "fit_seconds": metrics["fit_seconds"]}
     (before,) = tracking.finished_runs(server.store(), study="before").itertuples()  # the server keeps its runs
     assert tracking.table_of(server.store(), before.run_id, "tables/t.parquet").to_numpy().tolist() == [[5, 25]]
-    (run,), (other,) = (
-        tracking.finished_runs(store, study="trial").itertuples()
-        for store in (waiting, tracking.local_store(str(tmp_path)))
-    )
-    table = "tables/predictions.parquet"
-    pd.testing.assert_frame_equal(
-        tracking.table_of(waiting, run.run_id, table),
-        tracking.table_of(tracking.local_store(str(tmp_path)), other.run_id, table),
-    )
-
-
-@pytest.mark.slow
-def test_what_waits_for_upload_is_not_done_again(data, lost, monkeypatch):
-    pending, metrics = lost
+    stores = [tracking.local_store(str(folder)) for folder in (pending, tmp_path)]
+    runs = [tracking.finished_runs(store, study="trial")["run_id"].item() for store in stores]
+    pd.testing.assert_frame_equal(*map(tracking.table_of, stores, runs, ["tables/predictions.parquet"] * 2))
     monkeypatch.setattr(zero_shot, "results", not_trained)
-    away = f"tracking.uri=http://127.0.0.1:{free_port()}"
-    assert job.run(configured(data, "tracking=server", away, f"tracking.pending={pending}")) == metrics
+    assert job.run(on_server(data, f"http://127.0.0.1:{free_port()}", pending)) == metrics
 
 
 def test_jobs_of_a_sweep_go_on_without_their_server_and_say_so(data, tmp_path, monkeypatch, caplog):
     uri = f"http://127.0.0.1:{free_port()}"
     monkeypatch.setenv(tracking.SWEEP, "0123456789abcdef")
-    metrics = job.run(
-        configured(data, "tracking=server", f"tracking.uri={uri}", f"tracking.pending={prepared(tmp_path)}")
-    )
+    metrics = job.run(on_server(data, uri, prepared(tmp_path)))
     assert f"the results are kept in {tmp_path}" in caplog.text
     assert f"swg upload tracking.uri={uri} tracking.pending={tmp_path}" in caplog.text
     assert tracking.finished_runs(tracking.local_store(str(tmp_path)))["test_score"].tolist() == [metrics["test_score"]]
@@ -198,7 +184,7 @@ def test_a_job_stops_before_training_if_the_server_is_absent(data, tmp_path, mon
     monkeypatch.setattr(zero_shot, "results", not_trained)
     uri = f"http://127.0.0.1:{free_port()}"
     with pytest.raises(tracking.ServerAway, match=f"no MLflow server answers at tracking.uri={uri}: start it"):
-        job.run(configured(data, "tracking=server", f"tracking.uri={uri}", f"tracking.pending={tmp_path}"))
+        job.run(on_server(data, uri, tmp_path))
 
 
 def whole(store, run_id):
@@ -244,13 +230,10 @@ def test_runs_are_uploaded_whole_and_once(server, lost, monkeypatch):
         assert store.client.get_run(sweep).info.status == "FINISHED"
         assert {"config.yaml"} < set(rest[-1])
 
-    def runs():
-        return {run.info.run_id for run in store.client.search_runs([store.experiment_id])}
-
     left_open = tracking.open_sweep(store, "alone", "small")  # by an upload that was killed before its last step
-    before = runs()
+    before = len(store.client.search_runs([store.experiment_id]))
     assert tracking.upload(server.store(pending)) == 0
-    assert runs() == before
+    assert len(store.client.search_runs([store.experiment_id])) == before
     assert store.client.get_run(left_open).info.status == "FINISHED"
 
 
