@@ -85,5 +85,5 @@ def test_files_of_single_channels_are_explained(tmp_path: Path) -> None:
     single = [
         replace(each, channels={name: each.channels[name]}) for each, name in zip(GOOD, ("s1", "s2"), strict=False)
     ]
-    with pytest.raises(ValueError, match="found the channels s2_mv_v.*join files of single channels"):
+    with pytest.raises(ValueError, match=r"found the channels s2_mv_v.*join files of single channels"):
         write_folder(tmp_path / "bench", single)
