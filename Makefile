@@ -34,7 +34,7 @@ JOBS := $(shell echo $$(( ($(CORES) + 3) / 4 )))
 export MLFLOW_DISABLE_TELEMETRY := true
 
 .DEFAULT_GOAL := help
-.PHONY: help install install-dev site data experiments report paper transfer loop blind sim-to-real joints embedded test lint fuzz chaos scale matrix benchmark convergence docs ui clean $(TABLES)
+.PHONY: help install install-dev site data experiments report paper transfer loop blind sim-to-real joints embedded test lint fuzz chaos scale benchmark convergence docs ui clean $(TABLES)
 
 help:  ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-12s %s\n", $$1, $$2}'
@@ -113,18 +113,14 @@ lint: $(DEV)  ## style and types
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-fuzz: $(DEV)  ## every reader on spoiled files, SECONDS=300 in all (docs/reliability.md)
+fuzz: $(DEV)  ## every reader on damaged files, SECONDS=300 in all (docs/reliability.md)
 	OMP_NUM_THREADS=1 ARROW_DEFAULT_MEMORY_POOL=system $(BIN)/python scripts/fuzz.py --seconds $(or $(SECONDS),300)
 
 chaos: $(DEV)  ## data sets and sweeps killed at random moments, KILLS=200 (docs/reliability.md)
-	OMP_NUM_THREADS=1 $(BIN)/python scripts/chaos.py --kills $(or $(KILLS),200) $(if $(SECONDS),--seconds $(SECONDS))
+	OMP_NUM_THREADS=1 $(BIN)/python scripts/chaos.py --kills $(or $(KILLS),200)
 
-scale: $(DEV)  ## engines beside one another, and data sets larger than the memory: half an hour, 12 GiB (docs/scale.md)
-	$(BIN)/python scripts/scale.py
+scale: $(DEV)  ## data sets larger than the memory: 15 minutes, 12 GiB (docs/scale.md)
 	$(BIN)/python scripts/large.py
-
-matrix: $(DEV)  ## the same numbers on the oldest and the newest NumPy that pyproject.toml allows (docs/reliability.md)
-	$(BIN)/python scripts/matrix.py
 
 benchmark: $(READY)  ## the chain against the obvious ways of doing the same
 	$(SWG) benchmark

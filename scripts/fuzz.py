@@ -1,37 +1,194 @@
-"""Every reader on spoiled files for a given time: ``python scripts/fuzz.py --seconds 300`` (docs/reliability.md)."""
+"""Read randomly damaged files with every reader: ``python scripts/fuzz.py --seconds 300`` (docs/reliability.md)."""
 
 import argparse
+import hashlib
+import io
+import os
+import resource
+import signal
 import sys
+import tempfile
+import time
+import traceback
+import warnings
+import zipfile
+from collections import Counter
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))  # the targets belong to the tests
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))  # for the sound files
 
-from fuzzing.campaign import HARMLESS, KINDS, campaign
-from fuzzing.targets import TARGETS
+import recording_fixtures as sound
+from fabricated_joints import KINOVA, kinova_run, write_kinova
+
+from learn.evaluation import models
+from swgsim.bench.truth import SEAL, open_truth
+from swgsim.effects import text
+from swgsim.joint.intake.read import read_joints
+from swgsim.recordings.files.folder import read_folder
+from swgsim.recordings.files.recording_file import read_file
+from swgsim.recordings.files.source_map import read_map
+from swgsim.recordings.files.sources import read_mapped
+from swgsim.storage import storage
+from swgsim.storage.storage import SEAL_SIZE, SEAL_START
 
 KEPT = Path("outputs/fuzz")
+MEMORY, SECONDS, BATCH = 2 * 2**30, 10.0, 25  # beyond the libraries [byte]; of one reading [s]; readings of one process
+HARMLESS = ("accepted", "refused")
+# A reader that starts a process, opens a socket or removes a file runs something of the file.
+FORBIDDEN = ("os.system", "os.exec", "os.posix_spawn", "os.fork", "socket.", "ctypes.dlopen", "os.remove", "os.rename")
+WORDS = (
+    b"nan", b"-inf", b"1e400", b"9" * 400, b"1" * 20_000 + b"x", b"0x1p3", b"1,5", b"", b"4294967296", b"2001-13-45",
+    b"../../etc/passwd", b"a\x00b", b"\xff\xfe", b"\n\n", b'"', b"[" * 3000, b"{a: " * 300, b"&a [*a]", b"<<: {}",
+    b"!!python/object/apply:os.system ['true']", b"x" * 5000, b"os:system", b"\xff" * 4, b"\x7f" + b"\xff" * 7,
+)  # fmt: skip
+
+
+def effects_file(place: Path) -> None:
+    (place / "effects.yaml").write_text("effects:\n- eccentric_wave_generator: {r: 1.0e-5, theta: 1.0}\n")
+
+
+def read_truth(place: Path) -> None:
+    """The truth, sealed after the damage, as its maker could do."""
+    content = (place / "bench.truth.json").read_bytes()
+    (place / "bench" / SEAL).write_text(f"{hashlib.sha256(content).hexdigest()}  bench.truth.json\n")
+    open_truth(place / "bench")
+
+
+# Reader: writer of sound files, pattern of the files to damage, function that reads their folder.
+READERS: dict[str, tuple[Callable[[Path], object], str, Callable[[Path], object]]] = {
+    "CSV folder": (sound.bench_folder, "bench/*.csv", lambda place: read_folder(place / "bench")),
+    "one file (.h5)": (sound.bench_file, "bench.h5", lambda place: read_file(place / "bench.h5")),
+    **{
+        saver: (
+            partial(sound.mapped, saver=saver), "files/*",
+            lambda place: read_mapped(place / "files", read_map(place / "map.yaml")),
+        )
+        for saver in sound.SAVERS
+    },
+    "column map": (partial(sound.mapped, saver="x.csv"), "map.yaml", lambda place: read_map(place / "map.yaml")),
+    "joint logs": (
+        lambda place: write_kinova(place / "S1_v0.50.csv", kinova_run(0.5, 1, 300)), "*.csv",
+        lambda place: read_joints(place, KINOVA),
+    ),
+    "data set (.h5)": (sound.data_set, "set.h5", lambda place: storage.read(place / "set.h5")),
+    "network (.pt)": (sound.network, "model.pt", lambda place: models.load(place / "model.pt", "cpu")),
+    "forest (.skops)": (sound.forest, "model.skops", lambda place: models.load(place / "model.skops", "cpu")),
+    "effects.yaml": (effects_file, "effects.yaml", lambda place: text.from_text(
+        (place / "effects.yaml").read_text(errors="replace"), "effects.yaml")),
+    "truth (.json)": (sound.truth, "*.truth.json", read_truth),
+}  # fmt: skip
+
+
+def damaged(content: bytes, rng: np.random.Generator) -> bytes:
+    """One to four changes, inside of a seal or of one member of an archive, which then fit again."""
+    if content.startswith(SEAL_START) and rng.random() < 0.8:
+        return sound.sealed(damaged(content[SEAL_SIZE:], rng))
+    if content.startswith(b"PK") and rng.random() < 0.8:
+        with zipfile.ZipFile(io.BytesIO(content)) as archive:
+            members = {name: archive.read(name) for name in archive.namelist()}
+        chosen = str(rng.choice(sorted(members)))
+        changed = io.BytesIO()
+        with zipfile.ZipFile(changed, "w") as archive:
+            for name, inside in members.items():
+                archive.writestr(name, damaged(inside, rng) if name == chosen else inside)
+        return changed.getvalue()
+    for _ in range(int(rng.integers(1, 5))):
+        start, end, to = (int(rng.integers(len(content) + 1)) for _ in range(3))
+        word = WORDS[int(rng.integers(len(WORDS)))]
+        content = [
+            content[:start] + bytes([int(rng.integers(256))]) + content[start + 1 :],  # another byte
+            content[:start] + word + content[start + len(word) * int(rng.integers(2)) :],  # inserted or overwritten
+            content[:start],  # truncated
+            content[:start] + content[start + int(rng.integers(1, 200)) :],  # a part missing
+            content[:to] + content[start:end][:2000] + content[to:],  # a part copied
+        ][int(rng.integers(5))]
+    return content
+
+
+def outcome(read: Callable[[Path], object], place: Path, events: list[str]) -> str:
+    """Accepted, refused with the name of a file, or a kind of harm."""
+    names = {str(place), *(path.name for path in place.rglob("*"))}
+    try:
+        read(place)
+        found = "accepted"
+    except MemoryError:
+        found = "memory"
+    except ValueError as error:
+        sensible = hasattr(error, "file") or any(name in str(error) for name in names)
+        found = "refused" if sensible else f"crashed: {error!r}"
+    except BaseException:
+        found = f"crashed: {traceback.format_exc(limit=-1)}"
+    return f"executed: {events[0]}" if events else found
+
+
+def read_in_child(read: Callable[[Path], object], place: Path, file: Path, contents: list[bytes]) -> list[str]:
+    """Outcomes of all contents, from a fork with limits of memory and time; the last one may be the end of it."""
+    report = place.parent / f"{place.name}.report"
+    report.write_text("")
+    child = os.fork()
+    if not child:
+        events: list[str] = []
+        warnings.simplefilter("ignore")
+        libraries = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+        resource.setrlimit(resource.RLIMIT_AS, (libraries + MEMORY,) * 2)
+        sys.addaudithook(lambda event, _: events.append(event) if event.startswith(FORBIDDEN) else None)
+        with report.open("w") as lines:
+            for content in contents:
+                file.write_bytes(content)
+                signal.setitimer(signal.ITIMER_PROF, SECONDS)
+                print(outcome(read, place, events).replace("\n", " ")[:300], file=lines, flush=True)
+                events.clear()
+        os._exit(0)
+    status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+    found = report.read_text().splitlines()
+    ended = "hung" if status == -signal.SIGPROF else f"crashed: exit status {status}"
+    return found + [ended] * (len(found) < len(contents))
+
+
+def campaign(name: str, seconds: float, rng: np.random.Generator) -> Counter:
+    """Damage and read the files of one reader for a time, at least once; harmful files are kept."""
+    write, pattern, read = READERS[name]
+    tally: Counter = Counter()
+    with tempfile.TemporaryDirectory(prefix="fuzz") as scratch:
+        place = Path(scratch) / "files"
+        place.mkdir()
+        write(place)
+        files = {file: file.read_bytes() for file in sorted(place.glob(pattern))}
+        read(place)
+        end = time.monotonic() + seconds
+        while not tally or time.monotonic() < end:
+            file = list(files)[int(rng.integers(len(files)))]
+            contents = [damaged(files[file], rng) for _ in range(BATCH)]
+            for content, found in zip(contents, read_in_child(read, place, file, contents), strict=False):
+                tally[found] += 1
+                if found not in HARMLESS:
+                    KEPT.mkdir(parents=True, exist_ok=True)
+                    (KEPT / f"{sum(tally.values()):05d}-{file.name}").write_bytes(content)
+            file.write_bytes(files[file])
+    return tally
 
 
 def main() -> int:
-    """Print a table; the exit status is 1 if anything but a reading or a refusal came out."""
-    asked = argparse.ArgumentParser(description=__doc__)
-    asked.add_argument("--seconds", type=float, default=300, help="for all readers together")
-    asked.add_argument("--seed", type=int, default=0)
-    asked.add_argument("--only", default="", help="readers whose name has this in it")
-    chosen = asked.parse_args()
-    names = [name for name in TARGETS if chosen.only in name]
-    print(f"| reader | tried | {' | '.join(KINDS)} | most memory [MiB] |\n|---|{'--:|' * (len(KINDS) + 2)}")
-    harm = []
+    """Print a table; the exit status is 1 unless every file was read or refused."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seconds", type=float, default=300, help="for all readers together")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--only", default="", help="part of the names of the readers")
+    options = parser.parse_args()
+    names = [name for name in READERS if options.only in name]
+    print("| reader | files | accepted | refused | harm |\n|---|--:|--:|--:|---|")
+    harmful = 0
     for number, name in enumerate(names):
-        rng = np.random.default_rng([chosen.seed, number])
-        tally = campaign(name, chosen.seconds / len(names), rng, KEPT / name.replace("/", "-"))
-        cells = [sum(tally.kinds.values()), *(tally.kinds[kind] for kind in KINDS), tally.memory // 2**20]
-        print(f"| {name} | {' | '.join(map(str, cells))} |", flush=True)
-        harm += [f"{name}: {count} times {reason}" for reason, count in tally.harm.most_common()]
-    print("\n".join(["", *harm]) if harm else f"\nnothing but {' and '.join(HARMLESS)}")
-    return 1 if harm else 0
+        tally = campaign(name, options.seconds / len(names), np.random.default_rng([options.seed, number]))
+        harm = {found: count for found, count in tally.items() if found not in HARMLESS}
+        harmful += sum(harm.values())
+        print(f"| {name} | {tally.total()} | {tally['accepted']} | {tally['refused']} | {harm or ''} |", flush=True)
+    print("\nno harm" if not harmful else f"\n{harmful} harmful files, kept in {KEPT}")
+    return 1 if harmful else 0
 
 
 if __name__ == "__main__":

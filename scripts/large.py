@@ -1,6 +1,6 @@
 """Data sets larger than the memory: ``python scripts/large.py`` (docs/scale.md).
 
-Each size is generated, turned into inputs and trained on, every process with 2 GiB of memory of its own at most.
+Each data set is generated, turned into inputs and used for training, with at most 2 GiB of memory per process.
 """
 
 import argparse
@@ -25,38 +25,38 @@ STAGES = ("generate", "inputs", "training")
 
 def main() -> None:
     """Print a table, and write ``large.json`` and ``large.png``."""
-    asked = argparse.ArgumentParser(description=__doc__)
-    asked.add_argument("--recordings", type=int, nargs="+", default=SIZES, help="sizes of the data sets")
-    asked.add_argument("--folder", type=Path, default=ROOT / "data" / "large", help="where the data sets are kept")
-    asked.add_argument("--report", type=Path, default=ROOT / "report")
-    asked.add_argument("--learn", help=argparse.SUPPRESS)  # what the child process is started with
-    chosen = asked.parse_args()
-    if chosen.learn:
-        print(json.dumps(learnt(Path(chosen.learn))))
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--recordings", type=int, nargs="+", default=SIZES, help="sizes of the data sets")
+    parser.add_argument("--folder", type=Path, default=ROOT / "data" / "large", help="where the data sets are kept")
+    parser.add_argument("--report", type=Path, default=ROOT / "report")
+    parser.add_argument("--learn", help=argparse.SUPPRESS)  # option of the child process
+    options = parser.parse_args()
+    if options.learn:
+        print(json.dumps(learnt(Path(options.learn))))
         return
     print("| recordings | GiB | " + " | ".join(f"{s} [ms]" for s in STAGES) + " | most memory [MiB] |")
     print("|--:|--:|--:|--:|--:|--:|")
     rows = []
-    for size in chosen.recordings:
-        row = measured(size, chosen.folder / str(size))
+    for size in options.recordings:
+        row = measured(size, options.folder / str(size))
         cells = [f"{row[f'{stage}_ms']:.2f}" for stage in STAGES]
         print(f"| {row['recordings']} | {row['gib']:.2f} | {' | '.join(cells)} | {row['peak_mib']:.0f} |", flush=True)
         rows.append(row)
     from swgsim.common.files import write_json
 
-    write_json(chosen.report / "large.json", {"limit_mib": LIMIT // 2**20, "rows": rows})
-    draw(rows, chosen.report / "large.png")
+    write_json(options.report / "large.json", {"limit_mib": LIMIT // 2**20, "rows": rows})
+    draw(rows, options.report / "large.png")
 
 
 def measured(recordings: int, folder: Path) -> dict[str, Any]:
-    """Milliseconds per recording of every stage, and the most memory that a stage needed, in all its processes."""
+    """Milliseconds per recording of every stage, and the peak memory of a stage in all its processes."""
     gears = max(round(recordings / (OF_VARIANT * VARIANTS + REFERENCES)), 1)
     variants = min(ceil((recordings / gears - REFERENCES) / OF_VARIANT), VARIANTS)
-    made = ["grid=sampled", "condition=bench", f"grid.population.count={gears}", f"grid.variants={variants}"]
+    words = ["grid=sampled", "condition=bench", f"grid.population.count={gears}", f"grid.variants={variants}"]
     if folder.exists():
         for left in folder.glob("sampled-bench.*"):
-            left.unlink()  # to be timed, it is made anew
-    started(["scripts/generate.py", *made, f"data={folder}"])
+            left.unlink()  # so that it is made and timed again
+    started(["scripts/generate.py", *words, f"data={folder}"])
     path = folder / "sampled-bench.h5"
     summary = json.loads(path.with_suffix(".json").read_text())
     learning = json.loads(started(["scripts/large.py", "--learn", str(path)]).splitlines()[-1])
@@ -71,12 +71,12 @@ def measured(recordings: int, folder: Path) -> dict[str, Any]:
 
 
 def started(arguments: list[str]) -> str:
-    """What a command prints that has so much memory and no more, in every process."""
+    """Output of a command with a limit of memory in every process."""
 
     def limited() -> None:
         resource.setrlimit(resource.RLIMIT_DATA, (LIMIT, LIMIT))
 
-    # The pool that pyarrow brings reserves a GiB of addresses that it hardly uses, which this limit counts.
+    # The memory pool of pyarrow reserves a GiB of addresses, which this limit counts.
     environment = {**os.environ, "ARROW_DEFAULT_MEMORY_POOL": "system"}
     done = subprocess.run(
         [sys.executable, *arguments],
@@ -86,7 +86,7 @@ def started(arguments: list[str]) -> str:
 
 
 def learnt(path: Path) -> dict[str, float]:
-    """Seconds to make the inputs of a data set and to train a convolutional network on them once over."""
+    """Seconds to make the inputs of a data set and to train a convolutional network on them for one epoch."""
     import torch  # noqa: F401  (before the clock starts)
 
     from learn.inputs.signals import Signals
@@ -97,10 +97,10 @@ def learnt(path: Path) -> dict[str, float]:
 
     began = time.perf_counter()
     data = learning_set_of(path, storage.digest(path), Signals("residual"))
-    there = time.perf_counter()
+    prepared = time.perf_counter()
     network = convolutional_network(**data.layout._asdict(), epochs=1, device="cpu")
     network.fit(data.features, data.table["label"].astype(str).to_numpy())
-    return {"inputs": there - began, "training": time.perf_counter() - there, "peak_mib": usage().peak_memory_mib}
+    return {"inputs": prepared - began, "training": time.perf_counter() - prepared, "peak_mib": usage().peak_memory_mib}
 
 
 def draw(rows: list[dict[str, Any]], path: Path) -> None:

@@ -24,7 +24,7 @@ LONGEST = 2**16  # samples of a window; beyond, the rounding of the waves shows
 FULL_SCALE = 20.0  # mV/V, beyond which a count would be coarser than what single precision resolves
 
 
-def gear_source(references: Recordings, front: Front, saturation: float) -> str:
+def gear_source(references: LabelledSignals, front: Front, saturation: float) -> str:
     """C source with the healthy numbers of one gear.
 
     Parameters

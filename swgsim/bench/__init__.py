@@ -1,4 +1,4 @@
-"""A virtual test bench: scatter between units and sessions, instruments, disturbance (eq. 10), and a sealed truth.
+"""A virtual test bench: scatter of units and sessions, instruments, disturbance (eq. 10), and a sealed truth.
 
 Imports ``chain`` and rooms below it.
 """

@@ -1,4 +1,4 @@
-"""The disturbance of eq. (10): an offset and sub-harmonics of the input speed, drawn anew for every sensor."""
+"""The disturbance of eq. (10): an offset and sub-harmonics of the input speed, drawn for every gauge."""
 
 from dataclasses import dataclass
 
@@ -15,9 +15,14 @@ class Disturbance:
     Attributes
     ----------
     amplitude : float
-        a_j is drawn evenly from 0 to this [mV/V], for j = 1 to 4.
+        Upper limit of the uniform draws of a_1 to a_4 [mV/V]; the lower limit is 0.
     offset : float
-        a_0 is drawn evenly from minus to plus this [mV/V].
+        Limit of the uniform draw of a_0, of either sign [mV/V].
+
+    Raises
+    ------
+    ValueError
+        If an amplitude is not between 0 and 10 mV/V.
     """
 
     amplitude: float
@@ -30,7 +35,7 @@ class Disturbance:
     def draw(
         self, rng: np.random.Generator, sensors: int, n_in_rpm: float, time: Float[np.ndarray, " time"]
     ) -> Float[np.ndarray, "sensor time"]:
-        """What eq. (10) adds to the signals of one recording [mV/V].
+        """Sum of eq. (10) that is added to the signals of one recording [mV/V].
 
         Parameters
         ----------
@@ -40,6 +45,10 @@ class Disturbance:
             Input speed [rpm].
         time : array (time,)
             [s].
+
+        Returns
+        -------
+        array (sensor, time)
         """
         j = np.arange(1, 5)
         a_0 = rng.uniform(-self.offset, self.offset, (sensors, 1))

@@ -1,4 +1,4 @@
-"""What a real test bench adds to the ideal chain: imperfect units, jitter, temperature, noise and measured efficiency.
+"""Errors of a real test bench: imperfect units, jitter, temperature, noise and measured efficiency.
 
 Every magnitude is a declared choice (conf/condition/bench.yaml) with its row in section 4 of physics.md.
 """
@@ -13,7 +13,7 @@ from swgsim.common.checks import require
 from swgsim.effects import CamForm, EccentricWaveGenerator, Effect, OutputPosition, WarmGrease
 from swgsim.gear.gear import Gear, OperatingPoint
 
-# From .. to, for each magnitude: beyond, the linear models of the chain no longer hold.
+# Lower and upper limit of each magnitude: beyond them the linear models of the chain do not hold.
 LIMITS = {
     "eccentricity": (0, 50e-6),
     "cam_form": (0, 20e-6),
@@ -38,7 +38,7 @@ LIMITS = {
 
 @dataclass(frozen=True)
 class Session:
-    """What stays with all recordings of one session: the bias of the torque flanges [N m]."""
+    """Bias of the torque flanges in all recordings of a session [N m]."""
 
     T_in: float
     T_out: float
@@ -46,7 +46,7 @@ class Session:
 
 @dataclass(frozen=True)
 class Shaft:
-    """Mean power [W] at the input and mean speeds [rad/s] of one run, and its true efficiency."""
+    """Mean power [W] at the input, mean speeds [rad/s] and true efficiency of one run."""
 
     P_in: float
     omega_in: float
@@ -56,40 +56,46 @@ class Shaft:
 
 @dataclass(frozen=True)
 class Bench:
-    """Magnitudes of the bench; standard deviations unless said otherwise.
+    """Magnitudes of the bench: standard deviations, unless another meaning is given.
 
     Attributes
     ----------
     eccentricity : float
-        Largest static eccentricity of a healthy unit, drawn evenly from 0 [m] (FS4).
+        Upper limit of the static eccentricity of a healthy unit, a uniform draw from 0 [m] (FS4).
     cam_form : float
-        Largest lobing w_3 and w_5 of a unit's cam, drawn evenly from 0 [m] (FS2).
+        Upper limit of the lobing w_3 and w_5 of a unit's cam, uniform draws from 0 [m] (FS2).
     gauge_position : float
-        Error of a unit's gauge positions beyond those of its gear file [rad] (SE1).
+        Error of a unit's gauge positions in addition to those of its gear file [rad] (SE1).
     load, speed : float
         Relative error of load and speed against the set point (DY11).
     index_angle : float
         Jitter of the trigger [rad].
     output_angle : float
-        Where the output stands at the trigger, drawn evenly from 0 to this [rad] (DY5).
+        Upper limit of the output angle at the trigger, a uniform draw from 0 [rad] (DY5).
     temperature : float
-        Of the gear about ``reference_temperature`` [K] (DY3).
+        Scatter of the gear's temperature about ``reference_temperature`` [K] (DY3).
     reference_temperature : float
-        At which b1 holds [degC].
+        Temperature at which b1 holds [degC].
     temperature_error : float
-        Of its measurement [K].
+        Error of the measured temperature [K].
     grease_exponent : float
-        beta of the viscous friction [1/K] (DY3).
+        Exponent beta of the viscous friction [1/K] (DY3).
     noise : float
         White gauge noise [mV/V] (AC5).
     zero_drift : float
         Drift of each bridge's zero between recordings [mV/V] (SE5).
     flange_in, flange_out : float
-        Error of the torque flanges from one recording to the next [N m] (DY14).
+        Error of the torque flanges that varies between recordings [N m] (DY14).
     flange_in_bias, flange_out_bias : float
-        Their error over a whole session [N m]; the references of a gear are one session, its samples another (DY14).
+        Their error that is constant in a session [N m]; a gear's references are one session, its samples another
+        (DY14).
     speed_reading : float
         Relative error of the ratio of the measured speeds.
+
+    Raises
+    ------
+    ValueError
+        If a magnitude is beyond its limits.
     """
 
     eccentricity: float = 10e-6
@@ -117,7 +123,7 @@ class Bench:
             require("the bench", f.name, getattr(self, f.name), low, high)
 
     def unit(self, gear: Gear, rng: np.random.Generator) -> tuple[Gear, tuple[Effect, ...]]:
-        """One physical unit of a gear: its own gauge positions and the small imperfections that stay with it."""
+        """One physical unit of a gear: its own gauge positions and its constant small imperfections."""
         position = np.array(gear.gauges.position) + rng.normal(0, self.gauge_position, 5)
         imperfections = (
             EccentricWaveGenerator(rng.uniform(0, self.eccentricity), rng.uniform(0, 2 * np.pi)),
@@ -131,7 +137,7 @@ class Bench:
         return Session(rng.normal(0, self.flange_in_bias), rng.normal(0, self.flange_out_bias))
 
     def run(self, planned: Run, rng: np.random.Generator) -> tuple[Run, float]:
-        """The run as it really takes place, and the temperature as its sensor shows it [degC]."""
+        """The actual run, and its measured temperature [degC]."""
         point = OperatingPoint(
             planned.point.n_in_rpm * (1 + self.speed * rng.standard_normal()),
             planned.point.T_out * (1 + self.load * rng.standard_normal()),
@@ -152,7 +158,7 @@ class Bench:
         return ideal + drift + rng.normal(0, self.noise, ideal.shape)
 
     def efficiency(self, shaft: Shaft, session: Session, rng: np.random.Generator) -> float:
-        """The efficiency as torque flanges and encoders show it."""
+        """The efficiency from torque flanges and encoders."""
         P_in = shaft.P_in + (session.T_in + rng.normal(0, self.flange_in)) * shaft.omega_in
         P_out = shaft.P_in * shaft.efficiency
         P_out += (session.T_out + rng.normal(0, self.flange_out)) * shaft.omega_out

@@ -1,8 +1,7 @@
-"""Recordings that keep a secret: the truth lies in a file beside their folder, and a seal in the folder vouches for it.
+"""Recordings with hidden effects: a truth file next to their folder, and its seal in the folder.
 
-The seal is the SHA-256 of the truth's file, written as ``sha256sum --check`` reads it. The truth holds a salt, so that
-nobody finds it by trying effects, and the SHA-256 of every file of the folder. So neither can be changed afterwards
-without the other showing it.
+The seal is the SHA-256 of the truth file, in the format of ``sha256sum --check``. The truth holds a salt, against trial of
+effects, and the SHA-256 of every file of the folder. So each reveals later changes of the other.
 """
 
 import hashlib
@@ -21,12 +20,12 @@ SEAL = "seal.txt"
 
 
 def truth_of(folder: Path) -> Path:
-    """Where the truth of a folder lies."""
+    """Path of the truth of a folder."""
     return folder.with_name(f"{folder.name}.truth.json")
 
 
 def require_new(folder: Path) -> None:
-    """Raise a ValueError if the folder or its truth is there already."""
+    """Raise a ValueError if the folder or its truth exists."""
     for path in (folder, truth_of(folder)):
         if path.exists():
             raise ValueError(f"{path} is there already: remove it, or choose another folder with out=...")
@@ -35,21 +34,21 @@ def require_new(folder: Path) -> None:
 def write_sealed(
     folder: Path, recordings: Sequence[Recording], declared: Mapping[str, str], truth: Mapping[str, Any]
 ) -> None:
-    """Write recordings as a folder with a seal, and their truth beside it; the folder is complete or absent.
+    """Write recordings as a folder with a seal, and their truth next to it; the folder is complete or absent.
 
     Parameters
     ----------
     folder : Path
     recordings : sequence of Recording
     declared : mapping
-        Further files of the folder, by name: what may be known.
+        Further files of the folder, by name; their contents are public.
     truth : mapping
-        What may not, with a ``salt``.
+        Hidden contents, with a ``salt``.
 
     Raises
     ------
     ValueError
-        If the folder or its truth is there already.
+        If the folder or its truth exists.
     """
     require_new(folder)
     aside = folder.with_name(f".{folder.name}.sealing")
@@ -67,23 +66,23 @@ def write_sealed(
 
 
 def vouched(folder: Path, content: bytes) -> bool:
-    """Whether the seal of a folder is of the file of a truth that has this content."""
+    """Whether the seal of a folder belongs to a truth file with this content."""
     return (folder / SEAL).read_text(encoding="utf-8", errors="replace").split()[:1] == [_digest(content)]
 
 
 def open_truth(folder: Path, path: Path | None = None) -> dict[str, Any]:
-    """The truth of a folder, once it is certain that neither has been changed.
+    """The truth of a folder, after a check that neither was changed.
 
     Parameters
     ----------
     folder : Path
     path : Path, optional
-        Where the truth lies, if not beside the folder.
+        Path of the truth, by default next to the folder.
 
     Raises
     ------
     ValueError
-        If the truth is not the one that was sealed, or a file of the folder is not the one that was recorded.
+        If the truth or a file of the folder is missing or was changed.
     """
     path = path or truth_of(folder)
     for needed in (path, folder / SEAL):
@@ -96,30 +95,30 @@ def open_truth(folder: Path, path: Path | None = None) -> dict[str, Any]:
         )
     truth = parsed(path, content)
     if not isinstance(truth.get("files"), dict):
-        raise ValueError(f"{path} has no digests of the files: it is no truth of scripts/record.py")
-    there = _digests(folder)
-    changed = sorted(name for name in truth["files"] | there if truth["files"].get(name) != there.get(name))
+        raise ValueError(f"{path} has no digests of the files: it is no truth of swg record")
+    present = _digests(folder)
+    changed = sorted(name for name in truth["files"] | present if truth["files"].get(name) != present.get(name))
     if changed:
         raise ValueError(f"{folder} is not as it was recorded: {', '.join(changed)} changed, added or removed")
     return truth
 
 
 def parsed(path: Path, content: bytes) -> dict[str, Any]:
-    """What the file of a truth says.
+    """The contents of a truth file.
 
     Raises
     ------
     ValueError
-        If it is no JSON, or no names with values.
+        If it is not a JSON object.
     """
     try:
         return dict(json.loads(content))
     except (ValueError, TypeError, RecursionError) as error:  # a ValueError also for an integer of too many digits
-        raise ValueError(f"truth={path} is no truth of scripts/record.py ({error})") from error
+        raise ValueError(f"truth={path} is no truth of swg record ({error})") from error
 
 
 def _digests(folder: Path) -> dict[str, str]:
-    """Those of all files of a folder but the seal."""
+    """SHA-256 of all files of a folder but the seal."""
     return {path.name: _digest(path.read_bytes()) for path in sorted(folder.iterdir()) if path.name != SEAL}
 
 

@@ -1,8 +1,7 @@
 """A virtual test bench: recordings of a gear with all channels, repeats, sessions and the errors of a real bench.
 
-What is left out on purpose, as it would be something that a model of the gear lacks: ripple of the drive, an encoder
-off centre, grease that thins as it warms, imperfections of a healthy wave generator. They are effects, to be given with
-all the others.
+It leaves out ripple of the drive, an eccentric encoder, grease that thins as it warms, and imperfections of a healthy
+wave generator, as a model of the gear lacks them. They are effects, which the caller adds like all others.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -24,32 +23,37 @@ from swgsim.gear.gear import Gear, OperatingPoint
 from swgsim.recordings.recording import Recording
 from swgsim.storage.labelled_signals import SENSORS
 
-# Recordings that are simulated at once: many share the work of each step in time, few bound the memory.
+# Recordings that are simulated at once: more share the work of each time step, fewer need less memory.
 BLOCK = 36
 
 
 @dataclass(frozen=True)
 class Sessions:
-    """What is recorded.
+    """Plan of the recordings.
 
     Attributes
     ----------
     points : tuple of OperatingPoint
     repeats : int
-        Recordings of every operating point in every session: all points once, then all of them again.
+        Recordings of every operating point in a session: each series has all points once.
     sessions : int
     revolutions : int
-        Of the wave generator in every recording; 12 bring the orders 1/2, 1/3 and 1/4 onto lines of the spectrum.
+        Revolutions of the wave generator in a recording; 12 have whole periods of the orders 1/2, 1/3 and 1/4.
     pause : float
-        Time from one recording to the next [s].
+        Time between the starts of two recordings [s].
     warming : float
-        Temperature that the gear gains over a session [K].
+        Rise of the gear's temperature over a session [K].
     unsteady : float
-        Its scatter from one recording to the next, as a standard deviation [K].
+        Scatter of the temperature between recordings, as a standard deviation [K].
     thermometer : float
-        Error of its reading, as a standard deviation [K].
+        Error of the measured temperature, as a standard deviation [K].
     name : str
-        Of the only session; of several, what their numbers are put behind.
+        Name of the session; of several ones, the part before their numbers.
+
+    Raises
+    ------
+    ValueError
+        If there are no or duplicate operating points, or a number is beyond its limits.
     """
 
     points: tuple[OperatingPoint, ...]
@@ -65,7 +69,7 @@ class Sessions:
     def __post_init__(self) -> None:
         owner = "the sessions"
         if not self.points or len(set(self.points)) < len(self.points):
-            raise ValueError(f"operating points of {owner} are {self.points}, must be one or more, each of them once")
+            raise ValueError(f"operating points of {owner} are {self.points}, must be one or more, each once")
         for name, high in (("repeats", 1000), ("sessions", 100), ("revolutions", 1000)):
             require_integer(owner, name, getattr(self, name), low=1, high=high)
         for name, highest in (("pause", 1e5), ("warming", 40.0), ("unsteady", 10.0), ("thermometer", 20.0)):
@@ -84,7 +88,7 @@ class Sessions:
 
 @dataclass(frozen=True)
 class Instruments:
-    """Noise of the instruments beside the white noise of the gauges; estimates.
+    """Noise of the instruments, without the white noise of the gauges; estimates.
 
     Attributes
     ----------
@@ -97,7 +101,12 @@ class Instruments:
     wander : float
         Slow noise of every gauge amplifier, as a standard deviation [mV/V]; the 1/f part of physics.md AC5.
     memory : float
-        Time over which it forgets [s]: an autoregression of order one, which exceeds the white noise below some 20 Hz.
+        Correlation time of the slow noise [s], a first-order autoregression that exceeds the white noise below 20 Hz.
+
+    Raises
+    ------
+    ValueError
+        If a number is beyond its limits.
     """
 
     flange_in: float = 0.002
@@ -131,33 +140,36 @@ def record_sessions(
     Parameters
     ----------
     gear : Gear
-        The unit as it is.
+        The actual unit.
     effects : sequence of Effect
-        All that acts on it, declared or not; one more at the end changes no random draw of the others.
+        All effects of the unit, declared or not; an additional one at the end changes no random draw of the others.
     plan : Sessions
     bench : Bench
-        Errors from one recording to the next; a unit's imperfections are among `effects`, temperature in `plan`.
+        Errors between recordings; a unit's imperfections belong to `effects`, the temperature to `plan`.
     seed : int
     window : Window
-        Sampling rate and step of the converter; noise is the bench's, and the number of samples follows from speed and
-        revolutions.
+        Sampling rate and step of the converter; its noise and number of samples are not used.
     sectors : int
         Sectors of the flex spline's truss.
     name : str
-        Of the gear; its number if empty.
+        Name of the gear, by default its number.
     instruments : Instruments, optional
     progress : callable, optional
-        Called with the number of recordings whenever that many more are done.
+        Called with the number of recordings that were finished since the last call.
+
+    Returns
+    -------
+    tuple of Recording
     """
     found: list[Recording] = []
     for session in plan.names:
         biases = biases_of(bench, seed, session)
         planned = _planned(gear, effects, plan, bench, seed, session)
         for first in range(0, len(planned), BLOCK):
-            these = planned[first : first + BLOCK]
-            longest = max(_samples(each.point, plan.revolutions, window.rate) for each in these)
-            simulation = simulate([each.run for each in these], replace(window, samples=longest), sectors)
-            for i, each in enumerate(these):
+            block = planned[first : first + BLOCK]
+            longest = max(_samples(each.point, plan.revolutions, window.rate) for each in block)
+            simulation = simulate([each.run for each in block], replace(window, samples=longest), sectors)
+            for i, each in enumerate(block):
                 samples = _samples(each.point, plan.revolutions, window.rate)
                 rng = generator("virtual bench acquisition", seed, session, each.name)
                 channels = _measured(
@@ -167,20 +179,20 @@ def record_sessions(
                 conditions = each.run.conditions
                 shown = replace(conditions, temperature=conditions.temperature + rng.normal(0, plan.thermometer))
                 time = np.arange(samples) / window.rate
-                whose = name or str(gear.number)
-                found.append(Recording(each.name, whose, session, each.point, each.repeat, time, channels, shown))
-            progress(len(these))
+                owner = name or str(gear.number)
+                found.append(Recording(each.name, owner, session, each.point, each.repeat, time, channels, shown))
+            progress(len(block))
     return tuple(found)
 
 
 def biases_of(bench: Bench, seed: int, session: str) -> Session:
-    """What all recordings of a session have in common, as :func:`record_sessions` draws it."""
+    """Biases of all recordings of a session, as :func:`record_sessions` draws them."""
     return bench.session(generator("virtual bench session", seed, session))
 
 
 @dataclass(frozen=True)
 class Planned:
-    """A recording as it was planned, and the run as it really takes place."""
+    """A planned recording and its actual run."""
 
     session: str
     point: OperatingPoint
@@ -196,7 +208,7 @@ class Planned:
 def _planned(
     gear: Gear, effects: Sequence[Effect], plan: Sessions, bench: Bench, seed: int, session: str
 ) -> list[Planned]:
-    """The recordings of a session in the order of time, while the gear warms up."""
+    """The recordings of a session in order of time; the gear warms up."""
     order = [(point, repeat) for repeat in range(1, plan.repeats + 1) for point in plan.points]
     found = []
     for number, (point, repeat) in enumerate(order):
@@ -210,7 +222,7 @@ def _planned(
 
 
 def _samples(point: OperatingPoint, revolutions: int, rate: float) -> int:
-    """Samples that hold so many revolutions at the speed that was set: a bench records for a time."""
+    """Number of samples for some revolutions at the set speed, as a bench records for a fixed time."""
     return int(np.ceil(revolutions * 60 / point.n_in_rpm * rate))
 
 
@@ -222,7 +234,7 @@ def _run(
     bench: Bench,
     rng: np.random.Generator,
 ) -> Run:
-    """The run as it really takes place."""
+    """The actual run."""
     real = OperatingPoint(
         point.n_in_rpm * (1 + rng.normal(0, bench.speed)), point.T_out * (1 + rng.normal(0, bench.load))
     )
@@ -239,7 +251,7 @@ def _measured(
     instruments: Instruments,
     rng: np.random.Generator,
 ) -> dict[str, np.ndarray]:
-    """The channels as the instruments show them."""
+    """The measured channels."""
     samples = len(ideal["phi_in"])
 
     def white(level: float) -> np.ndarray:
@@ -250,7 +262,7 @@ def _measured(
     signals = signals + _wander(instruments, window.rate, samples, rng)
     signals = replace(window, noise=bench.noise, samples=samples).acquire(signals, rng)
     return {
-        # The angle is counted from where the trigger saw the index.
+        # The angle is zero at the trigger.
         "phi_in": ideal["phi_in"] - run.start_angle + white(instruments.encoder),
         "n_in": ideal["n_in"] + white(instruments.speed),
         "T_in": ideal["T_in"] + biases.T_in + rng.normal(0, bench.flange_in) + white(instruments.flange_in),
@@ -262,7 +274,7 @@ def _measured(
 def _wander(
     instruments: Instruments, rate: float, samples: int, rng: np.random.Generator
 ) -> Float[np.ndarray, "sensor time"]:
-    """Slow noise of every gauge amplifier, steady from the first sample on."""
+    """Slow noise of every gauge amplifier, stationary from the first sample."""
     kept = np.exp(-1 / (rate * instruments.memory))
     steps = rng.standard_normal((len(SENSORS), samples))
     steps[:, 1:] *= np.sqrt(1 - kept**2)

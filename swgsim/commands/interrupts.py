@@ -1,6 +1,6 @@
-"""Ctrl-C that comes while an object is removed, where Python only reports it and goes on, as if it were pressed again.
+"""Repeats a Ctrl-C that arrives in a destructor, where Python only reports it and continues.
 
-Much of it comes there: it waits for the end of a long call of a library, and what that leaves is removed next.
+This is frequent: a Ctrl-C waits for the end of a long library call, and after the call its objects are removed.
 """
 
 import os
@@ -10,12 +10,12 @@ import threading
 from types import TracebackType
 from typing import Any
 
-# Seconds until it is pressed again.
+# Seconds until the repetition.
 PAUSE = 0.05
 
 
 def kept() -> None:
-    """Lose no Ctrl-C from now on, and let no library report one."""
+    """Lose no Ctrl-C from now on, and print no report of one."""
     sys.unraisablehook = _unraisable
     sys.excepthook = _printed
 
@@ -30,6 +30,6 @@ def _unraisable(report: Any) -> None:
 
 
 def _printed(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
-    """Cython prints what it cannot raise before it reports it."""
+    """Print errors, but no Ctrl-C, which Cython prints before it reports it."""
     if kind is not KeyboardInterrupt:
         sys.__excepthook__(kind, error, trace)

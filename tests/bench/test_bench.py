@@ -1,4 +1,4 @@
-"""The bench condition: every magnitude does what it says, alone; a bench without magnitudes does nothing."""
+"""The bench condition: every magnitude has its declared effect; a bench without magnitudes changes nothing."""
 
 from dataclasses import fields, replace
 
@@ -10,6 +10,9 @@ from swgsim.bench.scatter import LIMITS, Bench
 from swgsim.dataset.simulate_cases import record
 from swgsim.gear.acquisition import Window
 from swgsim.storage.labelled_signals import LabelledSignals
+
+# The whole chain runs for every magnitude; other tests check its types.
+pytestmark = pytest.mark.end_to_end
 
 MAGNITUDES = [f.name for f in fields(Bench) if f.name != "reference_temperature"]
 SILENT = Bench(**dict.fromkeys(MAGNITUDES, 0.0), reference_temperature=25.0)
@@ -26,14 +29,14 @@ def clean() -> LabelledSignals:
     return recorded(None)
 
 
-def test_a_silent_bench_records_what_the_chain_says(clean: LabelledSignals) -> None:
+def test_a_silent_bench_records_the_signals_of_the_chain(clean: LabelledSignals) -> None:
     silent = recorded(SILENT)
     np.testing.assert_allclose(silent.signals, clean.signals, atol=1e-7)
     np.testing.assert_allclose(silent.table["efficiency"], clean.table["efficiency"], rtol=1e-9)
     np.testing.assert_allclose(silent.table["temperature_c"], 25.0)
 
 
-# What one magnitude alone does: (name, value, smallest and largest change of the signals [mV/V] or of the efficiency).
+# (magnitude, value, smallest and largest change of the signals [mV/V], or of the efficiency).
 SIGNALS = [
     ("eccentricity", 10e-6, 1e-4, 2e-2),
     ("cam_form", 2e-6, 1e-5, 1e-2),
@@ -57,12 +60,12 @@ EFFICIENCY = [
 
 
 def bench_with(name: str, value: float) -> Bench:
-    """A bench on which all but one magnitude (and the grease's exponent, which scales it) are silent."""
+    """A bench with one magnitude, and the grease's exponent, which scales the temperature."""
     return replace(SILENT, grease_exponent=0.025, **{name: value})
 
 
 @pytest.mark.parametrize(("name", "value", "low", "high"), SIGNALS)
-def test_one_magnitude_moves_the_signals(
+def test_one_magnitude_changes_the_signals(
     name: str, value: float, low: float, high: float, clean: LabelledSignals
 ) -> None:
     change = np.abs(recorded(bench_with(name, value)).signals - clean.signals).max()
@@ -70,7 +73,7 @@ def test_one_magnitude_moves_the_signals(
 
 
 @pytest.mark.parametrize(("name", "value", "low", "high"), EFFICIENCY)
-def test_one_magnitude_moves_the_efficiency(
+def test_one_magnitude_changes_the_efficiency(
     name: str, value: float, low: float, high: float, clean: LabelledSignals
 ) -> None:
     change = np.abs(recorded(bench_with(name, value)).table["efficiency"] - clean.table["efficiency"]).max()
@@ -106,7 +109,7 @@ def test_noise_and_quantisation_of_the_window() -> None:
 
 
 @pytest.mark.parametrize("name", list(LIMITS))
-def test_every_magnitude_has_a_limit_that_is_named(name: str) -> None:
+def test_the_limit_of_every_magnitude_is_named(name: str) -> None:
     high = LIMITS[name][1]
     with pytest.raises(ValueError, match=f"{name} of the bench is .*, must be a finite number from .* to {high:g}"):
         Bench(**{name: high * 1.01})

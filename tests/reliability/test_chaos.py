@@ -1,4 +1,4 @@
-"""Kills, full disks, folders that cannot be written, clocks, locales, Ctrl-C: nothing is lost, nothing half there."""
+"""Kills, full disks, read-only folders, clocks, locales and Ctrl-C: no result is lost, no file is incomplete."""
 
 import errno
 import json
@@ -16,7 +16,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from test_generation import configuration
+from fabricated import recordings
+from hydra import compose, initialize_config_dir
+from omegaconf import OmegaConf
 
 from learn import tracking
 from swgsim.dataset import plan as plans
@@ -35,7 +37,8 @@ TINY = (
 
 def tiny(folder: Path) -> dict[str, Any]:
     """A data set of 54 recordings."""
-    return configuration(*TINY, f"data={folder}")
+    with initialize_config_dir(str(ROOT / "conf"), version_base="1.3"):
+        return OmegaConf.to_container(compose("generate", [*TINY, f"data={folder}"]), resolve=True)
 
 
 @pytest.fixture(autouse=True)
@@ -46,29 +49,36 @@ def small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(scope="module")
 def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> bytes:
-    """The bytes that there must be."""
+    """The expected bytes."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(plans, "BLOCK", BLOCK)
         return Path(generation.run(tiny(tmp_path_factory.mktemp("undisturbed")))["path"]).read_bytes()
 
 
 def made(folder: Path) -> bytes:
-    """The bytes of the data set in a folder that has nothing else but its summary."""
+    """The bytes of a data set; its folder holds nothing else but its summary."""
     assert {path.name for path in folder.iterdir()} == {"small-clean.h5", "small-clean.json"}
     return (folder / "small-clean.h5").read_bytes()
 
 
-def test_kills_at_random_moments_lose_nothing() -> None:
-    """In a process of its own, for it forks."""
-    command = [sys.executable, "scripts/chaos.py", "--kills", "7", "--only", "in a fork"]
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("command", "last"),
+    [
+        (["chaos.py", "--kills", "4"], "nothing lost, nothing differs"),
+        (["fuzz.py", "--seconds", "0", "--only", "one file"], "no harm"),
+    ],
+    ids=["chaos", "fuzz"],
+)
+def test_short_campaigns_find_nothing(command: list[str], last: str) -> None:
+    """In processes of their own, as they fork."""
+    command = [sys.executable, f"scripts/{command[0]}", *command[1:]]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=1200, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
-    assert "nothing lost, nothing differs" in done.stdout
-    rows = [line.split("|")[2:4] for line in done.stdout.splitlines() if "in a fork" in line]
-    assert [int(kills) for _, kills in rows] == [3, 3]
+    assert done.stdout.splitlines()[-1] == last
 
 
-# A disk that is full, a folder that cannot be written.
+# Full disks and read-only folders.
 
 
 @contextmanager
@@ -84,7 +94,7 @@ def mounted(folder: Path, options: str) -> Iterator[None]:
         subprocess.run(["umount", str(folder)], check=True)
 
 
-def test_a_full_disk_is_named_and_the_rest_is_made_when_there_is_room(tmp_path: Path, undisturbed: bytes) -> None:
+def test_a_full_disk_is_named_and_finished_parts_are_reused(tmp_path: Path, undisturbed: bytes) -> None:
     folder = tmp_path / "disk"
     with mounted(folder, "size=600k"):
         with pytest.raises(OSError, match=r"No space left on device: .*\.h5 was not written; make room") as full:
@@ -102,8 +112,8 @@ def test_a_full_disk_is_named_and_the_rest_is_made_when_there_is_room(tmp_path: 
         assert made(folder) == undisturbed
 
 
-def test_a_data_set_that_is_larger_than_a_file_may_be_is_named(tmp_path: Path, undisturbed: bytes) -> None:
-    """Files may not be larger than a few parts, which stay; nobody needs to be root for that."""
+def test_a_limit_of_file_sizes_is_named(tmp_path: Path, undisturbed: bytes) -> None:
+    """The limit allows a few parts, which stay."""
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (400_000, limits[1]))
     try:
@@ -117,23 +127,23 @@ def test_a_data_set_that_is_larger_than_a_file_may_be_is_named(tmp_path: Path, u
     assert made(tmp_path) == undisturbed
 
 
-def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path) -> None:
+def test_a_read_only_folder_is_named(tmp_path: Path) -> None:
     folder = tmp_path / "disk"
-    said = r"small-clean\.h5 was not written; choose a folder that can be written"
+    message = r"small-clean\.h5 was not written; choose a folder that can be written"
     if os.geteuid():
         folder.mkdir(mode=0o500)
-        with pytest.raises(PermissionError, match=said):
+        with pytest.raises(PermissionError, match=message):
             generation.run(tiny(folder))
         return
-    with mounted(folder, "ro"), pytest.raises(OSError, match=said) as refused:
+    with mounted(folder, "ro"), pytest.raises(OSError, match=message) as refused:
         generation.run(tiny(folder))
     assert refused.value.errno == errno.EROFS
 
 
-# Two at once.
+# Two processes.
 
 
-def test_two_processes_make_one_data_set_between_them(tmp_path: Path, undisturbed: bytes) -> None:
+def test_two_processes_make_one_data_set(tmp_path: Path, undisturbed: bytes) -> None:
     def make(ready: Any) -> None:
         ready.wait()
         try:
@@ -152,28 +162,24 @@ def test_two_processes_make_one_data_set_between_them(tmp_path: Path, undisturbe
     assert made(tmp_path) == undisturbed
 
 
-# Surroundings that change.
+# Clocks and locales.
 
 STRANGE = """
 import json, sys, time
-sys.path[:0] = ["tests", "tests/paper"]
 start = time.time()
 time.time = lambda: start - 1e6 * time.perf_counter()  # a clock that is set back all the time
 from pathlib import Path
-from swgsim.dataset import plan
-from swgsim.jobs import generate_data_set as generation
-plan.BLOCK = 9
-generation.run(json.loads(sys.argv[1]))
-from test_report import written
 from swgsim.common.files import write_text
-write_text(Path(sys.argv[2]), written().html())
+from swgsim.dataset import plan
+from swgsim.jobs import generate_data_set
+plan.BLOCK = 9
+generate_data_set.run(json.loads(sys.argv[1]))
+write_text(Path(sys.argv[2]), "\\u03c8 \\u0130")
 """
 
 
 @pytest.mark.parametrize("name", ["C", "de_DE.UTF-8", "tr_TR.UTF-8"])
 def test_clock_and_locale_do_not_change_a_byte(name: str, tmp_path: Path, undisturbed: bytes) -> None:
-    from test_report import written
-
     before = locale.setlocale(locale.LC_ALL)
     try:
         locale.setlocale(locale.LC_ALL, name)
@@ -186,15 +192,15 @@ def test_clock_and_locale_do_not_change_a_byte(name: str, tmp_path: Path, undist
     done = subprocess.run(command, cwd=ROOT, env=surroundings, capture_output=True, check=False)
     assert done.returncode == 0, done.stderr
     assert made(tmp_path / "data") == undisturbed
-    assert (tmp_path / "page.html").read_bytes() == written().html().encode()
+    assert (tmp_path / "page.html").read_bytes() == "\u03c8 \u0130".encode()
 
 
 # Ctrl-C.
 
 
 def interrupt(command: list[str], sign: Path, pattern: str) -> None:
-    """Interrupt a program with all its processes as soon as there are such files; it says so in few lines."""
-    # The shell ignores Ctrl-C in what it runs in the background, as these tests may be, and so would the program.
+    """Interrupt a program with all its processes once such a file exists; it reports that in few lines."""
+    # A shell ignores Ctrl-C in its background processes, such as these tests, and so would the program.
     with subprocess.Popen(
         [sys.executable, *command], cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
         start_new_session=True, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
@@ -203,27 +209,28 @@ def interrupt(command: list[str], sign: Path, pattern: str) -> None:
             assert running.poll() is None, running.communicate()
             time.sleep(0.01)
         os.killpg(running.pid, signal.SIGINT)
-        _, said = running.communicate()
+        _, message = running.communicate()
     assert running.returncode == 130
-    assert "interrupted; what is finished is kept" in said
-    assert "Traceback" not in said
+    assert "interrupted; what is finished is kept" in message
+    assert "Traceback" not in message
 
 
+@pytest.mark.slow
 def test_ctrl_c_of_generate_leaves_finished_parts_only(tmp_path: Path, undisturbed: bytes) -> None:
     words = ["grid=small", "mesh.sectors=60", f"data={tmp_path}", "workers=2"]
     interrupt(["scripts/generate.py", *words], tmp_path, ".small-clean.h5.parts/*.h5")
     (parts,) = tmp_path.iterdir()
-    # Beside them the lock of a worker that was ended before it could remove it; it keeps nobody out.
+    # A worker that was killed leaves its lock, which blocks nobody.
     left = {part for part in parts.iterdir() if part.suffix != ".lock"}
     assert left == set(parts.glob("[0-9]*.h5"))
     for part in left:
         assert len(storage.read(part))
 
 
-def test_ctrl_c_of_train_leaves_no_half_result(tmp_path: Path) -> None:
-    from chaos.subjects import training_data
-
-    training_data(tmp_path)
+@pytest.mark.slow
+def test_ctrl_c_of_train_leaves_no_incomplete_result(tmp_path: Path) -> None:
+    data = recordings(variants=4)
+    storage.write(tmp_path / "small-clean.h5", [data], len(data))
     words = ["-m", "grid=small", "classifier=rf", "features=selection_1,selection_3", f"data={tmp_path}",
              f"tracking.folder={tmp_path / 'runs'}", f"hydra.sweep.dir={tmp_path / 'outputs'}"]  # fmt: skip
     interrupt(["scripts/train.py", *words, "workers=2"], tmp_path, "runs/artifacts/*/artifacts/*")

@@ -1,4 +1,4 @@
-"""Ctrl-C: one that comes in a destructor is not lost, and workers leave it to the process that hands out tasks."""
+"""Ctrl-C: it is not lost in a destructor, and workers leave it to the process that distributes tasks."""
 
 import signal
 import subprocess
@@ -34,10 +34,10 @@ if __name__ == "__main__":
 
 
 def run(program: str, folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
-    """A program of its own process, which hears Ctrl-C."""
+    """A program in a process of its own, which handles Ctrl-C."""
     file = folder / "program.py"
     file.write_text(program)
-    # The shell ignores Ctrl-C in what it runs in the background, as these tests may be, and so would the program.
+    # A shell ignores Ctrl-C in its background processes, such as these tests, and so would the program.
     return subprocess.run(
         [sys.executable, file, *words], cwd=ROOT, capture_output=True, text=True, check=True,
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
@@ -52,5 +52,5 @@ def test_ctrl_c_in_a_destructor_is_not_lost(how: str, said: str, tmp_path: Path)
 
 
 @pytest.mark.end_to_end
-def test_workers_do_not_hear_ctrl_c_and_their_owner_does(tmp_path: Path) -> None:
+def test_workers_ignore_ctrl_c_and_their_owner_does_not(tmp_path: Path) -> None:
     assert run(BLOCKED, tmp_path).stdout.split() == ["True"] * 4 + ["False"]

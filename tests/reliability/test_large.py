@@ -56,14 +56,14 @@ def test_the_memory_it_takes_is_that_of_one_gear(tmp_path):
     """A gear more takes its facts, and not its inputs, which are three times as much."""
 
     def peak(gears: int) -> int:
-        data = recordings(gears, variants=20)
+        data = recordings(gears, variants=12)
         tracemalloc.start()
         in_file(data, Signals("residual", points=256), tmp_path)
         most = tracemalloc.get_traced_memory()[1]
         tracemalloc.stop()
         return most
 
-    inputs = 4 * 6 * 20 * 5 * 256 * 8  # bytes of a gear
+    inputs = 4 * 6 * 12 * 5 * 256 * 8  # bytes of a gear
     assert peak(4) - peak(2) < 0.5 * 2 * inputs
 
 

@@ -1,1 +1,0 @@
-"""Hostile input for every reader: spoiled files, each read in a process of its own with limits."""
