@@ -129,6 +129,7 @@ def test_recordings_and_commissioning_are_counted_from_the_zero_of_the_gear(monk
     )
     monkeypatch.setattr(calls, "answer", lambda recordings, *_, **__: seen.append(recordings))
     monkeypatch.setattr(calls, "next_experiments", lambda found: None)
+    monkeypatch.setattr(calls, "Identification", lambda *_: None)
     monkeypatch.setattr(calls, "report", lambda found, kinds, more, defects, *_: warnings.extend(defects) or {})
     calls.identify(ahead(recordings, 0.6), calls.commission(ahead(healthy, 0.6), GEAR))
     for given, rights in zip(seen, (healthy, recordings), strict=True):

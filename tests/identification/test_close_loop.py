@@ -227,8 +227,8 @@ def test_an_effect_of_a_user_is_found_and_may_then_be_declared(unit, tmp_path, m
     found.save(tmp_path / "answer")
     declared = settings.effects(str(tmp_path / "answer" / "effects.yaml"))
     assert declared == (softening(share["value"]),)
-    own = commission(recorded(seed=1), gear(GEAR), declared=declared)
-    assert identify(soft, own, effects=kinds).verdict == NOTHING
+    known = replace(unit, model=unit.model.plus(*declared))
+    assert identify(soft, known, effects=kinds).verdict == NOTHING
 
 
 def test_gauges_that_are_exchanged_against_the_commissioning_are_refused(unit):
