@@ -38,18 +38,18 @@ def attempt(case: Sealed, setting: Setting) -> dict[str, Any]:
     unit = unit_known(case, setting)
     ready = time.perf_counter()
     recordings, library = in_question(case, setting, case.acting), setting.given(case)
-    asked = time.perf_counter(), time.process_time()
+    started = time.perf_counter(), time.process_time()
     found = answer(recordings, unit, library, seed=case.number)
     seconds = {
         "preparing": ready - began,
-        "loop": time.perf_counter() - asked[0],
-        "loop_of_one_core": time.process_time() - asked[1],
+        "loop": time.perf_counter() - started[0],
+        "loop_of_one_core": time.process_time() - started[1],
     }
-    said = what_was_said(found, recordings, library)
-    return {**said, **_against_truth(found, unit, case, setting), "seconds": seconds, "peak_memory_mib": _peak()}
+    fields = answer_fields(found, recordings, library)
+    return {**fields, **_against_truth(found, unit, case, setting), "seconds": seconds, "peak_memory_mib": _peak()}
 
 
-def what_was_said(found: Answer, recordings: Sequence[Recording], library: Sequence[type[Effect]]) -> dict[str, Any]:
+def answer_fields(found: Answer, recordings: Sequence[Recording], library: Sequence[type[Effect]]) -> dict[str, Any]:
     """The answer as plain values; no truth goes into it."""
     closed = found.closed
     return {
@@ -103,11 +103,11 @@ def _oracle(before: Fitted, unit: Unit, case: Sealed) -> Fitted:
     return fit(before.measured, unit, unit.model.plus(*known))
 
 
-def _intervals(said: Answer, case: Sealed) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
+def _intervals(answer_: Answer, case: Sealed) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
     """Sizes of the effects that were rightly found, and phases and places if all that was chosen is right too, such as
     the order: true, found, and the standard deviation that was given.
     """
-    sizes, angles, after = [], [], said.closed.after
+    sizes, angles, after = [], [], answer_.closed.after
     for true in case.effects:
         alike = _found_as(true, after.added)
         if alike is None:
@@ -115,7 +115,7 @@ def _intervals(said: Answer, case: Sealed) -> tuple[list[dict[str, Any]], list[d
         number = len(after.unit.model.effects) + alike
         effect = after.model.effects[number]
         for name, q in quantities(type(true)).items():
-            deviation = said.closed.deviation.get(name_of(effect, number, name), np.nan)
+            deviation = answer_.closed.deviation.get(name_of(effect, number, name), np.nan)
             found = {"name": true.name(), "found": float(getattr(effect, name)), "deviation": float(deviation)}
             if q.role is Role.SIZE:
                 sizes.append(found | {"true": float(_acted(true, case, after, number))})

@@ -78,7 +78,7 @@ THRESHOLDS = {
     "turns": [fitting.TURNS, fitting.UNREPEATED, fitting.SAME_SCATTER],
     "balanced": [fitted.LIKELIER_BALANCED, *fitted.BALANCED],
     "inaccurate": evidence.INACCURATE,
-    "luck": missing.LUCK,
+    "luck": missing.FALSE_DISCOVERIES,
     "relined": [relined.ROUNDS, relined.AT_REST],
     "drives": [commissioning.DRIVES, commissioning.TIMES, declared.MOST],
     "friction": [declared.SERIES, declared.ANY_FRICTION],
@@ -116,7 +116,7 @@ def run(config: Mapping[str, Any]) -> dict[str, Any]:
         digest = _seal(folder, setting, config)
         key = {"truth": digest, "code": _code()}
         answers = _answer(folder, setting, key, Engine.of(config))
-        cases = [Judged(from_json(plain), said) for plain, said in zip(_opened(folder), answers, strict=True)]
+        cases = [Judged(from_json(plain), answer_) for plain, answer_ in zip(_opened(folder), answers, strict=True)]
     found = {
         "truth_sha256": digest,
         "code": key["code"],

@@ -133,8 +133,8 @@ def _stray(effect: Effect, fitted: Fitted, rng: np.random.Generator) -> StrayOrd
     change = measured.rows(seen[1] - seen[0])
     sizes = dict(zip(measured.layout.channels, per_channel(measured, change), strict=True))
     white = (change.reshape(measured.values.shape) ** 2 / measured.variance).sum(axis=0)
-    heard = {c: float(white[measured.layout.channel == c].sum()) for c in sizes if c in SENSORS}
-    channel = max(heard, key=lambda name: heard[name])
+    power = {c: float(white[measured.layout.channel == c].sum()) for c in sizes if c in SENSORS}
+    channel = max(power, key=lambda name: power[name])
     amplitude = rng.uniform(*STRAY) * np.sqrt(2) * float(sizes[channel])
     number = SENSORS.index(channel)
     bound = quantities(StrayOrder)[size_of(StrayOrder)].high

@@ -44,7 +44,7 @@ def learn_unit(measured: Measured, unit: Unit) -> Unit:
         If the model does not describe the healthy gear.
     """
     forget()
-    fitted, unheard = _listening(measured, replace(unit, seen_healthy=True))
+    fitted, unheard = _with_usable_ripple(measured, replace(unit, seen_healthy=True))
     require_own(measured, fitted.missed)
     beyond = beyond_noise(measured, fitted.missed)
     if beyond.max() > 1:
@@ -64,7 +64,7 @@ def learn_unit(measured: Measured, unit: Unit) -> Unit:
     )  # fmt: skip
 
 
-def _listening(measured: Measured, unit: Unit) -> tuple[Fitted, Float[np.ndarray, " feature"]]:
+def _with_usable_ripple(measured: Measured, unit: Unit) -> tuple[Fitted, Float[np.ndarray, " feature"]]:
     """The fit that does not listen to ripple of speed and torques that is none of this gear, and by which factor the
     variance of every line is larger for that.
     """
@@ -93,7 +93,7 @@ def _as_it_is(measured: Measured, unit: Unit, drive: Fitted | None) -> Fitted:
     held: list[str] = []
     of_drive = np.zeros(len(measured.layout))
     if drive is not None:
-        position, held = drive.calibrated.position, _well_told(drive)
+        position, held = drive.calibrated.position, _well_determined(drive)
         if drive.unit.learned is not None:
             of_drive[_of_drive(measured)] = drive.unit.learned
     fitted = fit(measured, _given(unit, of_drive), position=position, held=held)
@@ -111,7 +111,7 @@ def _given(unit: Unit, learned: Float[np.ndarray, " feature"]) -> Unit:
     return replace(unit, learned=learned) if learned.any() else unit
 
 
-def _well_told(drive: Fitted) -> list[str]:
+def _well_determined(drive: Fitted) -> list[str]:
     """The unit's parameters that speed and torques alone tell to less than half a spread."""
     if not drive.calibrated.settled:
         return []

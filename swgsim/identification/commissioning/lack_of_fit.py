@@ -12,7 +12,7 @@ from swgsim.storage.labelled_signals import SENSORS
 # line of it is also missed by more than MISFIT: a ripple that is hardly more than noise may well be.
 UNEXPLAINED = 0.1
 # Of the lines that are said to be missed, the share that may be luck.
-LUCK = 0.05
+FALSE_DISCOVERIES = 0.05
 
 
 def beyond_noise(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> Float[np.ndarray, " feature"]:
@@ -35,7 +35,7 @@ def beyond_noise(measured: Measured, missed: Float[np.ndarray, "recording featur
     lines = [(alike == channel) & (layout.order == order) for channel, order in every]
     by_single = [chi2.sf(single[:, line].sum(), single[:, line].size) for line in lines]
     in_common = [chi2.sf(common[line].sum(), line.sum()) for line in lines]
-    missed_by = false_discovery_control([*by_single, *in_common]).reshape(2, -1) < LUCK
+    missed_by = false_discovery_control([*by_single, *in_common]).reshape(2, -1) < FALSE_DISCOVERIES
     beyond = np.ones(len(layout))
     for line, by_one, by_all in zip(lines, *missed_by, strict=True):
         if by_one:

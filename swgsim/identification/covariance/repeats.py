@@ -16,7 +16,7 @@ from swgsim.identification.covariance.scatter import DOUBT, Scatter
 RATIOS = (-8.0, 6.0)
 
 
-class Told(NamedTuple):
+class Statistics(NamedTuple):
     """What numbers with noise of covariance V say of errors, kind after kind, that move them by B; the numbers come in
     parts, each with errors of its own.
 
@@ -65,8 +65,10 @@ def from_repeats(
     if not len(contrasts):
         return known
     columns = np.concatenate([trends, residual[..., None]], axis=-1)
-    told = _told(directions[of_recording], np.tensordot(contrasts, columns, axes=1), contrasts**2 @ variance)
-    return _likeliest(told, known, len(contrasts))
+    statistics = _statistics(
+        directions[of_recording], np.tensordot(contrasts, columns, axes=1), contrasts**2 @ variance
+    )
+    return _likeliest(statistics, known, len(contrasts))
 
 
 def _helmert(groups: Sequence[object]) -> tuple[Float[np.ndarray, "contrast recording"], list[int]]:
@@ -109,22 +111,26 @@ def from_all(
     """
     common = common.with_columns(trends.reshape(len(residual), -1))
     B = common.whiten(Alone(common.alone.variance, directions).dense)
-    return _likeliest(_told(B[None], common.whiten(residual)[None, :, None], np.ones((1, len(residual)))), known, 0)
+    return _likeliest(
+        _statistics(B[None], common.whiten(residual)[None, :, None], np.ones((1, len(residual)))), known, 0
+    )
 
 
-def _told(
+def _statistics(
     B: Float[np.ndarray, "part row error"], X: Float[np.ndarray, "part row column"],
     variance: Float[np.ndarray, "part row"],
-) -> Told:  # fmt: skip
+) -> Statistics:  # fmt: skip
     """What numbers tell whose noise is independent."""
     weighted, across = X / variance[..., None], B.transpose(0, 2, 1)
-    return Told(across @ (B / variance[..., None]), across @ weighted, np.tensordot(X, weighted, ((0, 1), (0, 1))))
+    return Statistics(
+        across @ (B / variance[..., None]), across @ weighted, np.tensordot(X, weighted, ((0, 1), (0, 1)))
+    )
 
 
-def _likeliest(told: Told, known: Scatter, contrasts: int) -> Scatter:
+def _likeliest(statistics: Statistics, known: Scatter, contrasts: int) -> Scatter:
     known_sd, precision = np.array(list(known.sd.values())), np.linalg.inv(known.doubt)
     kinds = len(known_sd)
-    K, F, H = told
+    K, F, H = statistics
     H = H + np.diag(np.append(np.ones(len(H) - 1), 0.0))
 
     def cost(log_ratio: np.ndarray) -> tuple[float, np.ndarray]:

@@ -168,8 +168,8 @@ class Measured:
         zeros, walks = [np.zeros((self.values.size, 0))], [np.zeros((self.values.size, 0))]
         for session in known.sessions:
             here = self._here(session)
-            told = np.array([r.conditions.elapsed / 3600 for r in known.recordings if r.session == session])
-            paths = _walks(told, self._hours * here)
+            known_hours = np.array([r.conditions.elapsed / 3600 for r in known.recordings if r.session == session])
+            paths = _walks(known_hours, self._hours * here)
             for gauge in gauges:
                 mean = self._mean_of(gauge)
                 zeros.append(OF_SESSION[f"zero of {gauge}"] * np.outer(here, mean).reshape(-1, 1))
@@ -195,10 +195,12 @@ def _wandering(zeros: float) -> float:
     return min(zeros, MOST_WANDER)
 
 
-def _walks(told: Float[np.ndarray, " one"], hours: Float[np.ndarray, "other 1"]) -> Float[np.ndarray, "path other"]:
+def _walks(
+    known_hours: Float[np.ndarray, " one"], hours: Float[np.ndarray, "other 1"]
+) -> Float[np.ndarray, "path other"]:
     """The paths of which a random walk is made up as it is told at some times (Karhunen-Loeve), at other times."""
-    values, vectors = np.linalg.eigh(np.minimum.outer(told, told))
+    values, vectors = np.linalg.eigh(np.minimum.outer(known_hours, known_hours))
     largest = np.argsort(-values)
     beyond = np.cumsum(values[largest]) - values[largest] > KEPT * values.sum()
     kept = largest[~beyond & (values[largest] > 0)]
-    return WANDER * (np.minimum(told, hours) @ (vectors[:, kept] / np.sqrt(values[kept]))).T
+    return WANDER * (np.minimum(known_hours, hours) @ (vectors[:, kept] / np.sqrt(values[kept]))).T

@@ -59,10 +59,10 @@ def of_points_left_out(fitted: Fitted) -> Float[np.ndarray, " point"]:
     return np.array([np.sqrt(weighed[block].mean()) for block in fitted.measured.point_rows()])
 
 
-def _left_out(fitted: Fitted, told: Sequence[tuple[np.ndarray, Expected]]) -> Float[np.ndarray, " row"]:
+def _left_out(fitted: Fitted, expectations: Sequence[tuple[np.ndarray, Expected]]) -> Float[np.ndarray, " row"]:
     """Errors of every block of rows by the model fitted to all others; NaN in no block."""
     missed = np.full(len(fitted.residual), np.nan)
-    for block, expected in told:
+    for block, expected in expectations:
         parameters = expected.common[len(expected.common) - len(fitted.parameters) :]
         missed[block] = fitted.from_start[block] - fitted.J[block] @ parameters
     return missed

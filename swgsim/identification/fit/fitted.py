@@ -207,10 +207,10 @@ class Fitted:
         """
         return self.nuisance_by(self.by_others)
 
-    def nuisance_by(self, told: Sequence[tuple[np.ndarray, Expected]]) -> Float[np.ndarray, " row"]:
+    def nuisance_by(self, expectations: Sequence[tuple[np.ndarray, Expected]]) -> Float[np.ndarray, " row"]:
         """The same of other blocks of rows, as all rows outside each tell it; nothing in no block."""
         made, columns = np.zeros(len(self.residual)), self.of_nuisances.columns
-        for block, expected in told:
+        for block, expected in expectations:
             made[block] = columns[block] @ expected.common[: columns.shape[1]]
         return made
 

@@ -63,8 +63,8 @@ def fit(
     parameters = parameters | of_effects(start, unit.of_another_structure)
     known = unit.scatter.carried if unit.scatter else Scatter.stated(measured.layout)
     fixed = _Fixed(measured, unit, start, parameters, known, allowed or Allowed.nothing(measured.values.size))
-    guess = guess if guess and fixed.told else known
-    for _ in range(turns if fixed.told else min(turns, UNREPEATED)):
+    guess = guess if guess and fixed.has_repeats else known
+    for _ in range(turns if fixed.has_repeats else min(turns, UNREPEATED)):
         found = _turn(fixed, begin, guess)
         near = found.errors.alone.divergence(found.scattering(guess).errors.alone) < SAME_SCATTER
         if near and found.calibrated.settled:
@@ -86,7 +86,7 @@ class _Fixed(NamedTuple):
     allowed: Allowed
 
     @property
-    def told(self) -> bool:
+    def has_repeats(self) -> bool:
         """Whether repeats tell the errors of single recordings, these ones or those of the commissioning."""
         return self.unit.scatter is not None or self.measured.spare > 0
 
@@ -110,7 +110,7 @@ def _turn(fixed: _Fixed, begin: Mapping[str, float], guess: Scatter) -> Fitted:
     )  # fmt: skip
     residual = values - calibrated.predicted[measured.of_recording]
     trends = scatter.trends(moves, [measured.situations[i] for i in measured.of_recording], measured.layout)
-    if fixed.told:
+    if fixed.has_repeats:
         estimated = repeats.from_repeats(residual, noise, moves, trends, measured.repeats, fixed.known)
     else:
         J = measured.rows(calibrated.J).reshape(residual.size, -1)

@@ -127,8 +127,8 @@ def _part(
     noise alone: least squares would give them any size. None is taken to be larger than those that are seen well are.
     """
     Q = np.linalg.qr(orders)[0]
-    left, beside = (each - Q @ (Q.T @ each) for each in (signal, seen))
-    U, s, V = svd(beside)
+    left, seen_left = (each - Q @ (Q.T @ each) for each in (signal, seen))
+    U, s, V = svd(seen_left)
     shown = s > LEAST_SHAPE * max(float(s[0]), 1e-300)
     U, s, V = U[:, shown], s[shown], V[shown]
     along = U.T @ left

@@ -13,7 +13,7 @@ from scipy.stats import chi2
 from swgsim.common.chi2_logsf import surprise
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Quantity, Role, quantities, size_of
-from swgsim.identification.interharmonics.interharmonic_spectrum import Between, by_luck
+from swgsim.identification.interharmonics.interharmonic_spectrum import Between, f_test
 
 # A line's size may differ from its law over load and speed by this share.
 TOLERANCE = 0.3
@@ -116,16 +116,16 @@ def _judged(effect: Effect, spectra: Sequence[Between], tried: int) -> Sideline:
     """One hypothesis at all recordings."""
     declared = quantities(type(effect))
     name = size_of(type(effect))
-    gain, freedom, size, rest, beside = np.array([each.explained(effect) for each in spectra]).T
+    gain, freedom, size, rest, count = np.array([each.explained(effect) for each in spectra]).T
     numbers = max(freedom.sum(), 1.0)
-    noise, luck = by_luck(gain.sum(), numbers, rest.sum(), beside.sum())
+    noise, p_value = f_test(gain.sum(), numbers, rest.sum(), count.sum())
     explained = float(gain.sum() - noise * freedom.sum())
     gain, size = gain / noise, size / noise
     share, expected, variance = by_law(gain, freedom, size)
     used = freedom > 0
     squares = (gain - expected)[used] ** 2 / variance[used]
     agrees = float(chi2.sf(squares.sum(), max(used.sum() - 1, 1)))
-    chance = float(min(1.0, tried * luck))
+    chance = float(min(1.0, tried * p_value))
     estimate = float(np.clip(getattr(effect, name) * np.sqrt(share), declared[name].low, declared[name].high))
     deviation = float(abs(getattr(effect, name)) / np.sqrt(max(size.sum(), 1e-300)))
     # The law may be off in every recording, and then so is the mean.

@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from swgsim.effects.line_between import FixedFrequency, FractionalOrder, LineBetween
 from swgsim.identification.data.features import FITTED
-from swgsim.identification.interharmonics.interharmonic_spectrum import BESIDE, Between, by_luck
+from swgsim.identification.interharmonics.interharmonic_spectrum import NEIGHBOURS, Between, f_test
 from swgsim.identification.interharmonics.line_pattern import Part, line_parts
 
 KINDS = ("order", "frequency")
@@ -54,7 +54,7 @@ class Unnamed:
         places = self.at + self.reach * np.array([-1.0, 0.0, 1.0])
         return [line for place in places.tolist() for line in self._in(gauges, place)]
 
-    def told(self, spectra: Sequence[Between], level: float) -> "Unnamed":
+    def with_parts(self, spectra: Sequence[Between], level: float) -> "Unnamed":
         """The line with its parts, where a gauge is a false one with this probability."""
         make = partial(_line, self.kind, self.at)
         return replace(self, parts=line_parts(make, spectra, level))
@@ -107,7 +107,7 @@ def unnamed(spectra: Sequence[Between], level: float) -> Unnamed | None:
     """
     found = [line for kind in KINDS for line in _best(spectra, kind, level)] if spectra else []
     best = max(found, key=lambda line: line.explained, default=None)
-    return best.refined(spectra).told(spectra, level) if best else None
+    return best.refined(spectra).with_parts(spectra, level) if best else None
 
 
 def _best(spectra: Sequence[Between], kind: str, level: float) -> list[Unnamed]:
@@ -118,7 +118,7 @@ def _best(spectra: Sequence[Between], kind: str, level: float) -> list[Unnamed]:
     steps = [each.step if kind == "frequency" else 1 / each.revolutions for each in spectra]
     end = FITTED * max(1.0 if kind == "order" else each.revolutions * each.step for each in spectra)
     grid = np.arange(min(steps), end, min(steps) / 2)
-    gain, freedom, rest, beside, seen = np.zeros((5, len(grid)))
+    gain, freedom, rest, count, seen = np.zeros((5, len(grid)))
     for each, step in zip(spectra, steps, strict=True):
         line = np.round(grid / step).astype(int) - 1
         there = (line >= 0) & (line < len(each.clear))
@@ -126,15 +126,15 @@ def _best(spectra: Sequence[Between], kind: str, level: float) -> list[Unnamed]:
         power, numbers = each.power.sum(axis=0), 2.0 * len(each.gauges) * each.clear
         gain[there] += power[line[there]]
         freedom[there] += numbers[line[there]]
-        rest[there] += _beside(power)[line[there]]
-        beside[there] += _beside(numbers)[line[there]]
+        rest[there] += _neighbours(power)[line[there]]
+        count[there] += _neighbours(numbers)[line[there]]
         seen += there
     tried = np.flatnonzero(seen > len(spectra) / 2)
     if not len(tried):
         return []
-    gain, freedom, rest, beside = (each[tried] for each in (gain, freedom, rest, beside))
-    noise, luck = by_luck(gain, freedom, rest, beside)
-    chances = np.minimum(1.0, len(tried) * len(KINDS) * luck)
+    gain, freedom, rest, count = (each[tried] for each in (gain, freedom, rest, count))
+    noise, p_value = f_test(gain, freedom, rest, count)
+    chances = np.minimum(1.0, len(tried) * len(KINDS) * p_value)
     by_noise = noise * freedom
     explained = np.where(chances <= level, gain - by_noise, -np.inf)
     most = int(np.argmax(explained))
@@ -144,8 +144,8 @@ def _best(spectra: Sequence[Between], kind: str, level: float) -> list[Unnamed]:
     return [Unnamed(kind, float(grid[tried[most]]), *known)]
 
 
-def _beside(lines: Float[np.ndarray, " line"]) -> Float[np.ndarray, " line"]:
+def _neighbours(lines: Float[np.ndarray, " line"]) -> Float[np.ndarray, " line"]:
     """Sum over the lines to both sides of each, without those that may hold a part of it."""
-    window = np.ones(2 * BESIDE + 1)
-    window[BESIDE - SPILLED : BESIDE + SPILLED + 1] = 0
-    return np.convolve(np.pad(lines, BESIDE), window, "valid")
+    window = np.ones(2 * NEIGHBOURS + 1)
+    window[NEIGHBOURS - SPILLED : NEIGHBOURS + SPILLED + 1] = 0
+    return np.convolve(np.pad(lines, NEIGHBOURS), window, "valid")

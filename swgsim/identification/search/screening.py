@@ -27,7 +27,7 @@ VISIBLE = 1e-8
 NEGLIGIBLE = 1e-6
 # Draws of noise, so many at a time, until the best score was beaten so often that it is luck (after Besag and Clifford,
 # Biometrika 78 (1991) 301; no other score can then be better), or all were drawn.
-DRAWS, AT_ONCE, LUCK = 1000, 100, 20
+DRAWS, AT_ONCE, ENOUGH = 1000, 100, 20
 # A logarithm of a probability this many times that of the most unlikely draw is far beyond them.
 FAR = 2.0
 # Deviations at which a size stands out (:data:`shortlist.ALPHA`) with 80 % power: of the library's 300
@@ -239,7 +239,7 @@ def family_wise(
             log_tail(gains[freedom[used] == many].max(axis=0), many) for many in np.unique(freedom[used]).tolist()
         )
         lowest = np.append(lowest, np.min(list(largest), axis=0))
-        if len(lowest) >= DRAWS or (lowest <= own.min()).sum() >= LUCK:
+        if len(lowest) >= DRAWS or (lowest <= own.min()).sum() >= ENOUGH:
             break
     beaten, none = (lowest[:, None] <= own).sum(axis=0), 1 / (len(lowest) + 1)
     # Far beyond the draws, Bonferroni's bound says more than that no draw came near.
