@@ -1,4 +1,4 @@
-"""A case beside its truth: what was named, what should have been, and what went wrong."""
+"""A case with its answer and its truth: correct and false names, and the cause of an error."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -33,7 +33,7 @@ class Judged:
     ----------
     case : Sealed
     answer : mapping
-        What :func:`swgsim.blind.attempt.attempt` found.
+        As :func:`swgsim.blind.attempt.attempt` returns it.
     """
 
     case: Sealed
@@ -85,7 +85,7 @@ class Judged:
 
     @property
     def first(self) -> str:
-        """What was named first."""
+        """The first named effect."""
         if self.failed:
             return "failure"
         return self.named[0] if self.named else "unknown" if self.answer["verdict"] == UNKNOWN else "nothing"
@@ -117,29 +117,26 @@ class Judged:
 
     @property
     def told_untestable(self) -> bool:
-        """Whether the answer says that the recordings do not show what is hidden, at its size or at all."""
+        """Whether the answer reports the hidden effects as absorbed or as below their detection limits."""
         return all(
             type(effect).name() in self.answer["absorbed"] or abs(beyond_nothing(effect)) < self._seen_from(effect)
             for effect in self.case.effects
         )
 
     def _seen_from(self, effect: Effect) -> float:
-        """The smallest size of an effect that would have been seen, as the answer has it; 0 if it does not say.
-
-        Infinite where it would not have been seen of any size.
-        """
+        """The reported detection limit of an effect; 0 if the answer has none, infinite if no size is detectable."""
         size = self.answer["seen_from"].get(type(effect).name(), 0.0)
         return np.inf if size is None else float(size)
 
     @property
     def nearest(self) -> str:
-        """Where nothing was accepted: the effect that came nearest."""
+        """The nearest effect, if none was accepted."""
         rejected = [] if self.failed else self.answer["rejected"]
         return rejected[0]["names"][0] if rejected else ""
 
     @property
     def described(self) -> tuple[bool, bool, bool]:
-        """Whether order, pattern and law of what is unknown are right."""
+        """Whether order, pattern and law of the unknown effect are correct."""
         truth = self.case.described
         if truth is None or self.failed or not self.answer["unknown"]:
             return False, False, False
@@ -152,25 +149,23 @@ class Judged:
 
     @property
     def worse(self) -> bool:
-        """Whether the loop made the prediction worse where nothing was recorded, of what there is without noise."""
+        """Whether the identification increased the error at unseen points."""
         return self.over("after", "before") > WORSE
 
     @property
     def worse_with_truth(self) -> bool:
-        """Whether the model that knows what is hidden makes it worse too."""
+        """Whether the model with the true effects increased it too."""
         return self.over("oracle", "before") > WORSE
 
     @property
     def worse_where_recorded(self) -> bool | None:
-        """Whether the report's own error at operating points left out, of what was measured there, became worse; None
-        where there was only one.
-        """
+        """Whether the reported error at left-out operating points increased; None with one operating point."""
         before, after = self.answer["heldout"]["before"], self.answer["heldout"]["after"]
         return None if before is None else after > WORSE * before
 
     @property
     def cause(self) -> str:
-        """What went wrong, if anything."""
+        """The cause of an error, or RIGHT."""
         if self.failed:
             return "no answer"
         if self.null or self.case.stratum == UNTESTABLE:
@@ -207,7 +202,7 @@ class Judged:
 
     @property
     def why(self) -> str:
-        """The cause with what there is to see of it."""
+        """The cause with the evidence for it."""
         hidden = " and ".join(
             f"{n} (strength {s:.3g})" for n, s in zip(self.case.names, self.case.strengths, strict=True)
         )
@@ -225,11 +220,9 @@ class Judged:
 
     @property
     def _gains(self) -> str:
-        """By how much the answer, and a fit that knows the truth, make the recordings likelier: where these hardly
-        differ, little is left that could show the answer to be wrong. An effect counts in the library's form.
-        """
+        """Gain in log-likelihood by the answer, and by the fit with the true effects in their library form."""
         if not self.case.effects or any(is_random(type(effect)) for effect in self.case.effects):
-            return ""  # what is random between the orders is in neither fit
+            return ""  # effects with random phases are in neither fit
         of = self.answer["log_likelihood"]
         after, oracle = (of[name] - of["before"] for name in ("after", "oracle"))
         return f"log-likelihood {after:+,.1f}, with the true model {oracle:+,.1f}"

@@ -1,4 +1,4 @@
-"""The score of a blind set: rates with Wilson's interval, medians with a bootstrap's."""
+"""The score of a sealed set: rates with Wilson's interval, medians with a bootstrap interval."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -72,7 +72,7 @@ def score(cases: Sequence[Judged]) -> dict[str, Any]:
 
 
 def worst(cases: Sequence[Judged]) -> list[Judged]:
-    """The cases that went most wrong: where nothing was to be found first, then the strongest effects."""
+    """The worst errors: failures, then nulls, then the strongest effects."""
 
     def shame(case: Judged) -> tuple[bool, bool, float]:
         return case.failed, case.null, max(case.case.strengths, default=0.0)
@@ -94,8 +94,9 @@ def _described(cases: Sequence[Judged]) -> dict[str, Any]:
 
 
 def _covered(cases: Sequence[Judged], kind: str = "intervals", turn: float = np.inf) -> list[bool]:
-    """Whether what is true lies within the intervals of what was rightly found: of sizes, or of angles if their turn is
-    given; one whose interval is all of a turn is not told.
+    """Whether true values lie within the reported intervals: of sizes, or of angles if a full turn is given.
+
+    Intervals of a whole turn are left out.
     """
     found = [each for case in cases for each in case.answer[kind] if not NORMAL * each["deviation"] > turn / 2]
     off = [abs(each["found"] - each["true"]) for each in found]
@@ -121,7 +122,7 @@ def _baseline(name: str, cases: Sequence[Judged]) -> dict[str, Any]:
 
 
 def _by_strength(cases: Sequence[Judged]) -> Mapping[str, Any]:
-    """Right first, by the weaker strength of what is hidden of the library."""
+    """Share of correct first names, by the strength of the weaker hidden effect."""
     found = {}
     for low, high in ((30, 200), (200, 1200), (1200, 10000), (10000, np.inf)):
         here = [
@@ -132,7 +133,7 @@ def _by_strength(cases: Sequence[Judged]) -> Mapping[str, Any]:
 
 
 def _confusion(cases: Sequence[Judged]) -> dict[str, dict[str, int]]:
-    """What was named first, by what is hidden."""
+    """The first named effect, by the hidden effect."""
     table: dict[str, Counter] = {}
     for case in cases:
         hidden = " + ".join(case.case.names) or "nothing"

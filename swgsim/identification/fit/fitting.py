@@ -1,4 +1,4 @@
-"""Fit of what is not known of a model to recordings, in turns with the errors of single recordings."""
+"""Fit of the parameters to recordings, in turns with the standard deviations of single recordings."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
@@ -18,8 +18,8 @@ from swgsim.identification.fit.map_fit import Calibrated, calibrate, linearised
 from swgsim.identification.fit.priors import Declared, at, of_effects
 from swgsim.identification.fit.unit import Unit
 
-# A parameter of a unit that was fitted so many spreads from its declared value was bent by what the model lacks, if a
-# channel is still missed by so many times what is declared of it (mean squares), which is no matter of noise.
+# A parameter counts as biased by lack of fit if it lies this many prior standard deviations off, while the mean square
+# of a channel exceeds its declared value by this factor.
 BENT, MISFIT = 5.0, 10.0
 # Turns at most; they end where the errors of single recordings that parameters were fitted beside cost less than this
 # over those estimated then [nat per recording]: one kind that is a third too small or large costs as much (estimates).
@@ -39,7 +39,7 @@ def fit(
     guess: Scatter | None = None,
     turns: int = TURNS,
 ) -> Fitted:
-    """Fit what is not known, and estimate the errors of single recordings, in turns.
+    """Fit the parameters, and estimate the standard deviations of single recordings, in turns.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def fit(
     held : collection of str
         Parameters of the unit that are not fitted but stay where they begin.
     guess : Scatter, optional
-        Errors of single recordings that repeats told beside another model.
+        Standard deviations of single recordings from the repeats, found with another model.
     turns : int
         So many at most; where nothing was repeated, fewer.
     """
@@ -87,7 +87,7 @@ class _Fixed(NamedTuple):
 
     @property
     def has_repeats(self) -> bool:
-        """Whether repeats tell the errors of single recordings, these ones or those of the commissioning."""
+        """Whether repeats, here or in the commissioning, determine the errors of single recordings."""
         return self.unit.scatter is not None or self.measured.spare > 0
 
 

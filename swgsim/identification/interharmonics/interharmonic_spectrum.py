@@ -21,7 +21,7 @@ from swgsim.storage.labelled_signals import SENSORS
 SEEN = 1e-3
 # Samples per revolution at which patterns are computed; more than twice the orders that are fitted.
 SAMPLES = 48
-# The noise beside a line is that of so many lines of the spectrum to either side.
+# Number of spectral lines on either side from which the noise next to a line is estimated.
 NEIGHBOURS = 6
 # The noise beside a line is what was estimated of all lines together, as so many numbers would say it.
 ALL_TOGETHER = 20
@@ -65,9 +65,9 @@ class Between:
     clear : array (line,)
         Lines that no integer order leaks into.
     left : array (number,)
-        Real and imaginary parts of all lines of what the orders leave; 0 where they leak.
+        Real and imaginary parts of all spectral lines after the orders were removed; 0 where the orders leak.
     taken : array (number, direction)
-        Orthonormal directions of what was taken out: the ends of slow noise, and what was found already.
+        Orthonormal directions that were projected out: ends of slow noise, and lines that were found.
     """
 
     scene: Scene
@@ -241,7 +241,7 @@ def _alone(effect: Effect, scene: Scene, gauges: tuple[str, ...]) -> Float[np.nd
 
 
 def _ends(scene: Scene, noise: Sequence[Floor]) -> Float[np.ndarray, "gauge gauge time"]:
-    """What the ends of a recording make of slow noise, gauge by gauge.
+    """Leakage of slow noise by the ends of a recording, gauge by gauge.
 
     A spectrum goes on at the end where it began, so the step from the one to the other rings in all its lines, alike,
     and would pass for a line between them. It dies away as the noise forgets; without it the lines are independent.

@@ -27,14 +27,14 @@ MOST_TRIED = 400
 
 @dataclass(frozen=True)
 class Sideline:
-    """An effect with random phases, beside what the recordings hold of it.
+    """An effect with random phases, with its estimates from the recordings.
 
     Attributes
     ----------
     effect : Effect
         At its estimated size; its phases mean nothing.
     gain : float
-        Sum of squares that it explains, in units of the noise beside its lines.
+        Explained sum of squares, in units of the noise next to its lines.
     freedom : int
         Numbers that this fits: a cosine and a sine per recording and independent phase.
     chance : float
@@ -44,7 +44,7 @@ class Sideline:
     agrees : float
         Probability that recordings differ so much from the effect's law, if that is right to TOLERANCE.
     explained : float
-        Sum of squares that it explains beyond the noise beside its lines, in units of the floor.
+        Explained sum of squares above the noise next to its lines, in units of the noise floor.
     """
 
     effect: Effect
@@ -57,7 +57,7 @@ class Sideline:
 
     @property
     def rank(self) -> float:
-        """How unlikely the gain is by luck."""
+        """Significance of the gain, for sorting."""
         return surprise(self.gain, self.freedom)
 
     @property

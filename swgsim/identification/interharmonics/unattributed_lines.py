@@ -1,4 +1,4 @@
-"""Lines between the integer orders that no effect of the library explains: at one order, or at one frequency."""
+"""Interharmonic lines without a known cause, at a constant order or at a constant frequency."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -21,7 +21,7 @@ SPILLED = 1
 
 @dataclass(frozen=True)
 class Unnamed:
-    """A line that stands out of the noise.
+    """A significant interharmonic line.
 
     Attributes
     ----------
@@ -30,13 +30,13 @@ class Unnamed:
     at : float
         Where it lies [-] or [Hz].
     chance : float
-        Of as much by noise anywhere.
+        p-value in a search of all places.
     explained : float
-        Sum of squares that it explains beyond the noise beside it, in units of the floor.
+        Explained sum of squares above the noise next to it, in units of the noise floor.
     reach : float
-        To which its place is known.
+        Uncertainty of its place.
     noise : float
-        Sum of squares that the noise beside it makes of its numbers, in units of the floor.
+        Sum of squares of the noise next to it, in units of the noise floor.
     parts : tuple of Part
         Its pattern over the gauges and its law; several if no pattern explains it.
     """
@@ -50,12 +50,12 @@ class Unnamed:
     parts: tuple[Part, ...] = ()
 
     def effects(self, gauges: Sequence[str]) -> list[LineBetween]:
-        """Whatever it may be in these gauges, its place being known to its reach."""
+        """Possible lines in these gauges within the uncertainty of its place."""
         places = self.at + self.reach * np.array([-1.0, 0.0, 1.0])
         return [line for place in places.tolist() for line in self._in(gauges, place)]
 
     def with_parts(self, spectra: Sequence[Between], level: float) -> "Unnamed":
-        """The line with its parts, where a gauge is a false one with this probability."""
+        """The line with its parts; a gauge is a false one with this probability."""
         make = partial(_line, self.kind, self.at)
         return replace(self, parts=line_parts(make, spectra, level))
 
@@ -89,14 +89,14 @@ class Unnamed:
 
 
 def _line(kind: str, place: float, pattern: str) -> LineBetween:
-    """A line of a size at which it is easily told from rounding."""
+    """A line of a size far above rounding."""
     if kind == "order":
         return FractionalOrder(1.0, pattern=pattern, order=place)
     return FixedFrequency(1.0, pattern=pattern, frequency=place)
 
 
 def unnamed(spectra: Sequence[Between], level: float) -> Unnamed | None:
-    """Of the lines that are too unlikely to be luck, the one that explains most, if there is any.
+    """The significant line with the largest explained sum of squares, or None.
 
     Parameters
     ----------

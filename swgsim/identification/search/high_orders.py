@@ -32,7 +32,7 @@ RANK = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Above:
-    """Lines beside what is known of them, in units of their noise.
+    """Remainder of the lines after model and healthy gear, in units of their noise.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class Above:
     freedom: int
 
     def strongest(self, level: float, described: Sequence[Described]) -> Described | None:
-        """Of what is no luck, the regularity that explains most; orders and patterns that were told are left out."""
+        """The significant regularity with the largest gain, without orders and patterns that were described before."""
         along = np.einsum("kcr,kcrl->ckl", self.lines, self.laws)
         whole = (np.abs(self.lines) ** 2).sum(axis=-1).T[..., None]
         seen = (self.laws**2).sum(axis=2).swapaxes(0, 1)
@@ -104,7 +104,7 @@ def above(
     level : float
         Probability of a false one.
     most : int
-        That are told at most.
+        Largest number of regularities.
     """
     left = residual_lines(recordings, healthy, before, after)
     found: list[Described] = []
@@ -115,7 +115,7 @@ def above(
 
 
 def residual_lines(recordings: Sequence[Recording], healthy: Sequence[Recording], before: Model, after: Model) -> Above:
-    """The lines beside what is known of them; parameters as of :func:`above`."""
+    """The remainder of the lines; parameters as of :func:`above`."""
     every, count = (*recordings, *healthy), len(recordings)
     channels, highest = layout_of(every).channels, min(HIGHEST, int(min(map(samples_per_turn, every)) / 2) - 1)
     known = _modelled(before, every, channels, highest)
@@ -129,7 +129,7 @@ def residual_lines(recordings: Sequence[Recording], healthy: Sequence[Recording]
     own = left[..., count:] @ (followed @ np.linalg.pinv(followed[count:])).T if healthy else np.zeros(left.shape)
     doubt = KNOWN * (np.abs(modelled[ORDERS + 1 :]) + np.abs(own)) + FORM_TOLERANCE * changed
     scale = 1 / np.sqrt(_variance(every, channels, highest)[ORDERS + 1 :] + doubt**2)
-    # The healthy gear has none of what is sought, and tells what the gear follows anyway.
+    # Healthy recordings do not contain the effect; they show the normal dependence of the gear on load and speed.
     sought = np.array([[law(each.point, each.conditions) for law in LAWS.values()] for each in every])
     sought[count:] = 0.0
     U, s, _ = svd(followed)
@@ -168,7 +168,7 @@ def _lines(
 def _variance(
     recordings: Sequence[Recording], channels: Sequence[str], highest: int
 ) -> Float[np.ndarray, "order channel recording"]:
-    """Variance of a part of every line, by noise and by what the channels resolve."""
+    """Variance of a part of every line, by noise and by the resolution of the channels."""
     noise = floors(recordings, Layout(tuple(channels)))
     found = []
     for each in recordings:
