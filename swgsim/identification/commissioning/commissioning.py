@@ -25,8 +25,8 @@ from swgsim.identification.fit.unit import STRUCTURE, UNHEARD, Unit
 from swgsim.storage.labelled_signals import SENSORS
 
 # Lines with lack of fit are learned. Largest deviation of a gauge's line, relative to the largest line of all gauges
-# (in a bridge of many arms, large lines may cancel). Lines of speed and torques are learned up to the second share of their
-# channel's ripple; beyond, the ripple does not belong to this gear.
+# (in a bridge of many arms, large lines may cancel). Lines of speed and torques are learned up to the second share of
+# their channel's ripple; beyond, the ripple does not belong to this gear.
 LOOSEST, ALIEN = 0.6, 0.5
 # Structural error above which the gear has another structure: twice the error by the mesh of the truss. And the largest
 # structural error that signatures are assigned (an estimate).
