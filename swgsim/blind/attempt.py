@@ -1,4 +1,4 @@
-"""One case from the recordings to what is to be scored."""
+"""One case: recordings, answer, and the quantities that are scored."""
 
 import resource
 import time
@@ -33,24 +33,24 @@ from swgsim.recordings.recording import Recording
 
 
 def attempt(case: Sealed, setting: Setting) -> dict[str, Any]:
-    """What the loop says of a case, and how far it is from the truth where nothing was recorded."""
+    """The answer to a case, and its errors at operating points that were not recorded."""
     began = time.perf_counter()
     unit = unit_known(case, setting)
     ready = time.perf_counter()
     recordings, library = in_question(case, setting, case.acting), setting.given(case)
-    asked = time.perf_counter(), time.process_time()
+    started = time.perf_counter(), time.process_time()
     found = answer(recordings, unit, library, seed=case.number)
     seconds = {
         "preparing": ready - began,
-        "loop": time.perf_counter() - asked[0],
-        "loop_of_one_core": time.process_time() - asked[1],
+        "loop": time.perf_counter() - started[0],
+        "loop_of_one_core": time.process_time() - started[1],
     }
-    said = what_was_said(found, recordings, library)
-    return {**said, **_against_truth(found, unit, case, setting), "seconds": seconds, "peak_memory_mib": _peak()}
+    fields = answer_fields(found, recordings, library)
+    return {**fields, **_against_truth(found, unit, case, setting), "seconds": seconds, "peak_memory_mib": _peak()}
 
 
-def what_was_said(found: Answer, recordings: Sequence[Recording], library: Sequence[type[Effect]]) -> dict[str, Any]:
-    """The answer as plain values; no truth goes into it."""
+def answer_fields(found: Answer, recordings: Sequence[Recording], library: Sequence[type[Effect]]) -> dict[str, Any]:
+    """The answer as plain values, without the truth."""
     closed = found.closed
     return {
         "recordings": len(recordings),
@@ -79,9 +79,7 @@ def what_was_said(found: Answer, recordings: Sequence[Recording], library: Seque
 
 
 def _against_truth(found: Answer, unit: Unit, case: Sealed, setting: Setting) -> dict[str, Any]:
-    """Errors at unseen points, how likely each model makes the recordings, and whether the truth lies inside the
-    intervals that were given.
-    """
+    """Errors at unseen points, log-likelihoods of the models, and the true values next to the reported intervals."""
     before, after = found.closed.before, found.closed.after
     truth = unseen(case, setting, before.measured.layout)
     models = {"before": before, "after": after, "oracle": _oracle(before, unit, case)}
@@ -96,18 +94,18 @@ def _against_truth(found: Answer, unit: Unit, case: Sealed, setting: Setting) ->
 
 
 def _oracle(before: Fitted, unit: Unit, case: Sealed) -> Fitted:
-    """The fit of one who knows what is hidden, though not how much of it."""
+    """The fit with the hidden effects, whose sizes are fitted."""
     known = [effect for effect in case.effects if not is_random(type(effect))]
     if not known:
         return before
     return fit(before.measured, unit, unit.model.plus(*known))
 
 
-def _intervals(said: Answer, case: Sealed) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
-    """Sizes of the effects that were rightly found, and phases and places if all that was chosen is right too, such as
-    the order: true, found, and the standard deviation that was given.
+def _intervals(answer_: Answer, case: Sealed) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
+    """True value, estimate and reported standard deviation: of sizes of correctly named effects, and of phases and
+    positions if all choices, such as the order, are correct too.
     """
-    sizes, angles, after = [], [], said.closed.after
+    sizes, angles, after = [], [], answer_.closed.after
     for true in case.effects:
         alike = _found_as(true, after.added)
         if alike is None:
@@ -115,7 +113,7 @@ def _intervals(said: Answer, case: Sealed) -> tuple[list[dict[str, Any]], list[d
         number = len(after.unit.model.effects) + alike
         effect = after.model.effects[number]
         for name, q in quantities(type(true)).items():
-            deviation = said.closed.deviation.get(name_of(effect, number, name), np.nan)
+            deviation = answer_.closed.deviation.get(name_of(effect, number, name), np.nan)
             found = {"name": true.name(), "found": float(getattr(effect, name)), "deviation": float(deviation)}
             if q.role is Role.SIZE:
                 sizes.append(found | {"true": float(_acted(true, case, after, number))})
@@ -125,19 +123,17 @@ def _intervals(said: Answer, case: Sealed) -> tuple[list[dict[str, Any]], list[d
 
 
 def _found_as(true: Effect, effects: Sequence[Effect]) -> int | None:
-    """Which of the effects found is a hidden one: of its kind, and the one that was chosen alike if one was.
+    """Number of the found effect of the same class as a hidden one, preferably with the same choices.
 
-    A second one of the kind, such as another order, is a false effect and no other size of this one.
+    A second effect of that class, such as another order, counts as a false effect.
     """
     alike = [number for number, effect in enumerate(effects) if type(effect) is type(true)]
     return next((number for number in alike if chosen(effects[number]) == chosen(true)), alike[0] if alike else None)
 
 
 def _acted(true: Effect, case: Sealed, after: Fitted, number: int) -> float:
-    """The size that a hidden effect had in the recordings: where it was another one at every operating point, the mean
-    of these, weighed by how much is seen of it there.
-
-    What these were made from by an altered law need not be among them.
+    """The size of a hidden effect in the recordings. If it differs between operating points: the mean, weighted by the
+    squared signature over the variance of the noise.
     """
     name, measured = size_of(type(true)), after.measured
     if case.alteration is None:

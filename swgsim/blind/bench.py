@@ -1,4 +1,4 @@
-"""What the bench does with a case: the unit, its commissioning, the recordings in question, and the unseen truth."""
+"""The bench of a case: the unit, its commissioning, the recordings in question, and the truth at unseen points."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -23,7 +23,7 @@ from swgsim.identification.data.model import POINTS, Model, Situation
 from swgsim.identification.fit.priors import of_unit
 from swgsim.recordings.recording import Recording
 
-# Spread of the units: somewhat inside of what the loop declares for a series (swgsim.identification.fit.priors).
+# Spread of the units: somewhat smaller than the declared prior of a series (swgsim.identification.fit.priors).
 SERIES = Population(
     1, b1_ratio=(0.9, 1.1), k1_ratio=(0.9, 1.1), b0_ratio=(0.92, 1.08), mu_ratio=(0.92, 1.08), w0_ratio=(0.99, 1.01),
     gain=0.01, offset=0.01, position=0.005, grid_angle=0.005, kinematic_error=(1.0, 1.0),
@@ -51,7 +51,7 @@ class Setting:
     revolutions : int
         Of every recording.
     sectors : tuple of int
-        Meshes of the bench, none of which is the model's.
+        Meshes of the bench; they differ from the model's mesh.
     seed : int
     """
 

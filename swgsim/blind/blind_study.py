@@ -1,4 +1,4 @@
-"""The job of scripts/blind.py: seal a set, let the loop answer, open the truth, score."""
+"""The command ``swg blind``: seal a set of cases, identify every case, open the truth, score."""
 
 import hashlib
 import json
@@ -78,7 +78,7 @@ THRESHOLDS = {
     "turns": [fitting.TURNS, fitting.UNREPEATED, fitting.SAME_SCATTER],
     "balanced": [fitted.LIKELIER_BALANCED, *fitted.BALANCED],
     "inaccurate": evidence.INACCURATE,
-    "luck": missing.LUCK,
+    "luck": missing.FALSE_DISCOVERIES,
     "relined": [relined.ROUNDS, relined.AT_REST],
     "drives": [commissioning.DRIVES, commissioning.TIMES, declared.MOST],
     "friction": [declared.SERIES, declared.ANY_FRICTION],
@@ -116,7 +116,7 @@ def run(config: Mapping[str, Any]) -> dict[str, Any]:
         digest = _seal(folder, setting, config)
         key = {"truth": digest, "code": _code()}
         answers = _answer(folder, setting, key, Engine.of(config))
-        cases = [Judged(from_json(plain), said) for plain, said in zip(_opened(folder), answers, strict=True)]
+        cases = [Judged(from_json(plain), answer_) for plain, answer_ in zip(_opened(folder), answers, strict=True)]
     found = {
         "truth_sha256": digest,
         "code": key["code"],
@@ -131,7 +131,7 @@ def run(config: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def setting_of(config: Mapping[str, Any]) -> Setting:
-    """What all cases have in common."""
+    """The settings that all cases share."""
     chosen = config["library"]
     return Setting(
         settings.gear(config["gear"]),
@@ -164,7 +164,7 @@ def _seal(folder: Path, setting: Setting, config: Mapping[str, Any]) -> str:
 
 
 def _answer(folder: Path, setting: Setting, key: Mapping[str, str], engine: Engine) -> list[dict[str, Any]]:
-    """What the loop says of every case; cases that it answered before, by the same code, are not asked again."""
+    """The answers to all cases; answers that the same code has given before are reused."""
     jobs = {folder / "answers" / f"{plain['number']:04d}.json": (plain, setting) for plain in _opened(folder)}
     return _all(jobs, _attempted, key, engine, "answers")
 
@@ -179,7 +179,7 @@ def _draw(plan: Any, setting: Setting) -> dict[str, Any]:
 
 
 def _attempted(plain: Mapping[str, Any], setting: Setting) -> dict[str, Any]:
-    """One case; a loop that breaks down is a failure that is counted."""
+    """One case; an error counts as a failure."""
     try:
         return attempt(from_json(plain), setting)
     except (ValueError, np.linalg.LinAlgError, ArithmeticError, RuntimeError) as failure:
@@ -189,7 +189,7 @@ def _attempted(plain: Mapping[str, Any], setting: Setting) -> dict[str, Any]:
 def _all(
     jobs: Mapping[Path, tuple], work: Callable[..., dict], key: Mapping[str, Any], engine: Engine, what: str
 ) -> list[dict[str, Any]]:
-    """Results of all jobs; each is a file as soon as it is there, so that a killed run goes on."""
+    """Results of all jobs; each becomes a file at once, so that an interrupted run can continue."""
     kept = {path: _kept(path, key) for path in jobs}
     left = [path for path, found in kept.items() if found is None]
     tasks = ((path, work, jobs[path], key) for path in left)

@@ -23,11 +23,11 @@ from swgsim.identification.fit.unit import Unit
 from swgsim.storage.labelled_signals import SENSORS
 
 # How far laws are off the library's: by this power of the load, or with sizes that vary by this share over operating
-# points; estimates, within what the loop tolerates of a form (evidence.FORM_TOLERANCE).
+# points; estimates, within the form tolerance (form_error.FORM_TOLERANCE).
 EXPONENT, SPREAD = 0.2, 0.1
-# A stray order is so large beside the effect's own ripple.
+# Size of a stray order relative to the effect's own ripple.
 STRAY = (0.1, 0.2)
-# Strength of untestable effects: no more than a standard deviation of what is declared not to be known.
+# Strength of untestable effects: at most one standard deviation of a nuisance parameter.
 ABSORBED = (0.1, 1.0)
 # Running in takes up to this share of damping and stiffness.
 RUN_IN = 0.1
@@ -89,7 +89,7 @@ def draw(plan: Plan, setting: Setting) -> Sealed:
 
 
 def unit_known(case: Sealed, setting: Setting) -> Unit:
-    """What is known of the unit before the recordings in question."""
+    """The unit before the recordings in question."""
     nominal = Unit(Model(setting.gear))
     return learn_unit(Measured.of(commissioning(case, setting)), nominal) if case.commissioned else nominal
 
@@ -133,8 +133,8 @@ def _stray(effect: Effect, fitted: Fitted, rng: np.random.Generator) -> StrayOrd
     change = measured.rows(seen[1] - seen[0])
     sizes = dict(zip(measured.layout.channels, per_channel(measured, change), strict=True))
     white = (change.reshape(measured.values.shape) ** 2 / measured.variance).sum(axis=0)
-    heard = {c: float(white[measured.layout.channel == c].sum()) for c in sizes if c in SENSORS}
-    channel = max(heard, key=lambda name: heard[name])
+    power = {c: float(white[measured.layout.channel == c].sum()) for c in sizes if c in SENSORS}
+    channel = max(power, key=lambda name: power[name])
     amplitude = rng.uniform(*STRAY) * np.sqrt(2) * float(sizes[channel])
     number = SENSORS.index(channel)
     bound = quantities(StrayOrder)[size_of(StrayOrder)].high

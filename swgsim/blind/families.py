@@ -1,4 +1,4 @@
-"""Effects that recordings at steady operating points hardly tell apart: one mathematical family under several names."""
+"""Families of doubles: effects that recordings at steady operating points hardly separate."""
 
 from collections.abc import Mapping
 

@@ -41,7 +41,7 @@ def _rates(axes: Any, found: Mapping[str, Any]) -> None:
     axes.set_xlim(-0.03, 1.03)
     if named:
         axes.legend(fontsize=8, ncols=3, loc="upper center", bbox_to_anchor=(0.5, -0.14))
-    label(axes, "share of cases, with 95 % interval", "", "The loop and simpler methods")
+    label(axes, "share of cases, with 95 % interval", "", "Identification and simpler methods")
 
 
 def _errors(axes: Any, cases: Sequence[Judged]) -> None:
@@ -56,5 +56,8 @@ def _errors(axes: Any, cases: Sequence[Judged]) -> None:
         axes.set_xlim(0.7 * min(strength), 1.4 * max(np.max(strength), 1))
         axes.legend(fontsize=8)
     label(
-        axes, "strength of the hidden effect (non-centrality)", "error / oracle's", "Error where nothing was recorded"
+        axes,
+        "strength of the hidden effect (non-centrality)",
+        "error relative to the true model",
+        "Error at operating points that were not recorded",
     )

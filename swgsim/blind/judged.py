@@ -1,4 +1,4 @@
-"""A case beside its truth: what was named, what should have been, and what went wrong."""
+"""A case with its answer and its truth: correct and false names, and the cause of an error."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -32,17 +32,17 @@ class Judged:
     Attributes
     ----------
     case : Sealed
-    said : mapping
-        What :func:`swgsim.blind.attempt.attempt` found.
+    answer : mapping
+        As :func:`swgsim.blind.attempt.attempt` returns it.
     """
 
     case: Sealed
-    said: Mapping[str, Any]
+    answer: Mapping[str, Any]
 
     @property
     def failed(self) -> bool:
         """Whether there is no answer."""
-        return "failure" in self.said
+        return "failure" in self.answer
 
     @property
     def null(self) -> bool:
@@ -69,26 +69,26 @@ class Judged:
         """Effects that were accepted, in order."""
         if self.failed:
             return []
-        return [*(name for step in self.said["accepted"] for name in step), *self.said["lines"]]
+        return [*(name for step in self.answer["accepted"] for name in step), *self.answer["lines"]]
 
     @cached_property
     def in_set(self) -> set[str]:
         """Effects that were accepted or called rivals."""
-        rivals = [] if self.failed else self.said["rivals"]
+        rivals = [] if self.failed else self.answer["rivals"]
         return {*self.named, *(name for step in rivals for trial in step for name in trial)}
 
     @property
     def set_size(self) -> float:
         """Explanations per accepted step."""
-        steps = len(self.said["accepted"]) + len(self.said["lines"])
-        return (steps + sum(len(step) for step in self.said["rivals"])) / steps
+        steps = len(self.answer["accepted"]) + len(self.answer["lines"])
+        return (steps + sum(len(step) for step in self.answer["rivals"])) / steps
 
     @property
     def first(self) -> str:
-        """What was named first."""
+        """The first named effect."""
         if self.failed:
             return "failure"
-        return self.named[0] if self.named else "unknown" if self.said["verdict"] == UNKNOWN else "nothing"
+        return self.named[0] if self.named else "unknown" if self.answer["verdict"] == UNKNOWN else "nothing"
 
     @property
     def right_first(self) -> bool:
@@ -117,60 +117,55 @@ class Judged:
 
     @property
     def told_untestable(self) -> bool:
-        """Whether the answer says that the recordings do not show what is hidden, at its size or at all."""
+        """Whether the answer reports the hidden effects as absorbed or as below their detection limits."""
         return all(
-            type(effect).name() in self.said["absorbed"] or abs(beyond_nothing(effect)) < self._seen_from(effect)
+            type(effect).name() in self.answer["absorbed"] or abs(beyond_nothing(effect)) < self._seen_from(effect)
             for effect in self.case.effects
         )
 
     def _seen_from(self, effect: Effect) -> float:
-        """The smallest size of an effect that would have been seen, as the answer has it; 0 if it does not say.
-
-        Infinite where it would not have been seen of any size.
-        """
-        size = self.said["seen_from"].get(type(effect).name(), 0.0)
+        """The reported detection limit of an effect; 0 if the answer has none, infinite if no size is detectable."""
+        size = self.answer["seen_from"].get(type(effect).name(), 0.0)
         return np.inf if size is None else float(size)
 
     @property
     def nearest(self) -> str:
-        """Where nothing was accepted: the effect that came nearest."""
-        rejected = [] if self.failed else self.said["rejected"]
+        """The nearest effect, if none was accepted."""
+        rejected = [] if self.failed else self.answer["rejected"]
         return rejected[0]["names"][0] if rejected else ""
 
     @property
     def described(self) -> tuple[bool, bool, bool]:
-        """Whether order, pattern and law of what is unknown are right."""
+        """Whether order, pattern and law of the unknown effect are correct."""
         truth = self.case.described
-        if truth is None or self.failed or not self.said["unknown"]:
+        if truth is None or self.failed or not self.answer["unknown"]:
             return False, False, False
-        order, pattern, law = self.said["unknown"][0]
+        order, pattern, law = self.answer["unknown"][0]
         return order == truth[0], _same(pattern, truth[1], truth[0]), law == truth[2]
 
     def over(self, first: str, second: str) -> float:
         """Ratio of two errors at unseen points."""
-        return float(self.said["error"][first] / self.said["error"][second])
+        return float(self.answer["error"][first] / self.answer["error"][second])
 
     @property
     def worse(self) -> bool:
-        """Whether the loop made the prediction worse where nothing was recorded, of what there is without noise."""
+        """Whether the identification increased the error at unseen points."""
         return self.over("after", "before") > WORSE
 
     @property
     def worse_with_truth(self) -> bool:
-        """Whether the model that knows what is hidden makes it worse too."""
+        """Whether the model with the true effects increased it too."""
         return self.over("oracle", "before") > WORSE
 
     @property
     def worse_where_recorded(self) -> bool | None:
-        """Whether the report's own error at operating points left out, of what was measured there, became worse; None
-        where there was only one.
-        """
-        before, after = self.said["heldout"]["before"], self.said["heldout"]["after"]
+        """Whether the reported error at left-out operating points increased; None with one operating point."""
+        before, after = self.answer["heldout"]["before"], self.answer["heldout"]["after"]
         return None if before is None else after > WORSE * before
 
     @property
     def cause(self) -> str:
-        """What went wrong, if anything."""
+        """The cause of an error, or RIGHT."""
         if self.failed:
             return "no answer"
         if self.null or self.case.stratum == UNTESTABLE:
@@ -180,11 +175,11 @@ class Judged:
         return self._inside()
 
     def _where_nothing_can_be_said(self) -> str:
-        if self.said["lines"] and not self.said["accepted"]:
+        if self.answer["lines"] and not self.answer["accepted"]:
             return "false line between the orders"
         if self.named:
             return RIGHT if self.right_in_set and not self.false else "false effect"
-        return RIGHT if self.said["verdict"] == NOTHING else "false alarm: something unknown"
+        return RIGHT if self.answer["verdict"] == NOTHING else "false alarm: something unknown"
 
     def _outside(self) -> str:
         if self.none_of_the_above:
@@ -202,35 +197,33 @@ class Judged:
             return "missed" if self.case.detectable else "too weak"
         if self.first == "unknown":
             near = "the right one nearest" if self.nearest in self.case.names else f"{self.nearest or 'none'} nearest"
-            return f"form rejected, {near}" if self.said["rejected"] else "called unknown, no effect significant"
+            return f"form rejected, {near}" if self.answer["rejected"] else "called unknown, no effect significant"
         return "right one is a rival" if self.right_in_set else "wrong effect named"
 
     @property
     def why(self) -> str:
-        """The cause with what there is to see of it."""
+        """The cause with the evidence for it."""
         hidden = " and ".join(
             f"{n} (strength {s:.3g})" for n, s in zip(self.case.names, self.case.strengths, strict=True)
         )
         about = f"{self.case.stratum}, {self.case.design}, {'' if self.case.commissioned else 'not '}commissioned"
         if self.failed:
-            return f"{about}: {hidden or 'nothing'} hidden; no answer: {self.said['failure']}"
-        scores = ", ".join(f"{name} {gain:.3g}" for name, gain, _ in self.said["scores"][:3])
+            return f"{about}: {hidden or 'nothing'} hidden; no answer: {self.answer['failure']}"
+        scores = ", ".join(f"{name} {gain:.3g}" for name, gain, _ in self.answer["scores"][:3])
         rejected = "; ".join(
             f"{' + '.join(r['names'])} rejected (gain {r['gain']:.3g}, coherence "
             f"{min(r['chances'], default=1.0):.1g}{'' if r['settled'] else ', unsettled'})"
-            for r in self.said["rejected"][:2]
+            for r in self.answer["rejected"][:2]
         )
         parts = [f"named {', '.join(self.named) or self.first}", self._gains, f"scores {scores}", rejected]
         return f"{about}, {self.case.form}: {hidden or 'nothing'} hidden; {'; '.join(part for part in parts if part)}"
 
     @property
     def _gains(self) -> str:
-        """By how much the answer, and a fit that knows the truth, make the recordings likelier: where these hardly
-        differ, little is left that could show the answer to be wrong. An effect counts in the library's form.
-        """
+        """Gain in log-likelihood by the answer, and by the fit with the true effects in their library form."""
         if not self.case.effects or any(is_random(type(effect)) for effect in self.case.effects):
-            return ""  # what is random between the orders is in neither fit
-        of = self.said["log_likelihood"]
+            return ""  # effects with random phases are in neither fit
+        of = self.answer["log_likelihood"]
         after, oracle = (of[name] - of["before"] for name in ("after", "oracle"))
         return f"log-likelihood {after:+,.1f}, with the true model {oracle:+,.1f}"
 

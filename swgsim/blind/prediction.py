@@ -11,7 +11,7 @@ from swgsim.blind.bench import UNSEEN
 from swgsim.identification.fit.errors import size
 from swgsim.identification.fit.fitted import Fitted
 
-# Speed is what the motor's control makes of it; its ripple is nobody's aim.
+# The speed is set by the motor control; its ripple is not predicted.
 JUDGED = ("T_in", "T_out", "s0", "s1", "s2", "s3", "s4")
 
 

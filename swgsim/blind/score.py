@@ -1,4 +1,4 @@
-"""The score of a blind set: rates with Wilson's interval, medians with a bootstrap's."""
+"""The score of a sealed set: rates with Wilson's interval, medians with a bootstrap interval."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -32,7 +32,7 @@ def score(cases: Sequence[Judged]) -> dict[str, Any]:
         "outside": len(outside),
         "false_effect_rate": rate([bool(case.named) for case in nulls if not case.failed]),
         "false_alarm_rate": rate([case.first != "nothing" for case in nulls if not case.failed]),
-        "chances_of_nulls": sorted(case.said["smallest_chance"] for case in nulls if not case.failed),
+        "chances_of_nulls": sorted(case.answer["smallest_chance"] for case in nulls if not case.failed),
         "right_first": rate([case.right_first for case in known]),
         "right_family_first": rate([case.right_family_first for case in known]),
         "right_in_set": rate([case.right_in_set for case in known]),
@@ -44,7 +44,7 @@ def score(cases: Sequence[Judged]) -> dict[str, Any]:
         "look_alikes_named": rate([bool(case.named) for case in outside if case.look_alike]),
         "unknown_described": _described(told_apart),
         "absorbed_named_as_such": rate(
-            [set(case.case.names) <= set(case.said["absorbed"]) for case in untestable if not case.failed]
+            [set(case.case.names) <= set(case.answer["absorbed"]) for case in untestable if not case.failed]
         ),
         "untestable_told": rate([case.told_untestable for case in untestable if not case.failed]),
         "false_effect_on_untestable": rate([case.false for case in untestable if not case.failed]),
@@ -57,10 +57,12 @@ def score(cases: Sequence[Judged]) -> dict[str, Any]:
         "coverage95": rate(_covered(answered)),
         "coverage95_of_angles": rate(_covered(answered, "angles", 2 * np.pi)),
         "coverage95_of_library_form": rate(_covered([c for c in answered if c.case.form in ("mesh", "stray order")])),
-        "seconds_median": median([case.said["seconds"]["loop"] for case in answered])["value"],
-        "seconds_max": max((case.said["seconds"]["loop"] for case in answered), default=None),
-        "seconds_of_one_core_median": median([case.said["seconds"]["loop_of_one_core"] for case in answered])["value"],
-        "peak_memory_mib": max((case.said["peak_memory_mib"] for case in answered), default=None),
+        "seconds_median": median([case.answer["seconds"]["loop"] for case in answered])["value"],
+        "seconds_max": max((case.answer["seconds"]["loop"] for case in answered), default=None),
+        "seconds_of_one_core_median": median([case.answer["seconds"]["loop_of_one_core"] for case in answered])[
+            "value"
+        ],
+        "peak_memory_mib": max((case.answer["peak_memory_mib"] for case in answered), default=None),
         "baselines": {name: _baseline(name, answered) for name in BASELINES},
         "by_strength": _by_strength(cases),
         "confusion": _confusion(cases),
@@ -70,7 +72,7 @@ def score(cases: Sequence[Judged]) -> dict[str, Any]:
 
 
 def worst(cases: Sequence[Judged]) -> list[Judged]:
-    """The cases that went most wrong: where nothing was to be found first, then the strongest effects."""
+    """The worst errors: failures, then nulls, then the strongest effects."""
 
     def shame(case: Judged) -> tuple[bool, bool, float]:
         return case.failed, case.null, max(case.case.strengths, default=0.0)
@@ -92,10 +94,11 @@ def _described(cases: Sequence[Judged]) -> dict[str, Any]:
 
 
 def _covered(cases: Sequence[Judged], kind: str = "intervals", turn: float = np.inf) -> list[bool]:
-    """Whether what is true lies within the intervals of what was rightly found: of sizes, or of angles if their turn is
-    given; one whose interval is all of a turn is not told.
+    """Whether true values lie within the reported intervals: of sizes, or of angles if a full turn is given.
+
+    Intervals of a whole turn are left out.
     """
-    found = [each for case in cases for each in case.said[kind] if not NORMAL * each["deviation"] > turn / 2]
+    found = [each for case in cases for each in case.answer[kind] if not NORMAL * each["deviation"] > turn / 2]
     off = [abs(each["found"] - each["true"]) for each in found]
     nearer = [min(by % turn, turn - by % turn) for by in off]
     return [by <= NORMAL * each["deviation"] for by, each in zip(nearer, found, strict=True)]
@@ -103,14 +106,14 @@ def _covered(cases: Sequence[Judged], kind: str = "intervals", turn: float = np.
 
 def _baseline(name: str, cases: Sequence[Judged]) -> dict[str, Any]:
     """The same figures for a simpler method."""
-    known = [(case, case.said["baselines"][name]) for case in cases if case.known]
+    known = [(case, case.answer["baselines"][name]) for case in cases if case.known]
     apart = [case for case in cases if case.outside and not case.look_alike]
     return {
-        "false_effect_rate": rate([bool(case.said["baselines"][name]) for case in cases if case.null]),
+        "false_effect_rate": rate([bool(case.answer["baselines"][name]) for case in cases if case.null]),
         "right_first": rate([bool(named) and named[0] in case.case.names for case, named in known]),
         "right_in_set": rate([set(case.case.names) <= set(named) for case, named in known]),
         "mean_set_size": float(np.mean([len(named) for _, named in known if named] or [0])),
-        "none_of_the_above_recall": rate([not case.said["baselines"][name] for case in apart]),
+        "none_of_the_above_recall": rate([not case.answer["baselines"][name] for case in apart]),
     } | (
         {"after_over_oracle_median": median([c.over("before", "oracle") for c, _ in known])}
         if name == "calibration_only"
@@ -119,7 +122,7 @@ def _baseline(name: str, cases: Sequence[Judged]) -> dict[str, Any]:
 
 
 def _by_strength(cases: Sequence[Judged]) -> Mapping[str, Any]:
-    """Right first, by the weaker strength of what is hidden of the library."""
+    """Share of correct first names, by the strength of the weaker hidden effect."""
     found = {}
     for low, high in ((30, 200), (200, 1200), (1200, 10000), (10000, np.inf)):
         here = [
@@ -130,7 +133,7 @@ def _by_strength(cases: Sequence[Judged]) -> Mapping[str, Any]:
 
 
 def _confusion(cases: Sequence[Judged]) -> dict[str, dict[str, int]]:
-    """What was named first, by what is hidden."""
+    """The first named effect, by the hidden effect."""
     table: dict[str, Counter] = {}
     for case in cases:
         hidden = " + ".join(case.case.names) or "nothing"

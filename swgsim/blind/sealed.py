@@ -11,8 +11,8 @@ from swgsim.effects import text
 from swgsim.effects.base import Effect
 from swgsim.gear.gear import OperatingPoint
 
-# What was planned to be detectable counts as that with this share of the strength too: a size stops at its bounds, and
-# is sought to a few per cent only, beside parameters that are fitted.
+# A case that was planned as detectable counts as detectable above this share of the planned strength: a size stops at
+# its bounds, and is adjusted to a few per cent only.
 SHORT = 0.9
 
 
@@ -39,7 +39,7 @@ class Sealed:
         Factors on b1 and k1 by running in.
     form : str
     effects : tuple of Effect
-        What is hidden, in the library's form.
+        Hidden effects in their library form.
     alteration : Alteration or None
     stray : StrayOrder or None
     taken_out : tuple of str

@@ -1,4 +1,4 @@
-"""What a blind set holds: how many cases of which kind, at which strength and with which recordings."""
+"""The strata of a sealed set: number of cases of each kind, their strengths and their recordings."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,9 +19,9 @@ CYCLE = (
     SINGLE, EASY_NULL, WRITTEN, PAIR, SINGLE, HARD_NULL, TAKEN_OUT, SINGLE, UNTESTABLE, HARD_NULL,
     SINGLE, PAIR, WRITTEN, EASY_NULL, SINGLE, TAKEN_OUT, PAIR, UNTESTABLE, HARD_NULL, SINGLE,
 )  # fmt: skip
-# Non-centrality of an effect's signature beside the declared parameters.
+# Non-centrality of an effect, with nuisance parameters marginalised.
 STRENGTHS = (60.0, 400.0, 3000.0, 30000.0)
-# An effect of this strength is to be found.
+# Smallest strength of a detectable effect.
 DETECTABLE = 400.0
 # Form of a library effect in the single stratum: the bench's mesh alone, or with a change of its law, or company.
 FORMS = ("mesh", "load law", "scattered size", "stray order")
@@ -59,7 +59,7 @@ ABSORBED = (
 
 @dataclass(frozen=True)
 class Plan:
-    """What was decided about a case before anything was simulated.
+    """The plan of a case before the simulation.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""How strong an effect is: non-centrality of its signature beside the declared parameters, fitted where a fit would."""
+"""Strength of an effect: non-centrality of its signature, with nuisance parameters fitted or marginalised."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -17,7 +17,7 @@ from swgsim.identification.search.hypotheses import hypotheses, signatures
 
 # Shares of the way from nothing to the bound at which the strength is tried, and how far at most.
 FARTHEST, COARSE, FINE = 0.9, 13, 5
-# How far a strength beside fitted parameters may fall short of the planned one.
+# Largest deviation of the strength with fitted parameters from the planned one.
 STRENGTH_TOLERANCE = 0.03
 
 
@@ -43,7 +43,7 @@ def strengths(effects: Sequence[Effect], of: Sequence[type[Effect]], fitted: Fit
 
 
 def _linear(effects: Sequence[Effect], of: Sequence[type[Effect]], fitted: Fitted) -> np.ndarray:
-    """Non-centrality of every effect beside the derivatives by the declared parameters."""
+    """Non-centrality of every effect, with declared parameters linearised."""
     found = np.zeros(len(effects))
     chain = [i for i, kind in enumerate(of) if not is_random(kind)]
     if chain:

@@ -27,7 +27,7 @@ OF_LOOP = {
 
 
 def table(found: Mapping[str, Any]) -> str:
-    """The loop beside the baselines, then what only the loop answers."""
+    """Table of the identification and the baselines, then results without a baseline."""
     methods = {"loop": found, **found["baselines"]}
     lines = [" " * 26 + "".join(f"{name.replace('_', ' '):>24}" for name in methods)]
     for key, title in ROWS.items():

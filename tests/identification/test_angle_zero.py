@@ -20,12 +20,11 @@ from swgsim.effects.lobe_shift import LobeShift
 from swgsim.effects.tilting_moment import TiltingMoment
 from swgsim.gear.gear import Gear
 from swgsim.gear.population import Population
+from swgsim.identification import calls
 from swgsim.identification.data import angle_zero
 from swgsim.identification.data.angle_zero import from_zero, zero_defects, zero_of
 from swgsim.identification.data.model import Model, predict
-from swgsim.identification.report import close_loop as job
 from swgsim.recordings.checks.thresholds import ANGLE_ZERO
-from swgsim.recordings.files.folder import write_folder
 from swgsim.recordings.read import read_recordings
 from swgsim.recordings.recording import Recording
 from swgsim.studies.examples import EXAMPLES
@@ -122,41 +121,31 @@ def test_a_zero_in_a_column_map_mends_it(tmp_path: Path) -> None:
         assert zero(read_recordings(folder, path).recordings) == pytest.approx(0.6 - mended, abs=0.02)
 
 
-def job_of(folder: Path) -> dict[str, object]:
-    """Of close_loop.py, on two folders."""
-    return {
-        "recordings": str(folder / "recordings"), "commissioning": str(folder / "commissioning"), "mapping": None,
-        "commissioning_mapping": None, "gear": yaml.safe_load(GEAR_1.read_text()), "effects": [], "searched": None,
-        "library": [], "truth": None, "seed": 0, "out": "",
-    }  # fmt: skip
-
-
-def test_recordings_and_commissioning_are_counted_from_the_zero_of_the_gear(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    made = {"commissioning": good(points=CORNERS), "recordings": good(points=CORNERS, turns=13)}
-    for name, recordings in made.items():
-        write_folder(tmp_path / name, ahead(recordings, 0.6))
-    seen, told = [], []
-    monkeypatch.setattr(job, "commission", lambda measured, unit: seen.append(measured.recordings) or unit)
-    monkeypatch.setattr(job, "answer", lambda recordings, *_, **__: seen.append(recordings))
-    monkeypatch.setattr(job, "next_experiments", lambda found: None)
-    monkeypatch.setattr(job, "report", lambda found, kinds, more, defects, seconds: told.extend(defects) or {})
-    monkeypatch.setattr(job, "write", lambda *_: {})
-    monkeypatch.setattr(job, "lines", lambda said: [])
-    job.run(job_of(tmp_path))
-    for recordings, rights in zip(seen, made.values(), strict=True):
-        for each, right in zip(recordings, rights, strict=True):
+def test_recordings_and_commissioning_are_counted_from_the_zero_of_the_gear(monkeypatch: pytest.MonkeyPatch) -> None:
+    healthy, recordings = good(points=CORNERS), good(points=CORNERS, turns=13)
+    seen, warnings = [], []
+    monkeypatch.setattr(
+        calls, "learn_unit", lambda measured, unit: seen.append(measured.recordings) or replace(unit, healthy=seen[0])
+    )
+    monkeypatch.setattr(calls, "answer", lambda recordings, *_, **__: seen.append(recordings))
+    monkeypatch.setattr(calls, "next_experiments", lambda found: None)
+    monkeypatch.setattr(calls, "Identification", lambda *_: None)
+    monkeypatch.setattr(calls, "report", lambda found, kinds, more, defects, *_: warnings.extend(defects) or {})
+    calls.identify(ahead(recordings, 0.6), calls.commission(ahead(healthy, 0.6), GEAR))
+    for given, rights in zip(seen, (healthy, recordings), strict=True):
+        for each, right in zip(given, rights, strict=True):
             np.testing.assert_allclose(each.channels["phi_in"], right.channels["phi_in"], atol=0.02)
-    assert [defect.severity for defect in told if defect.kind == "angle_zero"] == ["warn"]
+    assert [(defect.kind, defect.severity) for defect in warnings] == [("angle_zero", "warn")]
 
 
 @pytest.mark.parametrize("moved", [0.0, 0.4])
-def test_recordings_of_another_zero_than_their_commissioning_are_refused(tmp_path: Path, moved: float) -> None:
-    for name, angle in (("commissioning", moved), ("recordings", 0.6 + moved)):
-        write_folder(tmp_path / name, ahead(good(points=CORNERS), angle))
+def test_recordings_of_another_zero_than_their_commissioning_are_refused(
+    monkeypatch: pytest.MonkeyPatch, moved: float
+) -> None:
+    monkeypatch.setattr(calls, "learn_unit", lambda measured, unit: replace(unit, healthy=measured.recordings))
+    unit = calls.commission(ahead(good(points=CORNERS), moved), GEAR)
     with pytest.raises(
         ValueError,
         match=rf"(?s)recordings: these .* (0.59|0.60)\d rad ahead .*{ANGLE_ZERO} rad.*zero_rad.*\[angle_zero\]",
     ):
-        job.run(job_of(tmp_path))
+        calls.identify(ahead(good(points=CORNERS, turns=13), 0.6 + moved), unit)

@@ -43,6 +43,7 @@ FAULTS = tuple(
 )
 NAMES = ("eccentric_wave_generator", "warm_grease", "reduced_damping", "zero_offset")
 SEARCHED = [LIBRARY[name] for name in NAMES]
+HAT = replace(GEAR.flex_spline, length=22e-3, collar=0.9e-3, wall=0.47e-3)
 
 
 def recorded(effects: tuple[Effect, ...], seed: int, gear: Gear = GEAR, warming: float = 0.0) -> Measured:
@@ -80,21 +81,28 @@ def test_commissioning_finds_the_gear_and_narrows_what_is_open(unit):
 
 
 def test_a_gear_of_another_flex_spline_is_commissioned_as_accurately_as_it_can_be(unit):
-    """Its wall and collar are thicker, its sleeve shorter; an eccentricity is found all the same, and nothing else."""
-    hat = replace(GEAR.flex_spline, length=22e-3, collar=0.9e-3, wall=0.47e-3)
-    other = replace(GEAR, flex_spline=hat, gauges=replace(GEAR.gauges, radius=27e-3))
-    own = learn_unit(recorded((), seed=1, gear=other), Unit(Model(GEAR)))
+    """Wall and collar are thicker, the sleeve is shorter; friction differs by a factor of two, as between catalogues.
+
+    Friction is the gear's own, not a line that is learned; an eccentricity is found all the same, and nothing else.
+    """
+    friction = {"b0": 2.1, "b1": 0.26, "mu": 0.035}
+    other = replace(GEAR, flex_spline=HAT, transmission=replace(GEAR.transmission, **friction))
+    healthy = recorded((), seed=1, gear=other)
+    own = learn_unit(healthy, Unit(Model(GEAR)))
     assert own.structure > unit.structure == STRUCTURE
+    found = calibrated(fit(healthy, own))
+    for name, value in friction.items():
+        low, high = found[name]["ci95"]
+        assert low < value < high < low + 0.3 * value
     assert accepted(close(recorded((), seed=2, gear=other), own, SEARCHED)) == []
-    (found,) = accepted(close(recorded((ECCENTRIC,), seed=2, gear=other), own, [*SEARCHED, LIBRARY["tilting_moment"]]))
-    assert type(found) is type(ECCENTRIC)
+    (effect,) = accepted(close(recorded((ECCENTRIC,), seed=2, gear=other), own, [*SEARCHED, LIBRARY["tilting_moment"]]))
+    assert type(effect) is type(ECCENTRIC)
 
 
 def test_gauges_on_another_flex_spline_do_not_lead_the_drive_astray():
     """Speed and torques alone have the load, whatever the gauges say, and say nothing of those."""
-    hat = replace(GEAR.flex_spline, length=22e-3, collar=0.9e-3, wall=0.47e-3)
     transmission = replace(GEAR.transmission, J_out=0.6 * GEAR.transmission.J_out)
-    other = replace(GEAR, flex_spline=hat, transmission=transmission, gauges=replace(GEAR.gauges, gain=(3.0,) * 5))
+    other = replace(GEAR, flex_spline=HAT, transmission=transmission, gauges=replace(GEAR.gauges, gain=(3.0,) * 5))
     unit = Unit(Model(GEAR), seen_healthy=True)
     drive = _drive_alone(recorded((), seed=1, gear=other), unit)
     assert drive.unit.learned is None
@@ -111,23 +119,10 @@ def test_a_gear_is_commissioned_with_a_declared_effect_on_its_drive():
     assert own.model.gear.transmission.mu * found.mu_ratio == pytest.approx(1.3 * GEAR.transmission.mu, rel=0.05)
 
 
-def test_friction_far_from_the_nominal_is_the_gears_own_and_no_line_that_is_learned():
-    """Catalogues, greases and authors differ by a factor of two, and the mean of the input's torque tells which."""
-    friction = {"b0": 2.1, "b1": 0.26, "mu": 0.035}
-    hat = replace(GEAR.flex_spline, length=22e-3, collar=0.9e-3, wall=0.47e-3)
-    other = replace(GEAR, flex_spline=hat, transmission=replace(GEAR.transmission, **friction))
-    healthy = recorded((), seed=1, gear=other)
-    found = calibrated(fit(healthy, learn_unit(healthy, Unit(Model(GEAR)))))
-    for name, value in friction.items():
-        low, high = found[name]["ci95"]
-        assert low < value < high < low + 0.3 * value
-
-
 def test_a_gear_is_known_as_it_was_recorded_where_most_of_a_line_is_learned():
     """Trigger, gains and lags act on the whole of the line, not on the third of it that the model has."""
-    hat = replace(GEAR.flex_spline, length=22e-3, collar=0.9e-3, wall=0.47e-3)
     gauges = replace(GEAR.gauges, radius=27e-3, gain=(3.0,) * 5, position=tuple(0.01 * np.array([0, 2, 3, 1, 2])))
-    healthy = recorded((), seed=1, gear=replace(GEAR, flex_spline=hat, gauges=gauges))
+    healthy = recorded((), seed=1, gear=replace(GEAR, flex_spline=HAT, gauges=gauges))
     own = learn_unit(healthy, Unit(Model(GEAR)))
     predicted, shift, *_ = own.left_open(own.model, healthy.situations, healthy.layout, {})
     off = (healthy.values - (predicted + shift)[healthy.of_recording]).mean(axis=0)
@@ -139,13 +134,16 @@ def test_a_gear_is_known_as_it_was_recorded_where_most_of_a_line_is_learned():
 
 
 def test_a_bench_with_another_drive_and_stronger_gauges_is_commissioned():
-    """Its speed control, flange and equation of the input are others; what is found is what there is."""
-    drive = {"J_in": 1.4e-4, "rotor_share": 0.8, "error_lever": 0.0, "control_frequency": 25.0, "control_damping": 1.7}
+    """Load, speed control, flange and equation of the input are others, and make half of the ripple."""
+    drive = {"J_in": 1.4e-4, "J_out": 0.75 * GEAR.transmission.J_out, "rotor_share": 0.8, "error_lever": 0.0}
+    drive |= {"control_frequency": 25.0, "control_damping": 1.7}
     gauges = replace(GEAR.gauges, gain=tuple(1.25 * gain for gain in GEAR.gauges.gain))
     other = replace(GEAR, transmission=replace(GEAR.transmission, **drive), gauges=gauges)
     own = learn_unit(recorded((), seed=1, gear=other), Unit(Model(GEAR)))
     found = own.model.gear.transmission
     assert {name: getattr(found, name) for name in drive} == pytest.approx(drive, rel=0.1, abs=0.1)
+    for name in ("J_out", "control_frequency"):
+        assert getattr(found, name) == pytest.approx(drive[name], rel=0.05)
     damped = LIBRARY["reduced_damping"](0.8)
     assert accepted(close(recorded((), seed=2, gear=other), own, SEARCHED)) == []
     (damping,) = accepted(close(recorded((damped,), seed=2, gear=other), own, SEARCHED))
@@ -181,13 +179,6 @@ def test_a_line_that_the_truss_has_quite_different_is_learned():
     assert np.abs(again.missed[:, here].mean(axis=0)).max() * np.sqrt(len(again.measured)) < 4
     assert again.misfit["s0"] < 1.5
     assert accepted(close(recorded((own_line, ECCENTRIC), seed=3), own, SEARCHED))[0].r == pytest.approx(10e-6, rel=0.2)
-
-
-def test_nothing_is_found_where_nothing_is_missing(unit):
-    closed = close(recorded((), seed=2), unit, SEARCHED)
-    assert closed.steps == closed.rejected == ()
-    assert closed.after is closed.before
-    assert min(score.chance for score in closed.scores) > ALPHA
 
 
 def test_an_eccentric_wave_generator_is_found_with_its_size(unit):
@@ -242,13 +233,13 @@ def test_two_effects_at_once_are_both_found(unit):
     assert np.sum(closed.after.predictive - closed.before.predictive) > 6
 
 
-def test_a_declared_effect_stays_where_commissioning_found_it():
+def test_a_declared_effect_stays_where_commissioning_found_it(unit):
     """One that is seen well enough: the maps, which are known to 1 %, hide 7 um."""
     strong = replace(ECCENTRIC, r=100e-6)
-    unit = learn_unit(recorded((strong,), seed=5), Unit(Model(GEAR, (strong,))))
-    assert unit.reach.shape == learn_unit(recorded((), seed=5), Unit(Model(GEAR))).reach.shape
-    found = fit(recorded((strong,), seed=6), unit)
-    (known,), (stayed,) = unit.model.effects, found.model.effects
+    own = learn_unit(recorded((strong,), seed=5), Unit(Model(GEAR, (strong,))))
+    assert own.reach.shape == unit.reach.shape
+    found = fit(recorded((strong,), seed=6), own)
+    (known,), (stayed,) = own.model.effects, found.model.effects
     assert stayed.r == pytest.approx(known.r, rel=0.03)
     assert stayed.r == pytest.approx(strong.r, rel=0.1)
 
@@ -262,18 +253,6 @@ def test_what_is_declared_is_not_missing_beside_lines_that_were_learned():
     assert closed.steps == closed.rejected == ()
     # The gauge may have a gain of its own of a hundredth.
     assert closed.after.model.effects[0].share == pytest.approx(0.03, abs=0.01)
-
-
-def test_load_and_speed_control_of_the_bench_are_found_by_commissioning():
-    """They are nobody's fault, and make half of the ripple of speed and torque."""
-    t = GEAR.transmission
-    own = replace(GEAR, transmission=replace(t, J_out=0.75 * t.J_out, control_frequency=0.8 * t.control_frequency))
-    unit = learn_unit(recorded((), seed=7, gear=own), Unit(Model(GEAR)))
-    found = unit.model.gear.transmission
-    assert found.J_out == pytest.approx(own.transmission.J_out, rel=0.05)
-    assert found.control_frequency == pytest.approx(own.transmission.control_frequency, rel=0.05)
-    closed = close(recorded((), seed=8, gear=own), unit, SEARCHED)
-    assert closed.steps == closed.rejected == ()
 
 
 def _shown(measured: Measured, T_out: Callable[[Recording], np.ndarray]) -> Measured:
@@ -304,7 +283,8 @@ def test_a_ripple_that_is_none_of_the_gear_is_not_listened_to():
         return recording.channels["T_out"] + 5 * np.cos(5 * recording.channels["phi_in"] + recording.point.T_out)
 
     own = learn_unit(_shown(recorded((), seed=9), shaken), Unit(Model(GEAR)))
-    ripple = (recorded((), seed=9).layout.channel == "T_out") & (recorded((), seed=9).layout.order > 0)
+    layout = Measured.of(own.healthy).layout
+    ripple = (layout.channel == "T_out") & (layout.order > 0)
     assert (own.inflation[ripple] >= UNHEARD).all()
     assert (own.inflation[~ripple] < UNHEARD).all()
     assert accepted(close(_shown(recorded((), seed=8), shaken), own, SEARCHED)) == []

@@ -122,20 +122,6 @@ def test_parts_that_leave_no_size_do_not_agree(planted, judged):
     assert replace(found, chance=1.0, disagreement=0.9 * NO_SIZE).holds
 
 
-def test_an_effect_of_one_channel_and_order_disagrees_by_its_points_alone(planted, monkeypatch):
-    """Channel and order are all of it: that they may be as wrong as a point says nothing against its size."""
-    fitted, whole = planted
-    line = 30 * whole * np.tile((LAYOUT.channel == "T_in") & (LAYOUT.order == 2), len(fitted.measured))
-    sizes = np.array([0.6, 1.4, 0.6, 1.4, 0.6, 1.4])[fitted.measured.of_recording]
-    off = line * np.repeat(sizes - 1, len(LAYOUT)) + drawn(fitted.whole, np.random.default_rng(21))
-    monkeypatch.setattr(evidence, "signature", lambda *_: line)
-    one = replace(fitted.calibrated, model=Model(GEAR, (Bump(1.0),)))
-    held = replace(fitted, calibrated=one, open=np.hstack([fitted.open, 10 * line[:, None]]))
-    found = evidence.coherence(holding(held, off), 0)
-    assert 0.3 < found.form_error < 0.6
-    assert found.disagreement < NO_SIZE < found.doubt
-
-
 @pytest.fixture
 def of_gauges(planted, monkeypatch):
     """A model with an effect that gauges show, its signature, and what another structure makes of that: columns."""
@@ -217,21 +203,6 @@ def test_a_size_is_as_doubtful_as_another_structure_would_make_it(of_gauges):
     agreement = evidence.coherence(holding(held, drawn(fitted.whole, rng)), 0)
     assert agreement.form_error < 0.05
     assert agreement.doubt == pytest.approx(moved.std(), rel=0.2)
-
-
-@pytest.mark.parametrize(("place", "structural"), [("mesh", True), ("structure", True), ("drive", False)])
-def test_the_whole_of_what_acts_on_another_structure_is_known_to_the_form_tolerance(
-    planted, monkeypatch, place, structural
-):
-    fitted, _ = planted
-    monkeypatch.setattr(Bump, "place", place)
-    monkeypatch.setattr("swgsim.identification.decide.candidate.over_shapes", lambda *_: {})
-    sound = [evidence.Coherence(1.0, 0.0, 0.0)]
-    for structure, share in ((STRUCTURE, EXACT), (0.03, evidence.FORM_TOLERANCE if structural else EXACT)):
-        unit, two = replace(fitted.unit, structure=structure), Model(GEAR, (Bump(2.0),))
-        held = replace(fitted, unit=unit, calibrated=replace(fitted.calibrated, model=two))
-        monkeypatch.setattr(type(held), "deviation", {"bump 1: height": 0.0})
-        assert widened(held, 0, sound) == {"bump 1: height": pytest.approx(2.0 * share)}
 
 
 def test_a_size_is_as_doubtful_as_imperfect_forms_of_other_effects_would_make_it(planted, monkeypatch):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from loop_fixtures import fitted_to
 
-from swgsim.identification.commissioning.lack_of_fit import LUCK, UNEXPLAINED, beyond_noise, require_own
+from swgsim.identification.commissioning.lack_of_fit import FALSE_DISCOVERIES, UNEXPLAINED, beyond_noise, require_own
 from swgsim.identification.commissioning.relinearisation import posterior, triangle
 from swgsim.identification.data.features import Layout
 from swgsim.identification.data.measured import Measured
@@ -31,7 +31,7 @@ def test_noise_is_rarely_taken_for_something_missed(measured):
     """Of all lines together."""
     rng = np.random.default_rng(2)
     found = [(beyond_noise(measured, rng.standard_normal(measured.values.shape)) > 1).any() for _ in range(100)]
-    assert np.mean(found) < 2.5 * LUCK
+    assert np.mean(found) < 2.5 * FALSE_DISCOVERIES
 
 
 @pytest.mark.parametrize("common", [True, False])

@@ -37,9 +37,3 @@ def test_the_form_of_earlier_effects_opens_once_they_have_moved_without_it(fits)
     assert opened["allowed"] is now.allowed
     assert opened["position"] == {"bump 1: height": 3.0}
     assert opened["guess"] is closed["guess"] is now.scatter
-
-
-def test_one_fit_is_enough_where_no_form_is_open_or_nothing_is_added(fits):
-    fitting.extended(FITTED.allowing(np.ones((ROWS, 1))), [Wave(2.0)])
-    fitting.extended(FITTED.allowing_forms(np.ones((ROWS, 1))), [])
-    assert len(fits) == 2

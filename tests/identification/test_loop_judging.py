@@ -15,11 +15,10 @@ from swgsim.identification.covariance.scatter import Scatter
 from swgsim.identification.data.features import Layout
 from swgsim.identification.data.model import Model
 from swgsim.identification.decide import candidate as trial_module
-from swgsim.identification.decide.candidate import Trial, gain, gained, tried
+from swgsim.identification.decide.candidate import Trial, gained
 from swgsim.identification.decide.competing_regularities import beside_unknown, in_company, more_than, outdone
 from swgsim.identification.fit import form_error as evidence
-from swgsim.identification.fit.fitted import LIKELIER_BALANCED, Fitted
-from swgsim.identification.fit.unit import STRUCTURE
+from swgsim.identification.fit.fitted import LIKELIER_BALANCED
 from swgsim.identification.search import regularities as vocabulary
 from swgsim.identification.search.regularities import Atom, columns, describe, set_free, strongest
 from swgsim.identification.search.screening import Score
@@ -76,24 +75,6 @@ def test_a_regularity_that_tells_the_same_better_outdoes_an_effect(fitted, stray
     assert outdone(trial(now, mimic), named(now, STRAY), now)
 
 
-def test_a_trial_is_judged_with_the_form_that_its_parts_ask_for(fitted, signature, monkeypatch):
-    """One that is smaller by a third at low load gains what it explains, and its fit is kept as it is."""
-    points = fitted.measured.point_rows()
-    law = np.sum([share * rows for share, rows in zip((0.7, 1.0, 1.1) * 2, points, strict=True)], axis=0)
-    noise = drawn(fitted.whole, np.random.default_rng(10))
-    now, after = (holding(fitted, 20 * (law - held) * signature + noise) for held in (0, 1))
-    with_effect = replace(after.calibrated, model=Model(GEAR, (Bump(1.0),)))
-    after = replace(after, calibrated=with_effect, open=np.hstack([after.open, 100 * signature[:, None]]))
-    monkeypatch.setattr(evidence, "signature", lambda fitted, number: 20 * signature)
-    monkeypatch.setattr(trial_module, "extended", lambda start, added: after)
-    found = tried(now, Score(BUMP, 100.0, 1, 1.0, 0.0, 0.1, 1.0, 1e-6), (Bump(1.0),), now)
-    assert found.coherence[0].holds
-    held = gained(now, after)
-    assert found.heldout_gain > held[0].sum() + 100
-    assert found.evidence > held[1] + 100
-    np.testing.assert_array_equal(found.fitted.open, after.open)
-
-
 @pytest.mark.parametrize(("share", "its_own"), [(0.3, False), (0.4, True)])
 def test_a_third_of_what_an_effect_is_credited_with_is_its_own(fitted, signature, share, its_own):
     judged = trial(fitted, signature)
@@ -103,45 +84,11 @@ def test_a_third_of_what_an_effect_is_credited_with_is_its_own(fitted, signature
     assert np.isfinite(judged.merit) == its_own
 
 
-@pytest.mark.parametrize(
-    ("structure", "place", "asked"), [(STRUCTURE, "mesh", False), (0.03, "mesh", True), (0.03, "drive", False)]
-)
-def test_what_is_its_own_is_asked_of_an_effect_on_another_structure(
-    fitted, signature, monkeypatch, structure, place, asked
-):
-    """Lines of any gauge are open beside it there, so that a small effect may be credited with much else."""
-    monkeypatch.setattr(Bump, "place", place)
-    now = holding(fitted, signature + drawn(fitted.whole, np.random.default_rng(14)))
-    now = replace(now, unit=replace(fitted.unit, structure=structure))
-    with_effect = replace(now.calibrated, model=Model(GEAR, (Bump(1.0),)))
-    after = replace(now, calibrated=with_effect, open=np.hstack([now.open, 100 * signature[:, None]]))
-    monkeypatch.setattr(trial_module, "extended", lambda start, added: after)
-    monkeypatch.setattr(trial_module, "signature", lambda fitted, number: signature)
-    found = tried(now, Score(BUMP, 100.0, 1, 1.0, 0.0, 0.1, 1.0, 1e-6), (Bump(1.0),), now)
-    assert found.own == (pytest.approx(gain(now, signature[:, None])) if asked else np.inf)
-
-
 def test_another_thing_of_like_size_does_not_outdo_an_effect(fitted, stray, signature):
     now = holding(fitted, signature + 2 * stray + drawn(fitted.whole, np.random.default_rng(4)))
     plain = named(now, STRAY)
     assert plain.gain > 1.2 * trial(now, signature).explained(now)
     assert not outdone(trial(now, signature), plain, now)
-
-
-def test_a_regularity_within_the_tolerance_of_form_does_not_outdo_an_effect(fitted, monkeypatch):
-    """An effect whose law is a little another one: a regularity with the right law explains more, and says nothing."""
-    law = Atom(5, "in s2 alone", "proportional to the load")
-    constant, load = (columns(atom, fitted)[:, 0] for atom in (STRAY, law))
-    supposed = 200 * constant / np.linalg.norm(fitted.whole.whiten(constant))
-    other = 200 * load / np.linalg.norm(fitted.whole.whiten(load))
-    other -= supposed * (fitted.whole.whiten(supposed) @ fitted.whole.whiten(other)) / 200**2  # its size is fitted
-    monkeypatch.setattr(evidence, "signature", lambda fitted, number: supposed)
-    for share, better in ((1.0, False), (60.0, True)):
-        noise = drawn(fitted.whole, np.random.default_rng(9))
-        now, after = holding(fitted, supposed + share * other + noise), holding(fitted, share * other + noise)
-        plain = named(now, law)
-        assert plain.gain > 1.2 * trial(after, supposed).explained(now)
-        assert outdone(trial(after, supposed), plain, now) == better
 
 
 def test_what_dwarfs_an_effect_makes_it_doubtful(fitted, stray, signature):
@@ -270,16 +217,6 @@ def test_of_a_pair_one_effect_may_be_the_line_of_a_disturbance(fitted, stray, on
         assert more_than([plain], found, free, 0) == another
 
 
-def test_behind_the_only_channel_that_was_recorded_its_own_line_is_nothing(monkeypatch):
-    alone = fitted_to(Layout(("s2",)), np.random.default_rng(1), repeats=2)
-    line = columns(STRAY, alone)[:, 0]
-    line *= 20 / np.linalg.norm(alone.whole.whiten(line))
-    monkeypatch.setattr(evidence, "signature", lambda fitted, number: line)
-    now = holding(alone, line + drawn(alone.whole, np.random.default_rng(3)))
-    plain = named(now, STRAY)
-    assert not more_than([plain], trial(now, line), set_free(now, plain), 0)
-
-
 def test_other_errors_of_single_recordings_are_those_it_would_have_been_given(fitted):
     found, expected = scattered(fitted, 1.0).scattering(scattered(fitted, 7.0).scatter), scattered(fitted, 7.0)
     assert found.scatter.sd == expected.scatter.sd
@@ -360,22 +297,6 @@ def test_bridges_balanced_anew_are_as_unlikely_beside_an_effect_as_beside_nothin
     anew, named = of_zeros(0.03, -0.045, 0.015, -0.03, 0.04), of_zeros(0.0, 0.0, 0.0, 0.0, 0.0)
     over = named.log_likelihood - anew.balanced.log_likelihood
     assert gained(anew, named)[1] == pytest.approx(over + LIKELIER_BALANCED)
-
-
-def test_bridges_balanced_anew_stand_for_the_model_before_only_where_that_is_likelier_by_their_odds(
-    of_zeros, monkeypatch
-):
-    calm = of_zeros(0.0, 0.0, 0.0, 0.0, 0.0)
-
-    def likely(by: float, fitted: Fitted = calm) -> Fitted:
-        found = replace(fitted)
-        vars(found).update(log_likelihood=by, predictive=np.zeros(1))
-        return found
-
-    now, scattered = likely(0.0), likely(10.5)
-    vars(now)["balanced"] = likely(12.0, calm.with_zeros(4.0))
-    monkeypatch.setattr(Fitted, "scattering", lambda *_: scattered)
-    assert gained(now, likely(30.0))[1] == 30.0 - 10.5
 
 
 def test_an_effect_must_explain_zeros_better_than_bridges_balanced_anew_do(of_zeros):

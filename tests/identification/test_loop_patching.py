@@ -61,32 +61,6 @@ def test_one_that_does_not_hold_at_one_operating_point_is_not(fitted: Fitted, mo
     assert not is_added(fitted, np.array([1.0, 1, 1, 0, 1, 1]))
 
 
-def test_one_that_doubles_the_error_at_an_operating_point_is_not(
-    fitted: Fitted, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    for times, added in ((1.5, True), (2.5, False)):
-        errors = {True: np.array([1.0, 1, times, 1, 1, 1]), False: np.ones(6)}
-        monkeypatch.setattr(patching, "of_points_left_out", lambda now, errors=errors: errors[bool(now.parameters)])
-        assert is_added(fitted, np.ones(6)) == added
-
-
-@pytest.mark.parametrize(("was", "now", "holds"), [(1.0, 1.04, True), (1.0, 1.06, False), (1.04, 1.06, False)])
-def test_one_that_makes_the_error_of_all_points_larger_than_without_any_is_not(
-    fitted: Fitted, monkeypatch: pytest.MonkeyPatch, was: float, now: float, holds: bool
-) -> None:
-    """Than without patches it is 1, and with those before it as it was."""
-    before = holding(fitted, 20 * columns(ATOM, fitted)[:, 0] + drawn(fitted.errors, np.random.default_rng(2)))
-    found, after = holding(fitted, 0.9 * before.residual), patching.extended(before, ())
-    figures = {1.0: found, was: before, now: after}
-    errors = {figure: Errors(each, after).heldout for figure, each in figures.items()}
-
-    def relative(_: object, error: np.ndarray) -> float:
-        return next(figure for figure, each in errors.items() if np.array_equal(each, error))
-
-    monkeypatch.setattr(patching, "relative", relative)
-    assert patching._holds(before if was == 1.0 else found, before, after) == holds
-
-
 def test_one_that_may_as_well_follow_the_time_is_not(fitted: Fitted) -> None:
     assert not is_added(fitted, np.ones(6), rivals=(OF_TIME,))
 

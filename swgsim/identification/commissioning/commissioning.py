@@ -1,4 +1,4 @@
-"""A unit as recordings of its healthy state show it."""
+"""Commissioning: learning a unit from recordings of its healthy state."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -24,19 +24,19 @@ from swgsim.identification.fit.fitting import fit
 from swgsim.identification.fit.unit import STRUCTURE, UNHEARD, Unit
 from swgsim.storage.labelled_signals import SENSORS
 
-# Lines that are missed are learned. A gauge's may lie off by this share of the largest line of all gauges: in a bridge
-# of many arms lines cancel that are large in each. Those of speed and torques, of which the equations of motion make
-# the most, are learned while no more than this share of their channel's ripple is missed; else it is none of this gear.
+# Lines with lack of fit are learned. Largest deviation of a gauge's line, relative to the largest line of all gauges
+# (in a bridge of many arms, large lines may cancel). Lines of speed and torques are learned up to the second share of
+# their channel's ripple; beyond, the ripple does not belong to this gear.
 LOOSEST, ALIEN = 0.6, 0.5
-# Where the gauges' lines lie off by more than this share, twice what the mesh of the truss makes, it is another
-# structure; signatures of effects are not known to be wrong by more than the last one (an estimate).
+# Structural error above which the gear has another structure: twice the error by the mesh of the truss. And the largest
+# structural error that signatures are assigned (an estimate).
 ANOTHER, WORST = 2 * STRUCTURE, 0.3
-# So often at most the drive alone is fitted, until the fit has come to rest; and so often lines of gauges are learned.
+# Largest number of fits of the drive until convergence, and number of times that lines of gauges are learned.
 DRIVES, TIMES = 4, 2
 
 
 def learn_unit(measured: Measured, unit: Unit) -> Unit:
-    """The unit with what recordings of its healthy state say about it.
+    """The posterior of a unit, given recordings of its healthy state.
 
     Raises
     ------
@@ -44,17 +44,17 @@ def learn_unit(measured: Measured, unit: Unit) -> Unit:
         If the model does not describe the healthy gear.
     """
     forget()
-    fitted, unheard = _listening(measured, replace(unit, seen_healthy=True))
+    fitted, unheard = _with_usable_ripple(measured, replace(unit, seen_healthy=True))
     require_own(measured, fitted.missed)
     beyond = beyond_noise(measured, fitted.missed)
     if beyond.max() > 1:
         fitted = about_its_lines(again(fitted, inflation=beyond * unheard))
     root, mean = posterior(fitted)
-    # Declared effects stay as they were found: later fits have parameters of their own for them.
+    # Declared effects keep their values; later fits have parameters for them.
     own = [name in fitted.unit.declared for name in fitted.parameters]
     kept = np.flatnonzero([*own, *[True] * fitted.open.shape[1]])
     reach, shift = triangle(root[kept].T).T, mean[kept]
-    # Lines go into the model, so that effects on the signals act on them too.
+    # Lines become part of the model, so that effects on the signals act on them too.
     lines, form = lines_found(fitted, mean)
     shift[len(shift) - form :] = 0.0
     model, nominal = replace(fitted.model, own_lines=lines), fitted.unit.model.gear
@@ -64,9 +64,9 @@ def learn_unit(measured: Measured, unit: Unit) -> Unit:
     )  # fmt: skip
 
 
-def _listening(measured: Measured, unit: Unit) -> tuple[Fitted, Float[np.ndarray, " feature"]]:
-    """The fit that does not listen to ripple of speed and torques that is none of this gear, and by which factor the
-    variance of every line is larger for that.
+def _with_usable_ripple(measured: Measured, unit: Unit) -> tuple[Fitted, Float[np.ndarray, " feature"]]:
+    """The fit without ripple of speed and torques that the model does not describe, and the factor on the variance of
+    every line that removes this ripple.
     """
     unheard = np.ones(len(measured.layout))
     while True:
@@ -86,14 +86,14 @@ def _listening(measured: Measured, unit: Unit) -> tuple[Fitted, Float[np.ndarray
 def _as_it_is(measured: Measured, unit: Unit, drive: Fitted | None) -> Fitted:
     """The fit to recordings of the healthy gear, whatever drive and structure it has.
 
-    Which lines of speed and torques lie off, these alone tell; which of the gauges do is told twice, as those that were
-    missed have led the parameters astray before, the first time beside the drive as speed and torques have it.
+    Lines of speed and torques are learned from speed and torques only. Lines of the gauges are learned twice, because
+    missing lines bias the parameters at first.
     """
     position: Mapping[str, float] = {}
     held: list[str] = []
     of_drive = np.zeros(len(measured.layout))
     if drive is not None:
-        position, held = drive.calibrated.position, _well_told(drive)
+        position, held = drive.calibrated.position, _well_determined(drive)
         if drive.unit.learned is not None:
             of_drive[_of_drive(measured)] = drive.unit.learned
     fitted = fit(measured, _given(unit, of_drive), position=position, held=held)
@@ -111,8 +111,8 @@ def _given(unit: Unit, learned: Float[np.ndarray, " feature"]) -> Unit:
     return replace(unit, learned=learned) if learned.any() else unit
 
 
-def _well_told(drive: Fitted) -> list[str]:
-    """The unit's parameters that speed and torques alone tell to less than half a spread."""
+def _well_determined(drive: Fitted) -> list[str]:
+    """Parameters of the unit that speed and torques determine to less than half a prior standard deviation."""
     if not drive.calibrated.settled:
         return []
     return [name for name, parameter in drive.declared.items() if drive.deviation[name] < parameter.sd / 2]
@@ -121,8 +121,8 @@ def _well_told(drive: Fitted) -> list[str]:
 def _drive_alone(measured: Measured, unit: Unit) -> Fitted | None:
     """The fit to speed and torques alone, with those of their lines learned that are missed.
 
-    Gauges on quite another flex spline would lead the drive astray, and other equations of motion the gauges. Of the
-    lines ripple is learned first: while it is missed it leads friction astray, which is for the means to tell.
+    Gauges on another flex spline would bias the drive, and other equations of motion would bias the gauges. Ripple is
+    learned first: as lack of fit it would bias the friction, which the means determine.
     """
     heard = _of_drive(measured)
     if not heard.any():
@@ -148,7 +148,7 @@ def _of_drive(measured: Measured) -> Bool[np.ndarray, " feature"]:
 
 
 def _lie_off(fitted: Fitted) -> Float[np.ndarray, " feature"]:
-    """How far lines lie off that are missed, or were before."""
+    """Deviation of the lines with lack of fit, now or before."""
     measured, layout = fitted.measured, fitted.measured.layout
     sought = beyond_noise(measured, fitted.missed) > 1
     if fitted.unit.learned is not None:
@@ -166,7 +166,7 @@ def _lie_off(fitted: Fitted) -> Float[np.ndarray, " feature"]:
 
 
 def _structure(fitted: Fitted) -> float:
-    """How well the model knows what acts on the structure: as well as it has the lines of s1 to s4, which sit alike."""
+    """Structural error: that of the lines of s1 to s4, which have the same position relative to the lobes."""
     layout, learned, largest = fitted.measured.layout, fitted.unit.learned, largest_of(fitted)
     alike = [name for name in layout.channels if name in SENSORS[1:]]
     if learned is None or not alike:

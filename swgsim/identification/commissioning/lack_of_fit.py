@@ -11,12 +11,12 @@ from swgsim.storage.labelled_signals import SENSORS
 # Share of a channel's ripple that the model may leave unexplained of a healthy gear; with more it is not its own, if a
 # line of it is also missed by more than MISFIT: a ripple that is hardly more than noise may well be.
 UNEXPLAINED = 0.1
-# Of the lines that are said to be missed, the share that may be luck.
-LUCK = 0.05
+# False discovery rate of lines with lack of fit.
+FALSE_DISCOVERIES = 0.05
 
 
 def beyond_noise(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> Float[np.ndarray, " feature"]:
-    """How much larger the variance of every line is than noise and declared spreads make it; 1 where that is luck.
+    """Factor on the variance of every line by lack of fit; 1 where it is not significant.
 
     What the model misses is alike in all repeats of an operating point, and part of it in all recordings, which must
     not pass for as many witnesses; and it misses as much of each of the gauges s1 to s4, which sit alike.
@@ -25,7 +25,7 @@ def beyond_noise(measured: Measured, missed: Float[np.ndarray, "recording featur
     ----------
     measured : Measured
     missed : array (recording, feature)
-        In standard deviations of what is declared.
+        In declared standard deviations.
     """
     layout = measured.layout
     single, common = missed**2, len(missed) * missed.mean(axis=0) ** 2
@@ -35,7 +35,7 @@ def beyond_noise(measured: Measured, missed: Float[np.ndarray, "recording featur
     lines = [(alike == channel) & (layout.order == order) for channel, order in every]
     by_single = [chi2.sf(single[:, line].sum(), single[:, line].size) for line in lines]
     in_common = [chi2.sf(common[line].sum(), line.sum()) for line in lines]
-    missed_by = false_discovery_control([*by_single, *in_common]).reshape(2, -1) < LUCK
+    missed_by = false_discovery_control([*by_single, *in_common]).reshape(2, -1) < FALSE_DISCOVERIES
     beyond = np.ones(len(layout))
     for line, by_one, by_all in zip(lines, *missed_by, strict=True):
         if by_one:
@@ -72,7 +72,7 @@ def foreign_ripple(
 
 
 def require_own(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> None:
-    """Refuse a healthy gear of which the model leaves more than UNEXPLAINED of a channel's ripple, beyond noise."""
+    """Refuse a healthy gear if more than UNEXPLAINED of a channel's ripple is lack of fit."""
     shares = unexplained(measured, missed)
     poor = sorted(((share, name) for name, share in shares.items() if share > UNEXPLAINED), reverse=True)
     if poor:
@@ -80,5 +80,5 @@ def require_own(measured: Measured, missed: Float[np.ndarray, "recording feature
         raise ValueError(
             f"the model cannot be commissioned on these recordings: it leaves {differ} of the ripple unexplained, at "
             f"most {100 * UNEXPLAINED:.0f} % may be. Correct the gear file (load inertia J_out, "
-            "speed control), the zero of the angle or a channel that is none of this gear, or leave that channel out"
+            "speed control), the zero of the angle or a channel of another gear, or leave that channel out"
         )

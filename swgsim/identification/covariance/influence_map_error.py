@@ -1,8 +1,7 @@
-"""Where the structural model itself is inaccurate: the shape of each gauge's signal over the angle.
+"""Error of the influence maps: the structural model is a truss, not the real flex spline.
 
-A truss is not the flex spline. How far its influence maps s(psi, T) = A(psi) + T B(psi) may lie from those of the real
-gear is declared as a share of the gauge's largest line, order by order; recordings of the healthy gear then tell how
-far they do, and what is asked later is asked of the corrected maps.
+The prior deviation of the maps s(psi, T) = A(psi) + T B(psi) is a share of the gauge's largest line, order by order.
+Recordings of the healthy gear determine the deviation. Later fits use the corrected maps.
 """
 
 from collections.abc import Sequence
@@ -76,7 +75,7 @@ def form_columns(
     law, feature = np.nonzero(sizes)
     channel, line = np.divmod(feature, one)
     columns = np.zeros((len(situations), channels, one, len(law)))
-    # What is indexed comes first: (column, situation, one).
+    # Shape (column, situation, one).
     of_columns = followed[:, channel, law, :, line] * sizes[law, feature][:, None, None]
     columns[:, channel, :, np.arange(len(law))] = of_columns
     return columns.reshape(len(situations), len(layout), -1)
@@ -95,7 +94,7 @@ def _followed(
 
 
 def lines_of(sizes: Sizes, found: Float[np.ndarray, " column"], layout: Layout, gauges: GaugeSet) -> Lines:
-    """What the columns of :func:`form_columns` make together, each as large as it was found by these gauges."""
+    """Sum of the columns of :func:`form_columns` with the sizes that were found by these gauges."""
     by_law = np.zeros_like(sizes)
     own = sizes != 0
     by_law[own] = sizes[own] * found

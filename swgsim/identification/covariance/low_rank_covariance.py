@@ -108,7 +108,7 @@ class Covariance:
         return -0.5 * (float(white @ white) + self.log_determinant)
 
     def common_mean(self, X: np.ndarray) -> np.ndarray:
-        """The common errors (column,) that a residual (row,) tells, or each of several, in standard deviations."""
+        """Posterior mean of the common errors (column,), in standard deviations, given a residual (row,) or several."""
         mean = self._mean(X)
         return (
             mean if isinstance(self.base, Alone) else np.concatenate([self.base.common_mean(X - self.G @ mean), mean])
@@ -138,7 +138,7 @@ class Covariance:
         white = solve_triangular(L, weighed, lower=True)
         missed = solve_triangular(L, white, lower=True, trans=1)
         expected = np.array(r, copy=True)
-        expected[block] -= missed  # which tells no more than the others do
+        expected[block] -= missed
         return Expected(missed, float(np.log(np.diag(L)).sum() - 0.5 * white @ white), self.common_mean(expected))
 
 

@@ -1,4 +1,4 @@
-"""Errors of single recordings: noise, and errors that move many numbers of one recording and none of another."""
+"""Covariance of the errors of single recordings: noise, and errors that are correlated within one recording."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -70,9 +70,7 @@ class Alone:
         return float(np.log(self.variance).sum() + 2 * np.log(self._shares[1]).sum())
 
     def divergence(self, other: "Alone") -> float:
-        """What it costs on average over recordings to take errors like these for the other ones (Kullback and Leibler)
-        [nat]; kinds of error that noise hides, or that do the same, count as little as they tell.
-        """
+        """Kullback-Leibler divergence from the other covariance to this one, as the mean over recordings [nat]."""
         Q, _ = other._shares
         C = self.C.reshape(self.variance.size, -1)
         trace = (self.variance / other.variance).sum() - (Q**2 * self.variance[..., None]).sum()

@@ -1,4 +1,4 @@
-"""How large the errors of single recordings are: repeats tell it, or all recordings where nothing was ever repeated."""
+"""Standard deviations of the errors of single recordings, from repeats, or from all recordings without repeats."""
 
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
@@ -11,21 +11,20 @@ from swgsim.identification.covariance.low_rank_covariance import Covariance
 from swgsim.identification.covariance.recording_covariance import Alone
 from swgsim.identification.covariance.scatter import DOUBT, Scatter
 
-# Logarithms of the ratio to the known one between which a standard deviation is sought: 7 and 5 times as far as the
-# stated one is doubted, so they only keep the search from numbers too small or large to compute with (estimates).
+# Bounds of the logarithm of a standard deviation relative to the known one: 7 and 5 times its doubt. They only keep the
+# search away from numbers that are too small or too large to compute with (estimates).
 RATIOS = (-8.0, 6.0)
 
 
-class Told(NamedTuple):
-    """What numbers with noise of covariance V say of errors, kind after kind, that move them by B; the numbers come in
-    parts, each with errors of its own.
+class Statistics(NamedTuple):
+    """Sufficient statistics of errors that change data by B; noise has the covariance V, and parts are independent.
 
     Attributes
     ----------
     K : array (part, error, error)
         B' V^-1 B.
     F : array (part, error, column)
-        B' V^-1 X of columns X: what else may move these numbers, one standard deviation each, and the residual, last.
+        B' V^-1 X of columns X: other nuisance parameters, one standard deviation each, and the residual as the last.
     H : array (column, column)
         X' V^-1 X of all parts together.
     """
@@ -43,20 +42,20 @@ def from_repeats(
     groups: Sequence[object],
     known: Scatter,
 ) -> Scatter:
-    """The standard deviations that the repeats within each group are likeliest with, given what was known before.
+    """Maximum of the posterior of the standard deviations, from the repeats within each group (restricted likelihood).
 
-    What all recordings have in common, or follows temperature, time or load, may be what the model lacks, and tells
-    nothing of them (restricted likelihood).
+    Changes that all recordings have in common, or that follow temperature, time or load, may be lack of fit. They are
+    projected out.
 
     Parameters
     ----------
     residual : array (recording, feature)
-        Measured less predicted.
+        Measured minus predicted.
     variance : array (recording, feature)
         Of the white noise.
     directions : array (recording, feature, kind)
     trends : array (recording, feature, column)
-        Errors that are none of single recordings, one standard deviation each.
+        Errors that recordings share, one standard deviation each.
     groups : sequence
         Recordings of the same value are repeats of each other.
     known : Scatter
@@ -65,8 +64,10 @@ def from_repeats(
     if not len(contrasts):
         return known
     columns = np.concatenate([trends, residual[..., None]], axis=-1)
-    told = _told(directions[of_recording], np.tensordot(contrasts, columns, axes=1), contrasts**2 @ variance)
-    return _likeliest(told, known, len(contrasts))
+    statistics = _statistics(
+        directions[of_recording], np.tensordot(contrasts, columns, axes=1), contrasts**2 @ variance
+    )
+    return _likeliest(statistics, known, len(contrasts))
 
 
 def _helmert(groups: Sequence[object]) -> tuple[Float[np.ndarray, "contrast recording"], list[int]]:
@@ -92,9 +93,9 @@ def from_all(
     trends: Float[np.ndarray, "recording feature column"],
     known: Scatter,
 ) -> Scatter:
-    """The standard deviations that all recordings are likeliest with, given what was known before.
+    """Maximum of the posterior of the standard deviations, from all recordings.
 
-    For recordings of which none is repeated. What the model lacks can pass for scatter here, and so weighs less.
+    It is used without repeats. Lack of fit then looks like scatter and has less weight.
 
     Parameters
     ----------
@@ -104,27 +105,31 @@ def from_all(
         All other errors, those of fitted parameters among them (restricted likelihood).
     directions : array (recording, feature, kind)
     trends : array (recording, feature, column)
-        Errors that are none of single recordings, one standard deviation each.
+        Errors that recordings share, one standard deviation each.
     known : Scatter
     """
     common = common.with_columns(trends.reshape(len(residual), -1))
     B = common.whiten(Alone(common.alone.variance, directions).dense)
-    return _likeliest(_told(B[None], common.whiten(residual)[None, :, None], np.ones((1, len(residual)))), known, 0)
+    return _likeliest(
+        _statistics(B[None], common.whiten(residual)[None, :, None], np.ones((1, len(residual)))), known, 0
+    )
 
 
-def _told(
+def _statistics(
     B: Float[np.ndarray, "part row error"], X: Float[np.ndarray, "part row column"],
     variance: Float[np.ndarray, "part row"],
-) -> Told:  # fmt: skip
-    """What numbers tell whose noise is independent."""
+) -> Statistics:  # fmt: skip
+    """Sufficient statistics of data with independent noise."""
     weighted, across = X / variance[..., None], B.transpose(0, 2, 1)
-    return Told(across @ (B / variance[..., None]), across @ weighted, np.tensordot(X, weighted, ((0, 1), (0, 1))))
+    return Statistics(
+        across @ (B / variance[..., None]), across @ weighted, np.tensordot(X, weighted, ((0, 1), (0, 1)))
+    )
 
 
-def _likeliest(told: Told, known: Scatter, contrasts: int) -> Scatter:
+def _likeliest(statistics: Statistics, known: Scatter, contrasts: int) -> Scatter:
     known_sd, precision = np.array(list(known.sd.values())), np.linalg.inv(known.doubt)
     kinds = len(known_sd)
-    K, F, H = told
+    K, F, H = statistics
     H = H + np.diag(np.append(np.ones(len(H) - 1), 0.0))
 
     def cost(log_ratio: np.ndarray) -> tuple[float, np.ndarray]:
@@ -153,7 +158,7 @@ def _likeliest(told: Told, known: Scatter, contrasts: int) -> Scatter:
 
 
 def _doubt(slope: Callable[[np.ndarray], np.ndarray], x: Float[np.ndarray, " kind"]) -> Float[np.ndarray, "kind kind"]:
-    """Inverse of the curvature (Laplace), which is at least that of what was stated."""
+    """Inverse of the curvature (Laplace), at least that of the prior."""
     step = 1e-3
     moved = step * np.eye(len(x))
     curvature = np.array([(slope(x + by) - slope(x - by)) / (2 * step) for by in moved])

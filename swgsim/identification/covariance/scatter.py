@@ -1,4 +1,4 @@
-"""Errors of single recordings: what differs from one repeat to the next although nothing about the gear has changed."""
+"""Errors of single recordings: differences between repeats of the same gear at the same operating point."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -15,8 +15,8 @@ from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model, Situation, predict
 
 # Standard deviations that a test bench would state (conf/condition/bench.yaml); repeats correct them. The beat is the
-# part of the kinematic error that turns with the circular spline, 2 (1 - 1 / (N + 1)) waves per revolution, which 12 of
-# them cannot tell from order 2 of another phase in every recording (physics.md 1.2); its size is an estimate.
+# part of the kinematic error that turns with the circular spline, 2 (1 - 1 / (N + 1)) waves per revolution, which 12
+# revolutions cannot separate from order 2 with a random phase (physics.md 1.2); its size is an estimate.
 STATED = {
     "load": 0.005,
     "speed": 0.001,
@@ -34,9 +34,9 @@ STATED = {
 DOUBT = np.log(3.0)
 # Those found by commissioning hold on another day to this factor.
 CARRIED = np.log(1.5)
-# What is common to all recordings, or follows their temperature, time or load, is no error of single ones. It may go as
-# far, in standard deviations as stated: per kelvin as thermal output, at full load as the gain of a gauge does within
-# its bounds, which for friction and torques is wide; the other two are estimates.
+# Changes common to all recordings, or in proportion to temperature, time or load, are not errors of single recordings.
+# Their prior, in stated standard deviations: per kelvin as thermal output, at full load as the gain of a gauge within
+# its bounds (wide for friction and torques); the other two are estimates.
 COMMON, PER_KELVIN, PER_HOUR, AT_FULL_LOAD = 20.0, 5.0, 20.0, 100.0
 # Step of the differences: small against any nonlinearity, large against rounding.
 STEP, BEAT_STEP = 1e-3, 1e-6
@@ -69,7 +69,7 @@ class Scatter:
 
     @property
     def carried(self) -> "Scatter":
-        """What it says of recordings of another day."""
+        """The prior for recordings of another session."""
         return replace(self, doubt=self.doubt + CARRIED**2 * np.eye(len(self.doubt)))
 
     def drawn(self, rng: np.random.Generator, draws: int) -> Float[np.ndarray, "kind draw"]:
@@ -132,7 +132,7 @@ def directions(
 
 
 def of_recordings(model: Model, measured: Measured) -> Float[np.ndarray, "recording feature kind"]:
-    """How each recording moves with a unit of every error; the trigger turns what was recorded, not the model."""
+    """Change of each recording per unit of every error; the trigger turns recorded lines, not predicted ones."""
     moves = directions(model, measured.situations, measured.layout)[measured.of_recording]
     moves[..., kinds(measured.layout).index("trigger")] = measured.turning
     return moves

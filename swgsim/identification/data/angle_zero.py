@@ -1,7 +1,7 @@
 """Whether the recorded angle is zero where the model has it: the major axis of the wave generator at gauge s1.
 
-An encoder's zero is wherever it was mounted, so that of the healthy gear is told and taken out of all recordings. One
-that moved since then is refused: it would pass for something that the gear has.
+The zero of an encoder depends on its mounting. It is estimated from the healthy gear and subtracted from all
+recordings. A zero that moved since then is refused, because it would look like an effect.
 """
 
 from collections.abc import Iterator, Sequence
@@ -20,17 +20,17 @@ from swgsim.storage.labelled_signals import SENSORS
 
 
 def zero_of(recordings: Sequence[Recording], model: Model) -> float:
-    """The angle by which all recordings are ahead of a gear [rad], up to half a turn; 0 if a unit may explain it.
+    """Angle by which recordings are ahead of a gear [rad], up to half a turn; 0 if the spread of units may explain it.
 
-    From order 2 of s1 to s4, each weighed by its amplitude, so that errors of single gauges average out. Two lobes tell
-    it up to half a turn, and no odd order helps: those of a unit have phases of their own.
+    It is estimated from order 2 of s1 to s4, weighted by amplitude, so that errors of single gauges average out. With
+    two lobes, half a turn remains ambiguous.
 
     Parameters
     ----------
     recordings : sequence of Recording
         With the same channels, ``phi_in`` among them.
     model : Model
-        The nominal gear with what is declared.
+        The nominal gear with the declared effects.
     """
     layout = Layout(tuple(sensor for sensor in SENSORS[1:] if sensor in recordings[0].channels))
     if not layout.channels:

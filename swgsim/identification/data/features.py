@@ -1,4 +1,4 @@
-"""What the loop looks at: order lines of every channel over the angle of the wave generator.
+"""Features of recordings: order lines of every channel over the angle of the wave generator.
 
 A recording becomes one vector: channel by channel the mean, the cosine parts and the sine parts of the orders 1 to
 ORDERS, fitted by least squares over all its samples. So neither the speed ripple nor a window that ends within a
@@ -13,10 +13,10 @@ from jaxtyping import Complex, Float
 
 from swgsim.recordings.recording import Recording
 
-# Highest order that is compared, and highest that is fitted beside it so that it does not leak.
+# Highest order that is compared; and highest order that is fitted, to prevent leakage.
 ORDERS = 12
 FITTED = 16
-# Fewest samples per revolution that tell all these orders from each other.
+# Smallest number of samples per revolution that separates all these orders.
 DENSE = 2 * FITTED + 1
 # The angle itself is what all other channels are plotted against.
 COMPARED = ("n_in", "T_in", "T_out", "s0", "s1", "s2", "s3", "s4")
@@ -106,7 +106,7 @@ def features_alike(recordings: Sequence[Recording], layout: Layout) -> Float[np.
 
 
 def remainder(recording: Recording, layout: Layout) -> Float[np.ndarray, "channel time"]:
-    """What the integer orders up to FITTED leave of every channel; raises like :func:`features`."""
+    """Remainder of every channel after the integer orders up to FITTED; raises like :func:`features`."""
     columns = basis(recording.channels["phi_in"], FITTED)
     values = _values(recording, layout)
     return (values - columns @ np.linalg.solve(columns.T @ columns, columns.T @ values)).T

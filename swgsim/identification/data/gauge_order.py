@@ -1,7 +1,7 @@
 """Whether gauges that sit opposite one another are exchanged against the commissioning.
 
-The two lobes pass both of them at once, so a model cannot tell which is which. But those of one unit differ a little,
-by their gains and places: with exchanged cables that difference has the other sign.
+The two lobes pass opposite gauges at the same time, so a model cannot distinguish them. The gauges of a unit differ a
+little in gain and position. With exchanged cables, this difference changes its sign.
 """
 
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ def order_defects(recordings: Sequence[Recording], healthy: Sequence[Recording])
     Parameters
     ----------
     recordings, healthy : sequence of Recording
-        With the same channels. Operating points that both have are compared; without any, nothing is told.
+        With the same channels. Only common operating points are compared; without any, the result is empty.
     """
     common = {each.point for each in recordings} & {each.point for each in healthy}
     there = [pair for pair in OPPOSITE if common and set(pair) <= set(recordings[0].channels)]

@@ -1,4 +1,4 @@
-"""What was measured, made ready for the loop: features, situations, noise, and the errors that recordings share."""
+"""Measurements as data of the fit: order lines, situations, noise, and errors that recordings share."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -26,17 +26,16 @@ OF_SESSION = {
     **{f"gain of s{sensor}": 0.0003 for sensor in range(5)},
     **{f"drift of s{sensor}": 0.002 for sensor in range(5)},
 }
-# Beside its drift the zero of a gauge wanders at random, as in a room that is not quite steady [mV/V per square root of
-# an hour, an estimate]. What so large a part of the variance is made of is kept; the rest is as of single recordings.
+# Random walk of the zero of a gauge, in addition to its drift, as in a room with unsteady temperature [mV/V per square
+# root of an hour, an estimate]; and the share of its variance that the retained paths must explain.
 WANDER, KEPT = 0.001, 0.95
-# Zeros that lie further off may wander more too, but at most so many times as declared, as on a noisy bench (an
-# estimate): balancing moves them once.
+# Zeros that lie further off may wander more too, up to this factor (an estimate): balancing moves them only once.
 MOST_WANDER = 4.0
 
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """Recordings as the loop sees them.
+    """Recordings as data vectors of order lines.
 
     Attributes
     ----------
@@ -46,8 +45,8 @@ class Measured:
     variance : array (recording, feature)
         Of the noise.
     zeros : float
-        So many times as far as declared may the zeros of gauges lie, as where the bridges were balanced anew, and up to
-        MOST_WANDER times as much may they wander.
+        Factor on the declared deviation of the zeros of gauges, as after balancing the bridges; it also applies to
+        their random walk, up to MOST_WANDER.
     """
 
     recordings: tuple[Recording, ...]
@@ -70,7 +69,7 @@ class Measured:
     def further(
         self, session: str, situations: Sequence[Situation], predicted: Float[np.ndarray, "situation feature"]
     ) -> "Measured":
-        """What recordings yet to be made in a session are predicted to be, without noise."""
+        """Planned recordings of a session, with predicted values and without noise."""
         recordings = tuple(
             Recording(f"planned {i}", "", session, each.point, 1, np.empty(0), {}, each.conditions)
             for i, each in enumerate(situations)
@@ -89,7 +88,7 @@ class Measured:
 
     @cached_property
     def turning(self) -> Float[np.ndarray, "recording feature"]:
-        """Change of what was recorded by a radian of the angle; a model's lines may lie a little elsewhere."""
+        """Change of the recorded lines per radian of the angle."""
         return self.layout.turning(self.values)
 
     @property
@@ -104,11 +103,11 @@ class Measured:
 
     @property
     def spare(self) -> int:
-        """Recordings beyond the first one of each: what they differ by tells noise, and 0 where nothing is repeated."""
+        """Degrees of freedom of the repeats, which give the noise; 0 without repeats."""
         return len(self) - len(set(self.repeats))
 
     def rows(self, of_situation: Float[np.ndarray, "situation feature *column"]) -> np.ndarray:
-        """What belongs to situations, as rows (recording, feature), one below the other."""
+        """Values of situations as rows (recording, feature), one below the other."""
         whole = of_situation[self.of_recording]
         return whole.reshape(whole.shape[0] * whole.shape[1], *whole.shape[2:])
 
@@ -131,7 +130,7 @@ class Measured:
         ----------
         predicted : array (situation, feature)
         known : Measured, optional
-            Recordings of the same sessions by whose errors these are told; without them there are no others.
+            Recordings of the same sessions that determine these errors; by default these recordings.
         """
         known = known or self
         layout = self.layout
@@ -168,8 +167,8 @@ class Measured:
         zeros, walks = [np.zeros((self.values.size, 0))], [np.zeros((self.values.size, 0))]
         for session in known.sessions:
             here = self._here(session)
-            told = np.array([r.conditions.elapsed / 3600 for r in known.recordings if r.session == session])
-            paths = _walks(told, self._hours * here)
+            known_hours = np.array([r.conditions.elapsed / 3600 for r in known.recordings if r.session == session])
+            paths = _walks(known_hours, self._hours * here)
             for gauge in gauges:
                 mean = self._mean_of(gauge)
                 zeros.append(OF_SESSION[f"zero of {gauge}"] * np.outer(here, mean).reshape(-1, 1))
@@ -191,14 +190,16 @@ class Measured:
 
 
 def _wandering(zeros: float) -> float:
-    """So many times as far as declared do the zeros of gauges wander that may lie so many times as far off."""
+    """Factor on the random walk of zeros, from the factor on their deviation."""
     return min(zeros, MOST_WANDER)
 
 
-def _walks(told: Float[np.ndarray, " one"], hours: Float[np.ndarray, "other 1"]) -> Float[np.ndarray, "path other"]:
-    """The paths of which a random walk is made up as it is told at some times (Karhunen-Loeve), at other times."""
-    values, vectors = np.linalg.eigh(np.minimum.outer(told, told))
+def _walks(
+    known_hours: Float[np.ndarray, " one"], hours: Float[np.ndarray, "other 1"]
+) -> Float[np.ndarray, "path other"]:
+    """Karhunen-Loeve modes of a random walk that is observed at some times, evaluated at other times."""
+    values, vectors = np.linalg.eigh(np.minimum.outer(known_hours, known_hours))
     largest = np.argsort(-values)
     beyond = np.cumsum(values[largest]) - values[largest] > KEPT * values.sum()
     kept = largest[~beyond & (values[largest] > 0)]
-    return WANDER * (np.minimum(told, hours) @ (vectors[:, kept] / np.sqrt(values[kept]))).T
+    return WANDER * (np.minimum(known_hours, hours) @ (vectors[:, kept] / np.sqrt(values[kept]))).T

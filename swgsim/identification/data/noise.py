@@ -22,7 +22,7 @@ from swgsim.recordings.recording import Recording
 RESOLVED, FINEST = 1e-4, 1e-6
 # Lines this close to an integer order may hold what leaks from it [lines of the spectrum].
 GUARD = 1.5
-# Fewest lines between the orders of one recording that tell a noise.
+# Smallest number of interharmonic lines of a recording from which noise is estimated.
 FEWEST = 8
 # Mean of the logarithm of a periodogram line over its expectation: minus Euler's constant.
 LOG_MEAN = -0.5772156649
@@ -37,7 +37,7 @@ class Floor:
     white : float
         Variance of the white part [unit squared].
     slow : float
-        What the slow part adds to it at frequency 0.
+        Additional level of the slow part at frequency 0.
     corner : float
         Above it the slow part falls off [Hz].
     """
@@ -68,7 +68,7 @@ def floors(recordings: Sequence[Recording], layout: Layout) -> list[Floor]:
 def variance(
     recordings: Sequence[Recording], layout: Layout, noise: Sequence[Floor]
 ) -> Float[np.ndarray, "recording feature"]:
-    """Variance of every feature by noise, and by what the channels resolve at all."""
+    """Variance of every feature by noise and by the resolution of the channels."""
     found = []
     for recording in recordings:
         columns = basis(recording.channels["phi_in"], ORDERS)

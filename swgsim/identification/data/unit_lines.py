@@ -110,7 +110,7 @@ class OwnLines(Effect):
         return {**channels, **{name: channels[name] + wave for name, wave in zip(drive, waves, strict=True)}}
 
     def _basis(self, scene: Scene) -> Float[np.ndarray, "column time"]:
-        """What the orders of the lines are over time."""
+        """The cosine and sine of the lines' orders over time."""
         return _orders(scene.phi_in.tobytes(), self.lines.values.shape[-1] - 1)
 
 

@@ -1,8 +1,7 @@
-"""Errors of a model on what it was fitted to and on what was left out, and the noise floor of repeats.
+"""Errors of a model for fitted and for left-out recordings, and the noise floor from repeats.
 
-Zeros and gains of sessions, and what is left open of the gear, are no error of a model. They are taken out, where the
-other operating points, or recordings, tell that the best model has them, of this model and of that before it, which
-would hide in them what it lacks.
+Nuisance parameters, such as zeros and gains of sessions, are not errors of a model. They are estimated with the final
+model from the other operating points or recordings, and subtracted from the errors before and after.
 """
 
 from collections.abc import Sequence
@@ -25,7 +24,7 @@ class Errors:
     ----------
     fitted : Fitted
     best : Fitted
-        Of which the nuisance is taken that is no error.
+        The final model, whose nuisance parameters are subtracted.
     """
 
     fitted: Fitted
@@ -33,7 +32,7 @@ class Errors:
 
     @cached_property
     def fit(self) -> Float[np.ndarray, "recording channel"]:
-        """Of what the model was fitted to."""
+        """Errors of the fitted recordings."""
         return self._of(self.fitted.residual, self.best.nuisance)
 
     @cached_property
@@ -59,10 +58,10 @@ def of_points_left_out(fitted: Fitted) -> Float[np.ndarray, " point"]:
     return np.array([np.sqrt(weighed[block].mean()) for block in fitted.measured.point_rows()])
 
 
-def _left_out(fitted: Fitted, told: Sequence[tuple[np.ndarray, Expected]]) -> Float[np.ndarray, " row"]:
+def _left_out(fitted: Fitted, expectations: Sequence[tuple[np.ndarray, Expected]]) -> Float[np.ndarray, " row"]:
     """Errors of every block of rows by the model fitted to all others; NaN in no block."""
     missed = np.full(len(fitted.residual), np.nan)
-    for block, expected in told:
+    for block, expected in expectations:
         parameters = expected.common[len(expected.common) - len(fitted.parameters) :]
         missed[block] = fitted.from_start[block] - fitted.J[block] @ parameters
     return missed
@@ -95,7 +94,7 @@ def relative(measured: Measured, error: Float[np.ndarray, "*recording channel"])
 
 
 def rms(error: np.ndarray) -> float:
-    """Root mean square of what is known; NaN where nothing is."""
+    """Root mean square of the known values; NaN if there are none."""
     known = error[np.isfinite(error)]
     return float(np.sqrt(np.mean(known**2))) if known.size else np.nan
 

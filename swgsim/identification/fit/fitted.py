@@ -22,7 +22,7 @@ BALANCED, LIKELIER_BALANCED = (2.0, 4.0, 8.0, 16.0), 3.0
 
 
 class Allowed(NamedTuple):
-    """What is open beside the unit, one standard deviation each.
+    """Additional nuisance directions, one standard deviation each.
 
     Attributes
     ----------
@@ -48,22 +48,23 @@ class Allowed(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Fitted:
-    """A model calibrated to what was measured.
+    """A model that is fitted to measurements.
 
     Attributes
     ----------
     measured : Measured
     unit : Unit
     parameters : mapping
-        What was fitted, with its spread.
+        Fitted parameters with their prior standard deviations.
     calibrated : Calibrated
     scatter : Scatter
     errors : Covariance
         Noise, errors of single recordings and of sessions; rows (recording, feature).
     open : array (row, direction)
-        What the unit leaves open beside the fitted parameters (:meth:`Unit.left_open`), one standard deviation each.
+        Nuisance directions of the unit besides the fitted parameters (:meth:`Unit.left_open`), one standard deviation
+        each.
     offset : array (row,)
-        Where commissioning found the recordings beside the model, by what is not in it: frictions, lags, zeros.
+        Offset of the recordings from the model as found by commissioning, for example by lags and zeros.
     allowed : Allowed
     """
 
@@ -126,7 +127,7 @@ class Fitted:
         if [columns.shape for columns in allowed] == [columns.shape for columns in self.allowed]:
             return self  # columns come, or go all at once
         found = replace(self, allowed=allowed)
-        vars(found)["of_unit"] = self.of_unit  # the same, and most of what there is to compute
+        vars(found)["of_unit"] = self.of_unit  # unchanged, and most of the computing time
         return found
 
     def scattering(self, scatter: Scatter) -> "Fitted":
@@ -168,12 +169,12 @@ class Fitted:
 
     @cached_property
     def of_unit(self) -> Covariance:
-        """All errors, with what the unit leaves open."""
+        """Covariance of all errors and of the nuisance directions of the unit."""
         return self.errors.with_columns(self.open)
 
     @property
     def of_nuisances(self) -> Covariance:
-        """All errors, with everything open beside the fitted parameters."""
+        """Covariance of all errors and of all nuisance directions besides the fitted parameters."""
         return self.of_unit.with_columns(self.allowed.columns)
 
     @cached_property
@@ -207,21 +208,21 @@ class Fitted:
         """
         return self.nuisance_by(self.by_others)
 
-    def nuisance_by(self, told: Sequence[tuple[np.ndarray, Expected]]) -> Float[np.ndarray, " row"]:
-        """The same of other blocks of rows, as all rows outside each tell it; nothing in no block."""
+    def nuisance_by(self, expectations: Sequence[tuple[np.ndarray, Expected]]) -> Float[np.ndarray, " row"]:
+        """The same for other blocks of rows, estimated from all rows outside each block; zero outside the blocks."""
         made, columns = np.zeros(len(self.residual)), self.of_nuisances.columns
-        for block, expected in told:
+        for block, expected in expectations:
             made[block] = columns[block] @ expected.common[: columns.shape[1]]
         return made
 
     @property
     def missed(self) -> Float[np.ndarray, "recording feature"]:
-        """Residual weighed by what is declared of it, in standard deviations."""
+        """Residual in declared standard deviations."""
         return self.whole.whiten_in_place(self.from_start).reshape(self.measured.values.shape)
 
     @property
     def misfit(self) -> dict[str, float]:
-        """Mean square of every channel's residual in units of what is declared of it: 1 where the model is right."""
+        """Mean square of every channel's residual in declared variances: 1 where the model is right."""
         layout = self.measured.layout
         square = (self.missed**2).mean(axis=0)
         return {channel: float(square[layout.channel == channel].mean()) for channel in layout.channels}

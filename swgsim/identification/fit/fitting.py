@@ -1,4 +1,4 @@
-"""Fit of what is not known of a model to recordings, in turns with the errors of single recordings."""
+"""Fit of the parameters to recordings, in turns with the standard deviations of single recordings."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
@@ -18,8 +18,8 @@ from swgsim.identification.fit.map_fit import Calibrated, calibrate, linearised
 from swgsim.identification.fit.priors import Declared, at, of_effects
 from swgsim.identification.fit.unit import Unit
 
-# A parameter of a unit that was fitted so many spreads from its declared value was bent by what the model lacks, if a
-# channel is still missed by so many times what is declared of it (mean squares), which is no matter of noise.
+# A parameter counts as biased by lack of fit if it lies this many prior standard deviations off, while the mean square
+# of a channel exceeds its declared value by this factor.
 BENT, MISFIT = 5.0, 10.0
 # Turns at most; they end where the errors of single recordings that parameters were fitted beside cost less than this
 # over those estimated then [nat per recording]: one kind that is a third too small or large costs as much (estimates).
@@ -39,7 +39,7 @@ def fit(
     guess: Scatter | None = None,
     turns: int = TURNS,
 ) -> Fitted:
-    """Fit what is not known, and estimate the errors of single recordings, in turns.
+    """Fit the parameters, and estimate the standard deviations of single recordings, in turns.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def fit(
     held : collection of str
         Parameters of the unit that are not fitted but stay where they begin.
     guess : Scatter, optional
-        Errors of single recordings that repeats told beside another model.
+        Standard deviations of single recordings from the repeats, found with another model.
     turns : int
         So many at most; where nothing was repeated, fewer.
     """
@@ -63,8 +63,8 @@ def fit(
     parameters = parameters | of_effects(start, unit.of_another_structure)
     known = unit.scatter.carried if unit.scatter else Scatter.stated(measured.layout)
     fixed = _Fixed(measured, unit, start, parameters, known, allowed or Allowed.nothing(measured.values.size))
-    guess = guess if guess and fixed.told else known
-    for _ in range(turns if fixed.told else min(turns, UNREPEATED)):
+    guess = guess if guess and fixed.has_repeats else known
+    for _ in range(turns if fixed.has_repeats else min(turns, UNREPEATED)):
         found = _turn(fixed, begin, guess)
         near = found.errors.alone.divergence(found.scattering(guess).errors.alone) < SAME_SCATTER
         if near and found.calibrated.settled:
@@ -86,8 +86,8 @@ class _Fixed(NamedTuple):
     allowed: Allowed
 
     @property
-    def told(self) -> bool:
-        """Whether repeats tell the errors of single recordings, these ones or those of the commissioning."""
+    def has_repeats(self) -> bool:
+        """Whether repeats, here or in the commissioning, determine the errors of single recordings."""
         return self.unit.scatter is not None or self.measured.spare > 0
 
 
@@ -110,7 +110,7 @@ def _turn(fixed: _Fixed, begin: Mapping[str, float], guess: Scatter) -> Fitted:
     )  # fmt: skip
     residual = values - calibrated.predicted[measured.of_recording]
     trends = scatter.trends(moves, [measured.situations[i] for i in measured.of_recording], measured.layout)
-    if fixed.told:
+    if fixed.has_repeats:
         estimated = repeats.from_repeats(residual, noise, moves, trends, measured.repeats, fixed.known)
     else:
         J = measured.rows(calibrated.J).reshape(residual.size, -1)

@@ -12,7 +12,7 @@ from swgsim.identification.covariance.low_rank_covariance import as_squares
 from swgsim.identification.data.model import predict
 from swgsim.identification.fit.fitted import Fitted
 
-# Log-likelihood by which one explanation is told from another, or from none.
+# Difference of log-likelihoods that separates two explanations, or one from none.
 LEAST_GAIN = 3.0
 # What has no name comes before an effect only if it explains more than it does by this much, as a sum of squares, and
 # by this share.
@@ -22,7 +22,7 @@ OUTDONE, OUTDONE_SHARE = 17.0, 0.05
 FORM_TOLERANCE = 0.2
 # Load below which a power of it is that of this one [N m].
 LEAST_LOAD = 1.0
-# Shares of which the likeliest is sought.
+# Form errors of which the most probable one is selected.
 FORM_ERRORS = np.append(0.0, np.geomspace(1e-3, 10, 200))
 # Shares of its declared inaccuracy that a structure of another author's may need for the form of an effect.
 INACCURATE = (0.1, 0.3, 1.0)

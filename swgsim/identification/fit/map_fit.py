@@ -78,10 +78,10 @@ def calibrate(
     start : Model
         Where the spreads are counted from.
     parameters : mapping
-        What is fitted, with its spread.
+        Fitted parameters with their prior standard deviations.
     measured : array (recording, feature)
     errors : Covariance
-        All errors and what is open beside the parameters, rows (recording, feature).
+        Covariance of all errors and nuisance directions, rows (recording, feature).
     situations : sequence of Situation
     of_recording : array (recording,)
         Which situation belongs to each recording.

@@ -1,4 +1,4 @@
-"""How uncertain an effect is whose shape the recordings hardly tell: averaged over its shapes, as likely as each is."""
+"""Uncertainty of an effect whose shape is poorly determined: averaged over shapes, weighted by their probability."""
 
 import numpy as np
 from jaxtyping import Float

@@ -128,7 +128,7 @@ class Unit:
         layout: Layout,
         parameters: Mapping[str, Declared] | None = None,
     ) -> "LeftOpen":
-        """Prediction of a model of this unit, and all directions in which it may still lie elsewhere.
+        """Prediction of a model of this unit, and its nuisance directions.
 
         Parameters
         ----------
@@ -136,7 +136,7 @@ class Unit:
         situations : sequence of Situation
         layout : Layout
         parameters : mapping, optional
-            Those that are fitted.
+            Fitted parameters.
         """
         declared = self.declared
         # During commissioning these are fitted; only friction is needed here, which follows the temperature.
@@ -156,7 +156,7 @@ class Unit:
         return LeftOpen(predicted, shift, open_ if self.reach is None else open_ @ self.reach, of_parameters)
 
     def form(self, predicted: Float[np.ndarray, "situation feature"], layout: Layout) -> Sizes:
-        """How far lines may deviate by the maps, and by what of them is learned: the last of the directions."""
+        """Prior standard deviations of lines, by influence maps and by learning: the last of the directions."""
         largest = self.largest or largest_lines(predicted, layout)
         of_maps = STRUCTURE * np.array([largest.get(channel, 0.0) for channel in layout.channel])
         return sizes_of(of_maps, self.powers, np.zeros(len(layout)) if self.learned is None else self.learned)
@@ -164,7 +164,7 @@ class Unit:
     def open_of(
         self, signature: Float[np.ndarray, "situation feature"], layout: Layout
     ) -> Float[np.ndarray, "situation feature column"]:
-        """What an inaccurate structural model leaves open of an effect: its lines lie further off than the maps'.
+        """Nuisance directions of an effect by the structural error, which is larger for its lines than for the maps.
 
         A share of each part is no tolerance for parts that are small because others cancel in them; another structure
         has them quite different. Where the structure is as accurate as declared, this is far below the tolerance of
@@ -176,13 +176,13 @@ class Unit:
 
 
 def _driving(model: Model) -> Model:
-    """The model whose torques are those that the structure feels, and not what a flange makes of them."""
+    """The model with the torques on the structure, without errors of torque flanges."""
     return replace(model, own_lines=None, effects=tuple(e for e in model.effects if not overrides(e, "acquisition")))
 
 
 class LeftOpen(NamedTuple):
-    """Prediction of a model, the shift from it that commissioning found, what the unit leaves open (one standard
-    deviation each), and the change by one spread of each fitted parameter.
+    """Prediction of a model, its shift by commissioning, the nuisance directions of the unit (one standard deviation
+    each), and the change by one prior standard deviation of each fitted parameter.
     """
 
     predicted: Float[np.ndarray, "situation feature"]

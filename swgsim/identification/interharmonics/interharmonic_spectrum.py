@@ -21,8 +21,8 @@ from swgsim.storage.labelled_signals import SENSORS
 SEEN = 1e-3
 # Samples per revolution at which patterns are computed; more than twice the orders that are fitted.
 SAMPLES = 48
-# The noise beside a line is that of so many lines of the spectrum to either side.
-BESIDE = 6
+# Number of spectral lines on either side from which the noise next to a line is estimated.
+NEIGHBOURS = 6
 # The noise beside a line is what was estimated of all lines together, as so many numbers would say it.
 ALL_TOGETHER = 20
 # Orders close to which circular spline and flex spline beat: 2 in the torque, which lobes make 0 and 4 in gauges.
@@ -38,14 +38,14 @@ class Explained(NamedTuple):
     """What an effect explains of one recording.
 
     ``gain``, a sum of squares in units of the noise, by so many numbers of ``freedom``; at its own size it would bring
-    ``size``. ``rest`` is the sum of squares of what is left beside its lines, in ``beside`` numbers.
+    ``size``. ``rest`` is the sum of squares of what is left beside its lines, in ``noise_numbers`` numbers.
     """
 
     gain: float
     freedom: int
     size: float
     rest: float
-    beside: float
+    noise_numbers: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,9 +65,9 @@ class Between:
     clear : array (line,)
         Lines that no integer order leaks into.
     left : array (number,)
-        Real and imaginary parts of all lines of what the orders leave; 0 where they leak.
+        Real and imaginary parts of all spectral lines after the orders were removed; 0 where the orders leak.
     taken : array (number, direction)
-        Orthonormal directions of what was taken out: the ends of slow noise, and what was found already.
+        Orthonormal directions that were projected out: ends of slow noise, and lines that were found.
     """
 
     scene: Scene
@@ -108,8 +108,8 @@ class Between:
         )
         whole = scene_of(recording)
         signals = [np.array([recording.channels[gauge] for gauge in gauges]), *_ends(whole, noise)]
-        beside = _without(np.array(signals), np.linalg.qr(ordinary(whole, N))[0])
-        left, *ends = bare._numbers(bare._lines(beside[..., :length]))
+        remainder = _without(np.array(signals), np.linalg.qr(ordinary(whole, N))[0])
+        left, *ends = bare._numbers(bare._lines(remainder[..., :length]))
         # Each is of another gauge, in units of its own noise.
         return replace(bare, left=left)._taking(np.transpose([end / np.linalg.norm(end) for end in ends]))
 
@@ -139,10 +139,10 @@ class Between:
         U = _directions(pattern)
         along = U.T @ self.left
         holds = (U**2).sum(axis=1).reshape(-1, self.scale.shape[1]).sum(axis=0) > HELD
-        near = np.convolve(holds, np.ones(2 * BESIDE + 1), "same") > 0
-        beside = np.tile(near & self.clear, 2 * len(self.gauges))
-        rest = (self.left - U @ along)[beside]
-        count = beside.sum() - (U[beside] ** 2).sum() - (self.taken[beside] ** 2).sum()
+        near = np.convolve(holds, np.ones(2 * NEIGHBOURS + 1), "same") > 0
+        neighbours = np.tile(near & self.clear, 2 * len(self.gauges))
+        rest = (self.left - U @ along)[neighbours]
+        count = neighbours.sum() - (U[neighbours] ** 2).sum() - (self.taken[neighbours] ** 2).sum()
         size = float((pattern[0] ** 2).sum())
         return Explained(float(along @ along), U.shape[1], size, float(rest @ rest), float(count))
 
@@ -193,14 +193,14 @@ def between(recordings: Sequence[Recording], N: int | None = None) -> list[Betwe
     return [Between.of(recording, gauges, noise, N) for recording in recordings] if gauges else []
 
 
-def by_luck(gain: Sums, freedom: Sums, rest: Sums, beside: Sums) -> tuple[Sums, Sums]:
+def f_test(gain: Sums, freedom: Sums, rest: Sums, count: Sums) -> tuple[Sums, Sums]:
     """The noise at a line, in units of the floor, and the probability that it explains as much as the line does.
 
     The floor holds for the whole spectrum; beside a line the noise may be higher, and is never taken for lower. Given
     are sums over recordings of what :class:`Explained` holds.
     """
-    noise = np.maximum(1.0, (rest + ALL_TOGETHER) / (beside + ALL_TOGETHER))
-    return noise, f.sf(gain / noise / freedom, freedom, beside + ALL_TOGETHER)
+    noise = np.maximum(1.0, (rest + ALL_TOGETHER) / (count + ALL_TOGETHER))
+    return noise, f.sf(gain / noise / freedom, freedom, count + ALL_TOGETHER)
 
 
 def scene_of(recording: Recording, samples: slice = slice(None)) -> Scene:
@@ -241,7 +241,7 @@ def _alone(effect: Effect, scene: Scene, gauges: tuple[str, ...]) -> Float[np.nd
 
 
 def _ends(scene: Scene, noise: Sequence[Floor]) -> Float[np.ndarray, "gauge gauge time"]:
-    """What the ends of a recording make of slow noise, gauge by gauge.
+    """Leakage of slow noise by the ends of a recording, gauge by gauge.
 
     A spectrum goes on at the end where it began, so the step from the one to the other rings in all its lines, alike,
     and would pass for a line between them. It dies away as the noise forgets; without it the lines are independent.

@@ -10,7 +10,7 @@ from swgsim.effects.line_between import GAUGE_PATTERNS, LineBetween
 from swgsim.effects.quantity import quantities
 from swgsim.effects.regularity import LAWS
 from swgsim.identification.fit.form_error import LEAST_GAIN, OUTDONE, OUTDONE_SHARE
-from swgsim.identification.interharmonics.interharmonic_spectrum import Between, by_luck
+from swgsim.identification.interharmonics.interharmonic_spectrum import Between, f_test
 from swgsim.identification.interharmonics.named_interharmonics import by_law
 
 
@@ -93,8 +93,8 @@ class _Shown:
     @classmethod
     def of(cls, line: LineBetween, spectra: Sequence[Between]) -> "_Shown":
         """Of a line whose law is constant."""
-        gain, freedom, size, rest, beside = np.array([each.explained(line) for each in spectra]).T
-        noise, chance = by_luck(gain.sum(), max(freedom.sum(), 1.0), rest.sum(), beside.sum())
+        gain, freedom, size, rest, count = np.array([each.explained(line) for each in spectra]).T
+        noise, chance = f_test(gain.sum(), max(freedom.sum(), 1.0), rest.sum(), count.sum())
         explained = float(gain.sum() - noise * freedom.sum())
         return cls(line, spectra, gain / noise, freedom, size / noise, explained, float(chance))
 

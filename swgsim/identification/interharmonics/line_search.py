@@ -25,7 +25,7 @@ LEAST_SHAPE, WELL_SEEN = 1e-3, 0.5
 
 @dataclass(frozen=True, eq=False)
 class LinesBetween:
-    """What was found between the orders.
+    """Interharmonic lines that were found.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class LinesBetween:
 def search(
     spectra: Sequence[Between], kinds: Iterable[type[Effect]], level: float, known: Sequence[Effect] = ()
 ) -> LinesBetween:
-    """Lines between the orders, one after the other as long as one is too unlikely to be luck.
+    """Find interharmonic lines one after the other, as long as one is significant.
 
     Parameters
     ----------
@@ -121,14 +121,14 @@ def cleaned(recording: Recording, effects: Sequence[Effect], N: int | None = Non
 def _part(
     signal: Float[np.ndarray, " time"], seen: Float[np.ndarray, "time shape"], orders: Float[np.ndarray, "time column"]
 ) -> Float[np.ndarray, " time"]:
-    """The part of a signal that shapes explain beside the orders.
+    """The part of a signal that interharmonic shapes explain.
 
     Shapes that the orders nearly hold, such as those of order 12.01, or that nearly hold one another, are told apart by
     noise alone: least squares would give them any size. None is taken to be larger than those that are seen well are.
     """
     Q = np.linalg.qr(orders)[0]
-    left, beside = (each - Q @ (Q.T @ each) for each in (signal, seen))
-    U, s, V = svd(beside)
+    left, seen_left = (each - Q @ (Q.T @ each) for each in (signal, seen))
+    U, s, V = svd(seen_left)
     shown = s > LEAST_SHAPE * max(float(s[0]), 1e-300)
     U, s, V = U[:, shown], s[shown], V[shown]
     along = U.T @ left

@@ -13,7 +13,7 @@ from scipy.stats import chi2
 from swgsim.common.chi2_logsf import surprise
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Quantity, Role, quantities, size_of
-from swgsim.identification.interharmonics.interharmonic_spectrum import Between, by_luck
+from swgsim.identification.interharmonics.interharmonic_spectrum import Between, f_test
 
 # A line's size may differ from its law over load and speed by this share.
 TOLERANCE = 0.3
@@ -27,14 +27,14 @@ MOST_TRIED = 400
 
 @dataclass(frozen=True)
 class Sideline:
-    """An effect with random phases, beside what the recordings hold of it.
+    """An effect with random phases, with its estimates from the recordings.
 
     Attributes
     ----------
     effect : Effect
         At its estimated size; its phases mean nothing.
     gain : float
-        Sum of squares that it explains, in units of the noise beside its lines.
+        Explained sum of squares, in units of the noise next to its lines.
     freedom : int
         Numbers that this fits: a cosine and a sine per recording and independent phase.
     chance : float
@@ -44,7 +44,7 @@ class Sideline:
     agrees : float
         Probability that recordings differ so much from the effect's law, if that is right to TOLERANCE.
     explained : float
-        Sum of squares that it explains beyond the noise beside its lines, in units of the floor.
+        Explained sum of squares above the noise next to its lines, in units of the noise floor.
     """
 
     effect: Effect
@@ -57,7 +57,7 @@ class Sideline:
 
     @property
     def rank(self) -> float:
-        """How unlikely the gain is by luck."""
+        """Significance of the gain, for sorting."""
         return surprise(self.gain, self.freedom)
 
     @property
@@ -116,16 +116,16 @@ def _judged(effect: Effect, spectra: Sequence[Between], tried: int) -> Sideline:
     """One hypothesis at all recordings."""
     declared = quantities(type(effect))
     name = size_of(type(effect))
-    gain, freedom, size, rest, beside = np.array([each.explained(effect) for each in spectra]).T
+    gain, freedom, size, rest, count = np.array([each.explained(effect) for each in spectra]).T
     numbers = max(freedom.sum(), 1.0)
-    noise, luck = by_luck(gain.sum(), numbers, rest.sum(), beside.sum())
+    noise, p_value = f_test(gain.sum(), numbers, rest.sum(), count.sum())
     explained = float(gain.sum() - noise * freedom.sum())
     gain, size = gain / noise, size / noise
     share, expected, variance = by_law(gain, freedom, size)
     used = freedom > 0
     squares = (gain - expected)[used] ** 2 / variance[used]
     agrees = float(chi2.sf(squares.sum(), max(used.sum() - 1, 1)))
-    chance = float(min(1.0, tried * luck))
+    chance = float(min(1.0, tried * p_value))
     estimate = float(np.clip(getattr(effect, name) * np.sqrt(share), declared[name].low, declared[name].high))
     deviation = float(abs(getattr(effect, name)) / np.sqrt(max(size.sum(), 1e-300)))
     # The law may be off in every recording, and then so is the mean.

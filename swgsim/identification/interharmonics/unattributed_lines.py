@@ -1,4 +1,4 @@
-"""Lines between the integer orders that no effect of the library explains: at one order, or at one frequency."""
+"""Interharmonic lines without a known cause, at a constant order or at a constant frequency."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from swgsim.effects.line_between import FixedFrequency, FractionalOrder, LineBetween
 from swgsim.identification.data.features import FITTED
-from swgsim.identification.interharmonics.interharmonic_spectrum import BESIDE, Between, by_luck
+from swgsim.identification.interharmonics.interharmonic_spectrum import NEIGHBOURS, Between, f_test
 from swgsim.identification.interharmonics.line_pattern import Part, line_parts
 
 KINDS = ("order", "frequency")
@@ -21,7 +21,7 @@ SPILLED = 1
 
 @dataclass(frozen=True)
 class Unnamed:
-    """A line that stands out of the noise.
+    """A significant interharmonic line.
 
     Attributes
     ----------
@@ -30,13 +30,13 @@ class Unnamed:
     at : float
         Where it lies [-] or [Hz].
     chance : float
-        Of as much by noise anywhere.
+        p-value in a search of all places.
     explained : float
-        Sum of squares that it explains beyond the noise beside it, in units of the floor.
+        Explained sum of squares above the noise next to it, in units of the noise floor.
     reach : float
-        To which its place is known.
+        Uncertainty of its place.
     noise : float
-        Sum of squares that the noise beside it makes of its numbers, in units of the floor.
+        Sum of squares of the noise next to it, in units of the noise floor.
     parts : tuple of Part
         Its pattern over the gauges and its law; several if no pattern explains it.
     """
@@ -50,12 +50,12 @@ class Unnamed:
     parts: tuple[Part, ...] = ()
 
     def effects(self, gauges: Sequence[str]) -> list[LineBetween]:
-        """Whatever it may be in these gauges, its place being known to its reach."""
+        """Possible lines in these gauges within the uncertainty of its place."""
         places = self.at + self.reach * np.array([-1.0, 0.0, 1.0])
         return [line for place in places.tolist() for line in self._in(gauges, place)]
 
-    def told(self, spectra: Sequence[Between], level: float) -> "Unnamed":
-        """The line with its parts, where a gauge is a false one with this probability."""
+    def with_parts(self, spectra: Sequence[Between], level: float) -> "Unnamed":
+        """The line with its parts; a gauge is a false one with this probability."""
         make = partial(_line, self.kind, self.at)
         return replace(self, parts=line_parts(make, spectra, level))
 
@@ -89,14 +89,14 @@ class Unnamed:
 
 
 def _line(kind: str, place: float, pattern: str) -> LineBetween:
-    """A line of a size at which it is easily told from rounding."""
+    """A line of a size far above rounding."""
     if kind == "order":
         return FractionalOrder(1.0, pattern=pattern, order=place)
     return FixedFrequency(1.0, pattern=pattern, frequency=place)
 
 
 def unnamed(spectra: Sequence[Between], level: float) -> Unnamed | None:
-    """Of the lines that are too unlikely to be luck, the one that explains most, if there is any.
+    """The significant line with the largest explained sum of squares, or None.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def unnamed(spectra: Sequence[Between], level: float) -> Unnamed | None:
     """
     found = [line for kind in KINDS for line in _best(spectra, kind, level)] if spectra else []
     best = max(found, key=lambda line: line.explained, default=None)
-    return best.refined(spectra).told(spectra, level) if best else None
+    return best.refined(spectra).with_parts(spectra, level) if best else None
 
 
 def _best(spectra: Sequence[Between], kind: str, level: float) -> list[Unnamed]:
@@ -118,7 +118,7 @@ def _best(spectra: Sequence[Between], kind: str, level: float) -> list[Unnamed]:
     steps = [each.step if kind == "frequency" else 1 / each.revolutions for each in spectra]
     end = FITTED * max(1.0 if kind == "order" else each.revolutions * each.step for each in spectra)
     grid = np.arange(min(steps), end, min(steps) / 2)
-    gain, freedom, rest, beside, seen = np.zeros((5, len(grid)))
+    gain, freedom, rest, count, seen = np.zeros((5, len(grid)))
     for each, step in zip(spectra, steps, strict=True):
         line = np.round(grid / step).astype(int) - 1
         there = (line >= 0) & (line < len(each.clear))
@@ -126,15 +126,15 @@ def _best(spectra: Sequence[Between], kind: str, level: float) -> list[Unnamed]:
         power, numbers = each.power.sum(axis=0), 2.0 * len(each.gauges) * each.clear
         gain[there] += power[line[there]]
         freedom[there] += numbers[line[there]]
-        rest[there] += _beside(power)[line[there]]
-        beside[there] += _beside(numbers)[line[there]]
+        rest[there] += _neighbours(power)[line[there]]
+        count[there] += _neighbours(numbers)[line[there]]
         seen += there
     tried = np.flatnonzero(seen > len(spectra) / 2)
     if not len(tried):
         return []
-    gain, freedom, rest, beside = (each[tried] for each in (gain, freedom, rest, beside))
-    noise, luck = by_luck(gain, freedom, rest, beside)
-    chances = np.minimum(1.0, len(tried) * len(KINDS) * luck)
+    gain, freedom, rest, count = (each[tried] for each in (gain, freedom, rest, count))
+    noise, p_value = f_test(gain, freedom, rest, count)
+    chances = np.minimum(1.0, len(tried) * len(KINDS) * p_value)
     by_noise = noise * freedom
     explained = np.where(chances <= level, gain - by_noise, -np.inf)
     most = int(np.argmax(explained))
@@ -144,8 +144,8 @@ def _best(spectra: Sequence[Between], kind: str, level: float) -> list[Unnamed]:
     return [Unnamed(kind, float(grid[tried[most]]), *known)]
 
 
-def _beside(lines: Float[np.ndarray, " line"]) -> Float[np.ndarray, " line"]:
+def _neighbours(lines: Float[np.ndarray, " line"]) -> Float[np.ndarray, " line"]:
     """Sum over the lines to both sides of each, without those that may hold a part of it."""
-    window = np.ones(2 * BESIDE + 1)
-    window[BESIDE - SPILLED : BESIDE + SPILLED + 1] = 0
-    return np.convolve(np.pad(lines, BESIDE), window, "valid")
+    window = np.ones(2 * NEIGHBOURS + 1)
+    window[NEIGHBOURS - SPILLED : NEIGHBOURS + SPILLED + 1] = 0
+    return np.convolve(np.pad(lines, NEIGHBOURS), window, "valid")

@@ -62,7 +62,7 @@ def _nearest(answer: Answer) -> str:
     if answer.nearest is None:
         return ""
     known, share = " with ".join(map(effect_in_words, answer.nearest.effects)), 100 * answer.closed.nearest_explains
-    return f"; the nearest known effect is {known}; it explains {share:.0f} % of the remainder and was not accepted"
+    return f"; the nearest known effect ({known}) explains {share:.0f} % of the remainder and was not accepted"
 
 
 def _listed(names: Sequence[str], separator: str) -> str:

@@ -18,7 +18,7 @@ from swgsim.identification.data.model import Model, Situation
 from swgsim.identification.data.noise import RESOLVED, floors
 from swgsim.identification.data.unit_lines import laws
 from swgsim.identification.fit.form_error import FORM_TOLERANCE
-from swgsim.identification.interharmonics.interharmonic_spectrum import by_luck
+from swgsim.identification.interharmonics.interharmonic_spectrum import f_test
 from swgsim.identification.search.regularities import Atom, Described, other_laws
 from swgsim.recordings.recording import Recording
 
@@ -32,7 +32,7 @@ RANK = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Above:
-    """Lines beside what is known of them, in units of their noise.
+    """Remainder of the lines after model and healthy gear, in units of their noise.
 
     Attributes
     ----------
@@ -50,8 +50,8 @@ class Above:
     laws: Float[np.ndarray, "order channel recording law"]
     freedom: int
 
-    def strongest(self, level: float, told: Sequence[Described]) -> Described | None:
-        """Of what is no luck, the regularity that explains most; orders and patterns that were told are left out."""
+    def strongest(self, level: float, described: Sequence[Described]) -> Described | None:
+        """The significant regularity with the largest gain, without orders and patterns that were described before."""
         along = np.einsum("kcr,kcrl->ckl", self.lines, self.laws)
         whole = (np.abs(self.lines) ** 2).sum(axis=-1).T[..., None]
         seen = (self.laws**2).sum(axis=2).swapaxes(0, 1)
@@ -63,13 +63,13 @@ class Above:
             size = np.tensordot(weights.conj(), along[own], 1) / np.maximum(square, 1e-300)
             gain = np.abs(size) ** 2 * square
             rest = whole[own].sum(axis=0) - gain
-            _, luck = by_luck(gain, 2.0, rest, 2.0 * (self.freedom * len(own) - 1))
-            chance = np.minimum(1.0, len(shown) * gain.size * luck)
+            _, p_value = f_test(gain, 2.0, rest, 2.0 * (self.freedom * len(own) - 1))
+            chance = np.minimum(1.0, len(shown) * gain.size * p_value)
             for k, law in zip(*np.nonzero(chance <= level), strict=True):
                 atom = Atom(int(k) + ORDERS + 1, name, list(LAWS)[law])
                 amplitude, phase = float(abs(size[k, law])), float(-np.angle(size[k, law]))
                 found.append(Described(atom, float(gain[k, law]), 2, amplitude, phase, float(chance[k, law])))
-        known = {(each.atom.order, each.atom.pattern) for each in told}
+        known = {(each.atom.order, each.atom.pattern) for each in described}
         new = [each for each in found if (each.atom.order, each.atom.pattern) not in known]
         best = max(new, key=lambda each: each.gain, default=None)
         return best and replace(best, rivals=other_laws(best, new))
@@ -104,9 +104,9 @@ def above(
     level : float
         Probability of a false one.
     most : int
-        That are told at most.
+        Largest number of regularities.
     """
-    left = beside(recordings, healthy, before, after)
+    left = residual_lines(recordings, healthy, before, after)
     found: list[Described] = []
     while len(found) < most and (best := left.strongest(level, found)):
         found.append(best)
@@ -114,24 +114,24 @@ def above(
     return tuple(found)
 
 
-def beside(recordings: Sequence[Recording], healthy: Sequence[Recording], before: Model, after: Model) -> Above:
-    """The lines beside what is known of them; parameters as of :func:`above`."""
-    every, asked = (*recordings, *healthy), len(recordings)
+def residual_lines(recordings: Sequence[Recording], healthy: Sequence[Recording], before: Model, after: Model) -> Above:
+    """The remainder of the lines; parameters as of :func:`above`."""
+    every, count = (*recordings, *healthy), len(recordings)
     channels, highest = layout_of(every).channels, min(HIGHEST, int(min(map(samples_per_turn, every)) / 2) - 1)
     known = _modelled(before, every, channels, highest)
     now = _modelled(after, recordings, channels, highest)
     # What was found may be as much sharper than the library has it as its form is open at the lower orders.
     changed = np.zeros(known.shape[1:])
-    changed[:, :asked] = np.abs(now - known[..., :asked])[1:].max(axis=0)
-    modelled = np.concatenate([now, known[..., asked:]], axis=-1)
+    changed[:, :count] = np.abs(now - known[..., :count])[1:].max(axis=0)
+    modelled = np.concatenate([now, known[..., count:]], axis=-1)
     left = (_lines(every, channels, highest) - modelled)[ORDERS + 1 :]
     followed = np.array([laws(np.array(each.point.T_out), each.point.n_in_rpm) for each in every])
-    own = left[..., asked:] @ (followed @ np.linalg.pinv(followed[asked:])).T if healthy else np.zeros(left.shape)
+    own = left[..., count:] @ (followed @ np.linalg.pinv(followed[count:])).T if healthy else np.zeros(left.shape)
     doubt = KNOWN * (np.abs(modelled[ORDERS + 1 :]) + np.abs(own)) + FORM_TOLERANCE * changed
     scale = 1 / np.sqrt(_variance(every, channels, highest)[ORDERS + 1 :] + doubt**2)
-    # The healthy gear has none of what is sought, and tells what the gear follows anyway.
+    # Healthy recordings do not contain the effect; they show the normal dependence of the gear on load and speed.
     sought = np.array([[law(each.point, each.conditions) for law in LAWS.values()] for each in every])
-    sought[asked:] = 0.0
+    sought[count:] = 0.0
     U, s, _ = svd(followed)
     anyway = np.linalg.qr(scale[..., None] * U[:, s > RANK * s[0]])[0] if healthy else np.zeros((*scale.shape, 0))
     lines, asked_for = (scale * left)[..., None], scale[..., None] * sought
@@ -168,7 +168,7 @@ def _lines(
 def _variance(
     recordings: Sequence[Recording], channels: Sequence[str], highest: int
 ) -> Float[np.ndarray, "order channel recording"]:
-    """Variance of a part of every line, by noise and by what the channels resolve."""
+    """Variance of a part of every line, by noise and by the resolution of the channels."""
     noise = floors(recordings, Layout(tuple(channels)))
     found = []
     for each in recordings:

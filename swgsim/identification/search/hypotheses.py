@@ -23,9 +23,9 @@ class Hypothesis:
     ----------
     kind : type of Effect
     inner : tuple of (name, value)
-        What was fixed.
+        Fixed parameters.
     tried : int
-        Hypotheses of the same kind: so many chances to fit by luck.
+        Number of hypotheses of the same effect.
     reference : float, optional
         Size at which its signature is taken, the typical one if not given.
     """

@@ -1,7 +1,7 @@
-"""An open vocabulary for what no known effect explains: an order, a pattern over the gauges, and a law.
+"""Regularities: description of a remainder by an order, a pattern over the channels and a law.
 
-Atoms are tested as the effects of the library are, after projecting out what the declared parameters absorb. Together
-they are also the widest question that can be asked of a residual: whether anything regular is left in it at all.
+They are tested like effects of the library, with nuisance parameters marginalised. Together they are the most general
+test of a residual.
 """
 
 from collections.abc import Sequence
@@ -56,7 +56,7 @@ class Atom:
 
 @dataclass(frozen=True)
 class Described:
-    """An atom with what the residual says of it.
+    """A regularity with its estimates from the residual.
 
     Attributes
     ----------
@@ -69,9 +69,9 @@ class Described:
     phase : float
         [rad].
     chance : float
-        Of as much by noise in the whole vocabulary; nan where nobody asked.
+        p-value among all regularities; nan if it was not computed.
     rivals : tuple of str
-        Other laws that explain the same order and pattern as well.
+        Other laws that fit equally well.
     """
 
     atom: Atom
@@ -84,7 +84,7 @@ class Described:
 
     @property
     def rank(self) -> float:
-        """How unlikely the gain is by luck."""
+        """Significance of the gain, for sorting."""
         return surprise(self.gain, self.freedom)
 
     @property
@@ -124,12 +124,12 @@ def columns(atom: Atom, fitted: Fitted) -> Float[np.ndarray, "row column"]:
 
 
 def describe(fitted: Fitted) -> list[Described]:
-    """Atoms by how unlikely they are by luck, the likeliest to be real first."""
+    """Regularities by significance, the most significant first."""
     return _Projected.of(fitted).ranked
 
 
 def strongest(fitted: Fitted, rng: np.random.Generator) -> Described:
-    """The atom that is least likely by luck, with its chance and its rivals."""
+    """The most significant regularity, with its p-value and its rivals."""
     projected = _Projected.of(fitted)
     freedom = np.array([each.freedom for each in projected.described])
     noise = (projected.along(each) for each in fitted.null(AT_ONCE, rng))
@@ -146,7 +146,7 @@ def other_laws(best: Described, others: Sequence[Described]) -> tuple[str, ...]:
 
 
 def regularities(fitted: Fitted, seed: int) -> tuple[Described, ...]:
-    """Atoms that are no luck, the likeliest first, up to MOST_ATOMS; each is taken out before the next is sought."""
+    """Significant regularities, up to MOST_ATOMS; each is subtracted before the next search."""
     found: list[Described] = []
     while len(found) < MOST_ATOMS:
         best = strongest(fitted, generator("vocabulary", seed, len(found)))
@@ -159,7 +159,7 @@ def regularities(fitted: Fitted, seed: int) -> tuple[Described, ...]:
 
 @dataclass(frozen=True, eq=False)
 class _Projected:
-    """All atoms, without what is declared absorbs of them.
+    """All regularities, with nuisance parameters projected out.
 
     Attributes
     ----------
@@ -194,7 +194,7 @@ class _Projected:
 
     @property
     def ranked(self) -> list[Described]:
-        """The least likely by luck first."""
+        """The most significant first."""
         return sorted(self.described, key=lambda each: -each.rank)
 
     def along(self, weighed: np.ndarray) -> np.ndarray:

@@ -1,8 +1,7 @@
-"""Score test of every hypothesis, after taking out what the declared parameters can absorb.
+"""Score test of every hypothesis, with nuisance parameters marginalised.
 
-No hypothesis is fitted here. The residual at the calibrated parameters is compared with the signature of every effect,
-both weighed by the covariance of noise, single recordings and declared parameters; what a declared parameter would
-absorb of a signature is gone by then, and only the rest counts.
+No hypothesis is fitted here. The residual at the fitted parameters is compared with the signature of every effect. Both
+are weighted by the covariance of noise and nuisance parameters.
 """
 
 from collections.abc import Iterable, Sequence
@@ -27,7 +26,7 @@ VISIBLE = 1e-8
 NEGLIGIBLE = 1e-6
 # Draws of noise, so many at a time, until the best score was beaten so often that it is luck (after Besag and Clifford,
 # Biometrika 78 (1991) 301; no other score can then be better), or all were drawn.
-DRAWS, AT_ONCE, LUCK = 1000, 100, 20
+DRAWS, AT_ONCE, ENOUGH = 1000, 100, 20
 # A logarithm of a probability this many times that of the most unlikely draw is far beyond them.
 FAR = 2.0
 # Deviations at which a size stands out (:data:`shortlist.ALPHA`) with 80 % power: of the library's 300
@@ -43,9 +42,9 @@ class Score:
     ----------
     hypothesis : Hypothesis
     gain : float
-        Fall of the residual's sum of squares if the effect were added, in units of the noise.
+        Reduction of the residual's sum of squares by the effect, in units of the noise.
     freedom : int
-        Numbers that this would fit: 1, or 2 for a wave.
+        Degrees of freedom: 1, or 2 for a wave.
     estimate : float
         Expected size.
     phase : float
@@ -53,7 +52,7 @@ class Score:
     deviation : float
         Standard deviation of the size, declared parameters being open.
     visible : float
-        Share of the signature that the declared parameters cannot absorb.
+        Share of the signature that nuisance parameters do not absorb.
     chance : float
         Probability that the best score of the whole library is as high as this if nothing is missing.
     """
@@ -69,7 +68,7 @@ class Score:
 
     @property
     def rank(self) -> float:
-        """What hypotheses are ordered by: how unlikely the gain is by luck, in a search of this extent."""
+        """Significance of the gain in a search of this extent, for sorting."""
         return surprise(self.gain, self.freedom) - as_squares(float(np.log(self.hypothesis.tried)))
 
     @property
@@ -119,7 +118,7 @@ def screen(
     signatures : sequence of array (row, column)
         Change by the typical size.
     fitted : Fitted
-        The model that is asked what it lacks.
+        The model without the effects.
     rng : Generator
     """
     projected = _all_projected(signatures, fitted)
@@ -130,7 +129,7 @@ def screen(
 
 
 def rank(found: Sequence[Hypothesis], signatures: Sequence[Float[np.ndarray, "row _"]], fitted: Fitted) -> list[Score]:
-    """The same where nobody asks for chances, which are nan: most of the time goes into drawing noise for them."""
+    """The same without p-values (nan), whose draws of noise take most of the time."""
     return _ranked(found, _all_projected(signatures, fitted), fitted, np.full(len(found), np.nan))
 
 
@@ -165,7 +164,7 @@ class Projected(NamedTuple):
 
 
 def _all_projected(signatures: Sequence[Float[np.ndarray, "row _"]], fitted: Fitted) -> list[Projected]:
-    """All signatures without what is declared absorbs of them."""
+    """All signatures, with nuisance parameters projected out."""
     if not signatures:
         return []
     stacked = np.hstack(list(signatures))
@@ -239,7 +238,7 @@ def family_wise(
             log_tail(gains[freedom[used] == many].max(axis=0), many) for many in np.unique(freedom[used]).tolist()
         )
         lowest = np.append(lowest, np.min(list(largest), axis=0))
-        if len(lowest) >= DRAWS or (lowest <= own.min()).sum() >= LUCK:
+        if len(lowest) >= DRAWS or (lowest <= own.min()).sum() >= ENOUGH:
             break
     beaten, none = (lowest[:, None] <= own).sum(axis=0), 1 / (len(lowest) + 1)
     # Far beyond the draws, Bonferroni's bound says more than that no draw came near.
