@@ -1,4 +1,4 @@
-"""Recordings made up by formula, and sound files of every format, for tests that spoil them."""
+"""LabelledSignals made up by formula, and sound files of every format, for tests that spoil them."""
 
 import hashlib
 from collections.abc import Callable, Sequence
@@ -11,7 +11,6 @@ import numpy as np
 import pandas as pd
 import yaml
 from scipy.io import savemat
-from swgsim.storage.gauge_set import COLUMNS, Recordings, facts
 
 from swgsim.bench.truth import write_sealed
 from swgsim.gear.conditions import Conditions
@@ -21,6 +20,7 @@ from swgsim.recordings.files.folder import write_folder
 from swgsim.recordings.files.recording_file import write_file
 from swgsim.recordings.recording import Recording
 from swgsim.storage import storage
+from swgsim.storage.labelled_signals import COLUMNS, LabelledSignals, facts
 from swgsim.storage.storage import SEAL_SIZE, SEAL_START
 
 EXAMPLE_MAP = Path(__file__).parents[1] / "conf" / "sources" / "example.yaml"
@@ -149,7 +149,7 @@ def data_set(place: Path) -> None:
     rows = {name: [1, 1] for name in COLUMNS} | {"label": ["healthy", "root_tooth_crack"]}
     signals = np.random.default_rng(0).normal(size=(2, 5, 32)).astype("f4")
     attributes = {"configuration": "a: 1", "swgsim": "1"}
-    storage.write(place / "set.h5", [Recordings(signals, facts(rows), 1e4, attributes)], 2)
+    storage.write(place / "set.h5", [LabelledSignals(signals, facts(rows), 1e4, attributes)], 2)
 
 
 def truth(place: Path) -> None:
