@@ -57,6 +57,7 @@ def all_three(means):
 
 
 @pytest.mark.end_to_end
+@pytest.mark.slow
 def test_intervals_cover_the_truth():
     rng, true = generator("coverage"), np.array([30, 10, 1.5])
     hits = np.zeros(3)
@@ -76,6 +77,7 @@ def little_garbage():
 
 
 @pytest.mark.end_to_end
+@pytest.mark.slow
 @pytest.mark.usefixtures("little_garbage")
 def test_null_is_rejected_at_most_as_often_as_promised():
     rng = generator("null")

@@ -10,7 +10,7 @@ from fabricated import of_lines, recordings
 from learn.inputs.inputs import Layout
 from learn.inputs.signals import Signals
 
-SIDE = ("log eta_rel", "root of log eta_rel", "viscous loss", "speed", "load", "temperature")
+AUXILIARY = ("log eta_rel", "root of log eta_rel", "viscous loss", "speed", "load", "temperature")
 POINTS, ORDERS = 16, 6
 ANGLE = 2 * np.pi * np.arange(POINTS) / POINTS
 
@@ -40,12 +40,12 @@ def with_facts(data, samples=None, references=None):
     ("signal", "channels", "more"),
     [("raw", 5, ()), ("differenced", 2, ()), ("residual", 5, ("load error", "angle error", "speed error"))],
 )
-def test_signals_come_channel_by_channel_with_the_side_inputs_behind(signal, channels, more):
+def test_signals_precede_auxiliary_inputs_channel_by_channel(signal, channels, more):
     data = recordings(gears=2, variants=2)
     made = signals(signal).learning_set([data])
     assert made.layout == Layout(channels, POINTS)
     assert made.features.shape == (len(data.samples), len(made.names))
-    assert made.names[channels * POINTS :] == (*SIDE, *more)
+    assert made.names[channels * POINTS :] == (*AUXILIARY, *more)
     pd.testing.assert_frame_equal(made.table, data.samples.table)
 
 
@@ -59,20 +59,20 @@ def test_signals_are_waveforms_over_the_angle():
     np.testing.assert_allclose(raw[0, [0, 2, 4]], 0, atol=1e-12)
     differenced, _ = of(data, signals("differenced"))
     np.testing.assert_allclose(differenced[0], [s1 - s3, 0 * ANGLE], atol=1e-12)
-    beside_nothing, _ = of(data, signals("residual"))
-    np.testing.assert_allclose(beside_nothing, raw, atol=1e-12)
+    residual_to_zero, _ = of(data, signals("residual"))
+    np.testing.assert_allclose(residual_to_zero, raw, atol=1e-12)
 
 
 @pytest.mark.parametrize(
     ("options", "names"),
     [
-        ({"efficiency": False}, SIDE[3:]),
-        ({"operating_point": False}, SIDE[:3]),
+        ({"efficiency": False}, AUXILIARY[3:]),
+        ({"operating_point": False}, AUXILIARY[:3]),
         ({"efficiency": False, "operating_point": False}, ()),
-        ({"reference": False}, ("log eta", *SIDE[3:])),
+        ({"reference": False}, ("log eta", *AUXILIARY[3:])),
     ],
 )
-def test_side_inputs_can_be_left_out(options, names):
+def test_auxiliary_inputs_can_be_left_out(options, names):
     data = recordings(gears=1, variants=1)
     made, plain = (signals("raw", **each).learning_set([data]) for each in (options, {}))
     assert made.names[made.layout.columns :] == names
@@ -80,7 +80,7 @@ def test_side_inputs_can_be_left_out(options, names):
     np.testing.assert_array_equal(made.features[:, :end], plain.features[:, :end])
 
 
-def test_without_a_reference_nothing_is_known_of_the_healthy_gear():
+def test_without_a_reference_inputs_do_not_depend_on_the_healthy_gear():
     data = recordings(gears=1, variants=2)
     other = with_facts(data, references={"efficiency": 0.3, "temperature_c": 50.0})
     other = replace(other, signals=np.where(data.table["reference"].to_numpy()[:, None, None], 1.0, other.signals))
@@ -92,7 +92,7 @@ def test_without_a_reference_nothing_is_known_of_the_healthy_gear():
         np.testing.assert_array_equal(*unknown)
 
 
-def test_side_inputs_say_how_efficiency_and_temperature_have_changed():
+def test_auxiliary_inputs_are_changes_of_efficiency_and_temperature():
     data = with_facts(
         recordings(gears=1, variants=1),
         samples={"efficiency": 0.6, "temperature_c": 45.0},
@@ -114,5 +114,5 @@ def test_healthy_samples_that_equal_their_reference_give_no_residual():
     healthy = (data.samples.table["label"] == "healthy").to_numpy()
     residual, side = of(data, signals("residual"))
     assert np.abs(residual[healthy]).max() < 1e-12
-    assert all(np.abs(side[name][healthy]).max() < 1e-12 for name in (*SIDE[:3], "angle error"))
+    assert all(np.abs(side[name][healthy]).max() < 1e-12 for name in (*AUXILIARY[:3], "angle error"))
     assert np.abs(residual[~healthy]).max() > 1e-3

@@ -53,7 +53,7 @@ def trials_of(metrics):
 
 
 @pytest.mark.parametrize("kind", [few_shot, zero_shot], ids=["with adaptation", "without adaptation"])
-def test_labels_of_judged_gears_have_no_say_and_those_of_development_gears_have(kind, data, tmp_path):
+def test_trials_depend_on_labels_of_development_gears_and_not_of_judged_gears(kind, data, tmp_path):
     config = configuration(tmp_path)
     clean, judged, development = (
         kind.results(config, each)[0] for each in (data, poisoned(data, [1, 2]), poisoned(data, [5]))

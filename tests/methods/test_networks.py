@@ -51,7 +51,7 @@ def test_scaling_is_one_number_per_channel_and_the_quartiles_of_a_side_column():
         np.testing.assert_allclose(made.centre.numpy(), np.median(X, axis=0), rtol=1e-6)
 
 
-def test_columns_that_do_not_vary_are_left_alone_and_rare_values_do_not_explode():
+def test_constant_columns_have_scale_1_and_rare_values_stay_finite():
     X = rows(100)
     X[:, -1] = 0.1
     X[:, -2] = 1 + 1e-15 * X[:, -2]  # rounding
@@ -84,7 +84,7 @@ def test_initial_weights_depend_on_the_seed_and_on_nothing_else(kind):
     assert not torch.equal(first["head.weight"], other["head.weight"])
 
 
-def test_features_in_a_row_have_scales_of_their_own_and_any_number():
+def test_features_have_separate_scales_and_any_number():
     X = np.random.default_rng(0).standard_normal((200, 13)) * np.logspace(-3, 3, 13)
     for network in (
         convolutional(1, 12, 13, 2, periodic=False),

@@ -49,7 +49,7 @@ def test_what_was_learnt_holds_on_new_recordings_whatever_the_order_of_names(kin
 
 
 @both
-def test_shuffled_labels_are_learnt_by_heart_and_score_chance_on_new_recordings(kind):
+def test_shuffled_labels_are_memorised_and_score_chance_on_new_recordings(kind):
     """Without the pulses: a mere pulse would move all rows of a class alike, and the score were not binomial."""
     rng = np.random.default_rng(0)
     X, new = rng.standard_normal((120, COLUMNS)), rng.standard_normal((900, COLUMNS))

@@ -96,7 +96,7 @@ def test_properties_of_table_6_and_options_reach_the_estimators():
         assert estimator.get_params().items() >= wanted.items()
 
 
-def test_logistic_regression_is_not_drowned_by_one_severe_fault(data, names):
+def test_one_severe_fault_hardly_changes_logistic_regression(data, names):
     """A row that is thousands of times the others hardly changes their predictions."""
     severe = data.features.copy()
     severe[0] *= 1e4

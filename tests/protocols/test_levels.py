@@ -51,7 +51,7 @@ def pools(target):
 
 def named(table, rows):
     """Facts of rows, independent of their positions."""
-    return set(table.iloc[rows][FACTS].astype({"label": str}).itertuples(index=False, name=None))
+    return set(zip(*(table[name].to_numpy()[rows] for name in FACTS), strict=True))
 
 
 def specimens(table, rows):
