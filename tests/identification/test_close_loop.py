@@ -303,7 +303,7 @@ def test_recordings_that_do_not_belong_together_are_refused(folders, tmp_path):
     write_folder(tmp_path / "bare", bare)
     with pytest.raises(ValueError, match="has no phi_in_rad"):
         job.run(choices(tmp_path, "sound") | {"recordings": str(tmp_path / "bare")})
-    with pytest.raises(ValueError, match=r"no truth of scripts/record\.py"):
+    with pytest.raises(ValueError, match=r"no truth of swg record"):
         job.run(choices(folders, "sound", truth=str(CONF / "gear" / "gear1.yaml")))
 
 
