@@ -1,7 +1,7 @@
 """Recordings with hidden effects: a truth file next to their folder, and its seal in the folder.
 
-The seal is the SHA-256 of the truth file, in the format of ``sha256sum --check``. The truth holds a salt, against the
-trial of effects, and the SHA-256 of every file of the folder. So each reveals later changes of the other.
+The seal is the SHA-256 of the truth file, in the format of ``sha256sum --check``. The truth holds a salt, against trial
+of effects, and the SHA-256 of every file of the folder. So each reveals later changes of the other.
 """
 
 import hashlib

@@ -6,9 +6,9 @@ from typing import IO, Any
 
 import pytest
 from hydra import compose, initialize_config_dir
-from misspelt import unknown
 from omegaconf import OmegaConf
 
+from swgsim.commands.mistakes import unknown
 from swgsim.common.files import sole_maker
 from swgsim.jobs import settings
 from swgsim.jobs.generate_data_set import run
@@ -139,5 +139,5 @@ def test_a_lock_that_its_owner_removes_meanwhile_keeps_others_out(
 )
 def test_a_misspelt_key_is_answered_with_the_keys(script: str, word: str, choices: str) -> None:
     (answer,) = unknown(script, [word])
-    assert f"unknown choice '{word.split('=')[0].split('.')[-1]}'; choose from" in answer
+    assert f"unknown choice '{word.split('=')[0].split('.')[-1]}'; did you mean" in answer
     assert choices in answer

@@ -178,7 +178,7 @@ def test_commissioning_and_test_are_of_one_unit_on_other_days(clean: Path, riddl
         ({"hidden": "nowhere.yaml"}, "no file of effects 'nowhere.yaml'; give a list such as"),
         ({"speeds_rpm": 2000}, r"speeds_rpm is 2000, must be a list such as \[2000\]"),
         ({"loads_nm": []}, r"operating points of the sessions are \(\), must be one or more"),
-        ({"loads_nm": [7, 7]}, "each of them once"),
+        ({"loads_nm": [7, 7]}, "each once"),
         ({"sessions": {"repeats": 0}}, "repeats of the sessions is 0, must be an integer from 1"),
         ({"instruments": {"wander": -1}}, "wander of the instruments is -1, must be a finite number from 0"),
         ({"condition": {"name": "clean", "bench": None}}, "condition clean has no bench.*condition=bench"),
