@@ -203,7 +203,7 @@ class Fitted:
 
     @cached_property
     def nuisance(self) -> Float[np.ndarray, " row"]:
-        """Nuisance parameters of every operating point, estimated from all others: zeros and gains of sessions, the gear,
+        """Nuisance parameters of every operating point, estimated from all others: zeros and gains, the gear,
         effects found earlier. Zero with one operating point.
         """
         return self.nuisance_by(self.by_others)
