@@ -12,7 +12,7 @@ from swgsim.effects.quantity import phase, size
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import OperatingPoint
 from swgsim.identification.covariance.low_rank_covariance import Covariance
-from swgsim.identification.covariance.recording_covariance import Alone
+from swgsim.identification.covariance.recording_covariance import RecordingCovariance
 from swgsim.identification.covariance.scatter import Scatter
 from swgsim.identification.data.features import Layout
 from swgsim.identification.data.measured import Measured
@@ -88,7 +88,7 @@ def fitted_to(
     rows = len(recordings) * len(layout)
     variance = rng.uniform(0.5, 2.0, (len(recordings), len(layout)))
     measured = Measured(recordings, layout, np.zeros(variance.shape), variance)
-    errors = Covariance(Alone.white(variance), rng.normal(0, 0.5, (rows, 3)))
+    errors = Covariance(RecordingCovariance.white(variance), rng.normal(0, 0.5, (rows, 3)))
     situations = len(measured.situations)
     calibrated = Calibrated(
         Model(GEAR), {}, np.zeros((situations, len(layout))), np.zeros((situations, len(layout), 0)), True

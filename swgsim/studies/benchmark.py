@@ -19,7 +19,7 @@ from swgsim.flexspline.flexspline import solve_flex_spline
 from swgsim.gear.acquisition import Window
 from swgsim.gear.gear import OperatingPoint, Transmission
 from swgsim.identification.covariance.low_rank_covariance import Covariance
-from swgsim.identification.covariance.recording_covariance import Alone
+from swgsim.identification.covariance.recording_covariance import RecordingCovariance
 
 # Instants of each recording that the direct method solves; its time is scaled to all samples.
 INSTANTS = 40
@@ -157,11 +157,11 @@ def errors_by_recording_vs_dense(
     G, r = rng.standard_normal((recordings * features, common)), rng.standard_normal(recordings * features)
     with threadpool_limits(1):
         start = time.perf_counter()
-        alone = Alone(noise, C)
+        alone = RecordingCovariance(noise, C)
         by_recording = Covariance(alone, G).weigh(r)
         middle = time.perf_counter()
         columns = np.hstack([alone.dense, G])
-        dense = Covariance(Alone.white(noise), columns).weigh(r)
+        dense = Covariance(RecordingCovariance.white(noise), columns).weigh(r)
         end = time.perf_counter()
     return {
         "ratio": (end - middle) / (middle - start),
@@ -182,7 +182,7 @@ def further_errors_vs_anew(
         ratio of the times to weigh a residual; max_relative_difference of the result.
     """
     rng = np.random.default_rng(0)
-    alone = Alone(np.ones((recordings, features)), rng.standard_normal((recordings, features, kinds)))
+    alone = RecordingCovariance(np.ones((recordings, features)), rng.standard_normal((recordings, features, kinds)))
     G, r = rng.standard_normal((recordings * features, common + more)), rng.standard_normal(recordings * features)
     with threadpool_limits(1):
         known = Covariance(alone, G[:, :common])

@@ -14,7 +14,7 @@ from swgsim.flexspline.gauges import LIMITS
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import W0_LIMITS, KinematicError
 from swgsim.identification.covariance.low_rank_covariance import Covariance
-from swgsim.identification.covariance.recording_covariance import Alone
+from swgsim.identification.covariance.recording_covariance import RecordingCovariance
 from swgsim.identification.data.features import Layout
 from swgsim.identification.data.model import Model, Situation, predict
 from swgsim.identification.fit.map_fit import DIFFERENCE, calibrate, linearised
@@ -58,7 +58,7 @@ def test_the_derivative_by_the_level_of_clipping_is_the_one_there(level):
 
 def fitted(parameters, measured, *, noise=0.01, **more):
     """Calibrated to one recording of every situation."""
-    errors = Covariance(Alone.white(np.full(measured.shape, noise**2)), np.zeros((measured.size, 0)))
+    errors = Covariance(RecordingCovariance.white(np.full(measured.shape, noise**2)), np.zeros((measured.size, 0)))
     of_recording = np.arange(len(SITUATIONS))
     return calibrate(START, parameters, measured, errors, SITUATIONS, of_recording, LAYOUT, **more)
 

@@ -10,7 +10,6 @@ from loop_fixtures import Bump, Wave
 from swgsim.common.outcome import UNKNOWN
 from swgsim.identification.covariance.low_rank_covariance import as_squares
 from swgsim.identification.decide import accepted as steps
-from swgsim.identification.decide import stepwise_selection as closing
 from swgsim.identification.decide.accepted import Step, causes, contradicted, with_rivals
 from swgsim.identification.decide.candidate import Trial
 from swgsim.identification.decide.selection import Closed
@@ -23,7 +22,7 @@ from swgsim.identification.report.found import why
 from swgsim.identification.report.open_questions import unknown
 from swgsim.identification.report.sentence import sentence
 from swgsim.identification.search.regularities import Atom, Described
-from swgsim.identification.search.shortlist import ALPHA, screened
+from swgsim.identification.search.shortlist import ALPHA
 
 STILL, ANOTHER, NOTHING = Round((A, MIMIC), A, None), Round((MIMIC, A), MIMIC, None), Round((), None, None)
 REFUSED, SECOND = Round((MIMIC,), None, None), Round((B,), B, None)
@@ -46,20 +45,6 @@ def test_what_an_imperfect_form_may_cost_does_not_tell_rivals(less, rival):
 @pytest.mark.parametrize(("chance", "agrees"), [(ALPHA / 2, 1.0), (2 * ALPHA, 0.0)])
 def test_what_says_more_or_contradicts_itself_is_no_rival(chance, agrees):
     assert rivals(tried(MIMIC.score.hypothesis, agrees=agrees), chance) == ()
-
-
-@pytest.mark.parametrize("agrees", [True, False])
-def test_what_is_unknown_does_not_speak_against_rivals_alone(monkeypatch, agrees):
-    """An effect that is as good contradicts itself only by what the accepted one leaves unknown too."""
-    other = tried(MIMIC.score.hypothesis, agrees=0.0)
-    unknown = (Described(Atom(2, "in s1 alone", "constant"), 1.0, 2, 0.1, 0.0),)
-    agreeing = replace(other, coherence=MIMIC.coherence, beside=unknown)
-    monkeypatch.setattr(steps, "beside_unknown", lambda trial, left: agreeing if agrees and left == unknown else None)
-    step, after = Step(A, (), (other,)), (replace(other.score, chance=2 * ALPHA),)
-    assert contradicted(step)
-    assert not contradicted(Step(A, (), (MIMIC,)))
-    found = with_rivals(step, after, causes([step]), unknown)
-    assert (found.rivals, found.others) == (((agreeing,), ()) if agrees else ((), (other,)))
 
 
 def test_the_report_says_beside_what_a_rival_agrees(monkeypatch):
@@ -100,15 +85,6 @@ def test_effects_that_cancel_are_no_causes(monkeypatch, other, more, both):
     pair = (Step(replace(A, effects=(*A.effects, *B.effects)), (), ()),)
     assert steps.cancelling(pair, now) == (pair if both else ())
     assert steps.cancelling(found[:1], now) == ()
-
-
-def test_two_forms_of_one_kind_that_cancel_are_that_kind(monkeypatch):
-    rng = np.random.default_rng(3)
-    one, another = rng.standard_normal((2, len(FITTED.errors.variance)))
-    seen = [one, 0.2 * another - one]
-    now = replace(FITTED, calibrated=replace(FITTED.calibrated, model=FITTED.model.plus(Bump(1.0), Bump(2.0))))
-    monkeypatch.setattr(steps, "signature", lambda _, number: seen[number - len(FITTED.model.effects)])
-    assert steps.cancelling((Step(A, (), ()), Step(replace(A, effects=(Bump(2.0),)), (), ())), now) == ()
 
 
 @pytest.mark.parametrize(
@@ -195,17 +171,6 @@ def test_what_brings_less_than_ten_times_what_is_left_is_no_cause(patterns, gain
     assert steps.outweighed([weak, strong], left, [replace(A.score, gain=5.0)]) == ((weak,) if light else ())
 
 
-def test_nothing_is_outweighed_by_nothing():
-    assert steps.outweighed([Step(replace(A, evidence=-1.0), (), ())], [], []) == ()
-
-
-@pytest.mark.parametrize(("steps", "untried"), [(1, ["Bump"]), (3, ["Bump", "Wave"])])
-def test_effects_that_do_not_stand_out_are_untried_and_all_once_enough_were_added(steps, untried):
-    scores = (replace(A.score, chance=2 * ALPHA), replace(B.score, chance=ALPHA / 2))
-    end = closing.End(FITTED, (Step(A, (), ()),) * steps, (), (scores,), Round((), None, None))
-    assert [score.hypothesis.kind.__name__ for score in closing._untried(end)] == untried
-
-
 def test_another_pair_is_a_rival_if_what_only_it_has_says_nothing_more():
     one, other = PAIR, replace(PAIR, effects=(Bump(1.0), Dip(1.0)))
     found = causes([Step(one, (), ())])
@@ -226,11 +191,6 @@ def test_the_report_says_that_an_effect_shows_by_its_imperfect_form():
     assert "the recordings show it by a deviation of 30 % from that form" in said
     assert "the p-value of its score" not in said
     assert "the p-value of its score" in effects._evidence(Step(A, (), ()), 0)["words"]
-
-
-def test_what_was_added_is_not_screened_again():
-    added = replace(FITTED, calibrated=replace(FITTED.calibrated, model=FITTED.model.plus(Bump(1.0))))
-    assert screened(added, [Bump], np.random.default_rng(1)) == ()
 
 
 def test_it_is_said_why_an_effect_is_no_cause():

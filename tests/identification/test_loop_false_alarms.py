@@ -9,7 +9,7 @@ from scipy.stats import binom
 
 from swgsim.gear.conditions import Conditions
 from swgsim.identification.covariance.low_rank_covariance import Covariance
-from swgsim.identification.covariance.recording_covariance import Alone
+from swgsim.identification.covariance.recording_covariance import RecordingCovariance
 from swgsim.identification.covariance.repeats import from_repeats
 from swgsim.identification.covariance.scatter import STATED, Scatter, kinds, trends
 from swgsim.identification.data.features import Layout
@@ -44,7 +44,7 @@ def chances(*, known: bool) -> np.ndarray:
         guess = from_repeats(r, fitted.measured.variance, B, following, GROUPS, Scatter.stated(LAYOUT))
         if known:
             guess = Scatter(dict(zip(KINDS, sd.tolist(), strict=True)), 1000, np.zeros((len(KINDS), len(KINDS))))
-        errors = Covariance(Alone(fitted.measured.variance, guess.columns(B)), np.zeros((r.size, 0)))
+        errors = Covariance(RecordingCovariance(fitted.measured.variance, guess.columns(B)), np.zeros((r.size, 0)))
         r = r.ravel() + fitted.open @ rng.standard_normal(3)
         now = replace(holding(fitted, r), scatter=guess, errors=errors)
         scores = screen([BUMP] * signatures.shape[1], np.split(signatures, signatures.shape[1], axis=1), now, rng)

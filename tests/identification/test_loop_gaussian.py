@@ -10,7 +10,7 @@ from scipy.stats import multivariate_normal
 
 from swgsim.common.chi2_logsf import log_tail
 from swgsim.identification.covariance.low_rank_covariance import HIDDEN, Covariance, without_what_noise_hides
-from swgsim.identification.covariance.recording_covariance import Alone
+from swgsim.identification.covariance.recording_covariance import RecordingCovariance
 
 SHAPES = {
     "recordings": st.integers(1, 4),
@@ -33,7 +33,7 @@ def random_covariance(
     G = rng.normal(size=(recordings * features, columns)) * 10 ** rng.uniform(-2, 2, columns)
     dense = block_diag(*(np.diag(own) + each @ each.T for own, each in zip(noise, C, strict=True))) + G @ G.T
     first, second, third = np.split(G, np.sort(rng.integers(columns + 1, size=2)), axis=1)
-    return Covariance(Alone(noise, C), first).with_columns(second).with_columns(third), dense, rng
+    return Covariance(RecordingCovariance(noise, C), first).with_columns(second).with_columns(third), dense, rng
 
 
 @settings(deadline=None, max_examples=60)

@@ -10,7 +10,7 @@ from loop_fixtures import BUMP, Bump, drawn, fitted_to, holding
 from swgsim.effects.regularity import OF_TIME
 from swgsim.gear.conditions import Conditions
 from swgsim.identification.covariance.low_rank_covariance import Covariance, as_squares
-from swgsim.identification.covariance.recording_covariance import Alone
+from swgsim.identification.covariance.recording_covariance import RecordingCovariance
 from swgsim.identification.covariance.scatter import Scatter
 from swgsim.identification.data.features import Layout
 from swgsim.identification.data.model import Model
@@ -142,7 +142,7 @@ def scattered(fitted, factor: float):
     """A fit whose recordings also err in two ways, by so much."""
     moves = np.random.default_rng(5).standard_normal((*fitted.measured.values.shape, 2))
     scatter = Scatter({"load": factor, "speed": 2.0}, 6, 0.1 * np.eye(2))
-    alone = Alone(fitted.measured.variance, scatter.columns(moves))
+    alone = RecordingCovariance(fitted.measured.variance, scatter.columns(moves))
     return replace(fitted, scatter=scatter, errors=replace(fitted.errors, base=alone))
 
 
@@ -252,7 +252,9 @@ def of_zeros():
     """A model whose gauges have noise of 0.1 uV/V and zeros of a session, and the same with the means moved."""
     fitted = fitted_to(GAUGES, np.random.default_rng(1), repeats=2, open_=0)
     measured = replace(fitted.measured, variance=1e-8 * fitted.measured.variance)
-    errors = Covariance(Alone.white(measured.variance), measured.session_columns(fitted.calibrated.predicted))
+    errors = Covariance(
+        RecordingCovariance.white(measured.variance), measured.session_columns(fitted.calibrated.predicted)
+    )
     fitted = replace(fitted, measured=measured, errors=errors)
 
     def moved(*zeros: float):
@@ -286,7 +288,9 @@ def test_a_zero_that_moves_during_a_session_is_no_matter_of_balancing():
         for each, at in zip(fitted.measured.recordings, hours, strict=True)
     ]
     measured = replace(fitted.measured, recordings=tuple(recordings), variance=1e-6 * fitted.measured.variance)
-    errors = Covariance(Alone.white(measured.variance), measured.session_columns(fitted.calibrated.predicted))
+    errors = Covariance(
+        RecordingCovariance.white(measured.variance), measured.session_columns(fitted.calibrated.predicted)
+    )
     fitted = replace(fitted, measured=measured, errors=errors)
     zeros = np.where(GAUGES.order == 0, np.repeat([0.04, -0.03, 0.05, -0.04, 0.03], len(GAUGES) // 5), 0.0)
     still, moving, calm = (holding(fitted, np.outer(by, zeros).ravel()) for by in (1 + 0 * hours, 2 * hours, 0 * hours))

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from loop_fixtures import Bump, drawn, fitted_to, holding
+from loop_fixtures import drawn, fitted_to, holding
 
 from swgsim.effects.regularity import OF_TIME
 from swgsim.identification.data.features import Layout
@@ -63,22 +63,6 @@ def test_one_that_does_not_hold_at_one_operating_point_is_not(fitted: Fitted, mo
 
 def test_one_that_may_as_well_follow_the_time_is_not(fitted: Fitted) -> None:
     assert not is_added(fitted, np.ones(6), rivals=(OF_TIME,))
-
-
-def test_one_whose_laws_differ_between_the_operating_points_only_is_added(fitted: Fitted) -> None:
-    assert is_added(fitted, np.ones(6), rivals=("proportional to the load",))
-
-
-@pytest.mark.parametrize(("left", "added"), [(6.0, True), (4.0, False), (-10.0, True)])
-def test_one_that_takes_an_effect_away_is_not(
-    fitted: Fitted, monkeypatch: pytest.MonkeyPatch, left: float, added: bool
-) -> None:
-    def with_bump(now: Fitted, height: float) -> Fitted:
-        return replace(now, calibrated=replace(now.calibrated, model=now.unit.model.plus(Bump(height))))
-
-    extended = patching.extended
-    monkeypatch.setattr(patching, "extended", lambda now, more: with_bump(extended(now, more), left))
-    assert is_added(with_bump(fitted, 10.0), np.ones(6)) == added
 
 
 @pytest.mark.parametrize(

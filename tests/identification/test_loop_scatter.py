@@ -8,7 +8,7 @@ from loop_fixtures import POINTS, silent
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import OperatingPoint
 from swgsim.identification.covariance.low_rank_covariance import Covariance
-from swgsim.identification.covariance.recording_covariance import Alone
+from swgsim.identification.covariance.recording_covariance import RecordingCovariance
 from swgsim.identification.covariance.repeats import from_all, from_repeats
 from swgsim.identification.covariance.scatter import (
     AT_FULL_LOAD,
@@ -101,7 +101,7 @@ def test_without_repeats_all_recordings_tell_it_beside_what_is_open(seed):
     unit = {name: B[..., KINDS.index(f"zero of {name}")] * STATED[f"zero of {name}"] for name in ("s0", "s1", "T_out")}
     residual += (COMMON * unit["T_out"] + PER_HOUR * (elapsed / 3600)[:, None] * unit["s0"]).ravel()
     residual += (AT_FULL_LOAD * (loads / 70)[:, None] * unit["s1"]).ravel()
-    found = from_all(residual, Covariance(Alone.white(variance), open_), B, common, STATEMENT)
+    found = from_all(residual, Covariance(RecordingCovariance.white(variance), open_), B, common, STATEMENT)
     share = np.array([found.sd[kind] / STATED[kind] / factor.get(kind, 1.0) for kind in KINDS])
     assert found.repeats == 0
     # Eighteen errors of each kind leave a sixth.

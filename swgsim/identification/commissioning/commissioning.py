@@ -119,17 +119,19 @@ def _well_determined(drive: Fitted) -> list[str]:
 
 
 def _drive_alone(measured: Measured, unit: Unit) -> Fitted | None:
-    """The fit to speed and torques alone, with those of their lines learned that are missed.
+    """The fit to speed and torques only, where lines with lack of fit are learned.
 
     Gauges on another flex spline would bias the drive, and other equations of motion would bias the gauges. Ripple is
     learned first: as lack of fit it would bias the friction, which the means determine.
     """
-    heard = _of_drive(measured)
-    if not heard.any():
+    drive_features = _of_drive(measured)
+    if not drive_features.any():
         return None
     drive = tuple(name for name in measured.layout.channels if name not in SENSORS)
-    alone = Measured(measured.recordings, Layout(drive), measured.values[:, heard], measured.variance[:, heard])
-    unit = replace(unit, inflation=None if unit.inflation is None else unit.inflation[heard])
+    alone = Measured(
+        measured.recordings, Layout(drive), measured.values[:, drive_features], measured.variance[:, drive_features]
+    )
+    unit = replace(unit, inflation=None if unit.inflation is None else unit.inflation[drive_features])
     fitted = fit(alone, unit)
     for _ in range(DRIVES - 1):
         if fitted.calibrated.settled:

@@ -18,9 +18,9 @@ ROUNDS, AT_REST = 6, 1.0
 
 
 def about_its_lines(fitted: Fitted) -> Fitted:
-    """The fit linearised about the lines that it finds, where the model has them quite different.
+    """The fit linearised about the learned lines.
 
-    Trigger, gains, lags and temperatures act on the whole of a line, of which the model may have a small part.
+    Trigger, gains, lags and temperatures act on the whole line, of which the model may contain only a small part.
     """
     if fitted.unit.learned is None:
         return fitted
@@ -28,7 +28,7 @@ def about_its_lines(fitted: Fitted) -> Fitted:
     for _ in range(ROUNDS):
         _, mean = posterior(fitted)
         lines, form = lines_found(fitted, mean)
-        # What the lines are declared to be is still counted from the model alone.
+        # The prior of the lines is still centred on the model without learned lines.
         back = np.append(np.zeros(fitted.open.shape[1] - form), -mean[len(mean) - form :])
         model = replace(fitted.unit.model, own_lines=lines)
         before, fitted = fitted, again(fitted, model=model, shift=back, largest=largest)
@@ -38,10 +38,9 @@ def about_its_lines(fitted: Fitted) -> Fitted:
 
 
 def posterior(fitted: Fitted) -> tuple[Float[np.ndarray, "direction direction"], Float[np.ndarray, " direction"]]:
-    """What recordings tell of the parameters, and of all else that is open: a root of its covariance, and its mean, in
-    spreads.
+    """Square root of the posterior covariance of all parameters, and their mean, in prior standard deviations.
 
-    By orthogonal triangles, as what is told to a millionth of a spread would be lost in its square.
+    It uses orthogonal triangles, because a covariance would lose small standard deviations by rounding.
     """
     columns = np.hstack([fitted.J, fitted.open])
     white = fitted.errors.whiten(columns)
@@ -72,10 +71,10 @@ def lines_found(fitted: Fitted, mean: Float[np.ndarray, " direction"]) -> tuple[
 
 
 def largest_of(fitted: Fitted) -> Mapping[str, float]:
-    """The largest line of each gauge by the model alone, by which deviations of the maps are counted."""
+    """The largest line of each gauge in the model without learned lines, which scales deviations of the maps."""
     return fitted.unit.largest or largest_lines(fitted.calibrated.predicted, fitted.measured.layout)
 
 
 def again(fitted: Fitted, **changes: Any) -> Fitted:
-    """A fit to a unit of which other things are declared, from where the parameters were found."""
+    """A fit of the unit with changed declarations, started at the fitted parameters."""
     return fit(fitted.measured, replace(fitted.unit, **changes), position=fitted.calibrated.position)

@@ -15,7 +15,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 from scipy.linalg import cho_solve, cholesky, solve_triangular
 
-from swgsim.identification.covariance.recording_covariance import Alone
+from swgsim.identification.covariance.recording_covariance import RecordingCovariance
 
 # Common errors are left out where they make a variance larger than noise makes it by no more than this share.
 HIDDEN = 1e-4
@@ -27,24 +27,24 @@ class Covariance:
 
     Attributes
     ----------
-    base : Alone or Covariance
+    base : RecordingCovariance or Covariance
         A: errors of single recordings, and maybe some common ones.
     G : array (row, column)
         Common errors, or more of them, one standard deviation each.
     """
 
-    base: "Alone | Covariance"
+    base: "RecordingCovariance | Covariance"
     G: Float[np.ndarray, "row column"]
 
     @property
-    def alone(self) -> Alone:
+    def alone(self) -> RecordingCovariance:
         """Errors of single recordings."""
-        return self.base if isinstance(self.base, Alone) else self.base.alone
+        return self.base if isinstance(self.base, RecordingCovariance) else self.base.alone
 
     @property
     def columns(self) -> Float[np.ndarray, "row column"]:
         """All common errors, one standard deviation each."""
-        return self.G if isinstance(self.base, Alone) else np.hstack([self.base.columns, self.G])
+        return self.G if isinstance(self.base, RecordingCovariance) else np.hstack([self.base.columns, self.G])
 
     @property
     def variance(self) -> Float[np.ndarray, " row"]:
@@ -111,7 +111,9 @@ class Covariance:
         """Posterior mean of the common errors (column,), in standard deviations, given a residual (row,) or several."""
         mean = self._mean(X)
         return (
-            mean if isinstance(self.base, Alone) else np.concatenate([self.base.common_mean(X - self.G @ mean), mean])
+            mean
+            if isinstance(self.base, RecordingCovariance)
+            else np.concatenate([self.base.common_mean(X - self.G @ mean), mean])
         )
 
     def _mean(self, X: np.ndarray) -> np.ndarray:

@@ -8,7 +8,7 @@ from jaxtyping import Bool, Float
 
 
 @dataclass(frozen=True, eq=False)
-class Alone:
+class RecordingCovariance:
     """diag(variance) + C C^T within every recording; rows (recording, feature) of a residual, one below the other.
 
     Attributes
@@ -23,7 +23,7 @@ class Alone:
     C: Float[np.ndarray, "recording feature kind"]
 
     @classmethod
-    def white(cls, variance: Float[np.ndarray, "recording feature"]) -> "Alone":
+    def white(cls, variance: Float[np.ndarray, "recording feature"]) -> "RecordingCovariance":
         """Independent errors only."""
         return cls(variance, np.zeros((*variance.shape, 0)))
 
@@ -69,7 +69,7 @@ class Alone:
         """Of the covariance."""
         return float(np.log(self.variance).sum() + 2 * np.log(self._shares[1]).sum())
 
-    def divergence(self, other: "Alone") -> float:
+    def divergence(self, other: "RecordingCovariance") -> float:
         """Kullback-Leibler divergence from the other covariance to this one, as the mean over recordings [nat]."""
         Q, _ = other._shares
         C = self.C.reshape(self.variance.size, -1)
@@ -90,9 +90,9 @@ class Alone:
         recordings, _, kinds = self.C.shape
         return self.made(np.eye(recordings * kinds))
 
-    def features(self, chosen: Bool[np.ndarray, " feature"]) -> "Alone":
+    def features(self, chosen: Bool[np.ndarray, " feature"]) -> "RecordingCovariance":
         """Of some of the features."""
-        return Alone(self.variance[:, chosen], self.C[:, chosen])
+        return RecordingCovariance(self.variance[:, chosen], self.C[:, chosen])
 
     def _split(self, X: np.ndarray) -> np.ndarray:
         """Rows by recording (recording, feature, column)."""

@@ -8,7 +8,7 @@ from jaxtyping import Float
 from scipy.optimize import minimize
 
 from swgsim.identification.covariance.low_rank_covariance import Covariance
-from swgsim.identification.covariance.recording_covariance import Alone
+from swgsim.identification.covariance.recording_covariance import RecordingCovariance
 from swgsim.identification.covariance.scatter import DOUBT, Scatter
 
 # Bounds of the logarithm of a standard deviation relative to the known one: 7 and 5 times its doubt. They only keep the
@@ -109,7 +109,7 @@ def from_all(
     known : Scatter
     """
     common = common.with_columns(trends.reshape(len(residual), -1))
-    B = common.whiten(Alone(common.alone.variance, directions).dense)
+    B = common.whiten(RecordingCovariance(common.alone.variance, directions).dense)
     return _likeliest(
         _statistics(B[None], common.whiten(residual)[None, :, None], np.ones((1, len(residual)))), known, 0
     )

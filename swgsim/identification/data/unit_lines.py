@@ -114,7 +114,7 @@ class OwnLines(Effect):
         return _orders(scene.phi_in.tobytes(), self.lines.values.shape[-1] - 1)
 
 
-# What is asked for in every run of a fit.
+# Needed in every run of a fit.
 @lru_cache(maxsize=1024)
 def _of_gauges(
     lines: Lines, gauges: GaugeSet, lobes: complex

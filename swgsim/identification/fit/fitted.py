@@ -203,8 +203,8 @@ class Fitted:
 
     @cached_property
     def nuisance(self) -> Float[np.ndarray, " row"]:
-        """What all that is open beside the fitted parameters makes of every operating point, as all the others tell it:
-        zeros and gains of sessions, the gear, effects found earlier; nothing if there is one point only.
+        """Nuisance parameters of every operating point, estimated from all others: zeros and gains, the gear,
+        effects found earlier. Zero with one operating point.
         """
         return self.nuisance_by(self.by_others)
 

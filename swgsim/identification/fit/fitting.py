@@ -9,7 +9,7 @@ import numpy as np
 from swgsim.effects.base import Effect
 from swgsim.identification.covariance import repeats, scatter
 from swgsim.identification.covariance.low_rank_covariance import Covariance
-from swgsim.identification.covariance.recording_covariance import Alone
+from swgsim.identification.covariance.recording_covariance import RecordingCovariance
 from swgsim.identification.covariance.scatter import Scatter
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model
@@ -21,8 +21,8 @@ from swgsim.identification.fit.unit import Unit
 # A parameter counts as biased by lack of fit if it lies this many prior standard deviations off, while the mean square
 # of a channel exceeds its declared value by this factor.
 BENT, MISFIT = 5.0, 10.0
-# Turns at most; they end where the errors of single recordings that parameters were fitted beside cost less than this
-# over those estimated then [nat per recording]: one kind that is a third too small or large costs as much (estimates).
+# Largest number of turns; and the Kullback-Leibler divergence between two estimates of the errors of single recordings
+# at which the turns end [nat per recording]: an error of one third in one standard deviation (estimates).
 TURNS, SAME_SCATTER = 4, 0.1
 # Turns where nothing was repeated: what the model lacks passes for such errors then, and more turns go astray with it.
 UNREPEATED = 2
@@ -92,8 +92,9 @@ class _Fixed(NamedTuple):
 
 
 def _turn(fixed: _Fixed, begin: Mapping[str, float], guess: Scatter) -> Fitted:
-    """Parameters fitted beside guessed errors of single recordings, and these errors estimated anew; how either acts is
-    taken from the model where the parameters begin [spreads].
+    """Fit the parameters with given errors of single recordings, then estimate these errors again.
+
+    Derivatives are those of the model at the start values [prior standard deviations].
     """
     measured, unit, here = fixed.measured, fixed.unit, at(fixed.start, fixed.parameters, begin)
     noise = unit.inflated(measured.variance)
@@ -105,7 +106,7 @@ def _turn(fixed: _Fixed, begin: Mapping[str, float], guess: Scatter) -> Fitted:
     values = measured.values - offset.reshape(measured.values.shape)
     calibrated = calibrate(
         fixed.start, fixed.parameters, values,
-        Covariance(Alone(noise, guess.columns(moves)), of_sessions).with_columns(more),
+        Covariance(RecordingCovariance(noise, guess.columns(moves)), of_sessions).with_columns(more),
         measured.situations, measured.of_recording, measured.layout, begin,
     )  # fmt: skip
     residual = values - calibrated.predicted[measured.of_recording]
@@ -114,10 +115,10 @@ def _turn(fixed: _Fixed, begin: Mapping[str, float], guess: Scatter) -> Fitted:
         estimated = repeats.from_repeats(residual, noise, moves, trends, measured.repeats, fixed.known)
     else:
         J = measured.rows(calibrated.J).reshape(residual.size, -1)
-        common = Covariance(Alone.white(noise), np.hstack([of_sessions, more, J]))
+        common = Covariance(RecordingCovariance.white(noise), np.hstack([of_sessions, more, J]))
         from_start = residual.ravel() + J @ np.array(list(calibrated.position.values()))
         estimated = repeats.from_all(from_start, common, moves, trends, fixed.known)
-    errors = Covariance(Alone(noise, estimated.columns(moves)), of_sessions)
+    errors = Covariance(RecordingCovariance(noise, estimated.columns(moves)), of_sessions)
     return Fitted(
         measured, unit, fixed.parameters, calibrated, estimated,
         errors=errors, open=left, offset=offset, allowed=fixed.allowed,

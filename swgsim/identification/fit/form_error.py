@@ -166,18 +166,18 @@ def coherence(fitted: Fitted, number: int) -> Coherence:
     apart = error * parts(fitted, signed)
     shares = _shares(fitted, number, signed, np.hstack([apart, structure]))
     beyond_noise = unlikely[0] - unlikely.min() > as_squares(LEAST_GAIN)
-    # What is in one channel and order alone has these as parts that are all of it, and disagree with nothing.
+    # An effect in one channel and one order has parts that are the whole of it; they cannot disagree.
     several = (apart != error * signed[:, None]).any(axis=0)
     disagreement = float(np.linalg.norm(shares[: apart.shape[1]][several])) if beyond_noise else 0.0
     return Coherence(chance, error, float(np.linalg.norm(shares)), disagreement)
 
 
 def open_as_found(fitted: Fitted, coherences: Sequence[Coherence]) -> Fitted:
-    """A fit with the form of the effects that were added last as open as their parts ask for, within the tolerance; and
-    as open by an inaccurate structure as is likeliest, which at any rate is no more than declared.
+    """A fit with the form of the last effects free, by their form error within the tolerance and by the most probable
+    structural error up to the declared one.
 
-    Held to the library's exact form, a cause that is a little different would be counted as wrong wherever its size is
-    predicted from other operating points, and a mimic that bends to these few numbers would be preferred.
+    With the exact library form, a slightly different cause would predict other operating points badly, and an effect
+    that imitates it would be preferred.
     """
     numbers = range(len(fitted.model.effects) - len(coherences), len(fitted.model.effects))
     signed = [signature(fitted, number) for number in numbers]

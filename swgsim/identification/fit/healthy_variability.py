@@ -1,6 +1,6 @@
-"""What a healthy gear, its gauges and their amplifiers do a little of, and the model does not.
+"""Healthy variability: small changes of gear, gauges and amplifiers that the model does not contain.
 
-All of it can be a fault too. So it is open only where recordings of the healthy gear tell how large it is.
+Each of them can be a fault too. They are nuisance parameters only if healthy recordings determine their size.
 """
 
 from collections.abc import Mapping, Sequence

@@ -111,7 +111,7 @@ def calibrate(
     for _ in range(STEPS):
         columns = errors.whiten(J[of_recording].reshape(-1, len(here)))
         curvature, slope = columns.T @ columns + np.eye(len(here)), columns.T @ r - here
-        # What still misses by many times what is declared tells its parameters no better than that.
+        # A large lack of fit limits the accuracy of the parameters.
         little = SETTLED * max(1.0, cost / len(r))
         room = low - here, high - here
         while True:

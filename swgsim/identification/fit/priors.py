@@ -11,13 +11,12 @@ from swgsim.flexspline.gauges import LIMITS
 from swgsim.gear.gear import W0_LIMITS, Gear, KinematicError
 from swgsim.identification.data.model import Model
 
-# Spread of what belongs to the bench and not to the gear, as a share: of inertias, and of the speed control, of which
-# each drive has its own; estimates.
+# Relative prior standard deviations of the bench: inertias, and speed control (each drive has its own); estimates.
 BENCH, CONTROL = 0.3, 1.0
-# Spread of what may be anything from 0 to 1.
+# Prior standard deviation of a share between 0 and 1.
 SHARE = 0.5
-# Of stiffness and friction in a series, as a share; and of friction where recordings of the healthy gear tell it, as
-# catalogues, greases and authors differ by a factor of two; estimates.
+# Relative prior standard deviation of stiffness and friction in a series; and of friction with commissioning, because
+# catalogues and greases differ by a factor of two; estimates.
 SERIES, ANY_FRICTION = 0.1, 0.5
 # Of a gauge's gain and of the wave generator's stroke in a series, as a share; an estimate.
 STRAINED = 0.01

@@ -23,7 +23,7 @@ SEEN = 1e-3
 SAMPLES = 48
 # Number of spectral lines on either side from which the noise next to a line is estimated.
 NEIGHBOURS = 6
-# The noise beside a line is what was estimated of all lines together, as so many numbers would say it.
+# Weight of the common noise floor in the noise next to a line, as a number of degrees of freedom.
 ALL_TOGETHER = 20
 # Orders close to which circular spline and flex spline beat: 2 in the torque, which lobes make 0 and 4 in gauges.
 BEATING = (0, 2, 4)

@@ -60,7 +60,7 @@ def line_parts(line: Callable[[str], LineBetween], spectra: Sequence[Between], l
 
 
 def distinct_patterns(gauges: Sequence[str]) -> list[str]:
-    """The patterns that these gauges tell from each other; first those of which every gauge is among them."""
+    """The patterns that these gauges can distinguish, first those with all gauges recorded."""
     found: dict[tuple, str] = {}
     for name, pattern in sorted(GAUGE_PATTERNS.items(), key=lambda each: not set(each[1]) <= set(gauges)):
         weights = [pattern.get(gauge, 0) for gauge in gauges]
@@ -71,7 +71,7 @@ def distinct_patterns(gauges: Sequence[str]) -> list[str]:
 
 
 def _alone(gauge: str, line: Callable[[str], LineBetween], spectra: Sequence[Between]) -> "_Shown":
-    """The line in one gauge, where those of the others are no noise beside it."""
+    """The line in one gauge, without the lines of the other gauges in the noise."""
     others = [line(f"in {other} alone") for other in spectra[0].gauges if other != gauge]
     return _Shown.of(line(f"in {gauge} alone"), [each.without(others) for each in spectra] if others else spectra)
 

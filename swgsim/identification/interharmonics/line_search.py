@@ -84,7 +84,7 @@ def search(
 
 
 def _in_parts(line: Sideline) -> bool:
-    """Whether its place tells the cause, and not how it is spread over the gauges."""
+    """Whether only its frequency identifies the cause, not its pattern over the gauges."""
     return len(line.effect.parts()) > 1
 
 

@@ -17,8 +17,8 @@ from swgsim.identification.interharmonics.interharmonic_spectrum import Between,
 
 # A line's size may differ from its law over load and speed by this share.
 TOLERANCE = 0.3
-# Probability below which its sizes contradict that law even so: lower than that of other effects, as the best of many
-# places is asked.
+# p-value below which its sizes contradict that law: lower than for other effects, because the best of many places is
+# tested.
 CONTRADICTION = 1e-4
 ZOOMS = 3
 # Values of a parameter that are tried at most.

@@ -1,4 +1,4 @@
-"""Errors before and after in one figure and per channel, with how sure they are, beside the noise floor."""
+"""Errors before and after, in total and per channel, with intervals, and the noise floor."""
 
 from typing import Any
 
@@ -14,16 +14,16 @@ from swgsim.identification.fit.fitted import Fitted
 from swgsim.recordings.recording import CHANNELS
 
 UNIT = "% of the root mean square of each channel, root mean square over the channels"
-# What errors are of: all that was fitted, repeats left out, operating points left out.
+# Kinds of errors: fitted recordings, left-out repeats, left-out operating points.
 WHAT = ("fit", "repeats", "heldout")
 CONFIDENCE, RESAMPLES = 0.95, 2000
-# Operating points of which a bootstrap says something; of three or four its intervals are far too narrow.
+# Smallest number of operating points for a bootstrap; with three or four its intervals are far too narrow.
 FEWEST = 5
 TAILS = np.array([(1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2])
 
 
 def overall(measured: Measured, error: Float[np.ndarray, "*recording channel"]) -> float | None:
-    """One figure for all channels and recordings [UNIT]; None where none is known."""
+    """One number for all channels and recordings [UNIT]; None if it is unknown."""
     return number(100 * relative(measured, error))
 
 

@@ -9,8 +9,8 @@ from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.search.hypotheses import signatures
 from swgsim.identification.search.screening import SEEN, Score, rank
 
-# Share of a signature beside the declared parameters below which it is taken again at the size that would be seen; that
-# of an effect with a threshold is in any case.
+# Visible share of a signature below which it is computed again at the detection limit; for an effect with a threshold
+# it always is.
 MOSTLY_ABSORBED = 0.1
 
 

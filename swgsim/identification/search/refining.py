@@ -14,7 +14,7 @@ from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.search.hypotheses import Hypothesis, signatures
 from swgsim.identification.search.screening import Score, rank
 
-# Values that are tried beside the best one, and rounds; every round looks at a third of the last one's reach.
+# Values on either side of the best one, and rounds; every round has a third of the range of the last one.
 TRIED, ROUNDS = 2, 4
 # An estimate holds if the chain keeps so much of the gain that the score promised; else the typical size is tried, and
 # so many over the range, and then as many about the best of these.

@@ -18,19 +18,18 @@ from swgsim.identification.covariance.low_rank_covariance import as_squares
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.search.hypotheses import Hypothesis
 
-# Share of a signature beside the declared parameters below which what is left is rounding, of the chain and of its
-# differences. It says nothing of what can be seen: however far a residual lies beyond the spread of a declared
-# parameter, this share is small where the noise is small beside that spread.
+# Visible share of a signature below which it is rounding of the chain and of its differences. It is no measure of
+# detectability: the share is small wherever the noise is small relative to the prior of a nuisance parameter.
 VISIBLE = 1e-8
 # Directions of a signature below this part of its largest one are rounding.
 NEGLIGIBLE = 1e-6
-# Draws of noise, so many at a time, until the best score was beaten so often that it is luck (after Besag and Clifford,
-# Biometrika 78 (1991) 301; no other score can then be better), or all were drawn.
+# Largest number of draws of noise, draws at a time, and number of higher scores at which drawing ends, because the best
+# score is then not significant (Besag and Clifford, Biometrika 78 (1991) 301).
 DRAWS, AT_ONCE, ENOUGH = 1000, 100, 20
 # A logarithm of a probability this many times that of the most unlikely draw is far beyond them.
 FAR = 2.0
-# Deviations at which a size stands out (:data:`shortlist.ALPHA`) with 80 % power: of the library's 300
-# hypotheses one goes beyond 4.31 of them by luck so often, and a size 0.84 beyond that does four times in five.
+# Standard deviations of a size at its detection limit: 4.31 for the p-value :data:`shortlist.ALPHA` among the 300
+# hypotheses of the library, and 0.84 for a power of 80 %.
 SEEN = 5.15
 
 
