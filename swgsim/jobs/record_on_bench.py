@@ -1,4 +1,4 @@
-"""The job of scripts/record.py: a unit of a gear on the virtual test bench, as a folder of recordings and its truth."""
+"""The job of ``swg record``: a unit of a gear on the virtual test bench, as a folder of recordings and its truth."""
 
 import hashlib
 import time
