@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 PRESENCE = 10  # s, within which a scheduler answers and has a worker
 ANSWER = 60  # s, within which all workers answer
-REMEDY = "install this project there as it is here, and start it anew"
+REMEDY = "install this project there in the same version, and start it again"
 
 
 class Place(NamedTuple):
@@ -58,13 +58,13 @@ def results(
                 numbers[future.key] = number
                 yield future
 
-        running, said = as_completed(list(more()), loop=client.loop), 0
+        running, next_number = as_completed(list(more()), loop=client.loop), 0
         for future in running:
             done[numbers.pop(future.key)] = future.result()
             running.update(list(more()))
-            while said in done:
-                yield done.pop(said)
-                said += 1
+            while next_number in done:
+                yield done.pop(next_number)
+                next_number += 1
 
 
 @contextmanager

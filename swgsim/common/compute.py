@@ -70,7 +70,7 @@ class Engine:
             Arguments of the function; they are taken when workers become free.
         count : int
             Number of tasks.
-        beside : callable
+        further : callable
             Returns the version of code besides this package; a worker with another version is refused.
 
         Raises

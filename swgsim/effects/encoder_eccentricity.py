@@ -26,7 +26,7 @@ class EncoderEccentricity(Effect):
     phase : float
         Of the wave at phi_in = 0, the major axis at s1 [rad].
     tells_speed : int
-        1 if n_in is its rate, 0 if another encoder tells it.
+        1 if n_in is the rate of this angle, 0 if another encoder measures the speed.
     """
 
     place = "acquisition"

@@ -26,7 +26,7 @@ EXAMPLE = "{eccentric_wave_generator: {r: 1.0e-5, theta: 1.0}}"
 
 
 class _Loader(PlainLoader):
-    """Reads 1e-5 as a number, as YAML 1.2 does; PyYAML alone needs 1.0e-5."""
+    """Reads 1e-5 as a number, as YAML 1.2 does; PyYAML needs 1.0e-5."""
 
 
 class _Dumper(yaml.SafeDumper):

@@ -58,7 +58,7 @@ class Transmission:
     kinematic_error : tuple of KinematicError
     error_lever : float
         Share of the kinematic error's slope that is part of the input's lever: 1 by virtual work, 0 where the error is
-        one of position alone, as in equations that are found in print (physics.md section 1.1).
+        one of position alone, as in some published equations (physics.md section 1.1).
     control_frequency, control_damping : float
         Speed control of the input: natural frequency [Hz] and damping ratio of the loop on J_in; estimates.
     """

@@ -81,11 +81,11 @@ def is_current(path: Path, configuration: str) -> bool:
         return False
     try:
         storage.verify(path)
-        said, now = storage.attributes(path), provenance(configuration)
+        found, now = storage.attributes(path), provenance(configuration)
     except ValueError as damage:
         print(damage)
         return False
-    other = [what for key, what in (("configuration", "choices"), ("swgsim", "code")) if said.get(key) != now[key]]
+    other = [what for key, what in (("configuration", "choices"), ("swgsim", "code")) if found.get(key) != now[key]]
     if other:
         print(f"{path} was made by other {' and '.join(other)} and is replaced")
     return not other

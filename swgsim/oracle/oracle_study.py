@@ -74,13 +74,13 @@ def _plan(source: Path) -> Plan:
     if not source.is_file():
         grid, condition = source.stem.rsplit("-", 1)
         raise ValueError(f"no data set {source}; make it with 'swg generate grid={grid} condition={condition}'")
-    said = storage.attributes(source)
-    if said["swgsim"] != code_version():
+    found = storage.attributes(source)
+    if found["swgsim"] != code_version():
         raise ValueError(
-            f"{source} was made by code {said['swgsim']}, while this is {code_version()}, whose gears may answer "
-            "otherwise: make the data set again with swg generate"
+            f"{source} was made by code {found['swgsim']}, while this is {code_version()}, whose gears may differ: "
+            "make the data set again with swg generate"
         )
-    return settings.plan(yaml.safe_load(said["configuration"]))
+    return settings.plan(yaml.safe_load(found["configuration"]))
 
 
 def _chosen(plan: Plan, gears: list[int] | None) -> list[int]:

@@ -42,7 +42,7 @@ def write(path: Path, blocks: Iterable[LabelledSignals], rows: int) -> None:
     ValueError
         If the blocks do not have ``rows`` recordings together.
     OSError
-        If the disk is full or the folder cannot be written; the message says what to do.
+        If the disk is full or the folder cannot be written; the message names the remedy.
     """
     with replacing(path) as aside:
         with created(aside, SEAL_SIZE) as (file, raw):

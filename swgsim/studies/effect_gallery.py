@@ -97,9 +97,9 @@ def row(signature: Signature) -> str:
     inner = ", ".join(other for other in declared if other != name) or "-"
     channel, line = signature.where
     # A bar as in |T| would end the cell.
-    says = (inspect.getdoc(kind) or "").split("\n\n")[0].replace("\n", " ").replace("|", "\\|")
+    physics = (inspect.getdoc(kind) or "").split("\n\n")[0].replace("\n", " ").replace("|", "\\|")
     cells = (
-        f"`{kind.name()}`", says, f"{name} {size.low:g} to {size.high:g} {size.unit}, typically {size.typical:.2g}",
+        f"`{kind.name()}`", physics, f"{name} {size.low:g} to {size.high:g} {size.unit}, typically {size.typical:.2g}",
         inner, f"{SHOWN[channel]}, order {line / REVOLUTIONS:.3g}", f"{signature.top[0]:.1e}", *signature.growth,
         signature.over_gauges,
     )  # fmt: skip
@@ -119,25 +119,25 @@ def page(folder: Path) -> None:
     write_text(folder / "effects.md", "\n\n".join(text) + "\n")
 
 
-# Another phase in every recording, and no line between the orders to tell it by.
+# Phase differs in every recording, and there is no interharmonic line.
 UNTESTED = [kind.name() for kind in SEARCHED if is_random(kind) and not has_sidelines(kind)]
 HEAD = f"""# The library of effects
 
-Made by `make docs` from the code: {len(SEARCHED)} effects, by the place of the chain at which they act. A loop
-searches all of them but {", ".join(UNTESTED)}, whose phase is another one in every recording and
-which makes no line between the orders to tell it by. The pictures show what an effect of typical size changes at
+Made by `make docs` from the code: {len(SEARCHED)} effects, by the place of the chain at which they act. The
+identification searches all of them except {", ".join(UNTESTED)}, whose phase differs in every recording and
+which makes no interharmonic line. The pictures show what an effect of typical size changes at
 {USUAL} (the gear at 35 degC, an hour into the session), by channel and order, as a share of the channel's largest
 line other than the mean. Choices such as an order are at their default or first value; a gauge is s1, or all of
-them where that is the default. The unit "-" is that of a pure number. What changes nothing there is shown elsewhere,
-as its panel says:
+them where that is the default. The unit "-" is that of a pure number. Effects that change nothing there are shown at
+other points:
 
 {chr(10).join(f"- `{kind.name()}` at {each}: {each.reason}." for kind, each in ELSEWHERE.items())}
 
 The factors, in table and panels, are those by which the largest change grows, in the unit of its channel, from a tenth
 of the load to the load shown and from the speed shown to twice that: "-" where a tenth of the load leaves no change,
 0 where twice the speed leaves none (a hum of the mains is at another order then). The last column names the pattern
-over the gauges of the line that changes most, by sign and phase, in the words by which a loop describes what it cannot
-explain (`swgsim/effects/regularity.py`); "several patterns" where no single one has {OWN:.0%} of its power. The full
+over the gauges of the line that changes most, by sign and phase, in the words of the regularities
+(`swgsim/effects/regularity.py`); "several patterns" where no single one has {OWN:.0%} of its power. The full
 physics, signature and source of every effect are in its docstring in `swgsim/effects/`; rows such as SE20 are those of
 [physics.md](physics.md)."""
 HEADER = (

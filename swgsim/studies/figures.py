@@ -16,7 +16,7 @@ from swgsim.storage.labelled_signals import SENSORS
 from swgsim.studies import flexspline_figures
 from swgsim.studies.examples import EXAMPLES, FIGURE_POINT, Subject
 
-# Catalogue of a size 17, ratio 100 gear at rated torque and 2000 rpm: 77 +- 3 %; its losses ask for this b1.
+# Catalogue of a size 17, ratio 100 gear at rated torque and 2000 rpm: 77 +- 3 %; its losses need this b1.
 CATALOGUE_EFFICIENCY, CATALOGUE_TOLERANCE, CATALOGUE_B1 = 0.77, 0.03, 0.254
 CATALOGUE_POINT = OperatingPoint(2000, RATED_TORQUE)
 
@@ -74,7 +74,7 @@ def pictures(subject: Subject) -> list[style.Picture]:
 
 
 def catalogue_gear(gear: Gear) -> Gear:
-    """The gear with the linear damping that the catalogue's losses ask for."""
+    """The gear with the linear damping that the catalogue's losses need."""
     return replace(gear, transmission=replace(gear.transmission, b1=CATALOGUE_B1))
 
 
@@ -102,7 +102,7 @@ def run_in(subject: Subject) -> Figure:
 
 
 def signals(subject: Subject) -> Figure:
-    """Fig. 6, healthy and faulty signals, with their difference beside."""
+    """Fig. 6, healthy and faulty signals, and their difference."""
     healthy, time = subject.examples["healthy"], 1e3 * subject.window.time
     picture = style.figure(11, 13)
     rows = picture.subplots(len(EXAMPLES), 2, sharex=True)
