@@ -24,6 +24,7 @@ from swgsim.identification import calls
 from swgsim.identification.data import angle_zero
 from swgsim.identification.data.angle_zero import from_zero, zero_defects, zero_of
 from swgsim.identification.data.model import Model, predict
+from swgsim.identification.report.answer import Answer
 from swgsim.recordings.checks.thresholds import ANGLE_ZERO
 from swgsim.recordings.read import read_recordings
 from swgsim.recordings.recording import Recording
@@ -127,9 +128,8 @@ def test_recordings_and_commissioning_are_counted_from_the_zero_of_the_gear(monk
     monkeypatch.setattr(
         calls, "learn_unit", lambda measured, unit: seen.append(measured.recordings) or replace(unit, healthy=seen[0])
     )
-    monkeypatch.setattr(calls, "answer", lambda recordings, *_, **__: seen.append(recordings))
+    monkeypatch.setattr(calls, "answer", lambda recordings, *_, **__: seen.append(recordings) or object.__new__(Answer))
     monkeypatch.setattr(calls, "next_experiments", lambda found: None)
-    monkeypatch.setattr(calls, "Identification", lambda *_: None)
     monkeypatch.setattr(calls, "report", lambda found, kinds, more, defects, *_: warnings.extend(defects) or {})
     calls.identify(ahead(recordings, 0.6), calls.commission(ahead(healthy, 0.6), GEAR))
     for given, rights in zip(seen, (healthy, recordings), strict=True):
