@@ -4,9 +4,10 @@ import pytest
 
 from swgsim.effects.library import LIBRARY, SEARCHED
 from swgsim.effects.quantity import Role, quantities, size_of
-from swgsim.identification.report import engineering_units
+from swgsim.identification.report import effect_words, engineering_units
 from swgsim.identification.report.answer_page import about, next_steps
-from swgsim.identification.report.engineering_units import OF_EFFECT, effect_text, in_unit, interval_text, value_text
+from swgsim.identification.report.effect_words import effect_text
+from swgsim.identification.report.engineering_units import OF_EFFECT, in_unit, interval_text, value_text
 from swgsim.identification.report.next_experiment import HELPLESS
 
 
@@ -39,7 +40,7 @@ def test_every_name_belongs_to_a_parameter():
     for key in OF_EFFECT:
         effect, _, parameter = key.partition(".")
         assert parameter in quantities(LIBRARY[effect])
-    assert set(engineering_units.PHRASES) | set(engineering_units.TITLES) <= set(LIBRARY)
+    assert set(effect_words.PHRASES) | set(effect_words.TITLES) <= set(LIBRARY)
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ from swgsim.common.numbers import significant
 from swgsim.common.outcome import FOUND
 from swgsim.effects.library import named
 from swgsim.identification.report import engineering_units
+from swgsim.identification.report.effect_words import effect_text
 from swgsim.identification.report.next_experiment import HELPLESS, separation_text
 
 TEMPLATE = "identification/report/answer_page.html.jinja"
@@ -30,7 +31,7 @@ def page(report: Mapping[str, Any], pictures: Mapping[str, style.Picture]) -> st
     templates = environment("swgsim")
     templates.filters["words"] = style.words
     templates.filters["significant"] = significant
-    texts = ("parameter_words", "value_text", "interval_text", "effect_text")
+    texts = ("parameter_words", "value_text", "interval_text")
     return templates.get_template(TEMPLATE).render(
         report=report,
         pictures=pictures,
@@ -38,6 +39,7 @@ def page(report: Mapping[str, Any], pictures: Mapping[str, style.Picture]) -> st
         about=about,
         degrees=lambda angle: significant(None if angle is None else float(np.rad2deg(angle))),
         separation_text=separation_text,
+        effect_text=effect_text,
         **{name: getattr(engineering_units, name) for name in texts},
     )
 

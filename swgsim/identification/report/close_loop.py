@@ -28,7 +28,8 @@ from swgsim.identification.calls import (
     with_channels,
 )
 from swgsim.identification.data.features import COMPARED
-from swgsim.identification.report.engineering_units import effect_in_words, effect_text, value_text
+from swgsim.identification.report.effect_words import effect_in_words, effect_text
+from swgsim.identification.report.engineering_units import value_text
 from swgsim.jobs import settings
 from swgsim.recordings.files.file_defect import read_for
 from swgsim.recordings.read import read_recordings

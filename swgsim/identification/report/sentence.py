@@ -5,7 +5,7 @@ from typing import Any
 
 from swgsim.common.outcome import FOUND, NOTHING
 from swgsim.identification.report.answer import Answer
-from swgsim.identification.report.engineering_units import effect_in_words, effect_name, effect_text
+from swgsim.identification.report.effect_words import effect_in_words, effect_name, effect_text
 
 # Untestable effects, and rivals of an effect, that the sentence names at most; the report has all of them.
 MOST_NAMED = 6
