@@ -1,5 +1,6 @@
 """The documentation site: Sphinx, built offline and strictly (make site)."""
 
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,12 @@ from swgsim.common.version import __version__
 project = "Strain wave gear workbench"
 author = "the maintainers"
 version = release = __version__
+# Examples write where they lie, so that copies run.
+EXAMPLES = Path(__file__).parent / "_build" / "examples"
+shutil.rmtree(EXAMPLES, ignore_errors=True)
+shutil.copytree(
+    Path(__file__).parent / "examples", EXAMPLES, ignore=lambda _, names: {n for n in names if "." not in n}
+)
 extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
@@ -30,7 +37,13 @@ source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 # Names of dimensions in the shapes of arrays look like references; the figure scraper is a function;
 # the page of ladders is a part of a report.
 suppress_warnings = ["ref.python", "config.cache", "myst.header"]
-myst_enable_extensions = ["colon_fence", "dollarmath"]
+myst_enable_  # Examples write where they lie, so that copies run.
+EXAMPLES = Path(__file__).parent / "_build" / "examples"
+shutil.rmtree(EXAMPLES, ignore_errors=True)
+shutil.copytree(
+    Path(__file__).parent / "examples", EXAMPLES, ignore=lambda _, names: {n for n in names if "." not in n}
+)
+extensions = ["colon_fence", "dollarmath"]
 myst_heading_anchors = 3
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"  # types stand in the docstrings, with shapes
@@ -53,7 +66,7 @@ def figures(block: Any, variables: dict[str, Any], settings: dict[str, Any]) -> 
 
 
 sphinx_gallery_conf = {
-    "examples_dirs": "examples",
+    "examples_dirs": str(EXAMPLES),
     "gallery_dirs": "gallery",
     "filename_pattern": r"/\d_",
     "image_scrapers": (figures,),

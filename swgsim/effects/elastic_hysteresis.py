@@ -14,7 +14,7 @@ class ElasticHysteresis(Effect):
 
     T_stiff gains h K d(twist) / d(2 phi_in), with the secant stiffness K of eq. (2) (physics.md FS17, DY1). The loss
     factor h holds for order 2, at which the ellipse works the flex spline; order 1 has half of it and order 4 twice as
-    much. The torque follows the change of the twist, not its sign: h |T_stiff| times the sign would brake a small
+    much. The torque follows the change of the twist, not its sign: h abs(T_stiff) times the sign would brake a small
     ripple about a large load as strongly as a twist through the whole load.
 
     Signature: smaller torque ripple near the resonance and a phase lag, equally in all gauges. Mean torques hardly
