@@ -14,9 +14,10 @@ version = release = __version__
 # Examples write where they lie, so that copies run.
 EXAMPLES = Path(__file__).parent / "_build" / "examples"
 shutil.rmtree(EXAMPLES, ignore_errors=True)
-shutil.copytree(
-    Path(__file__).parent / "examples", EXAMPLES, ignore=lambda _, names: {n for n in names if "." not in n}
-)
+EXAMPLES.mkdir(parents=True)
+for path in (Path(__file__).parent / "examples").glob("*.*"):
+    shutil.copy(path, EXAMPLES)
+
 extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
@@ -37,13 +38,7 @@ source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 # Names of dimensions in the shapes of arrays look like references; the figure scraper is a function;
 # the page of ladders is a part of a report.
 suppress_warnings = ["ref.python", "config.cache", "myst.header"]
-myst_enable_  # Examples write where they lie, so that copies run.
-EXAMPLES = Path(__file__).parent / "_build" / "examples"
-shutil.rmtree(EXAMPLES, ignore_errors=True)
-shutil.copytree(
-    Path(__file__).parent / "examples", EXAMPLES, ignore=lambda _, names: {n for n in names if "." not in n}
-)
-extensions = ["colon_fence", "dollarmath"]
+myst_enable_extensions = ["colon_fence", "dollarmath"]
 myst_heading_anchors = 3
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"  # types stand in the docstrings, with shapes

@@ -14,7 +14,7 @@ SENSITIVITY = 1.622e-3 * np.array([[2.0], [1.0], [1.0], [1.0], [1.0]])
 
 @dataclass(frozen=True)
 class TorqueNonlinearity(Effect):
-    """Collar and clamp stiffen or soften: the torque's part S T of every signal gains share (abs(T) / 70 N m)^(power - 1).
+    """Collar and clamp stiffen or soften: the part S T of each signal gains share (abs(T) / 70 N m)^(power - 1).
 
     The source is physics.md SE9. The part is computed from the transmitted torque and the nominal sensitivity S,
     because s1 to s4 do not show it separately.
