@@ -18,6 +18,8 @@ from swgsim.identification.interharmonics.line_search import search
 from swgsim.identification.interharmonics.unattributed_lines import Unnamed
 from swgsim.storage.labelled_signals import SENSORS
 
+pytestmark = pytest.mark.end_to_end
+
 KINDS = [LIBRARY["bearing_cage"], LIBRARY["mains_hum"]]
 ROUND = "one wave that turns with the wave generator (or three against it)"
 LINES = {
@@ -93,7 +95,6 @@ def test_a_gauge_that_was_not_recorded_hides_no_pattern():
     assert [part.effect.pattern for part in line.parts] == ["the same in all gauges"]
 
 
-@pytest.mark.end_to_end
 @pytest.mark.parametrize("line", [FractionalOrder(3e-2, order=5.3712), FixedFrequency(3e-2, frequency=217.3)])
 def test_what_is_told_can_be_declared_of_long_recordings(line):
     """Their lines lie closer together than a hundredth of what is searched."""

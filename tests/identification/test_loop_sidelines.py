@@ -18,6 +18,8 @@ from swgsim.identification.interharmonics.unattributed_lines import unnamed
 from swgsim.recordings.recording import Recording
 from swgsim.storage.labelled_signals import SENSORS
 
+pytestmark = pytest.mark.end_to_end
+
 KINDS = [LIBRARY["bearing_cage"], LIBRARY["mains_hum"]]
 
 
@@ -52,7 +54,6 @@ def test_the_rounding_of_a_converter_makes_no_line():
     assert found.named == found.unnamed == ()
 
 
-@pytest.mark.end_to_end
 def test_a_converter_that_noise_dithers_makes_no_lines_that_a_weak_one_could_hide_in():
     recordings = measured((LIBRARY["mains_hum"](amplitude=3e-4, frequency=60.0),), 2)
     step = NOISE / 2
@@ -75,7 +76,6 @@ def without_torque(recordings: list[Recording]) -> list[Recording]:
     return [replace(r, channels={n: v for n, v in r.channels.items() if n != "T_out"}) for r in recordings]
 
 
-@pytest.mark.end_to_end
 def test_a_line_is_named_without_the_torque():
     """A ball pass of an integer order is then all in the orders that were fitted, and says nothing."""
     recordings = without_torque(measured((LIBRARY["bearing_cage"](amplitude=1e-3, order=0.451),), 1))
@@ -112,7 +112,6 @@ def test_a_line_of_the_wrong_law_does_not_agree():
     assert best.agrees < 1e-4
 
 
-@pytest.mark.end_to_end
 def test_size_is_covered_by_its_deviation():
     missed = []
     for seed in range(20):
@@ -122,7 +121,6 @@ def test_size_is_covered_by_its_deviation():
     assert 0.8 <= np.mean(np.abs(missed) < 1.96) <= 1.0
 
 
-@pytest.mark.end_to_end
 def test_noise_has_no_lines():
     chance = np.array(
         [min(s.chance for s in ranked(between(measured((), 200 + i, POINTS[:2])), KINDS)) for i in range(20)]
@@ -132,7 +130,6 @@ def test_noise_has_no_lines():
     assert (chance <= 0.1).sum() <= 7
 
 
-@pytest.mark.end_to_end
 def test_slow_noise_has_no_lines():
     """It rises just where the sub-harmonics lie."""
     kinds = [*KINDS, LIBRARY["sub_orders"]]
@@ -175,7 +172,6 @@ def test_the_ends_of_slow_noise_explain_no_line_better_than_noise_does(heard):
     assert gain / freedom == pytest.approx(1, abs=0.4)
 
 
-@pytest.mark.end_to_end
 def test_a_grid_that_is_a_little_slow_is_still_one_in_long_recordings():
     """Of 60 revolutions: over their 1.8 s it slips by a third of a turn."""
     hum = LIBRARY["mains_hum"](5e-3, 50.0, deviation=-0.004)
@@ -185,7 +181,6 @@ def test_a_grid_that_is_a_little_slow_is_still_one_in_long_recordings():
     assert found.unnamed == ()
 
 
-@pytest.mark.end_to_end
 def test_two_lines_are_found_one_after_the_other():
     cage, hum = LIBRARY["bearing_cage"](amplitude=1e-3, order=0.451), LIBRARY["mains_hum"](5e-4, 60.0)
     recordings = measured((cage, hum), 5)
@@ -194,7 +189,6 @@ def test_two_lines_are_found_one_after_the_other():
     assert found.unnamed == ()
 
 
-@pytest.mark.end_to_end
 def test_a_hum_that_differs_from_cable_to_cable_and_its_harmonic_are_hum():
     """A line without a name explains more of it than a hum of all gauges or of one does."""
     hum = LIBRARY["mains_hum"]
@@ -207,7 +201,6 @@ def test_a_hum_that_differs_from_cable_to_cable_and_its_harmonic_are_hum():
     assert found.unnamed == ()
 
 
-@pytest.mark.end_to_end
 def test_what_was_found_is_gone_from_the_spectra():
     recordings = measured((LIBRARY["mains_hum"](5e-3, 60.0, deviation=0.003),), 6)
     found = search(between(recordings), KINDS, 0.005)
@@ -217,7 +210,6 @@ def test_what_was_found_is_gone_from_the_spectra():
     assert sum(float(each.left @ each.left) for each in found.left) == pytest.approx(noise, rel=0.1)
 
 
-@pytest.mark.end_to_end
 def test_a_line_without_a_name_is_described():
     recordings = measured((Whistle(1e-3),), 7)
     found = search(between(recordings), KINDS, 0.005)
@@ -238,7 +230,6 @@ def test_a_line_explains_as_much_between_two_lines_of_the_spectrum_as_on_one():
     assert found[1].explained == pytest.approx(found[0].explained, rel=0.05)
 
 
-@pytest.mark.end_to_end
 def test_what_turns_with_the_circular_spline_is_no_line():
     """Twelve revolutions hardly tell it from order 2, beside which it leaks."""
     beating = (Whistle(0.02, 2 - 2 / 101), Whistle(0.01, 4 - 2 / 101), Whistle(0.01, 2 / 101))
@@ -252,7 +243,6 @@ def test_what_turns_with_the_circular_spline_is_no_line():
     assert cage.effect.order == pytest.approx(0.451, abs=0.01)
 
 
-@pytest.mark.end_to_end
 def test_a_line_that_is_declared_is_not_found_again():
     cage = LIBRARY["bearing_cage"](amplitude=5e-3, order=0.4437)
     spectra = between(measured((cage,), 3))
@@ -269,7 +259,6 @@ def in_one_gauge(whistle: Whistle, seed: int) -> list[Recording]:
     return [replace(c, channels={**c.channels, "s2": w.channels["s2"]}) for w, c in zip(loud, calm, strict=True)]
 
 
-@pytest.mark.end_to_end
 def test_a_strong_line_of_one_gauge_is_not_called_by_names_that_explain_less():
     """At 2000 rpm order 3.7 lies where the mains' second harmonic may."""
     found = search(between(in_one_gauge(Whistle(1e-2, 3.7), 8)), KINDS, 0.005)
@@ -284,7 +273,6 @@ def leaked(recording: Recording, calm: Recording, order: int) -> float:
     return abs(complex(layout.lines(features(recording, layout) - features(calm, layout))[0, order]))
 
 
-@pytest.mark.end_to_end
 def test_what_a_strong_line_leaks_into_the_orders_is_gone():
     recordings, calm = in_one_gauge(Whistle(3e-2, 3.7), 8), measured((), 8)
     effects = search(between(recordings), KINDS, 0.005).effects
