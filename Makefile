@@ -26,7 +26,7 @@ LEFT_OUT := tilting_moment strong_tilting_moment channel_skew coning load_sharin
 LARGER := paper_forest paper_forest_selection_3 forest_20 extra_trees_10 extra_trees_30 paper_mlp mlp_32 mlp_128 cnn_16
 # Recordings of real joints, where they are; no file of theirs may be in the project.
 MEASURED ?= $(firstword $(wildcard measured ../shared/measured))
-CORES := $(shell nproc)
+CORES := $(shell getconf _NPROCESSORS_ONLN)
 EXAMPLES ?= yes  # EXAMPLES= builds the site without running them
 # The four tables run side by side and share the cores; with two of them every table has one process.
 JOBS := $(shell echo $$(( ($(CORES) + 3) / 4 )))
@@ -69,7 +69,7 @@ paper: $(READY)  ## data sets, runs and report of the paper's tables (SMALL=1: a
 	    $(SWG) report grid=$(GRID) started=$$started
 	@echo "open report/$(if $(SMALL),small/)index.html; 'make ui' shows the runs"
 
-transfer: data  ## beyond the paper: networks, transfer to gears never seen, report/transfer.html (SMALL=1: under two minutes)
+transfer: data  ## beyond the paper: networks, transfer to gears never seen, report/transfer.html (SMALL=1: a few minutes)
 	@set -e; \
 	for set in $(GEARS)-bench $(FOREIGN); do $(SWG) generate grid=$${set%-*} condition=$${set##*-}; done; \
 	$(SWG) oracle grid=$(GEARS); \
@@ -78,7 +78,7 @@ transfer: data  ## beyond the paper: networks, transfer to gears never seen, rep
 	$(SWG) transfer-report grid=$(GEARS) paper_grid=$(GRID) started=$(STARTED)
 	@echo "open report/transfer.html; 'make ui' shows the runs"
 
-loop: $(READY)  ## closing the loop once, from nothing: record, hide an effect, find it; loop/answer/page.html (45 s)
+loop: $(READY)  ## closing the loop once, from nothing: record, hide an effect, find it; loop/answer/page.html (about a minute)
 	@set -e; rm -rf loop; \
 	$(SWG) record out=loop/commissioning seed=1 sessions.name=commissioning; \
 	$(SWG) record out=loop/recordings seed=2 'hidden=[{eccentric_wave_generator: {r: 1.0e-5, theta: 1.0}}]'; \

@@ -21,8 +21,9 @@ TRIAL_CLASSES = np.array(["healthy", "reduced_damping", "tip_tooth_crack"])
 class Classifier(Protocol):
     """A classifier with the contract of scikit-learn.
 
-    A class of your own is chosen by its import path: ``swg train classifier=module:Class``. The folder of the module
-    must be on ``PYTHONPATH``. The class needs four things:
+    A class of your own is chosen by its import path: ``PYTHONPATH=folder swg train classifier=module:Class``, where
+    ``folder`` holds the module. The protocol has two methods only, because the paper's support vector machine has no
+    ``predict_proba``: each of its decisions counts as certain. A class of your own needs four things:
 
     ``fit(X, y)``
         Trains on features X, float array (row, feature), and class names y, str array (row,).
@@ -38,8 +39,9 @@ class Classifier(Protocol):
     which each row begins. Data sets of 100 000 recordings and more arrive as :class:`learn.inputs.rows.Rows`, which
     ``np.asarray(X)`` reads.
 
-    The paper's support vector machine is the one exception: it has no probabilities, and each decision counts as
-    certain.
+    Not every adaptation takes such a class. ``prototypes`` does. ``coral`` and ``from_scratch`` do if it derives from
+    ``sklearn.base.BaseEstimator``. Those of networks take ``learn.methods.NeuralClassifier`` only, those
+    of forests the forests of scikit-learn only.
 
     Examples
     --------
