@@ -37,7 +37,7 @@ def answered(main: Callable[[], object], config_name: str) -> None:
             main()
     except KeyboardInterrupt as stop:
         kept = "interrupted; what is finished is kept, and the same command goes on from there"
-        print(f"\n{stop or kept}", file=sys.stderr)
+        print(f"\n{str(stop) or kept}", file=sys.stderr)
         sys.exit(130)  # as a shell says it
     except SystemExit as stop:
         if stop.code:

@@ -133,10 +133,10 @@ def test_tampering_is_detected(tamper: Any, message: str, clean: Path, tmp_path:
 
 
 def test_the_truth_of_another_folder_is_not_shown_beside_an_answer(clean: Path, riddle: Path, tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match=rf"is not the one that .*seal\.txt was written for: give {truth_of(clean)}"):
+    with pytest.raises(ValueError, match=rf"does not belong to the seal .*seal\.txt: give {truth_of(clean)}"):
         job._hidden(truth_of(riddle), str(clean))
     shown = job._hidden(truth_of(riddle), str(riddle))
-    assert shown.startswith("zero offset (")
+    assert shown.startswith("a zero offset of s2: ")
     elsewhere = tmp_path / "kept.json"
     elsewhere.write_bytes(truth_of(riddle).read_bytes())
     assert job._hidden(elsewhere, str(riddle)) == shown

@@ -48,7 +48,7 @@ def exchanged(now: Complex[np.ndarray, "point order"], before: Complex[np.ndarra
 
     The mean drifts, and odd orders are those of an eccentricity, which may move.
 
-    >>> unlike = np.array([[0, 3e-4, 2e-3, 1e-4]])
+    >>> unlike = np.array([[0, 3e-4, 2e-3, 1e-4 + 0j]])
     >>> exchanged(-unlike, unlike), exchanged(unlike, unlike)
     (True, False)
     """
