@@ -1,4 +1,6 @@
-"""Errors of a real test bench: imperfect units, jitter, temperature, noise and measured efficiency.
+"""How large the errors of a real test bench are, and draws of them for a data set (``condition=bench``).
+
+The errors are those of imperfect units, jitter, temperature, noise and measured efficiency.
 
 Every magnitude is a declared choice (conf/condition/bench.yaml) with its row in section 4 of physics.md.
 """
@@ -56,7 +58,9 @@ class Shaft:
 
 @dataclass(frozen=True)
 class Bench:
-    """Magnitudes of the bench: standard deviations, unless another meaning is given.
+    """Magnitudes of the errors of a test bench, and draws of them: standard deviations, unless otherwise given.
+
+    The bench that also records folders of recordings is :mod:`swgsim.bench.virtual_bench`.
 
     Attributes
     ----------

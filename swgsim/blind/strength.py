@@ -11,7 +11,7 @@ from swgsim.effects.quantity import Quantity, quantities, size_of
 from swgsim.identification.data.model import predict
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.map_fit import calibrate
-from swgsim.identification.interharmonics.interharmonic_spectrum import between
+from swgsim.identification.interharmonics.interharmonic_spectrum import gauge_spectra
 from swgsim.identification.interharmonics.named_interharmonics import is_random
 from swgsim.identification.search.hypotheses import hypotheses, signatures
 
@@ -51,7 +51,7 @@ def _linear(effects: Sequence[Effect], of: Sequence[type[Effect]], fitted: Fitte
         seen = predict(models, fitted.measured.situations, fitted.measured.layout)
         for i, changed in zip(chain, seen[1:], strict=True):
             found[i] = (fitted.whole.whiten(fitted.measured.rows(changed - seen[0])) ** 2).sum()
-    spectra = between(fitted.measured.recordings, fitted.model.gear.transmission.N)
+    spectra = gauge_spectra(fitted.measured.recordings, fitted.model.gear.transmission.N)
     for i in set(range(len(effects))) - set(chain):
         found[i] = sum((each.pattern(effects[i])[0] ** 2).sum() for each in spectra)
     return found

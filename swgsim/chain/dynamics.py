@@ -202,6 +202,11 @@ class Drive:
             Eq. (2), with effects [N m].
         added : array or float
             Friction torque of effects [N m].
+
+        Notes
+        -----
+        :meth:`at_rest_in_rotating_frame` has the same formula solved for a given load, without effects. A change of
+        eq. (5) belongs in both.
         """
         p, sign = self.p, sense(sliding)
         friction = (p["b1"] + p["b2"] * sliding * sliding) * sliding
@@ -280,6 +285,9 @@ class Drive:
         """State of uniform rotation in equilibrium with the load at phi_in = 0; the steady-state search starts here."""
         p, speed = self.p, self.omega / (self.p["N"] + 1)
         sliding = speed / self.sin_t
+        # Eq. (5) again, as in friction_torque: at phi_out = 0, for a positive sliding speed, without effects. A change
+        # in one belongs in the other too. There T_stiff is known. Here the load is known: in equilibrium with it
+        # F_n = T_load / cos(alpha_tooth) + T_fric tan(alpha_tooth). Then eq. (5) is solved for T_fric.
         friction = (p["b1"] + p["b2"] * sliding**2) * sliding + p["b0"] + p["b3"] * np.sin(p["theta_b"])
         T_fric = (friction + p["mu"] * self.T_load / self.cos_t) / (1 - p["mu"] * self.tan_t)
         T_stiff = self.tan_t * (self.T_load + T_fric / self.sin_t)

@@ -40,30 +40,31 @@ def one_revolution(
     each += each * points % 2  # an even number of times
     turn = 2 * np.pi * np.arange(points * each)[:, None] / (points * each)
     _, speed_in, phi_out, speed_out, speed_error = drive.at_rest_in_rotating_frame()
-    by_time = 1j * np.arange(len(turn) // 2 + 1)[:, None] * drive.omega
-    by_time[-1] = 0  # the derivative of the last line is 0 at all times
+    # A factor i k omega on a line is its derivative with respect to time.
+    i_k_omega = 1j * np.arange(len(turn) // 2 + 1)[:, None] * drive.omega
+    i_k_omega[-1] = 0  # the derivative of the last line is 0 at all times
     # Deviation from uniform rotation; it is 0 for the input at the first time.
-    lines = np.zeros((2, *by_time.shape), complex)
+    lines = np.zeros((2, *i_k_omega.shape), complex)
     lines[1, 0] = phi_out
 
     def at_all_times() -> State:
         deviation_in, deviation_out = np.fft.irfft(lines, len(turn), axis=1, norm="forward")
-        faster_in, faster_out = np.fft.irfft(by_time * lines, len(turn), axis=1, norm="forward")
+        faster_in, faster_out = np.fft.irfft(i_k_omega * lines, len(turn), axis=1, norm="forward")
         return np.stack([
             start_angle + turn + deviation_in, speed_in + faster_in,
             (start_angle + turn) / (drive.p["N"] + 1) + deviation_out, speed_out + faster_out,
             speed_error - deviation_in,
         ])  # fmt: skip
 
-    linear = _Linear(drive, at_all_times(), by_time)
+    linear = _Linear(drive, at_all_times(), i_k_omega)
     speed = np.stack([speed_in, speed_out])
     with np.errstate(over="ignore", invalid="ignore"):  # of runs that do not converge
         for _ in range(CORRECTIONS):
             state = at_all_times()
-            residual = by_time**2 * lines - np.fft.rfft(_accelerations(drive, state), axis=1, norm="forward")
-            by, of_error = linear.correction(residual)
-            lines, speed_error = lines + by, speed_error + of_error
-            moved = np.abs(by_time * by).sum(axis=1) / speed + np.abs(by[:, 0]) * drive.omega / speed
+            residual = i_k_omega**2 * lines - np.fft.rfft(_accelerations(drive, state), axis=1, norm="forward")
+            d_lines, d_error = linear.correction(residual)
+            lines, speed_error = lines + d_lines, speed_error + d_error
+            moved = np.abs(i_k_omega * d_lines).sum(axis=1) / speed + np.abs(d_lines[:, 0]) * drive.omega / speed
             settled = moved.max(axis=0) < TOLERANCE
             if settled.all():
                 break
@@ -84,28 +85,38 @@ def _accelerations(drive: Drive, state: State) -> Float[np.ndarray, "2 time run"
 class _Linear:
     """Equations of motion linearised about the mean of a state; each order line has its own two equations.
 
-    The lead of the input equals the lag of the integral of its speed error.
+    The integral of the speed error is E = integral of (omega - phi_in') dt. If phi_in leads uniform rotation by d, E is
+    lower by d. So an acceleration a changes with d by da/dphi_in - da/dE.
+
+    Attributes
+    ----------
+    by_lead : array (2, run)
+        da/dphi_in - da/dE of input and output.
+    inverse : array (order, run, 2, 2)
+        Turns accelerations of one order line into leads of input and output.
+    inverse_of_means : array (run, 2, 2)
+        Turns mean accelerations into E and the mean lead of the output.
     """
 
-    def __init__(self, drive: Drive, state: State, by_time: Complex[np.ndarray, "order run"]) -> None:
+    def __init__(self, drive: Drive, state: State, i_k_omega: Complex[np.ndarray, "order run"]) -> None:
         slopes, here = np.empty((5, 2, len(drive))), _accelerations(drive, state)
         for row, values in enumerate(state):
             step, nudged = STEP * np.maximum(np.abs(values).mean(axis=0), STEP), state.copy()
             nudged[row] += step
             slopes[row] = (_accelerations(drive, nudged) - here).mean(axis=1) / step
-        self.of_input = slopes[PHI_IN] - slopes[SPEED_ERROR]
-        at = np.stack([self.of_input, slopes[PHI_OUT]], axis=1)
-        fast = np.stack([slopes[OMEGA_IN], slopes[OMEGA_OUT]], axis=1)
-        matrix = np.eye(2)[:, :, None, None] * by_time**2 - at[:, :, None] - by_time * fast[:, :, None]
+        self.by_lead = slopes[PHI_IN] - slopes[SPEED_ERROR]
+        by_angles = np.stack([self.by_lead, slopes[PHI_OUT]], axis=1)
+        by_speeds = np.stack([slopes[OMEGA_IN], slopes[OMEGA_OUT]], axis=1)
+        matrix = np.eye(2)[:, :, None, None] * i_k_omega**2 - by_angles[:, :, None] - i_k_omega * by_speeds[:, :, None]
         self.inverse = np.linalg.inv(np.moveaxis(matrix[:, :, 1:-1], (0, 1), (2, 3)))
         of_means = -np.stack([slopes[SPEED_ERROR], slopes[PHI_OUT]], axis=1)
         self.inverse_of_means = np.linalg.inv(np.moveaxis(of_means, 2, 0))
 
     def correction(self, residual: Lines) -> tuple[Lines, Float[np.ndarray, " run"]]:
         """Corrections of the lines and of the integral of the speed error that cancel the residual of the equations."""
-        by = np.zeros_like(residual)
-        by[:, 1:-1] = -np.einsum("orij,jor->ior", self.inverse, residual[:, 1:-1])
-        by[0, 0] = -2 * by[0].real.sum(axis=0)  # the start angle is kept
-        means = self.of_input * by[0, 0].real - residual[:, 0].real
-        of_error, by[1, 0] = np.einsum("rij,jr->ir", self.inverse_of_means, means)
-        return by, of_error
+        d_lines = np.zeros_like(residual)
+        d_lines[:, 1:-1] = -np.einsum("orij,jor->ior", self.inverse, residual[:, 1:-1])
+        d_lines[0, 0] = -2 * d_lines[0].real.sum(axis=0)  # the start angle is kept
+        means = self.by_lead * d_lines[0, 0].real - residual[:, 0].real
+        d_error, d_lines[1, 0] = np.einsum("rij,jr->ir", self.inverse_of_means, means)
+        return d_lines, d_error

@@ -5,7 +5,8 @@ once over the angle; a recording evaluates both along phi_in(t) and T_out(t). Th
 
 - eccentric wave generator: :func:`boundary_conditions` adds u_ecc to the imposed displacement,
 - tip tooth crack: :func:`boundary_conditions` reduces F_tooth,
-- root tooth crack: :func:`_cracked` reduces k_bar of the truss.
+- root tooth crack: :func:`_cracked` adds the change of the signals by bars with reduced k_bar. The truss stays as it
+  is. The bars are those of :attr:`~swgsim.flexspline.flexspline.FlexSpline.crossing_stiffness`.
 """
 
 from collections.abc import Sequence
@@ -144,12 +145,13 @@ def boundary_conditions(
     share = np.maximum(depth, 0)
     for effect in effects:
         share = effect.mesh(share, psi, theta)
-    whole = share.sum(axis=1, keepdims=True)
+    # The sum is taken before `carried`: a tooth that loses force by it does not pass the loss to the others.
+    total = share.sum(axis=1, keepdims=True)
     for effect in effects:
         share = effect.carried(share, psi, theta)
     of_sectors = share.reshape(len(psi), flex.sector.count, SUBDIVISION).sum(axis=2)
     at_nodes = displacement[:, SUBDIVISION // 2 :: SUBDIVISION]
-    return at_nodes, of_sectors / (whole * flex.tooth_radius)
+    return at_nodes, of_sectors / (total * flex.tooth_radius)
 
 
 def influence_map(
@@ -227,10 +229,16 @@ def _cracked(
     sector = flex.sector
     columns = np.array([(gap, gap + 1) for gap in (sector.gap(crack.angle) for crack in cracks)]).ravel()
     turns = np.exp(1j * sector.pitch * np.outer(columns, orders(sector.count)))
-    loss = linalg.block_diag(*[(1 - remaining_stiffness(crack, flex)) * flex.crossing_stiffness for crack in cracks])
-    sound = np.concatenate([((amplitude * turn) @ flex.fields[:, flex.band, load]).real for turn in turns], axis=1)
+    lost_stiffness = linalg.block_diag(
+        *[(1 - remaining_stiffness(crack, flex)) * flex.crossing_stiffness for crack in cracks]
+    )
+    sound_displacement = np.concatenate(
+        [((amplitude * turn) @ flex.fields[:, flex.band, load]).real for turn in turns], axis=1
+    )
     compliance = np.block([[flex.band_compliance[(i - j) % sector.count] for j in columns] for i in columns])
-    forces = loss @ np.linalg.solve(np.eye(len(loss)) - compliance @ loss, sound.T)
+    forces = lost_stiffness @ np.linalg.solve(
+        np.eye(len(lost_stiffness)) - compliance @ lost_stiffness, sound_displacement.T
+    )
     signal = np.fft.irfft(response[:, :, BAND:], sector.count, axis=0)[-columns % sector.count]
     return np.tensordot(forces.reshape(*signal.shape[::2], -1), signal, axes=((0, 1), (0, 2)))
 

@@ -1,7 +1,7 @@
 """Linear elasticity of a structure that repeats around the circumference, solved per circumferential order.
 
-The stiffness matrix of a truss of N equal sectors is block circulant in cylindrical components, so the discrete
-Fourier transform over the sectors splits it into N / 2 + 1 small Hermitian systems: the exact solution of the whole
+The stiffness matrix of a truss of S equal sectors is block circulant in cylindrical components, so the discrete
+Fourier transform over the sectors splits it into S / 2 + 1 small Hermitian systems: the exact solution of the whole
 truss at a fraction of one factorisation.
 """
 
@@ -13,12 +13,12 @@ from swgsim.flexspline.silk_hat import Sector
 
 
 def orders(count: int) -> Int[np.ndarray, " order"]:
-    """The circumferential orders 0 .. N/2 of real fields on N sectors."""
+    """The circumferential orders 0 .. S/2 of real fields on S sectors."""
     return np.arange(count // 2 + 1)
 
 
 def order_weights(count: int) -> Float[np.ndarray, " order"]:
-    """How often each order counts in a real field: the mean and order N/2 once, all others twice."""
+    """How often each order counts in a real field: the mean and order S/2 once, all others twice."""
     return np.where((orders(count) == 0) | (orders(count) == count // 2), 1.0, 2.0)
 
 

@@ -124,7 +124,7 @@ def solve_flex_spline(hat: SilkHat, alpha_tooth: float, count: int) -> FlexSplin
     alpha_tooth : float
         Gear-tooth angle [rad].
     count : int
-        Number of sectors; one per tooth by default (conf/mesh).
+        Number of sectors around the circumference. The default of ``conf/mesh`` is 100, one for two teeth.
     """
     piece = sector(hat, count)
     given = prescribed(piece)

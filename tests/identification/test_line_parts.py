@@ -12,7 +12,7 @@ from swgsim.effects.library import LIBRARY
 from swgsim.effects.line_between import GAUGE_PATTERNS, FixedFrequency, FractionalOrder
 from swgsim.effects.text import as_text, from_text
 from swgsim.gear.conditions import Conditions
-from swgsim.identification.interharmonics.interharmonic_spectrum import between
+from swgsim.identification.interharmonics.interharmonic_spectrum import gauge_spectra
 from swgsim.identification.interharmonics.line_pattern import distinct_patterns
 from swgsim.identification.interharmonics.line_search import search
 from swgsim.identification.interharmonics.unattributed_lines import Unnamed
@@ -32,7 +32,7 @@ LINES = {
 
 def found(effects: tuple[Effect, ...], seed: int, points=POINTS, known: tuple[Effect, ...] = ()) -> tuple[Unnamed, ...]:
     """Lines without a name, and none with one."""
-    lines = search(between(measured(effects, seed, points)), KINDS, 0.005, known)
+    lines = search(gauge_spectra(measured(effects, seed, points)), KINDS, 0.005, known)
     assert lines.named == ()
     return lines.unnamed
 
@@ -91,14 +91,14 @@ def test_patterns_are_those_that_the_recorded_gauges_tell_apart():
 def test_a_gauge_that_was_not_recorded_hides_no_pattern():
     recordings = measured((FractionalOrder(1e-3, order=5.37),), 6)
     without = [replace(r, channels={n: v for n, v in r.channels.items() if n != "s4"}) for r in recordings]
-    (line,) = search(between(without), KINDS, 0.005).unnamed
+    (line,) = search(gauge_spectra(without), KINDS, 0.005).unnamed
     assert [part.effect.pattern for part in line.parts] == ["the same in all gauges"]
 
 
 @pytest.mark.parametrize("line", [FractionalOrder(3e-2, order=5.3712), FixedFrequency(3e-2, frequency=217.3)])
 def test_what_is_told_can_be_declared_of_long_recordings(line):
     """Their lines lie closer together than a hundredth of what is searched."""
-    spectra = between(measured((line,), 7, POINTS[:4], revolutions=120))
+    spectra = gauge_spectra(measured((line,), 7, POINTS[:4], revolutions=120))
     (told,) = search(spectra, KINDS, 0.005).unnamed
     for declared in ([part.effect for part in told.parts], [line]):
         assert search(spectra, KINDS, 0.005, declared).unnamed == ()

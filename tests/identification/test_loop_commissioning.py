@@ -7,7 +7,7 @@ import pytest
 from loop_fixtures import fitted_to
 
 from swgsim.identification.commissioning.lack_of_fit import FALSE_DISCOVERIES, UNEXPLAINED, beyond_noise, require_own
-from swgsim.identification.commissioning.relinearisation import posterior, triangle
+from swgsim.identification.commissioning.relinearisation import posterior, triangular_factor
 from swgsim.identification.data.features import Layout
 from swgsim.identification.data.measured import Measured
 
@@ -79,5 +79,5 @@ def test_what_is_told_to_a_billionth_of_a_spread_has_a_root():
     np.testing.assert_allclose(covariance[:-1, :-1] * 1e18, np.linalg.inv(white.T @ white), rtol=1e-6)
     assert covariance[-1, -1] == pytest.approx(1.0)
     assert mean == pytest.approx(0.0)
-    part = triangle(root[1:].T).T
+    part = triangular_factor(root[1:].T).T
     np.testing.assert_allclose(part @ part.T, covariance[1:, 1:], rtol=1e-9, atol=1e-30)

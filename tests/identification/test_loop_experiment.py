@@ -64,7 +64,7 @@ def test_separation_is_what_all_recordings_together_leave_of_the_difference(monk
     scatter = replace(fitted.scatter, sd={"one": 0.5, "other": 2.0})
     free = rng.standard_normal((measured.values.size, 1))  # a disturbance that was set apart tells nothing
     fitted = replace(fitted, scatter=scatter, allowed=fitted.allowed._replace(free=free))
-    further = experiment._Further.of(fitted, [Model(GEAR)])
+    further = experiment._PlannedRecordings.of(fitted, [Model(GEAR)])
     found = further.separations(recordings)[4, 0]
 
     new = len(measured.situations) + 4

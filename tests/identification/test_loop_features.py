@@ -6,7 +6,7 @@ from loop_fixtures import POINTS, recorded, turning
 
 from swgsim.gear.gear import OperatingPoint
 from swgsim.identification.data.features import FITTED, ORDERS, Layout, features, features_alike, layout_of, remainder
-from swgsim.identification.interharmonics.interharmonic_spectrum import between
+from swgsim.identification.interharmonics.interharmonic_spectrum import gauge_spectra
 
 LAYOUT = Layout(("T_in", "s1"))
 
@@ -100,7 +100,7 @@ def test_a_recording_with_too_few_samples_per_revolution_is_refused():
     with pytest.raises(ValueError, match=said):
         features(coarse, LAYOUT)
     with pytest.raises(ValueError, match=said):
-        between([coarse])
+        gauge_spectra([coarse])
 
 
 def test_so_few_samples_that_orders_are_alike_are_refused_as_such():
@@ -114,5 +114,5 @@ def test_a_recording_with_just_enough_samples_per_revolution_tells_noise_and_lin
     rate = 34 * POINTS[0].n_in_rpm / 60
     phi = turning(POINTS[0], 12.2, rate)
     noisy = np.cos(2 * phi) + 1e-3 * np.random.default_rng(6).standard_normal(len(phi))
-    (seen,) = between([recorded({"phi_in": phi, "s1": noisy}, POINTS[0], rate)])
+    (seen,) = gauge_spectra([recorded({"phi_in": phi, "s1": noisy}, POINTS[0], rate)])
     assert 0.5 < seen.power[:, seen.clear].mean() / 2 < 2

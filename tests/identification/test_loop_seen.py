@@ -12,7 +12,7 @@ from swgsim.effects.reduced_stiffness import ReducedStiffness
 from swgsim.identification.data.features import Layout
 from swgsim.identification.search import detection_limit as seen
 from swgsim.identification.search.hypotheses import Hypothesis
-from swgsim.identification.search.screening import SEEN, Score
+from swgsim.identification.search.screening import DEVIATIONS_AT_LIMIT, Score
 from swgsim.identification.search.shortlist import ALPHA
 
 FITTED = fitted_to(Layout(("s1",)), np.random.default_rng(1))
@@ -44,16 +44,16 @@ def scored(hypothesis: Hypothesis, deviation: Callable[[float], float], visible:
 
 def test_of_an_effect_in_a_straight_line_it_stays(asked):
     found, _ = asked(lambda _: 0.004)
-    assert found.detectable == pytest.approx(SEEN * 0.004)
-    assert found.smallest == pytest.approx(1 - SEEN * 0.004)
+    assert found.detectable == pytest.approx(DEVIATIONS_AT_LIMIT * 0.004)
+    assert found.value_at_limit == pytest.approx(1 - DEVIATIONS_AT_LIMIT * 0.004)
 
 
 @pytest.mark.parametrize("at_typical", [0.001, 0.006, 0.03])
 def test_of_a_curve_it_is_the_size_that_its_own_signature_shows(asked, at_typical):
     """A curve's half as much leaves a quarter to be seen, so that its deviation is twice as large."""
     found, _ = asked(lambda size: at_typical * TYPICAL / size)
-    assert found.detectable == pytest.approx(SEEN * at_typical * TYPICAL / found.detectable)
-    assert found.detectable == pytest.approx((SEEN * at_typical * TYPICAL) ** 0.5)
+    assert found.detectable == pytest.approx(DEVIATIONS_AT_LIMIT * at_typical * TYPICAL / found.detectable)
+    assert found.detectable == pytest.approx((DEVIATIONS_AT_LIMIT * at_typical * TYPICAL) ** 0.5)
 
 
 def test_of_what_shows_nothing_below_a_threshold_it_is_the_typical_size(asked):
@@ -76,4 +76,4 @@ def test_the_other_figures_of_a_score_stay(asked):
 
 def test_a_size_that_is_seen_stands_out_four_times_in_five():
     """Of three hundred hypotheses at the level at which effects are accepted."""
-    assert pytest.approx(norm.isf(ALPHA / 300 / 2) + norm.isf(0.2), abs=0.01) == SEEN
+    assert pytest.approx(norm.isf(ALPHA / 300 / 2) + norm.isf(0.2), abs=0.01) == DEVIATIONS_AT_LIMIT

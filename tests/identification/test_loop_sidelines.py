@@ -11,7 +11,7 @@ from swgsim.effects.base import Effect, Scene
 from swgsim.effects.library import LIBRARY
 from swgsim.effects.quantity import random_phase, shape, size
 from swgsim.identification.data.features import Layout, features
-from swgsim.identification.interharmonics.interharmonic_spectrum import between, ordinary, shapes
+from swgsim.identification.interharmonics.interharmonic_spectrum import gauge_spectra, ordinary, shapes
 from swgsim.identification.interharmonics.line_search import cleaned, search
 from swgsim.identification.interharmonics.named_interharmonics import ranked
 from swgsim.identification.interharmonics.unattributed_lines import unnamed
@@ -36,7 +36,7 @@ class Whistle(Effect):
 
 
 def test_the_line_of_a_bearing_cage_is_found():
-    best = ranked(between(measured((LIBRARY["bearing_cage"](amplitude=1e-3, order=0.451),), 1)), KINDS)[0]
+    best = ranked(gauge_spectra(measured((LIBRARY["bearing_cage"](amplitude=1e-3, order=0.451),), 1)), KINDS)[0]
     assert best.effect.name() == "bearing_cage"
     assert best.chance < 1e-6
     assert best.effect.order == pytest.approx(0.451, abs=0.01)
@@ -50,7 +50,7 @@ def test_the_rounding_of_a_converter_makes_no_line():
     for each in measured((), 1):
         signal = step * np.round(0.17 * np.cos(2 * each.channels["phi_in"]) / step)
         rounded.append(replace(each, channels={**each.channels, **dict.fromkeys(SENSORS, signal)}))
-    found = search(between(rounded), KINDS, 0.005)
+    found = search(gauge_spectra(rounded), KINDS, 0.005)
     assert found.named == found.unnamed == ()
 
 
@@ -61,11 +61,11 @@ def test_a_converter_that_noise_dithers_makes_no_lines_that_a_weak_one_could_hid
         replace(each, channels={**each.channels, **{s: step * np.round(each.channels[s] / step) for s in SENSORS}})
         for each in recordings
     ]
-    assert ranked(between(rounded), KINDS)[0].rank > 0.9 * ranked(between(recordings), KINDS)[0].rank
+    assert ranked(gauge_spectra(rounded), KINDS)[0].rank > 0.9 * ranked(gauge_spectra(recordings), KINDS)[0].rank
 
 
 def test_the_hum_of_the_mains_is_found():
-    best = ranked(between(measured((LIBRARY["mains_hum"](amplitude=5e-4, frequency=60.0),), 2)), KINDS)[0]
+    best = ranked(gauge_spectra(measured((LIBRARY["mains_hum"](amplitude=5e-4, frequency=60.0),), 2)), KINDS)[0]
     assert best.effect.name() == "mains_hum"
     assert best.chance < 1e-6
     assert best.effect.frequency == 60
@@ -79,14 +79,14 @@ def without_torque(recordings: list[Recording]) -> list[Recording]:
 def test_a_line_is_named_without_the_torque():
     """A ball pass of an integer order is then all in the orders that were fitted, and says nothing."""
     recordings = without_torque(measured((LIBRARY["bearing_cage"](amplitude=1e-3, order=0.451),), 1))
-    (found,) = search(between(recordings), [*KINDS, LIBRARY["ball_pass"]], 0.005).named
+    (found,) = search(gauge_spectra(recordings), [*KINDS, LIBRARY["ball_pass"]], 0.005).named
     assert found.effect.name() == "bearing_cage"
 
 
 def test_a_line_is_found_in_long_recordings():
     """Their lines lie closer together than the values that an effect declares to be tried."""
     recordings = measured((LIBRARY["bearing_cage"](amplitude=3e-4, order=0.4437),), 9, POINTS[:2], revolutions=60)
-    (found,) = search(between(recordings), KINDS, 0.005).named
+    (found,) = search(gauge_spectra(recordings), KINDS, 0.005).named
     assert found.effect.order == pytest.approx(0.4437, abs=0.002)
 
 
@@ -96,9 +96,9 @@ def test_speed_need_not_be_the_one_that_was_set():
     recordings = [
         replace(r, point=point) for r, point in zip(measured((Whistle(1e-3),), 10, slow), POINTS, strict=True)
     ]
-    assert unnamed(between(recordings), 0.005).at == pytest.approx(5.37, abs=0.06)
+    assert unnamed(gauge_spectra(recordings), 0.005).at == pytest.approx(5.37, abs=0.06)
     assert (
-        unnamed(between([replace(r, point=p) for r, p in zip(measured((), 11, slow), POINTS, strict=True)]), 1e-3)
+        unnamed(gauge_spectra([replace(r, point=p) for r, p in zip(measured((), 11, slow), POINTS, strict=True)]), 1e-3)
         is None
     )
 
@@ -107,7 +107,7 @@ def test_a_line_of_the_wrong_law_does_not_agree():
     """Hum at full load only is no hum."""
     calm, humming = (measured(e, 3) for e in ((), (LIBRARY["mains_hum"](amplitude=2e-3, frequency=50.0),)))
     mixed = [humming[i] if POINTS[i].T_out == 70 else calm[i] for i in range(len(POINTS))]
-    best = next(line for line in ranked(between(mixed), KINDS) if line.effect.name() == "mains_hum")
+    best = next(line for line in ranked(gauge_spectra(mixed), KINDS) if line.effect.name() == "mains_hum")
     assert best.chance < 1e-6
     assert best.agrees < 1e-4
 
@@ -116,14 +116,14 @@ def test_size_is_covered_by_its_deviation():
     missed = []
     for seed in range(20):
         recordings = measured((LIBRARY["mains_hum"](amplitude=3e-4, frequency=50.0),), 100 + seed, POINTS[:2])
-        best = ranked(between(recordings), KINDS[1:])[0]
+        best = ranked(gauge_spectra(recordings), KINDS[1:])[0]
         missed.append((best.effect.amplitude - 3e-4) / best.deviation)
     assert 0.8 <= np.mean(np.abs(missed) < 1.96) <= 1.0
 
 
 def test_noise_has_no_lines():
     chance = np.array(
-        [min(s.chance for s in ranked(between(measured((), 200 + i, POINTS[:2])), KINDS)) for i in range(20)]
+        [min(s.chance for s in ranked(gauge_spectra(measured((), 200 + i, POINTS[:2])), KINDS)) for i in range(20)]
     )
     # Under a uniform chance 0.4 and 2 of them.
     assert (chance <= 0.02).sum() <= 3
@@ -134,9 +134,9 @@ def test_slow_noise_has_no_lines():
     """It rises just where the sub-harmonics lie."""
     kinds = [*KINDS, LIBRARY["sub_orders"]]
     recordings = [measured((), 400 + i, slow=2e-3) for i in range(12)]
-    chance = np.array([min(line.chance for line in ranked(between(each), kinds)) for each in recordings])
+    chance = np.array([min(line.chance for line in ranked(gauge_spectra(each), kinds)) for each in recordings])
     assert (chance <= 0.01).sum() <= 1
-    assert not any(unnamed(between(each), 0.001) for each in recordings)
+    assert not any(unnamed(gauge_spectra(each), 0.001) for each in recordings)
 
 
 def quieter(recordings: list[Recording], gauge: str) -> list[Recording]:
@@ -146,14 +146,16 @@ def quieter(recordings: list[Recording], gauge: str) -> list[Recording]:
 
 def test_a_line_at_an_integer_order_says_nothing():
     """Over whole revolutions nothing of it but rounding lies between the orders."""
-    said = [each.explained(LIBRARY["ball_pass"](amplitude=1e-3, order=12.0)) for each in between(measured((), 12))]
-    assert [(each.freedom, each.gain, each.size) for each in said] == [(0, 0.0, 0.0)] * len(said)
+    said = [
+        each.explained(LIBRARY["ball_pass"](amplitude=1e-3, order=12.0)) for each in gauge_spectra(measured((), 12))
+    ]
+    assert [(each.freedom, each.gain, each.own_gain) for each in said] == [(0, 0.0, 0.0)] * len(said)
 
 
 @pytest.mark.parametrize("name", ["mains_hum", "bearing_cage"])
 def test_a_pattern_is_what_the_orders_leave_of_the_signals(name):
     """Taking the orders out of its spectrum is the same; a hum leaves gauges silent."""
-    (seen, *_), effect = between(measured((), 12)), LIBRARY[name](amplitude=1e-3)
+    (seen, *_), effect = gauge_spectra(measured((), 12)), LIBRARY[name](amplitude=1e-3)
     signals, Q = shapes(effect, seen.scene, seen.gauges), np.linalg.qr(ordinary(seen.scene))[0]
     lines = np.fft.rfft(signals - (signals @ Q) @ Q.T)[..., 1 : seen.scale.shape[1] + 1] / signals.shape[-1]
     flat = (lines * seen.scale * seen.clear).reshape(len(signals), -1)
@@ -166,7 +168,7 @@ def test_a_pattern_is_what_the_orders_leave_of_the_signals(name):
 def test_the_ends_of_slow_noise_explain_no_line_better_than_noise_does(heard):
     """A spectrum rings with the step from a recording's end to its start; it had the gain of 14 times the noise."""
     cage = LIBRARY["bearing_cage"](amplitude=1e-3, order=0.455)
-    said = [each.explained(cage) for seed in range(8) for each in between(heard(measured((), seed, slow=0.02)))]
+    said = [each.explained(cage) for seed in range(8) for each in gauge_spectra(heard(measured((), seed, slow=0.02)))]
     gain, freedom = sum(each.gain for each in said), sum(each.freedom for each in said)
     # The mean of 96 numbers is good to 14 %.
     assert gain / freedom == pytest.approx(1, abs=0.4)
@@ -175,7 +177,7 @@ def test_the_ends_of_slow_noise_explain_no_line_better_than_noise_does(heard):
 def test_a_grid_that_is_a_little_slow_is_still_one_in_long_recordings():
     """Of 60 revolutions: over their 1.8 s it slips by a third of a turn."""
     hum = LIBRARY["mains_hum"](5e-3, 50.0, deviation=-0.004)
-    found = search(between(measured((hum,), 4, POINTS[:2], revolutions=60)), KINDS, 0.005)
+    found = search(gauge_spectra(measured((hum,), 4, POINTS[:2], revolutions=60)), KINDS, 0.005)
     assert [line.effect.name() for line in found.named] == ["mains_hum"]
     assert found.named[0].effect.deviation == pytest.approx(-0.004, abs=0.001)
     assert found.unnamed == ()
@@ -184,7 +186,7 @@ def test_a_grid_that_is_a_little_slow_is_still_one_in_long_recordings():
 def test_two_lines_are_found_one_after_the_other():
     cage, hum = LIBRARY["bearing_cage"](amplitude=1e-3, order=0.451), LIBRARY["mains_hum"](5e-4, 60.0)
     recordings = measured((cage, hum), 5)
-    found = search(between(recordings), KINDS, 0.005)
+    found = search(gauge_spectra(recordings), KINDS, 0.005)
     assert sorted(line.effect.name() for line in found.named) == ["bearing_cage", "mains_hum"]
     assert found.unnamed == ()
 
@@ -194,7 +196,7 @@ def test_a_hum_that_differs_from_cable_to_cable_and_its_harmonic_are_hum():
     hum = LIBRARY["mains_hum"]
     cables = [hum(size, 50.0, sensor=s) for s, size in ((1, 2e-3), (2, 1e-3), (4, 7e-4))]
     recordings = measured((*cables, hum(6e-4, 150.0, sensor=3), hum(3e-4, 150.0, sensor=2)), 5)
-    found = search(between(recordings), KINDS, 0.005)
+    found = search(gauge_spectra(recordings), KINDS, 0.005)
     assert [(line.effect.name(), line.effect.frequency) for line in found.named] == [
         ("mains_hum", 50), ("mains_hum", 150),
     ]  # fmt: skip
@@ -203,16 +205,16 @@ def test_a_hum_that_differs_from_cable_to_cable_and_its_harmonic_are_hum():
 
 def test_what_was_found_is_gone_from_the_spectra():
     recordings = measured((LIBRARY["mains_hum"](5e-3, 60.0, deviation=0.003),), 6)
-    found = search(between(recordings), KINDS, 0.005)
+    found = search(gauge_spectra(recordings), KINDS, 0.005)
     assert [line.effect.name() for line in found.named] == ["mains_hum"]
-    noise = sum(float(each.left @ each.left) for each in between(measured((), 6)))
+    noise = sum(float(each.left @ each.left) for each in gauge_spectra(measured((), 6)))
     assert found.named[0].gain > 1000
     assert sum(float(each.left @ each.left) for each in found.left) == pytest.approx(noise, rel=0.1)
 
 
 def test_a_line_without_a_name_is_described():
     recordings = measured((Whistle(1e-3),), 7)
-    found = search(between(recordings), KINDS, 0.005)
+    found = search(gauge_spectra(recordings), KINDS, 0.005)
     (line,) = found.unnamed
     assert found.named == ()
     assert line.kind == "order"
@@ -225,8 +227,10 @@ def test_a_line_without_a_name_is_described():
 
 
 def test_a_line_explains_as_much_between_two_lines_of_the_spectrum_as_on_one():
-    revolutions = between(measured((), 7))[0].revolutions
-    found = [unnamed(between(measured((Whistle(1e-3, (65 + off) / revolutions),), 7)), 0.005) for off in (0.0, 0.5)]
+    revolutions = gauge_spectra(measured((), 7))[0].revolutions
+    found = [
+        unnamed(gauge_spectra(measured((Whistle(1e-3, (65 + off) / revolutions),), 7)), 0.005) for off in (0.0, 0.5)
+    ]
     assert found[1].explained == pytest.approx(found[0].explained, rel=0.05)
 
 
@@ -234,18 +238,20 @@ def test_what_turns_with_the_circular_spline_is_no_line():
     """Twelve revolutions hardly tell it from order 2, beside which it leaks."""
     beating = (Whistle(0.02, 2 - 2 / 101), Whistle(0.01, 4 - 2 / 101), Whistle(0.01, 2 / 101))
     recordings = measured(beating, 9)
-    found = search(between(recordings), KINDS, 0.005)
+    found = search(gauge_spectra(recordings), KINDS, 0.005)
     assert any(line.at == pytest.approx(2, abs=0.2) for line in found.unnamed)
-    found = search(between(recordings, 100), KINDS, 0.005)
+    found = search(gauge_spectra(recordings, 100), KINDS, 0.005)
     assert not found.named
     assert not found.unnamed
-    (cage,) = search(between(measured((*beating, LIBRARY["bearing_cage"](2e-3, 0.451)), 9), 100), KINDS, 0.005).named
+    (cage,) = search(
+        gauge_spectra(measured((*beating, LIBRARY["bearing_cage"](2e-3, 0.451)), 9), 100), KINDS, 0.005
+    ).named
     assert cage.effect.order == pytest.approx(0.451, abs=0.01)
 
 
 def test_a_line_that_is_declared_is_not_found_again():
     cage = LIBRARY["bearing_cage"](amplitude=5e-3, order=0.4437)
-    spectra = between(measured((cage,), 3))
+    spectra = gauge_spectra(measured((cage,), 3))
     (found,) = search(spectra, KINDS, 0.01).named
     assert found.effect.order == pytest.approx(0.4437, abs=0.005)
     for declared in (found.effect, cage):
@@ -261,7 +267,7 @@ def in_one_gauge(whistle: Whistle, seed: int) -> list[Recording]:
 
 def test_a_strong_line_of_one_gauge_is_not_called_by_names_that_explain_less():
     """At 2000 rpm order 3.7 lies where the mains' second harmonic may."""
-    found = search(between(in_one_gauge(Whistle(1e-2, 3.7), 8)), KINDS, 0.005)
+    found = search(gauge_spectra(in_one_gauge(Whistle(1e-2, 3.7), 8)), KINDS, 0.005)
     assert found.named == ()
     assert found.unnamed[0].at == pytest.approx(3.7, abs=0.01)
     assert [part.effect.pattern for part in found.unnamed[0].parts] == ["in s2 alone"]
@@ -275,7 +281,7 @@ def leaked(recording: Recording, calm: Recording, order: int) -> float:
 
 def test_what_a_strong_line_leaks_into_the_orders_is_gone():
     recordings, calm = in_one_gauge(Whistle(3e-2, 3.7), 8), measured((), 8)
-    effects = search(between(recordings), KINDS, 0.005).effects
+    effects = search(gauge_spectra(recordings), KINDS, 0.005).effects
     before = [leaked(each, none, 4) for each, none in zip(recordings, calm, strict=True)]
     after = [leaked(cleaned(each, effects), none, 4) for each, none in zip(recordings, calm, strict=True)]
     noise = NOISE * np.sqrt(2 / len(recordings[0].time))

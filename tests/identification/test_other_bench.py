@@ -26,7 +26,7 @@ from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model
 from swgsim.identification.decide.stepwise_selection import close
 from swgsim.identification.fit.unit import STRUCTURE, Unit
-from swgsim.identification.interharmonics.interharmonic_spectrum import between
+from swgsim.identification.interharmonics.interharmonic_spectrum import gauge_spectra
 from swgsim.identification.interharmonics.line_search import search
 from swgsim.recordings.read import read_recordings
 from swgsim.recordings.recording import CHANNELS
@@ -82,7 +82,7 @@ def test_a_healthy_gear_of_other_code_is_commissioned_as_accurately_as_it_can_be
 
 def test_what_single_recordings_of_other_code_hold_between_the_orders_is_no_line(healthy):
     """A channel is quieter between its lines than its converter rounds: no noise, and nothing stands out of it."""
-    found = search(between(read_recordings(healthy / "recordings").recordings), LIBRARY.values(), 0.005)
+    found = search(gauge_spectra(read_recordings(healthy / "recordings").recordings), LIBRARY.values(), 0.005)
     assert found.named == found.unnamed == ()
 
 

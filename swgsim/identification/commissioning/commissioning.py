@@ -14,7 +14,7 @@ from swgsim.identification.commissioning.relinearisation import (
     largest_of,
     lines_found,
     posterior,
-    triangle,
+    triangular_factor,
 )
 from swgsim.identification.covariance.influence_map_error import largest_lines
 from swgsim.identification.data.features import Layout
@@ -24,10 +24,11 @@ from swgsim.identification.fit.fitting import fit
 from swgsim.identification.fit.unit import STRUCTURE, UNHEARD, Unit
 from swgsim.storage.labelled_signals import SENSORS
 
-# Lines with lack of fit are learned. Largest deviation of a gauge's line, relative to the largest line of all gauges
-# (in a bridge of many arms, large lines may cancel). Lines of speed and torques are learned up to the second share of
-# their channel's ripple; beyond, the ripple does not belong to this gear.
-LOOSEST, ALIEN = 0.6, 0.5
+# Lines with lack of fit are learned: each gets a prior standard deviation. The first number is the largest one of a
+# gauge's line, relative to the largest line of all gauges (in a bridge of many arms, large lines may cancel).
+# Lines of speed and torques are learned if at most the second share of their channel's ripple is unexplained. With a
+# larger share the ripple does not belong to this gear.
+MOST_LEARNED, FOREIGN_SHARE = 0.6, 0.5
 # Structural error above which the gear has another structure: twice the error by the mesh of the truss. And the largest
 # structural error that signatures are assigned (an estimate).
 ANOTHER, WORST = 2 * STRUCTURE, 0.3
@@ -49,12 +50,15 @@ def learn_unit(measured: Measured, unit: Unit) -> Unit:
     beyond = beyond_noise(measured, fitted.missed)
     if beyond.max() > 1:
         fitted = about_its_lines(again(fitted, inflation=beyond * unheard))
-    root, mean = posterior(fitted)
+    # Directions are the fitted parameters, then those of fitted.open. R R' is their posterior covariance.
+    R, mean = posterior(fitted)
     # Declared effects keep their values; later fits have parameters for them.
     own = [name in fitted.unit.declared for name in fitted.parameters]
     kept = np.flatnonzero([*own, *[True] * fitted.open.shape[1]])
-    reach, shift = triangle(root[kept].T).T, mean[kept]
-    # Lines become part of the model, so that effects on the signals act on them too.
+    # The rows of R that are kept have more columns than rows. The triangle has the same covariance with fewer columns.
+    reach, shift = triangular_factor(R[kept].T).T, mean[kept]
+    # Lines become part of the model, so that effects on the signals act on them too. They are the last directions, and
+    # relative to the model with them their mean is 0.
     lines, form = lines_found(fitted, mean)
     shift[len(shift) - form :] = 0.0
     model, nominal = replace(fitted.model, own_lines=lines), fitted.unit.model.gear
@@ -66,15 +70,15 @@ def learn_unit(measured: Measured, unit: Unit) -> Unit:
 
 def _with_usable_ripple(measured: Measured, unit: Unit) -> tuple[Fitted, Float[np.ndarray, " feature"]]:
     """The fit without ripple of speed and torques that the model does not describe, and the factor on the variance of
-    every line that removes this ripple.
+    every line that removes this ripple: UNHEARD for its lines, 1 for all others.
     """
     unheard = np.ones(len(measured.layout))
     while True:
         drive, foreign = _drive_alone(measured, unit), np.zeros(len(unheard), bool)
         if drive is not None:
-            foreign[_of_drive(measured)] = foreign_ripple(drive.measured, drive.missed, ALIEN)
+            foreign[_of_drive(measured)] = foreign_ripple(drive.measured, drive.missed, FOREIGN_SHARE)
         if not foreign.any():
-            fitted = _as_it_is(measured, unit, drive)
+            fitted = _with_learned_lines(measured, unit, drive)
             foreign = foreign_ripple(measured, fitted.missed)
         foreign &= unheard == 1
         if not foreign.any():
@@ -83,12 +87,13 @@ def _with_usable_ripple(measured: Measured, unit: Unit) -> tuple[Fitted, Float[n
         unit = replace(unit, inflation=unheard)
 
 
-def _as_it_is(measured: Measured, unit: Unit, drive: Fitted | None) -> Fitted:
+def _with_learned_lines(measured: Measured, unit: Unit, drive: Fitted | None) -> Fitted:
     """The fit to recordings of the healthy gear, whatever drive and structure it has.
 
     Lines of speed and torques are learned from speed and torques only. Lines of the gauges are learned twice, because
     missing lines bias the parameters at first.
     """
+    # The fit begins at the parameters that speed and torques gave. Those that they determine well are held at first.
     position: Mapping[str, float] = {}
     held: list[str] = []
     of_drive = np.zeros(len(measured.layout))
@@ -107,7 +112,7 @@ def _as_it_is(measured: Measured, unit: Unit, drive: Fitted | None) -> Fitted:
 
 
 def _given(unit: Unit, learned: Float[np.ndarray, " feature"]) -> Unit:
-    """The unit with lines that lie so far off."""
+    """The unit with lines that are learned, given the prior standard deviation of each; 0 for all others."""
     return replace(unit, learned=learned) if learned.any() else unit
 
 
@@ -150,7 +155,7 @@ def _of_drive(measured: Measured) -> Bool[np.ndarray, " feature"]:
 
 
 def _lie_off(fitted: Fitted) -> Float[np.ndarray, " feature"]:
-    """Deviation of the lines with lack of fit, now or before."""
+    """Prior standard deviation for the lines with lack of fit, now or before: their deviation from the model."""
     measured, layout = fitted.measured, fitted.measured.layout
     sought = beyond_noise(measured, fitted.missed) > 1
     if fitted.unit.learned is not None:
@@ -161,8 +166,8 @@ def _lie_off(fitted: Fitted) -> Float[np.ndarray, " feature"]:
     for channel in layout.channels:
         own = layout.channel == channel
         if channel in largest:
-            off[own] = np.minimum(off[own], LOOSEST * max(largest.values()))
-        elif missed[channel] > ALIEN:
+            off[own] = np.minimum(off[own], MOST_LEARNED * max(largest.values()))
+        elif missed[channel] > FOREIGN_SHARE:
             off[own] = 0.0
     return off
 

@@ -8,8 +8,9 @@ from swgsim.identification.data.measured import Measured
 from swgsim.identification.fit.fitting import MISFIT
 from swgsim.storage.labelled_signals import SENSORS
 
-# Share of a channel's ripple that the model may leave unexplained of a healthy gear; with more it is not its own, if a
-# line of it is also missed by more than MISFIT: a ripple that is hardly more than noise may well be.
+# Share of a channel's ripple that the model of a healthy gear may leave unexplained. With a larger share, the ripple
+# does not belong to this gear if the mean square of one of its lines is also above MISFIT. If none is, the ripple is
+# hardly more than noise, and a large share of it says nothing.
 UNEXPLAINED = 0.1
 # False discovery rate of lines with lack of fit.
 FALSE_DISCOVERIES = 0.05
@@ -18,8 +19,9 @@ FALSE_DISCOVERIES = 0.05
 def beyond_noise(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> Float[np.ndarray, " feature"]:
     """Factor on the variance of every line by lack of fit; 1 where it is not significant.
 
-    What the model misses is alike in all repeats of an operating point, and part of it in all recordings, which must
-    not pass for as many witnesses; and it misses as much of each of the gauges s1 to s4, which sit alike.
+    What the model misses is nearly the same in all repeats of an operating point. Part of it is the same in all
+    recordings. So the recordings are not independent observations of it, and the factors count it only once. The gauges
+    s1 to s4 have the same position relative to the lobes. So they share one factor for every order.
 
     Parameters
     ----------

@@ -45,14 +45,14 @@ def posterior(fitted: Fitted) -> tuple[Float[np.ndarray, "direction direction"],
     columns = np.hstack([fitted.J, fitted.open])
     white = fitted.errors.whiten(columns)
     unity = np.eye(columns.shape[1])
-    root = solve_triangular(triangle(np.vstack([white, unity])), unity)
+    root = solve_triangular(triangular_factor(np.vstack([white, unity])), unity)
     mean = root @ (root.T @ (white.T @ fitted.errors.whiten(fitted.from_start[:, None])[:, 0]))
     # The parameters themselves stay where the fit has them; all else takes up the rest.
     mean[: fitted.J.shape[1]] -= np.array(list(fitted.calibrated.position.values()))
     return root, mean
 
 
-def triangle(A: Float[np.ndarray, "row column"]) -> Float[np.ndarray, "column column"]:
+def triangular_factor(A: Float[np.ndarray, "row column"]) -> Float[np.ndarray, "column column"]:
     """Upper triangular R with R' R = A' A."""
     return np.asarray(qr(A, mode="r")[0])[: A.shape[1]]
 

@@ -3,7 +3,11 @@
 The covariance of a residual is A + G G^T. A holds the errors of every recording by itself, and maybe some of the
 others. The columns of G are errors of whole sessions (zero of a bridge, index of the angle) and directions in which
 declared parameters may lie, each scaled to one standard deviation. A residual, a signature and a prediction are all
-weighed with its inverse square root, so that what a declared parameter can absorb costs nothing and counts for nothing.
+weighted by the inverse of the covariance. So what a declared parameter can absorb costs nothing and counts for nothing.
+
+With Sigma for the covariance, two operations do this. ``whiten`` multiplies by a square root of Sigma^-1: products of
+whitened vectors are weighted sums, and a whitened residual has independent numbers of variance 1. ``weigh`` multiplies
+by Sigma^-1 itself: a product of a vector with a weighed residual is the same weighted sum.
 """
 
 from collections.abc import Sequence
@@ -62,21 +66,24 @@ class Covariance:
         return cholesky(np.eye(self.G.shape[1]) + self.G.T @ self._weighed, lower=True)
 
     @cached_property
-    def _raised(self) -> Float[np.ndarray, "column column"]:
-        """1 + L'."""
+    def _one_plus_Lt(self) -> Float[np.ndarray, "column column"]:
+        """1 + L': with L it makes K of :meth:`whiten`, and so a square root of the inverse of the covariance."""
         return np.eye(len(self._L)) + self._L.T
 
     def whiten(self, X: np.ndarray) -> np.ndarray:
-        """W X with W covariance W' = 1, for an array (row,) or (row, column).
+        """W X with W covariance W' = 1, a square root of its inverse, for an array (row,) or (row, column).
 
+        W is fast to apply, but it mixes rows: its numbers belong to no row.
         W = A^-1/2 (1 - G K G' A^-1) with K = (L (1 + L'))^-1, as W' W = (A + G G')^-1 then.
         """
         along = solve_triangular(self._L, self._weighed.T @ X, lower=True)
-        return self.base.whiten(X - self.G @ solve_triangular(self._raised, along))
+        return self.base.whiten(X - self.G @ solve_triangular(self._one_plus_Lt, along))
 
     def whiten_in_place(self, r: Float[np.ndarray, " row"]) -> Float[np.ndarray, " row"]:
-        """W r with W covariance W' = 1, where W is symmetric in units of the independent errors: as near to them as can
-        be, so that each number still tells of its row. Slower than :meth:`whiten`.
+        """W r with W covariance W' = 1, where each number of W r can still be read as that of its row.
+
+        The rows are divided by the standard deviations of the independent errors first. W is then the symmetric square
+        root, which changes the rows as little as any can. It is slower than :meth:`whiten`.
         """
         deviation = np.sqrt(self.variance)
         scaled = np.hstack([self.alone.dense, self.columns]) / deviation[:, None]
@@ -85,7 +92,7 @@ class Covariance:
         return r / deviation - scaled @ (V @ (V.T @ (scaled.T @ (r / deviation)) / (root * (1 + root))))
 
     def weigh(self, X: np.ndarray) -> np.ndarray:
-        """P X with P the inverse of the covariance, for an array (row,) or (row, column)."""
+        """P X with P = (A + G G')^-1, the inverse of the covariance, for an array (row,) or (row, column)."""
         return self.base.weigh(X) - self._weighed @ self._mean(X)
 
     def precision(self, block: Bool[np.ndarray, " row"]) -> Float[np.ndarray, "block block"]:
@@ -117,7 +124,7 @@ class Covariance:
         )
 
     def _mean(self, X: np.ndarray) -> np.ndarray:
-        """Those of G."""
+        """Posterior mean of the errors in G alone, in standard deviations. The errors of A are unknown too."""
         return cho_solve((self._L, True), self._weighed.T @ X)
 
     def features(self, chosen: Bool[np.ndarray, " feature"]) -> "Covariance":

@@ -27,9 +27,10 @@ class Allowed(NamedTuple):
     Attributes
     ----------
     free : array (row, regularity)
-        Regularities that were set free, and imperfect forms without which an effect is not seen.
+        Regularities that were set free, and imperfect forms without which an effect is not seen. They stay open when
+        effects are added to the model.
     forms : array (row, form)
-        By what effects found earlier may differ from the library's form.
+        By what effects found earlier may differ from the library's form. A fit that may move these effects closes them.
     """
 
     free: Float[np.ndarray, "row regularity"]
@@ -49,6 +50,23 @@ class Allowed(NamedTuple):
 @dataclass(frozen=True, eq=False)
 class Fitted:
     """A model that is fitted to measurements.
+
+    The covariance of the residual is built in four steps. Each step adds directions that may deviate:
+
+    =====================  ================================================  =========================================
+    covariance             holds                                             describes
+    =====================  ================================================  =========================================
+    :attr:`errors`         noise, errors of single recordings, of sessions   recordings of a gear that is known exactly
+    :attr:`of_unit`        the same and :attr:`open`                         the unit, effects having the library's form
+    :attr:`of_nuisances`   the same and both parts of :attr:`allowed`        all but the fitted parameters
+    :attr:`whole`          the same and :attr:`J`, the fitted parameters     :attr:`from_start`
+    =====================  ================================================  =========================================
+
+    Four methods return the same fit with another :attr:`allowed`. :meth:`allowing` adds to its part ``free``, and
+    :meth:`allowing_forms` to its part ``forms``. :attr:`closed` empties ``forms``, and :attr:`strict` empties both.
+
+    :attr:`residual` belongs to the fitted parameters. :attr:`from_start` belongs to the prior means of the parameters,
+    by the linearised model; :attr:`whole` is its covariance.
 
     Attributes
     ----------
@@ -100,22 +118,27 @@ class Fitted:
 
     @property
     def strict(self) -> "Fitted":
-        """The same without what effects and regularities found earlier leave open, for predictions."""
+        """The same with both parts of :attr:`allowed` empty, for predictions.
+
+        What effects and regularities found earlier leave open is not in it.
+        """
         return self._with_allowed(Allowed.nothing(len(self.offset)))
 
     @property
     def closed(self) -> "Fitted":
-        """The same with the form of effects closed, for a fit that may move them."""
+        """The same with the part ``forms`` of :attr:`allowed` empty, for a fit that may move the effects."""
         return self._with_allowed(self.allowed._replace(forms=self.allowed.forms[:, :0]))
 
     def allowing(self, columns: Float[np.ndarray, "row column"]) -> "Fitted":
-        """The same with more left open, one standard deviation each, also when effects are added to it; other columns
-        may stand for these, as few as noise leaves different.
+        """The same with more columns in the part ``free`` of :attr:`allowed`, one standard deviation each.
+
+        They stay open when effects are added. Fewer columns with the same covariance may stand for them, where noise
+        hides the difference.
         """
         return self._with_allowed(self.allowed._replace(free=self._with_more(self.allowed.free, columns)))
 
     def allowing_forms(self, columns: Float[np.ndarray, "row column"]) -> "Fitted":
-        """The same of the form of effects."""
+        """The same with more columns in the part ``forms`` of :attr:`allowed`."""
         return self._with_allowed(self.allowed._replace(forms=self._with_more(self.allowed.forms, columns)))
 
     def _with_more(
@@ -169,22 +192,25 @@ class Fitted:
 
     @cached_property
     def of_unit(self) -> Covariance:
-        """Covariance of all errors and of the nuisance directions of the unit."""
+        """Covariance of all errors and of the nuisance directions of the unit, :attr:`open`."""
         return self.errors.with_columns(self.open)
 
     @property
     def of_nuisances(self) -> Covariance:
-        """Covariance of all errors and of all nuisance directions besides the fitted parameters."""
+        """Covariance of all errors and of all nuisance directions, :attr:`open` and :attr:`allowed`.
+
+        The fitted parameters are not in it.
+        """
         return self.of_unit.with_columns(self.allowed.columns)
 
     @cached_property
     def whole(self) -> Covariance:
-        """All errors, with everything open that the model does not know exactly."""
+        """Covariance of all that the model does not know exactly: :attr:`of_nuisances` and the fitted parameters."""
         return self.of_nuisances.with_columns(self.J)
 
     @property
     def from_start(self) -> Float[np.ndarray, " row"]:
-        """Residual of the linearised model at the values where the spreads begin: what :attr:`whole` describes."""
+        """Residual of the linearised model at the prior means of the parameters; :attr:`whole` is its covariance."""
         return self.residual + self.J @ np.array(list(self.calibrated.position.values()))
 
     @cached_property

@@ -12,10 +12,11 @@ from swgsim.identification.covariance.low_rank_covariance import as_squares
 from swgsim.identification.data.model import predict
 from swgsim.identification.fit.fitted import Fitted
 
-# Difference of log-likelihoods that separates two explanations, or one from none.
+# Least gain of log-likelihood by which one explanation counts as better than another. An explanation counts as better
+# than none by the same gain.
 LEAST_GAIN = 3.0
-# What has no name comes before an effect only if it explains more than it does by this much, as a sum of squares, and
-# by this share.
+# A regularity replaces an effect only if it explains more than the effect does. The excess must be above the first
+# number, a sum of squares, plus the second number times what the effect explains.
 OUTDONE, OUTDONE_SHARE = 17.0, 0.05
 # A real cause never has the library's exact shape: its parts may differ from it by this share, and the power of load
 # and speed that it goes with by as much (standard deviations).
@@ -28,7 +29,8 @@ FORM_ERRORS = np.append(0.0, np.geomspace(1e-3, 10, 200))
 INACCURATE = (0.1, 0.3, 1.0)
 # Probability below which the parts contradict one another even so.
 CONTRADICTION = 1e-3
-# Parts that leave so large a share of the size in doubt have none in common: two deviations from it lies nothing.
+# Parts that differ so much have no size in common: the standard deviation is this share of the size, so a size of zero
+# is only two standard deviations away.
 NO_SIZE = 0.5
 # Parts of points, of channels and of orders have the same sum; directions of them below this share of the largest are
 # what differences and rounding leave of that (an estimate).
@@ -156,19 +158,20 @@ def coherence(fitted: Fitted, number: int) -> Coherence:
     if not np.any(split):
         return Coherence(0.0, 0.0, 0.0)
     U, s, _ = svd(split)
-    seen = s > LEAST_PART * max(float(s.max()), 1e-12)
-    u, s = (U.T @ whole.whiten(fitted.from_start))[seen], s[seen]
+    kept = s > LEAST_PART * max(float(s.max()), 1e-12)
+    u, s = (U.T @ whole.whiten(fitted.from_start))[kept], s[kept]
 
     chance = float(chi2.sf((u**2 / (1 + (FORM_TOLERANCE * s) ** 2)).sum(), len(s)))
     wider = 1 + (FORM_ERRORS[:, None] * s) ** 2
-    unlikely = (u**2 / wider + np.log(wider)).sum(axis=1)
-    error = float(FORM_ERRORS[np.argmin(unlikely)])
-    apart = error * parts(fitted, signed)
-    shares = _shares(fitted, number, signed, np.hstack([apart, structure]))
-    beyond_noise = unlikely[0] - unlikely.min() > as_squares(LEAST_GAIN)
+    # Minus twice the log-likelihood of the parts, for every form error that is tried.
+    minus_2_log_likelihood = (u**2 / wider + np.log(wider)).sum(axis=1)
+    error = float(FORM_ERRORS[np.argmin(minus_2_log_likelihood)])
+    form_columns = error * parts(fitted, signed)
+    shares = _shares(fitted, number, signed, np.hstack([form_columns, structure]))
+    beyond_noise = minus_2_log_likelihood[0] - minus_2_log_likelihood.min() > as_squares(LEAST_GAIN)
     # An effect in one channel and one order has parts that are the whole of it; they cannot disagree.
-    several = (apart != error * signed[:, None]).any(axis=0)
-    disagreement = float(np.linalg.norm(shares[: apart.shape[1]][several])) if beyond_noise else 0.0
+    several = (form_columns != error * signed[:, None]).any(axis=0)
+    disagreement = float(np.linalg.norm(shares[: form_columns.shape[1]][several])) if beyond_noise else 0.0
     return Coherence(chance, error, float(np.linalg.norm(shares)), disagreement)
 
 

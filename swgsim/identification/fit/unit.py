@@ -28,7 +28,8 @@ from swgsim.recordings.recording import Recording
 STRUCTURE = 0.01
 # Ratio of the error of an effect's signature to that of the healthy influence maps, whose lines were learned.
 LESS = 2.0
-# Factor on the noise variance of ripple that the model of this gear does not describe; it then has no weight.
+# Factor on the noise variance of ripple that the model of this gear does not describe. Such ripple then has no weight,
+# and the report names its channels as `unheard`.
 UNHEARD = 1e8
 
 

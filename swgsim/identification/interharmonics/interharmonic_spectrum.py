@@ -17,15 +17,17 @@ from swgsim.identification.data.noise import GUARD, Floor, floors, step_of
 from swgsim.recordings.recording import CHANNELS, Recording
 from swgsim.storage.labelled_signals import SENSORS
 
-# Share of a pattern that must lie between the orders, and of its largest direction; less is rounding.
-SEEN = 1e-3
+# Share of a pattern that must lie between the orders; less is rounding. And share of a pattern's largest direction that
+# any other direction must have.
+LEAST_SHARE = 1e-3
 # Samples per revolution at which patterns are computed; more than twice the orders that are fitted.
 SAMPLES = 48
 # Number of spectral lines on either side from which the noise next to a line is estimated.
 NEIGHBOURS = 6
 # Weight of the common noise floor in the noise next to a line, as a number of degrees of freedom.
 ALL_TOGETHER = 20
-# Orders close to which circular spline and flex spline beat: 2 in the torque, which lobes make 0 and 4 in gauges.
+# Orders close to which lines of the beat of circular spline and flex spline lie. The torque beats close to order 2. As
+# the two lobes carry the torque past the gauges, the gauges beat close to orders 0 and 4.
 BEATING = (0, 2, 4)
 # Part of a direction that a line must hold to be one of its lines.
 HELD = 0.05
@@ -37,20 +39,30 @@ Sums = float | Float[np.ndarray, "*line"]
 class Explained(NamedTuple):
     """What an effect explains of one recording.
 
-    ``gain``, a sum of squares in units of the noise, by so many numbers of ``freedom``; at its own size it would bring
-    ``size``. ``rest`` is the sum of squares of what is left beside its lines, in ``noise_numbers`` numbers.
+    Attributes
+    ----------
+    gain : float
+        Sum of squares that the effect explains, in units of the noise.
+    freedom : int
+        Its degrees of freedom: noise alone gives a gain of this much on average.
+    own_gain : float
+        Gain that the effect would have without noise if its size were the one that it is given with.
+    rest : float
+        Sum of squares of the noise next to its lines.
+    noise_numbers : float
+        Degrees of freedom of ``rest``.
     """
 
     gain: float
     freedom: int
-    size: float
+    own_gain: float
     rest: float
     noise_numbers: float
 
 
 @dataclass(frozen=True, eq=False)
-class Between:
-    """The spectrum between the orders of one recording, every gauge in units of its noise.
+class GaugeSpectrum:
+    """The spectrum of one recording between the integer orders, every gauge in units of its noise.
 
     Attributes
     ----------
@@ -80,7 +92,9 @@ class Between:
     taken: Float[np.ndarray, "number direction"]
 
     @classmethod
-    def of(cls, recording: Recording, gauges: tuple[str, ...], noise: Sequence[Floor], N: int | None) -> "Between":
+    def of(
+        cls, recording: Recording, gauges: tuple[str, ...], noise: Sequence[Floor], N: int | None
+    ) -> "GaugeSpectrum":
         """Of a recording whose gauges have these floors, of a gear of this ratio."""
         step = max(1, int(recording.rate * 60 / recording.point.n_in_rpm / SAMPLES))
         length = len(recording.time) // step * step
@@ -131,7 +145,7 @@ class Between:
         between = self._numbers(lines - (seen @ self.orders) @ self._of_orders * self.scale)
         between = between - (between @ self.taken) @ self.taken.T
         whole = np.linalg.norm(lines, axis=(-2, -1)).max()
-        return between if np.linalg.norm(between, axis=-1).max() > SEEN * whole else np.zeros_like(between)
+        return between if np.linalg.norm(between, axis=-1).max() > LEAST_SHARE * whole else np.zeros_like(between)
 
     def explained(self, effect: Effect) -> Explained:
         """What an effect explains of this recording."""
@@ -143,22 +157,22 @@ class Between:
         neighbours = np.tile(near & self.clear, 2 * len(self.gauges))
         rest = (self.left - U @ along)[neighbours]
         count = neighbours.sum() - (U[neighbours] ** 2).sum() - (self.taken[neighbours] ** 2).sum()
-        size = float((pattern[0] ** 2).sum())
-        return Explained(float(along @ along), U.shape[1], size, float(rest @ rest), float(count))
+        own_gain = float((pattern[0] ** 2).sum())
+        return Explained(float(along @ along), U.shape[1], own_gain, float(rest @ rest), float(count))
 
     def held(self, effects: Sequence[Effect]) -> float:
         """Sum of squares of what these effects may have put there."""
         along = self._span(effects).T @ self.left
         return float(along @ along)
 
-    def without(self, effects: Sequence[Effect]) -> "Between":
+    def without(self, effects: Sequence[Effect]) -> "GaugeSpectrum":
         """The spectrum without anything that these effects may have put there."""
         return self._taking(self._span(effects))
 
     def _span(self, effects: Sequence[Effect]) -> Float[np.ndarray, "number rank"]:
         return _directions(np.concatenate([self.pattern(effect) for effect in effects]))
 
-    def _taking(self, U: Float[np.ndarray, "number direction"]) -> "Between":
+    def _taking(self, U: Float[np.ndarray, "number direction"]) -> "GaugeSpectrum":
         return replace(self, left=self.left - U @ (U.T @ self.left), taken=np.hstack([self.taken, U]))
 
     @cached_property
@@ -179,7 +193,7 @@ class Between:
         return lines
 
 
-def between(recordings: Sequence[Recording], N: int | None = None) -> list[Between]:
+def gauge_spectra(recordings: Sequence[Recording], N: int | None = None) -> list[GaugeSpectrum]:
     """What lies between the orders of every recording; nothing if they have no gauge in common.
 
     Parameters
@@ -190,7 +204,7 @@ def between(recordings: Sequence[Recording], N: int | None = None) -> list[Betwe
     """
     gauges = tuple(sensor for sensor in SENSORS if all(sensor in r.channels for r in recordings))
     noise = floors(recordings, Layout(gauges)) if gauges else []
-    return [Between.of(recording, gauges, noise, N) for recording in recordings] if gauges else []
+    return [GaugeSpectrum.of(recording, gauges, noise, N) for recording in recordings] if gauges else []
 
 
 def f_test(gain: Sums, freedom: Sums, rest: Sums, count: Sums) -> tuple[Sums, Sums]:
@@ -269,4 +283,4 @@ def _rounding(values: Float[np.ndarray, " time"], noise: Floor) -> float:
 def _directions(pattern: Float[np.ndarray, "column number"]) -> Float[np.ndarray, "number rank"]:
     """Orthonormal directions of a pattern."""
     U, s, _ = svd(pattern.T)
-    return U[:, s > SEEN * s[0]] if s[0] > 0 else U[:, :0]
+    return U[:, s > LEAST_SHARE * s[0]] if s[0] > 0 else U[:, :0]

@@ -10,7 +10,7 @@ from swgsim.effects.line_between import GAUGE_PATTERNS, LineBetween
 from swgsim.effects.quantity import quantities
 from swgsim.effects.regularity import LAWS
 from swgsim.identification.fit.form_error import LEAST_GAIN, OUTDONE, OUTDONE_SHARE
-from swgsim.identification.interharmonics.interharmonic_spectrum import Between, f_test
+from swgsim.identification.interharmonics.interharmonic_spectrum import GaugeSpectrum, f_test
 from swgsim.identification.interharmonics.named_interharmonics import by_law
 
 
@@ -34,7 +34,7 @@ class Part:
         return f"{self.effect.pattern}, {law}, amplitude {self.effect.amplitude:.3g} mV/V"
 
 
-def line_parts(line: Callable[[str], LineBetween], spectra: Sequence[Between], level: float) -> tuple[Part, ...]:
+def line_parts(line: Callable[[str], LineBetween], spectra: Sequence[GaugeSpectrum], level: float) -> tuple[Part, ...]:
     """The line in the pattern that explains most of it, and in every further gauge that shows it; in every gauge by
     itself if that explains clearly more than the pattern does. The strongest comes first.
 
@@ -42,7 +42,7 @@ def line_parts(line: Callable[[str], LineBetween], spectra: Sequence[Between], l
     ----------
     line : callable
         Pattern to the line in it.
-    spectra : sequence of Between
+    spectra : sequence of GaugeSpectrum
         Which show it.
     level : float
         Probability of a false gauge.
@@ -70,7 +70,7 @@ def distinct_patterns(gauges: Sequence[str]) -> list[str]:
     return list(found.values())
 
 
-def _alone(gauge: str, line: Callable[[str], LineBetween], spectra: Sequence[Between]) -> "_Shown":
+def _alone(gauge: str, line: Callable[[str], LineBetween], spectra: Sequence[GaugeSpectrum]) -> "_Shown":
     """The line in one gauge, without the lines of the other gauges in the noise."""
     others = [line(f"in {other} alone") for other in spectra[0].gauges if other != gauge]
     return _Shown.of(line(f"in {gauge} alone"), [each.without(others) for each in spectra] if others else spectra)
@@ -83,7 +83,7 @@ class _Shown:
     """
 
     line: LineBetween
-    spectra: Sequence[Between]
+    spectra: Sequence[GaugeSpectrum]
     gain: Float[np.ndarray, " recording"]
     freedom: Float[np.ndarray, " recording"]
     size: Float[np.ndarray, " recording"]
@@ -91,7 +91,7 @@ class _Shown:
     chance: float
 
     @classmethod
-    def of(cls, line: LineBetween, spectra: Sequence[Between]) -> "_Shown":
+    def of(cls, line: LineBetween, spectra: Sequence[GaugeSpectrum]) -> "_Shown":
         """Of a line whose law is constant."""
         gain, freedom, size, rest, count = np.array([each.explained(line) for each in spectra]).T
         noise, chance = f_test(gain.sum(), max(freedom.sum(), 1.0), rest.sum(), count.sum())

@@ -11,7 +11,7 @@ from jaxtyping import Float
 from swgsim.common.singular import svd
 from swgsim.effects.base import Effect
 from swgsim.identification.fit.form_error import OUTDONE, OUTDONE_SHARE
-from swgsim.identification.interharmonics.interharmonic_spectrum import Between, ordinary, scene_of, shapes
+from swgsim.identification.interharmonics.interharmonic_spectrum import GaugeSpectrum, ordinary, scene_of, shapes
 from swgsim.identification.interharmonics.named_interharmonics import Sideline, nearby, ranked
 from swgsim.identification.interharmonics.unattributed_lines import Unnamed, unnamed
 from swgsim.recordings.recording import Recording
@@ -31,7 +31,7 @@ class LinesBetween:
     ----------
     named : tuple of Sideline
     unnamed : tuple of Unnamed
-    left : tuple of Between
+    left : tuple of GaugeSpectrum
         The spectra without it.
     effects : tuple of Effect
         All that it may have put on the signals.
@@ -39,7 +39,7 @@ class LinesBetween:
 
     named: tuple[Sideline, ...]
     unnamed: tuple[Unnamed, ...]
-    left: tuple[Between, ...]
+    left: tuple[GaugeSpectrum, ...]
     effects: tuple[Effect, ...]
 
     def taking_out(self, effects: Sequence[Effect]) -> "LinesBetween":
@@ -48,13 +48,13 @@ class LinesBetween:
 
 
 def search(
-    spectra: Sequence[Between], kinds: Iterable[type[Effect]], level: float, known: Sequence[Effect] = ()
+    spectra: Sequence[GaugeSpectrum], kinds: Iterable[type[Effect]], level: float, known: Sequence[Effect] = ()
 ) -> LinesBetween:
     """Find interharmonic lines one after the other, as long as one is significant.
 
     Parameters
     ----------
-    spectra : sequence of Between
+    spectra : sequence of GaugeSpectrum
         Of all recordings.
     kinds : iterable of effect classes
     level : float
@@ -88,13 +88,13 @@ def _in_parts(line: Sideline) -> bool:
     return len(line.effect.parts()) > 1
 
 
-def _explains(line: Sideline, bare: Unnamed, left: Sequence[Between]) -> bool:
+def _explains(line: Sideline, bare: Unnamed, left: Sequence[GaugeSpectrum]) -> bool:
     """Whether the parts of an effect, each of any size, explain what a line without a name does."""
     explained = sum(each.held(_near(line, left)) for each in left) - bare.noise
     return bare.explained <= (1 + OUTDONE_SHARE) * explained + OUTDONE
 
 
-def _near(line: Sideline, spectra: Sequence[Between]) -> list[Effect]:
+def _near(line: Sideline, spectra: Sequence[GaugeSpectrum]) -> list[Effect]:
     """All that may be there where an effect is."""
     return [part for each in nearby(line.effect, spectra) for part in each.parts()]
 
@@ -108,7 +108,8 @@ def cleaned(recording: Recording, effects: Sequence[Effect], N: int | None = Non
     effects : sequence of Effect
         Their sizes and random phases mean nothing.
     N : int, optional
-        Ratio of the gear, as :func:`~swgsim.identification.interharmonics.interharmonic_spectrum.between` was given it.
+        Ratio of the gear, as it was given to
+        :func:`~swgsim.identification.interharmonics.interharmonic_spectrum.gauge_spectra`.
     """
     scene, channels = scene_of(recording), recording.channels
     gauges = tuple(sensor for sensor in SENSORS if sensor in channels)

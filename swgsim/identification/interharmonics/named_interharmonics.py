@@ -13,7 +13,7 @@ from scipy.stats import chi2
 from swgsim.common.chi2_logsf import surprise
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Quantity, Role, quantities, size_of
-from swgsim.identification.interharmonics.interharmonic_spectrum import Between, f_test
+from swgsim.identification.interharmonics.interharmonic_spectrum import GaugeSpectrum, f_test
 
 # A line's size may differ from its law over load and speed by this share.
 TOLERANCE = 0.3
@@ -66,7 +66,7 @@ class Sideline:
         return self.agrees > CONTRADICTION
 
 
-def ranked(spectra: Sequence[Between], kinds: Iterable[type[Effect]]) -> list[Sideline]:
+def ranked(spectra: Sequence[GaugeSpectrum], kinds: Iterable[type[Effect]]) -> list[Sideline]:
     """The best hypothesis of every effect with a random phase that acts on the signals, the likeliest first."""
     kinds = [kind for kind in kinds if has_sidelines(kind)] if spectra else []
     found = []
@@ -85,7 +85,7 @@ def ranked(spectra: Sequence[Between], kinds: Iterable[type[Effect]]) -> list[Si
     return sorted(found, key=lambda line: (line.chance, -line.rank))
 
 
-def nearby(effect: Effect, spectra: Sequence[Between]) -> list[Effect]:
+def nearby(effect: Effect, spectra: Sequence[GaugeSpectrum]) -> list[Effect]:
     """An effect and its neighbours: where its line lies is known to a part of the last zoom, which begins at the
     distance of two lines or at that of the values that were tried.
     """
@@ -112,7 +112,7 @@ def acts_on_signals(kind: type[Effect]) -> bool:
     return any(getattr(kind, place) is not getattr(Effect, place) for place in ("gauge", "acquisition"))
 
 
-def _judged(effect: Effect, spectra: Sequence[Between], tried: int) -> Sideline:
+def _judged(effect: Effect, spectra: Sequence[GaugeSpectrum], tried: int) -> Sideline:
     """One hypothesis at all recordings."""
     declared = quantities(type(effect))
     name = size_of(type(effect))
@@ -148,16 +148,16 @@ def by_law(
     Parameters
     ----------
     gain, freedom : array (recording,)
-        Sum of squares that it explains, in units of the noise, by so many numbers.
+        Sum of squares that it explains, in units of the noise, and its degrees of freedom.
     size : array (recording,)
-        What it would bring at its own size.
+        Gain that it would have without noise at the size that it is given with.
     """
     share = float(max(gain.sum() - freedom.sum(), 0.0) / max(size.sum(), 1e-300))
     brought = share * size
     return share, freedom + brought, 2 * freedom + 4 * brought + (2 * TOLERANCE * brought) ** 2
 
 
-def _zoomed(best: Sideline, spectra: Sequence[Between], tried: int) -> Sideline:
+def _zoomed(best: Sideline, spectra: Sequence[GaugeSpectrum], tried: int) -> Sideline:
     """The line with its order or frequency no longer on the grid."""
     for name in _searched(best.effect):
         reach = _spacing(quantities(type(best.effect))[name], spectra)
@@ -172,7 +172,7 @@ def _searched(effect: Effect) -> list[str]:
     return [name for name, q in quantities(type(effect)).items() if q.role is Role.SHAPE and q.points > 1]
 
 
-def _tried(quantity: Quantity, spectra: Sequence[Between]) -> tuple[float, ...]:
+def _tried(quantity: Quantity, spectra: Sequence[GaugeSpectrum]) -> tuple[float, ...]:
     """Values of a parameter that are tried: those declared, closer together where the lines of the spectra are."""
     if quantity.role is not Role.SHAPE or quantity.points == 1:
         return quantity.tried
@@ -180,12 +180,12 @@ def _tried(quantity: Quantity, spectra: Sequence[Between]) -> tuple[float, ...]:
     return tuple(np.linspace(quantity.low, quantity.high, count).tolist())
 
 
-def _spacing(quantity: Quantity, spectra: Sequence[Between]) -> float:
+def _spacing(quantity: Quantity, spectra: Sequence[GaugeSpectrum]) -> float:
     """Distance of the values that are tried: that of two lines, or as many as can be."""
     return max(_apart(quantity, spectra), (quantity.high - quantity.low) / MOST_TRIED)
 
 
-def _apart(quantity: Quantity, spectra: Sequence[Between]) -> float:
+def _apart(quantity: Quantity, spectra: Sequence[GaugeSpectrum]) -> float:
     """Distance that is declared, and no more than that of two lines of the finest spectrum."""
     declared = (quantity.high - quantity.low) / (quantity.points - 1)
     return min(declared, min(each.step if quantity.unit == "Hz" else 1 / each.revolutions for each in spectra))

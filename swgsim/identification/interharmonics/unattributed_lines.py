@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from swgsim.effects.line_between import FixedFrequency, FractionalOrder, LineBetween
 from swgsim.identification.data.features import FITTED
-from swgsim.identification.interharmonics.interharmonic_spectrum import NEIGHBOURS, Between, f_test
+from swgsim.identification.interharmonics.interharmonic_spectrum import NEIGHBOURS, GaugeSpectrum, f_test
 from swgsim.identification.interharmonics.line_pattern import Part, line_parts
 
 KINDS = ("order", "frequency")
@@ -54,12 +54,12 @@ class Unnamed:
         places = self.at + self.reach * np.array([-1.0, 0.0, 1.0])
         return [line for place in places.tolist() for line in self._in(gauges, place)]
 
-    def with_parts(self, spectra: Sequence[Between], level: float) -> "Unnamed":
+    def with_parts(self, spectra: Sequence[GaugeSpectrum], level: float) -> "Unnamed":
         """The line with its parts; a gauge is a false one with this probability."""
         make = partial(_line, self.kind, self.at)
         return replace(self, parts=line_parts(make, spectra, level))
 
-    def refined(self, spectra: Sequence[Between]) -> "Unnamed":
+    def refined(self, spectra: Sequence[GaugeSpectrum]) -> "Unnamed":
         """The line where it explains most, no longer at a place of the grid, between two of which it loses half."""
         found = self
         for _ in range(ZOOMS):
@@ -67,7 +67,7 @@ class Unnamed:
             found = replace(max(near, key=lambda line: line.explained), reach=found.reach / 2)
         return found
 
-    def _at(self, place: float, spectra: Sequence[Between]) -> "Unnamed":
+    def _at(self, place: float, spectra: Sequence[GaugeSpectrum]) -> "Unnamed":
         held = sum(each.held(self._in(each.gauges, place)) for each in spectra)
         return replace(self, at=place, explained=float(held - self.noise))
 
@@ -95,12 +95,12 @@ def _line(kind: str, place: float, pattern: str) -> LineBetween:
     return FixedFrequency(1.0, pattern=pattern, frequency=place)
 
 
-def unnamed(spectra: Sequence[Between], level: float) -> Unnamed | None:
+def unnamed(spectra: Sequence[GaugeSpectrum], level: float) -> Unnamed | None:
     """The significant line with the largest explained sum of squares, or None.
 
     Parameters
     ----------
-    spectra : sequence of Between
+    spectra : sequence of GaugeSpectrum
         Without what is explained.
     level : float
         Probability of a false one.
@@ -110,7 +110,7 @@ def unnamed(spectra: Sequence[Between], level: float) -> Unnamed | None:
     return best.refined(spectra).with_parts(spectra, level) if best else None
 
 
-def _best(spectra: Sequence[Between], kind: str, level: float) -> list[Unnamed]:
+def _best(spectra: Sequence[GaugeSpectrum], kind: str, level: float) -> list[Unnamed]:
     """The best line at one order, or at one frequency; none if all may be luck, or no place is clear in most.
 
     The noise beside a line holds what leaks from it, so it tells that a strong line is none, and not which is stronger.

@@ -15,7 +15,7 @@ from swgsim.identification.decide.empirical_terms import patched
 from swgsim.identification.decide.selection import Closed
 from swgsim.identification.decide.stepwise_selection import close
 from swgsim.identification.fit.unit import Unit
-from swgsim.identification.interharmonics.interharmonic_spectrum import between
+from swgsim.identification.interharmonics.interharmonic_spectrum import gauge_spectra
 from swgsim.identification.interharmonics.line_search import cleaned, search
 from swgsim.identification.interharmonics.named_interharmonics import Sideline
 from swgsim.identification.interharmonics.unattributed_lines import Unnamed
@@ -123,7 +123,7 @@ def answer(
     forget()
     STEPS.info("searching interharmonic lines in %d recordings", len(recordings))
     N = unit.model.gear.transmission.N
-    lines = search(between(recordings, N), kinds, ALPHA, known)
+    lines = search(gauge_spectra(recordings, N), kinds, ALPHA, known)
     clean = [cleaned(recording, lines.effects, N) for recording in recordings] if lines.effects else recordings
     closed = close(Measured.of(clean), unit, kinds, seed=seed)
     STEPS.info("describing the remainder")

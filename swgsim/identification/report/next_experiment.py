@@ -99,17 +99,17 @@ def next_experiments(answer: Answer) -> tuple[Experiment, ...]:
 
 def _best(adjusting: Fitted, truths: Sequence[Model], between: Sequence[tuple[str, str]]) -> list[Experiment]:
     """For every truth, the smallest number of recordings that refutes a fitted model, and their operating point."""
-    further = _Further.of(adjusting, truths)
+    planned = _PlannedRecordings.of(adjusting, truths)
     found: dict[int, Experiment] = {}
     for recordings in RECORDINGS:
-        separations = further.separations(recordings)
+        separations = planned.separations(recordings)
         for number in range(len(truths)):
             if number in found and found[number].recordings:
                 continue
             best = easiest(separations[:, number])
             most = float(separations[best, number])
             enough = recordings if most >= SEPARATED else None
-            found[number] = Experiment(between[number], further.candidates[best], enough, most)
+            found[number] = Experiment(between[number], planned.candidates[best], enough, most)
     return list(found.values())
 
 
@@ -122,7 +122,7 @@ def easiest(separations: Float[np.ndarray, " candidate"]) -> int:
 
 
 @dataclass(frozen=True, eq=False)
-class _Further:
+class _PlannedRecordings:
     """A fitted model and planned recordings.
 
     Attributes
@@ -148,35 +148,37 @@ class _Further:
     single: Float[np.ndarray, "candidate feature kind"]
 
     @classmethod
-    def of(cls, fitted: Fitted, truths: Sequence[Model]) -> "_Further":
+    def of(cls, fitted: Fitted, truths: Sequence[Model]) -> "_PlannedRecordings":
         """The part that does not depend on the number of recordings."""
         measured = fitted.measured
         count = len(measured.situations)
         candidates = tuple(Situation(point, conditions) for conditions in CONDITIONS for point in FEASIBLE)
         situations = (*measured.situations, *candidates)
         predicted, directions = _directions(fitted, situations)
-        seen = predict(truths, situations, measured.layout) - predicted
-        differences = np.moveaxis(seen, 0, -1)
+        differences = np.moveaxis(predict(truths, situations, measured.layout) - predicted, 0, -1)
         # Differences within the form tolerance, or absorbed by free regularities, gave no information so far.
         errors = fitted.errors.with_columns(fitted.allowed.free)
         for number in _added(fitted):
             errors = errors.with_columns(without_what_noise_hides(allowance(fitted, number), errors.variance))
+        # The nuisance parameters of the model are fitted to the whitened difference d in the existing recordings. C are
+        # their whitened directions. (L L')^-1 is their posterior covariance, and (L L')^-1 C' d their posterior mean.
         C = errors.whiten(measured.rows(directions[:count]))
         d = errors.whiten(measured.rows(differences[:count]))
         L = np.linalg.cholesky(np.eye(C.shape[1]) + C.T @ C)
-        pull = solve_triangular(L, C.T @ d, lower=True)
-        adjusted = solve_triangular(L, np.concatenate(directions[count:]).T, lower=True)
-        left = np.concatenate(differences[count:]) - adjusted.T @ pull
-        there = predicted[count:]
-        of_session = measured.further("planned", candidates, there).session_columns(there)
-        shared = [of_session.reshape(*there.shape, -1), _tolerance(fitted, candidates, there)]
-        shared.append(adjusted.T.reshape(*there.shape, -1))
+        fitted_part = solve_triangular(L, C.T @ d, lower=True)
+        # A row for each direction of the posterior: what one standard deviation of it changes at the candidates.
+        posterior = solve_triangular(L, np.concatenate(directions[count:]).T, lower=True)
+        left = np.concatenate(differences[count:]) - posterior.T @ fitted_part
+        at_candidates = predicted[count:]
+        of_session = measured.further("planned", candidates, at_candidates).session_columns(at_candidates)
+        shared = [of_session.reshape(*at_candidates.shape, -1), _tolerance(fitted, candidates, at_candidates)]
+        shared.append(posterior.T.reshape(*at_candidates.shape, -1))
         spread = [columns @ columns.T for columns in np.concatenate(shared, axis=-1)]
-        moves = scatter.directions(fitted.model, candidates, measured.layout)
+        single = scatter.directions(fitted.model, candidates, measured.layout)
         noise = np.median(fitted.unit.inflated(measured.variance), axis=0)
         return cls(
-            candidates, (d**2).sum(axis=0) - (pull**2).sum(axis=0), left.reshape(differences[count:].shape),
-            np.array(spread), noise, fitted.scatter.columns(moves),
+            candidates, (d**2).sum(axis=0) - (fitted_part**2).sum(axis=0), left.reshape(differences[count:].shape),
+            np.array(spread), noise, fitted.scatter.columns(single),
         )  # fmt: skip
 
     def separations(self, recordings: int) -> Float[np.ndarray, "candidate truth"]:

@@ -142,7 +142,7 @@ def detectable(score: Score) -> dict[str, Any]:
     q = quantities(score.hypothesis.kind)[score.hypothesis.size]
     return {
         "parameter": score.hypothesis.size,
-        "value": number(score.smallest) if score.within_bounds else None,
+        "value": number(score.value_at_limit) if score.within_bounds else None,
         "typical": float(q.typical),
         "unit": q.unit,
         "typical_would_be_seen": bool(score.detectable <= abs(q.typical - q.nothing)),

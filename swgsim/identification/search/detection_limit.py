@@ -7,7 +7,7 @@ import numpy as np
 
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.search.hypotheses import signatures
-from swgsim.identification.search.screening import SEEN, Score, rank
+from swgsim.identification.search.screening import DEVIATIONS_AT_LIMIT, Score, rank
 
 # Visible share of a signature below which it is computed again at the detection limit; for an effect with a threshold
 # it always is.
@@ -23,7 +23,7 @@ def at_sizes_seen(scores: Sequence[Score], fitted: Fitted) -> tuple[Score, ...]:
     clipping nothing is seen below its threshold.
     """
     there = [
-        replace(score.hypothesis, reference=score.smallest)
+        replace(score.hypothesis, reference=score.value_at_limit)
         for score in scores
         if score.within_bounds and (score.visible < MOSTLY_ABSORBED or score.hypothesis.kind.sharp)
     ]
@@ -36,5 +36,5 @@ def at_sizes_seen(scores: Sequence[Score], fitted: Fitted) -> tuple[Score, ...]:
 
 def _between(score: Score, deviation: float) -> Score:
     """With the mean of both deviations; the size of the signature is known to be seen, unless it is smaller yet."""
-    most = max(score.deviation, score.shown / SEEN)
+    most = max(score.deviation, score.size_of_signature / DEVIATIONS_AT_LIMIT)
     return replace(score, deviation=min(float(np.sqrt(score.deviation * deviation)), most))

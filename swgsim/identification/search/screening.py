@@ -30,7 +30,7 @@ DRAWS, AT_ONCE, ENOUGH = 1000, 100, 20
 FAR = 2.0
 # Standard deviations of a size at its detection limit: 4.31 for the p-value :data:`shortlist.ALPHA` among the 300
 # hypotheses of the library, and 0.84 for a power of 80 %.
-SEEN = 5.15
+DEVIATIONS_AT_LIMIT = 5.15
 
 
 @dataclass(frozen=True)
@@ -67,28 +67,35 @@ class Score:
 
     @property
     def rank(self) -> float:
-        """Significance of the gain in a search of this extent, for sorting."""
+        """Significance of the gain, for sorting: the higher, the less likely is the gain by chance.
+
+        It is -2 ln(p) with the p-value p of the gain alone, less 2 ln of the number of hypotheses tried of the effect.
+        """
         return surprise(self.gain, self.freedom) - as_squares(float(np.log(self.hypothesis.tried)))
 
     @property
     def detectable(self) -> float:
-        """Smallest size that would stand out with 80 % power."""
-        return SEEN * self.deviation
+        """The detection limit: the smallest size that is significant with a probability of 80 %."""
+        return DEVIATIONS_AT_LIMIT * self.deviation
 
     @property
-    def smallest(self) -> float:
-        """The parameter at that size, on the side of the typical one."""
+    def value_at_limit(self) -> float:
+        """The value of the parameter at the detection limit.
+
+        A size is a distance from the value at which the effect changes nothing. It is taken in the direction of the
+        typical value.
+        """
         quantity = self._quantity
         return quantity.nothing + float(np.copysign(self.detectable, quantity.typical - quantity.nothing))
 
     @property
     def within_bounds(self) -> bool:
-        """Whether the parameter may have that value."""
-        return self._quantity.low <= self.smallest <= self._quantity.high
+        """Whether the parameter may have its value at the detection limit."""
+        return self._quantity.low <= self.value_at_limit <= self._quantity.high
 
     @property
-    def shown(self) -> float:
-        """The size at which the signature was taken."""
+    def size_of_signature(self) -> float:
+        """The size of the effect for which its signature was computed: that of the hypothesis, typical at first."""
         return abs(self.hypothesis.typical - self._quantity.nothing)
 
     @property
@@ -128,7 +135,10 @@ def screen(
 
 
 def rank(found: Sequence[Hypothesis], signatures: Sequence[Float[np.ndarray, "row _"]], fitted: Fitted) -> list[Score]:
-    """The same without p-values (nan), whose draws of noise take most of the time."""
+    """Scores of all hypotheses, the best :attr:`Score.rank` first, as of :func:`screen` but without p-values (nan).
+
+    The draws of noise for p-values take most of the time.
+    """
     return _ranked(found, _all_projected(signatures, fitted), fitted, np.full(len(found), np.nan))
 
 
@@ -199,7 +209,7 @@ def _score(hypothesis: Hypothesis, projected: Projected, u: Float[np.ndarray, " 
         size, phase = span * float(np.hypot(*weights)), float(np.arctan2(weights[1], weights[0]) % (2 * np.pi))
     size = float(np.clip(quantity.nothing + size, quantity.low, quantity.high))
     if size == quantity.nothing:
-        # It would have to be less than nothing.
+        # The best size lies on the side that the effect cannot have, so no size of it explains anything.
         return Score(hypothesis, 0.0, len(u), size, phase, deviation, projected.visible, 1.0)
     return Score(hypothesis, float(u @ u), len(u), size, phase, deviation, projected.visible, chance)
 
