@@ -51,7 +51,7 @@ from swgsim.identification.report.answer import Answer
 from swgsim.identification.search.hypotheses import Hypothesis
 from swgsim.storage.labelled_signals import SENSORS
 
-pytestmark = pytest.mark.end_to_end
+pytestmark = [pytest.mark.end_to_end, pytest.mark.slow]
 CONF = Path(__file__).parents[2] / "conf"
 FEW = (
     "eccentric_wave_generator", "cam_form", "tilting_moment", "gauge_gain", "channel_skew", "reduced_damping",

@@ -120,6 +120,7 @@ def test_steady_state_is_where_a_long_transient_ends() -> None:
     assert end[SPEED_ERROR] == pytest.approx(state[SPEED_ERROR, 0], rel=1e-5)
 
 
+@pytest.mark.slow
 def test_integrator_agrees_with_solve_ivp() -> None:
     assert integrator_vs_solve_ivp([NOMINAL] * 20, POINTS[:2])["max_relative_error"] < 1e-6
 
@@ -160,6 +161,7 @@ def test_an_effect_acts_on_its_own_runs_alone(own: tuple[int, ...]) -> None:
     assert tuple(np.flatnonzero(apart.any(axis=0))) == tuple(dict.fromkeys(own))
 
 
+@pytest.mark.slow
 @pytest.mark.end_to_end
 @pytest.mark.parametrize("n_in_rpm", [20, 2000])
 def test_steady_state_repeats_at_any_speed(n_in_rpm: float) -> None:

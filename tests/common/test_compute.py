@@ -20,7 +20,7 @@ from swgsim.dataset import dataset
 from swgsim.dataset import plan as plans
 from swgsim.storage import storage
 
-pytestmark = pytest.mark.end_to_end
+pytestmark = [pytest.mark.end_to_end, pytest.mark.slow]
 ROOT = Path(__file__).parents[2]
 NOBODY = "tcp://127.0.0.1:9"
 
@@ -89,7 +89,6 @@ def expected(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     return path.read_bytes()
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("small_blocks")
 def test_a_cluster_makes_the_same_bytes(
     two_workers: str, expected: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -106,7 +105,6 @@ def test_tasks_wait_where_no_worker_is_there_for_a_moment(two_workers: str, monk
     assert list(Engine(scheduler=two_workers).results(neg, ((i,) for i in range(5)), 5)) == [0, -1, -2, -3, -4]
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("small_blocks")
 def test_a_killed_worker_and_a_lost_scheduler_lose_nothing(expected: bytes, tmp_path: Path) -> None:
     (tmp_path / "cluster").mkdir()
@@ -189,7 +187,6 @@ def test_engines_that_are_none_are_answered_with_the_choices(chosen: dict[str, s
         Engine.of({"workers": None, **chosen})
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("engine", ["dask", "submitit"])
 def test_a_sweep_elsewhere_loses_no_run(engine: str, two_workers: str, tmp_path: Path) -> None:
     made = recordings(variants=4)

@@ -123,6 +123,7 @@ def test_blocks_hold_the_whole_plan_gear_by_gear(monkeypatch: pytest.MonkeyPatch
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("small_blocks")
 def test_same_bytes_with_two_workers(clean: Path, tmp_path: Path) -> None:
     again = tmp_path / "clean.h5"
@@ -141,6 +142,7 @@ dataset.generate(small_plan(), Path(sys.argv[1]), compute.Engine(1), lambda n: N
 """
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("small_blocks")
 @pytest.mark.parametrize(("program", "joining"), [(BETWEEN_BLOCKS, False), (WHILE_JOINING, True)])
 def test_a_killed_run_resumes(program: str, joining: bool, clean: Path, tmp_path: Path, made: list[int]) -> None:

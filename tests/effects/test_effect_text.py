@@ -151,6 +151,7 @@ def test_a_data_set_remembers_its_effects_in_full_and_the_code_of_a_user(mine: s
     assert list(said["code_of_effects"]) == [mine.partition(":")[0]]
 
 
+@pytest.mark.slow
 def test_every_recording_has_the_effects(mine: str) -> None:
     plan = small_plan()
     extended = small_plan(effects=(named(mine)(0.02),))

@@ -393,6 +393,7 @@ def test_flanges_change_their_own_channel(recordings: Recordings, name: str, cha
             assert share == pytest.approx(0.01)
 
 
+@pytest.mark.slow
 def test_a_window_of_a_data_set_shows_acquisition_in_every_channel():
     """Also in those that are no gauges."""
     window = Window(samples=600)

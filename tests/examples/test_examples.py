@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 EXAMPLES = Path(__file__).parents[2] / "docs" / "examples"
-pytestmark = pytest.mark.end_to_end
+pytestmark = [pytest.mark.end_to_end, pytest.mark.slow]
 
 # What holds of the variables of each example.
 HOLDS: dict[str, Callable[[dict[str, Any]], bool]] = {

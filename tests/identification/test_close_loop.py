@@ -207,6 +207,7 @@ def test_the_answer_is_kept_as_a_run(folders, sick, tmp_path):
     assert len(tracking.table_of(store, run.info.run_id, "tables/scores.parquet")) == len(said["scores"])
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("_no_pictures")
 def test_an_effect_of_a_user_is_found_and_may_then_be_declared(unit, tmp_path, monkeypatch):
     """The one that docs/recording.md shows, hidden and searched by its import path."""

@@ -39,6 +39,7 @@ def exchanged(recordings: tuple[Recording, ...], *pairs: tuple[str, str]) -> tup
     return recordings
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("pair", [("s1", "s3"), ("s2", "s4")])
 def test_a_pair_that_is_exchanged_is_refused(pair):
     (defect,) = order_defects(exchanged(recorded(seed=2), pair), recorded())

@@ -82,6 +82,7 @@ def test_what_was_found_may_be_sharper_than_the_library_has_it():
     assert [each.atom.pattern for each in above(moved, (), MODEL, MODEL.plus(known), LEVEL, 3)] == ["in s3 alone"]
 
 
+@pytest.mark.slow
 def test_noise_is_nothing():
     told = [above(bench(np.random.default_rng([5, n]), repeats=1), (), MODEL, MODEL, 0.1, 3) for n in range(40)]
     # 4 of 40 are expected; more than 9 in one of a hundred.

@@ -32,7 +32,7 @@ from swgsim.identification.search.shortlist import ALPHA
 from swgsim.recordings.recording import Recording
 from swgsim.storage.labelled_signals import SENSORS
 
-pytestmark = pytest.mark.end_to_end
+pytestmark = [pytest.mark.end_to_end, pytest.mark.slow]
 SECTORS = 40
 POINTS = tuple(OperatingPoint(n, T) for n in (2000.0, 4000.0) for T in (7.0, 70.0))
 PLAN = Sessions(POINTS, repeats=2, revolutions=6, warming=0.0, unsteady=0.0, thermometer=0.0)
@@ -80,7 +80,6 @@ def test_commissioning_finds_the_gear_and_narrows_what_is_open(unit):
     assert unit.reach.shape == (len(unit.shift), len(unit.shift))
 
 
-@pytest.mark.slow
 def test_a_gear_of_another_flex_spline_is_commissioned_as_accurately_as_it_can_be(unit):
     """Wall and collar are thicker, the sleeve is shorter; friction differs by a factor of two, as between catalogues.
 
@@ -120,7 +119,6 @@ def test_a_gear_is_commissioned_with_a_declared_effect_on_its_drive():
     assert own.model.gear.transmission.mu * found.mu_ratio == pytest.approx(1.3 * GEAR.transmission.mu, rel=0.05)
 
 
-@pytest.mark.slow
 def test_a_gear_is_known_as_it_was_recorded_where_most_of_a_line_is_learned():
     """Trigger, gains and lags act on the whole of the line, not on the third of it that the model has."""
     gauges = replace(GEAR.gauges, radius=27e-3, gain=(3.0,) * 5, position=tuple(0.01 * np.array([0, 2, 3, 1, 2])))
@@ -135,7 +133,6 @@ def test_a_gear_is_known_as_it_was_recorded_where_most_of_a_line_is_learned():
     assert np.abs(off[means]).max() < OF_SESSION["zero of s1"] / 10
 
 
-@pytest.mark.slow
 def test_a_bench_with_another_drive_and_stronger_gauges_is_commissioned():
     """Load, speed control, flange and equation of the input are others, and make half of the ripple."""
     drive = {"J_in": 1.4e-4, "J_out": 0.75 * GEAR.transmission.J_out, "rotor_share": 0.8, "error_lever": 0.0}

@@ -20,6 +20,8 @@ from swgsim.identification.fit.form_error import FORM_TOLERANCE, parts, powers
 from swgsim.identification.fit.unit import Unit
 from swgsim.identification.search.hypotheses import Hypothesis
 
+pytestmark = pytest.mark.slow
+
 # With what looks like a tilt and like a crack.
 NAMES = (
     "tilted_wave_generator", "root_tooth_crack", "eccentric_wave_generator", "out_of_round", "coning", "gauge_gain",

@@ -61,6 +61,7 @@ def test_an_effect_whose_typical_size_does_nothing_here_is_seen():
     assert begun.level == pytest.approx(level, rel=0.05)
 
 
+@pytest.mark.slow
 def test_effects_of_a_unit_that_was_bent_begin_at_what_is_declared_of_it():
     measured = Measured.of(good(effects=(Clipping(0.15),), repeats=1))
     now = fit(measured, Unit(Model(GEAR)))

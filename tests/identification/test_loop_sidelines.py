@@ -18,7 +18,7 @@ from swgsim.identification.interharmonics.unattributed_lines import unnamed
 from swgsim.recordings.recording import Recording
 from swgsim.storage.labelled_signals import SENSORS
 
-pytestmark = pytest.mark.end_to_end
+pytestmark = [pytest.mark.end_to_end, pytest.mark.slow]
 
 KINDS = [LIBRARY["bearing_cage"], LIBRARY["mains_hum"]]
 

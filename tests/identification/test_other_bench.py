@@ -31,7 +31,7 @@ from swgsim.identification.interharmonics.line_search import search
 from swgsim.recordings.read import read_recordings
 from swgsim.recordings.recording import CHANNELS
 
-pytestmark = pytest.mark.end_to_end
+pytestmark = [pytest.mark.end_to_end, pytest.mark.slow]
 SPECIMEN = "first"
 RATIO = 101
 SEARCHED = [LIBRARY[name] for name in ("eccentric_wave_generator", "reduced_damping", "tilting_moment", "gauge_gain")]

@@ -16,7 +16,7 @@ from learn.jobs import train_job as job
 from learn.jobs.sweep import Sweep, named_on_command_line
 from swgsim.storage import storage
 
-pytestmark = pytest.mark.end_to_end
+pytestmark = [pytest.mark.end_to_end, pytest.mark.slow]
 ROOT = Path(__file__).parents[2]
 # A small form has jobs of the whole one, which are not run twice.
 EXPERIMENTS = sorted(p.stem for p in (ROOT / "conf" / "experiment").glob("*.yaml") if not p.stem.endswith("_small"))
@@ -99,7 +99,6 @@ def train(*arguments):
     return subprocess.run(command, capture_output=True, text=True, cwd=ROOT, check=False)
 
 
-@pytest.mark.slow
 def test_parallel_sweep_loses_no_run_and_a_finished_job_is_not_done_again(data, tmp_path, monkeypatch):
     store = store_in(tmp_path / "runs")
     where = ["grid=small", f"data={data}", f"tracking.folder={store.folder}", "features=selection_1"]

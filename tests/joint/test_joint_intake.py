@@ -346,6 +346,7 @@ PLAIN = st.recursive(
 FUZZ = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 
+@pytest.mark.slow
 @FUZZ
 @given(
     st.dictionaries(st.sampled_from([*CONFIG, "posture", "time", "header"]), PLAIN, min_size=1, max_size=3)

@@ -116,6 +116,7 @@ def test_a_hidden_effect_is_found_first_in_trajectories(case: str) -> None:
     check(moved_ladder(case), fit(Table(without, of), textbook(without, of)).error, name, order, size)
 
 
+@pytest.mark.slow
 def test_nothing_is_found_where_nothing_is_hidden() -> None:
     """16 draws, of which one may show something by luck."""
     findings = []

@@ -25,7 +25,7 @@ from swgsim.dataset import plan as plans
 from swgsim.jobs import generate_data_set as generation
 from swgsim.storage import storage
 
-pytestmark = pytest.mark.end_to_end
+pytestmark = [pytest.mark.end_to_end, pytest.mark.slow]
 ROOT = Path(__file__).parents[2]
 PARTS = 6
 BLOCK = 9  # recordings in a part: two parts of each gear
@@ -61,7 +61,6 @@ def made(folder: Path) -> bytes:
     return (folder / "small-clean.h5").read_bytes()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("command", "last"),
     [
@@ -215,7 +214,6 @@ def interrupt(command: list[str], sign: Path, pattern: str) -> None:
     assert "Traceback" not in message
 
 
-@pytest.mark.slow
 def test_ctrl_c_of_generate_leaves_finished_parts_only(tmp_path: Path, undisturbed: bytes) -> None:
     words = ["grid=small", "mesh.sectors=60", f"data={tmp_path}", "workers=2"]
     interrupt(["scripts/generate.py", *words], tmp_path, ".small-clean.h5.parts/*.h5")
@@ -227,7 +225,6 @@ def test_ctrl_c_of_generate_leaves_finished_parts_only(tmp_path: Path, undisturb
         assert len(storage.read(part))
 
 
-@pytest.mark.slow
 def test_ctrl_c_of_train_leaves_no_incomplete_result(tmp_path: Path) -> None:
     data = recordings(variants=4)
     storage.write(tmp_path / "small-clean.h5", [data], len(data))

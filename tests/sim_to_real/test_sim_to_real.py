@@ -24,7 +24,7 @@ from swgsim.identification.report import answer_figures as figures
 from swgsim.storage import storage
 from swgsim.storage.labelled_signals import CLASSES
 
-pytestmark = pytest.mark.end_to_end
+pytestmark = [pytest.mark.end_to_end, pytest.mark.slow]
 CONF = Path(__file__).parents[2] / "conf"
 SECTORS = 40
 FOREST = {"features": {"name": "selection_1", "statistics": True, "spectrum": "none", "efficiency": "eta_rel"},
@@ -66,7 +66,6 @@ def row(finished: Finished, method: str, day: str, model: str) -> pd.Series:
     return verdicts.row_of(finished.scores, method, day, model)
 
 
-@pytest.mark.slow
 def test_loop_names_the_effect_and_training_again_brings_back_what_it_cost(finished):
     grease, skew = finished
     assert [each.name for each in finished] == ["warm_grease", "channel_skew"]
@@ -80,14 +79,12 @@ def test_loop_names_the_effect_and_training_again_brings_back_what_it_cost(finis
         assert brought[0 if each is grease else 1] > 20
 
 
-@pytest.mark.slow
 def test_references_with_the_effect_take_it_out(finished):
     skew = finished[1]
     cold, warm = (row(skew, "extra_trees_on_harmonics", day, "before") for day in (COMMISSIONING, SAME_DAY))
     assert warm["accuracy"] > cold["accuracy"] + 10
 
 
-@pytest.mark.slow
 def test_a_second_run_computes_nothing_and_says_the_same(config, finished, monkeypatch):
     def refuse(*_: object, **__: object) -> None:
         raise AssertionError("computed again")
@@ -103,7 +100,6 @@ def test_a_second_run_computes_nothing_and_says_the_same(config, finished, monke
     assert study.key(config | {"seed": 2}, "warm_grease") != key
 
 
-@pytest.mark.slow
 def test_page_and_json_hold_every_effect_and_method(config, finished):
     folder = Path(config["out"])
     report.write(finished, folder)

@@ -24,6 +24,8 @@ from learn.jobs import zero_shot
 from learn.tracking import postgresql
 from swgsim.storage import storage
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[2]
 SECONDS_TO_START = 600  # on a machine that does much else; it takes ten on an idle one
 JOBS = 12
@@ -94,7 +96,6 @@ def join_in(uri, number):
     keep(tracking.server_store(uri), number)
 
 
-@pytest.mark.slow
 def test_many_jobs_at_once_lose_no_run_and_no_metric(server):
     jobs = [PROCESSES.Process(target=join_in, args=(server.uri, number)) for number in range(JOBS)]
     for each in jobs:
@@ -154,7 +155,6 @@ def lost(server, data, tmp_path_factory):
     return pending, metrics
 
 
-@pytest.mark.slow
 def test_a_job_whose_server_goes_away_ends_as_it_would_without_and_is_not_done_again(
     server, data, lost, tmp_path, monkeypatch
 ):
@@ -206,7 +206,6 @@ def killed_upload(uri, pending):
     tracking.upload(tracking.server_store(uri, pending=pending))
 
 
-@pytest.mark.slow
 def test_runs_are_uploaded_whole_and_once(server, lost, monkeypatch):
     pending, _ = lost
     store, local = server.store(pending), tracking.local_store(str(pending))

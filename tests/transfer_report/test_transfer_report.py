@@ -31,6 +31,7 @@ def store(tmp_path_factory):
     return tmp_path_factory.mktemp("runs")
 
 
+@pytest.mark.slow
 @pytest.mark.end_to_end
 def test_whole_report_from_made_up_runs(data, store, tmp_path):
     folder, digests = data
