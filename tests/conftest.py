@@ -12,12 +12,12 @@ jaxtyping.install_import_hook(["swgsim", "learn"], "typechecker.typecheck")
 
 
 def _unchecked(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Without checks in tests from end to end: they call small functions a million times.
+    """Without checks in slow tests and those from end to end: they call small functions a million times.
 
     Other tests check these.
     """
     with pytest.MonkeyPatch.context() as patch:
-        if request.node.get_closest_marker("end_to_end"):
+        if any(request.node.get_closest_marker(name) for name in ("end_to_end", "slow")):
             patch.setattr(jaxtyping.config, "jaxtyping_disable", True)
         yield
 
