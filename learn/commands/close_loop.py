@@ -10,19 +10,21 @@ from swgsim.identification.report import close_loop as of_gauges
 from swgsim.joint import close_joint_loop as of_joint
 
 EXPERIMENT = "loop"
-# What is asked of recordings of a robot joint, and of no others; and of gauges only.
+# Choices that apply to recordings of a robot joint only, and to strain gauges only.
 OF_JOINT = ("joint", "signal", "holdout", "without")
 OF_GAUGES = ("commissioning", "mapping", "commissioning_mapping", "effects", "truth")
 
 
 def require_one_kind(config: Mapping[str, Any]) -> None:
-    """Raise a ValueError for a choice that is for recordings of the other kind: nothing would look at it."""
+    """Raise a ValueError for a choice that applies to the other kind of recordings, where it would have no effect."""
     source = config["source"]
-    to_leave = f"is for strain gauges, source={source} for robot joints: leave one out"
-    others, said = (OF_JOINT, "is for robot joints: give source= as well") if source is None else (OF_GAUGES, to_leave)
-    for name in others:
+    if source is None:
+        foreign, remedy = OF_JOINT, "is for robot joints: give source= as well"
+    else:
+        foreign, remedy = OF_GAUGES, f"is for strain gauges, source={source} for robot joints: leave one out"
+    for name in foreign:
         if config[name] not in (None, []):
-            raise ValueError(f"{name}= {said}")
+            raise ValueError(f"{name}= {remedy}")
 
 
 def record(config: Mapping[str, Any], outcome: Outcome) -> None:
@@ -32,23 +34,25 @@ def record(config: Mapping[str, Any], outcome: Outcome) -> None:
     from learn import tracking
     from learn.jobs import settings
 
-    said = outcome.report
+    report = outcome.report
     store = settings.store({**config["tracking"], "experiment": EXPERIMENT})
-    asked = ("recordings", "commissioning", "seed") if config["source"] is None else ("recordings", "source", *OF_JOINT)
-    chosen = {name: config[name] for name in asked}
+    of_kind = ("commissioning", "seed") if config["source"] is None else ("source", *OF_JOINT)
+    chosen = {name: config[name] for name in ("recordings", *of_kind)}
     key = hashlib.sha256(json.dumps([config, outcome.digest], sort_keys=True).encode()).hexdigest()[:16]
-    tags = {"data_digest": outcome.digest, "verdict": said["verdict"], "sentence": said["sentence"][:5000]}
-    with tracking.job_run(store, said["verdict"], key, chosen, config, tags) as job:
-        tables = {f"tables/{name}.parquet": pd.DataFrame(said[name]) for name in ("scores", "rungs") if name in said}
-        job.record(metrics(said), {f"figures/{n}.png": f for n, f in outcome.figures.items()}, tables)
+    tags = {"data_digest": outcome.digest, "verdict": report["verdict"], "sentence": report["sentence"][:5000]}
+    with tracking.job_run(store, report["verdict"], key, chosen, config, tags) as job:
+        tables = {
+            f"tables/{name}.parquet": pd.DataFrame(report[name]) for name in ("scores", "rungs") if name in report
+        }
+        job.record(metrics(report), {f"figures/{n}.png": f for n, f in outcome.figures.items()}, tables)
 
 
-def metrics(said: Mapping[str, Any]) -> dict[str, float]:
+def metrics(report: Mapping[str, Any]) -> dict[str, float]:
     """The figures of a report that are known: errors [%], sizes of the effects, seconds."""
-    error = said["error"]
+    error = report["error"]
     found = {f"error_{when}_{what}": value for when in ("before", "after") for what, value in error[when].items()}
-    found |= {"noise_floor": error["noise_floor"], "effects": len(said["effects"]), "seconds": said["seconds"]}
-    for effect in said["effects"]:
+    found |= {"noise_floor": error["noise_floor"], "effects": len(report["effects"]), "seconds": report["seconds"]}
+    for effect in report["effects"]:
         name = effect["name"].replace(":", ".")
         found |= {f"{name}/{key}": each["value"] for key, each in effect["parameters"].items()}
     return {name: float(value) for name, value in found.items() if value is not None}
