@@ -11,8 +11,8 @@ from swgsim.joint import close_joint_loop as of_joint
 
 EXPERIMENT = "loop"
 # Choices that apply to recordings of a robot joint only, and to strain gauges only.
-OF_JOINT = ("joint", "signal", "holdout", "without")
-OF_GAUGES = ("commissioning", "mapping", "commissioning_mapping", "effects", "truth")
+OF_JOINT: tuple[str, ...] = ("joint", "signal", "holdout", "without")
+OF_GAUGES: tuple[str, ...] = ("commissioning", "mapping", "commissioning_mapping", "effects", "truth")
 
 
 def require_one_kind(config: Mapping[str, Any]) -> None:
