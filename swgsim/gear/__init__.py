@@ -5,8 +5,7 @@ Imports ``common`` and ``flexspline``.
 
 from swgsim.gear.acquisition import Window
 from swgsim.gear.conditions import REFERENCE_TEMPERATURE, Conditions
-from swgsim.gear.gear import Gear, KinematicError, OperatingPoint, Transmission, WaveGenerator
-from swgsim.gear.gear_file import gear_from, load_gear
+from swgsim.gear.gear import Gear, KinematicError, OperatingPoint, Transmission, WaveGenerator, gear_from
 from swgsim.gear.population import Population
 from swgsim.gear.stiffness import RATED_TORQUE, torsional_stiffness
 
@@ -22,6 +21,5 @@ __all__ = [
     "WaveGenerator",
     "Window",
     "gear_from",
-    "load_gear",
     "torsional_stiffness",
 ]

@@ -1,13 +1,16 @@
 """A gear and its operating point: immutable, SI units, the paper's symbols."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from math import pi
 from pathlib import Path
 from typing import Any
 
+from swgsim.common.build import build
 from swgsim.common.checks import require, require_integer, require_positive
 from swgsim.flexspline.gauges import GaugeSet
 from swgsim.flexspline.silk_hat import SilkHat
+from swgsim.gear.gear_file import gear_values
 
 # Strokes of wave generators of this size [m].
 W0_LIMITS = (1e-5, 1e-3)
@@ -142,10 +145,17 @@ class Gear:
 
     @classmethod
     def load(cls, path: str | Path) -> "Gear":
-        """Read a gear from a YAML file; see :func:`swgsim.gear.load_gear`."""
-        from swgsim.gear.gear_file import load_gear
+        """Read a gear from a YAML file such as those of conf/gear; numbers are in SI units.
 
-        return load_gear(path)
+        Raises
+        ------
+        ValueError
+            If the file is missing, holds no mapping, or a parameter is unknown or beyond its limits.
+        """
+        try:
+            return gear_from(gear_values(Path(path)))
+        except ValueError as error:
+            raise ValueError(f"gear file {path}: {error}") from error
 
     def with_transmission(self, **changes: Any) -> "Gear":
         """The gear with other values of parameters of :class:`Transmission`.
@@ -154,6 +164,26 @@ class Gear:
         0.4
         """
         return replace(self, transmission=replace(self.transmission, **changes))
+
+
+def gear_from(config: Mapping[str, Any]) -> Gear:
+    """A gear from a mapping; a part or parameter that is missing keeps the value of the paper's first gear.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is unknown or beyond its limits.
+    """
+    transmission = dict(config.get("transmission", {}))
+    if "kinematic_error" in transmission:
+        transmission["kinematic_error"] = [build(KinematicError, term) for term in transmission["kinematic_error"]]
+    parts = {
+        "transmission": build(Transmission, transmission),
+        "flex_spline": build(SilkHat, config.get("flex_spline", {})),
+        "wave_generator": build(WaveGenerator, config.get("wave_generator", {})),
+        "gauges": build(GaugeSet, config.get("gauges", {})),
+    }
+    return build(Gear, {key: value for key, value in config.items() if key not in parts}, **parts)
 
 
 # Catalogue limits of SHG-17-100: maximum input speed [rpm] and momentary peak torque [N m].

@@ -19,7 +19,7 @@ from swgsim.effects import text
 from swgsim.effects.base import Effect
 from swgsim.gear.acquisition import Window
 from swgsim.gear.gear import Gear, OperatingPoint
-from swgsim.gear.gear_file import gear_from as gear
+from swgsim.gear.gear import gear_from as gear
 from swgsim.gear.population import Population
 
 # Keys of a file of conf/grid.
