@@ -3,46 +3,7 @@
 Imports no other room.
 """
 
-from swgsim.common.checks import (
-    require,
-    require_integer,
-    require_known,
-    require_one_of,
-    require_positive,
-    require_range,
-)
-from swgsim.common.compute import Engine
-from swgsim.common.files import replacing, sole_maker, write_json, write_text
-from swgsim.common.html import environment
-from swgsim.common.numbers import NORMAL
-from swgsim.common.outcome import FOUND, NOTHING, UNKNOWN, Outcome
-from swgsim.common.seeds import generator, seed_hash
-from swgsim.common.singular import svd
-from swgsim.common.style import png, words
-from swgsim.common.version import code_version
+import lazy_loader
 
-__all__ = [
-    "FOUND",
-    "NORMAL",
-    "NOTHING",
-    "UNKNOWN",
-    "Engine",
-    "Outcome",
-    "code_version",
-    "environment",
-    "generator",
-    "png",
-    "replacing",
-    "require",
-    "require_integer",
-    "require_known",
-    "require_one_of",
-    "require_positive",
-    "require_range",
-    "seed_hash",
-    "sole_maker",
-    "svd",
-    "words",
-    "write_json",
-    "write_text",
-]
+# A name is imported when it is used, so that no command waits for Matplotlib and SciPy before it reads its choices.
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

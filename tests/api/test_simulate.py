@@ -73,5 +73,5 @@ def test_a_gear_file_with_a_mistake_is_named(text: str, message: str, tmp_path: 
     path.write_text(text)
     with pytest.raises(ValueError, match=f"mine.yaml.*{message}"):
         swg.Gear.load(path)
-    with pytest.raises(ValueError, match="other.yaml: not found"):
+    with pytest.raises(ValueError, match=r"other\.yaml: not found"):
         swg.Gear.load(tmp_path / "other.yaml")
