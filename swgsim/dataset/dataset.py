@@ -76,7 +76,7 @@ def generate(plan: Plan, path: Path, engine: Engine, progress: Callable[[int], o
     float
         Peak memory of all processes together [MiB].
     """
-    parts = path.with_name(f".{path.name}.parts")
+    parts = path.absolute().with_name(f".{path.name}.parts")  # workers may have begun in another folder
     files = [parts / f"{number:06d}.h5" for number in range(plan.block_count)]
     tasks = ((plan, cases, file) for cases, file in zip(plan.blocks(), files, strict=True))
     peak: dict[str, float] = {}
