@@ -44,7 +44,7 @@ def links(store: Store, server: str) -> dict[str, str]:
     """
     experiments = store.client.search_experiments(order_by=["name"])
     return {
-        experiment.name: f"{server}/#/experiments/{experiment.experiment_id}"
+        experiment.name: f"{server}/#/experiments/{experiment.experiment_id}/runs"
         for experiment in experiments
         if store.client.search_runs([experiment.experiment_id], max_results=1)
     }

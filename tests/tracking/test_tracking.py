@@ -111,7 +111,7 @@ def test_every_experiment_with_runs_has_a_link(tmp_path):
     assert empty.experiment_id
     assert ui.links(store, "http://host:1") == {}
     keep(loop, "key", {"noise_floor": 0.8})
-    assert ui.links(store, "http://host:1") == {"loop": f"http://host:1/#/experiments/{loop.experiment_id}"}
+    assert ui.links(store, "http://host:1") == {"loop": f"http://host:1/#/experiments/{loop.experiment_id}/runs"}
     keep(store, "key", {"test_score": 4.0})
     assert set(ui.links(store, "http://host:1")) == {tracking.EXPERIMENT, "loop"}
 
