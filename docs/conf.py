@@ -35,9 +35,8 @@ html_css_files = ["site.css"]
 exclude_patterns = ["_build", "examples", "effects"]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 
-# Names of dimensions in the shapes of arrays look like references; the figure scraper is a function;
-# the page of ladders is a part of a report.
-suppress_warnings = ["ref.python", "config.cache", "myst.header"]
+# Names of dimensions in the shapes of arrays look like references; the figure scraper is a function.
+suppress_warnings = ["ref.python", "config.cache"]
 myst_enable_extensions = ["colon_fence", "dollarmath"]
 myst_heading_anchors = 3
 autodoc_member_order = "bysource"

@@ -44,7 +44,7 @@ def page_of_cases(
 
 def ladders_as_markdown(reports: Mapping[str, Mapping[str, Any]]) -> str:
     """The ladders of all cases, for the documentation."""
-    parts = ["<!-- Written by swg joints; do not edit. -->"]
+    parts = ["<!-- Written by swg joints; do not edit. -->", "\n# Ladders of the measured joints"]
     for name, each in reports.items():
         unit, floor = each["unit"], each["noise_floor"]
         noise = "not recorded" if floor is None else f"{significant(floor)} {unit}, {each['noise_floor_how']}"
