@@ -39,7 +39,7 @@ def area_under_risk(curve: pd.DataFrame) -> float:
 
 
 def coverage_at(curve: pd.DataFrame, error: float) -> float:
-    """Largest coverage with at most this share of errors; 0 if there is none.
+    """Largest coverage with at most this share of errors; 0 if no coverage has so few.
 
     The threshold uses the labels of the same recordings, so this is an upper limit for new recordings.
     """

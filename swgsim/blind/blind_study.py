@@ -25,71 +25,70 @@ from swgsim.common.files import replacing, sole_maker, write_json, write_text
 from swgsim.common.version import code_version
 from swgsim.effects.library import SEARCHED, listed, named
 from swgsim.gear.acquisition import Window
-from swgsim.identification.commissioning import commissioning
-from swgsim.identification.commissioning import lack_of_fit as missing
-from swgsim.identification.commissioning import relinearisation as relined
-from swgsim.identification.data import measured as session
-from swgsim.identification.decide import accepted as steps
-from swgsim.identification.decide import candidate as trial
-from swgsim.identification.decide import competing_regularities as beside
-from swgsim.identification.decide import empirical_terms as patching
-from swgsim.identification.decide import form_error_evidence as imperfect
-from swgsim.identification.decide import pairs
-from swgsim.identification.decide import selection_step as asking
-from swgsim.identification.decide import stepwise_selection as closing
-from swgsim.identification.fit import fitted, fitting, unit
-from swgsim.identification.fit import form_error as evidence
-from swgsim.identification.fit import priors as declared
-from swgsim.identification.interharmonics import named_interharmonics as sidelines
+from swgsim.identification.commissioning import commissioning, lack_of_fit, relinearisation
+from swgsim.identification.data import measured
+from swgsim.identification.decide import (
+    accepted,
+    candidate,
+    competing_regularities,
+    empirical_terms,
+    form_error_evidence,
+    pairs,
+    selection_step,
+    stepwise_selection,
+)
+from swgsim.identification.fit import fitted, fitting, form_error, priors, unit
+from swgsim.identification.interharmonics import named_interharmonics
 from swgsim.identification.report import answer
-from swgsim.identification.search import detection_limit as seen
-from swgsim.identification.search import high_orders as above
-from swgsim.identification.search import regularities as vocabulary
-from swgsim.identification.search import screening
-from swgsim.identification.search import shortlist as leading
+from swgsim.identification.search import detection_limit, high_orders, regularities, screening, shortlist
 from swgsim.jobs import settings
 
 THRESHOLDS = {
-    "alpha": leading.ALPHA,
-    "least_gain": evidence.LEAST_GAIN,
-    "likelier": trial.LIKELIER,
-    "least_evidence": trial.LEAST_EVIDENCE,
-    "exact": trial.EXACT,
-    "own": trial.OWN,
+    "alpha": shortlist.ALPHA,
+    "least_gain": form_error.LEAST_GAIN,
+    "likelier": candidate.LIKELIER,
+    "least_evidence": candidate.LEAST_EVIDENCE,
+    "exact": candidate.EXACT,
+    "own": candidate.OWN,
     "pair_gain": pairs.PAIR_GAIN,
-    "most": [closing.MOST_STEPS, closing.MOST_AGAIN, vocabulary.MOST_ATOMS],
-    "leaders": [leading.LEADERS, leading.NEARLY_LEADERS],
-    "nearly": leading.NEARLY,
-    "form_tolerance": evidence.FORM_TOLERANCE,
-    "absorbed": imperfect.ABSORBED,
-    "contradiction": evidence.CONTRADICTION,
-    "no_size": evidence.NO_SIZE,
-    "cancelled": steps.OPPOSED,
-    "left": steps.LEFT,
-    "of_session": session.OF_SESSION,
-    "wandering": [session.WANDER, session.KEPT, session.MOST_WANDER],
-    "visible": [screening.VISIBLE, seen.MOSTLY_ABSORBED],
-    "set_apart": asking.SET_APART,
-    "wide": vocabulary.WIDE,
-    "above": [above.KNOWN, answer.MOST_ABOVE],
+    "most": [stepwise_selection.MOST_STEPS, stepwise_selection.MOST_AGAIN, regularities.MOST_ATOMS],
+    "leaders": [shortlist.LEADERS, shortlist.NEARLY_LEADERS],
+    "nearly": shortlist.NEARLY,
+    "form_tolerance": form_error.FORM_TOLERANCE,
+    "absorbed": form_error_evidence.ABSORBED,
+    "contradiction": form_error.CONTRADICTION,
+    "no_size": form_error.NO_SIZE,
+    "cancelled": accepted.OPPOSED,
+    "left": accepted.LEFT,
+    "of_session": measured.OF_SESSION,
+    "wandering": [measured.WANDER, measured.KEPT, measured.MOST_WANDER],
+    "visible": [screening.VISIBLE, detection_limit.MOSTLY_ABSORBED],
+    "set_apart": selection_step.SET_APART,
+    "wide": regularities.WIDE,
+    "above": [high_orders.KNOWN, answer.MOST_ABOVE],
     "structure": [unit.STRUCTURE, commissioning.ANOTHER, commissioning.WORST, commissioning.MOST_LEARNED],
-    "unexplained": missing.UNEXPLAINED,
+    "unexplained": lack_of_fit.UNEXPLAINED,
     "bent": [fitting.BENT, fitting.MISFIT],
     "turns": [fitting.TURNS, fitting.UNREPEATED, fitting.SAME_SCATTER],
     "balanced": [fitted.LIKELIER_BALANCED, *fitted.BALANCED],
-    "inaccurate": evidence.INACCURATE,
-    "luck": missing.FALSE_DISCOVERIES,
-    "relined": [relined.ROUNDS, relined.AT_REST],
-    "drives": [commissioning.DRIVES, commissioning.TIMES, declared.MOST],
-    "friction": [declared.SERIES, declared.ANY_FRICTION],
+    "inaccurate": form_error.INACCURATE,
+    "luck": lack_of_fit.FALSE_DISCOVERIES,
+    "relined": [relinearisation.ROUNDS, relinearisation.AT_REST],
+    "drives": [commissioning.DRIVES, commissioning.TIMES, priors.MOST],
+    "friction": [priors.SERIES, priors.ANY_FRICTION],
     "unheard": unit.UNHEARD,
     "loosest": [commissioning.MOST_LEARNED, commissioning.FOREIGN_SHARE],
-    "tolerance_of_lines": sidelines.TOLERANCE,
-    "contradiction_of_lines": sidelines.CONTRADICTION,
-    "outdone": [evidence.OUTDONE, evidence.OUTDONE_SHARE, beside.SAME_THING, beside.DWARFED],
-    "another_thing": beside.ANOTHER_THING,
-    "elsewhere": beside.ELSEWHERE,
-    "patches": [patching.WORSE, patching.WORSE_TOGETHER, patching.KEPT],
+    "tolerance_of_lines": named_interharmonics.TOLERANCE,
+    "contradiction_of_lines": named_interharmonics.CONTRADICTION,
+    "outdone": [
+        form_error.OUTDONE,
+        form_error.OUTDONE_SHARE,
+        competing_regularities.SAME_THING,
+        competing_regularities.DWARFED,
+    ],
+    "another_thing": competing_regularities.ANOTHER_THING,
+    "elsewhere": competing_regularities.ELSEWHERE,
+    "patches": [empirical_terms.WORSE, empirical_terms.WORSE_TOGETHER, empirical_terms.KEPT],
     "detectable": DETECTABLE,
     "short": SHORT,
     "look_alike": judged.LOOK_ALIKE,
