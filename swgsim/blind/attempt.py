@@ -17,8 +17,7 @@ from swgsim.common.numbers import number
 from swgsim.effects import text
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities, size_of
-from swgsim.identification.decide.accepted import chosen
-from swgsim.identification.decide.candidate import Trial
+from swgsim.identification.decide.option import chosen
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import fit
 from swgsim.identification.fit.form_error import signature
@@ -51,36 +50,32 @@ def attempt(case: Sealed, setting: Setting) -> dict[str, Any]:
 
 def answer_fields(found: Answer, recordings: Sequence[Recording], library: Sequence[type[Effect]]) -> dict[str, Any]:
     """The answer as plain values, without the truth."""
-    closed = found.closed
+    decision = found.decision
     return {
         "recordings": len(recordings),
         "verdict": found.verdict,
         "sentence": sentence(found, found_effects(found)),
-        "accepted": [_names(step.accepted) for step in closed.steps],
-        "rivals": [[_names(trial) for trial in step.rivals] for step in closed.steps],
+        "probability": decision.probability,
+        "accepted": _names(decision.effects),
+        "alternatives": [
+            {"effects": _names(option.effects), "unknown": bool(option.regularities), "probability": probability}
+            for option, probability in decision.credible
+        ],
+        "nearest": _names(found.nearest[0].effects) if found.nearest else [],
         "lines": [line.effect.name() for line in found.lines],
         "found": text.entries(found.effects),
-        "rejected": [
-            {
-                "names": _names(t),
-                "gain": t.heldout_gain,
-                "chances": [c.chance for c in t.coherence],
-                "settled": _settled(t),
-            }
-            for t in closed.rejected
-        ],
         "unknown": [[each.atom.order, each.atom.pattern, each.atom.law] for each in found.unknown],
         "absorbed": [score.hypothesis.kind.name() for score in found.absorbed],
-        "seen_from": {score.hypothesis.kind.name(): number(score.detectable) for score in closed.scores},
-        "scores": [[s.hypothesis.kind.name(), s.gain, s.chance] for s in closed.scores[:6]],
-        "smallest_chance": min((s.chance for s in closed.scores), default=1.0),
-        "baselines": named_by_baselines(closed.before, library),
+        "seen_from": {score.hypothesis.kind.name(): number(score.detectable) for score in decision.scores},
+        "scores": [[s.hypothesis.kind.name(), s.gain, s.chance] for s in decision.scores[:6]],
+        "smallest_chance": min((s.chance for s in decision.scores), default=1.0),
+        "baselines": named_by_baselines(decision.before, library),
     }
 
 
 def _against_truth(found: Answer, unit: Unit, case: Sealed, setting: Setting) -> dict[str, Any]:
     """Errors at unseen points, log-likelihoods of the models, and the true values next to the reported intervals."""
-    before, after = found.closed.before, found.closed.after
+    before, after = found.decision.before, found.decision.after
     truth = unseen(case, setting, before.measured.layout)
     models = {"before": before, "after": after, "oracle": _oracle(before, unit, case)}
     sizes, angles = _intervals(found, case)
@@ -105,7 +100,7 @@ def _intervals(answer_: Answer, case: Sealed) -> tuple[list[dict[str, Any]], lis
     """True value, estimate and reported standard deviation: of sizes of correctly named effects, and of phases and
     positions if all choices, such as the order, are correct too.
     """
-    sizes, angles, after = [], [], answer_.closed.after
+    sizes, angles, after = [], [], answer_.decision.after
     for true in case.effects:
         alike = _found_as(true, after.added)
         if alike is None:
@@ -113,7 +108,7 @@ def _intervals(answer_: Answer, case: Sealed) -> tuple[list[dict[str, Any]], lis
         number = len(after.unit.model.effects) + alike
         effect = after.model.effects[number]
         for name, q in quantities(type(true)).items():
-            deviation = answer_.closed.deviation.get(name_of(effect, number, name), np.nan)
+            deviation = answer_.decision.deviation.get(name_of(effect, number, name), np.nan)
             found = {"name": true.name(), "found": float(getattr(effect, name)), "deviation": float(deviation)}
             if q.role is Role.SIZE:
                 sizes.append(found | {"true": float(_acted(true, case, after, number))})
@@ -143,12 +138,8 @@ def _acted(true: Effect, case: Sealed, after: Fitted, number: int) -> float:
     return float(np.average(sizes[measured.of_recording], weights=seen))
 
 
-def _names(trial: Trial) -> list[str]:
-    return [effect.name() for effect in trial.effects]
-
-
-def _settled(trial: Trial) -> bool:
-    return trial.fitted.calibrated.settled
+def _names(effects: Sequence[Effect]) -> list[str]:
+    return [effect.name() for effect in effects]
 
 
 def _peak() -> float:

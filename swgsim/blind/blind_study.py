@@ -17,7 +17,7 @@ from swgsim.blind.bench import Setting
 from swgsim.blind.drawing import draw
 from swgsim.blind.judged import Judged
 from swgsim.blind.score import account, score
-from swgsim.blind.sealed import SHORT, as_json, from_json
+from swgsim.blind.sealed import as_json, from_json
 from swgsim.blind.strata import DETECTABLE, plans
 from swgsim.blind.table import table
 from swgsim.common.compute import Engine
@@ -25,72 +25,18 @@ from swgsim.common.files import replacing, sole_maker, write_json, write_text
 from swgsim.common.version import code_version
 from swgsim.effects.library import SEARCHED, listed, named
 from swgsim.gear.acquisition import Window
-from swgsim.identification.commissioning import commissioning, lack_of_fit, relinearisation
-from swgsim.identification.data import measured
-from swgsim.identification.decide import (
-    accepted,
-    candidate,
-    competing_regularities,
-    empirical_terms,
-    form_error_evidence,
-    pairs,
-    selection_step,
-    stepwise_selection,
-)
-from swgsim.identification.fit import fitted, fitting, form_error, priors, unit
-from swgsim.identification.interharmonics import named_interharmonics
-from swgsim.identification.report import answer
-from swgsim.identification.search import detection_limit, high_orders, regularities, screening, shortlist
+from swgsim.identification.decide import prior
 from swgsim.jobs import settings
 
-THRESHOLDS = {
-    "alpha": shortlist.ALPHA,
-    "least_gain": form_error.LEAST_GAIN,
-    "likelier": candidate.LIKELIER,
-    "least_evidence": candidate.LEAST_EVIDENCE,
-    "exact": candidate.EXACT,
-    "own": candidate.OWN,
-    "pair_gain": pairs.PAIR_GAIN,
-    "most": [stepwise_selection.MOST_STEPS, stepwise_selection.MOST_AGAIN, regularities.MOST_ATOMS],
-    "leaders": [shortlist.LEADERS, shortlist.NEARLY_LEADERS],
-    "nearly": shortlist.NEARLY,
-    "form_tolerance": form_error.FORM_TOLERANCE,
-    "absorbed": form_error_evidence.ABSORBED,
-    "contradiction": form_error.CONTRADICTION,
-    "no_size": form_error.NO_SIZE,
-    "cancelled": accepted.OPPOSED,
-    "left": accepted.LEFT,
-    "of_session": measured.OF_SESSION,
-    "wandering": [measured.WANDER, measured.KEPT, measured.MOST_WANDER],
-    "visible": [screening.VISIBLE, detection_limit.MOSTLY_ABSORBED],
-    "set_apart": selection_step.SET_APART,
-    "wide": regularities.WIDE,
-    "above": [high_orders.KNOWN, answer.MOST_ABOVE],
-    "structure": [unit.STRUCTURE, commissioning.ANOTHER, commissioning.WORST, commissioning.MOST_LEARNED],
-    "unexplained": lack_of_fit.UNEXPLAINED,
-    "bent": [fitting.BENT, fitting.MISFIT],
-    "turns": [fitting.TURNS, fitting.UNREPEATED, fitting.SAME_SCATTER],
-    "balanced": [fitted.LIKELIER_BALANCED, *fitted.BALANCED],
-    "inaccurate": form_error.INACCURATE,
-    "luck": lack_of_fit.FALSE_DISCOVERIES,
-    "relined": [relinearisation.ROUNDS, relinearisation.AT_REST],
-    "drives": [commissioning.DRIVES, commissioning.TIMES, priors.MOST],
-    "friction": [priors.SERIES, priors.ANY_FRICTION],
-    "unheard": unit.UNHEARD,
-    "loosest": [commissioning.MOST_LEARNED, commissioning.FOREIGN_SHARE],
-    "tolerance_of_lines": named_interharmonics.TOLERANCE,
-    "contradiction_of_lines": named_interharmonics.CONTRADICTION,
-    "outdone": [
-        form_error.OUTDONE,
-        form_error.OUTDONE_SHARE,
-        competing_regularities.SAME_THING,
-        competing_regularities.DWARFED,
-    ],
-    "another_thing": competing_regularities.ANOTHER_THING,
-    "elsewhere": competing_regularities.ELSEWHERE,
-    "patches": [empirical_terms.WORSE, empirical_terms.WORSE_TOGETHER, empirical_terms.KEPT],
+# The numbers that the decision has: its priors. All others are declared errors or numerical.
+PRIORS = {
+    "causes": prior.CAUSES,
+    "unknown": prior.UNKNOWN,
+    "another_regularity": prior.ANOTHER_REGULARITY,
+    "balanced": [prior.BALANCED, *prior.TIMES_BALANCED],
+    "form_errors": prior.FORM_ERRORS,
+    "scales": prior.SCALES,
     "detectable": DETECTABLE,
-    "short": SHORT,
     "look_alike": judged.LOOK_ALIKE,
     "worse": judged.WORSE,
 }
@@ -119,7 +65,7 @@ def run(config: Mapping[str, Any]) -> dict[str, Any]:
     found = {
         "truth_sha256": digest,
         "code": key["code"],
-        "thresholds": THRESHOLDS,
+        "priors": PRIORS,
         **score(cases),
         "all": [account(case) for case in cases],
     }

@@ -66,22 +66,30 @@ class Judged:
 
     @cached_property
     def named(self) -> list[str]:
-        """Effects that were accepted, in order."""
-        if self.failed:
-            return []
-        return [*(name for step in self.answer["accepted"] for name in step), *self.answer["lines"]]
+        """Effects of the answer, in order."""
+        return [] if self.failed else [*self.answer["accepted"], *self.answer["lines"]]
 
     @cached_property
     def in_set(self) -> set[str]:
-        """Effects that were accepted or called rivals."""
-        rivals = [] if self.failed else self.answer["rivals"]
-        return {*self.named, *(name for step in rivals for trial in step for name in trial)}
+        """Effects of all answers of the credible set."""
+        others = [] if self.failed else self.answer["alternatives"]
+        return {*self.named, *(name for each in others for name in each["effects"])}
 
     @property
-    def set_size(self) -> float:
-        """Explanations per accepted step."""
-        steps = len(self.answer["accepted"]) + len(self.answer["lines"])
-        return (steps + sum(len(step) for step in self.answer["rivals"])) / steps
+    def set_size(self) -> int:
+        """Number of answers in the credible set."""
+        return len(self.answer["alternatives"])
+
+    @property
+    def right(self) -> bool:
+        """Whether the answer as a whole is correct: all that is hidden, and nothing else."""
+        if self.failed:
+            return False
+        if self.case.stratum in OUTSIDE_STRATA:
+            return self.none_of_the_above
+        if self.first == "nothing":
+            return not self.case.effects or self.case.stratum == UNTESTABLE
+        return bool(self.named) and set(self.named) == set(self.case.names)
 
     @property
     def first(self) -> str:
@@ -130,9 +138,8 @@ class Judged:
 
     @property
     def nearest(self) -> str:
-        """The nearest effect, if none was accepted."""
-        rejected = [] if self.failed else self.answer["rejected"]
-        return rejected[0]["names"][0] if rejected else ""
+        """The first effect of the most probable answer with one, if only regularities were found."""
+        return "" if self.failed else next(iter(self.answer["nearest"]), "")
 
     @property
     def described(self) -> tuple[bool, bool, bool]:
@@ -196,8 +203,8 @@ class Judged:
         if self.first == "nothing":
             return "missed" if self.case.detectable else "too weak"
         if self.first == "unknown":
-            near = "the right one nearest" if self.nearest in self.case.names else f"{self.nearest or 'none'} nearest"
-            return f"form rejected, {near}" if self.answer["rejected"] else "called unknown, no effect significant"
+            near = "the right one" if self.nearest in self.case.names else self.nearest or "no effect"
+            return f"called unknown, {near} nearest"
         return "right one is a rival" if self.right_in_set else "wrong effect named"
 
     @property
@@ -210,12 +217,11 @@ class Judged:
         if self.failed:
             return f"{about}: {hidden or 'nothing'} hidden; no answer: {self.answer['failure']}"
         scores = ", ".join(f"{name} {gain:.3g}" for name, gain, _ in self.answer["scores"][:3])
-        rejected = "; ".join(
-            f"{' + '.join(r['names'])} rejected (gain {r['gain']:.3g}, coherence "
-            f"{min(r['chances'], default=1.0):.1g}{'' if r['settled'] else ', unsettled'})"
-            for r in self.answer["rejected"][:2]
+        others = ", ".join(
+            f"{' + '.join(each['effects']) or 'no effect'} {each['probability']:.2g}"
+            for each in self.answer["alternatives"][:3]
         )
-        parts = [f"named {', '.join(self.named) or self.first}", self._gains, f"scores {scores}", rejected]
+        parts = [f"named {', '.join(self.named) or self.first}", self._gains, f"scores {scores}", f"of {others}"]
         return f"{about}, {self.case.form}: {hidden or 'nothing'} hidden; {'; '.join(part for part in parts if part)}"
 
     @property

@@ -13,6 +13,7 @@ ROWS = {
 OF_LOOP = {
     "false_alarm_rate": "false alarm on nulls",
     "right_family_first": "right family first",
+    "right_of_sure": "right of those above 0.9",
     "false_extra_effect": "false extra effect",
     "worse_than_before": "worse than before",
     "worse_than_before_of_detectable": "... of detectable ones",
@@ -35,6 +36,8 @@ def table(found: Mapping[str, Any]) -> str:
     lines += [f"{title:<26}{figure(found[key]):>24}" for key, title in OF_LOOP.items()]
     described = found["unknown_described"]
     lines += [f"{'unknown: ' + part:<26}{figure(described[part]):>24}" for part in described]
+    calibration = found["expected_calibration_error"]
+    lines.append(f"{'calibration error':<26}{'-' if calibration is None else f'{calibration:.3f}':>24}")
     lines.append(f"mean set size {found['mean_set_size']:.2f}, {found['cases']} cases, {found['nulls']} nulls")
     lines += [f"{count:4d}  {cause}" for cause, count in found["causes"].items()]
     return "\n".join(lines)

@@ -1,1 +1,1 @@
-"""The decision: which candidates are accepted, which rivals remain, which regularities have no known cause."""
+"""The decision by evidence: options with a prior and a likelihood, a search for them, and their posterior."""

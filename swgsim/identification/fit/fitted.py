@@ -129,6 +129,11 @@ class Fitted:
         """The same with the part ``forms`` of :attr:`allowed` empty, for a fit that may move the effects."""
         return self._with_allowed(self.allowed._replace(forms=self.allowed.forms[:, :0]))
 
+    @property
+    def without_free(self) -> "Fitted":
+        """The same with the part ``free`` of :attr:`allowed` empty."""
+        return self._with_allowed(self.allowed._replace(free=self.allowed.free[:, :0]))
+
     def allowing(self, columns: Float[np.ndarray, "row column"]) -> "Fitted":
         """The same with more columns in the part ``free`` of :attr:`allowed`, one standard deviation each.
 

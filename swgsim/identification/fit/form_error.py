@@ -1,73 +1,23 @@
-"""Whether an effect is the cause and no mimic: one size must serve all operating points, channels and orders."""
+"""By what an effect may differ from the form that the library gives it."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
 
 import numpy as np
 from jaxtyping import Float
-from scipy.stats import chi2
 
-from swgsim.common.singular import svd
-from swgsim.identification.covariance.low_rank_covariance import as_squares
+from swgsim.identification.covariance.low_rank_covariance import without_what_noise_hides
 from swgsim.identification.data.model import predict
 from swgsim.identification.fit.fitted import Fitted
 
-# Least gain of log-likelihood by which one explanation counts as better than another. An explanation counts as better
-# than none by the same gain.
+# Least gain of log-likelihood by which one explanation counts as better than another.
 LEAST_GAIN = 3.0
 # A regularity replaces an effect only if it explains more than the effect does. The excess must be above the first
 # number, a sum of squares, plus the second number times what the effect explains.
 OUTDONE, OUTDONE_SHARE = 17.0, 0.05
-# A real cause never has the library's exact shape: its parts may differ from it by this share, and the power of load
-# and speed that it goes with by as much (standard deviations).
+# Typical share by which the parts of a real cause differ from the library's form (standard deviation).
 FORM_TOLERANCE = 0.2
 # Load below which a power of it is that of this one [N m].
 LEAST_LOAD = 1.0
-# Form errors of which the most probable one is selected.
-FORM_ERRORS = np.append(0.0, np.geomspace(1e-3, 10, 200))
-# Shares of its declared inaccuracy that a structure of another author's may need for the form of an effect.
-INACCURATE = (0.1, 0.3, 1.0)
-# Probability below which the parts contradict one another even so.
-CONTRADICTION = 1e-3
-# Parts that differ so much have no size in common: the standard deviation is this share of the size, so a size of zero
-# is only two standard deviations away.
-NO_SIZE = 0.5
-# Parts of points, of channels and of orders have the same sum; directions of them below this share of the largest are
-# what differences and rounding leave of that (an estimate).
-LEAST_PART = 1e-3
-
-
-@dataclass(frozen=True)
-class Coherence:
-    """How well one size of an effect serves all of its signature.
-
-    Attributes
-    ----------
-    chance : float
-        Probability of such a disagreement between the parts, if their form is right to FORM_TOLERANCE.
-    form_error : float
-        Share by which the parts likeliest differ from the library's shape.
-    doubt : float
-        Share by which such parts make the size uncertain, which is a mean over them, and so does an inaccurate
-        structural model (standard deviation).
-    disagreement : float
-        That by the parts alone, where they differ beyond noise; 0 where noise may be all of it.
-    """
-
-    chance: float
-    form_error: float
-    doubt: float
-    disagreement: float = 0.0
-
-    @property
-    def holds(self) -> bool:
-        """Whether the parts agree, and so well that there is a size."""
-        return self.chance > CONTRADICTION and self.disagreement < NO_SIZE
-
-    @property
-    def tolerated(self) -> float:
-        """The part of the form error that is within the tolerance."""
-        return min(self.form_error, FORM_TOLERANCE)
 
 
 def signature(fitted: Fitted, number: int) -> Float[np.ndarray, " row"]:
@@ -131,6 +81,14 @@ def allowance(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
     return np.hstack([tolerated, _of_structure(fitted, number, signed)])
 
 
+def form_directions(fitted: Fitted, added: int) -> Float[np.ndarray, "row direction"]:
+    """Directions of the form error of the effects that were added last, for a form error of 1."""
+    count = len(fitted.model.effects)
+    columns = [np.zeros((len(fitted.residual), 0))]
+    columns += [allowance(fitted, number) for number in range(count - added, count)]
+    return without_what_noise_hides(np.hstack(columns), fitted.errors.variance) / FORM_TOLERANCE
+
+
 def _of_structure(fitted: Fitted, number: int, signed: Float[np.ndarray, " row"]) -> Float[np.ndarray, "row column"]:
     """What an inaccurate structural model leaves open of the signature of an effect that acts on the structure.
 
@@ -143,100 +101,20 @@ def _of_structure(fitted: Fitted, number: int, signed: Float[np.ndarray, " row"]
     return columns.reshape(len(signed), -1)
 
 
-def open_form(fitted: Fitted, added: int) -> Fitted:
-    """A fit with the form of the effects that were added last open within the tolerance."""
-    count = len(fitted.model.effects)
-    return fitted.allowing_forms(np.hstack([allowance(fitted, number) for number in range(count - added, count)]))
-
-
-def coherence(fitted: Fitted, number: int) -> Coherence:
-    """Whether the parts of an effect's signature agree on its size."""
-    signed = signature(fitted, number)
-    structure = _of_structure(fitted, number, signed)
-    whole = fitted.whole.with_columns(structure)
-    split = whole.whiten(forms(fitted, signed))
-    if not np.any(split):
-        return Coherence(0.0, 0.0, 0.0)
-    U, s, _ = svd(split)
-    kept = s > LEAST_PART * max(float(s.max()), 1e-12)
-    u, s = (U.T @ whole.whiten(fitted.from_start))[kept], s[kept]
-
-    chance = float(chi2.sf((u**2 / (1 + (FORM_TOLERANCE * s) ** 2)).sum(), len(s)))
-    wider = 1 + (FORM_ERRORS[:, None] * s) ** 2
-    # Minus twice the log-likelihood of the parts, for every form error that is tried.
-    minus_2_log_likelihood = (u**2 / wider + np.log(wider)).sum(axis=1)
-    error = float(FORM_ERRORS[np.argmin(minus_2_log_likelihood)])
-    form_columns = error * parts(fitted, signed)
-    shares = _shares(fitted, number, signed, np.hstack([form_columns, structure]))
-    beyond_noise = minus_2_log_likelihood[0] - minus_2_log_likelihood.min() > as_squares(LEAST_GAIN)
-    # An effect in one channel and one order has parts that are the whole of it; they cannot disagree.
-    several = (form_columns != error * signed[:, None]).any(axis=0)
-    disagreement = float(np.linalg.norm(shares[: form_columns.shape[1]][several])) if beyond_noise else 0.0
-    return Coherence(chance, error, float(np.linalg.norm(shares)), disagreement)
-
-
-def open_as_found(fitted: Fitted, coherences: Sequence[Coherence]) -> Fitted:
-    """A fit with the form of the last effects free, by their form error within the tolerance and by the most probable
-    structural error up to the declared one.
-
-    With the exact library form, a slightly different cause would predict other operating points badly, and an effect
-    that imitates it would be preferred.
-    """
-    numbers = range(len(fitted.model.effects) - len(coherences), len(fitted.model.effects))
-    signed = [signature(fitted, number) for number in numbers]
-    by_parts = [each.tolerated * forms(fitted, s) for each, s in zip(coherences, signed, strict=True) if each.tolerated]
-    opened = fitted.allowing(np.hstack(by_parts)) if by_parts else fitted
-    structure = np.hstack([_of_structure(fitted, number, each) for number, each in zip(numbers, signed, strict=True)])
-    tried = [opened, *(opened.allowing(share * structure) for share in INACCURATE if structure.any())]
-    return max(tried, key=lambda each: each.log_likelihood)
-
-
-def doubt_by_others(fitted: Fitted, number: int, others: Mapping[int, Coherence]) -> float:
-    """Share by which the size of an effect is uncertain, as other effects differ from the library's shape.
+def moved_by_forms(fitted: Fitted, form_errors: Mapping[int, float]) -> dict[str, float]:
+    """Standard deviation by which the form errors of effects move each fitted parameter.
 
     Parameters
     ----------
     fitted : Fitted
-    number : int
-    others : mapping
-        Coherence of each of them by its number.
-    """
-    off = [each.form_error * parts(fitted, signature(fitted, other)) for other, each in others.items()]
-    return float(np.linalg.norm(_shares(fitted, number, signature(fitted, number), np.hstack(off)))) if off else 0.0
-
-
-def moved_by_forms(fitted: Fitted, coherences: Mapping[int, Coherence]) -> dict[str, float]:
-    """Standard deviation by which each fitted parameter is moved, as effects differ from the library's shape.
-
-    Parts of all of them are larger or smaller, and an inaccurate structure adds what it may; that lines are turned is
-    not in it.
-
-    Parameters
-    ----------
-    fitted : Fitted
-    coherences : mapping
-        Coherence of each effect by its number.
+    form_errors : mapping
+        Form error of each effect by its number, as a share.
     """
     off = [np.zeros((len(fitted.residual), 0))]
-    for number, each in coherences.items():
+    for number, error in form_errors.items():
         signed = signature(fitted, number)
-        off += [each.form_error * parts(fitted, signed), _of_structure(fitted, number, signed)]
+        off += [error * parts(fitted, signed), _of_structure(fitted, number, signed)]
     J = fitted.of_unit.whiten(fitted.J)
     moved = np.linalg.solve(J.T @ J + np.eye(J.shape[1]), J.T @ fitted.of_unit.whiten(np.hstack(off)))
     by = np.linalg.norm(moved, axis=1).tolist()
     return {name: share * p.sd for (name, p), share in zip(fitted.parameters.items(), by, strict=True)}
-
-
-def _shares(
-    fitted: Fitted, number: int, signed: Float[np.ndarray, " row"], off: Float[np.ndarray, "row column"]
-) -> Float[np.ndarray, " column"]:
-    """What errors of a signature, one standard deviation each, add to the size, as shares of it.
-
-    The effect's own parameters are not open beside it: its size is what is asked for, and would leave rounding of it.
-    """
-    if not off.any():
-        return np.zeros(off.shape[1])
-    others = [column for column, name in enumerate(fitted.parameters) if f" {number + 1}: " not in name]
-    errors = fitted.of_nuisances.with_columns(fitted.J[:, others])
-    whole = errors.whiten(signed)
-    return errors.whiten(off).T @ whole / (whole @ whole)

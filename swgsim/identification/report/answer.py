@@ -8,12 +8,9 @@ from swgsim.chain.steady_state_cache import forget
 from swgsim.common.outcome import FOUND, NOTHING, UNKNOWN
 from swgsim.effects.base import Effect
 from swgsim.effects.line_between import LineBetween
-from swgsim.effects.regularity import Regularity
 from swgsim.identification.data.measured import Measured
-from swgsim.identification.decide.candidate import Trial
-from swgsim.identification.decide.empirical_terms import patched
-from swgsim.identification.decide.selection import Closed
-from swgsim.identification.decide.stepwise_selection import close
+from swgsim.identification.decide.decision import Decision, decide
+from swgsim.identification.decide.option import Option
 from swgsim.identification.fit.unit import Unit
 from swgsim.identification.interharmonics.interharmonic_spectrum import gauge_spectra
 from swgsim.identification.interharmonics.line_search import cleaned, search
@@ -27,8 +24,6 @@ from swgsim.recordings.recording import Recording
 
 # Largest number of regularities that are described at high orders.
 MOST_ABOVE = 3
-# The nearest known effect is reported if it explains at least this share of the remainder.
-LEAST_EXPLAINED = 0.1
 STEPS = logging.getLogger(__name__)
 
 
@@ -38,9 +33,8 @@ class Answer:
 
     Attributes
     ----------
-    verdict : str
-        NOTHING, FOUND or UNKNOWN.
-    closed : Closed
+    decision : Decision
+        Of the order lines: the options with their probabilities, and the model with the most probable one.
     known : tuple of Effect
         Declared effects that make interharmonic lines; they are not part of the model of the order lines.
     lines : tuple of Sideline
@@ -53,8 +47,7 @@ class Answer:
         Effects that these recordings cannot test: nuisance parameters absorb their signatures.
     """
 
-    verdict: str
-    closed: Closed
+    decision: Decision
     known: tuple[Effect, ...]
     lines: tuple[Sideline, ...]
     unnamed: tuple[Unnamed, ...]
@@ -62,25 +55,26 @@ class Answer:
     absorbed: tuple[Score, ...]
 
     @property
+    def verdict(self) -> str:
+        """NOTHING, FOUND or UNKNOWN."""
+        if self.decision.effects or self.lines:
+            return FOUND
+        return UNKNOWN if self.unknown or self.unnamed else NOTHING
+
+    @property
     def unknown(self) -> tuple[Described, ...]:
         """Regularities that no effect of the library explains."""
-        return (*self.closed.unknown, *self.above)
+        return (*self.decision.unknown, *self.above)
 
     @property
     def added(self) -> tuple[Effect, ...]:
         """Effects and regularities that were added to the model of the order lines."""
-        return self.closed.after.added
-
-    @property
-    def patches(self) -> tuple[Regularity, ...]:
-        """Regularities that were added to the model; they name no cause."""
-        return tuple(effect for effect in self.added if isinstance(effect, Regularity))
+        return self.decision.after.added
 
     @property
     def effects(self) -> tuple[Effect, ...]:
         """The physical effects that were found."""
-        chain = (effect for effect in self.added if not isinstance(effect, Regularity))
-        return (*chain, *(line.effect for line in self.lines))
+        return (*self.decision.effects, *(line.effect for line in self.lines))
 
     @property
     def bare_lines(self) -> tuple[LineBetween, ...]:
@@ -90,13 +84,14 @@ class Answer:
     @property
     def unexplained(self) -> str:
         """The unexplained remainder in words; empty if there is no remainder."""
-        described = "; ".join(map(str, (*self.unknown, *self.unnamed)))
-        return described or ("a regularity without a simple description" if self.closed.rejected else "")
+        return "; ".join(map(str, (*self.unknown, *self.unnamed)))
 
     @property
-    def nearest(self) -> Trial | None:
-        """The known effect that explains most of an unknown remainder and was not accepted, or None."""
-        return self.closed.nearest if self.closed.nearest_explains >= LEAST_EXPLAINED else None
+    def nearest(self) -> tuple[Option, float] | None:
+        """If only regularities were found: the most probable answer with an effect, and its probability."""
+        if self.decision.effects or not self.decision.unknown:
+            return None
+        return next((each for each in self.decision.answers if each[0].effects), None)
 
 
 def answer(
@@ -125,15 +120,13 @@ def answer(
     N = unit.model.gear.transmission.N
     lines = search(gauge_spectra(recordings, N), kinds, ALPHA, known)
     clean = [cleaned(recording, lines.effects, N) for recording in recordings] if lines.effects else recordings
-    closed = close(Measured.of(clean), unit, kinds, seed=seed)
+    decision = decide(Measured.of(clean), unit, kinds, seed=seed)
     STEPS.info("describing the remainder")
-    high = above(clean, unit.healthy, closed.before.model, closed.after.model, ALPHA, MOST_ABOVE)
-    found, unknown = closed.steps or lines.named, closed.rejected or closed.unknown or lines.unnamed or high
-    verdict = FOUND if found else UNKNOWN if unknown else NOTHING
-    return Answer(verdict, patched(closed), tuple(known), lines.named, lines.unnamed, high, untestable(closed))
+    high = above(clean, unit.healthy, decision.before.model, decision.after.model, ALPHA, MOST_ABOVE)
+    return Answer(decision, tuple(known), lines.named, lines.unnamed, high, untestable(decision))
 
 
-def untestable(closed: Closed) -> tuple[Score, ...]:
-    """Effects that the recordings cannot test, without those that were found by a deviation from their library form."""
-    tested = {type(e) for step in closed.steps for trial in (step.accepted, *step.rivals) for e in trial.effects}
-    return tuple(score for score in closed.scores if score.absorbed and score.hypothesis.kind not in tested)
+def untestable(decision: Decision) -> tuple[Score, ...]:
+    """Effects that the recordings cannot test, without those in the credible set."""
+    tested = {type(effect) for option, _ in decision.credible for effect in option.effects}
+    return tuple(score for score in decision.scores if score.absorbed and score.hypothesis.kind not in tested)

@@ -73,7 +73,7 @@ def pictures(answer: Answer, report: Mapping[str, Any]) -> dict[str, tuple[style
             errors(report),
         ),
     }
-    if answer.closed.after.declared:
+    if answer.decision.after.declared:
         drawn["parameters"] = (
             "Declared parameters",
             "Deviation from the nominal value in units of the spread of a series, with 95 % intervals. Parameters with "
@@ -95,7 +95,7 @@ def over_angle(answer: Answer, *, largest_only: bool = False) -> Figure:
     largest_only : bool
         Draw only the channel with the largest residual.
     """
-    before, after = answer.closed.before, answer.closed.after
+    before, after = answer.decision.before, answer.decision.after
     measured = before.measured
     channels = measured.layout.channels
     shown = [i for i, name in enumerate(channels) if name in SENSORS] or list(range(len(channels)))
@@ -152,7 +152,7 @@ def _of_channel(features: np.ndarray, i: int) -> np.ndarray:
 
 def spectrum(answer: Answer) -> Figure:
     """Residual of every order line of every channel before and after, with the noise floor as a line."""
-    before, after = answer.closed.before, answer.closed.after
+    before, after = answer.decision.before, answer.decision.after
     measured = before.measured
     channels = measured.layout.channels
     rows = -(-len(channels) // 2)
@@ -240,7 +240,7 @@ def errors(report: Mapping[str, Any]) -> Figure:
 
 def parameters(answer: Answer, report: Mapping[str, Any]) -> Figure:
     """Declared parameters before and after with their intervals."""
-    before, after = answer.closed.before, answer.closed.after
+    before, after = answer.decision.before, answer.decision.after
     names = list(after.declared)
     picture = style.figure(9.5, 1.0 + 0.24 * len(names))
     axes = picture.subplots()

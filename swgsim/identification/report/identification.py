@@ -90,7 +90,7 @@ class Identification:
         interharmonics = (*found.known, *(line.effect for line in found.lines), *found.bare_lines)
         html = page(self.report, {name: picture for name, (picture, _) in self.pictures.items()})
         write_json(folder / "report.json", self.report)
-        write_text(folder / "effects.yaml", as_text((*found.closed.after.model.effects, *interharmonics)))
+        write_text(folder / "effects.yaml", as_text((*found.decision.after.model.effects, *interharmonics)))
         write_text(folder / "page.html", html)
 
     def __repr__(self) -> str:

@@ -20,7 +20,7 @@ from swgsim.identification.data.model import Model, Situation, predict
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.form_error import FORM_TOLERANCE, allowance
 from swgsim.identification.report.answer import Answer
-from swgsim.identification.report.effect_words import names_in_words
+from swgsim.identification.report.found import in_words
 
 # Operating points and conditions of a test bench: as it stands, with a warm gear, or after an hour.
 FEASIBLE = tuple(OperatingPoint(n, T) for n in (300.0, 1000.0, 2000.0, 3000.0, 4000.0) for T in (3.0, 20.0, 45.0, 70.0))
@@ -83,13 +83,12 @@ def separation_text(separation: float) -> str:
 
 
 def next_experiments(answer: Answer) -> tuple[Experiment, ...]:
-    """Recordings that separate every accepted effect from its rivals, and that test every absorbed effect."""
+    """Recordings that separate the answer from the others of the credible set, and that test every absorbed effect."""
     found = []
-    for step in answer.closed.steps:
-        for rival in step.rivals:
-            names = (names_in_words(step.accepted.effects), names_in_words(rival.effects))
-            found += _best(rival.fitted, [step.accepted.fitted.model], [names])
-    after = answer.closed.after
+    after = answer.decision.after
+    for rival, _ in answer.decision.rivals:
+        names = (in_words(answer.decision.best), in_words(rival))
+        found += _best(rival.opened, [after.model], [names])
     effects = [score.hypothesis.effect() for score in answer.absorbed]
     if effects:
         between = [(f"{effect.title()} of typical size", ABSENCE) for effect in effects]

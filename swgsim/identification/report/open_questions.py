@@ -10,9 +10,9 @@ from swgsim.effects.text import entries, path_of
 from swgsim.identification.interharmonics.named_interharmonics import acts_on_signals, is_random
 from swgsim.identification.interharmonics.unattributed_lines import Unnamed
 from swgsim.identification.report.answer import Answer
-from swgsim.identification.report.found import names, why
+from swgsim.identification.report.found import in_words
 from swgsim.identification.report.next_experiment import Experiment
-from swgsim.identification.search.regularities import Atom, Described
+from swgsim.identification.search.regularities import Described
 from swgsim.identification.search.screening import Score
 
 
@@ -24,8 +24,7 @@ def unknown(answer: Answer) -> dict[str, Any] | None:
     """
     if not answer.unexplained:
         return None
-    patches = {Atom(patch.order, patch.pattern, patch.law) for patch in answer.patches}
-    atoms = [_described(each) | {"added": each.atom in patches} for each in answer.unknown]
+    atoms = [_described(each) for each in answer.unknown]
     lines = [_line(each) for each in answer.unnamed]
     leading = next(iter(atoms or (line["parts"][0] for line in lines)), {"pattern": None, "law": None})
     orders = {each["order"] for each in atoms} | {line["at"] for line in lines if line["kind"] == "order"}
@@ -37,16 +36,15 @@ def unknown(answer: Answer) -> dict[str, Any] | None:
         "regularities": atoms,
         "lines": lines,
         "effects": entries([*(each.effect for each in answer.unknown), *answer.bare_lines]),
-        "added": entries(answer.patches),
         "nearest": _nearest(answer),
     }
 
 
 def _nearest(answer: Answer) -> dict[str, Any] | None:
-    trial = answer.nearest
-    if trial is None:
+    if answer.nearest is None:
         return None
-    return {"name": names(trial), "explains": answer.closed.nearest_explains, "why": why(trial, answer)}
+    option, probability = answer.nearest
+    return {"words": in_words(option), "probability": number(probability)}
 
 
 def _described(each: Described) -> dict[str, Any]:
@@ -87,7 +85,7 @@ def next_experiment(experiments: Sequence[Experiment], answer: Answer) -> dict[s
     helpful = sorted((e for e in experiments if e.recordings), key=lambda e: (e.recordings or 0, -e.separation))
     helpless = [e for e in experiments if not e.recordings]
     words = [str(e) for e in (*helpful, *helpless)]
-    commission = bool(helpless or answer.unexplained) and not answer.closed.before.unit.commissioned
+    commission = bool(helpless or answer.unexplained) and not answer.decision.before.unit.commissioned
     if commission:
         words.append("commission the gear with recordings of its healthy state (commissioning=FOLDER)")
     if not words:
@@ -126,7 +124,7 @@ def absorbed(score: Score) -> dict[str, Any]:
 
 def untried(answer: Answer, kinds: Sequence[type[Effect]]) -> list[dict[str, Any]]:
     """Effects for which there is no test."""
-    gauges = any(channel.startswith("s") for channel in answer.closed.before.measured.layout.channels)
+    gauges = any(channel.startswith("s") for channel in answer.decision.before.measured.layout.channels)
     whys = {
         kind: "its phase is random in every recording, and no gauge is in all recordings"
         if acts_on_signals(kind)

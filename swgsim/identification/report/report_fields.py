@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.common.numbers import estimate
+from swgsim.common.numbers import estimate, number
 from swgsim.effects.base import Effect
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.fit.errors import noise_floor
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.unit import UNHEARD
 from swgsim.identification.report.answer import Answer
-from swgsim.identification.report.found import found_effects, rejected
+from swgsim.identification.report.found import alternatives, found_effects, options
 from swgsim.identification.report.next_experiment import Experiment
 from swgsim.identification.report.open_questions import absorbed, detectable, next_experiment, scored, unknown, untried
 from swgsim.identification.report.prediction_errors import error, named
@@ -48,7 +48,7 @@ def report(
     source : str
         Name of the recordings, such as their folder.
     """
-    before, after = answer.closed.before, answer.closed.after
+    before, after = answer.decision.before, answer.decision.after
     measured = before.measured
     unheard = _orders(before, before.unit.inflation, UNHEARD / 2)
     less_certain = _orders(before, before.unit.inflation, 1.0)
@@ -56,17 +56,19 @@ def report(
     return {
         "verdict": answer.verdict,
         "sentence": sentence(answer, effects),
+        "probability": number(answer.decision.probability),
         "noise_floor": named(measured, noise_floor(measured)),
         "calibrated": calibrated(after),
         "effects": effects,
-        "rejected": rejected(answer),
+        "alternatives": alternatives(answer),
+        "options": options(answer),
         "error": error(before, after),
         "unknown": unknown(answer),
         "next_experiment": next_experiment(experiments, answer),
         "moved": moved(before, after),
         "absorbed": [absorbed(each) for each in answer.absorbed] + untried(answer, kinds),
-        "detectable": {each.hypothesis.kind.name(): detectable(each) for each in answer.closed.scores},
-        "scores": [scored(each) for each in answer.closed.scores],
+        "detectable": {each.hypothesis.kind.name(): detectable(each) for each in answer.decision.scores},
+        "scores": [scored(each) for each in answer.decision.scores],
         "commissioned": before.unit.commissioned,
         "structure": before.unit.structure,
         "learned": _orders(before, before.unit.learned, 0.0),

@@ -5,9 +5,10 @@ from typing import Any
 
 from swgsim.common.outcome import FOUND, NOTHING
 from swgsim.identification.report.answer import Answer
-from swgsim.identification.report.effect_words import effect_in_words, effect_name, effect_text
+from swgsim.identification.report.effect_words import effect_text
+from swgsim.identification.report.found import in_words, probability_text
 
-# Untestable effects, and rivals of an effect, that the sentence names at most; the report has all of them.
+# Untestable effects, and other answers, that the sentence names at most; the report has all of them.
 MOST_NAMED = 6
 
 
@@ -22,29 +23,29 @@ def sentence(answer: Answer, effects: Sequence[Mapping[str, Any]]) -> str:
     """
     if answer.verdict == NOTHING:
         return (
-            f"Nothing is missing: the model explains the recordings down to their noise{_if_balanced(answer)}, and no "
-            f"effect of the library is significant{_untestable(answer)}."
+            f"Nothing is missing: the model explains the recordings down to their noise{_if_balanced(answer)}"
+            f"{_sure(answer)}{_untestable(answer)}."
         )
-    nearest = _nearest(answer)
     if answer.verdict == FOUND:
-        remainder = f"; an unknown remainder: {answer.unexplained}{nearest}" if answer.unexplained else ""
-        return f"The model lacks {'; and '.join(map(_explanation, effects))}{remainder}."
-    return f"The model lacks something that is not in the library: {answer.unexplained}{nearest}."
+        found = "; and ".join(effect_text(each["name"], each["parameters"]) for each in effects)
+        remainder = f"; and an unknown remainder: {answer.unexplained}" if answer.unexplained else ""
+        return f"The model lacks {found}{remainder}{_sure(answer)}."
+    return f"The model lacks something that is not in the library: {answer.unexplained}{_sure(answer)}."
 
 
-def _explanation(effect: Mapping[str, Any]) -> str:
-    """A found effect, and the rivals from which these recordings cannot separate it."""
-    rivals = [
-        " with ".join(effect_name(each["name"], each["parameters"]) for each in rival["effects"])
-        for rival in effect["rivals"]
-    ]
-    text = effect_text(effect["name"], effect["parameters"])
-    return text + (f" (these recordings cannot separate it from {_listed(rivals, ' or ')})" if rivals else "")
+def _sure(answer: Answer) -> str:
+    """Probability of the answer of the order lines, and the other answers of the credible set."""
+    decision = answer.decision
+    if not decision.best.causes and answer.verdict != NOTHING:
+        return ""  # interharmonic lines alone, which have p-values
+    others = [f"{in_words(option)} ({probability_text(p)})" for option, p in decision.rivals]
+    otherwise = f"; else {_listed(others, ', ')}" if others else ""
+    return f": probability {probability_text(decision.probability)}{otherwise}"
 
 
 def _if_balanced(answer: Answer) -> str:
     """The condition of the verdict, if zeros of gauges lie further off than declared."""
-    zeros = answer.closed.after.measured.zeros
+    zeros = answer.decision.after.measured.zeros
     if zeros == 1:
         return ""
     return (
@@ -56,13 +57,6 @@ def _if_balanced(answer: Answer) -> str:
 def _untestable(answer: Answer) -> str:
     names = [score.hypothesis.kind.title() for score in answer.absorbed]
     return f"; these recordings cannot test {_listed(names, ', ')}" if names else ""
-
-
-def _nearest(answer: Answer) -> str:
-    if answer.nearest is None:
-        return ""
-    known, share = " with ".join(map(effect_in_words, answer.nearest.effects)), 100 * answer.closed.nearest_explains
-    return f"; the nearest known effect ({known}) explains {share:.0f} % of the remainder and was not accepted"
 
 
 def _listed(names: Sequence[str], separator: str) -> str:

@@ -12,22 +12,13 @@ import numpy as np
 from jaxtyping import Bool, Complex, Float
 
 from swgsim.common.chi2_logsf import surprise
-from swgsim.common.seeds import generator
 from swgsim.effects.quantity import quantities
 from swgsim.effects.regularity import LAWS, PATTERNS, Regularity
 from swgsim.identification.covariance.low_rank_covariance import as_squares
 from swgsim.identification.data.features import ORDERS, Layout
 from swgsim.identification.fit.fitted import Fitted
-from swgsim.identification.fit.fitting import extended
 from swgsim.identification.fit.form_error import LEAST_GAIN
-from swgsim.identification.search.screening import AT_ONCE, VISIBLE, family_wise
-from swgsim.identification.search.shortlist import ALPHA
-
-# Prior standard deviation of an atom that is set free, in amplitudes found.
-WIDE = 100.0
-
-# Regularities that are described at most.
-MOST_ATOMS = 3
+from swgsim.identification.search.screening import VISIBLE
 
 
 @dataclass(frozen=True)
@@ -69,7 +60,7 @@ class Described:
     phase : float
         [rad].
     chance : float
-        p-value among all regularities; nan if it was not computed.
+        p-value of a regularity at high orders; nan for the orders of the model, which have probabilities.
     rivals : tuple of str
         Other laws that fit equally well.
     """
@@ -128,33 +119,10 @@ def describe(fitted: Fitted) -> list[Described]:
     return _Projected.of(fitted).ranked
 
 
-def strongest(fitted: Fitted, rng: np.random.Generator) -> Described:
-    """The most significant regularity, with its p-value and its rivals."""
-    projected = _Projected.of(fitted)
-    freedom = np.array([each.freedom for each in projected.described])
-    noise = (projected.along(each) for each in fitted.null(AT_ONCE, rng))
-    chances = family_wise(projected.along(fitted.weighed), freedom, noise)
-    best = projected.ranked[0]
-    chance = float(chances[projected.described.index(best)])
-    return replace(best, chance=chance, rivals=other_laws(best, projected.ranked))
-
-
 def other_laws(best: Described, others: Sequence[Described]) -> tuple[str, ...]:
     """By which others explain the same order and pattern as well."""
     same = [other for other in others if replace(other.atom, law=best.atom.law) == best.atom]
     return tuple(o.atom.law for o in same if o.atom != best.atom and best.gain - o.gain < as_squares(LEAST_GAIN))
-
-
-def regularities(fitted: Fitted, seed: int) -> tuple[Described, ...]:
-    """Significant regularities, up to MOST_ATOMS; each is subtracted before the next search."""
-    found: list[Described] = []
-    while len(found) < MOST_ATOMS:
-        best = strongest(fitted, generator("vocabulary", seed, len(found)))
-        if best.chance > ALPHA:
-            break
-        found.append(best)
-        fitted = freed(fitted, best)
-    return tuple(found)
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,7 +162,7 @@ class _Projected:
 
     @property
     def ranked(self) -> list[Described]:
-        """The most significant first."""
+        """The most significant first, each with the other laws that fit as well."""
         return sorted(self.described, key=lambda each: -each.rank)
 
     def along(self, weighed: np.ndarray) -> np.ndarray:
@@ -213,11 +181,6 @@ def _described(
 
 
 def set_free(fitted: Fitted, described: Described) -> Fitted:
-    """A fit in which an atom may be as large as it likes, also when effects are added to it."""
-    taken = columns(described.atom, fitted) * max(described.amplitude, 1e-12) * WIDE
+    """A fit with an atom as a nuisance direction, with the amplitude found as standard deviation."""
+    taken = columns(described.atom, fitted) * max(described.amplitude, 1e-12)
     return fitted.allowing(taken)
-
-
-def freed(fitted: Fitted, described: Described) -> Fitted:
-    """The same fitted again, so that parameters that the atom had bent come back."""
-    return extended(set_free(fitted, described), ())

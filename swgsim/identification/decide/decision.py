@@ -1,0 +1,166 @@
+"""The decision: the posterior over options, and the model with the most probable one."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.special import logsumexp
+
+from swgsim.common.outcome import FOUND, NOTHING, UNKNOWN
+from swgsim.common.seeds import generator
+from swgsim.effects.base import Effect
+from swgsim.effects.quantity import beyond_nothing, size_of
+from swgsim.identification.data.measured import Measured
+from swgsim.identification.decide.option import Option, chosen
+from swgsim.identification.decide.search import Search
+from swgsim.identification.fit.fitted import Fitted
+from swgsim.identification.fit.fitting import extended, fit, unbent
+from swgsim.identification.fit.form_error import moved_by_forms
+from swgsim.identification.fit.priors import name_of
+from swgsim.identification.fit.shape_marginal import over_shapes
+from swgsim.identification.fit.unit import Unit
+from swgsim.identification.search.detection_limit import at_sizes_seen
+from swgsim.identification.search.regularities import Described
+from swgsim.identification.search.screening import Score
+from swgsim.identification.search.shortlist import screened
+
+# Probability of the set of options that the report shows.
+CREDIBLE = 0.95
+# Share to which the chain has the size of an effect right: an estimate, from the mesh of the truss.
+EXACT = 0.01
+
+
+@dataclass(frozen=True, eq=False)
+class Decision:
+    """What the model lacks, with probabilities.
+
+    Attributes
+    ----------
+    before : Fitted
+        The model of the unit.
+    after : Fitted
+        The model with the effects and regularities of the most probable option.
+    options : tuple of Option
+        The most probable first.
+    probabilities : tuple of float
+        Of every option.
+    scores : tuple of Score
+        Of the first screening, best hypothesis of each effect, with p-values.
+    """
+
+    before: Fitted
+    after: Fitted
+    options: tuple[Option, ...]
+    probabilities: tuple[float, ...]
+    scores: tuple[Score, ...]
+
+    @property
+    def best(self) -> Option:
+        """The most probable option."""
+        return self.options[0]
+
+    @property
+    def effects(self) -> tuple[Effect, ...]:
+        """The effects of the best option, as fitted in :attr:`after`."""
+        return self.after.added[: len(self.best.effects)]
+
+    @property
+    def unknown(self) -> tuple[Described, ...]:
+        """The regularities of the best option."""
+        return self.best.regularities
+
+    @property
+    def verdict(self) -> str:
+        """FOUND, UNKNOWN or NOTHING."""
+        return FOUND if self.best.effects else UNKNOWN if self.unknown else NOTHING
+
+    @property
+    def probability(self) -> float:
+        """Of the answer: of all options with the same effects, and with or without regularities as the best one."""
+        return self._of(self.best)
+
+    def _of(self, option: Option) -> float:
+        answer = _answer(option)
+        return float(sum(p for each, p in self.weighed if _answer(each) == answer))
+
+    @property
+    def weighed(self) -> list[tuple[Option, float]]:
+        """Options with their probabilities."""
+        return list(zip(self.options, self.probabilities, strict=True))
+
+    @cached_property
+    def answers(self) -> list[tuple[Option, float]]:
+        """The best option of every answer with the probability of the answer, the most probable first."""
+        found: dict[object, tuple[Option, float]] = {}
+        for each, probability in self.weighed:
+            first, total = found.get(_answer(each), (each, 0.0))
+            found[_answer(each)] = first, total + probability
+        return sorted(found.values(), key=lambda each: -each[1])
+
+    @property
+    def credible(self) -> list[tuple[Option, float]]:
+        """The fewest answers that have a probability of 95 % together."""
+        totals = np.cumsum([probability for _, probability in self.answers])
+        return self.answers[: int(np.searchsorted(totals, CREDIBLE)) + 1]
+
+    def probability_of(self, effect: Effect) -> float:
+        """Probability that an effect of this kind is missing."""
+        return float(sum(p for each, p in self.weighed if chosen(effect) in map(chosen, each.effects)))
+
+    def gain_of(self, effect: Effect) -> float:
+        """Log evidence of the best option over the best one without effects of this kind."""
+        others = [o.log_evidence for o in self.options if chosen(effect) not in map(chosen, o.effects)]
+        return self.best.log_evidence - max(others, default=-np.inf)
+
+    @property
+    def rivals(self) -> tuple[tuple[Option, float], ...]:
+        """The other answers of the credible set."""
+        return tuple(self.credible[1:])
+
+    @cached_property
+    def deviation(self) -> dict[str, float]:
+        """Standard deviation of each fitted parameter, by noise, all shapes and the form error."""
+        fitted = self.after
+        found = dict(fitted.deviation)
+        first = len(self.before.model.effects)
+        numbers = range(first, first + len(self.best.effects))
+        moved = moved_by_forms(fitted, dict.fromkeys(numbers, self.best.form_error))
+        for number in numbers:
+            found |= over_shapes(fitted, number)
+            effect = fitted.model.effects[number]
+            name = name_of(effect, number, size_of(type(effect)))
+            moved[name] = float(np.hypot(moved[name], EXACT * abs(beyond_nothing(effect))))
+        return found | {name: float(np.hypot(found[name], by)) for name, by in moved.items() if ": " in name}
+
+
+def _answer(option: Option) -> tuple[frozenset[object], bool]:
+    return frozenset(map(chosen, option.effects)), bool(option.regularities)
+
+
+def decide(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed: int = 0) -> Decision:
+    """Find what the model of a unit lacks.
+
+    Parameters
+    ----------
+    measured : Measured
+    unit : Unit
+    kinds : sequence of effect classes
+        The library.
+    seed : int
+        Of the simulated noise from which p-values of the scores are computed.
+    """
+    first = fit(measured, unit)
+    options = Search(first, kinds).run()
+    weights = np.array([each.log_posterior for each in options])
+    best = options[0]
+    before = first.with_zeros(best.zeros)
+    scores = at_sizes_seen(screened(first, kinds, generator("screen", seed, 0)), unbent(first))
+    return Decision(before, _with(best), tuple(options), tuple(np.exp(weights - logsumexp(weights)).tolist()), scores)
+
+
+def _with(best: Option) -> Fitted:
+    """The model with an option, its regularities being effects too."""
+    fitted = best.fitted.with_zeros(best.zeros).strict
+    regular = [each.effect for each in best.regularities]
+    return extended(fitted, regular) if regular else fitted

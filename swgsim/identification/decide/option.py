@@ -1,0 +1,133 @@
+"""An option: what the model may lack, fitted with everything else, and its evidence."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import reduce
+
+import numpy as np
+from jaxtyping import Float
+from scipy.special import logsumexp
+
+from swgsim.effects.base import Effect
+from swgsim.effects.quantity import Role, quantities
+from swgsim.identification.decide.prior import BALANCED, FORM_ERRORS, TIMES_BALANCED, log_prior
+from swgsim.identification.fit.fitted import Fitted
+from swgsim.identification.fit.fitting import extended
+from swgsim.identification.fit.form_error import form_directions
+from swgsim.identification.search.regularities import Described, set_free
+
+
+@dataclass(frozen=True, eq=False)
+class Option:
+    """A set of causes, fitted with all parameters of the unit.
+
+    Attributes
+    ----------
+    fitted : Fitted
+        The model with the effects; regularities are free within their prior.
+    effects : tuple of Effect
+        From the library, as fitted.
+    regularities : tuple of Described
+    log_prior : float
+    log_evidence : float
+        Logarithm of the probability of the recordings, all parameters integrated over their priors (Laplace), the
+        form error over its grid, and the zeros of bridges.
+    form_error : float
+        Posterior mean of the form error of the effects, as a share; 0 without effects.
+    zeros : float
+        Most probable factor on the deviation of the zeros of gauges.
+    """
+
+    fitted: Fitted
+    effects: tuple[Effect, ...]
+    regularities: tuple[Described, ...]
+    log_prior: float
+    log_evidence: float
+    form_error: float
+    zeros: float
+
+    @property
+    def log_posterior(self) -> float:
+        """Up to a constant that all options share."""
+        return self.log_prior + self.log_evidence
+
+    @property
+    def causes(self) -> frozenset[object]:
+        """The kinds of its effects with their choices, and its regularities."""
+        return causes_of(self.effects, self.regularities)
+
+    @property
+    def opened(self) -> Fitted:
+        """The fit with the form of its effects open by the form error found, to search for more."""
+        directions = self.form_error * form_directions(self.fitted, len(self.effects))
+        return self.fitted.with_zeros(self.zeros).allowing_forms(directions)
+
+
+def causes_of(effects: Sequence[Effect], regularities: Sequence[Described]) -> frozenset[object]:
+    """What identifies a set of causes: the kinds of effects with their choices, and the regularities."""
+    return frozenset(map(chosen, effects)) | frozenset(each.atom for each in regularities)
+
+
+def chosen(effect: Effect) -> tuple[object, ...]:
+    """The kind of an effect, and its parameters that are chosen from a list."""
+    declared = quantities(type(effect))
+    return type(effect), *(getattr(effect, name) for name, q in declared.items() if q.role is Role.CHOICE)
+
+
+def option(start: Fitted, effects: Sequence[Effect], regularities: Sequence[Described], kinds: int) -> Option:
+    """Fit a set of causes.
+
+    Parameters
+    ----------
+    start : Fitted
+        The model that the fit starts from: its effects are kept, and the form of these is open as long as they are
+        fitted together with further ones.
+    effects : sequence of Effect
+        Further effects.
+    regularities : sequence of Described
+        All regularities of the option.
+    kinds : int
+        Number of effects in the library.
+
+    Raises
+    ------
+    RuntimeError
+        If no gear with these effects turns steadily.
+    """
+    free = reduce(set_free, regularities, start.without_free)
+    fitted = extended(free, effects).closed
+    added = fitted.added
+    prior = log_prior(len(added), len(regularities), kinds)
+    evidence, form_error, zeros = log_evidence(fitted)
+    return Option(replace(fitted), added, tuple(regularities), prior, evidence, form_error, zeros)
+
+
+def log_evidence(fitted: Fitted) -> tuple[float, float, float]:
+    """Log evidence of a fit, posterior mean of the form error, and most probable factor of the zeros."""
+    fitted = fitted.with_zeros(1.0)
+    zeros, of_zeros, wholes = [1.0], [np.log(1 - BALANCED)], [fitted.whole]
+    for times in TIMES_BALANCED:
+        wholes.append(fitted.whole.with_columns(fitted.measured.further_zeros(times)))
+        zeros.append(times)
+        of_zeros.append(np.log(BALANCED / len(TIMES_BALANCED)))
+    r = fitted.from_start
+    likely = np.array(of_zeros) + [whole.log_likelihood(r) for whole in wholes]
+    best = int(likely.argmax())
+    directions = form_directions(fitted, len(fitted.added))
+    if not directions.shape[1]:
+        return float(logsumexp(likely)), 0.0, zeros[best]
+    gains = _gains(wholes[best].whiten(directions), wholes[best].whiten(r))
+    weights = np.exp(gains - logsumexp(gains))
+    mean = float(weights @ np.array(FORM_ERRORS))
+    return float(logsumexp(likely) + logsumexp(gains) - np.log(len(gains))), mean, zeros[best]
+
+
+def _gains(
+    white: Float[np.ndarray, "row direction"], residual: Float[np.ndarray, " row"]
+) -> Float[np.ndarray, " form_error"]:
+    """Gain of log-likelihood by every form error, from whitened directions of unit size and the whitened residual."""
+    s2, V = np.linalg.eigh(white.T @ white)
+    s2 = np.maximum(s2, 0.0)
+    along2 = (V.T @ (white.T @ residual)) ** 2
+    g2 = np.square(FORM_ERRORS)[:, None]
+    return (g2 * along2 / (1 + g2 * s2) - np.log1p(g2 * s2)).sum(axis=1) / 2

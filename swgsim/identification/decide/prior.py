@@ -1,0 +1,55 @@
+"""The prior of the decision: one table, which holds every number that the decision has.
+
+An option is a set of causes that the model may lack. All numbers are estimates, declared before any scored run. They
+change only for a reason from physics or from the practice of test benches.
+"""
+
+import numpy as np
+
+from swgsim.effects.regularity import LAWS, PATTERNS
+from swgsim.identification.data.features import ORDERS
+
+# Probability of 0, 1, 2, 3 causes. A gear is examined because something may be wrong, so one cause is as probable as
+# none; independent causes at once are rare.
+CAUSES = (0.5, 0.4, 0.08, 0.02)
+# Probability that a cause is not in the library, which holds what the literature describes.
+UNKNOWN = 0.1
+# Probability that an unknown cause shows in one more regularity. A regularity is one order, one pattern over the
+# channels and one law; a real cause shows in several, which have one of the three in common.
+ANOTHER_REGULARITY = 0.5
+# Probability that bridges were balanced anew between two sessions. The zeros of gauges then lie so many times as far
+# off as declared.
+BALANCED, TIMES_BALANCED = 0.05, (2.0, 4.0, 8.0, 16.0)
+# A real effect never has exactly the form that the library gives it. The lines of its signature differ by this share
+# (standard deviation), each value being as probable as the others: from the mesh of the truss to another author's model.
+FORM_ERRORS = (0.01, 0.02, 0.05, 0.1, 0.2)
+# The amplitude of a regularity is known to a factor only; its prior is normal with the standard deviation found, times
+# the probability of one of so many factors of e.
+SCALES = 8.0
+
+
+def log_prior(effects: int, regularities: int, kinds: int) -> float:
+    """Logarithm of the prior probability of an option.
+
+    Parameters
+    ----------
+    effects : int
+        Effects of the library; each is as probable as any other one.
+    regularities : int
+        Together they are one unknown cause. The first may be any; further ones have order, pattern or law in common.
+    kinds : int
+        Number of effects in the library.
+
+    >>> round(float(np.exp(log_prior(0, 0, 60))), 3)
+    0.5
+    >>> round(float(np.exp(log_prior(1, 0, 60))), 3)
+    0.006
+    """
+    causes = effects + bool(regularities)
+    if causes >= len(CAUSES):
+        return -np.inf
+    known = effects * np.log((1 - UNKNOWN) / kinds) + np.log(np.arange(1, effects + 1)).sum()  # in any order
+    first = UNKNOWN * (1 - ANOTHER_REGULARITY) / ((ORDERS + 1) * len(PATTERNS) * len(LAWS)) / SCALES
+    further = ANOTHER_REGULARITY / (ORDERS + len(PATTERNS) + len(LAWS)) / SCALES
+    unknown = np.log(first) + (regularities - 1) * np.log(further) if regularities else 0.0
+    return float(np.log(CAUSES[causes]) + known + unknown)

@@ -1,0 +1,137 @@
+"""The search for options: it proposes, and the posterior decides.
+
+From the best option, and from the best one without each of its causes, it adds what the score test ranks first, until
+no other option is more probable than the best one.
+"""
+
+import logging
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.effects.base import Effect
+from swgsim.effects.quantity import quantities
+from swgsim.identification.decide.option import Option, causes_of, option
+from swgsim.identification.decide.prior import CAUSES, FORM_ERRORS, log_prior
+from swgsim.identification.fit.fitted import Fitted
+from swgsim.identification.fit.fitting import unbent
+from swgsim.identification.search.hypotheses import Hypothesis, hypotheses, signatures
+from swgsim.identification.search.refining import zoom
+from swgsim.identification.search.regularities import Described, describe, other_laws
+from swgsim.identification.search.screening import Score, best_of_kind, rank
+
+# Limits of the computing time: effects that are tried from one option, regularities of an option, fits in all.
+EFFECTS_TRIED, MOST_REGULARITIES, MOST_FITS = 5, 3, 40
+# An option is fitted if its posterior, as the score test estimates it, is at most so far below the best one [nat].
+NEGLIGIBLE = 3.0
+STEPS = logging.getLogger(__name__)
+
+
+class Search:
+    """The options for the recordings of a unit.
+
+    Parameters
+    ----------
+    null : Fitted
+        The model of the unit.
+    kinds : sequence of effect classes
+        The library.
+    """
+
+    def __init__(self, null: Fitted, kinds: Sequence[type[Effect]]) -> None:
+        self.null, self.kinds = null, kinds
+        self._options: dict[frozenset[object], Option] = {}
+        self._expanded: set[frozenset[object]] = set()
+        self._fits = 0
+
+    def run(self) -> list[Option]:
+        """All options that were fitted, the most probable first."""
+        self._fit(self.null, (), ())
+        while fresh := [each for each in self._around_best() if each.causes not in self._expanded]:
+            for each in fresh:
+                self._expand(each)
+        return sorted(self._options.values(), key=lambda each: -each.log_posterior)
+
+    @property
+    def _best(self) -> Option:
+        return max(self._options.values(), key=lambda each: each.log_posterior)
+
+    def _around_best(self) -> Iterator[Option]:
+        """The best option, and the same without each of its causes."""
+        best = self._best
+        yield best
+        for effect in best.effects:
+            yield from self._known(best, [e for e in best.effects if e is not effect], best.regularities)
+        for each in best.regularities:
+            yield from self._known(best, best.effects, [r for r in best.regularities if r is not each])
+
+    def _known(self, like: Option, effects: Sequence[Effect], regularities: Sequence[Described]) -> Iterator[Option]:
+        """An option that was fitted, or is fitted now."""
+        causes = causes_of(effects, regularities)
+        if causes not in self._options:
+            self._fit(self.null.with_zeros(like.zeros), effects, regularities)
+        if causes in self._options:
+            yield self._options[causes]
+
+    def _fit(self, start: Fitted, effects: Sequence[Effect], regularities: Sequence[Described]) -> None:
+        if self._fits >= MOST_FITS:
+            return
+        self._fits += 1
+        names = [effect.title() for effect in (*start.added, *effects)] + [str(each) for each in regularities]
+        STEPS.info("fitting %s", " with ".join(names) or "the model as it is")
+        try:
+            found = option(start, effects, regularities, len(self.kinds))
+        except RuntimeError:  # no gear with it turns steadily
+            return
+        known = self._options.get(found.causes)
+        if known is None or found.log_posterior > known.log_posterior:
+            self._options[found.causes] = found
+
+    def _expand(self, base: Option) -> None:
+        """Fit an option with one more effect, or with one more regularity."""
+        self._expanded.add(base.causes)
+        opened = base.opened
+        causes = len(base.effects) + bool(base.regularities)
+        if causes + 1 < len(CAUSES):
+            start = unbent(opened)
+            for score in self._leading(start):
+                if self._promises(base, score.gain / 2 - occam(score), effects=1):
+                    self._fit(start, (zoom(score, start),), base.regularities)
+        if len(base.regularities) < MOST_REGULARITIES and causes + (not base.regularities) < len(CAUSES):
+            first, *others = describe(opened)
+            gain = (first.gain - first.freedom * np.log1p(first.gain / first.freedom)) / 2
+            if self._promises(base, gain, regularities=1):
+                named = replace(first, rivals=other_laws(first, others))
+                self._fit(opened, (), (*base.regularities, named))
+
+    def _promises(self, base: Option, gain: float, *, effects: int = 0, regularities: int = 0) -> bool:
+        """Whether an option with more causes may be nearly as probable as the best one, by its expected evidence."""
+        prior = log_prior(len(base.effects) + effects, len(base.regularities) + regularities, len(self.kinds))
+        best = self._best
+        # A form that is wrong by a share costs an effect about the square of that share of its gain.
+        form = max(FORM_ERRORS) ** 2 * (best.log_evidence - self._options[frozenset()].log_evidence)
+        return base.log_evidence + gain + prior > best.log_posterior - NEGLIGIBLE - form
+
+    def _leading(self, start: Fitted) -> list[Score]:
+        """The best hypotheses of the leading effects, behind what is in the model."""
+        every, changes = self._library
+        offered = [n for n, each in enumerate(every) if not any(map(each.repeats, start.added))]
+        STEPS.info("screening %d hypotheses", len(offered))
+        scores = rank([every[n] for n in offered], [changes[n] for n in offered], start)
+        return best_of_kind(scores)[:EFFECTS_TRIED]
+
+    @cached_property
+    def _library(self) -> tuple[list[Hypothesis], list[Float[np.ndarray, "row column"]]]:
+        """All hypotheses with their signatures in the model of the unit; other effects hardly change them."""
+        start = unbent(self.null)
+        every = list(hypotheses(self.kinds, start.unit.of_another_structure))
+        return every, signatures(every, start.model, start.measured)
+
+
+def occam(score: Score) -> float:
+    """What the freedom of its size costs a hypothesis in log evidence: the logarithm of prior over posterior spread."""
+    q = quantities(score.hypothesis.kind)[score.hypothesis.size]
+    return max(0.0, float(np.log((q.high - q.low) / score.deviation))) if score.deviation > 0 else 0.0
