@@ -43,7 +43,7 @@ def score(cases: Sequence[Judged]) -> dict[str, Any]:
         "expected_calibration_error": calibration_error(answered),
         "right_of_sure": rate([case.right for case in answered if case.answer["probability"] >= SURE]),
         "reliability": reliability(answered),
-        "mean_set_size": float(np.mean([case.set_size for case in known if case.named] or [0.0])),
+        "mean_set_size": float(np.mean([float(case.set_size) for case in known if case.named] or [0.0])),
         "false_extra_effect": rate([case.false for case in hidden if not case.failed]),
         "none_of_the_above_recall": rate([case.none_of_the_above for case in told_apart]),
         "look_alikes_named": rate([bool(case.named) for case in outside if case.look_alike]),

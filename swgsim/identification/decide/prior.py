@@ -20,8 +20,8 @@ ANOTHER_REGULARITY = 0.5
 # Probability that bridges were balanced anew between two sessions. The zeros of gauges then lie so many times as far
 # off as declared.
 BALANCED, TIMES_BALANCED = 0.05, (2.0, 4.0, 8.0, 16.0)
-# A real effect never has exactly the form that the library gives it. The lines of its signature differ by this share
-# (standard deviation), each value being as probable as the others: from the mesh of the truss to another author's model.
+# A real effect never has exactly the form that the library gives it. The lines of its signature differ by one of these
+# shares (standard deviation), all being equally probable: from the mesh of the truss to the model of another author.
 FORM_ERRORS = (0.01, 0.02, 0.05, 0.1, 0.2)
 # The amplitude of a regularity is known to a factor only; its prior is normal with the standard deviation found, times
 # the probability of one of so many factors of e.
