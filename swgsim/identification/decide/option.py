@@ -13,7 +13,7 @@ from swgsim.effects.quantity import Role, quantities
 from swgsim.identification.decide.prior import BALANCED, FORM_ERRORS, TIMES_BALANCED, log_prior
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import extended
-from swgsim.identification.fit.form_error import form_directions
+from swgsim.identification.fit.form_error import form_directions, parts
 from swgsim.identification.search.regularities import Described, set_free
 
 
@@ -131,3 +131,27 @@ def _gains(
     along2 = (V.T @ (white.T @ residual)) ** 2
     g2 = np.square(FORM_ERRORS)[:, None]
     return (g2 * along2 / (1 + g2 * s2) - np.log1p(g2 * s2)).sum(axis=1) / 2
+
+
+def expected_gain(fitted: Fitted, change: Float[np.ndarray, " row"], reach: float) -> float:
+    """Log evidence that an effect is expected to bring, without a fit.
+
+    Parameters
+    ----------
+    fitted : Fitted
+        The model without the effect.
+    change : array (row,)
+        What the effect changes at its estimated size.
+    reach : float
+        Prior standard deviation of its size, in estimated sizes.
+    """
+    whole = fitted.whole
+    white, r = whole.whiten(np.column_stack([change, parts(fitted, change)])), whole.whiten(fitted.from_start)
+    size = reach * white[:, 0]
+    # The size is projected out of the residual and of the forms, which then are no size.
+    norm = float(np.sqrt(1 + size @ size))
+    along = float(size @ r) / norm
+    root = size / (norm * (1 + norm))  # (1 + size size')^-1/2 = 1 - root size'
+    forms = white[:, 1:] - np.outer(root, size @ white[:, 1:])
+    gains = _gains(forms, r - root * float(size @ r))
+    return along**2 / 2 - np.log(norm) + float(logsumexp(gains) - np.log(len(gains)))

@@ -14,8 +14,8 @@ from jaxtyping import Float
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities
-from swgsim.identification.decide.option import Option, causes_of, option
-from swgsim.identification.decide.prior import CAUSES, FORM_ERRORS, log_prior
+from swgsim.identification.decide.option import Option, causes_of, expected_gain, option
+from swgsim.identification.decide.prior import CAUSES, log_prior
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import unbent
 from swgsim.identification.search.hypotheses import Hypothesis, hypotheses, signatures
@@ -23,8 +23,9 @@ from swgsim.identification.search.refining import zoom
 from swgsim.identification.search.regularities import Described, describe, other_laws
 from swgsim.identification.search.screening import Score, best_of_kind, rank
 
-# Limits of the computing time: effects that are tried from one option, regularities of an option, fits in all.
-EFFECTS_TRIED, MOST_REGULARITIES, MOST_FITS = 5, 3, 40
+# Limits of the computing time: effects that are compared without and with a fit from one option, regularities of an
+# option, and fits in all.
+EFFECTS_LOOKED_AT, EFFECTS_TRIED, MOST_REGULARITIES, MOST_FITS = 15, 5, 3, 40
 # An option is fitted if its posterior, as the score test estimates it, is at most so far below the best one [nat].
 NEGLIGIBLE = 3.0
 STEPS = logging.getLogger(__name__)
@@ -97,8 +98,8 @@ class Search:
         causes = len(base.effects) + bool(base.regularities)
         if causes + 1 < len(CAUSES):
             start = unbent(opened)
-            for score in self._leading(start):
-                if self._promises(base, score.gain / 2 - occam(score), effects=1):
+            for gain, score in self._leading(start):
+                if self._promises(base, gain, effects=1):
                     self._fit(start, (zoom(score, start),), base.regularities)
         if len(base.regularities) < MOST_REGULARITIES and causes + (not base.regularities) < len(CAUSES):
             first, *others = describe(opened)
@@ -110,18 +111,18 @@ class Search:
     def _promises(self, base: Option, gain: float, *, effects: int = 0, regularities: int = 0) -> bool:
         """Whether an option with more causes may be nearly as probable as the best one, by its expected evidence."""
         prior = log_prior(len(base.effects) + effects, len(base.regularities) + regularities, len(self.kinds))
-        best = self._best
-        # A form that is wrong by a share costs an effect about the square of that share of its gain.
-        form = max(FORM_ERRORS) ** 2 * (best.log_evidence - self._options[frozenset()].log_evidence)
-        return base.log_evidence + gain + prior > best.log_posterior - NEGLIGIBLE - form
+        return base.log_evidence + gain + prior > self._best.log_posterior - NEGLIGIBLE
 
-    def _leading(self, start: Fitted) -> list[Score]:
-        """The best hypotheses of the leading effects, behind what is in the model."""
+    def _leading(self, start: Fitted) -> list[tuple[float, Score]]:
+        """The best hypotheses of the leading effects that are not in the model, with the expected log evidence."""
         every, changes = self._library
         offered = [n for n, each in enumerate(every) if not any(map(each.repeats, start.added))]
         STEPS.info("screening %d hypotheses", len(offered))
-        scores = rank([every[n] for n in offered], [changes[n] for n in offered], start)
-        return best_of_kind(scores)[:EFFECTS_TRIED]
+        scores = best_of_kind(rank([every[n] for n in offered], [changes[n] for n in offered], start))
+        of_hypothesis = dict(zip(every, changes, strict=True))
+        leading = [score for score in scores[:EFFECTS_LOOKED_AT] if np.isfinite(score.estimate)]
+        gains = [expected_gain(start, *estimated(score, of_hypothesis[score.hypothesis])) for score in leading]
+        return sorted(zip(gains, leading, strict=True), key=lambda each: -each[0])[:EFFECTS_TRIED]
 
     @cached_property
     def _library(self) -> tuple[list[Hypothesis], list[Float[np.ndarray, "row column"]]]:
@@ -131,7 +132,10 @@ class Search:
         return every, signatures(every, start.model, start.measured)
 
 
-def occam(score: Score) -> float:
-    """What the freedom of its size costs a hypothesis in log evidence: the logarithm of prior over posterior spread."""
+def estimated(score: Score, signature: Float[np.ndarray, "row column"]) -> tuple[Float[np.ndarray, " row"], float]:
+    """What an effect changes at the estimate of its score, and its prior spread in units of the estimated size."""
     q = quantities(score.hypothesis.kind)[score.hypothesis.size]
-    return max(0.0, float(np.log((q.high - q.low) / score.deviation))) if score.deviation > 0 else 0.0
+    size = score.estimate - q.nothing
+    of_phase = np.array([np.cos(score.phase), np.sin(score.phase)])[: signature.shape[1]]
+    change = signature @ of_phase * size / (score.hypothesis.typical - q.nothing)
+    return change, (q.high - q.low) / abs(size)
