@@ -30,7 +30,7 @@ def identify(
     unit : Unit or Gear
         Of gauges only: a unit from :func:`swgsim.commission`, or a nominal gear that was not commissioned.
     choices
-        Those of :func:`swgsim.identification.identify` (``effects``, ``seed``, ``progress``) or of
+        Those of :func:`swgsim.identification.identify` (``effects``, ``interest``, ``seed``, ``progress``) or of
         :func:`swgsim.joint.identify_joint` (``joint``, ``signal``, ``holdout``, ``without``, ``searched`` ...).
 
     Returns

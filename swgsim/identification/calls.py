@@ -18,6 +18,7 @@ from swgsim.identification.data.features import COMPARED
 from swgsim.identification.data.gauge_order import order_defects
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model
+from swgsim.identification.decide.interest import INTEREST
 from swgsim.identification.fit.unit import Unit
 from swgsim.identification.interharmonics.named_interharmonics import has_sidelines
 from swgsim.identification.report.answer import answer
@@ -68,6 +69,7 @@ def identify(
     unit: Unit | Gear,
     *,
     effects: Sequence[type[Effect]] | None = None,
+    interest: float = INTEREST,
     seed: int = 0,
     progress: Progress | None = None,
 ) -> Identification:
@@ -82,6 +84,8 @@ def identify(
         A unit from :func:`commission`; or a nominal gear, if there are no recordings of the healthy state.
     effects : sequence of effect classes, optional
         The library that is searched; by default all effects.
+    interest : float
+        Smallest change that matters, in standard deviations of what distinguishes two units of a series.
     seed : int
         Of the simulated noise from which p-values are computed.
     progress : callable, optional
@@ -105,7 +109,7 @@ def identify(
         else:
             unit = replace(unit, zero=zero_of(given, unit.model))
             given = from_zero(given, unit.zero)
-        found = answer(given, unit, kinds, known=unit.interharmonics, seed=seed)
+        found = answer(given, unit, kinds, known=unit.interharmonics, interest=interest, seed=seed)
         STEPS.info("report: next experiments")
         experiments = next_experiments(found)
         warnings = (*read.defects, *zero_defects(given, unit.zero))

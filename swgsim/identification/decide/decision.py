@@ -7,11 +7,11 @@ from functools import cached_property
 import numpy as np
 from scipy.special import logsumexp
 
-from swgsim.common.outcome import FOUND, NOTHING, UNKNOWN
 from swgsim.common.seeds import generator
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import beyond_nothing, size_of
 from swgsim.identification.data.measured import Measured
+from swgsim.identification.decide.interest import unit_distances
 from swgsim.identification.decide.option import Option, chosen
 from swgsim.identification.decide.search import Search
 from swgsim.identification.fit.fitted import Fitted
@@ -70,10 +70,10 @@ class Decision:
         """The regularities of the best option."""
         return self.best.regularities
 
-    @property
-    def verdict(self) -> str:
-        """FOUND, UNKNOWN or NOTHING."""
-        return FOUND if self.best.effects else UNKNOWN if self.unknown else NOTHING
+    @cached_property
+    def distances(self) -> list[float]:
+        """Of each effect, then of each regularity: how far it moves the recordings (:func:`unit_distances`)."""
+        return unit_distances(self.after)
 
     @property
     def probability(self) -> float:

@@ -10,6 +10,7 @@ from swgsim.effects.base import Effect
 from swgsim.effects.line_between import LineBetween
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.decide.decision import Decision, decide
+from swgsim.identification.decide.interest import INTEREST
 from swgsim.identification.decide.option import Option
 from swgsim.identification.fit.unit import Unit
 from swgsim.identification.interharmonics.interharmonic_spectrum import gauge_spectra
@@ -45,6 +46,8 @@ class Answer:
         Regularities at orders above those of the model.
     absorbed : tuple of Score
         Effects that these recordings cannot test: nuisance parameters absorb their signatures.
+    interest : float
+        Smallest change that matters (:data:`swgsim.identification.decide.interest.INTEREST`).
     """
 
     decision: Decision
@@ -53,18 +56,24 @@ class Answer:
     unnamed: tuple[Unnamed, ...]
     above: tuple[Described, ...]
     absorbed: tuple[Score, ...]
+    interest: float = INTEREST
 
     @property
     def verdict(self) -> str:
         """NOTHING, FOUND or UNKNOWN."""
-        if self.decision.effects or self.lines:
-            return FOUND
-        return UNKNOWN if self.unknown or self.unnamed else NOTHING
+        return FOUND if self.effects else UNKNOWN if self.unknown or self.unnamed else NOTHING
+
+    @property
+    def small(self) -> tuple[Effect, ...]:
+        """Effects and regularities that are probable, but too small to matter."""
+        return tuple(e for e, far in zip(self.added, self.decision.distances, strict=True) if far < self.interest)
 
     @property
     def unknown(self) -> tuple[Described, ...]:
-        """Regularities that no effect of the library explains."""
-        return (*self.decision.unknown, *self.above)
+        """Regularities that no effect of the library explains, without small ones."""
+        far = self.decision.distances[len(self.decision.effects) :]
+        large = (each for each, by in zip(self.decision.unknown, far, strict=True) if by >= self.interest)
+        return (*large, *self.above)
 
     @property
     def added(self) -> tuple[Effect, ...]:
@@ -73,8 +82,13 @@ class Answer:
 
     @property
     def effects(self) -> tuple[Effect, ...]:
-        """The physical effects that were found."""
-        return (*self.decision.effects, *(line.effect for line in self.lines))
+        """The physical effects that were found, without small ones."""
+        return (*self.of_orders, *(line.effect for line in self.lines))
+
+    @property
+    def of_orders(self) -> tuple[Effect, ...]:
+        """Those that were found in the order lines."""
+        return tuple(effect for effect in self.decision.effects if effect not in self.small)
 
     @property
     def bare_lines(self) -> tuple[LineBetween, ...]:
@@ -89,7 +103,7 @@ class Answer:
     @property
     def nearest(self) -> tuple[Option, float] | None:
         """If only regularities were found: the most probable answer with an effect, and its probability."""
-        if self.decision.effects or not self.decision.unknown:
+        if self.of_orders or not self.unknown:
             return None
         return next((each for each in self.decision.answers if each[0].effects), None)
 
@@ -100,6 +114,7 @@ def answer(
     kinds: Sequence[type[Effect]],
     *,
     known: Sequence[Effect] = (),
+    interest: float = INTEREST,
     seed: int = 0,
 ) -> Answer:
     """Find what the model of a unit lacks.
@@ -113,6 +128,8 @@ def answer(
         The library.
     known : sequence of Effect
         Declared effects that make interharmonic lines.
+    interest : float
+        Smallest change that matters (:data:`swgsim.identification.decide.interest.INTEREST`).
     seed : int
     """
     forget()
@@ -123,7 +140,7 @@ def answer(
     decision = decide(Measured.of(clean), unit, kinds, seed=seed)
     STEPS.info("describing the remainder")
     high = above(clean, unit.healthy, decision.before.model, decision.after.model, ALPHA, MOST_ABOVE)
-    return Answer(decision, tuple(known), lines.named, lines.unnamed, high, untestable(decision))
+    return Answer(decision, tuple(known), lines.named, lines.unnamed, high, untestable(decision), interest)
 
 
 def untestable(decision: Decision) -> tuple[Score, ...]:

@@ -5,6 +5,7 @@ and gains of a session, are estimated and subtracted.
 """
 
 from collections.abc import Mapping, Sequence
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,8 @@ from swgsim.storage.labelled_signals import SENSORS
 
 BEFORE, AFTER, FLOOR, GREY = "#D55E00", "#0072B2", "#000000", "#bbbbbb"
 POINTS = 360
+# Bars of the picture of probabilities, at most.
+MOST_BARS = 6
 
 
 def pictures(answer: Answer, report: Mapping[str, Any]) -> dict[str, tuple[style.Picture, Figure]]:
@@ -45,6 +48,16 @@ def pictures(answer: Answer, report: Mapping[str, Any]) -> dict[str, tuple[style
             "the largest residual, as the mean of the repeats.",
             over_angle(answer, largest_only=True),
         ),
+        "posterior": (
+            "Probability of each explanation",
+            "Posterior probabilities. The dark bars together have at least 95 %. "
+            + (
+                "What would separate them is listed under What to do next."
+                if len(report["alternatives"]) > 1
+                else "No other explanation of the library is nearly as probable."
+            ),
+            posterior(report),
+        ),
         "residual_over_angle": (
             "Residual over one revolution of the wave generator",
             "Measured minus predicted, as the mean of the repeats at the operating point with the largest residual. "
@@ -62,8 +75,8 @@ def pictures(answer: Answer, report: Mapping[str, Any]) -> dict[str, tuple[style
             "Score of every effect of the library in the first search",
             "Reduction of the residual's sum of squares by each effect, in units of the noise, with nuisance "
             "parameters marginalised. Orange: significant in a search of the whole library. Grey names: absorbed, "
-            "these recordings cannot test the effect. Similar effects have similar scores; accepted is only an effect "
-            "that also predicts left-out operating points.",
+            "these recordings cannot test the effect. Similar effects have similar scores; the posterior decides "
+            "between them.",
             scores(report),
         ),
         "errors": (
@@ -84,6 +97,20 @@ def pictures(answer: Answer, report: Mapping[str, Any]) -> dict[str, tuple[style
         name: (style.Picture(title, caption, style.png(figure)), figure)
         for name, (title, caption, figure) in drawn.items()
     }
+
+
+def posterior(report: Mapping[str, Any]) -> Figure:
+    """Probabilities of the answers of the credible set, and of all others together."""
+    bars = [(each["words"], each["probability"], AFTER) for each in report["alternatives"][:MOST_BARS]]
+    bars.append(("all others", max(0.0, 1.0 - sum(each[1] for each in bars)), GREY))
+    picture = style.figure(5.6, 0.6 + 0.32 * len(bars))
+    axes = picture.subplots()
+    names, values, colours = zip(*reversed(bars), strict=True)
+    axes.barh(range(len(bars)), values, color=colours)
+    axes.set_yticks(range(len(bars)), [fill(name, 44) for name in names], fontsize=8)
+    axes.set_xlim(0, 1)
+    style.label(axes, "probability", "")
+    return picture
 
 
 def over_angle(answer: Answer, *, largest_only: bool = False) -> Figure:

@@ -13,6 +13,7 @@ from swgsim.common.outcome import FOUND
 from swgsim.effects.library import named
 from swgsim.identification.report import engineering_units
 from swgsim.identification.report.effect_words import effect_text
+from swgsim.identification.report.found import probability_text
 from swgsim.identification.report.next_experiment import HELPLESS, separation_text
 
 TEMPLATE = "identification/report/answer_page.html.jinja"
@@ -26,7 +27,7 @@ def page(report: Mapping[str, Any], pictures: Mapping[str, style.Picture]) -> st
     report : mapping
         As :func:`swgsim.identification.report.report_fields.report` makes it.
     pictures : mapping
-        Pictures by name; ``residual`` is part of the summary.
+        Pictures by name; ``residual`` and ``posterior`` are part of the summary.
     """
     templates = environment("swgsim")
     templates.filters["words"] = style.words
@@ -39,6 +40,7 @@ def page(report: Mapping[str, Any], pictures: Mapping[str, style.Picture]) -> st
         about=about,
         degrees=lambda angle: significant(None if angle is None else float(np.rad2deg(angle))),
         separation_text=separation_text,
+        probability_text=probability_text,
         effect_text=effect_text,
         **{name: getattr(engineering_units, name) for name in texts},
     )

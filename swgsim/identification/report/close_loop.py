@@ -75,7 +75,9 @@ def _run(config: Mapping[str, Any]) -> Outcome:
         healthy = _read(healthy_source, "commissioning", config["commissioning_mapping"] or config["mapping"])
         recordings = replace(recordings, defects=(*recordings.defects, *healthy.defects))
         unit = commission(_comparable(recordings, healthy), gear, declared=declared, progress=_progress)
-    found = identify(recordings, unit, effects=kinds, seed=config["seed"], progress=_progress)
+    found = identify(
+        recordings, unit, effects=kinds, interest=config["interest"], seed=config["seed"], progress=_progress
+    )
     report = {
         **found.report,
         "made": {**found.report["made"], "commissioning": healthy_source},

@@ -11,7 +11,7 @@ from swgsim.identification.decide.option import Option
 from swgsim.identification.fit.priors import name_of
 from swgsim.identification.interharmonics.named_interharmonics import Sideline
 from swgsim.identification.report.answer import Answer
-from swgsim.identification.report.effect_words import names_in_words
+from swgsim.identification.report.effect_words import effect_in_words, names_in_words
 
 # Options that the report shows at most.
 MOST_SHOWN = 12
@@ -29,6 +29,8 @@ def _of_orders(answer: Answer) -> list[dict[str, Any]]:
     with_p_values = {score.hypothesis.kind: score for score in decision.scores}
     found = []
     for at, effect in enumerate(decision.effects, first):
+        if effect in answer.small:
+            continue
         known, score = decision.probability_of(effect), with_p_values.get(type(effect))
         found.append({
             "name": path_of(type(effect)),
@@ -129,6 +131,12 @@ def alternatives(answer: Answer) -> list[dict[str, Any]]:
         }
         for option, p in answer.decision.credible
     ]
+
+
+def small(answer: Answer) -> list[dict[str, Any]]:
+    """What is probable but too small to matter, with its distance in standard deviations between units of a series."""
+    far = zip(answer.added, answer.decision.distances, strict=True)
+    return [{"words": effect_in_words(effect), "distance": number(by)} for effect, by in far if effect in answer.small]
 
 
 def in_words(option: Option) -> str:

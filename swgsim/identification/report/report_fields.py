@@ -15,7 +15,7 @@ from swgsim.identification.fit.errors import noise_floor
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.unit import UNHEARD
 from swgsim.identification.report.answer import Answer
-from swgsim.identification.report.found import alternatives, found_effects, options
+from swgsim.identification.report.found import alternatives, found_effects, options, small
 from swgsim.identification.report.next_experiment import Experiment
 from swgsim.identification.report.open_questions import absorbed, detectable, next_experiment, scored, unknown, untried
 from swgsim.identification.report.prediction_errors import error, named
@@ -40,7 +40,7 @@ def report(
     kinds : sequence of effect classes
         The library that was searched.
     experiments : sequence of Experiment
-        Recordings that would separate rivals or test absorbed effects.
+        Recordings that would separate the alternatives or test absorbed effects.
     defects : sequence of Defect
         Warnings about the recordings.
     seconds : float
@@ -60,6 +60,7 @@ def report(
         "noise_floor": named(measured, noise_floor(measured)),
         "calibrated": calibrated(after),
         "effects": effects,
+        "small": small(answer),
         "alternatives": alternatives(answer),
         "options": options(answer),
         "error": error(before, after),

@@ -5,7 +5,7 @@ from typing import Any
 
 from swgsim.common.outcome import FOUND, NOTHING
 from swgsim.identification.report.answer import Answer
-from swgsim.identification.report.effect_words import effect_text
+from swgsim.identification.report.effect_words import effect_in_words, effect_text
 from swgsim.identification.report.found import in_words, probability_text
 
 # Untestable effects, and other answers, that the sentence names at most; the report has all of them.
@@ -24,7 +24,7 @@ def sentence(answer: Answer, effects: Sequence[Mapping[str, Any]]) -> str:
     if answer.verdict == NOTHING:
         return (
             f"Nothing is missing: the model explains the recordings down to their noise{_if_balanced(answer)}"
-            f"{_sure(answer)}{_untestable(answer)}."
+            f"{_sure(answer)}{_small(answer)}{_untestable(answer)}."
         )
     if answer.verdict == FOUND:
         found = "; and ".join(effect_text(each["name"], each["parameters"]) for each in effects)
@@ -33,10 +33,15 @@ def sentence(answer: Answer, effects: Sequence[Mapping[str, Any]]) -> str:
     return f"The model lacks something that is not in the library: {answer.unexplained}{_sure(answer)}."
 
 
+def _small(answer: Answer) -> str:
+    words = ", ".join(map(effect_in_words, answer.small))
+    return f"; seen, but too small to matter: {words}" if words else ""
+
+
 def _sure(answer: Answer) -> str:
     """Probability of the answer of the order lines, and the other answers of the credible set."""
     decision = answer.decision
-    if not decision.best.causes and answer.verdict != NOTHING:
+    if not answer.of_orders and not answer.unknown and (answer.verdict != NOTHING or answer.small):
         return ""  # interharmonic lines alone, which have p-values
     others = [f"{in_words(option)} ({probability_text(p)})" for option, p in decision.rivals]
     otherwise = f"; else {_listed(others, ', ')}" if others else ""
