@@ -9,11 +9,12 @@ from jaxtyping import Float
 from scipy.special import logsumexp
 
 from swgsim.effects.base import Effect
-from swgsim.effects.quantity import Role, quantities
-from swgsim.identification.decide.prior import BALANCED, FORM_ERRORS, TIMES_BALANCED, log_prior
+from swgsim.effects.quantity import Role, beyond_nothing, quantities, size_of
+from swgsim.identification.decide.prior import BALANCED, FORM_ERRORS, SCALES, TIMES_BALANCED, log_prior
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import extended
 from swgsim.identification.fit.form_error import form_directions, parts
+from swgsim.identification.fit.priors import name_of
 from swgsim.identification.search.regularities import Described, set_free
 
 
@@ -97,9 +98,31 @@ def option(start: Fitted, effects: Sequence[Effect], regularities: Sequence[Desc
     free = reduce(set_free, regularities, start.without_free)
     fitted = extended(free, effects).closed
     added = fitted.added
-    prior = log_prior(len(added), len(regularities), kinds)
+    prior = log_prior(len(added), len(regularities), kinds) - len(regularities) * np.log(SCALES)
+    prior += sum(size_correction(fitted, number) for number in range(len(added)))
     evidence, form_error, zeros = log_evidence(fitted)
     return Option(replace(fitted), added, tuple(regularities), prior, evidence, form_error, zeros)
+
+
+def size_correction(fitted: Fitted, number: int) -> float:
+    """Logarithm of the prior density of the size of an added effect over that of the fit, at the size found.
+
+    The fit has a normal prior about where it began. The prior of the decision is uniform in the logarithm of the size,
+    down to the standard deviation of the size, below which all sizes look alike.
+
+    Parameters
+    ----------
+    fitted : Fitted
+    number : int
+        Of the effect among the added ones.
+    """
+    number += len(fitted.unit.model.effects)
+    effect = fitted.model.effects[number]
+    q, name = quantities(type(effect))[size_of(type(effect))], name_of(effect, number, size_of(type(effect)))
+    sd, position = fitted.parameters[name].sd, fitted.calibrated.position[name]
+    size = max(abs(beyond_nothing(effect)), fitted.deviation[name]) / sd
+    both_signs = q.low < q.nothing < q.high
+    return float(-np.log(SCALES * size * (1 + both_signs)) + (position**2 + np.log(2 * np.pi)) / 2)
 
 
 def log_evidence(fitted: Fitted) -> tuple[float, float, float]:
@@ -133,25 +156,23 @@ def _gains(
     return (g2 * along2 / (1 + g2 * s2) - np.log1p(g2 * s2)).sum(axis=1) / 2
 
 
-def expected_gain(fitted: Fitted, change: Float[np.ndarray, " row"], reach: float) -> float:
-    """Log evidence that an effect is expected to bring, without a fit.
+def expected_gain(fitted: Fitted, change: Float[np.ndarray, " row"]) -> float:
+    """Log evidence that an effect is expected to bring with its prior of the size, without a fit.
 
     Parameters
     ----------
     fitted : Fitted
         The model without the effect.
     change : array (row,)
-        What the effect changes at its estimated size.
-    reach : float
-        Prior standard deviation of its size, in estimated sizes.
+        What the effect changes at its estimated size, which stands for the standard deviation of its prior.
     """
     whole = fitted.whole
     white, r = whole.whiten(np.column_stack([change, parts(fitted, change)])), whole.whiten(fitted.from_start)
-    size = reach * white[:, 0]
+    size = white[:, 0]
     # The size is projected out of the residual and of the forms, which then are no size.
     norm = float(np.sqrt(1 + size @ size))
     along = float(size @ r) / norm
     root = size / (norm * (1 + norm))  # (1 + size size')^-1/2 = 1 - root size'
     forms = white[:, 1:] - np.outer(root, size @ white[:, 1:])
     gains = _gains(forms, r - root * float(size @ r))
-    return along**2 / 2 - np.log(norm) + float(logsumexp(gains) - np.log(len(gains)))
+    return along**2 / 2 - np.log(norm * SCALES) + float(logsumexp(gains) - np.log(len(gains)))

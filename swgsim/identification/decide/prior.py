@@ -23,8 +23,8 @@ BALANCED, TIMES_BALANCED = 0.05, (2.0, 4.0, 8.0, 16.0)
 # A real effect never has exactly the form that the library gives it. The lines of its signature differ by one of these
 # shares (standard deviation), all being equally probable: from the mesh of the truss to the model of another author.
 FORM_ERRORS = (0.01, 0.02, 0.05, 0.1, 0.2)
-# The amplitude of a regularity is known to a factor only; its prior is normal with the standard deviation found, times
-# the probability of one of so many factors of e.
+# Sizes of effects and amplitudes of regularities are known to a factor only: their logarithm is uniform over so many
+# factors of e, a ratio of 3000.
 SCALES = 8.0
 
 
@@ -49,7 +49,7 @@ def log_prior(effects: int, regularities: int, kinds: int) -> float:
     if causes >= len(CAUSES):
         return -np.inf
     known = effects * np.log((1 - UNKNOWN) / kinds) + np.log(np.arange(1, effects + 1)).sum()  # in any order
-    first = UNKNOWN * (1 - ANOTHER_REGULARITY) / ((ORDERS + 1) * len(PATTERNS) * len(LAWS)) / SCALES
-    further = ANOTHER_REGULARITY / (ORDERS + len(PATTERNS) + len(LAWS)) / SCALES
+    first = UNKNOWN * (1 - ANOTHER_REGULARITY) / ((ORDERS + 1) * len(PATTERNS) * len(LAWS))
+    further = ANOTHER_REGULARITY / (ORDERS + len(PATTERNS) + len(LAWS))
     unknown = np.log(first) + (regularities - 1) * np.log(further) if regularities else 0.0
     return float(np.log(CAUSES[causes]) + known + unknown)

@@ -15,7 +15,7 @@ from jaxtyping import Float
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities
 from swgsim.identification.decide.option import Option, causes_of, expected_gain, option
-from swgsim.identification.decide.prior import CAUSES, log_prior
+from swgsim.identification.decide.prior import CAUSES, SCALES, log_prior
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import unbent
 from swgsim.identification.search.hypotheses import Hypothesis, hypotheses, signatures
@@ -103,7 +103,7 @@ class Search:
                     self._fit(start, (zoom(score, start),), base.regularities)
         if len(base.regularities) < MOST_REGULARITIES and causes + (not base.regularities) < len(CAUSES):
             first, *others = describe(opened)
-            gain = (first.gain - first.freedom * np.log1p(first.gain / first.freedom)) / 2
+            gain = (first.gain - first.freedom * np.log1p(first.gain / first.freedom)) / 2 - np.log(SCALES)
             if self._promises(base, gain, regularities=1):
                 named = replace(first, rivals=other_laws(first, others))
                 self._fit(opened, (), (*base.regularities, named))
@@ -111,7 +111,8 @@ class Search:
     def _promises(self, base: Option, gain: float, *, effects: int = 0, regularities: int = 0) -> bool:
         """Whether an option with more causes may be nearly as probable as the best one, by its expected evidence."""
         prior = log_prior(len(base.effects) + effects, len(base.regularities) + regularities, len(self.kinds))
-        return base.log_evidence + gain + prior > self._best.log_posterior - NEGLIGIBLE
+        sizes = base.log_prior - log_prior(len(base.effects), len(base.regularities), len(self.kinds))
+        return base.log_evidence + gain + prior + sizes > self._best.log_posterior - NEGLIGIBLE
 
     def _leading(self, start: Fitted) -> list[tuple[float, Score]]:
         """The best hypotheses of the leading effects that are not in the model, with the expected log evidence."""
@@ -121,7 +122,7 @@ class Search:
         scores = best_of_kind(rank([every[n] for n in offered], [changes[n] for n in offered], start))
         of_hypothesis = dict(zip(every, changes, strict=True))
         leading = [score for score in scores[:EFFECTS_LOOKED_AT] if np.isfinite(score.estimate)]
-        gains = [expected_gain(start, *estimated(score, of_hypothesis[score.hypothesis])) for score in leading]
+        gains = [expected_gain(start, estimated(score, of_hypothesis[score.hypothesis])) for score in leading]
         return sorted(zip(gains, leading, strict=True), key=lambda each: -each[0])[:EFFECTS_TRIED]
 
     @cached_property
@@ -132,10 +133,8 @@ class Search:
         return every, signatures(every, start.model, start.measured)
 
 
-def estimated(score: Score, signature: Float[np.ndarray, "row column"]) -> tuple[Float[np.ndarray, " row"], float]:
-    """What an effect changes at the estimate of its score, and its prior spread in units of the estimated size."""
-    q = quantities(score.hypothesis.kind)[score.hypothesis.size]
-    size = score.estimate - q.nothing
+def estimated(score: Score, signature: Float[np.ndarray, "row column"]) -> Float[np.ndarray, " row"]:
+    """What an effect changes at the estimate of its score."""
+    nothing = quantities(score.hypothesis.kind)[score.hypothesis.size].nothing
     of_phase = np.array([np.cos(score.phase), np.sin(score.phase)])[: signature.shape[1]]
-    change = signature @ of_phase * size / (score.hypothesis.typical - q.nothing)
-    return change, (q.high - q.low) / abs(size)
+    return signature @ of_phase * (score.estimate - nothing) / (score.hypothesis.typical - nothing)
