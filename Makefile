@@ -34,7 +34,7 @@ JOBS := $(shell echo $$(( ($(CORES) + 3) / 4 )))
 export MLFLOW_DISABLE_TELEMETRY := true
 
 .DEFAULT_GOAL := help
-.PHONY: help install install-dev site data experiments report paper transfer loop blind sim-to-real joints embedded test lint fuzz chaos scale benchmark convergence docs ui clean $(TABLES)
+.PHONY: help install install-dev site data experiments report paper transfer loop blind other-benches sim-to-real joints embedded test lint fuzz chaos scale benchmark convergence docs ui clean $(TABLES)
 
 help:  ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-12s %s\n", $$1, $$2}'
@@ -88,6 +88,9 @@ loop: $(READY)  ## closing the loop once, from nothing: record, hide an effect, 
 
 blind: $(READY)  ## the loop judged on sealed cases, report/blind.json (SMALL=1: 20 cases, 12 effects)
 	$(SWG) blind $(if $(SMALL),cases=20 seed=4 'sectors=[130$(comma)110]' 'library=[$(FEW_EFFECTS)]' blind=blind/small)
+
+other-benches: $(DEV)  ## the loop on gears that other authors simulated, report/other_benches.json (SMALL=1: one gear of each)
+	OMP_NUM_THREADS=1 $(BIN)/python tests/benches benches $(if $(SMALL),--cases 6 --report report/small)
 
 sim-to-real: $(READY)  ## classifiers before and after the loop found an undeclared effect, report/sim_to_real.html (SMALL=1: one effect)
 	$(SWG) sim-to-real $(if $(SMALL),grid.variants=4 $(addprefix ~undeclared.,$(LEFT_OUT)))

@@ -1,6 +1,6 @@
 """An option: what the model may lack, fitted with everything else, and its evidence."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
 
@@ -30,22 +30,28 @@ class Option:
         From the library, as fitted.
     regularities : tuple of Described
     log_prior : float
-    log_evidence : float
-        Logarithm of the probability of the recordings, all parameters integrated over their priors (Laplace), the
-        form error over its grid, and the zeros of bridges.
     form_error : float
         Posterior mean of the form error of the effects, as a share; 0 without effects.
-    zeros : float
-        Most probable factor on the deviation of the zeros of gauges.
+    of_zeros : mapping
+        Log evidence by the factor on the deviation of the zeros of gauges.
     """
 
     fitted: Fitted
     effects: tuple[Effect, ...]
     regularities: tuple[Described, ...]
     log_prior: float
-    log_evidence: float
     form_error: float
-    zeros: float
+    of_zeros: Mapping[float, float]
+
+    @property
+    def log_evidence(self) -> float:
+        """Logarithm of the probability of the recordings, everything else integrated over its prior."""
+        return float(logsumexp(list(self.of_zeros.values())))
+
+    @property
+    def zeros(self) -> float:
+        """Most probable factor on the deviation of the zeros of gauges."""
+        return max(self.of_zeros, key=self.of_zeros.__getitem__)
 
     @property
     def log_posterior(self) -> float:
@@ -57,11 +63,10 @@ class Option:
         """The kinds of its effects with their choices, and its regularities."""
         return causes_of(self.effects, self.regularities)
 
-    @property
-    def opened(self) -> Fitted:
-        """The fit with the form of its effects open by the form error found, to search for more."""
+    def opened(self, zeros: float) -> Fitted:
+        """The fit with the form of its effects open by the form error found, to search for more, at a factor of zeros."""
         directions = self.form_error * form_directions(self.fitted, len(self.effects))
-        return self.fitted.with_zeros(self.zeros).allowing_forms(directions)
+        return self.fitted.with_zeros(zeros).allowing_forms(directions)
 
 
 def causes_of(effects: Sequence[Effect], regularities: Sequence[Described]) -> frozenset[object]:
@@ -100,8 +105,7 @@ def option(start: Fitted, effects: Sequence[Effect], regularities: Sequence[Desc
     added = fitted.added
     prior = log_prior(len(added), len(regularities), kinds) - len(regularities) * np.log(SCALES)
     prior += sum(size_correction(fitted, number) for number in range(len(added)))
-    evidence, form_error, zeros = log_evidence(fitted)
-    return Option(replace(fitted), added, tuple(regularities), prior, evidence, form_error, zeros)
+    return Option(replace(fitted), added, tuple(regularities), prior, *log_evidence(fitted))
 
 
 def size_correction(fitted: Fitted, number: int) -> float:
@@ -125,24 +129,27 @@ def size_correction(fitted: Fitted, number: int) -> float:
     return float(-np.log(SCALES * size * (1 + both_signs)) + (position**2 + np.log(2 * np.pi)) / 2)
 
 
-def log_evidence(fitted: Fitted) -> tuple[float, float, float]:
-    """Log evidence of a fit, posterior mean of the form error, and most probable factor of the zeros."""
+def log_evidence(fitted: Fitted) -> tuple[float, dict[float, float]]:
+    """Posterior mean of the form error, and the log evidence of a fit by the factor on the deviation of zeros.
+
+    All parameters are integrated over their priors (Laplace), and the form error over its grid.
+    """
     fitted = fitted.with_zeros(1.0)
-    zeros, of_zeros, wholes = [1.0], [np.log(1 - BALANCED)], [fitted.whole]
-    for times in TIMES_BALANCED:
-        wholes.append(fitted.whole.with_columns(fitted.measured.further_zeros(times)))
-        zeros.append(times)
-        of_zeros.append(np.log(BALANCED / len(TIMES_BALANCED)))
-    r = fitted.from_start
-    likely = np.array(of_zeros) + [whole.log_likelihood(r) for whole in wholes]
-    best = int(likely.argmax())
+    r, wholes = fitted.from_start, {1.0: fitted.whole}
+    wholes |= {times: fitted.whole.with_columns(fitted.measured.further_zeros(times)) for times in TIMES_BALANCED}
+    log_priors = [np.log(1 - BALANCED)] + [np.log(BALANCED / len(TIMES_BALANCED))] * len(TIMES_BALANCED)
+    found = {
+        times: float(log_prior_ + whole.log_likelihood(r))
+        for log_prior_, (times, whole) in zip(log_priors, wholes.items(), strict=True)
+    }
     directions = form_directions(fitted, len(fitted.added))
     if not directions.shape[1]:
-        return float(logsumexp(likely)), 0.0, zeros[best]
-    gains = _gains(wholes[best].whiten(directions), wholes[best].whiten(r))
-    weights = np.exp(gains - logsumexp(gains))
-    mean = float(weights @ np.array(FORM_ERRORS))
-    return float(logsumexp(likely) + logsumexp(gains) - np.log(len(gains))), mean, zeros[best]
+        return 0.0, found
+    best = wholes[max(found, key=found.__getitem__)]
+    gains = _gains(best.whiten(directions), best.whiten(r))
+    mean = float(np.exp(gains - logsumexp(gains)) @ np.array(FORM_ERRORS))
+    gain = float(logsumexp(gains) - np.log(len(gains)))
+    return mean, {times: each + gain for times, each in found.items()}
 
 
 def _gains(

@@ -94,25 +94,26 @@ class Search:
     def _expand(self, base: Option) -> None:
         """Fit an option with one more effect, or with one more regularity."""
         self._expanded.add(base.causes)
-        opened = base.opened
         causes = len(base.effects) + bool(base.regularities)
-        if causes + 1 < len(CAUSES):
+        # Zeros that may lie far off hide the effect that moved them.
+        for zeros in dict.fromkeys((base.zeros, 1.0)):
+            opened = base.opened(zeros)
             start = unbent(opened)
-            for gain, score in self._leading(start):
-                if self._promises(base, gain, effects=1):
+            for gain, score in self._leading(start) if causes + 1 < len(CAUSES) else ():
+                if self._promises(base, base.of_zeros[zeros] + gain, effects=1):
                     self._fit(start, (zoom(score, start),), base.regularities)
-        if len(base.regularities) < MOST_REGULARITIES and causes + (not base.regularities) < len(CAUSES):
-            first, *others = describe(opened)
-            gain = (first.gain - first.freedom * np.log1p(first.gain / first.freedom)) / 2 - np.log(SCALES)
-            if self._promises(base, gain, regularities=1):
-                named = replace(first, rivals=other_laws(first, others))
-                self._fit(opened, (), (*base.regularities, named))
+            if len(base.regularities) < MOST_REGULARITIES and causes + (not base.regularities) < len(CAUSES):
+                first, *others = describe(opened)
+                gain = (first.gain - first.freedom * np.log1p(first.gain / first.freedom)) / 2 - np.log(SCALES)
+                if self._promises(base, base.of_zeros[zeros] + gain, regularities=1):
+                    named = replace(first, rivals=other_laws(first, others))
+                    self._fit(opened, (), (*base.regularities, named))
 
-    def _promises(self, base: Option, gain: float, *, effects: int = 0, regularities: int = 0) -> bool:
+    def _promises(self, base: Option, log_evidence: float, *, effects: int = 0, regularities: int = 0) -> bool:
         """Whether an option with more causes may be nearly as probable as the best one, by its expected evidence."""
-        prior = log_prior(len(base.effects) + effects, len(base.regularities) + regularities, len(self.kinds))
-        sizes = base.log_prior - log_prior(len(base.effects), len(base.regularities), len(self.kinds))
-        return base.log_evidence + gain + prior + sizes > self._best.log_posterior - NEGLIGIBLE
+        now = log_prior(len(base.effects), len(base.regularities), len(self.kinds))
+        then = log_prior(len(base.effects) + effects, len(base.regularities) + regularities, len(self.kinds))
+        return log_evidence + base.log_prior + then - now > self._best.log_posterior - NEGLIGIBLE
 
     def _leading(self, start: Fitted) -> list[tuple[float, Score]]:
         """The best hypotheses of the leading effects that are not in the model, with the expected log evidence."""
