@@ -4,9 +4,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from loop_fixtures import BUMP, WAVE, Bump, Wave, fitted_to
+from swgsim.identification.decide.candidate import Trial
 
 from swgsim.identification.data.features import Layout
-from swgsim.identification.decide.candidate import Trial
 from swgsim.identification.fit.form_error import Coherence
 from swgsim.identification.search.hypotheses import Hypothesis
 from swgsim.identification.search.screening import Score

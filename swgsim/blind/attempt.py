@@ -56,7 +56,7 @@ def answer_fields(found: Answer, recordings: Sequence[Recording], library: Seque
         "verdict": found.verdict,
         "sentence": sentence(found, found_effects(found)),
         "probability": decision.probability,
-        "accepted": _names(found.of_orders),
+        "accepted": _names(decision.effects),
         "alternatives": [
             {"effects": _names(option.effects), "unknown": bool(option.regularities), "probability": probability}
             for option, probability in decision.credible

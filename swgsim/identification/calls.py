@@ -85,7 +85,7 @@ def identify(
     effects : sequence of effect classes, optional
         The library that is searched; by default all effects.
     interest : float
-        Smallest change that matters, in standard deviations of what distinguishes two units of a series.
+        Smallest change that matters, in standard deviations of an order line over healthy units of a series.
     seed : int
         Of the simulated noise from which p-values are computed.
     progress : callable, optional

@@ -13,6 +13,7 @@ from chain_fixtures import GEAR
 from hydra import compose, initialize_config_dir
 from loop_fixtures import POINTS, drawn, fitted_to, holding
 from omegaconf import OmegaConf
+from swgsim.identification.decide.selection import Closed
 
 from swgsim.bench.scatter import Bench
 from swgsim.blind import attempt, baselines, drawing
@@ -41,7 +42,6 @@ from swgsim.gear.gear import OperatingPoint
 from swgsim.identification.data.features import ORDERS, Layout, features
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model, predict
-from swgsim.identification.decide.selection import Closed
 from swgsim.identification.fit import map_fit as calibration
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import fit

@@ -6,6 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from chain_fixtures import GEAR
+from swgsim.identification.decide.selection import Closed
+from swgsim.identification.decide.stepwise_selection import close
 
 from swgsim.bench.scatter import Bench
 from swgsim.bench.virtual_bench import Sessions, record_sessions
@@ -21,8 +23,6 @@ from swgsim.gear.gear import Gear, OperatingPoint
 from swgsim.identification.commissioning.commissioning import _drive_alone, learn_unit
 from swgsim.identification.data.measured import OF_SESSION, Measured
 from swgsim.identification.data.model import Model
-from swgsim.identification.decide.selection import Closed
-from swgsim.identification.decide.stepwise_selection import close
 from swgsim.identification.fit.fitting import fit
 from swgsim.identification.fit.priors import at, name_of
 from swgsim.identification.fit.unit import STRUCTURE, UNHEARD, Unit

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from fabricated_trials import FITTED, MIMIC, PAIR, A, B, C, Dip, tried
 from loop_fixtures import Bump, Wave
-
-from swgsim.common.outcome import UNKNOWN
-from swgsim.identification.covariance.low_rank_covariance import as_squares
-from swgsim.identification.decide import accepted as steps
 from swgsim.identification.decide.accepted import Step, causes, contradicted, with_rivals
 from swgsim.identification.decide.candidate import Trial
 from swgsim.identification.decide.selection import Closed
 from swgsim.identification.decide.selection_step import Round
+
+from swgsim.common.outcome import UNKNOWN
+from swgsim.identification.covariance.low_rank_covariance import as_squares
+from swgsim.identification.decide import accepted as steps
 from swgsim.identification.fit.form_error import FORM_TOLERANCE, Coherence
 from swgsim.identification.report import found as effects
 from swgsim.identification.report.answer import NOTHING as NOTHING_MISSING

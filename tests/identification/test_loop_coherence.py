@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from chain_fixtures import GEAR
 from loop_fixtures import Bump, Wave, drawn, fitted_to, holding
+from swgsim.identification.decide.candidate import EXACT, widened
 
 from swgsim.identification.covariance.influence_map_error import lines_anywhere
 from swgsim.identification.covariance.low_rank_covariance import Covariance
 from swgsim.identification.data.features import Layout
 from swgsim.identification.data.model import Model
-from swgsim.identification.decide.candidate import EXACT, widened
 from swgsim.identification.fit import form_error as evidence
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.form_error import NO_SIZE

@@ -7,6 +7,7 @@ import pytest
 from chain_fixtures import GEAR
 from fabricated_trials import FITTED, A
 from loop_fixtures import BUMP, WAVE, Bump, Wave, drawn, holding
+from swgsim.identification.decide.stepwise_selection import close
 from test_loop_close import _coarse_mesh, recorded  # noqa: F401
 
 from swgsim.blind.altered import Alteration, Altered
@@ -15,7 +16,6 @@ from swgsim.effects.quantity import quantities
 from swgsim.effects.regularity import Regularity
 from swgsim.identification.data.model import Model
 from swgsim.identification.decide import form_error_evidence as imperfect
-from swgsim.identification.decide.stepwise_selection import close
 from swgsim.identification.fit.form_error import FORM_TOLERANCE, parts, powers
 from swgsim.identification.fit.unit import Unit
 from swgsim.identification.search.hypotheses import Hypothesis

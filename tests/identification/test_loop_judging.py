@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from chain_fixtures import GEAR
 from loop_fixtures import BUMP, Bump, drawn, fitted_to, holding
+from swgsim.identification.decide.candidate import Trial, gained
+from swgsim.identification.decide.competing_regularities import beside_unknown, in_company, more_than, outdone
 
 from swgsim.effects.regularity import OF_TIME
 from swgsim.gear.conditions import Conditions
@@ -15,8 +17,6 @@ from swgsim.identification.covariance.scatter import Scatter
 from swgsim.identification.data.features import Layout
 from swgsim.identification.data.model import Model
 from swgsim.identification.decide import candidate as trial_module
-from swgsim.identification.decide.candidate import Trial, gained
-from swgsim.identification.decide.competing_regularities import beside_unknown, in_company, more_than, outdone
 from swgsim.identification.fit import form_error as evidence
 from swgsim.identification.fit.fitted import LIKELIER_BALANCED
 from swgsim.identification.search import regularities as vocabulary

@@ -5,10 +5,10 @@ from dataclasses import replace
 import pytest
 from fabricated_trials import FITTED, PAIR, A, B, C, Dip
 from loop_fixtures import Bump, Wave
-
-from swgsim.identification.decide import pairs
 from swgsim.identification.decide.candidate import Trial
 from swgsim.identification.decide.pairs import PAIR_GAIN, paired, worth_it
+
+from swgsim.identification.decide import pairs
 from swgsim.identification.fit.form_error import Coherence
 from swgsim.identification.search.shortlist import NEARLY
 

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from loop_fixtures import drawn, fitted_to, holding
+from swgsim.identification.decide.selection import Closed
 
 from swgsim.effects.regularity import OF_TIME
 from swgsim.identification.data.features import Layout
 from swgsim.identification.decide import empirical_terms as patching
-from swgsim.identification.decide.selection import Closed
 from swgsim.identification.fit.errors import Errors, of_points_left_out, rms
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.priors import Declared

@@ -11,7 +11,7 @@ from swgsim.common.seeds import generator
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import beyond_nothing, size_of
 from swgsim.identification.data.measured import Measured
-from swgsim.identification.decide.interest import unit_distances
+from swgsim.identification.decide.interest import shares_of_spread
 from swgsim.identification.decide.option import Option, chosen
 from swgsim.identification.decide.search import Search
 from swgsim.identification.fit.fitted import Fitted
@@ -71,9 +71,9 @@ class Decision:
         return self.best.regularities
 
     @cached_property
-    def distances(self) -> list[float]:
-        """Of each effect, then of each regularity: how far it moves the recordings (:func:`unit_distances`)."""
-        return unit_distances(self.after)
+    def shares_of_spread(self) -> list[float]:
+        """Of each effect, then of each regularity: its largest change of a line (:func:`shares_of_spread`)."""
+        return shares_of_spread(self.after)
 
     @property
     def probability(self) -> float:

@@ -1,22 +1,24 @@
-"""Whether a change is large enough to matter: compared with what distinguishes two units of a series."""
+"""Whether a change is large enough to matter: compared with what distinguishes two healthy units of a series."""
 
 import numpy as np
 
+from swgsim.dataset.faults import FAULTS
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.form_error import signature
 from swgsim.identification.fit.map_fit import linearised
 from swgsim.identification.fit.priors import of_unit
 
-# A significant change below this distance is reported, but is no verdict. Half a standard deviation of what
-# distinguishes two units of a series is within what a maker delivers as healthy (an estimate).
-INTEREST = 0.5
+# A significant change below this share is reported, but is no verdict. A fifth of the standard deviation between units
+# is within what a maker delivers as healthy (an estimate).
+INTEREST = 0.2
 
 
-def unit_distances(fitted: Fitted) -> list[float]:
-    """Distance that each added effect moves the recordings, in standard deviations of units of a series and of errors.
+def shares_of_spread(fitted: Fitted) -> list[float]:
+    """Largest change of an order line by each added effect, in standard deviations of that line.
 
-    It is the Mahalanobis distance with the covariance of the errors and of the declared parameters over units. A lot of
-    friction may be as close to a healthy gear as a little ripple at an order that no healthy gear shows.
+    The standard deviation is that of a single recording of any healthy unit of the series: by the declared parameters
+    of units, by noise and by the errors of single recordings. The five faults always matter, as they grow: their share
+    is infinite.
     """
     measured, unit = fitted.measured, fitted.unit
     numbers = range(len(unit.model.effects), len(fitted.model.effects))
@@ -24,6 +26,8 @@ def unit_distances(fitted: Fitted) -> list[float]:
         return []
     series = of_unit(unit.nominal or unit.model.gear)
     _, J = linearised(unit.model, series, measured.situations, measured.layout)
-    between_units = fitted.errors.with_columns(measured.rows(J))
-    changes = np.stack([signature(fitted, number) for number in numbers], axis=1)
-    return np.linalg.norm(between_units.whiten(changes), axis=0).tolist()
+    alone = fitted.errors.alone
+    variance = (measured.rows(J) ** 2).sum(axis=1) + alone.variance.ravel() + (alone.C**2).sum(axis=-1).ravel()
+    faults = [type(fitted.model.effects[number]).name() in FAULTS for number in numbers]
+    changes = [np.abs(signature(fitted, number) / np.sqrt(variance)).max() for number in numbers]
+    return np.where(faults, np.inf, changes).tolist()

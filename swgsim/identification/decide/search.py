@@ -25,7 +25,7 @@ from swgsim.identification.search.screening import Score, best_of_kind, rank
 
 # Limits of the computing time: effects that are compared without and with a fit from one option, regularities of an
 # option, and fits in all.
-EFFECTS_LOOKED_AT, EFFECTS_TRIED, MOST_REGULARITIES, MOST_FITS = 15, 5, 3, 40
+EFFECTS_LOOKED_AT, EFFECTS_TRIED, MOST_REGULARITIES, MOST_FITS = 15, 5, 3, 20
 # An option is fitted if its posterior, as the score test estimates it, is at most so far below the best one [nat].
 NEGLIGIBLE = 3.0
 STEPS = logging.getLogger(__name__)

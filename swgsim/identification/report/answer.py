@@ -66,13 +66,15 @@ class Answer:
     @property
     def small(self) -> tuple[Effect, ...]:
         """Effects and regularities that are probable, but too small to matter."""
-        return tuple(e for e, far in zip(self.added, self.decision.distances, strict=True) if far < self.interest)
+        return tuple(
+            e for e, share in zip(self.added, self.decision.shares_of_spread, strict=True) if share < self.interest
+        )
 
     @property
     def unknown(self) -> tuple[Described, ...]:
         """Regularities that no effect of the library explains, without small ones."""
-        far = self.decision.distances[len(self.decision.effects) :]
-        large = (each for each, by in zip(self.decision.unknown, far, strict=True) if by >= self.interest)
+        shares = self.decision.shares_of_spread[len(self.decision.effects) :]
+        large = (each for each, share in zip(self.decision.unknown, shares, strict=True) if share >= self.interest)
         return (*large, *self.above)
 
     @property

@@ -134,9 +134,9 @@ def alternatives(answer: Answer) -> list[dict[str, Any]]:
 
 
 def small(answer: Answer) -> list[dict[str, Any]]:
-    """What is probable but too small to matter, with its distance in standard deviations between units of a series."""
-    far = zip(answer.added, answer.decision.distances, strict=True)
-    return [{"words": effect_in_words(effect), "distance": number(by)} for effect, by in far if effect in answer.small]
+    """What is probable but too small to matter, with the largest change of a line in standard deviations over healthy units."""
+    shares = zip(answer.added, answer.decision.shares_of_spread, strict=True)
+    return [{"words": effect_in_words(effect), "share": number(by)} for effect, by in shares if effect in answer.small]
 
 
 def in_words(option: Option) -> str:
