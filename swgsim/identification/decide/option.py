@@ -64,7 +64,7 @@ class Option:
         return causes_of(self.effects, self.regularities)
 
     def opened(self, zeros: float) -> Fitted:
-        """The fit at a factor of zeros, with the form of its effects open by the form error found, to search for more."""
+        """The fit at a factor of zeros, with the form of its effects open by the form error found."""
         directions = self.form_error * form_directions(self.fitted, len(self.effects))
         return self.fitted.with_zeros(zeros).allowing_forms(directions)
 

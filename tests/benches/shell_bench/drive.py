@@ -94,7 +94,7 @@ def run(drive, speed, load, friction, angle, output):
     step, kept = 1 / RATE, np.empty((LENGTH, 5, speed.size))
     for i in range(SETTLE + LENGTH):
         if i >= SETTLE:
-            brake, out, motor = torques(y)
+            _, out, motor = torques(y)
             kept[i - SETTLE] = y[0], y[1], y[2] + shift, motor, out
         a = rates(y)
         b = rates(y + step / 2 * a)
