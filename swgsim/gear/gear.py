@@ -8,6 +8,7 @@ from typing import Any
 
 from swgsim.common.build import build
 from swgsim.common.checks import require, require_integer, require_positive
+from swgsim.common.configured import conf_folder
 from swgsim.flexspline.gauges import GaugeSet
 from swgsim.flexspline.silk_hat import SilkHat
 from swgsim.gear.gear_file import gear_values
@@ -145,7 +146,10 @@ class Gear:
 
     @classmethod
     def load(cls, path: str | Path) -> "Gear":
-        """Read a gear from a YAML file such as those of conf/gear; numbers are in SI units.
+        """Read a gear from a YAML file, or one of conf/gear by its name; numbers are in SI units.
+
+        >>> Gear.load("gear2").number
+        2
 
         Raises
         ------
@@ -153,7 +157,8 @@ class Gear:
             If the file is missing, holds no mapping, or a parameter is unknown or beyond its limits.
         """
         try:
-            return gear_from(gear_values(Path(path)))
+            known = conf_folder() / "gear" / f"{path}.yaml"
+            return gear_from(gear_values(known if known.is_file() else Path(path)))
         except ValueError as error:
             raise ValueError(f"gear file {path}: {error}") from error
 

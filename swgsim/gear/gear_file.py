@@ -17,7 +17,7 @@ def gear_values(path: Path) -> dict[str, Any]:
         If the file is missing or holds no mapping.
     """
     if not path.is_file():
-        raise ValueError("not found: copy conf/gear/gear1.yaml and change its numbers")
+        raise ValueError("not found: give gear1, gear2 or gear3, or copy conf/gear/gear1.yaml and change its numbers")
     config = plain(path.read_text(encoding="utf-8"))
     if not isinstance(config, dict):
         raise ValueError(f"holds {type(config).__name__}, expected names with values")
