@@ -14,6 +14,7 @@ from jaxtyping import Float
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities
+from swgsim.identification.decide.formless import formless
 from swgsim.identification.decide.option import Option, causes_of, expected_gain, option
 from swgsim.identification.decide.prior import CAUSES, SCALES, log_prior
 from swgsim.identification.fit.fitted import Fitted
@@ -54,7 +55,9 @@ class Search:
         while fresh := [each for each in self._around_best() if each.causes not in self._expanded]:
             for each in fresh:
                 self._expand(each)
-        return sorted(self._options.values(), key=lambda each: -each.log_posterior)
+        bases = {each.causes: each for each in (self._best, self._options[frozenset()])}
+        more = [found for each in bases.values() if (found := formless(each, len(self.kinds)))]
+        return sorted([*self._options.values(), *more], key=lambda each: -each.log_posterior)
 
     @property
     def _best(self) -> Option:
@@ -118,6 +121,8 @@ class Search:
     def _leading(self, start: Fitted) -> list[tuple[float, Score]]:
         """The best hypotheses of the leading effects that are not in the model, with the expected log evidence."""
         every, changes = self._library
+        if any(effect.sharp for effect in start.added):  # beyond its threshold other effects look different
+            changes = signatures(every, start.model, start.measured)
         offered = [n for n, each in enumerate(every) if not any(map(each.repeats, start.added))]
         STEPS.info("screening %d hypotheses", len(offered))
         scores = best_of_kind(rank([every[n] for n in offered], [changes[n] for n in offered], start))
