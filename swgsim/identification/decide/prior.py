@@ -9,9 +9,9 @@ import numpy as np
 from swgsim.effects.regularity import LAWS, PATTERNS
 from swgsim.identification.data.features import ORDERS
 
-# Probability of 0, 1, 2, 3 causes. A gear is examined because something may be wrong, so one cause is as probable as
-# none; independent causes at once are rare.
-CAUSES = (0.5, 0.4, 0.08, 0.02)
+# Probability of 0, 1, 2, 3 causes. Most gears that are examined are healthy, and independent causes at once are rare:
+# each further one is five times less probable.
+CAUSES = (0.8, 0.16, 0.032, 0.008)
 # Probability that a cause is not in the library, which holds what the literature describes.
 UNKNOWN = 0.1
 # Probability that an unknown cause shows in one more regularity. A regularity is one order, one pattern over the
@@ -41,9 +41,9 @@ def log_prior(effects: int, regularities: int, kinds: int) -> float:
         Number of effects in the library.
 
     >>> round(float(np.exp(log_prior(0, 0, 60))), 3)
-    0.5
-    >>> round(float(np.exp(log_prior(1, 0, 60))), 3)
-    0.006
+    0.8
+    >>> round(float(np.exp(log_prior(1, 0, 60))), 4)
+    0.0024
     """
     causes = effects + bool(regularities)
     if causes >= len(CAUSES):
