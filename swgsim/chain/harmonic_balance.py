@@ -88,9 +88,7 @@ def accelerations(drive: Drive, state: State) -> Float[np.ndarray, "2 time run"]
     return drive.derivative(state, drive.torques(state))[[OMEGA_IN, OMEGA_OUT]]
 
 
-def nudged(
-    drive: Drive, state: State
-) -> Iterator[tuple[Float[np.ndarray, "2 time run"], Float[np.ndarray, " run"]]]:
+def nudged(drive: Drive, state: State) -> Iterator[tuple[Float[np.ndarray, "2 time run"], Float[np.ndarray, " run"]]]:
     """Change of the accelerations by a small step of each row of a state, and that step."""
     here = accelerations(drive, state)
     for row, values in enumerate(state):

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from dataclasses import fields
 
 import numpy as np
-from jaxtyping import Float, Integer
+from jaxtyping import Float
 
 from swgsim.chain.dynamics import Drive, State
 from swgsim.chain.harmonic_balance import one_revolution
@@ -42,8 +42,8 @@ def steady_state(drive: Drive, start_angle: Float[np.ndarray, " run"] | None = N
     if start.any():
         with np.errstate(over="ignore", invalid="ignore"):  # of runs that did not converge
             state = advance(drive, state, start)
-    left = np.flatnonzero(~converged)
-    if len(left):
+    left = np.flatnonzero(~converged).tolist()
+    if left:
         _, state[:, left] = _searched(drive.part(left), start[left], TIMES)
     return state
 
@@ -64,8 +64,8 @@ def steady_revolution(drive: Drive, start_angle: Float[np.ndarray, " run"], poin
         As for :func:`steady_state`.
     """
     found, balanced = one_revolution(drive, start_angle, points)
-    left = np.flatnonzero(~balanced)
-    if len(left):
+    left = np.flatnonzero(~balanced).tolist()
+    if left:
         _put(found, left, _shot(drive.part(left), start_angle[left], points))
     return found
 
@@ -75,8 +75,8 @@ def _shot(drive: Drive, start: Float[np.ndarray, " run"], points: int) -> Motion
     state, converged = shooting(drive)
     with np.errstate(over="ignore", invalid="ignore"):  # of runs that did not converge
         found = revolve(drive, advance(drive, state, start) if start.any() else state, points)
-    left = np.flatnonzero(~converged)
-    if len(left):
+    left = np.flatnonzero(~converged).tolist()
+    if left:
         _put(found, left, _searched(drive.part(left), start[left], points)[0])
     return found
 
@@ -98,7 +98,7 @@ def _searched(drive: Drive, start: Float[np.ndarray, " run"], points: int) -> tu
     return found, state
 
 
-def _put(found: Motion, runs: Sequence[int] | Integer[np.ndarray, " run"], motion: Motion) -> None:
+def _put(found: Motion, runs: Sequence[int], motion: Motion) -> None:
     """Write the motion of some runs into that of all."""
     for field in fields(Motion):
         getattr(found, field.name)[runs] = getattr(motion, field.name)

@@ -64,12 +64,16 @@ def mean_revolution(drive: Drive, start_angle: Float[np.ndarray, " run"], points
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # of runs that do not keep turning
         for _ in range(settling):
             state, _ = _revolution(drive, state, steps)
+            if not np.isfinite(state).all():
+                break
         weights = np.hanning(averaged + 2)[1:-1]  # so that it matters little where the mean begins and ends
         mean = np.zeros((KEPT, steps, len(drive)))
         for weight in weights / weights.sum():
             state, kept = _revolution(drive, state, steps)
             mean += weight * kept
-    _require_speed(drive, state, mean)
+            if not np.isfinite(state).all():
+                break
+        _require_speed(drive, state, mean)
     return Averaged(_even_in_time(drive, mean, start_angle, points), state)
 
 

@@ -2,10 +2,9 @@
 
 import numpy as np
 
-from swgsim.chain import harmonic_balance
+from swgsim.chain import harmonic_balance, settling
 from swgsim.chain.dynamics import Drive
 from swgsim.chain.harmonic_balance import one_revolution
-from swgsim.chain import settling
 from swgsim.chain.motion import Motion, revolve
 from swgsim.chain.settling import steady_state
 from swgsim.chain.steady_state_cache import Driven, forget, one_turn, settled
