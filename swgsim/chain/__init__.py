@@ -8,7 +8,8 @@ from swgsim.chain.chain import simulate as simulate_runs
 from swgsim.chain.direct import DirectSolver
 from swgsim.chain.dynamics import Drive
 from swgsim.chain.influence import InfluenceMap, influence_map
-from swgsim.chain.motion import Motion, steady_state
+from swgsim.chain.motion import Motion, NoSteadyState
+from swgsim.chain.settling import steady_state
 
 __all__ = [
     "SECTORS",
@@ -16,6 +17,7 @@ __all__ = [
     "Drive",
     "InfluenceMap",
     "Motion",
+    "NoSteadyState",
     "Run",
     "Simulation",
     "channels_of",

@@ -24,7 +24,8 @@ phi_in, its slope is part of the input's lever. Some published equations leave i
 Effects may add to T_stiff, T_fric and T_load, brake the input, or add to the torque of the motor.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from copy import copy
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -128,9 +129,18 @@ class Drive:
 
     def repeated(self, times: int) -> "Drive":
         """Every run ``times`` times, repeats next to each other."""
-        several = [run for run in range(len(self)) for _ in range(times)]
-        transmissions, points = [self.transmissions[run] for run in several], [self.points[run] for run in several]
-        return Drive(transmissions, points, [self.effects[run] for run in several])
+        return self.part([run for run in range(len(self)) for _ in range(times)])
+
+    def part(self, runs: Iterable[int]) -> "Drive":
+        """The runs of these numbers, which may come more than once."""
+        chosen = [(self.transmissions[run], self.points[run], self.effects[run]) for run in runs]
+        return Drive(*zip(*chosen, strict=True))
+
+    def with_more_load(self, added: float) -> "Drive":
+        """The same with a load torque that is higher by so much [N m]; it may be higher than any operating point's."""
+        more = copy(self)
+        more.T_load = self.T_load + added
+        return more
 
     def phi_err(self, phi_in: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Kinematic error phi_err of eq. (3) as a twist [rad], and its slope over phi_in.

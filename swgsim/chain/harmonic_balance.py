@@ -5,6 +5,8 @@ its uniform rotation. Each correction by that linear system leaves about a tenth
 strongest effects.
 """
 
+from collections.abc import Iterator
+
 import numpy as np
 from jaxtyping import Bool, Complex, Float
 
@@ -61,25 +63,38 @@ def one_revolution(
     with np.errstate(over="ignore", invalid="ignore"):  # of runs that do not converge
         for _ in range(CORRECTIONS):
             state = at_all_times()
-            residual = i_k_omega**2 * lines - np.fft.rfft(_accelerations(drive, state), axis=1, norm="forward")
+            residual = i_k_omega**2 * lines - np.fft.rfft(accelerations(drive, state), axis=1, norm="forward")
             d_lines, d_error = linear.correction(residual)
             lines, speed_error = lines + d_lines, speed_error + d_error
             moved = np.abs(i_k_omega * d_lines).sum(axis=1) / speed + np.abs(d_lines[:, 0]) * drive.omega / speed
             settled = moved.max(axis=0) < TOLERANCE
             if settled.all():
                 break
-        state = at_all_times()
-        torques = drive.torques(state)
-    kept = np.stack(kept_of(state, torques))[:, ::each]
+        return motion_of(drive, at_all_times(), each), settled
+
+
+def motion_of(drive: Drive, state: State, each: int) -> Motion:
+    """The motion of the state at even times over a revolution, one in ``each`` of which is kept."""
+    kept = np.stack(kept_of(state, drive.torques(state)))[:, ::each]
+    points = kept.shape[1]
     kept = np.concatenate([kept, kept[:, :1]], axis=1)
     kept[0, -1] += 2 * np.pi
     phi_in, omega_in, omega_out, T_in, T_out, T_flange = np.ascontiguousarray(kept.swapaxes(1, 2))
-    return Motion(phi_in, omega_in, omega_out, T_in, T_out, T_flange, drive.period / points), settled
+    return Motion(phi_in, omega_in, omega_out, T_in, T_out, T_flange, drive.period / points)
 
 
-def _accelerations(drive: Drive, state: State) -> Float[np.ndarray, "2 time run"]:
+def accelerations(drive: Drive, state: State) -> Float[np.ndarray, "2 time run"]:
     """Accelerations of input and output, eq. (1) [rad/s^2]."""
     return drive.derivative(state, drive.torques(state))[[OMEGA_IN, OMEGA_OUT]]
+
+
+def nudged(drive: Drive, state: State) -> Iterator[tuple[Float[np.ndarray, "2 time run"], Float[np.ndarray, " run"]]]:
+    """Change of the accelerations by a small step of each row of a state, and that step."""
+    here = accelerations(drive, state)
+    for row, values in enumerate(state):
+        step, moved = STEP * np.maximum(np.abs(values).mean(axis=0), STEP), state.copy()
+        moved[row] += step
+        yield accelerations(drive, moved) - here, step
 
 
 class _Linear:
@@ -99,11 +114,7 @@ class _Linear:
     """
 
     def __init__(self, drive: Drive, state: State, i_k_omega: Complex[np.ndarray, "order run"]) -> None:
-        slopes, here = np.empty((5, 2, len(drive))), _accelerations(drive, state)
-        for row, values in enumerate(state):
-            step, nudged = STEP * np.maximum(np.abs(values).mean(axis=0), STEP), state.copy()
-            nudged[row] += step
-            slopes[row] = (_accelerations(drive, nudged) - here).mean(axis=1) / step
+        slopes = np.stack([change.mean(axis=1) / step for change, step in nudged(drive, state)])
         self.by_lead = slopes[PHI_IN] - slopes[SPEED_ERROR]
         by_angles = np.stack([self.by_lead, slopes[PHI_OUT]], axis=1)
         by_speeds = np.stack([slopes[OMEGA_IN], slopes[OMEGA_OUT]], axis=1)

@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from swgsim.chain.dynamics import Drive, State
-from swgsim.chain.harmonic_balance import one_revolution
-from swgsim.chain.motion import Motion, advance, revolve, steady_state
+from swgsim.chain.motion import Motion
+from swgsim.chain.settling import steady_revolution, steady_state
 from swgsim.effects.base import Effect
 from swgsim.gear.gear import OperatingPoint, Transmission
 
@@ -38,8 +38,7 @@ def forget() -> None:
 def settled(driven: Sequence[Driven]) -> tuple[Drive, State]:
     """The drive of some motions, and their states at the start."""
     drive, start = _drive(driven)
-    state = steady_state(drive)
-    return drive, advance(drive, state, start) if start.any() else state
+    return drive, steady_state(drive, start)
 
 
 def one_turn(driven: Sequence[Driven], points: int) -> Motion:
@@ -55,13 +54,7 @@ def one_turn(driven: Sequence[Driven], points: int) -> Motion:
         forget()
         new = list(driven)
     if new:
-        found, balanced = one_revolution(*_drive(new), points)
-        # Not converged, such as close to a resonance with little damping.
-        left = [each for each, known in zip(new, balanced, strict=True) if not known]
-        integrated = revolve(*settled(left), points) if left else None
-        _remember(new, found)
-        if integrated:
-            _remember(left, integrated)
+        _remember(new, steady_revolution(*_drive(new), points))
     return Motion(*(np.stack(part) for part in zip(*(_remembered[each, points] for each in driven), strict=True)))
 
 

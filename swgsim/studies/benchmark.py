@@ -13,7 +13,8 @@ from swgsim.chain.chain import simulate
 from swgsim.chain.direct import DirectSolver
 from swgsim.chain.dynamics import OMEGA_IN, OMEGA_OUT, Drive
 from swgsim.chain.harmonic_balance import one_revolution
-from swgsim.chain.motion import revolve, run, steady_state
+from swgsim.chain.motion import revolve, run
+from swgsim.chain.settling import steady_state
 from swgsim.dataset.plan import Plan
 from swgsim.flexspline.flexspline import solve_flex_spline
 from swgsim.gear.acquisition import Window

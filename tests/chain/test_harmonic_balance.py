@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from swgsim.chain import harmonic_balance
-from swgsim.chain import steady_state_cache as turning
+from swgsim.chain import harmonic_balance, settling
 from swgsim.chain.dynamics import Drive
 from swgsim.chain.harmonic_balance import one_revolution
-from swgsim.chain.motion import Motion, revolve, steady_state
-from swgsim.chain.steady_state_cache import Driven, forget, one_turn
+from swgsim.chain.motion import Motion, revolve
+from swgsim.chain.settling import steady_state
+from swgsim.chain.steady_state_cache import Driven, forget, one_turn, settled
 from swgsim.effects.base import Effect, overrides
 from swgsim.effects.library import LIBRARY
 from swgsim.effects.quantity import quantities, size_of
@@ -98,10 +98,10 @@ def test_what_does_not_settle_is_integrated(monkeypatch):
     forget()
     monkeypatch.setattr(harmonic_balance, "CORRECTIONS", 1)
     integrated = []
-    settle = turning.settled
-    monkeypatch.setattr(turning, "settled", lambda driven: integrated.extend(driven) or settle(driven))
+    shoot = settling.shooting
+    monkeypatch.setattr(settling, "shooting", lambda drive: integrated.extend(drive.points) or shoot(drive))
     again = one_turn(runs, POINTS)
     forget()
-    assert integrated == runs
+    assert integrated == OPERATING
     np.testing.assert_allclose(again.T_out, found.T_out, rtol=1e-4)
-    np.testing.assert_array_equal(again.T_out, revolve(*settle(runs), POINTS).T_out)
+    np.testing.assert_array_equal(again.T_out, revolve(*settled(runs), POINTS).T_out)

@@ -8,6 +8,7 @@ from chain_fixtures import GEAR
 from loop_fixtures import POINTS, Bump
 from scipy.optimize import nnls
 
+from swgsim.chain import NoSteadyState
 from swgsim.common.seeds import generator
 from swgsim.effects.clipping import Clipping
 from swgsim.flexspline.gauges import LIMITS
@@ -38,10 +39,16 @@ def height(number: int, sd: float = 1.0, low: float = -np.inf, high: float = np.
 
 def predicting(monkeypatch, formula) -> None:
     """Let the chain be a formula of the two heights; it returns an array (situation, feature)."""
-    monkeypatch.setattr(
-        "swgsim.identification.fit.map_fit.predict",
+    replace_predict(
+        monkeypatch,
         lambda models, situations, layout: np.array([formula(*(e.height for e in m.effects)) for m in models]),
     )
+
+
+def replace_predict(monkeypatch, predict) -> None:
+    """Let this be the chain's prediction, of the model that is fitted and of those beside it."""
+    for module in ("fit.map_fit", "data.model"):
+        monkeypatch.setattr(f"swgsim.identification.{module}.predict", predict)
 
 
 @pytest.mark.parametrize("level", [0.12, 0.2, 0.25])
@@ -185,13 +192,34 @@ def test_a_step_to_where_nothing_turns_steadily_is_halved(monkeypatch, A):
     def formula(x: float, y: float) -> np.ndarray:
         if abs(x) > 4:
             out.append(x)
-            raise RuntimeError("no steady state")
+            raise NoSteadyState("it does not hold its speed")
         return A[..., 0] * np.arctan(x)
 
     predicting(monkeypatch, formula)
     found = fitted({"x": height(0, sd=30)}, A[..., 0] * np.arctan(0.3), noise=1e-3, position={"x": 0.1})
     assert out
     assert found.model.effects[0].height == pytest.approx(0.3, abs=1e-2)
+
+
+def test_a_parameter_next_to_which_nothing_turns_is_left_where_it_is(monkeypatch, A):
+    def formula(x: float, y: float) -> np.ndarray:
+        if y:
+            raise NoSteadyState("it does not hold its speed")
+        return A[..., 0] * x
+
+    predicting(monkeypatch, formula)
+    found = fitted({"x": height(0), "y": height(1)}, 0.5 * A[..., 0], noise=1e-3)
+    assert [effect.height for effect in found.model.effects] == pytest.approx([0.5, 0.0], abs=1e-3)
+    assert not found.J[..., 1].any()
+
+
+def test_a_model_without_a_steady_state_says_so(monkeypatch, A):
+    def formula(x: float, y: float) -> np.ndarray:
+        raise NoSteadyState("it does not hold its speed")
+
+    predicting(monkeypatch, formula)
+    with pytest.raises(ValueError, match="does not hold its speed"):
+        fitted({"x": height(0)}, A[..., 0], noise=1e-3)
 
 
 def test_a_fit_that_does_not_come_to_rest_says_so(monkeypatch, A):
@@ -238,7 +266,7 @@ def test_many_bounds_of_parameters_that_matter_quite_differently_take_one_step(m
         asked.append(len(models))
         return np.array([slopes @ [e.height for e in m.effects] for m in models])
 
-    monkeypatch.setattr("swgsim.identification.fit.map_fit.predict", predict)
+    replace_predict(monkeypatch, predict)
     found = fitted({str(i): height(i, low=0.0) for i in range(many)}, measured, noise=1.0)
     there = np.array(list(found.position.values()))
     rows = np.vstack([slopes.reshape(-1, many), np.eye(many)])

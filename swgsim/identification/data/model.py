@@ -1,6 +1,7 @@
 """The gauge chain as a forward model: features of recordings from a gear, effects and the conditions of each one."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -8,6 +9,7 @@ from jaxtyping import Float
 
 from swgsim.chain.chain import SECTORS, Run, distinct, simulate_turns
 from swgsim.chain.influence import lobes
+from swgsim.chain.motion import NoSteadyState
 from swgsim.effects.base import Effect, overrides
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import Gear, OperatingPoint
@@ -74,6 +76,28 @@ def predict(
     some = (recordings[i : i + AT_ONCE] for i in range(0, len(recordings), AT_ONCE))
     found = np.concatenate([features_alike(each, layout) for each in some])
     return found[row].reshape(len(models), len(situations), len(layout))
+
+
+def predict_beside(
+    model: Model, others: Sequence[Model], situations: Sequence[Situation], layout: Layout
+) -> tuple[Float[np.ndarray, "situation feature"], Float[np.ndarray, "other situation feature"]]:
+    """Features of every situation by a model, and by others that need not exist: nan where one has no steady state.
+
+    Raises
+    ------
+    NoSteadyState
+        If the model itself has none.
+    """
+    try:
+        found = predict([model, *others], situations, layout)
+        return found[0], found[1:]
+    except NoSteadyState:
+        known = predict([model], situations, layout)[0]
+    beside = np.full((len(others), *known.shape), np.nan)
+    for other, row in zip(others, beside, strict=True):
+        with suppress(NoSteadyState):
+            row[:] = predict([other], situations, layout)[0]
+    return known, beside
 
 
 def _key(run: Run) -> tuple:

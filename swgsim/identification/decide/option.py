@@ -97,7 +97,7 @@ def option(start: Fitted, effects: Sequence[Effect], regularities: Sequence[Desc
 
     Raises
     ------
-    RuntimeError
+    NoSteadyState
         If no gear with these effects turns steadily.
     """
     free = reduce(set_free, regularities, start.without_free)

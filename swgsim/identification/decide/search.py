@@ -12,6 +12,7 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Float
 
+from swgsim.chain import NoSteadyState
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities
 from swgsim.identification.decide.formless import formless
@@ -88,7 +89,7 @@ class Search:
         STEPS.info("fitting %s", " with ".join(names) or "the model as it is")
         try:
             found = option(start, effects, regularities, len(self.kinds))
-        except RuntimeError:  # no gear with it turns steadily
+        except NoSteadyState:  # no gear with it turns steadily
             return
         known = self._options.get(found.causes)
         if known is None or found.log_posterior > known.log_posterior:

@@ -7,9 +7,10 @@ import numpy as np
 from jaxtyping import Float
 from scipy.optimize import brentq, lsq_linear
 
+from swgsim.chain import NoSteadyState
 from swgsim.identification.covariance.low_rank_covariance import Covariance
 from swgsim.identification.data.features import Layout
-from swgsim.identification.data.model import Model, Situation, predict
+from swgsim.identification.data.model import Model, Situation, predict, predict_beside
 from swgsim.identification.fit.priors import Declared, at
 
 # Gauss-Newton: fall of the cost below which it rests, and at most so many steps, each of at most so many spreads.
@@ -50,15 +51,23 @@ class Calibrated:
 def linearised(
     model: Model, parameters: Mapping[str, Declared], situations: Sequence[Situation], layout: Layout
 ) -> tuple[Float[np.ndarray, "situation feature"], Float[np.ndarray, "situation feature parameter"]]:
-    """Prediction of a model, and its change by one spread of each parameter."""
-    models, moved = [model], []
+    """Prediction of a model, and its change by one spread of each parameter.
+
+    It is 0 for a parameter next to whose value the gear has no steady state: a fit leaves such a parameter where it is.
+
+    Raises
+    ------
+    NoSteadyState
+        If the model itself has none.
+    """
+    models, moved = [], []
     for parameter in parameters.values():
         value, by = parameter.value(model), DIFFERENCE * min(1.0, parameter.scale / parameter.sd)
         moved.append(by if value + by * parameter.sd <= parameter.high else -by)
         models.append(parameter.at(model, value + moved[-1] * parameter.sd))
-    found = predict(models, situations, layout)
-    changes = (found[1:] - found[0]) / np.array(moved)[:, None, None]
-    return found[0], np.moveaxis(changes, 0, -1)
+    predicted, beside = predict_beside(model, models, situations, layout)
+    changes = (beside - predicted) / np.array(moved)[:, None, None]
+    return predicted, np.moveaxis(np.where(np.isnan(changes), 0.0, changes), 0, -1)
 
 
 def calibrate(
@@ -130,11 +139,7 @@ def calibrate(
         if settled or not fell >= 0:
             break
         length *= 0.5 if fell < LITTLE * expected else 2.0 if fell > MUCH * expected and length < 1 else 1.0
-        try:
-            J = linearised(model, parameters, situations, layout)[1]
-        except RuntimeError:  # hardly anything turns steadily there
-            settled = False
-            break
+        J = linearised(model, parameters, situations, layout)[1]
     return Calibrated(model, dict(zip(names, here.tolist(), strict=True)), predicted, J, settled)
 
 
@@ -142,7 +147,7 @@ def _predicted(model: Model, situations: Sequence[Situation], layout: Layout) ->
     """What a model predicts; worse than anything where it has no steady state."""
     try:
         return predict([model], situations, layout)[0]
-    except RuntimeError:
+    except NoSteadyState:
         return np.full((len(situations), len(layout)), NOWHERE)
 
 

@@ -12,7 +12,7 @@ from jaxtyping import Float
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities, size_of
 from swgsim.identification.data.measured import Measured
-from swgsim.identification.data.model import Model, predict
+from swgsim.identification.data.model import Model, predict_beside
 
 
 @dataclass(frozen=True)
@@ -102,12 +102,15 @@ def hypotheses(kinds: Iterable[type[Effect]], another_structure: bool = False) -
 
 
 def signatures(found: Sequence[Hypothesis], model: Model, measured: Measured) -> list[Float[np.ndarray, "row column"]]:
-    """How typical sizes of all hypotheses change the features of all recordings, by the chain itself."""
+    """How typical sizes of all hypotheses change the features of all recordings, by the chain itself.
+
+    An effect with which the gear has no steady state changes nothing: no recording shows it.
+    """
     if not found:
         return []
     effects = [effect for hypothesis in found for effect in hypothesis.columns]
-    models = [model, *(model.plus(effect) for effect in effects)]
-    predicted = predict(models, measured.situations, measured.layout)
-    changes = predicted[1:] - predicted[0]
+    with_effect = [model.plus(effect) for effect in effects]
+    predicted, beside = predict_beside(model, with_effect, measured.situations, measured.layout)
+    changes = np.where(np.isnan(beside), 0.0, beside - predicted)
     ends = np.cumsum([len(hypothesis.columns) for hypothesis in found])[:-1]
     return [measured.rows(np.moveaxis(part, 0, -1)) for part in np.split(changes, ends)]

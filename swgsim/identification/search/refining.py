@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Quantity, Role, quantities, size_of
-from swgsim.identification.data.model import predict
+from swgsim.identification.data.model import predict_beside
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.search.hypotheses import Hypothesis, signatures
 from swgsim.identification.search.screening import Score, rank
@@ -99,10 +99,10 @@ def _left(fitted: Fitted, effects: Sequence[Effect]) -> Float[np.ndarray, " effe
 
 
 def changes(fitted: Fitted, effects: Sequence[Effect]) -> Float[np.ndarray, "row effect"]:
-    """What each effect does to the features, by the chain."""
-    models = [fitted.model, *(fitted.model.plus(effect) for effect in effects)]
-    predicted = predict(models, fitted.measured.situations, fitted.measured.layout)
-    return fitted.measured.rows(np.moveaxis(predicted[1:] - predicted[0], 0, -1))
+    """What each effect does to the features, by the chain; nan if the gear has no steady state with it."""
+    models = [fitted.model.plus(effect) for effect in effects]
+    predicted, beside = predict_beside(fitted.model, models, fitted.measured.situations, fitted.measured.layout)
+    return fitted.measured.rows(np.moveaxis(beside - predicted, 0, -1))
 
 
 def spacing(quantity: Quantity) -> float:
