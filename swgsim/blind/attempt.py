@@ -38,7 +38,7 @@ def attempt(case: Sealed, setting: Setting) -> dict[str, Any]:
     ready = time.perf_counter()
     recordings, library = in_question(case, setting, case.acting), setting.given(case)
     started = time.perf_counter(), time.process_time()
-    found = answer(recordings, unit, library, seed=case.number)
+    found = answer(recordings, unit, library, interest=0.0, seed=case.number)  # detection is judged
     seconds = {
         "preparing": ready - began,
         "loop": time.perf_counter() - started[0],

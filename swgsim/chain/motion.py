@@ -44,6 +44,12 @@ class Motion:
     T_flange: Float[np.ndarray, "run time"]
     dt: float | Float[np.ndarray, " run"]
 
+    @classmethod
+    def of(cls, channels: Float[np.ndarray, "six run time"], dt: Float[np.ndarray, " run"]) -> "Motion":
+        """The motion of six arrays in the order of the attributes."""
+        phi_in, omega_in, omega_out, T_in, T_out, T_flange = channels
+        return cls(phi_in, omega_in, omega_out, T_in, T_out, T_flange, dt)
+
     def repeated(self, times: int) -> "Motion":
         """``times`` repetitions of one revolution of the wave generator in the steady state."""
         points = self.phi_in.shape[1] - 1

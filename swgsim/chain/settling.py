@@ -83,7 +83,7 @@ def _shot(drive: Drive, start: Float[np.ndarray, " run"], points: int) -> Motion
 
 def _searched(drive: Drive, start: Float[np.ndarray, " run"], points: int) -> tuple[Motion, State]:
     """One revolution of each run, and its state at the start angle, by the methods for few runs."""
-    found = Motion(*np.empty((6, len(drive), points + 1)), drive.period / points)
+    found = Motion.of(np.empty((6, len(drive), points + 1)), drive.period / points)
     state, left = np.empty((5, len(drive))), []
     for i, angle in enumerate(start.tolist()):
         periodic = stable_revolution(drive.part([i]), angle, points)

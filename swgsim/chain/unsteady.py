@@ -131,4 +131,4 @@ def _even_in_time(
         periodic = np.stack([lead, 1 / time_per_angle, out_per_angle / time_per_angle, *torques], axis=1)
         channels[:, i] = CubicSpline(passed, periodic, bc_type="periodic")(share).T
         channels[0, i] += start_angle[i] + 2 * np.pi * share
-    return Motion(*channels, drive.period / points)
+    return Motion.of(channels, drive.period / points)

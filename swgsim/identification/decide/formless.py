@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.identification.decide.option import Option, log_evidence
+from swgsim.identification.decide.option import Option, log_evidences
 from swgsim.identification.decide.prior import log_prior
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.search.regularities import describe, other_laws
@@ -29,10 +29,9 @@ def formless(base: Option, kinds: int) -> Option | None:
     first, *others = describe(fitted)
     regularities = base.regularities or (replace(first, rivals=other_laws(first, others)),)
     opened = replace(base.fitted.allowing(deviations))
-    form_error, of_zeros = log_evidence(opened)
     more = log_prior(len(base.effects), len(regularities), kinds)
     more -= log_prior(len(base.effects), len(base.regularities), kinds)
-    return Option(opened, base.effects, regularities, base.log_prior + more, form_error, of_zeros)
+    return Option(opened, base.effects, regularities, base.log_prior + more, log_evidences(opened))
 
 
 def line_deviations(fitted: Fitted) -> Float[np.ndarray, "row deviation"]:

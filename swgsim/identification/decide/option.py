@@ -1,6 +1,6 @@
 """An option: what the model may lack, fitted with everything else, and its evidence."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
 
@@ -17,6 +17,8 @@ from swgsim.identification.fit.form_error import form_directions, parts
 from swgsim.identification.fit.priors import name_of
 from swgsim.identification.search.regularities import Described, set_free
 
+ZEROS = (1.0, *TIMES_BALANCED)
+
 
 @dataclass(frozen=True, eq=False)
 class Option:
@@ -30,28 +32,37 @@ class Option:
         From the library, as fitted.
     regularities : tuple of Described
     log_prior : float
-    form_error : float
-        Posterior mean of the form error of the effects, as a share; 0 without effects.
-    of_zeros : mapping
-        Log evidence by the factor on the deviation of the zeros of gauges.
+    evidences : array (zeros, form_error)
+        Log evidence by the factor on the deviation of zeros and by the form error, with the priors of both.
     """
 
     fitted: Fitted
     effects: tuple[Effect, ...]
     regularities: tuple[Described, ...]
     log_prior: float
-    form_error: float
-    of_zeros: Mapping[float, float]
+    evidences: Float[np.ndarray, "zeros form_error"]
 
     @property
     def log_evidence(self) -> float:
         """Logarithm of the probability of the recordings, everything else integrated over its prior."""
-        return float(logsumexp(list(self.of_zeros.values())))
+        return float(logsumexp(self.evidences))
+
+    @property
+    def likeliest(self) -> tuple[int, int]:
+        """Numbers of the most probable factor of zeros and form error."""
+        zeros, form_error = np.unravel_index(self.evidences.argmax(), self.evidences.shape)
+        return int(zeros), int(form_error)
 
     @property
     def zeros(self) -> float:
         """Most probable factor on the deviation of the zeros of gauges."""
-        return max(self.of_zeros, key=self.of_zeros.__getitem__)
+        return ZEROS[self.likeliest[0]]
+
+    @property
+    def form_error(self) -> float:
+        """Posterior mean of the form error of the effects, as a share; 0 without effects."""
+        weights = np.exp(logsumexp(self.evidences, axis=0) - self.log_evidence)
+        return float(weights @ np.array(FORM_ERRORS)) if self.effects else 0.0
 
     @property
     def log_posterior(self) -> float:
@@ -63,10 +74,10 @@ class Option:
         """The kinds of its effects with their choices, and its regularities."""
         return causes_of(self.effects, self.regularities)
 
-    def opened(self, zeros: float) -> Fitted:
-        """The fit at a factor of zeros, with the form of its effects open by the form error found."""
-        directions = self.form_error * form_directions(self.fitted, len(self.effects))
-        return self.fitted.with_zeros(zeros).allowing_forms(directions)
+    def opened(self, zeros: int, form_error: int) -> Fitted:
+        """The fit with a factor of zeros, and with the form of its effects open by a form error (numbers of both)."""
+        directions = FORM_ERRORS[form_error] * form_directions(self.fitted, len(self.effects))
+        return self.fitted.with_zeros(ZEROS[zeros]).allowing_forms(directions)
 
 
 def causes_of(effects: Sequence[Effect], regularities: Sequence[Described]) -> frozenset[object]:
@@ -105,7 +116,7 @@ def option(start: Fitted, effects: Sequence[Effect], regularities: Sequence[Desc
     added = fitted.added
     prior = log_prior(len(added), len(regularities), kinds) - len(regularities) * np.log(SCALES)
     prior += sum(size_correction(fitted, number) for number in range(len(added)))
-    return Option(replace(fitted), added, tuple(regularities), prior, *log_evidence(fitted))
+    return Option(replace(fitted), added, tuple(regularities), prior, log_evidences(fitted))
 
 
 def size_correction(fitted: Fitted, number: int) -> float:
@@ -129,27 +140,21 @@ def size_correction(fitted: Fitted, number: int) -> float:
     return float(-np.log(SCALES * size * (1 + both_signs)) + (position**2 + np.log(2 * np.pi)) / 2)
 
 
-def log_evidence(fitted: Fitted) -> tuple[float, dict[float, float]]:
-    """Posterior mean of the form error, and the log evidence of a fit by the factor on the deviation of zeros.
+def log_evidences(fitted: Fitted) -> Float[np.ndarray, "zeros form_error"]:
+    """Log evidence of a fit by the factor on the deviation of zeros and by the form error, with the priors of both.
 
-    All parameters are integrated over their priors (Laplace), and the form error over its grid.
+    All parameters are integrated over their priors (Laplace). The form errors gain the same for all factors of zeros.
     """
     fitted = fitted.with_zeros(1.0)
-    r, wholes = fitted.from_start, {1.0: fitted.whole}
-    wholes |= {times: fitted.whole.with_columns(fitted.measured.further_zeros(times)) for times in TIMES_BALANCED}
-    log_priors = [np.log(1 - BALANCED)] + [np.log(BALANCED / len(TIMES_BALANCED))] * len(TIMES_BALANCED)
-    found = {
-        times: float(log_prior_ + whole.log_likelihood(r))
-        for log_prior_, (times, whole) in zip(log_priors, wholes.items(), strict=True)
-    }
+    r, whole = fitted.from_start, fitted.whole
+    wholes = [whole, *(whole.with_columns(fitted.measured.further_zeros(times)) for times in TIMES_BALANCED)]
+    balanced = np.log([1 - BALANCED, *[BALANCED / len(TIMES_BALANCED)] * len(TIMES_BALANCED)])
+    of_zeros = balanced + [each.log_likelihood(r) for each in wholes]
     directions = form_directions(fitted, len(fitted.added))
     if not directions.shape[1]:
-        return 0.0, found
-    best = wholes[max(found, key=found.__getitem__)]
-    gains = _gains(best.whiten(directions), best.whiten(r))
-    mean = float(np.exp(gains - logsumexp(gains)) @ np.array(FORM_ERRORS))
-    gain = float(logsumexp(gains) - np.log(len(gains)))
-    return mean, {times: each + gain for times, each in found.items()}
+        return of_zeros[:, None]
+    best = wholes[int(of_zeros.argmax())]
+    return of_zeros[:, None] + _gains(best.whiten(directions), best.whiten(r)) - np.log(len(FORM_ERRORS))
 
 
 def _gains(

@@ -99,17 +99,18 @@ class Search:
         """Fit an option with one more effect, or with one more regularity."""
         self._expanded.add(base.causes)
         causes = len(base.effects) + bool(base.regularities)
-        # Zeros that may lie far off hide the effect that moved them.
-        for zeros in dict.fromkeys((base.zeros, 1.0)):
-            opened = base.opened(zeros)
+        # Zeros that may lie far off, and an effect whose form is open, hide the further effect that made them so.
+        zeros, form_error = base.likeliest
+        for setting in dict.fromkeys(((zeros, form_error), (0, form_error), (zeros, 0))):
+            opened, evidence = base.opened(*setting), float(base.evidences[setting])
             start = unbent(opened)
             for gain, score in self._leading(start) if causes + 1 < len(CAUSES) else ():
-                if self._promises(base, base.of_zeros[zeros] + gain, effects=1):
+                if self._promises(base, evidence + gain, effects=1):
                     self._fit(start, (zoom(score, start),), base.regularities)
             if len(base.regularities) < MOST_REGULARITIES and causes + (not base.regularities) < len(CAUSES):
                 first, *others = describe(opened)
                 gain = (first.gain - first.freedom * np.log1p(first.gain / first.freedom)) / 2 - np.log(SCALES)
-                if self._promises(base, base.of_zeros[zeros] + gain, regularities=1):
+                if self._promises(base, evidence + gain, regularities=1):
                     named = replace(first, rivals=other_laws(first, others))
                     self._fit(opened, (), (*base.regularities, named))
 

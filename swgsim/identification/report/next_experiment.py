@@ -88,7 +88,7 @@ def next_experiments(answer: Answer) -> tuple[Experiment, ...]:
     after = answer.decision.after
     for rival, _ in answer.decision.rivals:
         names = (in_words(answer.decision.best), in_words(rival))
-        found += _best(rival.opened(rival.zeros), [after.model], [names])
+        found += _best(rival.opened(*rival.likeliest), [after.model], [names])
     effects = [score.hypothesis.effect() for score in answer.absorbed]
     if effects:
         between = [(f"{effect.title()} of typical size", ABSENCE) for effect in effects]
