@@ -65,8 +65,9 @@ def commission(
         STEPS.info("searching interharmonic lines in %d recordings", len(healthy))
         N = gear.transmission.N
         spectra = gauge_spectra(healthy, N)
-        # Compared with themselves, none is news: all are lines of the healthy gear, and leak into its orders.
-        lines = search(spectra, SEARCHED, ALPHA, unit.interharmonics, healthy=spectra)
+        # Compared with themselves, none is news: all are lines of the healthy gear, and leak into its orders. Their
+        # cause does not matter.
+        lines = search(spectra, (), ALPHA, unit.interharmonics, healthy=spectra)
         STEPS.info("commissioning on %d recordings", len(healthy))
         learned = learn_unit(Measured.of(all_cleaned(healthy, lines.effects, N)), unit)
         return replace(learned, healthy=healthy, lines=lines.usual_effects)

@@ -7,15 +7,13 @@ import pytest
 from loop_fixtures import POINTS
 from sideline_fixtures import NOISE, measured
 
-from swgsim.effects.library import LIBRARY
 from swgsim.effects.line_between import FixedFrequency, FractionalOrder
 from swgsim.identification.interharmonics.interharmonic_spectrum import GaugeSpectrum, gauge_spectra
 from swgsim.identification.interharmonics.line_growth import chance_of_growth
 from swgsim.identification.interharmonics.line_search import search
 
-KINDS = [LIBRARY["bearing_cage"], LIBRARY["mains_hum"]]
 LEVEL = 0.005
-TWICE = 2 * list(POINTS[:3])
+TWICE = 2 * list(POINTS[4:])
 
 
 def line(amplitude: float, order: float = 5.37) -> FractionalOrder:
@@ -31,22 +29,23 @@ def seen(seed: int, *amplitudes: float, points: Sequence = TWICE) -> list[GaugeS
 
 
 def test_noise_is_growth_as_often_as_it_should_be():
-    chances = np.array([chance_of_growth([line(1.0)], seen(2 * i, 0.0), seen(2 * i + 1, 0.0)) for i in range(60)])
+    before, now = seen(1, 0.0), seen(2, 0.0)
+    chances = np.array([chance_of_growth([line(1.0, order)], now, before) for order in np.arange(2.37, 12.0, 0.41)])
     assert 0.3 < chances.mean() < 0.7
-    assert (chances < 0.05).mean() <= 0.05 + 3 * np.sqrt(0.05 / 60)
+    assert (chances < 0.05).mean() <= 0.05 + 3 * np.sqrt(0.05 / len(chances))
 
 
-@pytest.mark.parametrize(("growth", "news"), [(0.5, False), (1.0, False), (1.3, False), (4.0, True)])
+@pytest.mark.parametrize(("growth", "news"), [(1.2, False), (4.0, True)])
 def test_a_line_of_the_healthy_gear_is_news_only_if_it_has_grown(growth, news):
     before, now = seen(1, 2 * NOISE), seen(2, 2 * NOISE * growth)
-    found = search(now, KINDS, LEVEL, healthy=before)
+    found = search(now, (), LEVEL, healthy=before)
     assert len(found.unnamed) == news
-    assert len(found.usual) == (not news)
+    assert bool(found.usual) != news
     assert found.effects
 
 
 def test_what_scatters_from_recording_to_recording_must_grow_by_more():
-    steady, unsteady = (seen(1, *each) for each in ([0.01] * 6, [0.004, 0.004, 0.004, 0.012, 0.012, 0.012]))
+    steady, unsteady = (seen(1, *each) for each in ([0.01] * 4, [0.004, 0.004, 0.012, 0.012]))
     grown = seen(2, 0.02)
     assert chance_of_growth([line(1.0)], grown, steady) < LEVEL
     assert chance_of_growth([line(1.0)], grown, unsteady) > chance_of_growth([line(1.0)], grown, steady)
@@ -56,7 +55,7 @@ def test_a_new_line_is_news_beside_an_old_one():
     hum = FixedFrequency(5e-3, frequency=50.0)
     before = gauge_spectra([measured((hum,), i, [point])[0] for i, point in enumerate(TWICE)])
     now = gauge_spectra([measured((hum, line(2e-3)), 50 + i, [point])[0] for i, point in enumerate(TWICE)])
-    (found,) = search(now, KINDS, LEVEL, healthy=before).unnamed
+    (found,) = search(now, (), LEVEL, healthy=before).unnamed
     assert found.at == pytest.approx(5.37, abs=0.06)
 
 
@@ -72,12 +71,12 @@ def test_a_line_in_another_gauge_has_grown_there():
 
 
 def test_without_repeats_a_line_is_no_steadier_than_from_day_to_day():
-    before = seen(1, 2 * NOISE, points=POINTS[:3])
-    assert chance_of_growth([line(1.0)], seen(2, 2.4 * NOISE, points=POINTS[:3]), before) > LEVEL
-    assert chance_of_growth([line(1.0)], seen(2, 8 * NOISE, points=POINTS[:3]), before) < LEVEL
+    before = seen(1, 2 * NOISE, points=POINTS[3:])
+    assert chance_of_growth([line(1.0)], seen(2, 2.4 * NOISE, points=POINTS[3:]), before) > LEVEL
+    assert chance_of_growth([line(1.0)], seen(2, 8 * NOISE, points=POINTS[3:]), before) < LEVEL
 
 
 def test_the_law_of_a_line_carries_it_to_other_operating_points():
-    before, now = seen(1, 2 * NOISE, points=POINTS[:2]), seen(2, 2 * NOISE, points=POINTS[2:4])
+    before, now = seen(1, 2 * NOISE, points=POINTS[3:4]), seen(2, 2 * NOISE, points=POINTS[4:])
     assert chance_of_growth([line(1.0)], now, before) > LEVEL
-    assert chance_of_growth([line(1.0)], seen(2, 10 * NOISE, points=POINTS[2:4]), before) < LEVEL
+    assert chance_of_growth([line(1.0)], seen(2, 10 * NOISE, points=POINTS[4:]), before) < LEVEL
