@@ -15,11 +15,11 @@ N = 100
 def test_features_of_a_drifting_wave_follow_from_those_of_still_ones(number):
     order, phi = BEATING[number], turning(POINTS[0], 12.2, 10_000.0)
     (drift,) = drifting([recorded({"phi_in": phi})], N)
-    # A kinematic error cos(n phi) makes a cosine of twice the size, a sine follows a quarter of a wave later.
+    # Here a kinematic error makes a torque twice as large.
     cosine, sine = (2 * LAYOUT.vector(np.eye(1, 13, order)[None] * part)[0] for part in (1.0 + 0j, -1j))
     angle = (order - behind(order, N)) * phi + behind(order, N) * phi.mean()
     for phase, part in ((0.0, np.real), (np.pi / 2, np.imag)):
-        seen = features(recorded({"phi_in": phi, "T_out": 2 * np.cos(angle - phase)}), LAYOUT)
+        seen = features(recorded({"phi_in": phi, "T_out": 2 * np.cos(angle + phase)}), LAYOUT)
         np.testing.assert_allclose(part(drift[number] @ (cosine - 1j * sine)), seen, atol=1e-9)
 
 

@@ -15,9 +15,9 @@ from swgsim.identification.data.features import Layout
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model, Situation, predict
 
-# Standard deviations that a test bench would state (conf/condition/bench.yaml); repeats correct them. Where the drive
-# and the gauges are logged by two devices, the gauges have a trigger of their own. It misses the other by 0.1 degree, an
-# estimate: half of the jitter of the index. The size of the beat (data/beat.py) is an estimate too.
+# Standard deviations that a test bench would state (conf/condition/bench.yaml); repeats correct them. Where two devices
+# log the drive and the gauges, the gauges have a trigger of their own: it misses the other by 0.1 degree (an estimate,
+# half the jitter of the index). The size of the beat (data/beat.py) is an estimate too.
 STATED = {
     "load": 0.005,
     "speed": 0.001,

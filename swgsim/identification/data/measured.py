@@ -14,8 +14,9 @@ from swgsim.recordings.recording import Recording
 from swgsim.storage.labelled_signals import SENSORS
 
 # Errors of a whole session, as standard deviations: zeros [N m, mV/V], gains, drifts of a zero [mV/V per hour], the
-# index of the angle, and of the gauges against it where a device of its own logs them [rad]. Zeros of gauges as by 5 K at 1 uV/V per K; gains as of flanges of class 0.2, and of
-# amplifiers that hold 0.03 % from day to day; drifts are an estimate for one that warms up.
+# index of the angle, and that of the gauges against it where a device of its own logs them [rad]. Zeros of gauges as by
+# 5 K at 1 uV/V per K; gains as of flanges of class 0.2, and of amplifiers that hold 0.03 % from day to day; drifts are
+# an estimate for one that warms up, as is the index of the gauges, 0.1 degree.
 OF_SESSION = {
     "zero of T_in": 0.003,
     "zero of T_out": 0.2,

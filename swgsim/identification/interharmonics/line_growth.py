@@ -1,7 +1,7 @@
 """Whether a line between the orders is larger than it was in the healthy gear.
 
-Its phase is another one in every recording, so powers are compared. At the same operating point they differ by noise, by
-what the amplitude scatters from recording to recording, which repeats tell, and by what it differs from day to day.
+Its phase is another one in every recording, so powers are compared. At the same operating point they differ by noise,
+by the scatter of the amplitude from recording to recording, which repeats tell, and by its spread from day to day.
 """
 
 from collections.abc import Sequence
