@@ -105,8 +105,8 @@ def test_without_repeats_all_recordings_tell_it_beside_what_is_open(seed):
     found = from_all(residual, Covariance(RecordingCovariance.white(variance), open_), B, common, STATEMENT)
     share = np.array([found.sd[kind] / STATED[kind] / factor.get(kind, 1.0) for kind in KINDS])
     assert found.repeats == 0
-    # Eighteen errors of each kind leave a sixth.
-    np.testing.assert_allclose(np.log(share), 0, atol=4 / np.sqrt(2 * 18))
+    # Eighteen errors of each kind leave a sixth. Below it, the logarithm has a longer tail.
+    np.testing.assert_allclose(np.log(share), 0, atol=5 / np.sqrt(2 * 18))
     assert np.sqrt(np.diag(found.doubt)) == pytest.approx(np.full(len(KINDS), 1 / np.sqrt(2 * 18)), rel=0.25)
 
 

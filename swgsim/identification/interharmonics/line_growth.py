@@ -31,7 +31,13 @@ def chance_of_growth(
 
     It is 0 if the healthy recordings cannot show the line.
     """
-    return min(1.0, len(parts) * min(_chance(part, spectra, healthy) for part in parts))
+    chances = []
+    for part in parts:
+        # Else the others would pass for noise beside it.
+        others = [other for other in parts if other is not part]
+        now, before = ([each.without(others) for each in some] if others else some for some in (spectra, healthy))
+        chances.append(_chance(part, now, before))
+    return min(1.0, len(parts) * min(chances))
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +89,7 @@ def _chance(effect: Effect, spectra: Sequence[GaugeSpectrum], healthy: Sequence[
     common = [point for point in dict.fromkeys(now.points) if point in before.points] or [None]
     groups = [(now.at(point), before.at(point)) for point in common]
     means = [max(float(np.mean(np.concatenate([a.power, b.power]))), 0.0) for a, b in groups]
-    spread, freedom = _scatter(groups, means)
+    spread, freedom = _scatter([of_healthy for _, of_healthy in groups])
     variance = sum(
         float(((spread * mean) ** 2 + each.noise(mean)).sum()) / len(each.points) ** 2
         for group, mean in zip(groups, means, strict=True)
@@ -96,17 +102,16 @@ def _chance(effect: Effect, spectra: Sequence[GaugeSpectrum], healthy: Sequence[
     return float(t.sf((shown - days) / np.sqrt(variance), freedom) @ weight / weight.sum())
 
 
-def _scatter(groups: Sequence[tuple[_Powers, _Powers]], means: Sequence[float]) -> tuple[float, float]:
+def _scatter(healthy: Sequence[_Powers]) -> tuple[float, float]:
     """Standard deviation of a power from recording to recording as a share of it, and its degrees of freedom."""
     squares = noise = brought = 0.0
     repeats = 0
-    for group, mean in zip(groups, means, strict=True):
-        for each in group:
-            count = len(each.points)
-            squares += float(((each.power - each.power.mean()) ** 2).sum())
-            noise += (1 - 1 / count) * float(each.noise(mean).sum())
-            brought += (count - 1) * mean**2
-            repeats += count - 1
+    for each in healthy:
+        count, mean = len(each.points), max(float(each.power.mean()), 0.0)
+        squares += float(((each.power - each.power.mean()) ** 2).sum())
+        noise += (1 - 1 / count) * float(each.noise(mean).sum())
+        brought += (count - 1) * mean**2
+        repeats += count - 1
     if not repeats:
         return 2 * UNREPEATED, np.inf
     return float(np.sqrt(max(squares - noise, 0.0) / brought)) if brought else 0.0, float(repeats)
