@@ -20,11 +20,14 @@ from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model
 from swgsim.identification.decide.interest import INTEREST
 from swgsim.identification.fit.unit import Unit
+from swgsim.identification.interharmonics.interharmonic_spectrum import gauge_spectra
+from swgsim.identification.interharmonics.line_search import all_cleaned, search
 from swgsim.identification.interharmonics.named_interharmonics import has_sidelines
 from swgsim.identification.report.answer import answer
 from swgsim.identification.report.identification import Identification
 from swgsim.identification.report.next_experiment import next_experiments
 from swgsim.identification.report.report_fields import report
+from swgsim.identification.search.shortlist import ALPHA
 from swgsim.recordings.read import require_usable
 from swgsim.recordings.recording import Recording
 from swgsim.recordings.recording_set import RecordingSet
@@ -59,8 +62,16 @@ def commission(
         healthy = require_comparable(tuple(recordings), "recordings of the healthy gear")
         unit = nominal_unit(gear, declared)
         unit = replace(unit, zero=zero_of(healthy, unit.model))
+        healthy = from_zero(healthy, unit.zero)
+        STEPS.info("searching interharmonic lines in %d recordings", len(healthy))
+        N = gear.transmission.N
+        spectra = gauge_spectra(healthy, N)
+        # Compared with themselves, none is news: all are lines of the healthy gear, and leak into its orders. Their
+        # cause does not matter.
+        lines = search(spectra, (), ALPHA, unit.interharmonics, healthy=spectra)
         STEPS.info("commissioning on %d recordings", len(healthy))
-        return learn_unit(Measured.of(from_zero(healthy, unit.zero)), unit)
+        learned = learn_unit(Measured.of(all_cleaned(healthy, lines.effects, N)), unit)
+        return replace(learned, healthy=healthy, lines=lines.usual_effects)
 
 
 @threadpool_limits.wrap(limits=1)

@@ -15,7 +15,7 @@ from swgsim.identification.fit import healthy_variability as healthy
 from swgsim.identification.fit.priors import of_unit
 
 LAYOUT = Layout(("T_in", "s0", "s1"))
-NAMES = [name for name in OF_SESSION if name == "index" or name.partition(" of ")[2] in LAYOUT.channels]
+NAMES = [name for name in OF_SESSION if "index" in name or name.partition(" of ")[2] in LAYOUT.channels]
 ZEROS = [name for name in NAMES if name.startswith("zero of s")]
 OTHERS = [name for name in NAMES if name not in ZEROS]
 SITUATIONS = tuple(Situation(point, Conditions(25.0 + number, 600.0 * number)) for number, point in enumerate(POINTS))

@@ -24,6 +24,7 @@ from swgsim.identification.covariance.scatter import (
     of_recordings,
     trends,
 )
+from swgsim.identification.data.beat import BEATING
 from swgsim.identification.data.features import ORDERS, Layout
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model, Situation
@@ -104,8 +105,8 @@ def test_without_repeats_all_recordings_tell_it_beside_what_is_open(seed):
     found = from_all(residual, Covariance(RecordingCovariance.white(variance), open_), B, common, STATEMENT)
     share = np.array([found.sd[kind] / STATED[kind] / factor.get(kind, 1.0) for kind in KINDS])
     assert found.repeats == 0
-    # Eighteen errors of each kind leave a sixth.
-    np.testing.assert_allclose(np.log(share), 0, atol=4 / np.sqrt(2 * 18))
+    # Eighteen errors of each kind leave a sixth. Below it, the logarithm has a longer tail.
+    np.testing.assert_allclose(np.log(share), 0, atol=5 / np.sqrt(2 * 18))
     assert np.sqrt(np.diag(found.doubt)) == pytest.approx(np.full(len(KINDS), 1 / np.sqrt(2 * 18)), rel=0.25)
 
 
@@ -182,16 +183,24 @@ def test_what_commissioning_found_holds_without_repeats_and_yields_to_many():
     assert ((shares > 1) & (shares < 3.5)).all()
 
 
-def test_the_beat_is_order_2_of_the_kinematic_error_in_any_phase():
-    """Two such waves, a quarter of a wave apart, have the lines of order 2 in the torque; all else is little."""
+@pytest.mark.parametrize("order", BEATING)
+def test_the_beat_is_an_order_of_the_kinematic_error_in_any_phase(order):
+    """Two such waves, a quarter of a wave apart, have the lines of this order in the torque; all else is little."""
     layout = Layout(("T_in", "T_out"))
     moves = directions(Model(GEAR), [Situation(POINT, Conditions())], layout)[0]
-    cosine, sine = (layout.lines(moves[:, kinds(layout).index(kind)])[1] for kind in ("beat, cosine", "beat, sine"))
-    assert sine[2] / cosine[2] == pytest.approx(-1j, abs=0.02)
-    assert np.abs(np.delete(cosine, 2)).max() < 0.1 * np.abs(cosine[2])
-    # Above the resonance the output stands still: stiffness times error.
+    waves = [f"beat of order {order}, {wave}" for wave in ("cosine", "sine")]
+    cosine, sine = (layout.lines(moves[:, kinds(layout).index(kind)])[1] for kind in waves)
+    assert sine[order] / cosine[order] == pytest.approx(-1j, abs=0.02)
+    assert np.abs(np.delete(cosine, order)).max() < 0.1 * np.abs(cosine[order])
+
+
+def test_above_the_resonance_the_output_stands_still_against_the_beat():
+    """Its torque is stiffness times error."""
+    layout = Layout(("T_in", "T_out"))
+    moves = directions(Model(GEAR), [Situation(POINT, Conditions())], layout)[0]
     t = GEAR.transmission
-    assert np.abs(cosine[2]) == pytest.approx(t.k1 / np.tan(t.alpha_tooth) ** 2, rel=0.5)
+    torque = np.abs(layout.lines(moves[:, kinds(layout).index("beat of order 2, cosine")])[1, 2])
+    assert torque == pytest.approx(t.k1 / np.tan(t.alpha_tooth) ** 2, rel=0.5)
 
 
 def test_errors_are_known_at_the_limits_of_load_and_speed():
@@ -202,16 +211,17 @@ def test_errors_are_known_at_the_limits_of_load_and_speed():
     np.testing.assert_allclose(at_most / scale, at_less / scale, atol=0.02)
 
 
-def test_the_trigger_turns_what_was_recorded_and_all_else_what_the_model_says():
-    """A line whose phase the model misses is turned by the trigger all the same."""
+def test_triggers_turn_what_was_recorded_and_all_else_what_the_model_says():
+    """A line whose phase the model misses is turned by a trigger all the same, that of the gauges turns theirs only."""
     recordings = silent(POINTS[:2], repeats=2)
     values = np.random.default_rng(6).normal(size=(len(recordings), len(LAYOUT)))
     measured = Measured(recordings, LAYOUT, values, np.ones(values.shape))
     moves = of_recordings(Model(GEAR), measured)
     model = directions(Model(GEAR), measured.situations, LAYOUT)[measured.of_recording]
-    order = np.arange(ORDERS + 1)
-    np.testing.assert_allclose(
-        LAYOUT.lines(moves[..., KINDS.index("trigger")]), 1j * order * LAYOUT.lines(values), rtol=1e-12
-    )
-    others = [number for number, kind in enumerate(KINDS) if kind != "trigger"]
-    np.testing.assert_array_equal(moves[..., others], model[..., others])
+    turned = LAYOUT.vector(1j * np.arange(ORDERS + 1) * LAYOUT.lines(values))
+    np.testing.assert_allclose(moves[..., KINDS.index("trigger")], turned, rtol=1e-12)
+    gauges = moves[..., KINDS.index("trigger of gauges")]
+    np.testing.assert_allclose(gauges, turned * np.isin(LAYOUT.channel, ["s0", "s1"]), rtol=1e-12)
+    others = [number for number, kind in enumerate(KINDS) if "trigger" not in kind]
+    # Without samples nothing drifts.
+    np.testing.assert_allclose(moves[..., others], model[..., others], rtol=1e-12)

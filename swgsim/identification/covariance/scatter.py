@@ -10,26 +10,28 @@ from swgsim.effects import ParameterScatter
 from swgsim.effects.frozen import FULL_LOAD
 from swgsim.effects.kinematic_error_order import KinematicErrorOrder
 from swgsim.gear.gear import HIGHEST
+from swgsim.identification.data.beat import BEATING, drifting
 from swgsim.identification.data.features import Layout
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model, Situation, predict
 
-# Standard deviations that a test bench would state (conf/condition/bench.yaml); repeats correct them. The beat is the
-# part of the kinematic error that turns with the circular spline, 2 (1 - 1 / (N + 1)) waves per revolution, which 12
-# revolutions cannot separate from order 2 with a random phase (physics.md 1.2); its size is an estimate.
+# Standard deviations that a test bench would state (conf/condition/bench.yaml); repeats correct them. Where two devices
+# log the drive and the gauges, the gauges have a trigger of their own: it misses the other by 0.1 degree (an estimate,
+# half the jitter of the index). The size of the beat (data/beat.py) is an estimate too.
 STATED = {
     "load": 0.005,
     "speed": 0.001,
     "trigger": 0.0035,
+    "trigger of gauges": 0.0017,
     "viscous friction": 0.05,
     "dry friction": 0.02,
-    "beat, cosine": 2e-6,
-    "beat, sine": 2e-6,
+    **{f"beat of order {order}, {wave}": 2e-6 for order in BEATING for wave in ("cosine", "sine")},
     "zero of n_in": 0.1,
     "zero of T_in": 0.001,
     "zero of T_out": 0.05,
     **{f"zero of s{sensor}": 0.001 for sensor in range(5)},
 }
+BEATS = tuple(kind for kind in STATED if kind.startswith("beat"))
 # The stated values are good to this factor (standard deviation of the logarithm).
 DOUBT = np.log(3.0)
 # Those found by commissioning hold on another day to this factor.
@@ -108,7 +110,9 @@ def directions(
     t = model.gear.transmission
     viscous = model.plus(ParameterScatter(1 + STEP, 1.0))
     dry = replace(model, gear=replace(model.gear, transmission=replace(t, b0=t.b0 * (1 + STEP))))
-    beats = [model.plus(KinematicErrorOrder(2, BEAT_STEP, phase)) for phase in (np.pi / 2, 0.0)]
+    beats = [
+        model.plus(KinematicErrorOrder(order, BEAT_STEP, phase)) for order in BEATING for phase in (np.pi / 2, 0.0)
+    ]
     # All in one go, as the chain takes about as long for many runs as for few.
     every = predict([model, viscous, dry, *beats], [*situations, *shifted("T_out"), *shifted("n_in_rpm")], layout)
     here, loaded, faster = np.split(every, 3, axis=1)
@@ -117,14 +121,16 @@ def directions(
         "load": (loaded[0] - base) / steps["T_out"][:, None],
         "speed": (faster[0] - base) / steps["n_in_rpm"][:, None],
     }
-    for kind, there in zip(("viscous friction", "dry friction", "beat, cosine", "beat, sine"), others, strict=True):
-        slopes[kind] = (there - base) / (BEAT_STEP if "beat" in kind else STEP)
+    for kind, there in zip(("viscous friction", "dry friction", *BEATS), others, strict=True):
+        slopes[kind] = (there - base) / (BEAT_STEP if kind in BEATS else STEP)
     found = []
     for kind in kinds(layout):
         if kind in slopes:
             found.append(slopes[kind])
         elif kind == "trigger":
             found.append(layout.turning(base))
+        elif kind == "trigger of gauges":
+            found.append(layout.turning(base) * layout.of_gauges)
         else:
             channel = kind.removeprefix("zero of ")
             found.append(np.broadcast_to((layout.channel == channel) & (layout.order == 0), base.shape).astype(float))
@@ -132,9 +138,20 @@ def directions(
 
 
 def of_recordings(model: Model, measured: Measured) -> Float[np.ndarray, "recording feature kind"]:
-    """Change of each recording per unit of every error; the trigger turns recorded lines, not predicted ones."""
-    moves = directions(model, measured.situations, measured.layout)[measured.of_recording]
-    moves[..., kinds(measured.layout).index("trigger")] = measured.turning
+    """Change of each recording per unit of every error.
+
+    Triggers turn recorded lines, not predicted ones. A beat drifts over the revolutions of each recording.
+    """
+    layout = measured.layout
+    names = kinds(layout)
+    moves = directions(model, measured.situations, layout)[measured.of_recording]
+    moves[..., names.index("trigger")] = measured.turning
+    moves[..., names.index("trigger of gauges")] = measured.turning * layout.of_gauges
+    beats = [names.index(kind) for kind in BEATS]
+    still = moves[..., beats].reshape(len(measured), len(layout.channels), -1, len(BEATING), 2)
+    drift = drifting(measured.recordings, model.gear.transmission.N)
+    drifted = np.einsum("rbij,rcjb->rcib", drift, still[..., 0] - 1j * still[..., 1])
+    moves[..., beats] = np.stack([drifted.real, -drifted.imag], axis=-1).reshape(len(measured), len(layout), -1)
     return moves
 
 

@@ -9,9 +9,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Complex, Float
+from jaxtyping import Bool, Complex, Float
 
 from swgsim.recordings.recording import Recording
+from swgsim.storage.labelled_signals import SENSORS
 
 # Highest order that is compared; and highest order that is fitted, to prevent leakage.
 ORDERS = 12
@@ -46,6 +47,11 @@ class Layout:
         """Order of each feature."""
         one = np.concatenate([[0], np.arange(1, ORDERS + 1), np.arange(1, ORDERS + 1)])
         return np.tile(one, len(self.channels))
+
+    @property
+    def of_gauges(self) -> Bool[np.ndarray, " feature"]:
+        """Whether each feature is of a gauge."""
+        return np.isin(self.channel, SENSORS)
 
     def lines(self, features: Float[np.ndarray, "*batch feature"]) -> Complex[np.ndarray, "*batch channel order"]:
         """Complex order lines of feature vectors; signal = Re(sum of lines[k] exp(i k phi))."""

@@ -14,14 +14,16 @@ from swgsim.recordings.recording import Recording
 from swgsim.storage.labelled_signals import SENSORS
 
 # Errors of a whole session, as standard deviations: zeros [N m, mV/V], gains, drifts of a zero [mV/V per hour], the
-# index of the angle [rad]. Zeros of gauges as by 5 K at 1 uV/V per K; gains as of flanges of class 0.2, and of
-# amplifiers that hold 0.03 % from day to day; drifts are an estimate for one that warms up.
+# index of the angle, and that of the gauges against it where a device of its own logs them [rad]. Zeros of gauges as by
+# 5 K at 1 uV/V per K; gains as of flanges of class 0.2, and of amplifiers that hold 0.03 % from day to day; drifts are
+# an estimate for one that warms up, as is the index of the gauges, 0.1 degree.
 OF_SESSION = {
     "zero of T_in": 0.003,
     "zero of T_out": 0.2,
     "gain of T_in": 0.002,
     "gain of T_out": 0.002,
     "index": 0.02,
+    "index of gauges": 0.0017,
     **{f"zero of s{sensor}": 0.005 for sensor in range(5)},
     **{f"gain of s{sensor}": 0.0003 for sensor in range(5)},
     **{f"drift of s{sensor}": 0.002 for sensor in range(5)},
@@ -141,14 +143,15 @@ class Measured:
                 kind, _, channel = name.partition(" of ")
                 if kind == "zero" and channel in SENSORS:
                     continue  # which come last
-                own, mean = layout.channel == channel, self._mean_of(channel)
+                own = layout.of_gauges if channel == "gauges" else layout.channel == channel
+                mean = self._mean_of(channel)
                 moved = {
-                    "index": self.turning,
+                    "index": self.turning * (own if channel else True),
                     "zero": mean[None, :],
                     "gain": own * predicted[self.of_recording],
                     "drift": self._hours * mean,
                 }[kind]
-                if kind == "index" or own.any():
+                if own.any() or not channel:
                     columns.append((sd * here * moved).ravel())
         zeros, walks = self._zeros(known)
         return np.hstack([np.stack(columns, axis=1), self.zeros * zeros, _wandering(self.zeros) * walks])

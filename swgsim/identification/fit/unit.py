@@ -69,6 +69,9 @@ class Unit:
         Angle by which the recorded angle is ahead of the model's [rad].
     interharmonics : tuple of Effect
         Declared effects that make interharmonic lines; the model of the order lines has no part of them.
+    lines : tuple of Effect
+        Interharmonic lines of the healthy gear that commissioning found, with law, pattern and amplitude. How they
+        scatter is told by :attr:`healthy`.
     """
 
     model: Model
@@ -84,6 +87,7 @@ class Unit:
     healthy: tuple[Recording, ...] = ()
     zero: float = 0.0
     interharmonics: tuple[Effect, ...] = ()
+    lines: tuple[Effect, ...] = ()
 
     def __repr__(self) -> str:
         name = f"gear {self.model.gear.number}"
@@ -96,7 +100,8 @@ class Unit:
             if self.commissioned
             else "not commissioned: the prior is the spread of a series"
         )
-        return f"Unit of {name}, {state}; declared effects: {declared or 'none'}"
+        lines = f"; interharmonic lines: {', '.join(each.title() for each in self.lines)}" if self.lines else ""
+        return f"Unit of {name}, {state}; declared effects: {declared or 'none'}{lines}"
 
     @property
     def commissioned(self) -> bool:

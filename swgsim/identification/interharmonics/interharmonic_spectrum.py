@@ -12,6 +12,7 @@ from scipy.stats import f
 from swgsim.common.singular import svd
 from swgsim.effects.base import Effect, Scene
 from swgsim.effects.quantity import Role, quantities
+from swgsim.identification.data.beat import beat_orders
 from swgsim.identification.data.features import FITTED, Layout, basis
 from swgsim.identification.data.noise import GUARD, Floor, floors, step_of
 from swgsim.recordings.recording import CHANNELS, Recording
@@ -26,9 +27,6 @@ SAMPLES = 48
 NEIGHBOURS = 6
 # Weight of the common noise floor in the noise next to a line, as a number of degrees of freedom.
 ALL_TOGETHER = 20
-# Orders close to which lines of the beat of circular spline and flex spline lie. The torque beats close to order 2. As
-# the two lobes carry the torque past the gauges, the gauges beat close to orders 0 and 4.
-BEATING = (0, 2, 4)
 # Part of a direction that a line must hold to be one of its lines.
 HELD = 0.05
 
@@ -202,7 +200,7 @@ def gauge_spectra(recordings: Sequence[Recording], N: int | None = None) -> list
     N : int, optional
         Ratio of their gear, whose circular spline beats with its flex spline; None: nothing does.
     """
-    gauges = tuple(sensor for sensor in SENSORS if all(sensor in r.channels for r in recordings))
+    gauges = tuple(sensor for sensor in SENSORS if recordings and all(sensor in r.channels for r in recordings))
     noise = floors(recordings, Layout(gauges)) if gauges else []
     return [GaugeSpectrum.of(recording, gauges, noise, N) for recording in recordings] if gauges else []
 
@@ -231,7 +229,7 @@ def ordinary(scene: Scene, N: int | None = None) -> Float[np.ndarray, "time colu
     gear of ratio N, what turns with its circular spline, close to some of them.
     """
     time, phi = scene.time, scene.phi_in
-    beats = [] if N is None else [phi * abs(order - 2 / (N + 1)) for order in BEATING]
+    beats = [] if N is None else [phi * order for order in beat_orders(N)]
     waves = [wave(angle) for angle in beats for wave in (np.cos, np.sin)]
     return np.column_stack([basis(phi, FITTED), (time - time.mean()) / float(np.ptp(time)), *waves])
 

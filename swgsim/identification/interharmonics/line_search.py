@@ -1,5 +1,6 @@
 """What lies between the orders: effects with a name and lines without one, the strongest first, and recordings without
-them. A strong line leaks into the orders, and there would pass for something else in every recording.
+them. A strong line leaks into the orders, and there would pass for something else in every recording. A line that the
+healthy gear shows as well is no news: it is taken out, too, but not reported.
 """
 
 from collections.abc import Iterable, Sequence
@@ -12,12 +13,13 @@ from swgsim.common.singular import svd
 from swgsim.effects.base import Effect
 from swgsim.identification.fit.form_error import OUTDONE, OUTDONE_SHARE
 from swgsim.identification.interharmonics.interharmonic_spectrum import GaugeSpectrum, ordinary, scene_of, shapes
+from swgsim.identification.interharmonics.line_growth import chance_of_growth
 from swgsim.identification.interharmonics.named_interharmonics import Sideline, nearby, ranked
 from swgsim.identification.interharmonics.unattributed_lines import Unnamed, unnamed
 from swgsim.recordings.recording import Recording
 from swgsim.storage.labelled_signals import SENSORS
 
-# Lines that are found at most, with a name or without.
+# Lines that are reported at most, with a name or without.
 MOST = 4
 # Shapes below this share of the largest one are rounding; above the other one they are seen as well as it.
 LEAST_SHAPE, WELL_SEEN = 1e-3, 0.5
@@ -35,20 +37,56 @@ class LinesBetween:
         The spectra without it.
     effects : tuple of Effect
         All that it may have put on the signals.
+    healthy : tuple of GaugeSpectrum
+        Those of the healthy gear without it.
+    usual : tuple of Sideline or Unnamed
+        Lines that the healthy gear shows as well.
     """
 
     named: tuple[Sideline, ...]
     unnamed: tuple[Unnamed, ...]
     left: tuple[GaugeSpectrum, ...]
     effects: tuple[Effect, ...]
+    healthy: tuple[GaugeSpectrum, ...] = ()
+    usual: tuple[Sideline | Unnamed, ...] = ()
+
+    @property
+    def usual_effects(self) -> tuple[Effect, ...]:
+        """The lines that the healthy gear shows as well, as effects that can be declared."""
+        return tuple(
+            effect
+            for line in self.usual
+            for effect in ((line.effect,) if isinstance(line, Sideline) else (part.effect for part in line.parts))
+        )
 
     def taking_out(self, effects: Sequence[Effect]) -> "LinesBetween":
         """The same without what these effects may have put there."""
-        return replace(self, left=tuple(each.without(effects) for each in self.left), effects=(*self.effects, *effects))
+        left, healthy = (tuple(each.without(effects) for each in spectra) for spectra in (self.left, self.healthy))
+        return replace(self, left=left, healthy=healthy, effects=(*self.effects, *effects))
+
+    def with_named(self, line: Sideline, level: float) -> "LinesBetween":
+        """The same with one more effect, which is news or not."""
+        if self._is_news(line.effect.parts(), level):
+            return replace(self, named=(*self.named, line))
+        return replace(self, usual=(*self.usual, line))
+
+    def with_unnamed(self, line: Unnamed, level: float) -> "LinesBetween":
+        """The same with one more line without a name, which is news or not."""
+        if self._is_news(line.alone(self.left[0].gauges), level):
+            return replace(self, unnamed=(*self.unnamed, line))
+        return replace(self, usual=(*self.usual, line))
+
+    def _is_news(self, parts: Sequence[Effect], level: float) -> bool:
+        """Whether a line of the healthy gear would show so much with a probability below this level only."""
+        return not self.healthy or chance_of_growth(parts, self.left, self.healthy) <= level
 
 
 def search(
-    spectra: Sequence[GaugeSpectrum], kinds: Iterable[type[Effect]], level: float, known: Sequence[Effect] = ()
+    spectra: Sequence[GaugeSpectrum],
+    kinds: Iterable[type[Effect]],
+    level: float,
+    known: Sequence[Effect] = (),
+    healthy: Sequence[GaugeSpectrum] = (),
 ) -> LinesBetween:
     """Find interharmonic lines one after the other, as long as one is significant.
 
@@ -61,8 +99,10 @@ def search(
         Probability of a false one.
     known : sequence of Effect
         Declared effects, which are taken out first.
+    healthy : sequence of GaugeSpectrum
+        Of the recordings of the healthy gear, if there are any.
     """
-    found = LinesBetween((), (), tuple(spectra), ())
+    found = LinesBetween((), (), tuple(spectra), (), tuple(healthy))
     for effect in known if spectra else ():
         found = found.taking_out(nearby(effect, spectra))
     sought = list(kinds)
@@ -74,10 +114,10 @@ def search(
             coupled = (line for line in likely if line.chance <= level and line.holds and _in_parts(line))
             best = next((line for line in coupled if _explains(line, bare, found.left)), None)
         if best:
-            found = replace(found, named=(*found.named, best)).taking_out(_near(best, spectra))
+            found = found.with_named(best, level).taking_out(_near(best, spectra))
             sought = [kind for kind in sought if _in_parts(best) or kind is not type(best.effect)]
         elif bare:
-            found = replace(found, unnamed=(*found.unnamed, bare)).taking_out(bare.effects(spectra[0].gauges))
+            found = found.with_unnamed(bare, level).taking_out(bare.effects(spectra[0].gauges))
         else:
             break
     return found
@@ -97,6 +137,13 @@ def _explains(line: Sideline, bare: Unnamed, left: Sequence[GaugeSpectrum]) -> b
 def _near(line: Sideline, spectra: Sequence[GaugeSpectrum]) -> list[Effect]:
     """All that may be there where an effect is."""
     return [part for each in nearby(line.effect, spectra) for part in each.parts()]
+
+
+def all_cleaned(
+    recordings: Sequence[Recording], effects: Sequence[Effect], N: int | None = None
+) -> tuple[Recording, ...]:
+    """The recordings, each :func:`cleaned`."""
+    return tuple(cleaned(each, effects, N) for each in recordings) if effects else tuple(recordings)
 
 
 def cleaned(recording: Recording, effects: Sequence[Effect], N: int | None = None) -> Recording:

@@ -54,6 +54,10 @@ class Unnamed:
         places = self.at + self.reach * np.array([-1.0, 0.0, 1.0])
         return [line for place in places.tolist() for line in self._in(gauges, place)]
 
+    def alone(self, gauges: Sequence[str]) -> list[LineBetween]:
+        """The line in each of these gauges."""
+        return self._in(gauges, self.at)
+
     def with_parts(self, spectra: Sequence[GaugeSpectrum], level: float) -> "Unnamed":
         """The line with its parts; a gauge is a false one with this probability."""
         make = partial(_line, self.kind, self.at)

@@ -14,7 +14,7 @@ from swgsim.identification.decide.interest import INTEREST
 from swgsim.identification.decide.option import Option
 from swgsim.identification.fit.unit import Unit
 from swgsim.identification.interharmonics.interharmonic_spectrum import gauge_spectra
-from swgsim.identification.interharmonics.line_search import cleaned, search
+from swgsim.identification.interharmonics.line_search import all_cleaned, search
 from swgsim.identification.interharmonics.named_interharmonics import Sideline
 from swgsim.identification.interharmonics.unattributed_lines import Unnamed
 from swgsim.identification.search.high_orders import above
@@ -137,8 +137,8 @@ def answer(
     forget()
     STEPS.info("searching interharmonic lines in %d recordings", len(recordings))
     N = unit.model.gear.transmission.N
-    lines = search(gauge_spectra(recordings, N), kinds, ALPHA, known)
-    clean = [cleaned(recording, lines.effects, N) for recording in recordings] if lines.effects else recordings
+    lines = search(gauge_spectra(recordings, N), kinds, ALPHA, known, gauge_spectra(unit.healthy, N))
+    clean = all_cleaned(recordings, lines.effects, N)
     decision = decide(Measured.of(clean), unit, kinds, seed=seed)
     STEPS.info("describing the remainder")
     high = above(clean, unit.healthy, decision.before.model, decision.after.model, ALPHA, MOST_ABOVE)
