@@ -50,6 +50,8 @@ class Unit:
     structure : float
         Structural error relative to a gauge's largest line: the declared value, or that of the lines of s1 to s4 as
         found by commissioning.
+    spread : float
+        Spread of the factors of the structure, the logarithm of each, as found by commissioning; 0 for factors of 1.
     seen_healthy : bool
         Whether healthy recordings determine the unit; more nuisance parameters are then free.
     scatter : Scatter or None
@@ -75,6 +77,7 @@ class Unit:
     reach: Float[np.ndarray, "direction direction"] | None = None
     shift: Float[np.ndarray, " direction"] | None = None
     structure: float = STRUCTURE
+    spread: float = 0.0
     seen_healthy: bool = False
     scatter: Scatter | None = None
     nominal: Gear | None = None
@@ -116,7 +119,7 @@ class Unit:
     @property
     def declared(self) -> dict[str, Declared]:
         """Parameters of the gear that are not known exactly, with their spread before commissioning."""
-        return of_unit(self.nominal or self.model.gear, ANY_FRICTION if self.seen_healthy else SERIES)
+        return of_unit(self.nominal or self.model.gear, ANY_FRICTION if self.seen_healthy else SERIES, self.spread)
 
     def inflated(self, variance: Float[np.ndarray, "recording feature"]) -> Float[np.ndarray, "recording feature"]:
         """Variance of independent errors, from that of noise."""
