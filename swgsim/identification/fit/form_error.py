@@ -25,8 +25,6 @@ FORM_TOLERANCE = 0.2
 LEAST_LOAD = 1.0
 # Form errors of which the most probable one is selected.
 FORM_ERRORS = np.append(0.0, np.geomspace(1e-3, 10, 200))
-# Shares of its declared inaccuracy that a structure of another author's may need for the form of an effect.
-INACCURATE = (0.1, 0.3, 1.0)
 # Probability below which the parts contradict one another even so.
 CONTRADICTION = 1e-3
 # Parts that differ so much have no size in common: the standard deviation is this share of the size, so a size of zero
@@ -48,8 +46,7 @@ class Coherence:
     form_error : float
         Share by which the parts likeliest differ from the library's shape.
     doubt : float
-        Share by which such parts make the size uncertain, which is a mean over them, and so does an inaccurate
-        structural model (standard deviation).
+        Share by which such parts make the size uncertain, which is a mean over them (standard deviation).
     disagreement : float
         That by the parts alone, where they differ beyond noise; 0 where noise may be all of it.
     """
@@ -127,20 +124,7 @@ def allowance(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
                 columns.append(layout.vector(one).reshape(-1, 1))
     whole, open_ = signed[:, None], np.hstack(columns)
     weighed = whole / fitted.errors.variance[:, None]
-    tolerated = FORM_TOLERANCE * (open_ - whole @ (weighed.T @ open_) / float((weighed * whole).sum()))
-    return np.hstack([tolerated, _of_structure(fitted, number, signed)])
-
-
-def _of_structure(fitted: Fitted, number: int, signed: Float[np.ndarray, " row"]) -> Float[np.ndarray, "row column"]:
-    """What an inaccurate structural model leaves open of the signature of an effect that acts on the structure.
-
-    What torque does to the gauges, and gauges and amplifiers to their signals, commissioning has learned.
-    """
-    if not fitted.model.effects[number].structural:
-        return np.zeros((len(signed), 0))
-    measured = fitted.measured
-    columns = fitted.unit.open_of(signed.reshape(measured.values.shape), measured.layout)
-    return columns.reshape(len(signed), -1)
+    return FORM_TOLERANCE * (open_ - whole @ (weighed.T @ open_) / float((weighed * whole).sum()))
 
 
 def open_form(fitted: Fitted, added: int) -> Fitted:
@@ -152,8 +136,7 @@ def open_form(fitted: Fitted, added: int) -> Fitted:
 def coherence(fitted: Fitted, number: int) -> Coherence:
     """Whether the parts of an effect's signature agree on its size."""
     signed = signature(fitted, number)
-    structure = _of_structure(fitted, number, signed)
-    whole = fitted.whole.with_columns(structure)
+    whole = fitted.whole
     split = whole.whiten(forms(fitted, signed))
     if not np.any(split):
         return Coherence(0.0, 0.0, 0.0)
@@ -167,28 +150,27 @@ def coherence(fitted: Fitted, number: int) -> Coherence:
     minus_2_log_likelihood = (u**2 / wider + np.log(wider)).sum(axis=1)
     error = float(FORM_ERRORS[np.argmin(minus_2_log_likelihood)])
     form_columns = error * parts(fitted, signed)
-    shares = _shares(fitted, number, signed, np.hstack([form_columns, structure]))
+    shares = _shares(fitted, number, signed, form_columns)
     beyond_noise = minus_2_log_likelihood[0] - minus_2_log_likelihood.min() > as_squares(LEAST_GAIN)
     # An effect in one channel and one order has parts that are the whole of it; they cannot disagree.
     several = (form_columns != error * signed[:, None]).any(axis=0)
-    disagreement = float(np.linalg.norm(shares[: form_columns.shape[1]][several])) if beyond_noise else 0.0
+    disagreement = float(np.linalg.norm(shares[several])) if beyond_noise else 0.0
     return Coherence(chance, error, float(np.linalg.norm(shares)), disagreement)
 
 
 def open_as_found(fitted: Fitted, coherences: Sequence[Coherence]) -> Fitted:
-    """A fit with the form of the last effects free, by their form error within the tolerance and by the most probable
-    structural error up to the declared one.
+    """A fit with the form of the last effects free, by their form error within the tolerance.
 
     With the exact library form, a slightly different cause would predict other operating points badly, and an effect
     that imitates it would be preferred.
     """
     numbers = range(len(fitted.model.effects) - len(coherences), len(fitted.model.effects))
-    signed = [signature(fitted, number) for number in numbers]
-    by_parts = [each.tolerated * forms(fitted, s) for each, s in zip(coherences, signed, strict=True) if each.tolerated]
-    opened = fitted.allowing(np.hstack(by_parts)) if by_parts else fitted
-    structure = np.hstack([_of_structure(fitted, number, each) for number, each in zip(numbers, signed, strict=True)])
-    tried = [opened, *(opened.allowing(share * structure) for share in INACCURATE if structure.any())]
-    return max(tried, key=lambda each: each.log_likelihood)
+    by_parts = [
+        each.tolerated * forms(fitted, signature(fitted, number))
+        for number, each in zip(numbers, coherences, strict=True)
+        if each.tolerated
+    ]
+    return fitted.allowing(np.hstack(by_parts)) if by_parts else fitted
 
 
 def doubt_by_others(fitted: Fitted, number: int, others: Mapping[int, Coherence]) -> float:
@@ -208,8 +190,7 @@ def doubt_by_others(fitted: Fitted, number: int, others: Mapping[int, Coherence]
 def moved_by_forms(fitted: Fitted, coherences: Mapping[int, Coherence]) -> dict[str, float]:
     """Standard deviation by which each fitted parameter is moved, as effects differ from the library's shape.
 
-    Parts of all of them are larger or smaller, and an inaccurate structure adds what it may; that lines are turned is
-    not in it.
+    Parts of all of them are larger or smaller; that lines are turned is not in it.
 
     Parameters
     ----------
@@ -220,7 +201,7 @@ def moved_by_forms(fitted: Fitted, coherences: Mapping[int, Coherence]) -> dict[
     off = [np.zeros((len(fitted.residual), 0))]
     for number, each in coherences.items():
         signed = signature(fitted, number)
-        off += [each.form_error * parts(fitted, signed), _of_structure(fitted, number, signed)]
+        off.append(each.form_error * parts(fitted, signed))
     J = fitted.of_unit.whiten(fitted.J)
     moved = np.linalg.solve(J.T @ J + np.eye(J.shape[1]), J.T @ fitted.of_unit.whiten(np.hstack(off)))
     by = np.linalg.norm(moved, axis=1).tolist()

@@ -24,6 +24,9 @@ SERIES, ANY_FRICTION = 0.1, 0.5
 STRAINED = 0.01
 # Of each part of the kinematic error [rad], of a gauge's zero [mV/V], of its position and direction [rad]; estimates.
 ERROR_PART, ZERO, PLACED = 0.3e-4, 0.02, 0.01
+# Spread of the factors of s0 relative to those of the other gauges: of waves that its arms nearly cancel, what is left
+# depends on where they are; an estimate.
+S0_ARMS = 3.0
 # Wave numbers over which the factors of another structure keep much of their value; an estimate, by the trusses of two
 # authors. Modes of their course below this share of the largest are nothing beside the declared error of the maps.
 COURSE, LEAST_MODE = 2.0, 0.005
@@ -130,7 +133,7 @@ def of_structure(spread: float) -> dict[str, Declared]:
     """
     if not spread:
         return {}
-    smooth, single = smooth_modes(COURSE, LEAST_MODE), np.eye(WAVES)[list(SEEN_BY_S0)]
+    smooth, single = smooth_modes(COURSE, LEAST_MODE), S0_ARMS * np.eye(WAVES)[list(SEEN_BY_S0)]
     kinds = {"wave_generator": smooth, "teeth": smooth, "wave_generator_s0": single, "teeth_s0": single}
     return {
         f"response to {kind.replace('_', ' ')}, {part} {number}": _of_factors(kind, mode, turn, spread)
@@ -157,7 +160,9 @@ def _of_factors(kind: str, mode: Float[np.ndarray, " wave"], turn: complex, spre
     return _of_gear("-" if turn == 1 else "rad", spread, value, moved)
 
 
-def of_unit(gear: Gear, friction: float = SERIES, structure: float = 0.0) -> dict[str, Declared]:
+def of_unit(
+    gear: Gear, friction: float = SERIES, structure: float = 0.0, of_gauges: float = 1.0
+) -> dict[str, Declared]:
     """The parameters by which units differ from the nominal gear, with their spread in a series.
 
     Parameters
@@ -168,6 +173,8 @@ def of_unit(gear: Gear, friction: float = SERIES, structure: float = 0.0) -> dic
         Spread of b0, b1 and mu, as a share.
     structure : float
         Spread of the factors of the structure (:func:`of_structure`).
+    of_gauges : float
+        Spread of gains, positions and directions of the gauges, relative to that of a series.
     """
     t = gear.transmission
     found = {
@@ -196,10 +203,10 @@ def of_unit(gear: Gear, friction: float = SERIES, structure: float = 0.0) -> dic
         for part in ("sine", "cosine"):
             found[f"kinematic error {term.order} {part}"] = _of_kinematic_error(term.order, part, ERROR_PART)
     for sensor in range(5):
-        found[f"gain of s{sensor}"] = _of_gauge("gain", sensor, "-", STRAINED)
+        found[f"gain of s{sensor}"] = _of_gauge("gain", sensor, "-", of_gauges * STRAINED)
         found[f"zero of s{sensor}"] = _of_gauge("offset", sensor, "mV/V", ZERO)
-        found[f"position of s{sensor}"] = _of_gauge("position", sensor, "rad", PLACED)
-        found[f"grid angle of s{sensor}"] = _of_gauge("grid_angle", sensor, "rad", PLACED)
+        found[f"position of s{sensor}"] = _of_gauge("position", sensor, "rad", of_gauges * PLACED)
+        found[f"grid angle of s{sensor}"] = _of_gauge("grid_angle", sensor, "rad", of_gauges * PLACED)
     return found | of_structure(structure)
 
 
