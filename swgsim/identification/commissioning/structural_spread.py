@@ -39,11 +39,16 @@ def with_probable_spreads(
         Parameters that stay there.
     """
     wide = fit(measured, replace(unit, structure=WIDEST, of_gauges=OF_GAUGES[-1]), position=position, held=held)
-    units = [replace(unit, structure=s, of_gauges=g) for s, g in product(SPREADS, OF_GAUGES)]
-    found = max(units, key=lambda each: _evidence(wide, each))
+    found = most_probable(wide)
     ratios = _ratios(wide, found)
     narrow = {name: by / ratios[name] for name, by in wide.calibrated.position.items()}
     return fit(measured, found, position={**position, **narrow}, held=held)
+
+
+def most_probable(wide: Fitted) -> Unit:
+    """The unit of a fit with the most probable spreads."""
+    units = [replace(wide.unit, structure=s, of_gauges=g) for s, g in product(SPREADS, OF_GAUGES)]
+    return max(units, key=lambda each: _evidence(wide, each))
 
 
 def _evidence(fitted: Fitted, unit: Unit) -> float:
