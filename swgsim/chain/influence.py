@@ -21,6 +21,7 @@ from swgsim.effects.base import Crack, Effect, overrides
 from swgsim.flexspline.cyclic import order_weights, orders
 from swgsim.flexspline.flexspline import BAND, TEETH, WAVE_GENERATOR, FlexSpline, gauge_response
 from swgsim.flexspline.gauges import GaugeSet, offsets
+from swgsim.flexspline.structure_factors import EXACT_STRUCTURE, StructureFactors
 from swgsim.gear.gear import WaveGenerator
 
 # Highest order per wave-generator revolution that the maps keep, and the angles at which they are sampled.
@@ -155,8 +156,9 @@ def boundary_conditions(
 
 
 def influence_map(
-    flex: FlexSpline, wave_generator: WaveGenerator, gauges: GaugeSet, effects: Sequence[Effect] = ()
-) -> InfluenceMap:
+    flex: FlexSpline, wave_generator: WaveGenerator, gauges: GaugeSet, effects: Sequence[Effect] = (),
+    factors: StructureFactors = EXACT_STRUCTURE,
+) -> InfluenceMap:  # fmt: skip
     """The influence map of one structure.
 
     Parameters
@@ -166,10 +168,12 @@ def influence_map(
     gauges : GaugeSet
     effects : sequence of Effect
         Effects on wave generator, mesh or structure.
+    factors : StructureFactors
+        By which the structure differs from the truss; cracks are those of the truss.
     """
     loading = tuple(effect for effect in effects if overrides(effect, "wave_generator", "engaged", "mesh", "carried"))
     amplitudes = _load_amplitudes(flex, wave_generator, loading)
-    response = gauge_response(flex, gauges)
+    response = gauge_response(flex, gauges, factors)
     cracks = [crack for effect in effects for crack in effect.cracks()]
     values = np.stack([
         (amplitude @ response[:, :, load]).real + _cracked(flex, response, amplitude, load, cracks)

@@ -19,6 +19,7 @@ from swgsim.effects.quantity import quantities
 from swgsim.flexspline.flexspline import solve_flex_spline
 from swgsim.flexspline.gauges import GaugeSet
 from swgsim.flexspline.silk_hat import SilkHat
+from swgsim.flexspline.structure_factors import StructureFactors
 from swgsim.gear.gear import Gear, WaveGenerator
 
 # Distance of the factors whose maps are computed, and those around a factor for interpolation, exact to 1e-8 mV/V.
@@ -33,13 +34,15 @@ class Structure(NamedTuple):
     wave_generator: WaveGenerator
     gauges: GaugeSet
     effects: tuple[Effect, ...]
+    factors: StructureFactors
 
     @classmethod
     def of(cls, gear: Gear, effects: Sequence[Effect]) -> "Structure":
         """The structure of a gear, with the effects that act on it."""
         places = ("wave_generator", "engaged", "mesh", "carried", "cracks")
         touching = tuple(effect for effect in effects if overrides(effect, *places))
-        return cls(gear.flex_spline, gear.transmission.alpha_tooth, gear.wave_generator, gear.gauges, touching)
+        alpha_tooth = gear.transmission.alpha_tooth
+        return cls(gear.flex_spline, alpha_tooth, gear.wave_generator, gear.gauges, touching, gear.factors)
 
 
 def map_of(structure: Structure, sectors: int) -> InfluenceMap:
@@ -61,4 +64,4 @@ def map_of(structure: Structure, sectors: int) -> InfluenceMap:
 @lru_cache(maxsize=512)
 def _computed(structure: Structure, sectors: int) -> InfluenceMap:
     flex = solve_flex_spline(structure.hat, structure.alpha_tooth, sectors)
-    return influence_map(flex, structure.wave_generator, structure.gauges, structure.effects)
+    return influence_map(flex, structure.wave_generator, structure.gauges, structure.effects, structure.factors)

@@ -15,6 +15,7 @@ from swgsim.flexspline import cyclic
 from swgsim.flexspline.gauges import GaugeSet, bridges, strain_rows
 from swgsim.flexspline.lattice import INNER, OUTER
 from swgsim.flexspline.silk_hat import Sector, SilkHat, sector
+from swgsim.flexspline.structure_factors import EXACT_STRUCTURE, StructureFactors
 
 WAVE_GENERATOR, TEETH, BAND = 0, 1, 2
 
@@ -77,9 +78,17 @@ class FlexSpline:
         return (around @ per_order).real.reshape(self.sector.count, -1, 3)
 
 
-@lru_cache(maxsize=64)
-def gauge_response(flex: FlexSpline, gauges: GaugeSet) -> Complex[np.ndarray, "order 5 load"]:
+def gauge_response(
+    flex: FlexSpline, gauges: GaugeSet, factors: StructureFactors = EXACT_STRUCTURE
+) -> Complex[np.ndarray, "order 5 load"]:
     """Bridge signals per load and circumferential order [mV/V per m, per N]."""
+    response = _gauge_response(flex, gauges)
+    return response if factors == EXACT_STRUCTURE else factors.applied(response)
+
+
+@lru_cache(maxsize=64)
+def _gauge_response(flex: FlexSpline, gauges: GaugeSet) -> Complex[np.ndarray, "order 5 load"]:
+    """The same with the structure of the truss."""
     return bridges(gauges, _strain(flex, gauges.radius))
 
 

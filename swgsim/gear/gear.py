@@ -11,6 +11,7 @@ from swgsim.common.checks import require, require_integer, require_positive
 from swgsim.common.configured import conf_folder
 from swgsim.flexspline.gauges import GaugeSet
 from swgsim.flexspline.silk_hat import SilkHat
+from swgsim.flexspline.structure_factors import EXACT_STRUCTURE, StructureFactors
 from swgsim.gear.gear_file import gear_values
 
 # Strokes of wave generators of this size [m].
@@ -128,6 +129,8 @@ class Gear:
     ----------
     number : int
         Number of the gear, from 1.
+    factors : StructureFactors
+        By which its structure differs from the truss of the chain.
     """
 
     number: int = 1
@@ -135,6 +138,7 @@ class Gear:
     flex_spline: SilkHat = field(default_factory=SilkHat)
     wave_generator: WaveGenerator = field(default_factory=WaveGenerator)
     gauges: GaugeSet = field(default_factory=GaugeSet)
+    factors: StructureFactors = EXACT_STRUCTURE
 
     def __post_init__(self) -> None:
         require_integer("the gear", "number", self.number, low=1, high=2**31 - 1)

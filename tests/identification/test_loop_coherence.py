@@ -8,7 +8,6 @@ from chain_fixtures import GEAR
 from loop_fixtures import Bump, Wave, drawn, fitted_to, holding
 from swgsim.identification.decide.candidate import EXACT, widened
 
-from swgsim.identification.covariance.influence_map_error import lines_anywhere
 from swgsim.identification.covariance.low_rank_covariance import Covariance
 from swgsim.identification.data.features import Layout
 from swgsim.identification.data.model import Model
@@ -16,7 +15,7 @@ from swgsim.identification.fit import form_error as evidence
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.form_error import NO_SIZE
 from swgsim.identification.fit.priors import Declared, of_effects
-from swgsim.identification.fit.unit import LESS, STRUCTURE
+from swgsim.identification.fit.unit import STRUCTURE
 
 LAYOUT = Layout(("T_in", "s0", "s1"))
 STRONG = 10.0  # in units of the noise, feature by feature
@@ -124,41 +123,16 @@ def test_parts_that_leave_no_size_do_not_agree(planted, judged):
 
 @pytest.fixture
 def of_gauges(planted, monkeypatch):
-    """A model with an effect that gauges show, its signature, and what another structure makes of that: columns."""
+    """A model with an effect that gauges show, and its signature."""
     fitted, whole = planted
     gauges = whole * (np.tile(LAYOUT.channel != "T_in", len(fitted.measured)))
     monkeypatch.setattr(evidence, "signature", lambda fitted, number: gauges)
-    monkeypatch.setattr(Bump, "place", "structure")
-    columns = lines_anywhere(gauges.reshape(fitted.measured.values.shape), LAYOUT).reshape(len(gauges), -1)
-    return replace(fitted, calibrated=replace(fitted.calibrated, model=Model(GEAR, (Bump(1.0),)))), gauges, columns
-
-
-def test_small_parts_are_as_uncertain_as_commissioning_found_the_structure(of_gauges):
-    """What lies off by a share of the largest line is a contradiction only where the structure is known better."""
-    fitted, gauges, columns = of_gauges
-    rng = np.random.default_rng(14)
-    off = 0.7 * columns @ rng.standard_normal(columns.shape[1])
-    for structure, holds in ((STRUCTURE, False), (0.3, True)):
-        unit = replace(fitted.unit, structure=structure)
-        held = replace(fitted, unit=unit, open=np.hstack([fitted.open, 10 * gauges[:, None]]))
-        assert evidence.coherence(holding(held, off + drawn(fitted.whole, rng)), 0).holds == holds
-
-
-def test_another_structure_does_not_excuse_what_acts_on_no_structure(of_gauges, monkeypatch):
-    """A drive's torque reaches the gauges by lines that commissioning has learned."""
-    fitted, gauges, columns = of_gauges
-    rng = np.random.default_rng(14)
-    residual = 0.7 * columns @ rng.standard_normal(columns.shape[1]) + drawn(fitted.whole, rng)
-    unit = replace(fitted.unit, structure=0.3)
-    held = holding(replace(fitted, unit=unit, open=np.hstack([fitted.open, 10 * gauges[:, None]])), residual)
-    for place, holds in (("structure", True), ("drive", False)):
-        monkeypatch.setattr(Bump, "place", place)
-        assert evidence.coherence(held, 0).holds == holds
+    return replace(fitted, calibrated=replace(fitted.calibrated, model=Model(GEAR, (Bump(1.0),)))), gauges
 
 
 def test_another_structure_does_not_excuse_another_law(of_gauges, monkeypatch):
     """An effect that grows with the third power of the load, where what there is does not follow the load at all."""
-    fitted, gauges, _ = of_gauges
+    fitted, gauges = of_gauges
     measured = fitted.measured
     load = np.array([situation.point.T_out for situation in measured.situations])[measured.of_recording] / 70
     constant = np.tile(gauges[: len(LAYOUT)], len(measured))
@@ -173,36 +147,14 @@ def test_another_structure_does_not_excuse_another_law(of_gauges, monkeypatch):
 
 
 def test_where_the_structure_is_another_one_the_power_of_the_load_may_be_too(of_gauges):
-    fitted, gauges, _ = of_gauges
+    fitted, gauges = of_gauges
     load = np.array([recording.point.T_out for recording in fitted.measured.recordings])
     truth = gauges * np.repeat(load / 39, len(LAYOUT))
     residual = truth - gauges * (gauges @ truth) / (gauges @ gauges) + drawn(fitted.whole, np.random.default_rng(19))
-    for structure, holds in ((STRUCTURE, False), (0.03, True)):
+    for structure, holds in ((STRUCTURE, False), (0.1, True)):
         unit = replace(fitted.unit, structure=structure)
         held = replace(fitted, unit=unit, open=np.hstack([fitted.open, 10 * gauges[:, None]]))
         assert evidence.coherence(holding(held, residual), 0).holds == holds
-
-
-def test_an_exact_form_pays_for_no_inaccurate_structure(of_gauges):
-    """What is open and not needed makes all recordings unlikelier, however accurate the structure is declared to be."""
-    fitted, _, columns = of_gauges
-    noise = drawn(fitted.whole, np.random.default_rng(20))
-    held = holding(replace(fitted, unit=replace(fitted.unit, structure=0.3)), noise)
-    assert held.allowing(LESS * 0.3 * columns).log_likelihood < held.log_likelihood - 50
-    opened = evidence.open_as_found(held, [evidence.Coherence(1.0, form_error=0.0, doubt=0.0)])
-    assert opened.log_likelihood >= held.log_likelihood
-
-
-def test_a_size_is_as_doubtful_as_another_structure_would_make_it(of_gauges):
-    fitted, gauges, columns = of_gauges
-    rng = np.random.default_rng(15)
-    weights = fitted.whole.whiten(gauges)
-    drawn_columns = LESS * 0.3 * columns @ rng.standard_normal((columns.shape[1], 300))
-    moved = weights @ fitted.whole.whiten(drawn_columns) / (weights @ weights)
-    held = replace(fitted, unit=replace(fitted.unit, structure=0.3))
-    agreement = evidence.coherence(holding(held, drawn(fitted.whole, rng)), 0)
-    assert agreement.form_error < 0.05
-    assert agreement.doubt == pytest.approx(moved.std(), rel=0.2)
 
 
 def test_a_size_is_as_doubtful_as_imperfect_forms_of_other_effects_would_make_it(planted, monkeypatch):
@@ -242,15 +194,6 @@ def test_a_phase_is_as_doubtful_as_imperfect_forms_would_make_it(planted, monkey
     spread = widened(held, 0, coherences)
     assert spread[theta] == pytest.approx(np.hypot(held.deviation[theta], found[theta]))
     assert spread[height] == pytest.approx(np.linalg.norm([held.deviation[height], 0.4, EXACT]))
-
-
-def test_another_structure_costs_little_at_points_left_out(of_gauges):
-    fitted, _, columns = of_gauges
-    rng = np.random.default_rng(16)
-    residual = 0.3 * columns @ rng.standard_normal(columns.shape[1]) + drawn(fitted.whole, rng)
-    held = holding(replace(fitted, unit=replace(fitted.unit, structure=0.3)), residual)
-    opened = evidence.open_as_found(held, [evidence.Coherence(1.0, form_error=0.0, doubt=0.0)])
-    assert opened.predictive.sum() - held.predictive.sum() > 50
 
 
 def test_a_form_that_is_off_by_a_fifth_costs_little_at_points_left_out(planted, fitted_with):

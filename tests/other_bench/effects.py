@@ -93,6 +93,14 @@ EFFECTS: Mapping[str, Kind] = {
         15e-6, "m", "static offset of the wave generator",
         lambda unit, x, drawn: replace(unit, eccentricity=_turned(x, drawn.theta)), ("theta",),
     ),
+    "rotating_eccentricity": Kind(
+        15e-6, "m", "offset of the cam that turns with it",
+        lambda unit, x, drawn: replace(unit, runout=_turned(x, drawn.phase)), ("phase",),
+    ),
+    "cam_form": Kind(
+        3e-6, "m", "three lobes on the cam",
+        lambda unit, x, drawn: replace(unit, three_lobes=_turned(x, drawn.phase)), ("phase",),
+    ),
     "warm_grease": Kind(
         0.03, "1/K", "b0 and b1 fall by exp(-size (temperature - 25))",
         lambda unit, x, drawn: replace(unit, per_kelvin=x),

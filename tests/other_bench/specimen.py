@@ -47,6 +47,8 @@ class Specimen:
     hat : Hat
     eccentricity : complex
         Static offset of the wave generator, size times exp(i direction) [m].
+    runout, three_lobes : complex
+        Waves that turn with the wave generator, one and three around the circumference, size times exp(i phase) [m].
     root, tip : Crack
         Hoop stiffness lost over three tooth pitches, tooth force lost over four teeth.
     moment : complex
@@ -82,6 +84,8 @@ class Specimen:
     J_out: float = 1.0
     hat: Hat = field(default_factory=Hat)
     eccentricity: complex = 0j
+    runout: complex = 0j
+    three_lobes: complex = 0j
     root: Crack = Crack()
     tip: Crack = Crack()
     moment: complex = 0j

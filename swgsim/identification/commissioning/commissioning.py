@@ -16,12 +16,13 @@ from swgsim.identification.commissioning.relinearisation import (
     posterior,
     triangular_factor,
 )
+from swgsim.identification.commissioning.structural_spread import with_probable_spreads
 from swgsim.identification.covariance.influence_map_error import largest_lines
 from swgsim.identification.data.features import Layout
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import fit
-from swgsim.identification.fit.unit import STRUCTURE, UNHEARD, Unit
+from swgsim.identification.fit.unit import UNHEARD, Unit
 from swgsim.storage.labelled_signals import SENSORS
 
 # Lines with lack of fit are learned: each gets a prior standard deviation. The first number is the largest one of a
@@ -29,9 +30,6 @@ from swgsim.storage.labelled_signals import SENSORS
 # Lines of speed and torques are learned if at most the second share of their channel's ripple is unexplained. With a
 # larger share the ripple does not belong to this gear.
 MOST_LEARNED, FOREIGN_SHARE = 0.6, 0.5
-# Structural error above which the gear has another structure: twice the error by the mesh of the truss. And the largest
-# structural error that signatures are assigned (an estimate).
-ANOTHER, WORST = 2 * STRUCTURE, 0.3
 # Largest number of fits of the drive until convergence, and number of times that lines of gauges are learned.
 DRIVES, TIMES = 4, 2
 
@@ -63,7 +61,7 @@ def learn_unit(measured: Measured, unit: Unit) -> Unit:
     shift[len(shift) - form :] = 0.0
     model, nominal = replace(fitted.model, own_lines=lines), fitted.unit.model.gear
     return replace(
-        fitted.unit, model=model, structure=_structure(fitted), reach=reach, shift=shift, scatter=fitted.scatter,
+        fitted.unit, model=model, reach=reach, shift=shift, scatter=fitted.scatter,
         nominal=nominal, largest=largest_of(fitted), healthy=measured.recordings,
     )  # fmt: skip
 
@@ -101,7 +99,8 @@ def _with_learned_lines(measured: Measured, unit: Unit, drive: Fitted | None) ->
         position, held = drive.calibrated.position, _well_determined(drive)
         if drive.unit.learned is not None:
             of_drive[_of_drive(measured)] = drive.unit.learned
-    fitted = fit(measured, _given(unit, of_drive), position=position, held=held)
+    fitted = with_probable_spreads(measured, _given(unit, of_drive), position, held)
+    unit = fitted.unit
     for _ in range(TIMES):
         learned = np.where(_of_drive(measured), of_drive, _lie_off(fitted))
         position = {**position, **fitted.calibrated.position}
@@ -136,7 +135,9 @@ def _drive_alone(measured: Measured, unit: Unit) -> Fitted | None:
     alone = Measured(
         measured.recordings, Layout(drive), measured.values[:, drive_features], measured.variance[:, drive_features]
     )
-    unit = replace(unit, inflation=None if unit.inflation is None else unit.inflation[drive_features])
+    # Speed and torques show nothing of the structure.
+    inflation = None if unit.inflation is None else unit.inflation[drive_features]
+    unit = replace(unit, structure=0.0, inflation=inflation)
     fitted = fit(alone, unit)
     for _ in range(DRIVES - 1):
         if fitted.calibrated.settled:
@@ -170,14 +171,3 @@ def _lie_off(fitted: Fitted) -> Float[np.ndarray, " feature"]:
         elif missed[channel] > FOREIGN_SHARE:
             off[own] = 0.0
     return off
-
-
-def _structure(fitted: Fitted) -> float:
-    """Structural error: that of the lines of s1 to s4, which have the same position relative to the lobes."""
-    layout, learned, largest = fitted.measured.layout, fitted.unit.learned, largest_of(fitted)
-    alike = [name for name in layout.channels if name in SENSORS[1:]]
-    if learned is None or not alike:
-        return STRUCTURE
-    off = np.mean([learned[layout.channel == name] for name in alike], axis=0)
-    share = float(np.linalg.norm(off)) / max(largest.values())
-    return min(share, WORST) if share > ANOTHER else STRUCTURE

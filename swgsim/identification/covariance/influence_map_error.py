@@ -43,19 +43,6 @@ def largest_lines(predicted: Float[np.ndarray, "situation feature"], layout: Lay
     return {name: float(line) for name, line in zip(layout.channels, lines, strict=True) if name in SENSORS}
 
 
-def lines_anywhere(
-    signature: Float[np.ndarray, "situation feature"], layout: Layout
-) -> Float[np.ndarray, "situation feature column"]:
-    """Lines of every gauge at every order, in every situation as large as the largest of an effect's signature there.
-
-    So they follow the effect's own law over situations, which another structure does not change.
-    """
-    largest = np.abs(layout.lines(signature))[:, :, 1:].max(axis=2)
-    of_feature = np.repeat(largest, len(layout) // len(layout.channels), axis=1)
-    gauges = [i for i, name in enumerate(layout.channel) if name in SENSORS]
-    return of_feature[:, :, None] * np.eye(len(layout))[:, gauges]
-
-
 def form_columns(
     sizes: Sizes, situations: Sequence[Situation], layout: Layout, torque: Float[np.ndarray, "situation one"]
 ) -> Float[np.ndarray, "situation feature column"]:

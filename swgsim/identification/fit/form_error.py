@@ -77,8 +77,7 @@ def allowance(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
                 columns.append(layout.vector(one).reshape(-1, 1))
     whole, open_ = signed[:, None], np.hstack(columns)
     weighed = whole / fitted.errors.variance[:, None]
-    tolerated = FORM_TOLERANCE * (open_ - whole @ (weighed.T @ open_) / float((weighed * whole).sum()))
-    return np.hstack([tolerated, _of_structure(fitted, number, signed)])
+    return FORM_TOLERANCE * (open_ - whole @ (weighed.T @ open_) / float((weighed * whole).sum()))
 
 
 def form_directions(fitted: Fitted, added: int) -> Float[np.ndarray, "row direction"]:
@@ -87,18 +86,6 @@ def form_directions(fitted: Fitted, added: int) -> Float[np.ndarray, "row direct
     columns = [np.zeros((len(fitted.residual), 0))]
     columns += [allowance(fitted, number) for number in range(count - added, count)]
     return without_what_noise_hides(np.hstack(columns), fitted.errors.variance) / FORM_TOLERANCE
-
-
-def _of_structure(fitted: Fitted, number: int, signed: Float[np.ndarray, " row"]) -> Float[np.ndarray, "row column"]:
-    """What an inaccurate structural model leaves open of the signature of an effect that acts on the structure.
-
-    What torque does to the gauges, and gauges and amplifiers to their signals, commissioning has learned.
-    """
-    if not fitted.model.effects[number].structural:
-        return np.zeros((len(signed), 0))
-    measured = fitted.measured
-    columns = fitted.unit.open_of(signed.reshape(measured.values.shape), measured.layout)
-    return columns.reshape(len(signed), -1)
 
 
 def moved_by_forms(fitted: Fitted, form_errors: Mapping[int, float]) -> dict[str, float]:
@@ -113,7 +100,7 @@ def moved_by_forms(fitted: Fitted, form_errors: Mapping[int, float]) -> dict[str
     off = [np.zeros((len(fitted.residual), 0))]
     for number, error in form_errors.items():
         signed = signature(fitted, number)
-        off += [error * parts(fitted, signed), _of_structure(fitted, number, signed)]
+        off.append(error * parts(fitted, signed))
     J = fitted.of_unit.whiten(fitted.J)
     moved = np.linalg.solve(J.T @ J + np.eye(J.shape[1]), J.T @ fitted.of_unit.whiten(np.hstack(off)))
     by = np.linalg.norm(moved, axis=1).tolist()

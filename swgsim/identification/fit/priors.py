@@ -4,10 +4,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+from jaxtyping import Complex, Float
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities
 from swgsim.flexspline.gauges import LIMITS
+from swgsim.flexspline.structure_factors import SEEN_BY_S0, WAVES, smooth_modes
 from swgsim.gear.gear import W0_LIMITS, Gear, KinematicError
 from swgsim.identification.data.model import Model
 
@@ -22,6 +24,12 @@ SERIES, ANY_FRICTION = 0.1, 0.5
 STRAINED = 0.01
 # Of each part of the kinematic error [rad], of a gauge's zero [mV/V], of its position and direction [rad]; estimates.
 ERROR_PART, ZERO, PLACED = 0.3e-4, 0.02, 0.01
+# Spread of the factors of s0 relative to those of the other gauges: of waves that its arms nearly cancel, what is left
+# depends on where they are; an estimate.
+S0_ARMS = 3.0
+# Wave numbers over which the factors of another structure keep much of their value; an estimate, by the trusses of two
+# authors. Modes of their course below this share of the largest are nothing beside the declared error of the maps.
+COURSE, LEAST_MODE = 2.0, 0.005
 # A position or shape of an effect that is not seen at all stays within its range over this; an estimate.
 UNSEEN_SHARE = 20.0
 # Below this share of its nominal value, a stiffness, a friction or the stroke of the wave generator is that of no gear;
@@ -115,7 +123,46 @@ def _of_kinematic_error(order: int, part: str, sd: float) -> Declared:
     return _of_gear("rad", sd, lambda gear: phasor(gear).real if part == "sine" else phasor(gear).imag, moved)
 
 
-def of_unit(gear: Gear, friction: float = SERIES) -> dict[str, Declared]:
+def of_structure(spread: float) -> dict[str, Declared]:
+    """The factors of another structure, as independent modes of their course over the wave number.
+
+    Parameters
+    ----------
+    spread : float
+        Standard deviation of the logarithm of a factor, and of its phase [rad]; 0 for a structure that is known.
+    """
+    if not spread:
+        return {}
+    smooth, single = smooth_modes(COURSE, LEAST_MODE), S0_ARMS * np.eye(WAVES)[list(SEEN_BY_S0)]
+    kinds = {"wave_generator": smooth, "teeth": smooth, "wave_generator_s0": single, "teeth_s0": single}
+    return {
+        f"response to {kind.replace('_', ' ')}, {part} {number}": _of_factors(kind, mode, turn, spread)
+        for kind, modes in kinds.items()
+        for number, mode in enumerate(modes, 1)
+        for part, turn in (("amplitude", 1.0), ("phase", 1j))
+    }
+
+
+def _of_factors(kind: str, mode: Float[np.ndarray, " wave"], turn: complex, spread: float) -> Declared:
+    """One mode of the logarithm of factors: its real part, or with a turn of 1j the imaginary one."""
+
+    def logs(gear: Gear) -> Complex[np.ndarray, " wave"]:
+        return np.array(getattr(gear.factors, kind) or np.zeros(WAVES), complex)
+
+    def value(gear: Gear) -> float:
+        return float((logs(gear) * np.conj(turn)).real @ mode / (mode @ mode))
+
+    def moved(gear: Gear, to: float) -> Gear:
+        by = (to - value(gear)) * turn * mode
+        factors = replace(gear.factors, **{kind: tuple((logs(gear) + by).tolist())})
+        return replace(gear, factors=factors)
+
+    return _of_gear("-" if turn == 1 else "rad", spread, value, moved)
+
+
+def of_unit(
+    gear: Gear, friction: float = SERIES, structure: float = 0.0, of_gauges: float = 1.0
+) -> dict[str, Declared]:
     """The parameters by which units differ from the nominal gear, with their spread in a series.
 
     Parameters
@@ -124,6 +171,10 @@ def of_unit(gear: Gear, friction: float = SERIES) -> dict[str, Declared]:
         The nominal one.
     friction : float
         Spread of b0, b1 and mu, as a share.
+    structure : float
+        Spread of the factors of the structure (:func:`of_structure`).
+    of_gauges : float
+        Spread of gains, positions and directions of the gauges, relative to that of a series.
     """
     t = gear.transmission
     found = {
@@ -152,11 +203,11 @@ def of_unit(gear: Gear, friction: float = SERIES) -> dict[str, Declared]:
         for part in ("sine", "cosine"):
             found[f"kinematic error {term.order} {part}"] = _of_kinematic_error(term.order, part, ERROR_PART)
     for sensor in range(5):
-        found[f"gain of s{sensor}"] = _of_gauge("gain", sensor, "-", STRAINED)
+        found[f"gain of s{sensor}"] = _of_gauge("gain", sensor, "-", of_gauges * STRAINED)
         found[f"zero of s{sensor}"] = _of_gauge("offset", sensor, "mV/V", ZERO)
-        found[f"position of s{sensor}"] = _of_gauge("position", sensor, "rad", PLACED)
-        found[f"grid angle of s{sensor}"] = _of_gauge("grid_angle", sensor, "rad", PLACED)
-    return found
+        found[f"position of s{sensor}"] = _of_gauge("position", sensor, "rad", of_gauges * PLACED)
+        found[f"grid angle of s{sensor}"] = _of_gauge("grid_angle", sensor, "rad", of_gauges * PLACED)
+    return found | of_structure(structure)
 
 
 def of_effects(model: Model, another_structure: bool = False) -> dict[str, Declared]:

@@ -13,7 +13,6 @@ from swgsim.identification.covariance.influence_map_error import (
     Sizes,
     form_columns,
     largest_lines,
-    lines_anywhere,
     sizes_of,
 )
 from swgsim.identification.covariance.scatter import Scatter
@@ -21,13 +20,13 @@ from swgsim.identification.data.features import Layout
 from swgsim.identification.data.model import Model, Situation, predict
 from swgsim.identification.fit.healthy_variability import FRICTION, of_friction, of_gauges, of_learned
 from swgsim.identification.fit.map_fit import linearised
-from swgsim.identification.fit.priors import ANY_FRICTION, SERIES, Declared, of_unit
+from swgsim.identification.fit.priors import ANY_FRICTION, Declared, of_unit
 from swgsim.recordings.recording import Recording
 
 # Declared structural error of a gear without commissioning; the mesh of the truss makes up to 2 %.
 STRUCTURE = 0.01
-# Ratio of the error of an effect's signature to that of the healthy influence maps, whose lines were learned.
-LESS = 2.0
+# Spread of the structure's factors up to which the mesh of the truss may be the reason.
+OF_MESH = 0.03
 # Factor on the noise variance of ripple that the model of this gear does not describe. Such ripple then has no weight,
 # and the report names its channels as `unheard`.
 UNHEARD = 1e8
@@ -48,8 +47,11 @@ class Unit:
         Posterior mean of the directions relative to the model, in prior standard deviations. During commissioning,
         lines that are already in the model are subtracted.
     structure : float
-        Structural error relative to a gauge's largest line: the declared value, or that of the lines of s1 to s4 as
-        found by commissioning.
+        Spread of the factors by which the structure differs from the truss, as a standard deviation of the logarithm
+        (:class:`~swgsim.flexspline.structure_factors.StructureFactors`): the declared value, or the most probable one
+        as found by commissioning.
+    of_gauges : float
+        Spread of gains, positions and directions of the gauges relative to that of a series; likewise.
     seen_healthy : bool
         Whether healthy recordings determine the unit; more nuisance parameters are then free.
     scatter : Scatter or None
@@ -78,6 +80,7 @@ class Unit:
     reach: Float[np.ndarray, "direction direction"] | None = None
     shift: Float[np.ndarray, " direction"] | None = None
     structure: float = STRUCTURE
+    of_gauges: float = 1.0
     seen_healthy: bool = False
     scatter: Scatter | None = None
     nominal: Gear | None = None
@@ -94,7 +97,7 @@ class Unit:
         declared = ", ".join(each.title() for each in (*self.model.effects, *self.interharmonics))
         state = (
             f"commissioned on {len(self.healthy)} recordings of {self.healthy[0].gear!r}, "
-            f"structural error {100 * self.structure:.2g} %"
+            f"structure of a spread of {100 * self.structure:.2g} %"
             if self.commissioned and self.healthy
             else "commissioned"
             if self.commissioned
@@ -115,13 +118,16 @@ class Unit:
 
     @property
     def of_another_structure(self) -> bool:
-        """Whether commissioning found the structure less accurate than a truss of the gear is."""
-        return self.structure > STRUCTURE
+        """Whether commissioning found the structure further off than the mesh of the truss makes it."""
+        return self.structure > OF_MESH
 
     @property
     def declared(self) -> dict[str, Declared]:
         """Parameters of the gear that are not known exactly, with their spread before commissioning."""
-        return of_unit(self.nominal or self.model.gear, ANY_FRICTION if self.seen_healthy else SERIES)
+        gear = self.nominal or self.model.gear
+        if not self.seen_healthy:
+            return of_unit(gear)
+        return of_unit(gear, ANY_FRICTION, self.structure, self.of_gauges)
 
     def inflated(self, variance: Float[np.ndarray, "recording feature"]) -> Float[np.ndarray, "recording feature"]:
         """Variance of independent errors, from that of noise."""
@@ -166,19 +172,6 @@ class Unit:
         largest = self.largest or largest_lines(predicted, layout)
         of_maps = STRUCTURE * np.array([largest.get(channel, 0.0) for channel in layout.channel])
         return sizes_of(of_maps, self.powers, np.zeros(len(layout)) if self.learned is None else self.learned)
-
-    def open_of(
-        self, signature: Float[np.ndarray, "situation feature"], layout: Layout
-    ) -> Float[np.ndarray, "situation feature column"]:
-        """Nuisance directions of an effect by the structural error, which is larger for its lines than for the maps.
-
-        A share of each part is no tolerance for parts that are small because others cancel in them; another structure
-        has them quite different. Where the structure is as accurate as declared, this is far below the tolerance of
-        form.
-        """
-        if not self.of_another_structure:
-            return np.zeros((*signature.shape, 0))
-        return LESS * self.structure * lines_anywhere(signature, layout)
 
 
 def _driving(model: Model) -> Model:

@@ -204,7 +204,7 @@ def _added(fitted: Fitted) -> range:
 def _tolerance(
     fitted: Fitted, candidates: Sequence[Situation], predicted: Float[np.ndarray, "candidate feature"]
 ) -> Float[np.ndarray, "candidate feature column"]:
-    """Errors of the form of fitted effects at a new operating point: by channel, by order, and by structural error."""
+    """Errors of the form of fitted effects at a new operating point: by channel and by order."""
     layout = fitted.measured.layout
     effects = _added(fitted)
     if not effects:
@@ -213,9 +213,4 @@ def _tolerance(
     masks = [np.ones(len(layout), bool)]
     masks += [layout.channel == channel for channel in layout.channels]
     masks += [layout.order == order for order in np.unique(layout.order)]
-    shares = np.stack([FORM_TOLERANCE * (predicted - each) * mask for each in without for mask in masks], axis=-1)
-    # At one operating point, the errors of one line by several effects add in squares.
-    structural = [fitted.model.effects[number].structural for number in effects]
-    acting = [acts * (predicted - each) for acts, each in zip(structural, without, strict=True)]
-    structure = np.sqrt(sum(fitted.unit.open_of(each, layout) ** 2 for each in acting))
-    return np.concatenate([shares, structure], axis=-1)
+    return np.stack([FORM_TOLERANCE * (predicted - each) * mask for each in without for mask in masks], axis=-1)
