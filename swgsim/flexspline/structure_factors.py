@@ -23,28 +23,29 @@ SEEN_BY_S0 = (0, 4, 8, 12)
 
 @dataclass(frozen=True)
 class StructureFactors:
-    """Natural logarithms of the factors for n = 0 .. WAVES - 1; an empty tuple stands for factors of 1.
+    """Natural logarithms of the amplitudes for n = 0 .. WAVES - 1, then as many phases [rad].
 
-    The real part is that of the amplitude, the imaginary part is the phase [rad]. The bridge s0 has its own arms, so
-    it has factors of its own.
+    An empty tuple stands for factors of 1. The bridge s0 has its own arms, so it has factors of its own.
 
     Attributes
     ----------
-    wave_generator, teeth : tuple of complex
+    wave_generator, teeth : tuple of float
         On what s1 to s4 show of the imposed displacement, and of the tooth forces.
-    wave_generator_s0, teeth_s0 : tuple of complex
+    wave_generator_s0, teeth_s0 : tuple of float
         The same of s0.
     """
 
-    wave_generator: tuple[complex, ...] = ()
-    teeth: tuple[complex, ...] = ()
-    wave_generator_s0: tuple[complex, ...] = ()
-    teeth_s0: tuple[complex, ...] = ()
+    wave_generator: tuple[float, ...] = ()
+    teeth: tuple[float, ...] = ()
+    wave_generator_s0: tuple[float, ...] = ()
+    teeth_s0: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         for name, values in vars(self).items():
-            if len(values) not in (0, WAVES) or not np.all(np.isfinite(values)):
-                raise ValueError(f"factors of the structure: {name} must have 0 or {WAVES} finite values, has {values}")
+            if len(values) not in (0, 2 * WAVES) or not np.all(np.isfinite(values)):
+                raise ValueError(
+                    f"factors of the structure: {name} has {values}, must have none or {2 * WAVES} finite values"
+                )
 
     def applied(self, response: Complex[np.ndarray, "order 5 load"]) -> Complex[np.ndarray, "order 5 load"]:
         """A gauge response whose first two loads, wave generator and teeth, are multiplied by the factors."""
@@ -53,10 +54,15 @@ class StructureFactors:
             ((self.wave_generator_s0, self.wave_generator), (self.teeth_s0, self.teeth))
         ):
             if of_s0:
-                changed[:WAVES, 0, load] *= np.exp(of_s0)
+                changed[:WAVES, 0, load] *= _complex(of_s0)
             if of_others:
-                changed[:WAVES, 1:, load] *= np.exp(of_others)[:, None]
+                changed[:WAVES, 1:, load] *= _complex(of_others)[:, None]
         return changed
+
+
+def _complex(logs: tuple[float, ...]) -> Complex[np.ndarray, " wave"]:
+    """Factors from the logarithms of their amplitudes and their phases."""
+    return np.exp(np.array(logs[:WAVES]) + 1j * np.array(logs[WAVES:]))
 
 
 # The structure that the truss describes exactly.

@@ -191,6 +191,7 @@ def gear_from(config: Mapping[str, Any]) -> Gear:
         "flex_spline": build(SilkHat, config.get("flex_spline", {})),
         "wave_generator": build(WaveGenerator, config.get("wave_generator", {})),
         "gauges": build(GaugeSet, config.get("gauges", {})),
+        "factors": build(StructureFactors, config.get("factors", {})),
     }
     return build(Gear, {key: value for key, value in config.items() if key not in parts}, **parts)
 

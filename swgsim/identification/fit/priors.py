@@ -1,10 +1,10 @@
 """What a model declares that it does not know exactly: parameters of the unit, and those of the effects it has."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Complex, Float
+from jaxtyping import Float
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities
@@ -135,29 +135,30 @@ def of_structure(spread: float) -> dict[str, Declared]:
         return {}
     smooth, single = smooth_modes(COURSE, LEAST_MODE), S0_ARMS * np.eye(WAVES)[list(SEEN_BY_S0)]
     kinds = {"wave_generator": smooth, "teeth": smooth, "wave_generator_s0": single, "teeth_s0": single}
+    nothing = np.zeros(WAVES)
     return {
-        f"response to {kind.replace('_', ' ')}, {part} {number}": _of_factors(kind, mode, turn, spread)
+        f"response to {kind.replace('_', ' ')}, {part} {number}": _of_factors(kind, parts, unit, spread)
         for kind, modes in kinds.items()
         for number, mode in enumerate(modes, 1)
-        for part, turn in (("amplitude", 1.0), ("phase", 1j))
+        for part, unit, parts in (("amplitude", "-", [mode, nothing]), ("phase", "rad", [nothing, mode]))
     }
 
 
-def _of_factors(kind: str, mode: Float[np.ndarray, " wave"], turn: complex, spread: float) -> Declared:
-    """One mode of the logarithm of factors: its real part, or with a turn of 1j the imaginary one."""
+def _of_factors(kind: str, parts: Sequence[Float[np.ndarray, " wave"]], unit: str, spread: float) -> Declared:
+    """One mode of the factors on a kind of load: of the logarithms of their amplitudes, and of their phases."""
+    mode = np.concatenate(parts)
 
-    def logs(gear: Gear) -> Complex[np.ndarray, " wave"]:
-        return np.array(getattr(gear.factors, kind) or np.zeros(WAVES), complex)
+    def logs(gear: Gear) -> Float[np.ndarray, " part"]:
+        return np.array(getattr(gear.factors, kind) or np.zeros(len(mode)))
 
     def value(gear: Gear) -> float:
-        return float((logs(gear) * np.conj(turn)).real @ mode / (mode @ mode))
+        return float(logs(gear) @ mode / (mode @ mode))
 
     def moved(gear: Gear, to: float) -> Gear:
-        by = (to - value(gear)) * turn * mode
-        factors = replace(gear.factors, **{kind: tuple((logs(gear) + by).tolist())})
-        return replace(gear, factors=factors)
+        by = (to - value(gear)) * mode
+        return replace(gear, factors=replace(gear.factors, **{kind: tuple((logs(gear) + by).tolist())}))
 
-    return _of_gear("-" if turn == 1 else "rad", spread, value, moved)
+    return _of_gear(unit, spread, value, moved)
 
 
 def of_unit(
