@@ -125,6 +125,7 @@ def calibrate(
             length /= 2  # uphill, as the model is not linear, or where nothing turns steadily
         fell = cost - cost_there
         settled = bool(fell < little * length or expected < little)
+        before = model, here, predicted
         if fell >= 0:
             model, here, predicted, r, cost = there, here + step, predicted_there, r_there, cost_there
         if settled or not fell >= 0:
@@ -132,7 +133,8 @@ def calibrate(
         length *= 0.5 if fell < LITTLE * expected else 2.0 if fell > MUCH * expected and length < 1 else 1.0
         try:
             J = linearised(model, parameters, situations, layout)[1]
-        except RuntimeError:  # hardly anything turns steadily there
+        except RuntimeError:  # hardly anything turns steadily there, so no other fit may begin there
+            model, here, predicted = before
             settled = False
             break
     return Calibrated(model, dict(zip(names, here.tolist(), strict=True)), predicted, J, settled)
