@@ -69,11 +69,10 @@ class _Powers:
         gain, freedom, size = gain[shown] / noise, freedom[shown], size[shown] / noise
         return cls(points, (gain - freedom) / size, freedom, size)
 
-    def at(self, point: OperatingPoint | None) -> "_Powers":
-        """Those at one operating point; all for None."""
-        own = np.array([point in (None, each) for each in self.points], bool)
-        points = tuple(each for each, there in zip(self.points, own, strict=True) if there)
-        return _Powers(points, self.power[own], self.freedom[own], self.size[own])
+    def at(self, point: OperatingPoint) -> "_Powers":
+        """Those at one operating point."""
+        own = np.array([each == point for each in self.points], bool)
+        return _Powers((point,) * int(own.sum()), self.power[own], self.freedom[own], self.size[own])
 
     def noise(self, power: float) -> Float[np.ndarray, " recording"]:
         """Variance of each by noise, where the line has this power: of a noncentral chi-squared number."""
@@ -86,8 +85,8 @@ def _chance(effect: Effect, spectra: Sequence[GaugeSpectrum], healthy: Sequence[
     if not now.points or not before.points:
         return 0.0
     # Where no operating point is the same, the law of the effect has to do.
-    common = [point for point in dict.fromkeys(now.points) if point in before.points] or [None]
-    groups = [(now.at(point), before.at(point)) for point in common]
+    common = [point for point in dict.fromkeys(now.points) if point in before.points]
+    groups = [(now.at(point), before.at(point)) for point in common] or [(now, before)]
     means = [max(float(np.mean(np.concatenate([a.power, b.power]))), 0.0) for a, b in groups]
     spread, freedom = _scatter([of_healthy for _, of_healthy in groups])
     variance = sum(
