@@ -139,7 +139,7 @@ def _described(kind: Any, path: str, notations: tuple[Notation, ...]) -> Iterato
     yield f"{path}: {_in_words(needed)}{'' if needed is kind else ' or nothing'}"
     if _notation(needed, notations):
         return
-    if is_dataclass(needed):
+    if _has_fields(needed):
         for name, own in _annotations(needed).items():
             yield from _described(own, f"{path}.{name}", notations)
     elif get_origin(needed) is not None and not _is_array(needed):
@@ -150,7 +150,7 @@ def _described(kind: Any, path: str, notations: tuple[Notation, ...]) -> Iterato
 
 def _members(kind: Any, value: Any) -> dict[str, tuple[Any, Any]]:
     """The members of a dataclass, a mapping or a tuple by name, each with its annotation."""
-    if is_dataclass(kind):
+    if _has_fields(kind):
         return {name: (getattr(value, name), own) for name, own in _annotations(kind).items()}
     if _is_mapping(kind):
         own = get_args(kind)[1]
@@ -165,7 +165,7 @@ def _read_group(group: h5py.Group, where: str, kind: Any, room: Room, notations:
     """A dataclass, a mapping or a tuple."""
     # Attributes and links are counted apart; each keeps its order.
     found = [*group.attrs, *group]
-    if is_dataclass(kind):
+    if _has_fields(kind):
         own = _annotations(kind)
         unknown = [name for name in found if name not in own]
         if unknown:
@@ -234,10 +234,15 @@ def _notation(kind: Any, notations: tuple[Notation, ...]) -> Notation | None:
     return next((each for each in notations if isinstance(kind, type) and issubclass(kind, each.kind)), None)
 
 
-def _annotations(kind: type) -> dict[str, Any]:
+def _has_fields(kind: Any) -> bool:
+    """Whether an annotation is a dataclass."""
+    return is_dataclass(kind)
+
+
+def _annotations(kind: Any) -> dict[str, Any]:
     """The annotations of the fields of a dataclass."""
     hints = get_type_hints(kind)
-    return {field.name: hints[field.name] for field in fields(kind) if field.init}  # type: ignore[arg-type]
+    return {field.name: hints[field.name] for field in fields(kind) if field.init}
 
 
 def _is_array(kind: Any) -> bool:
