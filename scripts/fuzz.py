@@ -28,6 +28,8 @@ from fabricated_joints import KINOVA, kinova_run, write_kinova
 from learn.evaluation import models
 from swgsim.bench.truth import SEAL, open_truth
 from swgsim.effects import text
+from swgsim.identification.fit.unit import Unit
+from swgsim.identification.fit.unit_file import WHAT, read_unit
 from swgsim.joint.intake.read import read_joints
 from swgsim.recordings.files import sources
 from swgsim.recordings.files.folder import read_folder
@@ -35,7 +37,7 @@ from swgsim.recordings.files.matlab import MatlabReader
 from swgsim.recordings.files.recording_file import read_file
 from swgsim.recordings.files.source_map import read_map
 from swgsim.storage import storage
-from swgsim.storage.storage import SEAL_SIZE, SEAL_START
+from swgsim.storage.storage import SEAL_SIZE, SEAL_START, seal_start
 
 # One child process reads all MATLAB files of a batch.
 MATLAB = MatlabReader()
@@ -81,6 +83,7 @@ READERS: dict[str, tuple[Callable[[Path], object], str, Callable[[Path], object]
         lambda place: read_joints(place, KINOVA),
     ),
     "data set (.h5)": (sound.data_set, "set.h5", lambda place: storage.read(place / "set.h5")),
+    "unit (.h5)": (sound.unit_file, "gear.unit.h5", lambda place: read_unit(place / "gear.unit.h5", Unit)),
     "network (.pt)": (sound.network, "model.pt", lambda place: models.load(place / "model.pt", "cpu")),
     "forest (.skops)": (sound.forest, "model.skops", lambda place: models.load(place / "model.skops", "cpu")),
     "effects.yaml": (effects_file, "effects.yaml", lambda place: text.from_text(
@@ -91,8 +94,9 @@ READERS: dict[str, tuple[Callable[[Path], object], str, Callable[[Path], object]
 
 def damaged(content: bytes, rng: np.random.Generator) -> bytes:
     """One to four changes, inside of a seal or of one member of an archive, which then fit again."""
-    if content.startswith(SEAL_START) and rng.random() < 0.8:
-        return sound.sealed(damaged(content[SEAL_SIZE:], rng))
+    for start in (SEAL_START, seal_start(WHAT)):
+        if content.startswith(start) and rng.random() < 0.8:
+            return sound.sealed(damaged(content[SEAL_SIZE:], rng), start)
     if content.startswith(b"PK") and rng.random() < 0.8:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             members = {name: archive.read(name) for name in archive.namelist()}

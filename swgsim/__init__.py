@@ -6,6 +6,7 @@
 - :func:`simulate`: one run of the chain; the result plots itself and becomes a table or a recording.
 - :func:`read_recordings`: a folder of measurements. :func:`recordings_of`: the logs of a robot joint.
 - :func:`commission`, :func:`identify`: what the healthy gear is like, and which physical effect a model of it lacks.
+  ``unit.save("gear7.unit.h5")`` and ``Unit.load("gear7.unit.h5")`` keep what was learned.
 - :func:`record`, :func:`generate`: recordings of a virtual test bench, and labelled data sets for :mod:`learn`.
 - :class:`Run`, :func:`simulate_runs`: many runs at once, for studies of one's own.
 

@@ -13,8 +13,12 @@ import yaml
 from scipy.io import savemat
 
 from swgsim.bench.truth import write_sealed
+from swgsim.effects.eccentric_wave_generator import EccentricWaveGenerator
 from swgsim.gear.conditions import Conditions
-from swgsim.gear.gear import OperatingPoint
+from swgsim.gear.gear import Gear, OperatingPoint
+from swgsim.identification.covariance.scatter import Scatter
+from swgsim.identification.data.model import Model
+from swgsim.identification.fit.unit import Unit
 from swgsim.recordings.checks.inspection import inspect
 from swgsim.recordings.files.folder import write_folder
 from swgsim.recordings.files.recording_file import write_file
@@ -132,9 +136,9 @@ def mapped(
 # Files of the workbench.
 
 
-def sealed(body: bytes) -> bytes:
+def sealed(body: bytes, start: bytes = SEAL_START) -> bytes:
     """Any bytes with the seal of :mod:`swgsim.storage.storage`, which anybody can write."""
-    return (SEAL_START + hashlib.sha256(body).hexdigest().encode() + b"\n").ljust(SEAL_SIZE, b" ") + body
+    return (start + hashlib.sha256(body).hexdigest().encode() + b"\n").ljust(SEAL_SIZE, b" ") + body
 
 
 def bench_folder(place: Path) -> None:
@@ -143,6 +147,12 @@ def bench_folder(place: Path) -> None:
 
 def bench_file(place: Path) -> None:
     write_file(place / "bench.h5", SHORT)
+
+
+def unit_file(place: Path) -> None:
+    scatter = Scatter({"load": 0.01}, 4, np.eye(1))
+    model = Model(Gear(), (EccentricWaveGenerator(1e-5, 1.0),))
+    Unit(model, np.eye(3), scatter=scatter, largest={"s1": 0.1}, healthy=SHORT[:1]).save(place / "gear.unit.h5")
 
 
 def data_set(place: Path) -> None:

@@ -20,9 +20,9 @@ recordings = swg.read_recordings("bench/today")
 print(recordings.table().head(3).to_string(index=False))
 
 # %%
-# Commissioning fits the healthy gear. The answer names the effect, its size and its 95 % interval.
-unit = swg.commission(swg.read_recordings("bench/healthy"), swg.Gear())
-answer = swg.identify(recordings, unit)
+# Commissioning fits the healthy gear, and a file keeps it. The answer names the effect, its size and its 95 % interval.
+swg.commission(swg.read_recordings("bench/healthy"), swg.Gear()).save("bench/gear1.unit.h5")
+answer = swg.identify(recordings, swg.Unit.load("bench/gear1.unit.h5"))
 print(answer.sentence)
 print(answer.table().to_string(index=False))
 

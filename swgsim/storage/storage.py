@@ -22,8 +22,20 @@ from swgsim.storage.hdf5_writer import created
 from swgsim.storage.labelled_signals import CLASSES, COLUMNS, SENSORS, LabelledSignals
 
 SEAL_SIZE = 512
-SEAL_START = b"swgsim recordings, sha256 "
-SEAL = re.compile(re.escape(SEAL_START) + rb"([0-9a-f]{64})\n *")
+# What a sealed file holds, and what to do where it is damaged.
+RECORDINGS, AGAIN = "recordings", "generate it again"
+
+
+def seal_start(what: str) -> bytes:
+    """The first bytes of a sealed file.
+
+    >>> seal_start("unit")
+    b'swgsim unit, sha256 '
+    """
+    return f"swgsim {what}, sha256 ".encode()
+
+
+SEAL_START = seal_start(RECORDINGS)
 
 
 def write(path: Path, blocks: Iterable[LabelledSignals], rows: int) -> None:
@@ -98,44 +110,61 @@ def _lay_out(file: h5py.File, first: LabelledSignals, rows: int) -> None:
             variable.dims[axis].attach_scale(file[name])
 
 
-def seal(path: Path) -> None:
-    """Write the SHA-256 of the rest of a file into its first bytes, which HDF5 leaves free."""
+def seal(path: Path, what: str = RECORDINGS) -> None:
+    """Write what a file holds, and the SHA-256 of the rest, into its first bytes, which HDF5 leaves free."""
     with path.open("r+b") as raw:
         raw.seek(SEAL_SIZE)
         digest = hashlib.file_digest(raw, "sha256").hexdigest()
         raw.seek(0)
-        raw.write((SEAL_START + digest.encode() + b"\n").ljust(SEAL_SIZE))
+        raw.write((seal_start(what) + digest.encode() + b"\n").ljust(SEAL_SIZE))
 
 
-def digest(path: Path) -> str:
+def is_sealed(path: Path, what: str) -> bool:
+    """Whether a path is a file that begins with a seal of what it should hold."""
+    if not path.is_file():
+        return False
+    with path.open("rb") as raw:
+        return raw.read(SEAL_SIZE).startswith(seal_start(what))
+
+
+def digest(path: Path, what: str = RECORDINGS, again: str = AGAIN) -> str:
     """The SHA-256 in the seal of a file.
+
+    Parameters
+    ----------
+    path : Path
+    what : str
+        What the file should hold.
+    again : str
+        What to do where it does not, for the message.
 
     Raises
     ------
     FileNotFoundError
         If there is no such file.
     ValueError
-        If it is not a sealed file of recordings.
+        If it is not a sealed file of that.
     """
     with path.open("rb") as raw:
         start = raw.read(SEAL_SIZE)
-    found = SEAL.fullmatch(start)
+    found = re.fullmatch(re.escape(seal_start(what)) + rb"([0-9a-f]{64})\n *", start)
     if not found or len(start) < SEAL_SIZE:
-        raise ValueError(
-            f"{path}: not a file of recordings (its first {SEAL_SIZE} bytes are no seal); generate it again"
-        )
+        raise ValueError(f"{path}: not a file of {what} (its first {SEAL_SIZE} bytes are no seal); {again}")
     return found[1].decode()
 
 
-def verify(path: Path) -> None:
-    """Raise a ValueError with the name of the file unless its content has the SHA-256 of its seal."""
-    expected = digest(path)
+def verify(path: Path, what: str = RECORDINGS, again: str = AGAIN) -> None:
+    """Raise a ValueError with the name of the file unless its content has the SHA-256 of its seal.
+
+    Parameters are those of :func:`digest`.
+    """
+    expected = digest(path, what, again)
     with path.open("rb") as raw:
         raw.seek(SEAL_SIZE)
         found = hashlib.file_digest(raw, "sha256").hexdigest()
     if found != expected:
         raise ValueError(
-            f"{path}: damaged or truncated, SHA-256 found {found[:12]}…, expected {expected[:12]}…; generate it again"
+            f"{path}: damaged or truncated, SHA-256 found {found[:12]}…, expected {expected[:12]}…; {again}"
         )
 
 

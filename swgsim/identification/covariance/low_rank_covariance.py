@@ -66,6 +66,11 @@ class Covariance:
         return cholesky(np.eye(self.G.shape[1]) + self.G.T @ self._weighed, lower=True)
 
     @cached_property
+    def _told(self) -> Float[np.ndarray, "column row"]:
+        """L^-1 G' A^-1, of which blocks of rows take their parts."""
+        return solve_triangular(self._L, self._weighed.T, lower=True, check_finite=False)
+
+    @cached_property
     def _one_plus_Lt(self) -> Float[np.ndarray, "column column"]:
         """1 + L': with L it makes K of :meth:`whiten`, and so a square root of the inverse of the covariance."""
         return np.eye(len(self._L)) + self._L.T
@@ -97,7 +102,7 @@ class Covariance:
 
     def precision(self, block: Bool[np.ndarray, " row"]) -> Float[np.ndarray, "block block"]:
         """The block of P of some of the rows: of their distribution where all the others are known."""
-        common = solve_triangular(self._L, self._weighed[block].T, lower=True)
+        common = self._told[:, block]
         return self.base.precision(block) - common.T @ common
 
     def with_columns(self, G: Float[np.ndarray, "row more"]) -> "Covariance":
@@ -138,17 +143,21 @@ class Covariance:
         With the precision P of all rows these miss r by (P_bb)^-1 (P r)_b, with the covariance (P_bb)^-1.
         """
         weighed = self.weigh(r)
-        return [self._left_out(r, weighed[block], block) for block in blocks]
+        found = [self._missed(weighed[block], block) for block in blocks]
+        # One column for each block, since a product with many columns takes little more time than with one.
+        expected = np.repeat(r[:, None], len(blocks), axis=1)
+        for number, (block, (missed, _)) in enumerate(zip(blocks, found, strict=True)):
+            expected[block, number] -= missed
+        return [Expected(*each, mean) for each, mean in zip(found, self.common_mean(expected).T, strict=True)]
 
-    def _left_out(
-        self, r: Float[np.ndarray, " row"], weighed: Float[np.ndarray, " block"], block: Bool[np.ndarray, " row"]
-    ) -> "Expected":
+    def _missed(
+        self, weighed: Float[np.ndarray, " block"], block: Bool[np.ndarray, " row"]
+    ) -> tuple[Float[np.ndarray, " block"], float]:
+        """How a block is missed by what the other rows expect of it, and the log-likelihood of that."""
         L = cholesky(self.precision(block), lower=True)
         white = solve_triangular(L, weighed, lower=True)
         missed = solve_triangular(L, white, lower=True, trans=1)
-        expected = np.array(r, copy=True)
-        expected[block] -= missed
-        return Expected(missed, float(np.log(np.diag(L)).sum() - 0.5 * white @ white), self.common_mean(expected))
+        return missed, float(np.log(np.diag(L)).sum() - 0.5 * white @ white)
 
 
 def as_squares(log_likelihood: float) -> float:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -16,11 +17,12 @@ from swgsim.identification.covariance.influence_map_error import (
     sizes_of,
 )
 from swgsim.identification.covariance.scatter import Scatter
-from swgsim.identification.data.features import Layout
+from swgsim.identification.data.features import Layout, layout_of
 from swgsim.identification.data.model import Model, Situation, predict
 from swgsim.identification.fit.healthy_variability import FRICTION, of_friction, of_gauges, of_learned
 from swgsim.identification.fit.map_fit import linearised
 from swgsim.identification.fit.priors import ANY_FRICTION, Declared, of_unit
+from swgsim.identification.fit.unit_file import read_unit, write_unit
 from swgsim.recordings.recording import Recording
 
 # Declared structural error of a gear without commissioning; the mesh of the truss makes up to 2 %.
@@ -105,6 +107,44 @@ class Unit:
         )
         lines = f"; interharmonic lines: {', '.join(each.title() for each in self.lines)}" if self.lines else ""
         return f"Unit of {name}, {state}; declared effects: {declared or 'none'}{lines}"
+
+    def save(self, path: str | Path) -> None:
+        """Keep the unit in a file, such as ``gear7.unit.h5``; the file is complete or absent.
+
+        Raises
+        ------
+        OSError
+            If the disk is full or the folder cannot be written.
+        ValueError
+            If a declared effect cannot be imported again.
+        """
+        write_unit(Path(path), self)
+
+    @classmethod
+    def load(cls, path: str | Path) -> "Unit":
+        """Read a unit from a file of :meth:`save`; answers from it are those of the unit itself, bit for bit.
+
+        Raises
+        ------
+        ValueError
+            If the file is missing, damaged, or of another version of the format; the message has the file, the field,
+            what was found and what was expected.
+        """
+        unit = read_unit(Path(path), cls)
+        unit._require_directions(path)
+        return unit
+
+    def _require_directions(self, path: str | Path) -> None:
+        """Raise a ValueError unless the numbers of a file belong to the directions of this version."""
+        if not (self.commissioned and self.healthy):
+            raise ValueError(f"{path}: found a unit that was not commissioned; commission it (swg commission)")
+        first = self.healthy[0]
+        try:
+            self.left_open(self.model, [Situation(first.point, first.conditions)], layout_of(self.healthy))
+        except (ValueError, IndexError, KeyError) as error:
+            raise ValueError(
+                f"{path}: its directions are not those of this version ({error}); commission the unit again"
+            ) from error
 
     @property
     def commissioned(self) -> bool:

@@ -28,6 +28,8 @@ from swgsim.identification.calls import (
     with_channels,
 )
 from swgsim.identification.data.features import COMPARED
+from swgsim.identification.fit.unit import Unit
+from swgsim.identification.fit.unit_file import is_unit_file
 from swgsim.identification.report.effect_words import effect_in_words, effect_text
 from swgsim.identification.report.engineering_units import value_text
 from swgsim.jobs import settings
@@ -70,6 +72,8 @@ def _run(config: Mapping[str, Any]) -> Outcome:
     gear, declared = settings.gear(config["gear"]), settings.effects(config["effects"])
     if healthy_source is None:
         unit = nominal_unit(gear, declared)
+    elif is_unit_file(Path(healthy_source)):
+        unit = _kept(config)
     else:
         _progress(f"reading {healthy_source}")
         healthy = _read(healthy_source, "commissioning", config["commissioning_mapping"] or config["mapping"])
@@ -89,6 +93,22 @@ def _run(config: Mapping[str, Any]) -> Outcome:
     found.save(config["out"])
     print("\n".join(lines(report)))
     return Outcome(report, {name: each for name, (_, each) in found.pictures.items()}, digest(recordings))
+
+
+def _kept(config: Mapping[str, Any]) -> Unit:
+    """The unit of a file.
+
+    Raises
+    ------
+    ValueError
+        If it cannot be read, or a choice is given that the unit has already.
+    """
+    path = config["commissioning"]
+    for name in ("effects", "commissioning_mapping"):
+        if config[name]:
+            raise ValueError(f"{name}= is for recordings, commissioning={path} is a unit that has it: leave one out")
+    _progress(f"reading {path}")
+    return Unit.load(path)
 
 
 def _progress(step: str) -> None:
