@@ -40,6 +40,9 @@ CARRIED = np.log(1.5)
 # Their prior, in stated standard deviations: per kelvin as thermal output, at full load as the gain of a gauge within
 # its bounds (wide for friction and torques); the other two are estimates.
 COMMON, PER_KELVIN, PER_HOUR, AT_FULL_LOAD = 20.0, 5.0, 20.0, 100.0
+# Friction of a gear whose temperature was not recorded, as a share: 3 % per kelvin (physics.md DY3), and 5 K as the
+# standard deviation of a gear that warms up over a session (an estimate).
+UNRECORDED = 0.15
 # Step of the differences: small against any nonlinearity, large against rounding.
 STEP, BEAT_STEP = 1e-3, 1e-6
 
@@ -73,6 +76,12 @@ class Scatter:
     def carried(self) -> "Scatter":
         """The prior for recordings of another session."""
         return replace(self, doubt=self.doubt + CARRIED**2 * np.eye(len(self.doubt)))
+
+    @property
+    def with_unrecorded_temperature(self) -> "Scatter":
+        """Friction scatters at least by a warming that was not recorded; repeats in a row do not show it."""
+        least = {name: UNRECORDED if "friction" in name else 0.0 for name in self.sd}
+        return replace(self, sd={name: max(sd, least[name]) for name, sd in self.sd.items()})
 
     def drawn(self, rng: np.random.Generator, draws: int) -> Float[np.ndarray, "kind draw"]:
         """Factors on the standard deviations, as large as the repeats leave them."""

@@ -94,6 +94,11 @@ class Measured:
         return self.layout.turning(self.values)
 
     @property
+    def temperature_recorded(self) -> bool:
+        """Whether any recording has another temperature than the one that stands for an unknown one."""
+        return any(recording.conditions.warmer for recording in self.recordings)
+
+    @property
     def sessions(self) -> list[str]:
         """In the order in which they were first recorded."""
         return list(dict.fromkeys(r.session for r in self.recordings))

@@ -11,8 +11,8 @@ from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.search.regularities import describe, other_laws
 
 
-def formless(base: Option, kinds: int) -> Option | None:
-    """An option with something unknown that no few regularities describe; None where it cannot be more probable.
+def formless(base: Option, kinds: int) -> Option:
+    """An option with something unknown that no few regularities describe.
 
     Parameters
     ----------
@@ -22,16 +22,18 @@ def formless(base: Option, kinds: int) -> Option | None:
         Number of effects in the library.
     """
     fitted = base.fitted.with_zeros(base.zeros)
-    deviations = line_deviations(fitted)
-    misfit = float(np.sum(fitted.whole.whiten(fitted.from_start) ** 2)) - len(fitted.residual)
-    if misfit < deviations.shape[1]:
-        return None  # less than the deviations cost
     first, *others = describe(fitted)
     regularities = base.regularities or (replace(first, rivals=other_laws(first, others)),)
-    opened = replace(base.fitted.allowing(deviations))
+    opened = replace(base.fitted.allowing(line_deviations(fitted)))
     more = log_prior(len(base.effects), len(regularities), kinds)
     more -= log_prior(len(base.effects), len(base.regularities), kinds)
-    return Option(opened, base.effects, regularities, base.log_prior + more, log_evidences(opened))
+    return Option(opened, base.effects, regularities, base.log_prior + more, *log_evidences(opened))
+
+
+def ill_fitting(option: Option) -> bool:
+    """Whether an option leaves more unexplained than deviations of all lines at all operating points would cost."""
+    measured = option.fitted.measured
+    return option.misfit > len(measured.layout) * len(measured.point_rows())
 
 
 def line_deviations(fitted: Fitted) -> Float[np.ndarray, "row deviation"]:

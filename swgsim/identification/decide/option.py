@@ -10,6 +10,7 @@ from scipy.special import logsumexp
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, beyond_nothing, quantities, size_of
+from swgsim.identification.covariance.low_rank_covariance import as_squares
 from swgsim.identification.decide.prior import BALANCED, FORM_ERRORS, SCALES, TIMES_BALANCED, log_prior
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import extended
@@ -34,6 +35,8 @@ class Option:
     log_prior : float
     evidences : array (zeros, form_error)
         Log evidence by the factor on the deviation of zeros and by the form error, with the priors of both.
+    misfit : float
+        Sum of squares of the whitened residual beyond its expectation, with the most probable form error.
     """
 
     fitted: Fitted
@@ -41,6 +44,7 @@ class Option:
     regularities: tuple[Described, ...]
     log_prior: float
     evidences: Float[np.ndarray, "zeros form_error"]
+    misfit: float
 
     @property
     def log_evidence(self) -> float:
@@ -116,7 +120,7 @@ def option(start: Fitted, effects: Sequence[Effect], regularities: Sequence[Desc
     added = fitted.added
     prior = log_prior(len(added), len(regularities), kinds) - len(regularities) * np.log(SCALES)
     prior += sum(size_correction(fitted, number) for number in range(len(added)))
-    return Option(replace(fitted), added, tuple(regularities), prior, log_evidences(fitted))
+    return Option(replace(fitted), added, tuple(regularities), prior, *log_evidences(fitted))
 
 
 def size_correction(fitted: Fitted, number: int) -> float:
@@ -140,21 +144,25 @@ def size_correction(fitted: Fitted, number: int) -> float:
     return float(-np.log(SCALES * size * (1 + both_signs)) + (position**2 + np.log(2 * np.pi)) / 2)
 
 
-def log_evidences(fitted: Fitted) -> Float[np.ndarray, "zeros form_error"]:
-    """Log evidence of a fit by the factor on the deviation of zeros and by the form error, with the priors of both.
+def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"], float]:
+    """Log evidence of a fit by the factor on the deviation of zeros and by the form error, and its misfit.
 
-    All parameters are integrated over their priors (Laplace). The form errors gain the same for all factors of zeros.
+    The priors of zeros and form error are in it, and all parameters are integrated over their priors (Laplace). The
+    form errors gain the same for all factors of zeros.
     """
     fitted = fitted.with_zeros(1.0)
     r, whole = fitted.from_start, fitted.whole
     wholes = [whole, *(whole.with_columns(fitted.measured.further_zeros(times)) for times in TIMES_BALANCED)]
     balanced = np.log([1 - BALANCED, *[BALANCED / len(TIMES_BALANCED)] * len(TIMES_BALANCED)])
     of_zeros = balanced + [each.log_likelihood(r) for each in wholes]
+    best = wholes[int(of_zeros.argmax())]
+    white = best.whiten(r)
+    misfit = float(white @ white) - len(r)
     directions = form_directions(fitted, len(fitted.added))
     if not directions.shape[1]:
-        return of_zeros[:, None]
-    best = wholes[int(of_zeros.argmax())]
-    return of_zeros[:, None] + _gains(best.whiten(directions), best.whiten(r)) - np.log(len(FORM_ERRORS))
+        return of_zeros[:, None], misfit
+    gains = _gains(best.whiten(directions), white)
+    return of_zeros[:, None] + gains - np.log(len(FORM_ERRORS)), misfit - as_squares(max(gains.max(), 0.0))
 
 
 def _gains(

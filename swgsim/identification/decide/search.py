@@ -15,7 +15,7 @@ from jaxtyping import Float
 from swgsim.chain import NoSteadyState
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities
-from swgsim.identification.decide.formless import formless
+from swgsim.identification.decide.formless import formless, ill_fitting
 from swgsim.identification.decide.option import Option, causes_of, expected_gain, option
 from swgsim.identification.decide.prior import CAUSES, SCALES, log_prior
 from swgsim.identification.fit.fitted import Fitted
@@ -56,9 +56,15 @@ class Search:
         while fresh := [each for each in self._around_best() if each.causes not in self._expanded]:
             for each in fresh:
                 self._expand(each)
-        bases = {each.causes: each for each in (self._best, self._options[frozenset()])}
-        more = [found for each in bases.values() if (found := formless(each, len(self.kinds)))]
+        more = [formless(each, len(self.kinds)) for each in self._ill_fitting()]
         return sorted([*self._options.values(), *more], key=lambda each: -each.log_posterior)
+
+    def _ill_fitting(self) -> list[Option]:
+        """Where the best option fits badly: the best options with effects alone, and that without any."""
+        if not ill_fitting(self._best):
+            return []
+        alone = [each for each in self._options.values() if not each.regularities and ill_fitting(each)]
+        return sorted(alone, key=lambda each: -each.log_posterior)[:EFFECTS_TRIED]
 
     @property
     def _best(self) -> Option:
@@ -118,6 +124,8 @@ class Search:
         """Whether an option with more causes may be nearly as probable as the best one, by its expected evidence."""
         now = log_prior(len(base.effects), len(base.regularities), len(self.kinds))
         then = log_prior(len(base.effects) + effects, len(base.regularities) + regularities, len(self.kinds))
+        if ill_fitting(self._best):
+            return then > -np.inf  # no estimate is worth much beside such a misfit
         return log_evidence + base.log_prior + then - now > self._best.log_posterior - NEGLIGIBLE
 
     def _leading(self, start: Fitted) -> list[tuple[float, Score]]:

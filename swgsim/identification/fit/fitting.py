@@ -118,6 +118,8 @@ def _turn(fixed: _Fixed, begin: Mapping[str, float], guess: Scatter) -> Fitted:
         common = Covariance(RecordingCovariance.white(noise), np.hstack([of_sessions, more, J]))
         from_start = residual.ravel() + J @ np.array(list(calibrated.position.values()))
         estimated = repeats.from_all(from_start, common, moves, trends, fixed.known)
+    if not measured.temperature_recorded:
+        estimated = estimated.with_unrecorded_temperature
     errors = Covariance(RecordingCovariance(noise, estimated.columns(moves)), of_sessions)
     return Fitted(
         measured, unit, fixed.parameters, calibrated, estimated,

@@ -14,7 +14,7 @@ from swgsim.identification.data.model import Model, Situation, predict, predict_
 from swgsim.identification.fit.priors import Declared, at
 
 # Gauss-Newton: fall of the cost below which it rests, and at most so many steps, each of at most so many spreads.
-SETTLED, STEPS, LONGEST = 0.05, 12, 5.0
+SETTLED, STEPS, LONGEST = 0.05, 24, 5.0
 # The next steps are half as long where the cost fell by less than the first share of what was expected, as the model is
 # not linear, and twice as long where it fell by more than the second. What makes them shorter is damping, which bends
 # them along curved valleys.
