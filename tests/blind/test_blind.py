@@ -13,7 +13,6 @@ from chain_fixtures import GEAR
 from hydra import compose, initialize_config_dir
 from loop_fixtures import POINTS, drawn, fitted_to, holding
 from omegaconf import OmegaConf
-from swgsim.identification.decide.selection import Closed
 
 from swgsim.bench.scatter import Bench
 from swgsim.blind import attempt, baselines, drawing
@@ -42,6 +41,7 @@ from swgsim.gear.gear import OperatingPoint
 from swgsim.identification.data.features import ORDERS, Layout, features
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model, predict
+from swgsim.identification.decide.decision import Decision
 from swgsim.identification.fit import map_fit as calibration
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import fit
@@ -61,10 +61,14 @@ SETTING = Setting(GEAR, Bench(), Window(), tuple(LIBRARY[name] for name in FEW),
 CASE = Sealed(0, SINGLE, FULL.name, FULL.points, 3, 17, 60, True, False, (1.0, 1.0), "mesh")
 SAID = {
     "verdict": "effect_found",
-    "accepted": [["cam_form"]],
-    "rivals": [[["out_of_round"]]],
+    "probability": 0.9,
+    "accepted": ["cam_form"],
+    "alternatives": [
+        {"effects": ["cam_form"], "unknown": False, "probability": 0.9},
+        {"effects": ["out_of_round"], "unknown": False, "probability": 0.08},
+    ],
+    "nearest": [],
     "lines": [],
-    "rejected": [],
     "unknown": [],
     "absorbed": [],
     "seen_from": {"cam_form": 1e-6},
@@ -80,6 +84,14 @@ SAID = {
     "peak_memory_mib": 100.0,
 }
 INTERVALS = ("intervals", "angles")
+NOTHING_NAMED = {"accepted": [], "alternatives": [{"effects": [], "unknown": False, "probability": 0.97}]}
+MISSED = {**NOTHING_NAMED, "verdict": "nothing_missing"}
+CALLED_UNKNOWN = {
+    "accepted": [], "alternatives": [{"effects": [], "unknown": True, "probability": 0.97}],
+    "verdict": "unknown_effect",
+}  # fmt: skip
+WRONG = {"accepted": ["out_of_round"], "alternatives": SAID["alternatives"][1:]}
+ONE_MORE = {"accepted": ["cam_form", "coning"], "alternatives": []}
 SHORT = replace(CASE, points=FULL.points[:2], repeats=1)
 HIDDEN = replace(CASE, effects=(LIBRARY["cam_form"](3, 2e-6, 1.0),), strengths=(3000.0,))
 
@@ -354,34 +366,21 @@ def test_a_family_holds_effects_of_the_library_and_no_effect_twice() -> None:
     ("case", "changes", "cause"),
     [
         (HIDDEN, {}, RIGHT),
-        (HIDDEN, {"accepted": [["out_of_round"]], "rivals": [[["cam_form"]]]}, "right one is a rival"),
-        (HIDDEN, {"accepted": [["out_of_round"]], "rivals": [[]]}, "wrong effect named"),
-        (HIDDEN, {"accepted": [["cam_form"], ["coning"]], "rivals": [[], []]}, "right, with a false extra effect"),
-        (HIDDEN, {"accepted": [], "rivals": [], "verdict": "nothing_missing"}, "missed"),
+        (HIDDEN, {"accepted": ["out_of_round"]}, "right one is a rival"),
+        (HIDDEN, WRONG, "wrong effect named"),
+        (HIDDEN, ONE_MORE, "right, with a false extra effect"),
+        (HIDDEN, MISSED, "missed"),
         (HIDDEN, {"failure": "it broke"}, "no answer"),
-        (
-            HIDDEN,
-            {
-                "accepted": [], "rivals": [], "verdict": "unknown_effect",
-                "rejected": [{"names": ["cam_form"], "gain": 9.0, "chances": [1e-9], "settled": True}],
-            },
-            "form rejected, the right one nearest",
-        ),
+        (HIDDEN, {**CALLED_UNKNOWN, "nearest": ["cam_form"]}, "called unknown, the right one nearest"),
+        (HIDDEN, {**CALLED_UNKNOWN, "nearest": ["coning"]}, "called unknown, coning nearest"),
+        (HIDDEN, CALLED_UNKNOWN, "called unknown, no effect nearest"),
         (replace(CASE, stratum="easy null"), {}, "false effect"),
         (replace(HIDDEN, stratum=UNTESTABLE), {}, RIGHT),
-        (
-            replace(HIDDEN, stratum=UNTESTABLE),
-            {"accepted": [["cam_form"], ["coning"]], "rivals": [[], []]},
-            "false effect",
-        ),
-        (replace(CASE, stratum="hard null"), {"accepted": [], "rivals": [], "verdict": "nothing_missing"}, RIGHT),
+        (replace(HIDDEN, stratum=UNTESTABLE), ONE_MORE, "false effect"),
+        (replace(CASE, stratum="hard null"), MISSED, RIGHT),
         (replace(HIDDEN, stratum="taken out"), {}, "known effect named for an unknown one"),
         (replace(HIDDEN, stratum="taken out", likeness=0.95), {}, "look-alike named for an unknown effect"),
-        (
-            replace(HIDDEN, stratum="written"),
-            {"accepted": [], "rivals": [], "verdict": "unknown_effect"},
-            RIGHT,
-        ),
+        (replace(HIDDEN, stratum="written"), CALLED_UNKNOWN, RIGHT),
     ],
 )  # fmt: skip
 def test_what_went_wrong_is_said(case: Sealed, changes: dict, cause: str) -> None:
@@ -429,7 +428,7 @@ def test_the_true_size_is_weighed_by_how_much_is_seen_of_it(monkeypatch: pytest.
 
 def test_a_mean_has_the_real_part_of_a_pattern_only() -> None:
     turning = OUTSIDE[2].described.pattern
-    unknown = {**SAID, "accepted": [], "rivals": [], "verdict": "unknown_effect"}
+    unknown = {**SAID, **CALLED_UNKNOWN}
     leaning = replace(HIDDEN, stratum="written", effects=(OUTSIDE[5](0.01, 1.0),))
     atom = OUTSIDE[5].described
     assert Judged(leaning, {**unknown, "unknown": [[0, turning, atom.law]]}).described == (True, True, True)
@@ -441,12 +440,12 @@ def test_a_mean_has_the_real_part_of_a_pattern_only() -> None:
 
 def test_the_score_counts_what_it_says() -> None:
     null = replace(CASE, stratum="easy null")
-    quiet = {"accepted": [], "rivals": [], **dict.fromkeys(INTERVALS, ()), "verdict": "nothing_missing"}
+    quiet = {**MISSED, **dict.fromkeys(INTERVALS, ())}
     written = replace(HIDDEN, stratum="written", effects=(OUTSIDE[0](0.01, 1.0),))
-    unknown = {**quiet, "verdict": "unknown_effect"}
+    unknown = {**quiet, **CALLED_UNKNOWN}
     cases = [
         Judged(HIDDEN, {**SAID, "seconds": {"loop": 7.0, "loop_of_one_core": 4.0}}),
-        Judged(HIDDEN, {**SAID, "accepted": [["coning"]], "rivals": [[]], **dict.fromkeys(INTERVALS, ())}),
+        Judged(HIDDEN, {**SAID, **WRONG, **dict.fromkeys(INTERVALS, ())}),
         Judged(replace(HIDDEN, strengths=(60.0,)), {**SAID, **quiet}),
         Judged(null, {**SAID, **quiet}),
         Judged(null, SAID),
@@ -473,10 +472,41 @@ def test_the_score_counts_what_it_says() -> None:
     # An angle a little below a whole turn lies beside one a little above none.
     assert [found[kind]["value"] for kind in ("coverage95", "coverage95_of_angles")] == [2 / 3, 2 / 3]
     assert found["baselines"]["correlation"]["false_effect_rate"]["value"] == 1
-    assert found["confusion"]["cam_form"] == {"cam_form": 1, "coning": 1, "nothing": 1, "failure": 1}
+    assert found["confusion"]["cam_form"] == {"cam_form": 1, "out_of_round": 1, "nothing": 1, "failure": 1}
     assert [case.failed for case in worst(cases)] == [True, True, False, False, False]
     assert (found["seconds_max"], found["seconds_median"]) == (7.0, 5.0)
     json.dumps(found, allow_nan=False)
+
+
+@pytest.mark.parametrize(
+    ("case", "changes", "right"),
+    [
+        (HIDDEN, {}, True),
+        (HIDDEN, ONE_MORE, False),
+        (HIDDEN, WRONG, False),
+        (HIDDEN, MISSED, False),
+        (HIDDEN, CALLED_UNKNOWN, False),
+        (CASE, MISSED, True),
+        (replace(HIDDEN, stratum=UNTESTABLE), MISSED, True),
+        (replace(HIDDEN, stratum="written"), CALLED_UNKNOWN, True),
+        (replace(HIDDEN, stratum="written"), {}, False),
+    ],
+)
+def test_an_answer_is_right_if_it_names_all_and_nothing_else(case: Sealed, changes: dict, right: bool) -> None:
+    assert Judged(case, {**SAID, **changes}).right == right
+
+
+def test_probabilities_are_compared_with_the_share_of_right_answers() -> None:
+    """Eight of ten right where 0.9 was said, and one of two where 0.6 was said."""
+    said = [(0.9, {})] * 8 + [(0.9, WRONG)] * 2 + [(0.6, {}), (0.6, WRONG)]
+    found = score([Judged(HIDDEN, {**SAID, **changes, "probability": p}) for p, changes in said])
+    assert [(each["stated"], each["right"]["value"], each["right"]["count"]) for each in found["reliability"]] == [
+        (pytest.approx(0.6), 0.5, 2),
+        (pytest.approx(0.9), 0.8, 10),
+    ]
+    assert found["expected_calibration_error"] == pytest.approx(0.1)
+    assert (found["right_of_sure"]["value"], found["right_of_sure"]["count"]) == (0.8, 10)
+    assert score([Judged(HIDDEN, {"failure": "it broke"})])["expected_calibration_error"] is None
 
 
 @pytest.mark.parametrize("order", [3, 5])
@@ -484,9 +514,9 @@ def test_angles_are_judged_of_what_was_chosen_alike(fitted: Fitted, order: int) 
     """The phase of another order is another thing."""
     found = LIBRARY["cam_form"](order, 2.1e-6, 0.9)
     after = replace(fitted, calibrated=replace(fitted.calibrated, model=fitted.model.plus(found)))
-    closed = Closed(fitted, after, after, (), (), (), (), None)
-    closed.__dict__["deviation"] = {"cam form 1: amplitude": 1e-7, "cam form 1: phase": 0.2}
-    sizes, angles = attempt._intervals(Answer("effect_found", closed, (), (), (), (), ()), HIDDEN)
+    decision = Decision(fitted, after, (), (), ())
+    decision.__dict__["deviation"] = {"cam form 1: amplitude": 1e-7, "cam form 1: phase": 0.2}
+    sizes, angles = attempt._intervals(Answer(decision, (), (), (), (), ()), HIDDEN)
     assert sizes == [{"name": "cam_form", "true": 2e-6, "found": 2.1e-6, "deviation": 1e-7}]
     assert angles == ([{"name": "cam_form", "true": 1.0, "found": 0.9, "deviation": 0.2}] if order == 3 else [])
 
@@ -495,8 +525,8 @@ def test_the_true_model_is_likelier_than_an_answer_that_names_nothing() -> None:
     hidden = replace(SHORT, effects=(LIBRARY["cam_form"](3, 2e-5, 1.0),), strengths=(3e5,))
     unit = Unit(Model(GEAR))
     before = fit(Measured.of(in_question(hidden, SETTING, hidden.acting)), unit)
-    closed = Closed(before, before, before, (), (), (), (), None)
-    said = attempt._against_truth(Answer("nothing_missing", closed, (), (), (), (), ()), unit, hidden, SETTING)
+    answer = Answer(Decision(before, before, (), (), ()), (), (), (), (), ())
+    said = attempt._against_truth(answer, unit, hidden, SETTING)
     likely = said["log_likelihood"]
     assert likely["before"] == likely["after"] == before.log_likelihood
     assert likely["oracle"] > before.log_likelihood + 100

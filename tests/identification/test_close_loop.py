@@ -65,9 +65,9 @@ PARTS = (
 )
 WHISTLE = Unnamed("order", 5.37, 1e-9, 100.0, 0.01, 10.0, PARTS)
 KEYS = {
-    "verdict", "sentence", "noise_floor", "calibrated", "effects", "rejected", "error", "unknown", "next_experiment",
-    "moved", "absorbed", "detectable", "scores", "commissioned", "structure", "learned", "less_certain", "unheard",
-    "zeros", "channels", "recordings", "defects", "seconds", "made",
+    "verdict", "sentence", "probability", "noise_floor", "calibrated", "effects", "small", "alternatives",
+    "options", "error", "unknown", "next_experiment", "moved", "absorbed", "detectable", "scores", "commissioned",
+    "structure", "learned", "less_certain", "unheard", "zeros", "channels", "recordings", "defects", "seconds", "made",
 }  # fmt: skip
 
 
@@ -155,7 +155,11 @@ def test_report_names_the_hidden_effect_with_its_size_and_evidence(folders, sick
     assert re.search(r"\d+\.\d µm \(95 %: .* off centre, towards \d+° from gauge s1", said["sentence"])
     assert (effect["name"], effect["place"], r["unit"]) == ("eccentric_wave_generator", "wave generator", "m")
     assert r["ci95"][0] < HIDDEN.r < r["ci95"][1]
-    assert effect["evidence"]["heldout_gain"] > 3
+    assert effect["probability"] > 0.99
+    assert effect["evidence"]["gain"] > 3
+    assert said["probability"] >= 0.95 or len(said["alternatives"]) > 1
+    first = said["options"][0]
+    assert (first["effects"], first["regularities"], first["log_ratio"]) == (["eccentric_wave_generator"], [], 0)
     assert said["commissioned"]
     assert set(said["calibrated"]) >= {"k1", "b1", "gain of s0"}
     assert said["recordings"]["repeats"] == {"fewest": 2, "most": 2}
@@ -252,7 +256,8 @@ def test_nothing_is_missing_in_a_healthy_gear(healthy):
     assert re.search(r"eccentric wave generator \(\S+ µm\)", printed[-1])
     assert said["detectable"]["eccentric_wave_generator"]["value"] < HIDDEN.r
     assert said["error"]["before"] == said["error"]["after"]
-    assert [step.split()[0] for step in steps] == ["searching", "screening", "describing", "report:"]
+    words = list(dict.fromkeys(step.split()[0] for step in steps))
+    assert words == ["searching", "fitting", "screening", "describing", "report:"]
 
 
 def test_results_show_themselves(unit, healthy, sick):
@@ -284,25 +289,28 @@ def found() -> Answer:
 
 
 def test_ripple_that_is_not_used_is_reported(found):
-    before, layout = found.closed.before, found.closed.before.measured.layout
+    before, layout = found.decision.before, found.decision.before.measured.layout
     inflation = np.where((layout.channel == "T_out") & (layout.order > 0), UNHEARD, 1.0)
     inflation[(layout.channel == "s1") & (layout.order == 4)] = 5.0
     unused = replace(before, unit=replace(before.unit, inflation=inflation))
-    said = report(replace(found, closed=replace(found.closed, before=unused)), ())
+    said = report(replace(found, decision=replace(found.decision, before=unused)), ())
     assert (said["unheard"], said["less_certain"]) == (["T_out"], {"s1": [4]})
 
 
 def test_untestable_effects_are_named_where_nothing_is_missing(found):
-    scores = found.closed.scores
+    scores = found.decision.scores
 
-    def end(*absorbed: Score) -> str:
-        return sentence(replace(found, verdict=NOTHING, absorbed=absorbed), ()).partition(" is significant")[2]
+    def said(*absorbed: Score) -> str:
+        return sentence(replace(found, absorbed=absorbed), ())
 
+    assert found.verdict == NOTHING
+    plain = said().removesuffix(".")
+    assert "cannot test" not in plain
     titles = [score.hypothesis.kind.title() for score in scores]
-    assert end() == "."
-    assert end(*scores[:2]) == f"; these recordings cannot test {titles[0]}, {titles[1]}."
+    assert said(*scores[:2]) == f"{plain}; these recordings cannot test {titles[0]}, {titles[1]}."
     many = scores[:1] * (MOST_NAMED + 3)
-    assert end(*many) == f"; these recordings cannot test {', '.join(titles[:1] * MOST_NAMED)} and 3 more."
+    expected = f"{plain}; these recordings cannot test {', '.join(titles[:1] * MOST_NAMED)} and 3 more."
+    assert said(*many) == expected
 
 
 def test_next_experiment_is_named_where_one_helps(found):
@@ -311,7 +319,7 @@ def test_next_experiment_is_named_where_one_helps(found):
     """
     experiments = {
         each.between[0].split(" of ")[0]: each
-        for each in next_experiments(replace(found, absorbed=found.closed.scores))
+        for each in next_experiments(replace(found, absorbed=found.decision.scores))
     }
     helpful, helpless = experiments["load sharing"], experiments["reduced damping"]
     assert helpful.recordings in RECORDINGS

@@ -7,10 +7,13 @@ import pytest
 from loop_fixtures import POINTS, drawn, fitted_to, holding
 
 from swgsim.identification.data.features import Layout
-from swgsim.identification.fit.errors import Errors, noise_floor, repeat_noise, rms
+from swgsim.identification.fit.errors import Errors, noise_floor, of_points_left_out, repeat_noise, rms
+from swgsim.identification.fit.priors import Declared
 from swgsim.identification.report.prediction_errors import FEWEST, WHAT, _explained, _of_floor, _ratio, error
+from swgsim.identification.search.regularities import Atom, columns
 
 LAYOUT = Layout(("s1", "s2"))
+ATOM = Atom(5, "in s2 alone", "constant")
 
 
 def fitted(points=POINTS, repeats=3, open_=0):
@@ -109,3 +112,57 @@ def test_what_is_not_known_is_none(points, repeats):
         assert (said["after"][what] is not None) == known[what]
         assert (said["after_over_before"][what]["value"] is not None) == known[what]
     assert (said["noise_floor"] is None) == (said["noise_floor_ci95"] is None) == (repeats == 1)
+
+
+def with_atom(now):
+    """A fit of the cosine and sine of an atom, without the chain."""
+    J = 100 * columns(ATOM, now)
+    weighed = J / now.errors.variance[:, None]
+    told = np.linalg.solve(np.eye(J.shape[1]) + weighed.T @ J, weighed.T @ now.residual)
+    shape = now.calibrated.predicted.shape
+    position = dict(zip(("cosine", "sine"), told.tolist(), strict=True))
+    predicted = now.calibrated.predicted + (J @ told).reshape(shape)
+    calibrated = replace(now.calibrated, position=position, predicted=predicted, J=J.reshape(*shape, -1))
+    amplitude = Declared("mV/V", 100.0, lambda _: 0.0, lambda model, _: model)
+    return replace(now, parameters=dict.fromkeys(position, amplitude), calibrated=calibrated)
+
+
+def test_error_of_a_point_left_out_is_that_of_what_the_others_tell():
+    """What one point alone shows is predicted as nothing there, and as something where it is not."""
+    now = fitted(repeats=1)
+    shown = 50 * now.measured.point_rows()[2] * columns(ATOM, now)[:, 0]
+    before = holding(replace(now, errors=replace(now.errors, G=now.errors.G[:, :0])), shown)
+    after = with_atom(before)
+    missed, before_it = of_points_left_out(after), of_points_left_out(before)
+    assert missed[2] == pytest.approx(before_it[2])
+    assert np.delete(missed, 2).min() > 0.1 * missed[2]
+    np.testing.assert_array_equal(np.delete(before_it, 2), 0)
+
+
+def test_what_a_whole_session_has_off_is_no_error_of_the_model():
+    """It is told by the other operating points of the session; noise stays."""
+    now = fitted(repeats=1)
+    zero = np.tile(LAYOUT.order == 0, len(now.measured)).astype(float)[:, None]
+    noise = np.sqrt(now.errors.variance) * np.random.default_rng(3).standard_normal(len(zero))
+    off = replace(now, errors=replace(now.errors, G=100 * zero))
+    found, quiet = (Errors(held, held) for held in (holding(off, noise + 150 * zero[:, 0]), holding(off, noise)))
+    np.testing.assert_allclose(found.fit, quiet.fit, rtol=1e-2)
+    np.testing.assert_allclose(found.heldout, quiet.heldout, rtol=1e-2)
+    np.testing.assert_array_less(found.heldout, 10)
+
+
+def test_what_a_model_lacks_is_an_error_though_a_nuisance_could_hide_it():
+    """The best model says how much of it is nuisance; by itself, the model before would call it nothing else."""
+    now = fitted(repeats=1)
+    line = columns(ATOM, now)[:, :1]
+    before = holding(replace(now, errors=replace(now.errors, G=30 * line)), 50 * line[:, 0])
+    best = with_atom(before)
+    shown = of_s2(Errors(holding(before, 50 * line[:, 0]), holding(best, 0 * line[:, 0])).fit)
+    assert of_s2(Errors(before, before).heldout) < 0.05 * shown
+    assert of_s2(Errors(before, best).heldout) == pytest.approx(shown, rel=0.15)
+    assert of_s2(Errors(best, best).heldout) < 0.05 * shown
+
+
+def of_s2(error):
+    """Of all recordings."""
+    return rms(error[:, LAYOUT.channels.index("s2")])

@@ -18,13 +18,13 @@ from other_bench.motion import RATE, Drive, moved
 from other_bench.schedule import Run, session
 from other_bench.shell import ACROSS_GRID, ANSWERS, solved
 from other_bench.specimen import Crack, Specimen, draw
-from swgsim.identification.decide.stepwise_selection import close
 
 from swgsim.effects.base import Effect as Found
 from swgsim.effects.library import LIBRARY
 from swgsim.identification.commissioning.commissioning import learn_unit
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model
+from swgsim.identification.decide.decision import decide
 from swgsim.identification.fit.unit import STRUCTURE, Unit
 from swgsim.identification.interharmonics.interharmonic_spectrum import gauge_spectra
 from swgsim.identification.interharmonics.line_search import search
@@ -58,9 +58,8 @@ def measured(folder: Path) -> Measured:
 
 
 def found(folder: Path, unit: Unit) -> list[Found]:
-    """All effects that are accepted."""
-    closed = close(measured(folder), unit, SEARCHED)
-    return [effect for step in closed.steps for effect in step.accepted.effects]
+    """The effects of the most probable option."""
+    return list(decide(measured(folder), unit, SEARCHED).effects)
 
 
 def ideal(**changes: object) -> Specimen:

@@ -1,0 +1,312 @@
+"""The decision by evidence, with fabricated Gaussian numbers: evidence, prior, search, probabilities and words."""
+
+from dataclasses import replace
+from itertools import combinations
+from math import comb
+
+import numpy as np
+import pytest
+from linear_chain import KINDS, Bump, Dip, Mimic, Step, patch_chain, signatures_of
+from loop_fixtures import drawn, fitted_to, holding
+from scipy.special import logsumexp
+from scipy.stats import binom, multivariate_normal
+
+from swgsim.common.outcome import FOUND, NOTHING, UNKNOWN
+from swgsim.effects.regularity import LAWS, PATTERNS
+from swgsim.identification.covariance.low_rank_covariance import Covariance
+from swgsim.identification.covariance.recording_covariance import RecordingCovariance
+from swgsim.identification.data.features import ORDERS, Layout
+from swgsim.identification.decide import option as option_module
+from swgsim.identification.decide.decision import CREDIBLE, decide
+from swgsim.identification.decide.option import expected_gain, option
+from swgsim.identification.decide.prior import BALANCED, CAUSES, FORM_ERRORS, SCALES, TIMES_BALANCED, log_prior
+from swgsim.identification.decide.search import Search
+from swgsim.identification.fit.form_error import form_directions, parts
+from swgsim.identification.report.answer import Answer
+from swgsim.identification.report.found import alternatives, found_effects, options, probability_text, small
+from swgsim.identification.report.sentence import sentence
+from swgsim.identification.search.regularities import Atom, columns
+
+LAYOUT = Layout(("T_in", "s1"))
+STRAY = Atom(5, "in s1 alone", "constant")
+
+
+@pytest.fixture(scope="module")
+def null():
+    """Six operating points, noise of about 1, and errors of the session such as zeros of gauges."""
+    fitted = fitted_to(LAYOUT, np.random.default_rng(1), open_=2)
+    errors = Covariance(fitted.errors.alone, fitted.measured.session_columns(fitted.calibrated.predicted))
+    return replace(fitted, errors=errors)
+
+
+@pytest.fixture(scope="module")
+def changes(null):
+    return signatures_of(null, np.random.default_rng(2))
+
+
+@pytest.fixture
+def _chain(null, changes, monkeypatch):
+    patch_chain(monkeypatch, null, changes)
+
+
+def recorded(null, changes, hidden, seed, more=0.0):
+    """The null model, held against recordings with effects."""
+    signal = sum((size * changes[kind].ravel() for kind, size in hidden.items()), start=0.0 + more)
+    return holding(null, signal + drawn(null.whole, np.random.default_rng(seed)))
+
+
+def density(fitted, residual, *more):
+    """Log density of a residual by the covariance written out, up to the constant of the loop."""
+    blocks = [fitted.errors.columns, fitted.open, fitted.allowed.columns, *more]
+    every = np.hstack(blocks)
+    covariance = np.diag(fitted.errors.variance) + every @ every.T
+    return multivariate_normal(cov=covariance).logpdf(residual) + len(residual) / 2 * np.log(2 * np.pi)
+
+
+@pytest.mark.usefixtures("_chain")
+def test_evidence_is_the_marginal_likelihood(null):
+    """Of bridges as they were, and balanced anew: zeros so many times as far off."""
+    held = holding(null, drawn(null.whole, np.random.default_rng(3)))
+    found = option(held, (), (), len(KINDS))
+    assert found.form_error == 0
+    for times, each in found.of_zeros.items():
+        anew = replace(null.measured, zeros=times).session_columns(held.calibrated.predicted)
+        wider = replace(held, errors=Covariance(held.errors.alone, anew))
+        prior = 1 - BALANCED if times == 1 else BALANCED / len(TIMES_BALANCED)
+        assert each == pytest.approx(np.log(prior) + density(wider, held.residual), abs=1e-6)
+    assert found.log_evidence == pytest.approx(logsumexp(list(found.of_zeros.values())))
+
+
+@pytest.mark.usefixtures("_chain")
+def test_zeros_of_bridges_balanced_anew_are_seen_and_are_no_effect(null, changes):
+    """As far off as 10 times what they move from session to session."""
+    mean = np.tile((LAYOUT.channel == "s1") & (LAYOUT.order == 0), len(null.measured)).astype(float)
+    sharp = replace(
+        null,
+        measured=replace(null.measured, variance=1e-8 * null.measured.variance),
+        errors=Covariance(RecordingCovariance.white(1e-8 * null.measured.variance), null.errors.G),
+        open=null.open[:, :0],
+    )
+    noise = 1e-4 * np.random.default_rng(4).standard_normal(len(mean))
+    calm, anew = (option(holding(sharp, noise + off * mean), (), (), len(KINDS)) for off in (0.003, 0.05))
+    assert calm.zeros == 1
+    assert anew.zeros in (8.0, 16.0)
+
+
+@pytest.mark.usefixtures("_chain")
+def test_evidence_of_an_effect_is_the_mean_over_the_form_errors(null, changes):
+    held = recorded(null, changes, {Bump: 5.0}, 5)
+    found = option(held, (Bump(4.0),), (), len(KINDS))
+    fitted, D = found.fitted, form_directions(found.fitted, 1)
+    by_error = [density(fitted, fitted.from_start, fitted.J, each * D) for each in FORM_ERRORS]
+    expected = np.log(1 - BALANCED) + logsumexp(by_error) - np.log(len(FORM_ERRORS))
+    assert found.zeros == 1
+    assert found.of_zeros[1.0] == pytest.approx(expected, abs=1e-4)
+    weights = np.exp(by_error - logsumexp(by_error))
+    assert found.form_error == pytest.approx(weights @ FORM_ERRORS, rel=1e-3)
+
+
+@pytest.mark.usefixtures("_chain")
+@pytest.mark.parametrize("begin", [1.0, 40.0])
+def test_a_size_is_integrated_over_its_logarithm_wherever_the_fit_began(null, changes, begin):
+    """Numerically: a size is positive or negative, and its logarithm is uniform."""
+    held = recorded(null, changes, {Bump: 5.0}, 6)
+    found = option(held, (Bump(begin),), (), len(KINDS))
+    D = form_directions(found.fitted, 1)
+    (effect,), column = found.effects, changes[Bump].ravel()
+    sizes = np.linspace(0.7, 1.3, 121) * effect.height
+    likely = []
+    for error in FORM_ERRORS:
+        every = np.hstack([held.errors.columns, held.open, error * D])
+        normal = multivariate_normal(cov=np.diag(held.errors.variance) + every @ every.T)
+        likely.append(normal.logpdf(held.residual - sizes[:, None] * column) + len(column) / 2 * np.log(2 * np.pi))
+    densities = np.exp(logsumexp(likely, axis=0) - np.log(len(FORM_ERRORS)) - found.of_zeros[1.0])
+    integral = np.trapezoid(densities / (2 * SCALES * np.abs(sizes)), sizes)
+    expected = np.log(1 - BALANCED) + np.log(integral) + found.of_zeros[1.0] + log_prior(1, 0, len(KINDS))
+    assert found.log_prior + found.of_zeros[1.0] == pytest.approx(expected, abs=0.05)
+
+
+@pytest.mark.usefixtures("_chain")
+def test_expected_evidence_is_near_that_of_the_fit(null, changes):
+    held = recorded(null, changes, {Bump: 3.0}, 7)
+    without, found = option(held, (), (), 4), option(held, (Bump(3.0),), (), 4)
+    (effect,) = found.effects
+    gained = found.log_posterior - without.log_posterior - log_prior(1, 0, 4) + log_prior(0, 0, 4)
+    assert gained > 50
+    assert expected_gain(held, effect.height * changes[Bump].ravel()) == pytest.approx(gained, rel=0.05)
+    assert parts(held, changes[Bump].ravel()).shape[1] == 6 + 2 + ORDERS + 1
+
+
+@pytest.mark.parametrize("kinds", [2, 10, 60])
+def test_priors_of_all_options_sum_to_at_most_one(kinds):
+    """Regularities that go on have order, pattern or law in common with the last one."""
+    total = 0.0
+    for effects in range(min(kinds, len(CAUSES) - 1) + 1):
+        sets, options_ = comb(kinds, effects), (ORDERS + 1) * len(PATTERNS) * len(LAWS)
+        total += sets * np.exp(log_prior(effects, 0, kinds))
+        for regularities in range(1, 30):
+            total += sets * options_ * np.exp(log_prior(effects, regularities, kinds))
+            options_ *= ORDERS + len(PATTERNS) + len(LAWS)
+    assert 0.85 < total <= 1 + 1e-9
+
+
+def test_more_causes_are_less_probable():
+    assert [log_prior(n, 0, 60) for n in range(4)] == sorted((log_prior(n, 0, 60) for n in range(4)), reverse=True)
+    regular = [log_prior(0, n, 60) for n in range(4)]
+    assert regular == sorted(regular, reverse=True)
+    assert log_prior(1, 0, 60) > log_prior(0, 1, 60)  # one regularity is one of thousands
+    assert log_prior(1, 0, 30) > log_prior(1, 0, 60)
+    assert log_prior(len(CAUSES), 0, 60) == log_prior(len(CAUSES) - 1, 1, 60) == -np.inf
+
+
+@pytest.mark.usefixtures("_chain")
+@pytest.mark.parametrize(
+    "hidden",
+    [{}, {Bump: 2.0}, {Mimic: 1.0}, {Bump: 0.15}, {Dip: 1.0, Step: -0.4}, {Bump: 3.0, Mimic: -2.0}, {
+        Bump: 1.0, Dip: 0.3, Step: 2.0
+    }],
+    ids=lambda hidden: " ".join(kind.__name__ for kind in hidden) or "nothing",
+)  # fmt: skip
+def test_the_search_finds_the_best_of_all_subsets(null, changes, hidden):
+    held = recorded(null, changes, hidden, 8)
+    found = Search(held, KINDS).run()
+    every = []
+    for many in range(len(CAUSES)):
+        for kinds in combinations(KINDS, many):
+            every.append(option(held, [kind(hidden.get(kind, 1.0)) for kind in kinds], (), len(KINDS)))
+    best = max(every, key=lambda each: each.log_posterior)
+    assert found[0].causes == best.causes
+    assert found[0].log_posterior == pytest.approx(best.log_posterior, abs=0.1)
+    if hidden and min(map(abs, hidden.values())) > 0.2:
+        assert {type(effect) for effect in found[0].effects} == set(hidden)
+
+
+@pytest.mark.usefixtures("_chain")
+def test_the_search_finds_an_effect_beside_a_regularity(null, changes):
+    stray = 3 * columns(STRAY, null)[:, 0]
+    best = Search(recorded(null, changes, {Dip: 1.0}, 9, stray), KINDS).run()[0]
+    assert [type(effect) for effect in best.effects] == [Dip]
+    assert [each.atom for each in best.regularities] == [STRAY]
+
+
+@pytest.mark.parametrize("form", [False, True], ids=["exact form", "form error"])
+def test_probabilities_are_true(null, changes, monkeypatch, form):
+    """Effects drawn from the prior: of answers given with a probability, that share is right."""
+    small_layout = Layout(("T_in",))
+    toy = fitted_to(small_layout, np.random.default_rng(10), open_=1)
+    toy = replace(toy, errors=Covariance(toy.errors.alone, np.zeros((len(toy.residual), 0))))
+    columns_ = signatures_of(toy, np.random.default_rng(11))
+    patch_chain(monkeypatch, toy, columns_)
+    if not form:
+        monkeypatch.setattr(option_module, "form_directions", lambda fitted, _: np.zeros((len(fitted.residual), 0)))
+    kinds, rng = (Bump, Mimic), np.random.default_rng(12)
+    sets = [(), (Bump,), (Mimic,), (Bump, Mimic)]
+    prior = np.exp([log_prior(len(each), 0, len(kinds)) for each in sets])
+    stated, right = [], []
+    for _ in range(300):
+        truth = rng.choice(len(sets), p=prior / prior.sum())
+        signal = drawn(toy.whole, rng)
+        for kind in sets[truth]:
+            whole = columns_[kind].ravel()
+            white = toy.whole.whiten(whole)
+            least = 1 / np.sqrt(white @ white)
+            size = rng.choice([-1, 1]) * least * np.exp(rng.uniform(0, SCALES))
+            signal = signal + size * whole
+            if form:
+                one = option(holding(toy, 0 * signal), (kind(1.0),), (), 2).fitted
+                lone = replace(one, calibrated=replace(one.calibrated, model=toy.unit.model.plus(kind(1.0))))
+                D = form_directions(lone, 1)
+                signal = signal + size * rng.choice(FORM_ERRORS) * D @ rng.standard_normal(D.shape[1])
+        held = holding(toy, signal)
+        none, *alone = (option(held, [kind(1.0) for kind in each], (), len(kinds)) for each in sets[:3])
+        # Two effects are fitted as the search does it: beside one whose form is open.
+        both = [
+            option(one.opened(1.0), (other(1.0),), (), len(kinds))
+            for one, other in zip(alone, kinds[::-1], strict=True)
+        ]
+        found = np.array([each.log_posterior for each in (none, *alone)] + [max(b.log_posterior for b in both)])
+        probability = np.exp(found - logsumexp(found))
+        stated.append(probability.max())
+        right.append(probability.argmax() == truth)
+    stated, right = np.array(stated), np.array(right)
+    for low, high in ((0, 0.7), (0.7, 0.95), (0.95, 1.01)):
+        here = (low <= stated) & (stated < high)
+        assert here.sum() >= 5
+        expected, count = stated[here].mean(), int(here.sum())
+        within = binom.ppf([0.002, 0.998], count, expected)
+        assert within[0] <= right[here].sum() <= within[1]
+    assert right.mean() > 0.7
+
+
+def answered(null, changes, hidden, seed, more=0.0, **given):
+    """The answer about recordings with effects, and its sentence."""
+    held = recorded(null, changes, hidden, seed, more)
+    found = Answer(decide(held.measured, held.unit, KINDS), (), (), (), (), (), **given)
+    return found, sentence(found, found_effects(found))
+
+
+@pytest.mark.usefixtures("_chain")
+def test_an_effect_is_reported_with_its_probability_and_size(null, changes):
+    found, said = answered(null, changes, {Dip: 3.0}, 13)
+    (effect,) = found_effects(found)
+    assert found.verdict == FOUND
+    assert effect["probability"] > 0.99
+    assert said.startswith("The model lacks a dip: ")
+    assert said.endswith(f": probability {probability_text(found.decision.probability)}.")
+    low, high = effect["parameters"]["height"]["ci95"]
+    assert low < 3 < high < low + 1
+    first, *others = options(found)
+    assert (first["words"], first["regularities"], first["log_ratio"]) == ("a dip", [], 0)
+    assert all(other["log_ratio"] < 0 for other in others)
+    assert sum(each["probability"] for each in options(found)) == pytest.approx(1, abs=0.01)
+    assert effect["evidence"]["gain"] > 100
+    assert found.decision.gain_of(Bump(1.0)) == 0
+    assert small(found) == []
+
+
+@pytest.mark.usefixtures("_chain")
+def test_what_looks_alike_is_an_alternative_in_report_and_sentence(null, changes):
+    """A weak bump and its mimic, which no recording tells apart."""
+    alike = {**changes, Mimic: 1.0001 * changes[Bump]}
+    with pytest.MonkeyPatch.context() as patch:
+        patch_chain(patch, null, alike)
+        found, said = answered(null, alike, {Bump: 2.0}, 14)
+    assert {each["words"] for each in alternatives(found)} == {"a bump", "a mimic"}
+    assert all(each["probability"] == pytest.approx(0.5, abs=0.05) for each in alternatives(found))
+    assert sum(each["probability"] for each in alternatives(found)) >= CREDIBLE
+    ((rival, probability),) = found.decision.rivals
+    words = {"Bump": "a bump", "Mimic": "a mimic"}[type(rival.effects[0]).__name__]
+    assert f": probability {probability_text(found.decision.probability)}; else {words} ({probability:.2f})." in said
+    assert not any(each["unknown"] for each in alternatives(found))
+
+
+@pytest.mark.usefixtures("_chain")
+def test_nothing_and_something_unknown_have_probabilities_too(null, changes):
+    found, said = answered(null, changes, {}, 15)
+    assert found.verdict == NOTHING
+    assert said.startswith("Nothing is missing: the model explains the recordings down to their noise: probability ")
+    assert alternatives(found)[0] == {
+        "words": "nothing", "effects": [], "unknown": False, "probability": pytest.approx(found.decision.probability),
+    }  # fmt: skip
+    found, said = answered(null, changes, {}, 16, 3 * columns(STRAY, null)[:, 0])
+    assert found.verdict == UNKNOWN
+    assert [each.atom for each in found.unknown] == [STRAY]
+    assert "not in the library: order 5, in s1 alone, constant" in said
+    assert said.endswith(f": probability {probability_text(found.decision.probability)}.")
+    assert alternatives(found)[0]["unknown"]
+    assert options(found)[0]["words"] == "something unknown"
+
+
+@pytest.mark.usefixtures("_chain")
+def test_what_is_too_small_to_matter_is_seen_but_no_verdict(null, changes):
+    found, _ = answered(null, changes, {Dip: 3.0}, 13)
+    (far,) = found.decision.distances
+    assert answered(null, changes, {Dip: 3.0}, 13, interest=0.9 * far)[0].verdict == FOUND
+    found, said = answered(null, changes, {Dip: 3.0}, 13, interest=1.1 * far)
+    assert found.verdict == NOTHING
+    (seen,) = small(found)
+    assert seen["words"].startswith("a dip")
+    assert seen["distance"] == pytest.approx(far, rel=1e-3)
+    assert "seen, but too small to matter: a dip" in said
+    assert "probability" not in said
+    assert found_effects(found) == []
