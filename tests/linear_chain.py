@@ -9,12 +9,12 @@ from loop_fixtures import Bump
 from swgsim.effects import Effect
 from swgsim.effects.regularity import Regularity
 from swgsim.identification.decide import decision, option
+from swgsim.identification.data import model
 from swgsim.identification.fit import form_error, map_fit, shape_marginal
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import unbent
 from swgsim.identification.fit.map_fit import calibrate
 from swgsim.identification.fit.priors import of_effects
-from swgsim.identification.search import hypotheses, refining
 from swgsim.identification.search.regularities import Atom, columns
 
 
@@ -67,7 +67,7 @@ def patch_chain(patch, null: Fitted, changes: Mapping[type[Effect], np.ndarray])
         )  # fmt: skip
         return replace(now, parameters=parameters, calibrated=calibrated)
 
-    for module in (map_fit, form_error, shape_marginal, hypotheses, refining):
+    for module in (model, map_fit, form_error, shape_marginal):
         patch.setattr(module, "predict", predict)
     for module in (option, decision):
         patch.setattr(module, "extended", extended)

@@ -105,7 +105,7 @@ def choices(folders: Path, recordings: str, **changes: object) -> dict:
     plain = {
         "recordings": str(folders / recordings), "commissioning": str(folders / "healthy"), "mapping": None,
         "commissioning_mapping": None, "gear": GEAR, "effects": [], "out": str(folders / f"{recordings}-answer"),
-        "searched": SEARCHED, "library": [], "truth": None, "seed": 0,
+        "searched": SEARCHED, "library": [], "truth": None, "interest": 0.2, "seed": 0,
     }  # fmt: skip
     return plain | changes
 
@@ -179,7 +179,7 @@ def test_page_opens_with_the_sentence_and_folds_the_details(folders, sick):
     assert first is not None
     assert unescape(first[1]) == sick.report["sentence"]
     summary, details = page.split('<h2 id="details">')
-    assert summary.count("data:image/png;base64,") == 1
+    assert summary.count("data:image/png;base64,") == 2  # the residual, and the probabilities
     assert page.count("data:image/png;base64,") == len(sick.figures) >= 5
     assert not re.search(r'(src|href)="(?!data:|#)', page)
     for fact in ("Effect that was hidden", "Check the gear: wave generator", str(folders / "sick"), "eccentric wave"):

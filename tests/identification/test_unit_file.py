@@ -168,7 +168,7 @@ def test_the_commands_keep_a_unit_and_use_it(unit: Unit, tmp_path: Path, capsys,
     assert f"{kept}: Unit of gear 1, commissioned on 8 recordings" in capsys.readouterr().out
     chosen |= {
         "commissioning": kept, "commissioning_mapping": None, "out": str(tmp_path / "answer"), "searched": None,
-        "library": [], "truth": None, "seed": 0,
+        "library": [], "truth": None, "interest": 0.2, "seed": 0,
     }  # fmt: skip
     with pytest.raises(Asked) as asked:
         job.run(chosen)

@@ -60,4 +60,5 @@ def _evidence(fitted: Fitted, unit: Unit) -> float:
 def _ratios(fitted: Fitted, unit: Unit) -> dict[str, float]:
     """Spread of each fitted parameter in a unit, relative to the fitted one."""
     declared = unit.declared
-    return {name: declared[name].sd / p.sd for name, p in fitted.parameters.items()}
+    # Parameters of declared effects keep their spread.
+    return {name: declared.get(name, p).sd / p.sd for name, p in fitted.parameters.items()}

@@ -33,7 +33,7 @@ def formless(base: Option, kinds: int) -> Option:
 def ill_fitting(option: Option) -> bool:
     """Whether an option leaves more unexplained than deviations of all lines at all operating points would cost."""
     measured = option.fitted.measured
-    return option.misfit > len(measured.layout) * len(measured.point_rows())
+    return bool(option.misfit > len(measured.layout) * len(measured.point_rows()))
 
 
 def line_deviations(fitted: Fitted) -> Float[np.ndarray, "row deviation"]:

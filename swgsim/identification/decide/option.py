@@ -162,7 +162,7 @@ def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"]
     if not directions.shape[1]:
         return of_zeros[:, None], misfit
     gains = _gains(best.whiten(directions), white)
-    return of_zeros[:, None] + gains - np.log(len(FORM_ERRORS)), misfit - as_squares(max(gains.max(), 0.0))
+    return of_zeros[:, None] + gains - np.log(len(FORM_ERRORS)), misfit - as_squares(max(float(gains.max()), 0.0))
 
 
 def _gains(

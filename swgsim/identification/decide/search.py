@@ -125,8 +125,8 @@ class Search:
         now = log_prior(len(base.effects), len(base.regularities), len(self.kinds))
         then = log_prior(len(base.effects) + effects, len(base.regularities) + regularities, len(self.kinds))
         if ill_fitting(self._best):
-            return then > -np.inf  # no estimate is worth much beside such a misfit
-        return log_evidence + base.log_prior + then - now > self._best.log_posterior - NEGLIGIBLE
+            return bool(then > -np.inf)  # no estimate is worth much beside such a misfit
+        return bool(log_evidence + base.log_prior + then - now > self._best.log_posterior - NEGLIGIBLE)
 
     def _leading(self, start: Fitted) -> list[tuple[float, Score]]:
         """The best hypotheses of the leading effects that are not in the model, with the expected log evidence."""
