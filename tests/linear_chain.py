@@ -8,8 +8,8 @@ from loop_fixtures import Bump
 
 from swgsim.effects import Effect
 from swgsim.effects.regularity import Regularity
-from swgsim.identification.decide import decision, option
 from swgsim.identification.data import model
+from swgsim.identification.decide import decision, option
 from swgsim.identification.fit import form_error, map_fit, shape_marginal
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import unbent
@@ -54,7 +54,7 @@ def patch_chain(patch, null: Fitted, changes: Mapping[type[Effect], np.ndarray])
             return effect.amplitude * (C @ cosine_sine).reshape(null.measured.values.shape)
         return effect.height * changes[type(effect)]
 
-    def predict(models, situations, layout, *_):
+    def predict(models, situations, layout, *_, **__):
         nothing = np.zeros(null.measured.values.shape)
         return np.stack([sum(map(change, model.effects), start=nothing) for model in models])
 

@@ -130,7 +130,9 @@ def simulate(runs: Sequence[Run], window: Window, sectors: int = SECTORS) -> Sim
 
 
 @threadpool_limits.wrap(limits=1)
-def simulate_turns(runs: Sequence[Run], revolutions: int, points: int, sectors: int = SECTORS) -> list[Recording]:
+def simulate_turns(
+    runs: Sequence[Run], revolutions: int, points: int, sectors: int = SECTORS, search: bool = True
+) -> list[Recording]:
     """Recordings of whole revolutions of the wave generator in the steady state.
 
     One revolution is computed, or taken from a cache, and repeated. Then effects on gauges and acquisition act on all
@@ -144,9 +146,11 @@ def simulate_turns(runs: Sequence[Run], revolutions: int, points: int, sectors: 
         Samples per revolution.
     sectors : int
         Sectors of the flex spline's truss, even.
+    search : bool
+        As for :func:`~swgsim.chain.settling.steady_revolution`.
     """
     driven, of_run = _driven(runs)
-    motion = one_turn(driven, points)
+    motion = one_turn(driven, points, search)
     signals = np.tile(_gauge_signals(runs, motion, of_run, points, sectors), revolutions)
     simulation = Simulation(signals, motion.repeated(revolutions), of_run)
     steps = np.arange(revolutions * points) / points

@@ -18,7 +18,7 @@ from jaxtyping import Float
 
 from swgsim.chain.dynamics import Drive, State
 from swgsim.chain.harmonic_balance import one_revolution
-from swgsim.chain.motion import Motion, advance, revolve, shooting
+from swgsim.chain.motion import Motion, NoSteadyState, advance, revolve, shooting
 from swgsim.chain.newton import TIMES, stable_revolution
 from swgsim.chain.unsteady import mean_revolution
 
@@ -48,7 +48,7 @@ def steady_state(drive: Drive, start_angle: Float[np.ndarray, " run"] | None = N
     return state
 
 
-def steady_revolution(drive: Drive, start_angle: Float[np.ndarray, " run"], points: int) -> Motion:
+def steady_revolution(drive: Drive, start_angle: Float[np.ndarray, " run"], points: int, search: bool = True) -> Motion:
     """One revolution of each run in its steady motion, in ``points`` even steps of time.
 
     Parameters
@@ -57,25 +57,29 @@ def steady_revolution(drive: Drive, start_angle: Float[np.ndarray, " run"], poin
     start_angle : array (run,)
         Angle of the wave generator at the start [rad].
     points : int
+    search : bool
+        Whether to search long for a motion that harmonic balance and shooting do not find.
 
     Raises
     ------
     NoSteadyState
-        As for :func:`steady_state`.
+        As for :func:`steady_state`; without the search, if a motion is not found at once.
     """
     found, balanced = one_revolution(drive, start_angle, points)
     left = np.flatnonzero(~balanced).tolist()
     if left:
-        _put(found, left, _shot(drive.part(left), start_angle[left], points))
+        _put(found, left, _shot(drive.part(left), start_angle[left], points, search))
     return found
 
 
-def _shot(drive: Drive, start: Float[np.ndarray, " run"], points: int) -> Motion:
+def _shot(drive: Drive, start: Float[np.ndarray, " run"], points: int, search: bool) -> Motion:
     """One revolution of each run, integrated from its state at the start."""
     state, converged = shooting(drive)
     with np.errstate(over="ignore", invalid="ignore"):  # of runs that did not converge
         found = revolve(drive, advance(drive, state, start) if start.any() else state, points)
     left = np.flatnonzero(~converged).tolist()
+    if left and not search:
+        raise NoSteadyState(f"harmonic balance and shooting find no steady motion of {len(left)} runs")
     if left:
         _put(found, left, _searched(drive.part(left), start[left], points)[0])
     return found

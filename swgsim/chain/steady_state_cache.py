@@ -41,20 +41,22 @@ def settled(driven: Sequence[Driven]) -> tuple[Drive, State]:
     return drive, steady_state(drive, start)
 
 
-def one_turn(driven: Sequence[Driven], points: int) -> Motion:
+def one_turn(driven: Sequence[Driven], points: int, search: bool = True) -> Motion:
     """One revolution of the wave generator for each motion, in ``points`` even steps of time.
 
     Parameters
     ----------
     driven : sequence of Driven
     points : int
+    search : bool
+        As for :func:`~swgsim.chain.settling.steady_revolution`.
     """
     new = [each for each in driven if (each, points) not in _remembered]
     if len(_remembered) + len(new) > MOST:
         forget()
         new = list(driven)
     if new:
-        _remember(new, steady_revolution(*_drive(new), points))
+        _remember(new, steady_revolution(*_drive(new), points, search))
     return Motion(*(np.stack(part) for part in zip(*(_remembered[each, points] for each in driven), strict=True)))
 
 

@@ -57,7 +57,9 @@ def _coarse_mesh() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(
             "swgsim.identification.data.model.simulate_turns",
-            lambda runs, revolutions, points, sectors: simulate_turns(runs, revolutions, points, SECTORS),
+            lambda runs, revolutions, points, sectors, search: simulate_turns(
+                runs, revolutions, points, SECTORS, search
+            ),
         )
         yield
 
@@ -145,7 +147,7 @@ def test_what_the_healthy_gear_did_as_well_is_not_missing():
 
 
 def test_what_is_learned_or_declared_is_not_missing():
-    """Friction; a line in s0, where the arms of four pairs cancel and the truss says little; a gain acts on it as well."""
+    """Friction; and a line in s0, where the arms of four pairs cancel: a gain acts on it as well."""
     gain, own_line = LIBRARY["gauge_gain"](0, 0.03), Regularity(4, 3e-3, 0.4, "in s0 alone", "constant")
     rubbing, declared = (LIBRARY["flank_friction"](ratio) for ratio in (1.3, 1.1))
     acting = own_line, rubbing, gain

@@ -66,13 +66,21 @@ class Model:
 
 
 def predict(
-    models: Sequence[Model], situations: Sequence[Situation], layout: Layout, sectors: int = SECTORS
+    models: Sequence[Model],
+    situations: Sequence[Situation],
+    layout: Layout,
+    sectors: int = SECTORS,
+    *,
+    search: bool = True,
 ) -> Float[np.ndarray, "model situation feature"]:
-    """Features of every situation by every model, all in one go: what runs have in common is computed once."""
+    """Features of every situation by every model, all in one go: what runs have in common is computed once.
+
+    Without ``search``, a motion that is not found at once is an error (NoSteadyState).
+    """
     runs = [m.run(s) for m in models for s in situations]
     _, row = distinct([_key(run) for run in runs])
     _, first = np.unique(row, return_index=True)
-    recordings = simulate_turns([runs[i] for i in first], revolutions=1, points=POINTS, sectors=sectors)
+    recordings = simulate_turns([runs[i] for i in first], revolutions=1, points=POINTS, sectors=sectors, search=search)
     some = (recordings[i : i + AT_ONCE] for i in range(0, len(recordings), AT_ONCE))
     found = np.concatenate([features_alike(each, layout) for each in some])
     return found[row].reshape(len(models), len(situations), len(layout))

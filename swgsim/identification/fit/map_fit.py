@@ -146,7 +146,7 @@ def calibrate(
 def _predicted(model: Model, situations: Sequence[Situation], layout: Layout) -> Float[np.ndarray, "situation feature"]:
     """What a model predicts; worse than anything where it has no steady state."""
     try:
-        return predict([model], situations, layout)[0]
+        return predict([model], situations, layout, search=False)[0]
     except NoSteadyState:
         return np.full((len(situations), len(layout)), NOWHERE)
 
