@@ -76,9 +76,7 @@ def _small_mesh():
     """The model on the mesh of the bench, which is a small one here."""
     with pytest.MonkeyPatch.context() as patch:
         coarse = partial(simulate_turns, sectors=SECTORS)
-        patch.setattr(
-            model, "simulate_turns", lambda runs, revolutions, points, sectors: coarse(runs, revolutions, points)
-        )
+        patch.setattr(model, "simulate_turns", lambda runs, revolutions, points, **_: coarse(runs, revolutions, points))
         yield
 
 

@@ -41,7 +41,7 @@ def predicting(monkeypatch, formula) -> None:
     """Let the chain be a formula of the two heights; it returns an array (situation, feature)."""
     replace_predict(
         monkeypatch,
-        lambda models, situations, layout: np.array([formula(*(e.height for e in m.effects)) for m in models]),
+        lambda models, situations, layout, **_: np.array([formula(*(e.height for e in m.effects)) for m in models]),
     )
 
 
@@ -262,7 +262,7 @@ def test_many_bounds_of_parameters_that_matter_quite_differently_take_one_step(m
     monkeypatch.setattr("test_loop_calibration.START", Model(GEAR, (Bump(0.0),) * many))
     asked = []
 
-    def predict(models, *_):
+    def predict(models, *_, **__):
         asked.append(len(models))
         return np.array([slopes @ [e.height for e in m.effects] for m in models])
 

@@ -40,7 +40,7 @@ def test_separation_is_what_all_recordings_together_leave_of_the_difference(monk
     directions, moved = rng.standard_normal((many, len(layout), 3)), rng.standard_normal((many, len(layout)))
     single = rng.standard_normal((many, len(layout), 2))
     monkeypatch.setattr(experiment, "_directions", lambda _, situations: (0 * moved, directions))
-    monkeypatch.setattr(experiment, "predict", lambda models, *_: np.array([moved]))
+    monkeypatch.setattr(experiment, "predict", lambda models, *_, **__: np.array([moved]))
     monkeypatch.setattr(experiment.scatter, "directions", lambda _, situations, __: single[-len(situations) :])
     scatter = replace(fitted.scatter, sd={"one": 0.5, "other": 2.0})
     free = rng.standard_normal((measured.values.size, 1))  # a disturbance that was set apart tells nothing

@@ -55,9 +55,7 @@ def finished(config):
     store = settings.store({**config["tracking"], "experiment": study.STUDY})
     with pytest.MonkeyPatch.context() as patch:
         coarse = partial(simulate_turns, sectors=SECTORS)
-        patch.setattr(
-            model, "simulate_turns", lambda runs, revolutions, points, sectors: coarse(runs, revolutions, points)
-        )
+        patch.setattr(model, "simulate_turns", lambda runs, revolutions, points, **_: coarse(runs, revolutions, points))
         patch.setattr(figures, "pictures", lambda found, said: {})  # which take longer than the answers
         return study.study_all(config, store)
 
