@@ -113,4 +113,6 @@ def _scatter(healthy: Sequence[_Powers]) -> tuple[float, float]:
         repeats += count - 1
     if not repeats:
         return 2 * UNREPEATED, np.inf
-    return float(np.sqrt(max(squares - noise, 0.0) / brought)) if brought else 0.0, float(repeats)
+    # No line scatters more than noise of a narrow band, whose power is exponentially distributed. A healthy gear that
+    # hardly shows the line says no more than that.
+    return float(np.sqrt(min(max(squares - noise, 0.0) / brought, 1.0))) if brought else 0.0, float(repeats)

@@ -66,7 +66,8 @@ class LinesBetween:
 
     def with_named(self, line: Sideline, level: float) -> "LinesBetween":
         """The same with one more effect, which is news or not."""
-        if self._is_news(line.effect.parts(), level):
+        # It may have grown as a whole, or in one gauge.
+        if self._is_news((line.effect,), level / 2) or self._is_news(line.effect.parts(), level / 2):
             return replace(self, named=(*self.named, line))
         return replace(self, usual=(*self.usual, line))
 
