@@ -17,9 +17,6 @@ from swgsim.identification.fit.map_fit import Calibrated
 from swgsim.identification.fit.priors import Declared
 from swgsim.identification.fit.unit import Unit
 
-# Where bridges were balanced anew their zeros lie so many times as far as declared, if that is likelier by so much.
-BALANCED, LIKELIER_BALANCED = (2.0, 4.0, 8.0, 16.0), 3.0
-
 
 class Allowed(NamedTuple):
     """Additional nuisance directions, one standard deviation each.
@@ -174,16 +171,6 @@ class Fitted:
         measured = replace(self.measured, zeros=times)
         errors = replace(self.errors, G=measured.session_columns(self.calibrated.predicted))
         return replace(self, measured=measured, errors=errors)
-
-    @cached_property
-    def balanced(self) -> "Fitted":
-        """The same with the zeros of gauges as far off as is likeliest; as they are if that is hardly likelier."""
-        likely = {self.measured.zeros: self.log_likelihood + LIKELIER_BALANCED}
-        for times in BALANCED:
-            if times > self.measured.zeros:
-                wider = self.whole.with_columns(self.measured.further_zeros(times))
-                likely[times] = wider.log_likelihood(self.from_start)
-        return self.with_zeros(max(likely, key=likely.__getitem__))
 
     @cached_property
     def residual(self) -> Float[np.ndarray, " row"]:

@@ -13,8 +13,6 @@ from swgsim.identification.search.screening import Score, best_of_kind, screen
 
 # Probability of a false effect on recordings in which nothing is missing.
 ALPHA = 0.005
-# Best scores that are fitted; and up to how many, if they lie within this share of the best score (possible rivals).
-LEADERS, NEARLY, NEARLY_LEADERS = 4, 0.05, 8
 STEPS = logging.getLogger(__name__)
 
 
@@ -32,10 +30,3 @@ def offered(fitted: Fitted, kinds: Iterable[type[Effect]]) -> list[Hypothesis]:
     """All hypotheses of the effects that are not in the model yet."""
     found = hypotheses(kinds, fitted.unit.of_another_structure)
     return [each for each in found if not any(map(each.repeats, fitted.added))]
-
-
-def leaders(scores: Sequence[Score]) -> list[Score]:
-    """The shortlist: the best significant scores, and those that are nearly as high as the best one."""
-    significant = [score for score in scores if score.chance <= ALPHA]
-    nearly = [s for s in significant[LEADERS:NEARLY_LEADERS] if s.gain > (1 - NEARLY) * significant[0].gain]
-    return [*significant[:LEADERS], *nearly]
