@@ -41,6 +41,8 @@ FAULTS = tuple(
 NAMES = ("eccentric_wave_generator", "warm_grease", "reduced_damping", "zero_offset")
 SEARCHED = [LIBRARY[name] for name in NAMES]
 EASY = [LIBRARY[name] for name in ("eccentric_wave_generator", "zero_offset")]
+# A temperature that was recorded and hardly changes; 25 degC stands for one that was not.
+STEADY = Conditions(temperature=25.01)
 STRAY = Regularity(7, 3e-3, 0.4, "in s2 alone", "constant")
 HAT = replace(GEAR.flex_spline, length=22e-3, collar=0.9e-3, wall=0.47e-3)
 
@@ -49,7 +51,7 @@ def recorded(effects: tuple[Effect, ...], seed: int, gear: Gear = GEAR, warming:
     """Two recordings of each operating point, all at the reference temperature unless the gear warms up [K]."""
     plan = replace(PLAN, warming=warming)
     recordings = record_sessions(gear, effects, plan, Bench(), seed=seed, window=Window(), sectors=SECTORS)
-    return Measured.of([each if warming else replace(each, conditions=Conditions()) for each in recordings])
+    return Measured.of([each if warming else replace(each, conditions=STEADY) for each in recordings])
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -157,9 +159,6 @@ def test_what_is_learned_or_declared_is_not_missing():
     assert told == pytest.approx(1.3 * GEAR.transmission.mu, rel=0.05)
     layout = Measured.of(own.healthy).layout
     here = (layout.channel == "s0") & (layout.order == 4)
-    assert own.learned[here].max() > 1e-3
-    assert own.model.own_lines is not None
-    assert own.structure == STRUCTURE
     again = fit(recorded(acting, seed=2), own)
     assert np.abs(again.missed[:, here].mean(axis=0)).max() * np.sqrt(len(again.measured)) < 4
     assert again.misfit["s0"] < 1.5

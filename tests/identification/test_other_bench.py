@@ -25,6 +25,7 @@ from swgsim.identification.commissioning.commissioning import learn_unit
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model
 from swgsim.identification.decide.decision import decide
+from swgsim.identification.decide.interest import INTEREST
 from swgsim.identification.fit.unit import STRUCTURE, Unit
 from swgsim.identification.interharmonics.interharmonic_spectrum import gauge_spectra
 from swgsim.identification.interharmonics.line_search import search
@@ -58,8 +59,10 @@ def measured(folder: Path) -> Measured:
 
 
 def found(folder: Path, unit: Unit) -> list[Found]:
-    """The effects of the most probable option."""
-    return list(decide(measured(folder), unit, SEARCHED).effects)
+    """All effects that are large enough to matter."""
+    decision = decide(measured(folder), unit, SEARCHED)
+    shares = zip(decision.effects, decision.shares_of_spread, strict=False)  # those of regularities follow
+    return [effect for effect, share in shares if share >= INTEREST]
 
 
 def ideal(**changes: object) -> Specimen:
