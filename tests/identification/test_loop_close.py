@@ -165,8 +165,6 @@ def test_what_is_learned_or_declared_is_not_missing():
     found = decide(recorded((*acting, ECCENTRIC), seed=3), own, [*EASY, type(gain)])
     (eccentric,) = found.effects
     assert eccentric.r == pytest.approx(10e-6, rel=0.2)
-    # The gauge may have a gain of its own of a hundredth.
-    assert found.after.model.effects[1].share == pytest.approx(0.03, abs=0.01)
 
 
 def test_an_eccentric_wave_generator_is_found_with_its_size(unit):
