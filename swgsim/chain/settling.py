@@ -58,7 +58,7 @@ def steady_revolution(drive: Drive, start_angle: Float[np.ndarray, " run"], poin
         Angle of the wave generator at the start [rad].
     points : int
     search : bool
-        Whether to search long for a motion that harmonic balance and shooting do not find.
+        Whether to search long for a motion that harmonic balance does not find.
 
     Raises
     ------
@@ -67,19 +67,19 @@ def steady_revolution(drive: Drive, start_angle: Float[np.ndarray, " run"], poin
     """
     found, balanced = one_revolution(drive, start_angle, points)
     left = np.flatnonzero(~balanced).tolist()
+    if left and not search:
+        raise NoSteadyState(f"harmonic balance finds no steady motion of {len(left)} runs")
     if left:
-        _put(found, left, _shot(drive.part(left), start_angle[left], points, search))
+        _put(found, left, _shot(drive.part(left), start_angle[left], points))
     return found
 
 
-def _shot(drive: Drive, start: Float[np.ndarray, " run"], points: int, search: bool) -> Motion:
+def _shot(drive: Drive, start: Float[np.ndarray, " run"], points: int) -> Motion:
     """One revolution of each run, integrated from its state at the start."""
     state, converged = shooting(drive)
     with np.errstate(over="ignore", invalid="ignore"):  # of runs that did not converge
         found = revolve(drive, advance(drive, state, start) if start.any() else state, points)
     left = np.flatnonzero(~converged).tolist()
-    if left and not search:
-        raise NoSteadyState(f"harmonic balance and shooting find no steady motion of {len(left)} runs")
     if left:
         _put(found, left, _searched(drive.part(left), start[left], points)[0])
     return found

@@ -273,7 +273,7 @@ def test_many_bounds_of_parameters_that_matter_quite_differently_take_one_step(m
     aim = np.concatenate([measured.ravel(), np.zeros(many)])
     _, least = nnls(rows, aim)
     assert np.linalg.norm(rows @ there - aim) == pytest.approx(least, rel=1e-5)
-    assert asked == [many + 1, 1, many + 1, 1]  # the second step tells that there is no way further
+    assert asked == [1, many + 1, 1, many + 1, 1]  # the begin; the second step tells that there is no way further
 
 
 def test_a_model_without_parameters_is_only_predicted(monkeypatch, A):

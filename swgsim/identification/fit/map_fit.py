@@ -114,6 +114,8 @@ def calibrate(
         return r, float(r @ r + there @ there)
 
     model = model_at(here)
+    # A fit that begins where motions are found at once takes no step to where they are not; the search takes long.
+    search = bool((_predicted(model, situations, layout, False) == NOWHERE).any())
     predicted, J = linearised(model, parameters, situations, layout)
     r, cost = missed(predicted, here)
     length, settled = 1.0, False
@@ -127,7 +129,7 @@ def calibrate(
             step = _step(curvature, slope, room, length)
             expected = float(step @ (2 * slope - curvature @ step))
             there = model_at(here + step)
-            predicted_there = _predicted(there, situations, layout)
+            predicted_there = _predicted(there, situations, layout, search)
             r_there, cost_there = missed(predicted_there, here + step)
             if cost_there <= cost or not expected >= little:  # nor is it a number
                 break
@@ -143,10 +145,12 @@ def calibrate(
     return Calibrated(model, dict(zip(names, here.tolist(), strict=True)), predicted, J, settled)
 
 
-def _predicted(model: Model, situations: Sequence[Situation], layout: Layout) -> Float[np.ndarray, "situation feature"]:
-    """What a model predicts; worse than anything where it has no steady state."""
+def _predicted(
+    model: Model, situations: Sequence[Situation], layout: Layout, search: bool
+) -> Float[np.ndarray, "situation feature"]:
+    """What a model predicts; worse than anything where it has no steady state, or none that is found at once."""
     try:
-        return predict([model], situations, layout, search=False)[0]
+        return predict([model], situations, layout, search=search)[0]
     except NoSteadyState:
         return np.full((len(situations), len(layout)), NOWHERE)
 
