@@ -72,13 +72,13 @@ def _with_usable_ripple(measured: Measured, unit: Unit) -> tuple[Fitted, Float[n
     """
     unheard = np.ones(len(measured.layout))
     while True:
-        drive, foreign, heard = _drive_alone(measured, unit), np.zeros(len(unheard), bool), unheard == 1
+        drive, foreign = _drive_alone(measured, unit), np.zeros(len(unheard), bool)
         if drive is not None:
-            own = _of_drive(measured)
-            foreign[own] = foreign_ripple(drive.measured, drive.missed, heard[own], FOREIGN_SHARE)
+            foreign[_of_drive(measured)] = foreign_ripple(drive.measured, drive.missed, FOREIGN_SHARE)
         if not foreign.any():
             fitted = _with_learned_lines(measured, unit, drive)
-            foreign = foreign_ripple(measured, fitted.missed, heard)
+            foreign = foreign_ripple(measured, fitted.missed)
+        foreign &= unheard == 1
         if not foreign.any():
             return fitted, unheard
         unheard = np.where(foreign, UNHEARD, unheard)

@@ -62,25 +62,15 @@ def unexplained(measured: Measured, missed: Float[np.ndarray, "recording feature
 
 
 def foreign_ripple(
-    measured: Measured,
-    missed: Float[np.ndarray, "recording feature"],
-    heard: Bool[np.ndarray, " feature"],
-    most: float = UNEXPLAINED,
+    measured: Measured, missed: Float[np.ndarray, "recording feature"], most: float = UNEXPLAINED
 ) -> Bool[np.ndarray, " feature"]:
-    """Ripple of speed or torque that is not the model's, as where the torque is that of the brake: features of it.
+    """Ripple of speed and torques that is not the model's, as where the torque is that of the brake: features of it.
 
-    So it is where more than a share of it is unexplained. Only the worst channel counts: it may have led the fit
-    astray, and others then look foreign too. Features that are not heard are left out.
+    So it is where more than a share of it is unexplained.
     """
     layout, shares = measured.layout, unexplained(measured, missed)
-    ripple = (layout.order > 0) & heard
-    foreign = {
-        name: share
-        for name, share in shares.items()
-        if name not in SENSORS and share > most and (ripple & (layout.channel == name)).any()
-    }
-    worst = max(foreign, key=foreign.__getitem__, default="")
-    return (layout.channel == worst) & ripple
+    drive = [name for name, share in shares.items() if name not in SENSORS and share > most]
+    return np.isin(layout.channel, drive) & (layout.order > 0)
 
 
 def require_own(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> None:
