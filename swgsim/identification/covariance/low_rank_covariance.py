@@ -66,7 +66,7 @@ class Covariance:
         return cholesky(np.eye(self.G.shape[1]) + self.G.T @ self._weighed, lower=True)
 
     @cached_property
-    def _told(self) -> Float[np.ndarray, "column row"]:
+    def _common_precision(self) -> Float[np.ndarray, "column row"]:
         """L^-1 G' A^-1, of which blocks of rows take their parts."""
         return solve_triangular(self._L, self._weighed.T, lower=True, check_finite=False)
 
@@ -102,7 +102,7 @@ class Covariance:
 
     def precision(self, block: Bool[np.ndarray, " row"]) -> Float[np.ndarray, "block block"]:
         """The block of P of some of the rows: of their distribution where all the others are known."""
-        common = self._told[:, block]
+        common = self._common_precision[:, block]
         return self.base.precision(block) - common.T @ common
 
     def with_columns(self, G: Float[np.ndarray, "row more"]) -> "Covariance":

@@ -78,11 +78,7 @@ class Decision:
     @property
     def probability(self) -> float:
         """Of the answer: of all options with the same effects, and with or without regularities as the best one."""
-        return self._of(self.best)
-
-    def _of(self, option: Option) -> float:
-        answer = _answer(option)
-        return float(sum(p for each, p in self.weighed if _answer(each) == answer))
+        return float(sum(p for each, p in self.weighed if _answer(each) == _answer(self.best)))
 
     @property
     def weighed(self) -> list[tuple[Option, float]]:

@@ -53,7 +53,9 @@ class Search:
     def run(self) -> list[Option]:
         """All options that were fitted, the most probable first."""
         self._fit(self.null, (), ())
-        while fresh := [each for each in self._around_best() if each.causes not in self._expanded]:
+        while self._fits < MOST_FITS and (
+            fresh := [each for each in self._around_best() if each.causes not in self._expanded]
+        ):
             for each in fresh:
                 self._expand(each)
         more = [formless(each, len(self.kinds)) for each in self._ill_fitting()]

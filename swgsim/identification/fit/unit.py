@@ -75,7 +75,7 @@ class Unit:
         Declared effects that make interharmonic lines; the model of the order lines has no part of them.
     lines : tuple of Effect
         Interharmonic lines of the healthy gear that commissioning found, with law, pattern and amplitude. How they
-        scatter is told by :attr:`healthy`.
+        scatter is estimated from :attr:`healthy`.
     """
 
     model: Model
