@@ -168,18 +168,25 @@ def _step(
     room: tuple[Float[np.ndarray, " parameter"], Float[np.ndarray, " parameter"]],
     share: float,
 ) -> Float[np.ndarray, " parameter"]:
-    """The step of Gauss-Newton, damped to a share of its length and of the longest (Levenberg, Marquardt)."""
+    """The step of Gauss-Newton, damped to a share of its length and of the longest (Levenberg, Marquardt).
 
-    def damped(by: float) -> Float[np.ndarray, " parameter"]:
-        return _least(curvature + by * np.eye(len(slope)), slope, room)
-
-    full = damped(0.0)
+    The damping is that of the step without bounds, which costs one decomposition; what bounds change is cut.
+    """
+    full = _least(curvature, slope, room)
     size = float(np.abs(full).max())
     longest = share * min(size, LONGEST)
     if size <= longest:
         return full
+    stiffness, axes = np.linalg.eigh(curvature)
+    along = axes.T @ slope
+
+    def too_long(by: float) -> float:
+        return float(np.abs(axes @ (along / (stiffness + by))).max()) - longest
+
     most = 2 * float(np.linalg.norm(slope)) / longest  # makes it half as long, or less
-    return damped(brentq(lambda by: float(np.abs(damped(by)).max()) - longest, 0.0, most, rtol=1e-3))
+    by = brentq(too_long, 0.0, most, rtol=1e-3) if too_long(0.0) > 0 else 0.0
+    step = _least(curvature + by * np.eye(len(slope)), slope, room)
+    return step * min(1.0, longest / float(np.abs(step).max()))
 
 
 def _least(
