@@ -32,7 +32,7 @@ def about_its_lines(fitted: Fitted) -> Fitted:
         back = np.append(np.zeros(fitted.open.shape[1] - form), -mean[len(mean) - form :])
         model = replace(fitted.unit.model, own_lines=lines)
         before, fitted = fitted, again(fitted, model=model, shift=back, largest=largest)
-        if abs(fitted.log_likelihood - before.log_likelihood) < AT_REST:
+        if abs(fitted.log_likelihood - before.log_likelihood) < AT_REST * fitted.calibrated.lack_of_fit:
             break
     return fitted
 
@@ -76,5 +76,6 @@ def largest_of(fitted: Fitted) -> Mapping[str, float]:
 
 
 def again(fitted: Fitted, **changes: Any) -> Fitted:
-    """A fit of the unit with changed declarations, started at the fitted parameters."""
-    return fit(fitted.measured, replace(fitted.unit, **changes), position=fitted.calibrated.position)
+    """A fit of the unit with changed declarations, started at the fitted parameters and errors of single recordings."""
+    unit = replace(fitted.unit, **changes)
+    return fit(fitted.measured, unit, position=fitted.calibrated.position, guess=fitted.scatter)

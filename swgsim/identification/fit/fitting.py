@@ -66,8 +66,8 @@ def fit(
     guess = guess if guess and fixed.has_repeats else known
     for _ in range(turns if fixed.has_repeats else min(turns, UNREPEATED)):
         found = _turn(fixed, begin, guess)
-        near = found.errors.alone.divergence(found.scattering(guess).errors.alone) < SAME_SCATTER
-        if near and found.calibrated.settled:
+        by = found.errors.alone.divergence(found.scattering(guess).errors.alone)
+        if by < SAME_SCATTER * found.calibrated.lack_of_fit and found.calibrated.settled:
             break
         begin, guess = found.calibrated.position, found.scatter
     return found

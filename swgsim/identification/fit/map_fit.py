@@ -39,6 +39,9 @@ class Calibrated:
         Change by one spread of each parameter.
     settled : bool
         Whether the fit came to rest.
+    lack_of_fit : float
+        Mean square of the residual in standard deviations, at least 1. A large one limits the accuracy of all that is
+        fitted, and iterations need not go further.
     """
 
     model: Model
@@ -46,6 +49,7 @@ class Calibrated:
     predicted: Float[np.ndarray, "situation feature"]
     J: Float[np.ndarray, "situation feature parameter"]
     settled: bool
+    lack_of_fit: float = 1.0
 
 
 def linearised(
@@ -122,7 +126,6 @@ def calibrate(
     for _ in range(STEPS):
         columns = errors.whiten(J[of_recording].reshape(-1, len(here)))
         curvature, slope = columns.T @ columns + np.eye(len(here)), columns.T @ r - here
-        # A large lack of fit limits the accuracy of the parameters.
         little = SETTLED * max(1.0, cost / len(r))
         room = low - here, high - here
         while True:
@@ -142,7 +145,8 @@ def calibrate(
             break
         length *= 0.5 if fell < LITTLE * expected else 2.0 if fell > MUCH * expected and length < 1 else 1.0
         J = linearised(model, parameters, situations, layout)[1]
-    return Calibrated(model, dict(zip(names, here.tolist(), strict=True)), predicted, J, settled)
+    position_found = dict(zip(names, here.tolist(), strict=True))
+    return Calibrated(model, position_found, predicted, J, settled, max(1.0, cost / len(r)))
 
 
 def _predicted(
