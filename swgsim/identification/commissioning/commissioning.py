@@ -16,6 +16,7 @@ from swgsim.identification.commissioning.relinearisation import (
     posterior,
     triangular_factor,
 )
+from swgsim.identification.commissioning.rough_fit import roughly_fitted
 from swgsim.identification.commissioning.structural_spread import with_probable_spreads
 from swgsim.identification.covariance.influence_map_error import largest_lines
 from swgsim.identification.data.features import Layout
@@ -43,11 +44,11 @@ def learn_unit(measured: Measured, unit: Unit) -> Unit:
         If the model does not describe the healthy gear.
     """
     forget()
-    fitted, unheard = _with_usable_ripple(measured, replace(unit, seen_healthy=True))
-    require_own(measured, fitted.missed)
+    fitted = _with_usable_ripple(measured, replace(unit, seen_healthy=True))
+    require_own(_as_accurate(fitted), fitted.missed)
     beyond = beyond_noise(measured, fitted.missed)
     if beyond.max() > 1:
-        fitted = about_its_lines(again(fitted, inflation=beyond * unheard))
+        fitted = about_its_lines(again(fitted, inflation=beyond * _inflation(fitted)))
     # Directions are the fitted parameters, then those of fitted.open. R R' is their posterior covariance.
     R, mean = posterior(fitted)
     # Declared effects keep their values; later fits have parameters for them.
@@ -66,23 +67,30 @@ def learn_unit(measured: Measured, unit: Unit) -> Unit:
     )  # fmt: skip
 
 
-def _with_usable_ripple(measured: Measured, unit: Unit) -> tuple[Fitted, Float[np.ndarray, " feature"]]:
-    """The fit without ripple of speed and torques that the model does not describe, and the factor on the variance of
-    every line that removes this ripple: UNHEARD for its lines, 1 for all others.
-    """
-    unheard = np.ones(len(measured.layout))
+def _with_usable_ripple(measured: Measured, unit: Unit) -> Fitted:
+    """The fit without ripple of speed and torques that the model does not describe: its inflation is UNHEARD."""
     while True:
-        drive, foreign = _drive_alone(measured, unit), np.zeros(len(unheard), bool)
+        drive, foreign = _drive_alone(measured, unit), np.zeros(len(measured.layout), bool)
         if drive is not None:
-            foreign[_of_drive(measured)] = foreign_ripple(drive.measured, drive.missed, FOREIGN_SHARE)
+            foreign[_of_drive(measured)] = foreign_ripple(_as_accurate(drive), drive.missed, FOREIGN_SHARE)
         if not foreign.any():
             fitted = _with_learned_lines(measured, unit, drive)
-            foreign = foreign_ripple(measured, fitted.missed)
-        foreign &= unheard == 1
+            foreign = foreign_ripple(_as_accurate(fitted), fitted.missed)
+        heard = 1.0 if unit.inflation is None else unit.inflation
+        foreign &= heard < UNHEARD
         if not foreign.any():
-            return fitted, unheard
-        unheard = np.where(foreign, UNHEARD, unheard)
-        unit = replace(unit, inflation=unheard)
+            return fitted
+        unit = replace(unit, inflation=np.where(foreign, UNHEARD, heard))
+
+
+def _inflation(fitted: Fitted) -> Float[np.ndarray, " feature"]:
+    """Factor on the variance of the noise of every line."""
+    return np.ones(len(fitted.measured.layout)) if fitted.unit.inflation is None else fitted.unit.inflation
+
+
+def _as_accurate(fitted: Fitted) -> Measured:
+    """The recordings with the variance that the fit has for their lines."""
+    return replace(fitted.measured, variance=fitted.unit.inflated(fitted.measured.variance))
 
 
 def _with_learned_lines(measured: Measured, unit: Unit, drive: Fitted | None) -> Fitted:
@@ -96,6 +104,9 @@ def _with_learned_lines(measured: Measured, unit: Unit, drive: Fitted | None) ->
     held: list[str] = []
     of_drive = np.zeros(len(measured.layout))
     if drive is not None:
+        inflation = np.ones(len(of_drive)) if unit.inflation is None else unit.inflation.copy()
+        inflation[_of_drive(measured)] = _inflation(drive)
+        unit = replace(unit, inflation=inflation)
         position, held = drive.calibrated.position, _well_determined(drive)
         if drive.unit.learned is not None:
             of_drive[_of_drive(measured)] = drive.unit.learned
@@ -137,13 +148,12 @@ def _drive_alone(measured: Measured, unit: Unit) -> Fitted | None:
     )
     # Speed and torques show nothing of the structure.
     inflation = None if unit.inflation is None else unit.inflation[drive_features]
-    unit = replace(unit, structure=0.0, inflation=inflation)
-    fitted = fit(alone, unit)
+    unit, ripple = replace(unit, structure=0.0, inflation=inflation), alone.layout.order > 0
+    fitted = roughly_fitted(alone, unit, ripple)
     for _ in range(DRIVES - 1):
         if fitted.calibrated.settled:
             break
-        fitted = fit(alone, unit, position=fitted.calibrated.position)
-    ripple = alone.layout.order > 0
+        fitted = again(fitted)
     for sought in (ripple, np.ones_like(ripple)):
         learned = _lie_off(fitted) * sought
         fitted = again(fitted, learned=learned) if learned.any() else fitted

@@ -76,6 +76,5 @@ def largest_of(fitted: Fitted) -> Mapping[str, float]:
 
 
 def again(fitted: Fitted, **changes: Any) -> Fitted:
-    """A fit of the unit with changed declarations, started at the fitted parameters and errors of single recordings."""
-    unit = replace(fitted.unit, **changes)
-    return fit(fitted.measured, unit, position=fitted.calibrated.position, guess=fitted.scatter)
+    """A fit of the unit with changed declarations, started at the fitted parameters."""
+    return fit(fitted.measured, replace(fitted.unit, **changes), position=fitted.calibrated.position)

@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+from jaxtyping import Float
 
 from swgsim.effects.base import Effect
 from swgsim.identification.covariance import repeats, scatter
@@ -36,7 +37,6 @@ def fit(
     position: Mapping[str, float] | None = None,
     allowed: Allowed | None = None,
     held: Collection[str] = (),
-    guess: Scatter | None = None,
     turns: int = TURNS,
 ) -> Fitted:
     """Fit the parameters, and estimate the standard deviations of single recordings, in turns.
@@ -52,8 +52,6 @@ def fit(
     allowed : Allowed, optional
     held : collection of str
         Parameters of the unit that are not fitted but stay where they begin.
-    guess : Scatter, optional
-        Standard deviations of single recordings from the repeats, found with another model.
     turns : int
         So many at most; where nothing was repeated, fewer.
     """
@@ -63,13 +61,13 @@ def fit(
     parameters = parameters | of_effects(start, unit.of_another_structure)
     known = unit.scatter.carried if unit.scatter else Scatter.stated(measured.layout)
     fixed = _Fixed(measured, unit, start, parameters, known, allowed or Allowed.nothing(measured.values.size))
-    guess = guess if guess and fixed.has_repeats else known
+    scattered: Scatter | None = None
     for _ in range(turns if fixed.has_repeats else min(turns, UNREPEATED)):
-        found = _turn(fixed, begin, guess)
-        by = found.errors.alone.divergence(found.scattering(guess).errors.alone)
+        found, began = _turn(fixed, begin, scattered)
+        by = found.errors.alone.divergence(found.scattering(began).errors.alone)
         if by < SAME_SCATTER * found.calibrated.lack_of_fit and found.calibrated.settled:
             break
-        begin, guess = found.calibrated.position, found.scatter
+        begin, scattered = found.calibrated.position, found.scatter
     return found
 
 
@@ -90,11 +88,22 @@ class _Fixed(NamedTuple):
         """Whether repeats, here or in the commissioning, determine the errors of single recordings."""
         return self.unit.scatter is not None or self.measured.spare > 0
 
+    def completed(self, estimated: Scatter) -> Scatter:
+        """An estimate with what recordings cannot show."""
+        return estimated if self.measured.temperature_recorded else estimated.with_unrecorded_temperature
 
-def _turn(fixed: _Fixed, begin: Mapping[str, float], guess: Scatter) -> Fitted:
+
+def _turn(fixed: _Fixed, begin: Mapping[str, float], scattered: Scatter | None) -> tuple[Fitted, Scatter]:
     """Fit the parameters with given errors of single recordings, then estimate these errors again.
 
+    Repeats tell the errors before anything is fitted, as differences between them depend little on the parameters.
     Derivatives are those of the model at the start values [prior standard deviations].
+
+    Returns
+    -------
+    Fitted
+    Scatter
+        The errors of single recordings that it was fitted with.
     """
     measured, unit, here = fixed.measured, fixed.unit, at(fixed.start, fixed.parameters, begin)
     noise = unit.inflated(measured.variance)
@@ -104,27 +113,33 @@ def _turn(fixed: _Fixed, begin: Mapping[str, float], guess: Scatter) -> Fitted:
     more = np.hstack([left, *fixed.allowed])
     of_sessions = measured.session_columns(unsure.predicted)
     values = measured.values - offset.reshape(measured.values.shape)
+    trends = scatter.trends(moves, [measured.situations[i] for i in measured.of_recording], measured.layout)
+
+    def by_repeats(predicted: Float[np.ndarray, "situation feature"]) -> Scatter:
+        residual = values - predicted[measured.of_recording]
+        return fixed.completed(repeats.from_repeats(residual, noise, moves, trends, measured.repeats, fixed.known))
+
+    if scattered is None:
+        scattered = by_repeats(unsure.predicted) if fixed.has_repeats else fixed.known
     calibrated = calibrate(
         fixed.start, fixed.parameters, values,
-        Covariance(RecordingCovariance(noise, guess.columns(moves)), of_sessions).with_columns(more),
+        Covariance(RecordingCovariance(noise, scattered.columns(moves)), of_sessions).with_columns(more),
         measured.situations, measured.of_recording, measured.layout, begin,
     )  # fmt: skip
-    residual = values - calibrated.predicted[measured.of_recording]
-    trends = scatter.trends(moves, [measured.situations[i] for i in measured.of_recording], measured.layout)
     if fixed.has_repeats:
-        estimated = repeats.from_repeats(residual, noise, moves, trends, measured.repeats, fixed.known)
+        estimated = by_repeats(calibrated.predicted)
     else:
+        residual = measured.values.ravel() - offset - measured.rows(calibrated.predicted)
         J = measured.rows(calibrated.J).reshape(residual.size, -1)
         common = Covariance(RecordingCovariance.white(noise), np.hstack([of_sessions, more, J]))
-        from_start = residual.ravel() + J @ np.array(list(calibrated.position.values()))
-        estimated = repeats.from_all(from_start, common, moves, trends, fixed.known)
-    if not measured.temperature_recorded:
-        estimated = estimated.with_unrecorded_temperature
+        from_start = residual + J @ np.array(list(calibrated.position.values()))
+        estimated = fixed.completed(repeats.from_all(from_start, common, moves, trends, fixed.known))
     errors = Covariance(RecordingCovariance(noise, estimated.columns(moves)), of_sessions)
-    return Fitted(
+    fitted = Fitted(
         measured, unit, fixed.parameters, calibrated, estimated,
         errors=errors, open=left, offset=offset, allowed=fixed.allowed,
     )  # fmt: skip
+    return fitted, scattered
 
 
 def unbent(now: Fitted) -> Fitted:
@@ -152,7 +167,7 @@ def extended(now: Fitted, added: Sequence[Effect]) -> Fitted:
     position = now.position_of_unit
     if added and now.allowed.forms.any():
         ahead = fit(
-            now.measured, now.unit, model, position=position, allowed=now.closed.allowed, guess=now.scatter, turns=1
+            now.measured, now.unit, model, position=position, allowed=now.closed.allowed, turns=1
         )
         position = ahead.calibrated.position
-    return fit(now.measured, now.unit, model, position=position, allowed=now.allowed, guess=now.scatter)
+    return fit(now.measured, now.unit, model, position=position, allowed=now.allowed)

@@ -1,0 +1,66 @@
+"""A first fit to a gear that may be far off the nominal one: each line has the variance that its repeats show."""
+
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from swgsim.identification.data.measured import Measured
+from swgsim.identification.fit.fitted import Fitted
+from swgsim.identification.fit.fitting import fit
+from swgsim.identification.fit.unit import Unit
+
+# Variance of a line about the model, relative to that of the noise, at first. With the noise alone, a fit that begins
+# far off leaves the gears that exist.
+ROUGH = 1e4
+# So often at most the variances are estimated again, until the log-likelihood rises by less than so much per line.
+ROUNDS, AT_REST = 6, 0.5
+
+
+def roughly_fitted(
+    measured: Measured,
+    unit: Unit,
+    lines: Bool[np.ndarray, " feature"],
+    position: Mapping[str, float] | None = None,
+    held: Collection[str] = (),
+) -> Fitted:
+    """Fit parameters, and the variance of some lines between repeats, in turns.
+
+    Repeats differ by errors of single recordings, and the model must know how these change the lines. Where it does
+    not, their variance counts as noise. What all repeats have in common is no matter of variance, but of the model.
+
+    Parameters
+    ----------
+    measured : Measured
+    unit : Unit
+    lines : array (feature,)
+        The features whose variance is estimated, one for each line of a channel.
+    position, held
+        As of :func:`~swgsim.identification.fit.fitting.fit`.
+    """
+    if not measured.spare:
+        return fit(measured, unit, position=position, held=held)
+    known = np.ones(len(lines)) if unit.inflation is None else unit.inflation
+    inflation = np.where(lines, ROUGH * known, known)
+    fitted = fit(measured, replace(unit, inflation=inflation), position=position, held=held)
+    for _ in range(ROUNDS):
+        shown = inflation * _between_repeats(fitted)
+        inflation = np.where(lines, np.maximum(known, shown), known)
+        position, before = {**(position or {}), **fitted.calibrated.position}, fitted.log_likelihood
+        fitted = fit(measured, replace(unit, inflation=inflation), position=position, held=held)
+        if fitted.log_likelihood - before < AT_REST * lines.sum():
+            break
+    return fitted
+
+
+def _between_repeats(fitted: Fitted) -> Float[np.ndarray, " feature"]:
+    """Mean square between repeats of every line of a channel, in declared variances, for each of its features."""
+    measured, missed = fitted.measured, fitted.missed
+    square = np.zeros(missed.shape[1])
+    for point in set(measured.repeats):
+        group = [i for i, each in enumerate(measured.repeats) if each == point]
+        square += ((missed[group] - missed[group].mean(axis=0)) ** 2).sum(axis=0)
+    layout = measured.layout
+    of_line = (layout.channel[:, None] == layout.channel) & (layout.order[:, None] == layout.order)
+    return of_line @ square / of_line.sum(axis=1) / measured.spare
