@@ -147,7 +147,7 @@ def quieter(recordings: list[Recording], gauge: str) -> list[Recording]:
 def test_a_line_at_an_integer_order_says_nothing():
     """Over whole revolutions nothing of it but rounding lies between the orders."""
     said = [
-        each.explained(LIBRARY["ball_pass"](amplitude=1e-3, order=12.0)) for each in gauge_spectra(measured((), 12))
+        each.explained([LIBRARY["ball_pass"](amplitude=1e-3, order=12.0)]) for each in gauge_spectra(measured((), 12))
     ]
     assert [(each.freedom, each.gain, each.own_gain) for each in said] == [(0, 0.0, 0.0)] * len(said)
 
@@ -168,7 +168,7 @@ def test_a_pattern_is_what_the_orders_leave_of_the_signals(name):
 def test_the_ends_of_slow_noise_explain_no_line_better_than_noise_does(heard):
     """A spectrum rings with the step from a recording's end to its start; it had the gain of 14 times the noise."""
     cage = LIBRARY["bearing_cage"](amplitude=1e-3, order=0.455)
-    said = [each.explained(cage) for seed in range(8) for each in gauge_spectra(heard(measured((), seed, slow=0.02)))]
+    said = [each.explained([cage]) for seed in range(8) for each in gauge_spectra(heard(measured((), seed, slow=0.02)))]
     gain, freedom = sum(each.gain for each in said), sum(each.freedom for each in said)
     # The mean of 96 numbers is good to 14 %.
     assert gain / freedom == pytest.approx(1, abs=0.4)

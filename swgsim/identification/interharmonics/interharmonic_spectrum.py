@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, Complex, Float
+from scipy.ndimage import maximum_filter1d
 from scipy.stats import f
 
 from swgsim.common.singular import svd
@@ -27,6 +28,8 @@ SAMPLES = 48
 NEIGHBOURS = 6
 # Weight of the common noise floor in the noise next to a line, as a number of degrees of freedom.
 ALL_TOGETHER = 20
+# Effects whose patterns are computed at once: as many as a cache of the processor holds.
+AT_ONCE = 16
 # Part of a direction that a line must hold to be one of its lines.
 HELD = 0.05
 
@@ -35,27 +38,27 @@ Sums = float | Float[np.ndarray, "*line"]
 
 
 class Explained(NamedTuple):
-    """What an effect explains of one recording.
+    """What each of some effects explains of one recording.
 
     Attributes
     ----------
-    gain : float
+    gain : array (effect,)
         Sum of squares that the effect explains, in units of the noise.
-    freedom : int
+    freedom : array (effect,)
         Its degrees of freedom: noise alone gives a gain of this much on average.
-    own_gain : float
+    own_gain : array (effect,)
         Gain that the effect would have without noise if its size were the one that it is given with.
-    rest : float
+    rest : array (effect,)
         Sum of squares of the noise next to its lines.
-    noise_numbers : float
+    noise_numbers : array (effect,)
         Degrees of freedom of ``rest``.
     """
 
-    gain: float
-    freedom: int
-    own_gain: float
-    rest: float
-    noise_numbers: float
+    gain: Float[np.ndarray, " effect"]
+    freedom: Float[np.ndarray, " effect"]
+    own_gain: Float[np.ndarray, " effect"]
+    rest: Float[np.ndarray, " effect"]
+    noise_numbers: Float[np.ndarray, " effect"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,25 +141,41 @@ class GaugeSpectrum:
 
     def pattern(self, effect: Effect) -> Float[np.ndarray, "column number"]:
         """What an effect can look like, whatever its random phases; a direction that the orders took is left out."""
-        seen = shapes(effect, self.scene, self.gauges)
+        return self._patterns([effect])[0]
+
+    def _patterns(self, effects: Sequence[Effect]) -> Float[np.ndarray, "effect column number"]:
+        """The same of effects of one kind."""
+        seen = np.concatenate([shapes(effect, self.scene, self.gauges) for effect in effects])
         lines = self._lines(seen)
         between = self._numbers(lines - (seen @ self.orders) @ self._of_orders * self.scale)
         between = between - (between @ self.taken) @ self.taken.T
-        whole = np.linalg.norm(lines, axis=(-2, -1)).max()
-        return between if np.linalg.norm(between, axis=-1).max() > LEAST_SHARE * whole else np.zeros_like(between)
+        whole = np.linalg.norm(lines, axis=(-2, -1)).reshape(len(effects), -1).max(axis=1)
+        between = between.reshape(len(effects), -1, between.shape[-1])
+        shown = np.linalg.norm(between, axis=-1).max(axis=1) > LEAST_SHARE * whole
+        return between * shown[:, None, None]
 
-    def explained(self, effect: Effect) -> Explained:
-        """What an effect explains of this recording."""
-        pattern = self.pattern(effect)
-        U = _directions(pattern)
-        along = U.T @ self.left
-        holds = (U**2).sum(axis=1).reshape(-1, self.scale.shape[1]).sum(axis=0) > HELD
-        near = np.convolve(holds, np.ones(2 * NEIGHBOURS + 1), "same") > 0
+    def explained(self, effects: Sequence[Effect]) -> Explained:
+        """What each of some effects of one kind explains of this recording."""
+        parts = [self._explained(effects[i : i + AT_ONCE]) for i in range(0, len(effects), AT_ONCE)]
+        return Explained(*np.concatenate(parts, axis=1))
+
+    def _explained(self, effects: Sequence[Effect]) -> Explained:
+        patterns = self._patterns(effects)
+        # Orthonormal directions, from the few products of the columns: the columns are long. Products so small are
+        # slower where threads share them.
+        power, axes = np.linalg.eigh(np.einsum("ecn,edn->ecd", patterns, patterns))
+        used = power > LEAST_SHARE**2 * np.maximum(power[:, -1:], 1e-300)
+        turned = axes * (used / np.sqrt(np.where(used, power, 1.0)))[:, None]
+        U = np.einsum("edc,edn->ecn", turned, patterns)
+        along = np.einsum("ecn,n->ec", U, self.left)
+        square = (U**2).sum(axis=1)
+        holds = square.reshape(len(effects), -1, self.scale.shape[1]).sum(axis=1) > HELD
+        near = maximum_filter1d(holds.astype(np.uint8), 2 * NEIGHBOURS + 1, mode="constant") > 0
         neighbours = np.tile(near & self.clear, 2 * len(self.gauges))
-        rest = (self.left - U @ along)[neighbours]
-        count = neighbours.sum() - (U[neighbours] ** 2).sum() - (self.taken[neighbours] ** 2).sum()
-        own_gain = float((pattern[0] ** 2).sum())
-        return Explained(float(along @ along), U.shape[1], own_gain, float(rest @ rest), float(count))
+        rest = ((self.left - np.einsum("ec,ecn->en", along, U)) ** 2 * neighbours).sum(axis=1)
+        count = (neighbours * (1.0 - square - (self.taken**2).sum(axis=1))).sum(axis=1)
+        own_gain = (patterns[:, 0] ** 2).sum(axis=1)
+        return Explained((along**2).sum(axis=1), used.sum(axis=1), own_gain, rest, count)
 
     def held(self, effects: Sequence[Effect]) -> float:
         """Sum of squares of what these effects may have put there."""

@@ -62,7 +62,7 @@ class _Powers:
     @classmethod
     def of(cls, effect: Effect, spectra: Sequence[GaugeSpectrum]) -> "_Powers":
         """Of the recordings that can show it: at some speeds a frequency lies on an order."""
-        gain, freedom, size, rest, count = np.array([each.explained(effect) for each in spectra]).T
+        gain, freedom, size, rest, count = np.array([each.explained([effect]) for each in spectra])[..., 0].T
         noise, _ = f_test(gain.sum(), max(freedom.sum(), 1.0), rest.sum(), count.sum())
         shown = (freedom > 0) & (size > 0)
         points = tuple(each.scene.point for each, there in zip(spectra, shown, strict=True) if there)

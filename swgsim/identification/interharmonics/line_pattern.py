@@ -93,7 +93,7 @@ class _Shown:
     @classmethod
     def of(cls, line: LineBetween, spectra: Sequence[GaugeSpectrum]) -> "_Shown":
         """Of a line whose law is constant."""
-        gain, freedom, size, rest, count = np.array([each.explained(line) for each in spectra]).T
+        gain, freedom, size, rest, count = np.array([each.explained([line]) for each in spectra])[..., 0].T
         noise, chance = f_test(gain.sum(), max(freedom.sum(), 1.0), rest.sum(), count.sum())
         explained = float(gain.sum() - noise * freedom.sum())
         return cls(line, spectra, gain / noise, freedom, size / noise, explained, float(chance))

@@ -80,7 +80,7 @@ def ranked(spectra: Sequence[GaugeSpectrum], kinds: Iterable[type[Effect]]) -> l
         ]
         # The zoom tries some more.
         chances = 2 * len(tries) * len(kinds)
-        best = max((_judged(effect, spectra, chances) for effect in tries), key=lambda line: line.rank)
+        best = _best(tries, spectra, chances)
         found.append(_zoomed(best, spectra, chances))
     return sorted(found, key=lambda line: (line.chance, -line.rank))
 
@@ -112,11 +112,18 @@ def acts_on_signals(kind: type[Effect]) -> bool:
     return any(getattr(kind, place) is not getattr(Effect, place) for place in ("gauge", "acquisition"))
 
 
-def _judged(effect: Effect, spectra: Sequence[GaugeSpectrum], tried: int) -> Sideline:
-    """One hypothesis at all recordings."""
+def _best(effects: Sequence[Effect], spectra: Sequence[GaugeSpectrum], tried: int) -> Sideline:
+    """The likeliest of some hypotheses of one kind at all recordings."""
+    explained = np.array([each.explained(effects) for each in spectra])
+    lines = (_judged(effect, explained[..., i], tried) for i, effect in enumerate(effects))
+    return max(lines, key=lambda line: line.rank)
+
+
+def _judged(effect: Effect, explained: Float[np.ndarray, "recording number"], tried: int) -> Sideline:
+    """One hypothesis, by what it explains of all recordings."""
     declared = quantities(type(effect))
     name = size_of(type(effect))
-    gain, freedom, size, rest, count = np.array([each.explained(effect) for each in spectra]).T
+    gain, freedom, size, rest, count = explained.T
     numbers = max(freedom.sum(), 1.0)
     noise, p_value = f_test(gain.sum(), numbers, rest.sum(), count.sum())
     explained = float(gain.sum() - noise * freedom.sum())
@@ -163,7 +170,7 @@ def _zoomed(best: Sideline, spectra: Sequence[GaugeSpectrum], tried: int) -> Sid
         reach = _spacing(quantities(type(best.effect))[name], spectra)
         for zoom in range(ZOOMS):
             around = _around(best.effect, name, reach / 2**zoom)
-            best = max((_judged(effect, spectra, tried) for effect in around), key=lambda line: line.rank)
+            best = _best(around, spectra, tried)
     return best
 
 
