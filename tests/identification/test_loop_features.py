@@ -51,6 +51,16 @@ def test_recordings_of_equal_length_are_looked_at_together():
         np.testing.assert_allclose(found, features(one, LAYOUT), atol=1e-12)
 
 
+def test_a_drift_of_the_speed_within_a_recording_is_no_ripple():
+    """It is fitted along; as a saw tooth it would have 0.1 % of the mean in order 1."""
+    lines, phi = lines_of(2), turning(POINTS[0], 10.3, 10_000.0)
+    steady = signals(lines, phi)
+    ramp = (phi - phi.mean()) / np.ptp(phi)
+    drifting = {name: values + 0.003 * ramp * (name != "phi_in") for name, values in steady.items()}
+    found = features(recorded(drifting), LAYOUT)
+    np.testing.assert_allclose(found, features(recorded(steady), LAYOUT), atol=1e-9)
+
+
 def test_lines_and_vectors_are_each_others_inverse():
     lines = np.stack([lines_of(seed, ORDERS) for seed in range(3)])
     vectors = LAYOUT.vector(lines)

@@ -36,4 +36,3 @@ def test_the_form_of_earlier_effects_opens_once_they_have_moved_without_it(fits)
     assert (closed["allowed"].free.shape[1], closed["allowed"].forms.shape[1], closed["turns"]) == (1, 0, 1)
     assert opened["allowed"] is now.allowed
     assert opened["position"] == {"bump 1: height": 3.0}
-    assert opened["guess"] is closed["guess"] is now.scatter

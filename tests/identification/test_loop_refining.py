@@ -86,14 +86,14 @@ def found() -> Fitted:
     return fit(Measured.of(good(repeats=3)), Unit(Model(GEAR)))
 
 
-def test_errors_of_single_recordings_are_found_from_any_guess(found):
+def test_errors_of_single_recordings_are_those_of_the_repeats_wherever_a_fit_begins(found):
     assert found.scatter.sd["trigger"] < STATED["trigger"] / 10
-    far = replace(found.scatter, sd={name: 20 * sd for name, sd in found.scatter.sd.items()})
-    again = fit(found.measured, found.unit, guess=far)
-    assert again.errors.alone.divergence(again.scattering(found.scatter).errors.alone) < SAME_SCATTER
-    assert not again.errors.alone.divergence(again.scattering(far).errors.alone) < SAME_SCATTER
+    far = fit(found.measured, found.unit, position={"k1": 2.0, "b0": -1.0, "gain of s1": 2.0})
+    assert far.errors.alone.divergence(far.scattering(found.scatter).errors.alone) < SAME_SCATTER
     for name, there in found.calibrated.position.items():
-        assert again.calibrated.position[name] == pytest.approx(there, abs=0.05)
+        # A fit rests where a step no longer counts; weakly determined parameters stop a part of their deviation apart.
+        deviation = found.deviation[name] / found.parameters[name].sd
+        assert far.calibrated.position[name] == pytest.approx(there, abs=0.7 * deviation)
 
 
 @pytest.mark.parametrize(
@@ -108,19 +108,19 @@ def test_errors_of_single_recordings_are_found_from_any_guess(found):
 )
 def test_a_fit_goes_on_until_the_errors_of_single_recordings_stay(monkeypatch, found, sizes, settled, repeats, turns):
     """Each turn finds them so many times as large as in the fit that it begins at."""
-    guesses, left = [], iter(sizes)
+    begun, left = [], iter(sizes)
 
-    def turn(fixed, begin, guess):
-        guesses.append(guess)
+    def turn(fixed, begin, scattered):
+        begun.append(scattered)
         size = next(left)
         made = found.scattering(replace(found.scatter, sd={name: size * sd for name, sd in found.scatter.sd.items()}))
-        return replace(made, calibrated=replace(made.calibrated, settled=settled))
+        return replace(made, calibrated=replace(made.calibrated, settled=settled)), scattered or found.scatter
 
     monkeypatch.setattr(fitting, "_turn", turn)
     extended(replace(found, measured=Measured.of(good(repeats=repeats))), ())
-    assert len(guesses) == turns
-    # Without repeats other models tell nothing of them.
-    assert guesses[0].sd == (found.scatter.sd if repeats > 1 else STATED)
+    assert len(begun) == turns
+    # The first turn finds them by itself.
+    assert begun[0] is None
 
 
 def test_a_proportional_effect_begins_at_its_estimate():

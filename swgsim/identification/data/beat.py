@@ -12,7 +12,7 @@ from functools import lru_cache
 import numpy as np
 from jaxtyping import Complex
 
-from swgsim.identification.data.features import DENSE, FITTED, ORDERS, basis
+from swgsim.identification.data.features import DENSE, FITTED, ORDERS, fitted_columns
 from swgsim.recordings.recording import Recording
 
 # Waves of the kinematic error per revolution of the wave generator (physics.md 1.2).
@@ -54,7 +54,7 @@ def _drifting(angle: bytes, N: int) -> Complex[np.ndarray, "beat one one"]:
     phi = np.frombuffer(angle)
     if len(phi) < DENSE:
         return np.tile(np.eye(2 * ORDERS + 1, dtype=complex), (len(BEATING), 1, 1))
-    columns = basis(phi, FITTED)
+    columns = fitted_columns(phi)
     kept = np.concatenate([np.arange(ORDERS + 1), FITTED + 1 + np.arange(ORDERS)])
     fitting = np.linalg.solve(columns.T @ columns, columns.T)[kept]
     turned = [np.exp(1j * behind(order, N) * (phi - phi.mean()))[:, None] for order in BEATING]

@@ -2,7 +2,8 @@
 
 A recording becomes one vector: channel by channel the mean, the cosine parts and the sine parts of the orders 1 to
 ORDERS, fitted by least squares over all its samples. So neither the speed ripple nor a window that ends within a
-revolution matters, and a phase belongs to the angle, not to the time.
+revolution matters, and a phase belongs to the angle, not to the time. A steady drift over the recording is fitted along
+and left out.
 """
 
 from collections.abc import Sequence
@@ -19,6 +20,8 @@ ORDERS = 12
 FITTED = 16
 # Smallest number of samples per revolution that separates all these orders.
 DENSE = 2 * FITTED + 1
+# Revolutions from which on a drift is fitted along; over fewer, it looks like ripple of order 1.
+STEADY = 2.0
 # The angle itself is what all other channels are plotted against.
 COMPARED = ("n_in", "T_in", "T_out", "s0", "s1", "s2", "s3", "s4")
 
@@ -103,7 +106,7 @@ def features_alike(recordings: Sequence[Recording], layout: Layout) -> Float[np.
     # Many runs of a model have the same motion, which decides how values become coefficients.
     angles = {each.channels["phi_in"].tobytes(): each.channels["phi_in"] for each in recordings}
     row = {key: number for number, key in enumerate(angles)}
-    columns = basis(np.array(list(angles.values())), FITTED)
+    columns = fitted_columns(np.array(list(angles.values())))
     across = columns.swapaxes(-1, -2)
     kept = np.concatenate([np.arange(ORDERS + 1), FITTED + 1 + np.arange(ORDERS)])
     fitting = np.linalg.solve(across @ columns, across)[:, kept]
@@ -111,9 +114,17 @@ def features_alike(recordings: Sequence[Recording], layout: Layout) -> Float[np.
     return found.transpose(0, 2, 1).reshape(len(recordings), -1)
 
 
+def fitted_columns(phi: Float[np.ndarray, "*batch time"]) -> Float[np.ndarray, "*batch time column"]:
+    """The orders that are fitted and, over several revolutions, a straight line: a drift of the speed is no ripple."""
+    orders, turned = basis(phi, FITTED), phi[..., -1:] - phi[..., :1]
+    if np.abs(turned).min() < 2 * np.pi * STEADY:
+        return orders
+    return np.concatenate([orders, ((phi - phi.mean(axis=-1, keepdims=True)) / turned)[..., None]], axis=-1)
+
+
 def remainder(recording: Recording, layout: Layout) -> Float[np.ndarray, "channel time"]:
     """Remainder of every channel after the integer orders up to FITTED; raises like :func:`features`."""
-    columns = basis(recording.channels["phi_in"], FITTED)
+    columns = fitted_columns(recording.channels["phi_in"])
     values = _values(recording, layout)
     return (values - columns @ np.linalg.solve(columns.T @ columns, columns.T @ values)).T
 
