@@ -166,8 +166,6 @@ def extended(now: Fitted, added: Sequence[Effect]) -> Fitted:
     # Parameters of effects are counted from where the effects are, so only the unit's keep their position.
     position = now.position_of_unit
     if added and now.allowed.forms.any():
-        ahead = fit(
-            now.measured, now.unit, model, position=position, allowed=now.closed.allowed, turns=1
-        )
+        ahead = fit(now.measured, now.unit, model, position=position, allowed=now.closed.allowed, turns=1)
         position = ahead.calibrated.position
     return fit(now.measured, now.unit, model, position=position, allowed=now.allowed)

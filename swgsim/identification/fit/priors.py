@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from jaxtyping import Float
@@ -98,29 +99,42 @@ def _of_size(name: str, unit: str, nominal: float, spread: float) -> Declared:
 
 
 def _of_gauge(name: str, sensor: int, unit: str, sd: float) -> Declared:
-    def moved(gear: Gear, to: float) -> Gear:
-        values = list(getattr(gear.gauges, name))
-        values[sensor] = to
-        return replace(gear, gauges=replace(gear.gauges, **{name: tuple(values)}))  # type: ignore[arg-type]
+    return _of_gear(
+        unit,
+        sd,
+        lambda gear: float(getattr(gear.gauges, name)[sensor]),
+        partial(_with_gauge, name, sensor),
+        *LIMITS[name],
+    )
 
-    return _of_gear(unit, sd, lambda gear: float(getattr(gear.gauges, name)[sensor]), moved, *LIMITS[name])
+
+def _with_gauge(name: str, sensor: int, gear: Gear, to: float) -> Gear:
+    values = list(getattr(gear.gauges, name))
+    values[sensor] = to
+    return replace(gear, gauges=replace(gear.gauges, **{name: tuple(values)}))  # type: ignore[arg-type]
 
 
 def _of_kinematic_error(order: int, part: str, sd: float) -> Declared:
     """Sine or cosine part of one order of A sin(order phi + phase): amplitude and phase, but linear."""
+    return _of_gear(
+        "rad",
+        sd,
+        lambda gear: _phasor(order, gear).real if part == "sine" else _phasor(order, gear).imag,
+        partial(_with_phasor, order, part),
+    )
 
-    def phasor(gear: Gear) -> complex:
-        terms = [term for term in gear.transmission.kinematic_error if term.order == order]
-        return complex(sum(term.amplitude * np.exp(1j * term.phase) for term in terms))
 
-    def moved(gear: Gear, to: float) -> Gear:
-        now = phasor(gear)
-        sought = complex(to, now.imag) if part == "sine" else complex(now.real, to)
-        term = KinematicError(order, float(abs(sought)), float(np.angle(sought)))
-        others = tuple(each for each in gear.transmission.kinematic_error if each.order != order)
-        return replace(gear, transmission=replace(gear.transmission, kinematic_error=(*others, term)))
+def _phasor(order: int, gear: Gear) -> complex:
+    terms = [term for term in gear.transmission.kinematic_error if term.order == order]
+    return complex(sum(term.amplitude * np.exp(1j * term.phase) for term in terms))
 
-    return _of_gear("rad", sd, lambda gear: phasor(gear).real if part == "sine" else phasor(gear).imag, moved)
+
+def _with_phasor(order: int, part: str, gear: Gear, to: float) -> Gear:
+    now = _phasor(order, gear)
+    sought = complex(to, now.imag) if part == "sine" else complex(now.real, to)
+    term = KinematicError(order, float(abs(sought)), float(np.angle(sought)))
+    others = tuple(each for each in gear.transmission.kinematic_error if each.order != order)
+    return replace(gear, transmission=replace(gear.transmission, kinematic_error=(*others, term)))
 
 
 def of_structure(spread: float) -> dict[str, Declared]:
@@ -147,18 +161,16 @@ def of_structure(spread: float) -> dict[str, Declared]:
 def _of_factors(kind: str, parts: Sequence[Float[np.ndarray, " wave"]], unit: str, spread: float) -> Declared:
     """One mode of the factors on a kind of load: of the logarithms of their amplitudes, and of their phases."""
     mode = np.concatenate(parts)
+    return _of_gear(unit, spread, partial(_along_mode, kind, mode), partial(_with_mode, kind, mode))
 
-    def logs(gear: Gear) -> Float[np.ndarray, " part"]:
-        return np.array(getattr(gear.factors, kind) or np.zeros(len(mode)))
 
-    def value(gear: Gear) -> float:
-        return float(logs(gear) @ mode / (mode @ mode))
+def _along_mode(kind: str, mode: np.ndarray, gear: Gear) -> float:
+    return float(np.array(getattr(gear.factors, kind) or np.zeros(len(mode))) @ mode / (mode @ mode))
 
-    def moved(gear: Gear, to: float) -> Gear:
-        by = (to - value(gear)) * mode
-        return replace(gear, factors=replace(gear.factors, **{kind: tuple((logs(gear) + by).tolist())}))
 
-    return _of_gear(unit, spread, value, moved)
+def _with_mode(kind: str, mode: np.ndarray, gear: Gear, to: float) -> Gear:
+    logs = np.array(getattr(gear.factors, kind) or np.zeros(len(mode))) + (to - _along_mode(kind, mode, gear)) * mode
+    return replace(gear, factors=replace(gear.factors, **{kind: tuple(logs.tolist())}))
 
 
 def of_unit(

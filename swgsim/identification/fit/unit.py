@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
@@ -161,7 +162,7 @@ class Unit:
         """Whether commissioning found the structure further off than the mesh of the truss makes it."""
         return self.structure > OF_MESH
 
-    @property
+    @cached_property
     def declared(self) -> dict[str, Declared]:
         """Parameters of the gear that are not known exactly, with their spread before commissioning."""
         gear = self.nominal or self.model.gear
