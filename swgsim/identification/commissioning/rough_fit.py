@@ -5,7 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 from jaxtyping import Bool, Float
+from scipy.stats import chi2, false_discovery_control
 
+from swgsim.identification.commissioning.lack_of_fit import FALSE_DISCOVERIES
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import fit
@@ -14,8 +16,8 @@ from swgsim.identification.fit.unit import Unit
 # Variance of a line about the model, relative to that of the noise, at first. With the noise alone, a fit that begins
 # far off leaves the gears that exist.
 ROUGH = 1e4
-# So often at most the variances are estimated again, until the log-likelihood rises by less than so much per line.
-ROUNDS, AT_REST = 6, 0.5
+# So often at most the variances are estimated again, until none changes by more than this factor.
+ROUNDS, SAME = 6, 1.5
 
 
 def roughly_fitted(
@@ -45,17 +47,20 @@ def roughly_fitted(
     inflation = np.where(lines, ROUGH * known, known)
     fitted = fit(measured, replace(unit, inflation=inflation), position=position, held=held)
     for _ in range(ROUNDS):
-        shown = inflation * _between_repeats(fitted)
-        inflation = np.where(lines, np.maximum(known, shown), known)
-        position, before = {**(position or {}), **fitted.calibrated.position}, fitted.log_likelihood
+        before, inflation = inflation, np.where(lines, _between_repeats(fitted, inflation, known), known)
+        position = {**(position or {}), **fitted.calibrated.position}
         fitted = fit(measured, replace(unit, inflation=inflation), position=position, held=held)
-        if fitted.log_likelihood - before < AT_REST * lines.sum():
+        if np.abs(np.log(inflation / before)).max() < np.log(SAME):
             break
     return fitted
 
 
-def _between_repeats(fitted: Fitted) -> Float[np.ndarray, " feature"]:
-    """Mean square between repeats of every line of a channel, in declared variances, for each of its features."""
+def _between_repeats(
+    fitted: Fitted, inflation: Float[np.ndarray, " feature"], known: Float[np.ndarray, " feature"]
+) -> Float[np.ndarray, " feature"]:
+    """Variance between repeats of every line of a channel, for each of its features; what is known where chance alone
+    could make it so large.
+    """
     measured, missed = fitted.measured, fitted.missed
     square = np.zeros(missed.shape[1])
     for point in set(measured.repeats):
@@ -63,4 +68,7 @@ def _between_repeats(fitted: Fitted) -> Float[np.ndarray, " feature"]:
         square += ((missed[group] - missed[group].mean(axis=0)) ** 2).sum(axis=0)
     layout = measured.layout
     of_line = (layout.channel[:, None] == layout.channel) & (layout.order[:, None] == layout.order)
-    return of_line @ square / of_line.sum(axis=1) / measured.spare
+    freedom = measured.spare * of_line.sum(axis=1)
+    shown = inflation * (of_line @ square)
+    more = false_discovery_control(chi2.sf(shown / known, freedom)) < FALSE_DISCOVERIES
+    return np.where(more, np.maximum(known, shown / freedom), known)
