@@ -73,7 +73,7 @@ def _followed(
 ) -> Float[np.ndarray, "channel law one one"]:
     """What becomes of every line of a channel by each law: of a gauge by the torque over the turn, else by its mean."""
     turn = basis(2 * np.pi * np.arange(POINTS) / POINTS, ORDERS)
-    mean = np.array(situation.point.T_out)
+    mean = np.array(situation.point.T_out, dtype=float)
     over_turn = laws(mean + turn[:, 1:] @ torque[1:], situation.point.n_in_rpm)
     by_ripple = (turn / (turn**2).sum(axis=0)).T @ (over_turn[:, :, None] * turn)  # angles are passed evenly
     by_mean = laws(mean, situation.point.n_in_rpm)[:, None, None] * np.eye(turn.shape[1])
