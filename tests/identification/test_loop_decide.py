@@ -106,6 +106,13 @@ def test_evidence_of_an_effect_is_the_mean_over_the_form_errors(null, changes):
     assert found.form_error == pytest.approx(weights @ FORM_ERRORS, rel=1e-3)
 
 
+def test_an_effect_whose_form_shows_nowhere_has_no_form_error(null, changes):
+    """As clipping beside deviations of all lines; there is one evidence for all form errors then."""
+    found = option(recorded(null, changes, {Bump: 5.0}, 5), (Bump(4.0),), (), len(KINDS))
+    assert found.form_error > 0
+    assert replace(found, evidences=found.evidences[:, :1]).form_error == 0
+
+
 @pytest.mark.usefixtures("_chain")
 @pytest.mark.parametrize("begin", [1.0, 40.0])
 def test_a_size_is_integrated_over_its_logarithm_wherever_the_fit_began(null, changes, begin):

@@ -64,9 +64,9 @@ class Option:
 
     @property
     def form_error(self) -> float:
-        """Posterior mean of the form error of the effects, as a share; 0 without effects."""
+        """Posterior mean of the form error of the effects, as a share; 0 without effects, or if it changes nothing."""
         weights = np.exp(logsumexp(self.evidences, axis=0) - self.log_evidence)
-        return float(weights @ np.array(FORM_ERRORS)) if self.effects else 0.0
+        return float(weights @ np.array(FORM_ERRORS)) if len(weights) == len(FORM_ERRORS) else 0.0
 
     @property
     def log_posterior(self) -> float:
