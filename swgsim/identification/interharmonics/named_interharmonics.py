@@ -119,11 +119,11 @@ def _best(effects: Sequence[Effect], spectra: Sequence[GaugeSpectrum], tried: in
     return max(lines, key=lambda line: line.rank)
 
 
-def _judged(effect: Effect, explained: Float[np.ndarray, "recording number"], tried: int) -> Sideline:
+def _judged(effect: Effect, sums: Float[np.ndarray, "recording number"], tried: int) -> Sideline:
     """One hypothesis, by what it explains of all recordings."""
     declared = quantities(type(effect))
     name = size_of(type(effect))
-    gain, freedom, size, rest, count = explained.T
+    gain, freedom, size, rest, count = sums.T
     numbers = max(freedom.sum(), 1.0)
     noise, p_value = f_test(gain.sum(), numbers, rest.sum(), count.sum())
     explained = float(gain.sum() - noise * freedom.sum())
