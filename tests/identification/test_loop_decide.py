@@ -17,11 +17,12 @@ from swgsim.identification.covariance.low_rank_covariance import Covariance
 from swgsim.identification.covariance.recording_covariance import RecordingCovariance
 from swgsim.identification.data.features import ORDERS, Layout
 from swgsim.identification.decide import option as option_module
+from swgsim.identification.decide import search as search_module
 from swgsim.identification.decide.decision import CREDIBLE, decide
 from swgsim.identification.decide.option import ZEROS, expected_gain, option
 from swgsim.identification.decide.prior import BALANCED, CAUSES, FORM_ERRORS, SCALES, TIMES_BALANCED, log_prior
 from swgsim.identification.decide.search import Search
-from swgsim.identification.fit.form_error import form_directions, parts
+from swgsim.identification.fit.form_error import all_show, form_directions, parts
 from swgsim.identification.report.answer import Answer
 from swgsim.identification.report.found import alternatives, found_effects, options, probability_text, small
 from swgsim.identification.report.sentence import sentence
@@ -106,12 +107,36 @@ def test_evidence_of_an_effect_is_the_mean_over_the_form_errors(null, changes):
     assert found.form_error == pytest.approx(weights @ FORM_ERRORS, rel=1e-3)
 
 
-def test_an_effect_whose_form_shows_nowhere_has_no_form_error(null, changes):
-    """As clipping beside deviations of all lines; there is one evidence for all form errors then."""
-    found = option(recorded(null, changes, {Bump: 5.0}, 5), (Bump(4.0),), (), len(KINDS))
-    alike = np.zeros((len(ZEROS), len(FORM_ERRORS)))
-    assert replace(found, evidences=alike).form_error == pytest.approx(np.mean(FORM_ERRORS))
-    assert replace(found, evidences=alike[:, :1]).form_error == 0
+@pytest.mark.usefixtures("_chain")
+def test_an_effect_that_has_no_form_but_its_size_has_no_form_error(null, changes):
+    """There is one evidence for all form errors then, as without effects."""
+    held = recorded(null, changes, {Bump: 5.0}, 5)
+    nothing, found = option(held, (), (), len(KINDS)), option(held, (Bump(4.0),), (), len(KINDS))
+    assert nothing.evidences.shape[1] == 1
+    assert found.form_error > 0
+    assert replace(found, evidences=nothing.evidences).form_error == 0
+
+
+@pytest.mark.usefixtures("_chain")
+def test_an_effect_that_changes_nothing_explains_nothing(null, changes):
+    """As clipping above all signals: fits get stuck there, as its level has no slope."""
+    found = option(recorded(null, changes, {Bump: 5.0}, 5), (Bump(4.0),), (), len(KINDS)).fitted
+    assert all_show(found)
+    gone = replace(found.calibrated, model=found.unit.model.plus(*found.added, Bump(0.0)))
+    assert not all_show(replace(found, calibrated=gone))
+
+
+@pytest.mark.usefixtures("_chain")
+def test_something_unknown_is_always_compared_alone_where_all_options_fit_badly(null, changes, monkeypatch):
+    """However many effects explain a little of it."""
+    monkeypatch.setattr(search_module, "ill_fitting", lambda each: True)
+    monkeypatch.setattr(search_module, "EFFECTS_TRIED", 2)
+    found = Search(recorded(null, changes, {Bump: 5.0, Step: 5.0}, 5), KINDS)
+    found.run()
+    assert len([each for each in found._options.values() if each.effects and not each.regularities]) > 2
+    first, *others = found._ill_fitting()
+    assert first.effects == ()
+    assert len(others) == 2
 
 
 @pytest.mark.usefixtures("_chain")

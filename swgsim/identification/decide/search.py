@@ -20,6 +20,7 @@ from swgsim.identification.decide.option import Option, causes_of, expected_gain
 from swgsim.identification.decide.prior import CAUSES, SCALES, log_prior
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import unbent
+from swgsim.identification.fit.form_error import all_show
 from swgsim.identification.search.hypotheses import Hypothesis, hypotheses, signatures
 from swgsim.identification.search.refining import zoom
 from swgsim.identification.search.regularities import Described, describe, other_laws
@@ -66,7 +67,8 @@ class Search:
         if not ill_fitting(self._best):
             return []
         alone = [each for each in self._options.values() if not each.regularities and ill_fitting(each)]
-        return sorted(alone, key=lambda each: -each.log_posterior)[:EFFECTS_TRIED]
+        best = sorted(alone, key=lambda each: (bool(each.effects), -each.log_posterior))
+        return best[: 1 + EFFECTS_TRIED]
 
     @property
     def _best(self) -> Option:
@@ -98,6 +100,8 @@ class Search:
         try:
             found = option(start, effects, regularities, len(self.kinds))
         except NoSteadyState:  # no gear with it turns steadily
+            return
+        if not all_show(found.fitted):
             return
         known = self._options.get(found.causes)
         if known is None or found.log_posterior > known.log_posterior:

@@ -27,6 +27,14 @@ def signature(fitted: Fitted, number: int) -> Float[np.ndarray, " row"]:
     return measured.rows(found[0] - found[1])
 
 
+def all_show(fitted: Fitted) -> bool:
+    """Whether every added effect changes the recordings; clipping above all signals changes nothing."""
+    count = len(fitted.model.effects)
+    added = range(count - len(fitted.added), count)
+    columns = (signature(fitted, number)[:, None] for number in added)
+    return all(without_what_noise_hides(each, fitted.errors.variance).shape[1] for each in columns)
+
+
 def parts(fitted: Fitted, whole: Float[np.ndarray, " row"]) -> Float[np.ndarray, "row part"]:
     """A signature split by operating point, channel and order."""
     layout = fitted.measured.layout
