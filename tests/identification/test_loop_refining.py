@@ -96,6 +96,25 @@ def test_errors_of_single_recordings_are_those_of_the_repeats_wherever_a_fit_beg
         assert far.calibrated.position[name] == pytest.approx(there, abs=0.7 * deviation)
 
 
+@pytest.mark.parametrize("repeats", [1, 3])
+def test_repeats_tell_the_errors_of_single_recordings_before_anything_is_fitted(monkeypatch, repeats):
+    """Without repeats a fit begins with those that a bench states."""
+    begun, turn = [], fitting._turn
+
+    def kept(*given):
+        found, assumed = turn(*given)
+        begun.append(assumed)
+        return found, assumed
+
+    monkeypatch.setattr(fitting, "_turn", kept)
+    fit(Measured.of(good(repeats=repeats)), Unit(Model(GEAR)), turns=1)
+    (assumed,) = begun
+    if repeats == 1:
+        assert assumed.sd == STATED
+    else:
+        assert assumed.sd["trigger"] < STATED["trigger"] / 10
+
+
 @pytest.mark.parametrize(
     ("sizes", "settled", "repeats", "turns"),
     [
@@ -110,17 +129,15 @@ def test_a_fit_goes_on_until_the_errors_of_single_recordings_stay(monkeypatch, f
     """Each turn finds them so many times as large as in the fit that it begins at."""
     begun, left = [], iter(sizes)
 
-    def turn(fixed, begin, scattered):
-        begun.append(scattered)
+    def turn(fixed, begin, assumed):
+        begun.append(assumed)
         size = next(left)
         made = found.scattering(replace(found.scatter, sd={name: size * sd for name, sd in found.scatter.sd.items()}))
-        return replace(made, calibrated=replace(made.calibrated, settled=settled)), scattered or found.scatter
+        return replace(made, calibrated=replace(made.calibrated, settled=settled)), assumed or found.scatter
 
     monkeypatch.setattr(fitting, "_turn", turn)
     extended(replace(found, measured=Measured.of(good(repeats=repeats))), ())
     assert len(begun) == turns
-    # The first turn finds them by itself.
-    assert begun[0] is None
 
 
 def test_a_proportional_effect_begins_at_its_estimate():

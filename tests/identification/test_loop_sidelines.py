@@ -11,9 +11,10 @@ from swgsim.effects.base import Effect, Scene
 from swgsim.effects.library import LIBRARY
 from swgsim.effects.quantity import random_phase, shape, size
 from swgsim.identification.data.features import Layout, features
-from swgsim.identification.interharmonics.interharmonic_spectrum import gauge_spectra, ordinary, shapes
+from swgsim.identification.interharmonics.interharmonic_spectrum import gauge_spectra
 from swgsim.identification.interharmonics.line_search import cleaned, search
 from swgsim.identification.interharmonics.named_interharmonics import ranked
+from swgsim.identification.interharmonics.signal_shapes import ordinary, shapes
 from swgsim.identification.interharmonics.unattributed_lines import unnamed
 from swgsim.recordings.recording import Recording
 from swgsim.storage.labelled_signals import SENSORS

@@ -45,10 +45,10 @@ def learn_unit(measured: Measured, unit: Unit) -> Unit:
     """
     forget()
     fitted = _with_usable_ripple(measured, replace(unit, seen_healthy=True))
-    require_own(_as_accurate(fitted), fitted.missed)
+    require_own(_with_inflated_variance(fitted), fitted.missed)
     beyond = beyond_noise(measured, fitted.missed)
     if beyond.max() > 1:
-        fitted = about_its_lines(again(fitted, inflation=beyond * _inflation(fitted)))
+        fitted = about_its_lines(again(fitted, inflation=fitted.unit.inflated(beyond)))
     # Directions are the fitted parameters, then those of fitted.open. R R' is their posterior covariance.
     R, mean = posterior(fitted)
     # Declared effects keep their values; later fits have parameters for them.
@@ -72,23 +72,18 @@ def _with_usable_ripple(measured: Measured, unit: Unit) -> Fitted:
     while True:
         drive, foreign = _drive_alone(measured, unit), np.zeros(len(measured.layout), bool)
         if drive is not None:
-            foreign[_of_drive(measured)] = foreign_ripple(_as_accurate(drive), drive.missed, FOREIGN_SHARE)
+            foreign[_of_drive(measured)] = foreign_ripple(_with_inflated_variance(drive), drive.missed, FOREIGN_SHARE)
         if not foreign.any():
             fitted = _with_learned_lines(measured, unit, drive)
-            foreign = foreign_ripple(_as_accurate(fitted), fitted.missed)
-        heard = 1.0 if unit.inflation is None else unit.inflation
-        foreign &= heard < UNHEARD
+            foreign = foreign_ripple(_with_inflated_variance(fitted), fitted.missed)
+        inflation = unit.inflated(np.ones(len(measured.layout)))
+        foreign &= inflation < UNHEARD
         if not foreign.any():
             return fitted
-        unit = replace(unit, inflation=np.where(foreign, UNHEARD, heard))
+        unit = replace(unit, inflation=np.where(foreign, UNHEARD, inflation))
 
 
-def _inflation(fitted: Fitted) -> Float[np.ndarray, " feature"]:
-    """Factor on the variance of the noise of every line."""
-    return np.ones(len(fitted.measured.layout)) if fitted.unit.inflation is None else fitted.unit.inflation
-
-
-def _as_accurate(fitted: Fitted) -> Measured:
+def _with_inflated_variance(fitted: Fitted) -> Measured:
     """The recordings with the variance that the fit has for their lines."""
     return replace(fitted.measured, variance=fitted.unit.inflated(fitted.measured.variance))
 
@@ -104,8 +99,8 @@ def _with_learned_lines(measured: Measured, unit: Unit, drive: Fitted | None) ->
     held: list[str] = []
     of_drive = np.zeros(len(measured.layout))
     if drive is not None:
-        inflation = np.ones(len(of_drive)) if unit.inflation is None else unit.inflation.copy()
-        inflation[_of_drive(measured)] = _inflation(drive)
+        inflation = unit.inflated(np.ones(len(measured.layout)))
+        inflation[_of_drive(measured)] = drive.unit.inflated(np.ones(len(drive.measured.layout)))
         unit = replace(unit, inflation=inflation)
         position, held = drive.calibrated.position, _well_determined(drive)
         if drive.unit.learned is not None:
@@ -173,7 +168,7 @@ def _lie_off(fitted: Fitted) -> Float[np.ndarray, " feature"]:
         sought |= fitted.unit.learned > 0
     off = np.sqrt((fitted.residual.reshape(measured.values.shape) ** 2).mean(axis=0)) * sought
     largest = largest_lines(fitted.calibrated.predicted, layout)
-    missed = unexplained(measured, fitted.missed)
+    missed = unexplained(_with_inflated_variance(fitted), fitted.missed)
     for channel in layout.channels:
         own = layout.channel == channel
         if channel in largest:

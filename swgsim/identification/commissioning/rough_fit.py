@@ -43,15 +43,15 @@ def roughly_fitted(
     """
     if not measured.spare:
         return fit(measured, unit, position=position, held=held)
-    known = np.ones(len(lines)) if unit.inflation is None else unit.inflation
+    known = unit.inflated(np.ones(len(lines)))
     inflation = np.where(lines, ROUGH * known, known)
     fitted = fit(measured, replace(unit, inflation=inflation), position=position, held=held)
     for _ in range(ROUNDS):
         before, inflation = inflation, np.where(lines, _between_repeats(fitted, inflation, known), known)
-        position = {**(position or {}), **fitted.calibrated.position}
-        fitted = fit(measured, replace(unit, inflation=inflation), position=position, held=held)
         if np.abs(np.log(inflation / before)).max() < np.log(SAME):
             break
+        position = {**(position or {}), **fitted.calibrated.position}
+        fitted = fit(measured, replace(unit, inflation=inflation), position=position, held=held)
     return fitted
 
 

@@ -61,13 +61,13 @@ def fit(
     parameters = parameters | of_effects(start, unit.of_another_structure)
     known = unit.scatter.carried if unit.scatter else Scatter.stated(measured.layout)
     fixed = _Fixed(measured, unit, start, parameters, known, allowed or Allowed.nothing(measured.values.size))
-    scattered: Scatter | None = None
+    estimated: Scatter | None = None
     for _ in range(turns if fixed.has_repeats else min(turns, UNREPEATED)):
-        found, began = _turn(fixed, begin, scattered)
-        by = found.errors.alone.divergence(found.scattering(began).errors.alone)
+        found, assumed = _turn(fixed, begin, estimated)
+        by = found.errors.alone.divergence(found.scattering(assumed).errors.alone)
         if by < SAME_SCATTER * found.calibrated.lack_of_fit and found.calibrated.settled:
             break
-        begin, scattered = found.calibrated.position, found.scatter
+        begin, estimated = found.calibrated.position, found.scatter
     return found
 
 
@@ -93,17 +93,17 @@ class _Fixed(NamedTuple):
         return estimated if self.measured.temperature_recorded else estimated.with_unrecorded_temperature
 
 
-def _turn(fixed: _Fixed, begin: Mapping[str, float], scattered: Scatter | None) -> tuple[Fitted, Scatter]:
-    """Fit the parameters with given errors of single recordings, then estimate these errors again.
+def _turn(fixed: _Fixed, begin: Mapping[str, float], assumed: Scatter | None) -> tuple[Fitted, Scatter]:
+    """Fit the parameters with assumed errors of single recordings, then estimate these errors again.
 
-    Repeats tell the errors before anything is fitted, as differences between them depend little on the parameters.
-    Derivatives are those of the model at the start values [prior standard deviations].
+    If none are given, repeats determine them before the fit, as differences between repeats depend little on the
+    parameters. Derivatives are those of the model at the start values [prior standard deviations].
 
     Returns
     -------
     Fitted
     Scatter
-        The errors of single recordings that it was fitted with.
+        The assumed errors.
     """
     measured, unit, here = fixed.measured, fixed.unit, at(fixed.start, fixed.parameters, begin)
     noise = unit.inflated(measured.variance)
@@ -119,11 +119,11 @@ def _turn(fixed: _Fixed, begin: Mapping[str, float], scattered: Scatter | None) 
         residual = values - predicted[measured.of_recording]
         return fixed.completed(repeats.from_repeats(residual, noise, moves, trends, measured.repeats, fixed.known))
 
-    if scattered is None:
-        scattered = by_repeats(unsure.predicted) if fixed.has_repeats else fixed.known
+    if assumed is None:
+        assumed = by_repeats(unsure.predicted) if fixed.has_repeats else fixed.known
     calibrated = calibrate(
         fixed.start, fixed.parameters, values,
-        Covariance(RecordingCovariance(noise, scattered.columns(moves)), of_sessions).with_columns(more),
+        Covariance(RecordingCovariance(noise, assumed.columns(moves)), of_sessions).with_columns(more),
         measured.situations, measured.of_recording, measured.layout, begin,
     )  # fmt: skip
     if fixed.has_repeats:
@@ -139,7 +139,7 @@ def _turn(fixed: _Fixed, begin: Mapping[str, float], scattered: Scatter | None) 
         measured, unit, fixed.parameters, calibrated, estimated,
         errors=errors, open=left, offset=offset, allowed=fixed.allowed,
     )  # fmt: skip
-    return fitted, scattered
+    return fitted, assumed
 
 
 def unbent(now: Fitted) -> Fitted:

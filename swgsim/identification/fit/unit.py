@@ -170,8 +170,8 @@ class Unit:
             return of_unit(gear)
         return of_unit(gear, ANY_FRICTION, self.structure, self.of_gauges)
 
-    def inflated(self, variance: Float[np.ndarray, "recording feature"]) -> Float[np.ndarray, "recording feature"]:
-        """Variance of independent errors, from that of noise."""
+    def inflated(self, variance: Float[np.ndarray, "*recording feature"]) -> Float[np.ndarray, "*recording feature"]:
+        """Variance of independent errors, from that of noise; of ones, the factors themselves."""
         return variance if self.inflation is None else variance * self.inflation
 
     def left_open(

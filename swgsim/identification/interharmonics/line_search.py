@@ -12,9 +12,10 @@ from jaxtyping import Float
 from swgsim.common.singular import svd
 from swgsim.effects.base import Effect
 from swgsim.identification.fit.form_error import OUTDONE, OUTDONE_SHARE
-from swgsim.identification.interharmonics.interharmonic_spectrum import GaugeSpectrum, ordinary, scene_of, shapes
+from swgsim.identification.interharmonics.interharmonic_spectrum import GaugeSpectrum
 from swgsim.identification.interharmonics.line_growth import chance_of_growth
 from swgsim.identification.interharmonics.named_interharmonics import Sideline, nearby, ranked
+from swgsim.identification.interharmonics.signal_shapes import ordinary, scene_of, shapes
 from swgsim.identification.interharmonics.unattributed_lines import Unnamed, unnamed
 from swgsim.recordings.recording import Recording
 from swgsim.storage.labelled_signals import SENSORS
