@@ -33,11 +33,11 @@ from swgsim.identification.fit.unit_file import WHAT, read_unit
 from swgsim.joint.intake.read import read_joints
 from swgsim.recordings.files import sources
 from swgsim.recordings.files.folder import read_folder
-from swgsim.recordings.files.matlab import MatlabReader
 from swgsim.recordings.files.recording_file import read_file
 from swgsim.recordings.files.source_map import read_map
 from swgsim.storage import storage
 from swgsim.storage.storage import SEAL_SIZE, SEAL_START, seal_start
+from swgsim.tables.formats.matlab import MatlabReader
 
 # One child process reads all MATLAB files of a batch.
 MATLAB = MatlabReader()

@@ -10,8 +10,8 @@ from swgsim.common.files import require_writable
 from swgsim.identification.calls import commission
 from swgsim.jobs import settings
 from swgsim.recordings.checks.defect import summary
-from swgsim.recordings.files.file_defect import read_for
 from swgsim.recordings.read import read_recordings
+from swgsim.tables.file_defect import read_for
 
 
 def run(config: Mapping[str, Any]) -> dict[str, Any]:

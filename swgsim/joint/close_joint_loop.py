@@ -8,7 +8,7 @@ from swgsim.common.files import require_writable
 from swgsim.common.outcome import Outcome
 from swgsim.joint.identify import effects_of, identify_joint, recordings_of
 from swgsim.joint.intake.read import JointRecordings
-from swgsim.recordings.files.file_defect import read_for
+from swgsim.tables.file_defect import read_for
 
 
 def run(config: Mapping[str, Any], report_line: Callable[[str], None] = print, *, bar: bool = True) -> Outcome:

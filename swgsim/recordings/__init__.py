@@ -4,12 +4,12 @@ Imports ``gear`` and rooms below it.
 """
 
 from swgsim.recordings.checks.defect import Defect, Severity
-from swgsim.recordings.files.file_defect import FileDefect
 from swgsim.recordings.files.folder import write_folder
 from swgsim.recordings.files.recording_file import write_file
 from swgsim.recordings.read import read_recordings
 from swgsim.recordings.recording import CHANNELS, Recording
 from swgsim.recordings.recording_set import RecordingSet
+from swgsim.tables.file_defect import FileDefect
 
 __all__ = [
     "CHANNELS",

@@ -6,7 +6,6 @@ from pathlib import Path
 from swgsim.recordings.checks.defect import Defect, summary
 from swgsim.recordings.checks.inspection import inspect
 from swgsim.recordings.files.assembly import ONE_TABLE
-from swgsim.recordings.files.file_defect import FileDefect
 from swgsim.recordings.files.folder import read_folder
 from swgsim.recordings.files.manifest import NAME
 from swgsim.recordings.files.recording_file import read_file
@@ -14,6 +13,7 @@ from swgsim.recordings.files.source_map import read_map
 from swgsim.recordings.files.sources import read_mapped
 from swgsim.recordings.recording import Recording
 from swgsim.recordings.recording_set import RecordingSet
+from swgsim.tables.file_defect import FileDefect
 
 
 def read_recordings(path: str | Path, mapping: str | Path | None = None) -> RecordingSet:

@@ -30,8 +30,8 @@ from scipy.io import savemat
 from swgsim.joint.intake.read import read_joints
 from swgsim.joint.intake.source_file import read_source
 from swgsim.joint.split import select
-from swgsim.recordings.files import limits
-from swgsim.recordings.files.file_defect import FileDefect
+from swgsim.tables import limits
+from swgsim.tables.file_defect import FileDefect
 
 CONFIG = yaml.safe_load(KINOVA.read_text())
 JOINT = CONFIG["joints"]["joint_7"]

@@ -17,9 +17,9 @@ from swgsim.gear.gear import Gear, OperatingPoint
 from swgsim.gear.population import Population
 from swgsim.recordings.checks.defect import summary
 from swgsim.recordings.checks.inspection import inspect
-from swgsim.recordings.files.file_defect import FIRST_ROW
 from swgsim.recordings.recording import Recording
 from swgsim.studies.examples import EXAMPLES
+from swgsim.tables.file_defect import FIRST_ROW
 
 Recordings = tuple[Recording, ...]
 Spoil = Callable[[Recordings], Recordings]

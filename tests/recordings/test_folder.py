@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from recording_fixtures import assert_same, assert_sound, recording
 
-from swgsim.recordings.files import limits
-from swgsim.recordings.files.file_defect import FileDefect
 from swgsim.recordings.files.folder import read_folder, write_folder
 from swgsim.recordings.files.recording_file import read_file, write_file
+from swgsim.tables import limits
+from swgsim.tables.file_defect import FileDefect
 
 ROWS = 60
 GOOD = (recording(1, ROWS, label="healthy"), recording(2, ROWS, label="healthy"), recording(3, ROWS))

@@ -14,15 +14,16 @@ from recording_fixtures import ROWS, SAVERS, SHORT, assert_sound, columns, mappe
 from scipy.io import savemat
 from scipy.sparse import eye_array
 
-from swgsim.recordings.files import facts, matlab
+from swgsim.recordings.files import facts
 from swgsim.recordings.files.assembly import column_of
-from swgsim.recordings.files.file_defect import FileDefect
 from swgsim.recordings.files.foreign import MATLAB_NUMBERS, read_columns
-from swgsim.recordings.files.limits import LARGEST_NUMBER, SMALLEST_STEP
-from swgsim.recordings.files.matlab import MatlabReader
 from swgsim.recordings.files.source_map import SourceMap, read_map
 from swgsim.recordings.files.sources import read_mapped
 from swgsim.recordings.recording import Recording
+from swgsim.tables.file_defect import FileDefect
+from swgsim.tables.formats import matlab
+from swgsim.tables.formats.matlab import MatlabReader
+from swgsim.tables.limits import LARGEST_NUMBER, SMALLEST_STEP
 
 # A warning stops no reader in use, and so not here.
 pytestmark = pytest.mark.filterwarnings("ignore")

@@ -9,8 +9,8 @@ import pytest
 import xarray
 from recording_fixtures import recording
 
-from swgsim.recordings.files.file_defect import FileDefect
 from swgsim.recordings.files.recording_file import TITLE, read_file, write_file
+from swgsim.tables.file_defect import FileDefect
 
 ROWS = 60
 GOOD = (recording(1, ROWS), recording(2, ROWS))

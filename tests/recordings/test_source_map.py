@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from recording_fixtures import EXAMPLE_MAP, SHORT, assert_sound, mapped
 
 from swgsim.recordings.files import facts
-from swgsim.recordings.files.file_defect import FileDefect
 from swgsim.recordings.files.source_map import read_map
 from swgsim.recordings.files.sources import read_mapped
+from swgsim.tables.file_defect import FileDefect
 
 
 def test_a_sampling_rate_replaces_the_time(tmp_path: Path) -> None:

@@ -14,14 +14,15 @@ import recording_fixtures as sound
 from recording_fixtures import ROWS, SAVERS, columns, mapped, sealed
 from scipy.io import savemat
 
-from swgsim.recordings.files import facts, foreign, limits
-from swgsim.recordings.files.file_defect import FileDefect, shown
+from swgsim.recordings.files import facts, foreign
 from swgsim.recordings.files.folder import read_folder
 from swgsim.recordings.files.recording_file import read_file
 from swgsim.recordings.files.source_map import read_map
 from swgsim.recordings.files.sources import read_mapped
 from swgsim.storage import storage
 from swgsim.storage.storage import SEAL_SIZE, SEAL_START
+from swgsim.tables import limits
+from swgsim.tables.file_defect import FileDefect, shown
 
 MANY = 40_000_000  # numbers; 320 MB
 

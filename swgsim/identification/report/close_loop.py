@@ -33,10 +33,10 @@ from swgsim.identification.fit.unit_file import is_unit_file
 from swgsim.identification.report.effect_words import effect_in_words, effect_text
 from swgsim.identification.report.engineering_units import value_text
 from swgsim.jobs import settings
-from swgsim.recordings.files.file_defect import read_for
 from swgsim.recordings.read import read_recordings
 from swgsim.recordings.recording import Recording
 from swgsim.recordings.recording_set import RecordingSet
+from swgsim.tables.file_defect import read_for
 
 
 def run(config: Mapping[str, Any]) -> Outcome:

@@ -6,7 +6,7 @@ from math import pi
 
 from swgsim.common.checks import require_known
 from swgsim.joint.recording import SIGNALS
-from swgsim.recordings.files.units import FACTORS as OF_CHANNELS
+from swgsim.tables.units import FACTORS as OF_CHANNELS
 
 # No table of joints has more columns; six joints of a UR10e have 31.
 MOST_COLUMNS = 10_000

@@ -26,7 +26,7 @@ from swgsim.joint.intake.thresholds import (
 from swgsim.joint.recording import PREDICTED, JointRecording
 from swgsim.recordings.checks.defect import Defect, Severity
 from swgsim.recordings.files.assembly import no_numbers, standing
-from swgsim.recordings.files.limits import LARGEST_NUMBER
+from swgsim.tables.limits import LARGEST_NUMBER
 
 
 def unusable(run: Run) -> Iterator[Defect]:

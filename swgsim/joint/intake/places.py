@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from swgsim.joint.intake.source import JointSource
-from swgsim.recordings.files.file_defect import FileDefect
-from swgsim.recordings.files.limits import inside, require_file_count
+from swgsim.tables.file_defect import FileDefect
+from swgsim.tables.limits import inside, require_file_count
 
 ENDINGS = (".csv", ".csv.gz", ".parquet", ".mat")
 # Largest number of folders and files in a folder of recordings.

@@ -24,7 +24,7 @@ from swgsim.joint.intake.source import JointSource
 from swgsim.joint.intake.source_file import read_source
 from swgsim.joint.recording import SIGNALS, JointRecording
 from swgsim.recordings.checks.defect import Defect, summary
-from swgsim.recordings.files.file_defect import FileDefect, shown
+from swgsim.tables.file_defect import FileDefect, shown
 
 
 @dataclass(frozen=True, repr=False)

@@ -8,10 +8,10 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.joint.intake.column import Column
-from swgsim.joint.intake.path_pattern import path_groups
 from swgsim.joint.intake.source import JointColumns, JointSource
 from swgsim.joint.intake.table import Columns, read_table
-from swgsim.recordings.files.file_defect import FileDefect, shown
+from swgsim.tables.file_defect import FileDefect, shown
+from swgsim.tables.path_pattern import path_groups
 
 
 @dataclass(frozen=True, eq=False)

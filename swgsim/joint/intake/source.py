@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from swgsim.common.checks import require, require_integer
 from swgsim.joint.intake.column import Column
-from swgsim.joint.intake.path_pattern import require_pattern
+from swgsim.tables.path_pattern import require_pattern
 
 # Limits of the sampling rate [Hz] and of the cut at the start of a run [s].
 SLOWEST, FASTEST = 1e-3, 1e9

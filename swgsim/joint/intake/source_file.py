@@ -6,8 +6,8 @@ from typing import Any
 
 from swgsim.joint.intake.column import MOST_COLUMNS, Column
 from swgsim.joint.intake.source import JointColumns, JointSource
-from swgsim.recordings.files.file_defect import shown
-from swgsim.recordings.files.plain_file import described, require_names
+from swgsim.tables.file_defect import shown
+from swgsim.tables.plain_file import described, require_names
 
 KEYS = (
     "robot", "path", "files", "rest", "leave_out", "header", "time", "rate", "rate_hz", "start_up", "joints", "posture",

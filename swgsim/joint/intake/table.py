@@ -12,9 +12,9 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.recordings.files.facts import NUMBER
-from swgsim.recordings.files.file_defect import FileDefect, shown
 from swgsim.recordings.files.foreign import read_columns
-from swgsim.recordings.files.limits import MOST_ROWS, most_expanded, require_readable
+from swgsim.tables.file_defect import FileDefect, shown
+from swgsim.tables.limits import MOST_ROWS, most_expanded, require_readable
 
 # Six joints with five signals of 20 characters need 600 characters.
 LONGEST_LINE = 100_000

@@ -17,8 +17,8 @@ from swgsim.recordings.checks.thresholds import (
     TURNED_BACK,
 )
 from swgsim.recordings.files.assembly import unwrapped
-from swgsim.recordings.files.file_defect import FIRST_ROW
 from swgsim.recordings.recording import Recording
+from swgsim.tables.file_defect import FIRST_ROW
 
 
 def speed_of_angle(recording: Recording) -> float:

@@ -7,9 +7,9 @@ from jaxtyping import Float
 
 from swgsim.recordings.checks.defect import Defect
 from swgsim.recordings.checks.thresholds import CLIPPED_EDGE, CLIPPED_REFUSES, CLIPPED_RUN, STUCK_RUN, STUCK_TURN
-from swgsim.recordings.files.file_defect import FIRST_ROW
 from swgsim.recordings.recording import Recording
 from swgsim.storage.labelled_signals import SENSORS
+from swgsim.tables.file_defect import FIRST_ROW
 
 
 def channel_defects(recording: Recording) -> Iterator[Defect]:

@@ -6,8 +6,8 @@ import numpy as np
 
 from swgsim.recordings.checks.defect import Defect, Severity
 from swgsim.recordings.checks.thresholds import GAP, JITTER_REFUSES, JITTER_WARNS, SHORT_STEP
-from swgsim.recordings.files.file_defect import FIRST_ROW
 from swgsim.recordings.recording import Recording
+from swgsim.tables.file_defect import FIRST_ROW
 
 
 def clock_defects(recording: Recording) -> Iterator[Defect]:

@@ -12,9 +12,9 @@ from swgsim.recordings.checks.speed import speed_defects
 from swgsim.recordings.checks.torque import torque_defects
 from swgsim.recordings.checks.wiring import wiring_defects
 from swgsim.recordings.files.assembly import no_numbers, standing
-from swgsim.recordings.files.file_defect import FIRST_ROW
-from swgsim.recordings.files.limits import FEWEST_ROWS, LARGEST_NUMBER
 from swgsim.recordings.recording import Recording
+from swgsim.tables.file_defect import FIRST_ROW
+from swgsim.tables.limits import FEWEST_ROWS, LARGEST_NUMBER
 
 OF_ONE = (clock_defects, angle_defects, speed_defects, torque_defects, channel_defects, gauge_defects)
 

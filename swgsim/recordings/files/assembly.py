@@ -7,9 +7,9 @@ from jaxtyping import Float, Int
 
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import OperatingPoint
-from swgsim.recordings.files.file_defect import FIRST_ROW, FileDefect, shown
-from swgsim.recordings.files.limits import LARGEST_NUMBER, SMALLEST_STEP, require_rows
 from swgsim.recordings.recording import CHANNELS, Recording
+from swgsim.tables.file_defect import FIRST_ROW, FileDefect, shown
+from swgsim.tables.limits import LARGEST_NUMBER, SMALLEST_STEP, require_rows
 
 # Span of an angle that is wrapped to one revolution, with the jitter of an encoder at its index [rad].
 WRAPPED = 2 * np.pi * 1.001

@@ -8,8 +8,8 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.recordings.files.facts import NUMBER
-from swgsim.recordings.files.file_defect import FIRST_ROW, FileDefect, shown
-from swgsim.recordings.files.limits import MOST_ROWS, require_readable
+from swgsim.tables.file_defect import FIRST_ROW, FileDefect, shown
+from swgsim.tables.limits import MOST_ROWS, require_readable
 
 LONGEST_HEADER = 10_000
 # A row has as many cells as the header, so a longer line is no row of a table.

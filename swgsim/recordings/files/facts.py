@@ -6,8 +6,8 @@ from math import isfinite, nan
 
 from swgsim.gear.conditions import REFERENCE_TEMPERATURE, Conditions
 from swgsim.gear.gear import OperatingPoint
-from swgsim.recordings.files.file_defect import FileDefect, shown
 from swgsim.recordings.recording import Recording
+from swgsim.tables.file_defect import FileDefect, shown
 
 TEXTS = ("recording", "gear", "session")
 NUMBERS = ("n_in_rpm", "T_out_nm")

@@ -8,9 +8,9 @@ from pathlib import Path
 from swgsim.recordings.files import facts, manifest
 from swgsim.recordings.files.assembly import assemble, column_of, require_alike, require_sound
 from swgsim.recordings.files.csv_table import read_table
-from swgsim.recordings.files.file_defect import FileDefect, shown
-from swgsim.recordings.files.limits import require_file_count
 from swgsim.recordings.recording import CHANNELS, Recording
+from swgsim.tables.file_defect import FileDefect, shown
+from swgsim.tables.limits import require_file_count
 
 OR_MAPPING = "or give other names and units in a column map, with mapping="
 CHANNEL_OF = {"t_s": "t", **{channel.column: name for name, channel in CHANNELS.items()}}

@@ -11,10 +11,10 @@ from jaxtyping import Float
 
 from swgsim.recordings.files.assembly import ONE_TABLE
 from swgsim.recordings.files.csv_table import read_table
-from swgsim.recordings.files.file_defect import FileDefect, shown
-from swgsim.recordings.files.limits import require_expansion, require_readable, require_rows
-from swgsim.recordings.files.matlab import MatlabReader
 from swgsim.recordings.files.recording_file import numbers
+from swgsim.tables.file_defect import FileDefect, shown
+from swgsim.tables.formats.matlab import MatlabReader
+from swgsim.tables.limits import require_expansion, require_readable, require_rows
 
 Columns = dict[str, Float[np.ndarray, " time"]]
 # Classes of MATLAB that are numbers; all others are refused by their name.

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from swgsim.recordings.files import facts
-from swgsim.recordings.files.file_defect import FIRST_ROW, FileDefect, shown
-from swgsim.recordings.files.limits import inside, require_file_count, require_readable
+from swgsim.tables.file_defect import FIRST_ROW, FileDefect, shown
+from swgsim.tables.limits import inside, require_file_count, require_readable
 
 NAME = "manifest.csv"
 # Bytes, more than the facts of 10 000 recordings have; it is read at once.

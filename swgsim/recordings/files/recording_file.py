@@ -9,12 +9,12 @@ import numpy as np
 from swgsim.common.files import replacing
 from swgsim.recordings.files import facts
 from swgsim.recordings.files.assembly import assemble, require_alike, require_sound
-from swgsim.recordings.files.file_defect import FileDefect, shown
-from swgsim.recordings.files.limits import require_file_count, require_readable, require_rows
 from swgsim.recordings.recording import CHANNELS, Recording
 from swgsim.storage.attributes import attribute, set_attributes
 from swgsim.storage.hdf5_writer import created
 from swgsim.storage.storage import SEAL_SIZE, seal, verify
+from swgsim.tables.file_defect import FileDefect, shown
+from swgsim.tables.limits import require_file_count, require_readable, require_rows
 
 TITLE = "recordings of strain wave gears"
 

@@ -10,11 +10,11 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.common.checks import require, require_known, require_one_of
-from swgsim.recordings.files.file_defect import shown
-from swgsim.recordings.files.plain_file import described, require_names
-from swgsim.recordings.files.units import FACTORS, STRAIN, bridge_factor
 from swgsim.recordings.recording import CHANNELS
 from swgsim.storage.labelled_signals import SENSORS
+from swgsim.tables.file_defect import shown
+from swgsim.tables.plain_file import described, require_names
+from swgsim.tables.units import FACTORS, STRAIN, bridge_factor
 
 
 @dataclass(frozen=True)

@@ -6,12 +6,12 @@ import numpy as np
 
 from swgsim.recordings.files import facts
 from swgsim.recordings.files.assembly import assemble, require_alike
-from swgsim.recordings.files.file_defect import FileDefect
 from swgsim.recordings.files.foreign import READERS, read_columns
-from swgsim.recordings.files.limits import inside, require_file_count, require_rows
-from swgsim.recordings.files.matlab import MatlabReader
 from swgsim.recordings.files.source_map import SourceMap
 from swgsim.recordings.recording import Recording
+from swgsim.tables.file_defect import FileDefect
+from swgsim.tables.formats.matlab import MatlabReader
+from swgsim.tables.limits import inside, require_file_count, require_rows
 
 
 def read_mapped(path: Path, mapping: SourceMap) -> tuple[Recording, ...]:

@@ -2,7 +2,7 @@
 
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
-from swgsim.recordings.files.file_defect import FileDefect, shown
+from swgsim.tables.file_defect import FileDefect, shown
 
 # Of one file [byte] and [row]. The first limits text files, the second binary ones.
 LARGEST_FILE = 2 * 2**30

@@ -17,9 +17,9 @@ from typing import IO, NamedTuple
 
 import numpy as np
 
-from swgsim.recordings.files import matlab_child
-from swgsim.recordings.files.file_defect import FileDefect
-from swgsim.recordings.files.limits import most_expanded
+from swgsim.tables.file_defect import FileDefect
+from swgsim.tables.formats import matlab_child
+from swgsim.tables.limits import most_expanded
 
 # SciPy holds a variable up to three times: as bytes, as they are stored, and as the numbers that it returns.
 COPIES = 3

@@ -6,7 +6,7 @@ look-around.
 """
 
 from swgsim.common.checks import require_known
-from swgsim.recordings.files.file_defect import FileDefect, shown
+from swgsim.tables.file_defect import FileDefect, shown
 
 GROUPS = ("session", "run", "joint")
 # RE2's memory grows with the expression; those of the shipped sources have less than 150 characters.

@@ -1,4 +1,4 @@
-"""Child process that reads MATLAB files of versions 4 and 5 with SciPy, for :mod:`swgsim.recordings.files.matlab`.
+"""Child process that reads MATLAB files of versions 4 and 5 with SciPy, for :mod:`swgsim.tables.formats.matlab`.
 
 It imports nothing else, so that it starts quickly. Requests come as lines of JSON on standard input. Each answer is a
 line of JSON on standard output, followed by the raw numbers of the requested variables.

@@ -6,8 +6,8 @@ from typing import Any, TypeVar
 
 from swgsim.common.checks import require_known
 from swgsim.common.plain_yaml import plain
-from swgsim.recordings.files.file_defect import FileDefect, shown
-from swgsim.recordings.files.limits import require_readable
+from swgsim.tables.file_defect import FileDefect, shown
+from swgsim.tables.limits import require_readable
 
 LARGEST = 2**20  # bytes
 

@@ -1,0 +1,1 @@
+"""Readers of one format each: wanted columns of a file, as arrays of numbers. Objects and code are never read."""
