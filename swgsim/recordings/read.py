@@ -3,9 +3,8 @@
 from collections.abc import Iterable
 from pathlib import Path
 
-from swgsim.recordings.checks.defect import Defect, summary
+from swgsim.recordings.checks.defect import Defect, accepted, summary, unread_defects
 from swgsim.recordings.checks.inspection import inspect
-from swgsim.recordings.files.assembly import ONE_TABLE
 from swgsim.recordings.files.folder import read_folder
 from swgsim.recordings.files.manifest import NAME
 from swgsim.recordings.files.recording_file import read_file
@@ -23,7 +22,7 @@ def read_recordings(path: str | Path, mapping: str | Path | None = None) -> Reco
     ----------
     path : str or Path
         A folder with a manifest, a file of :func:`swgsim.recordings.write_file`, or, with a column map, a file or
-        folder of other formats.
+        folder of any format (docs/formats.md).
     mapping : str or Path, optional
         A column map (conf/sources/example.yaml).
 
@@ -57,13 +56,17 @@ def inspect_recordings(path: str | Path, mapping: str | Path | None = None) -> R
     ValueError
         If a file cannot be read.
     """
-    recordings = _read(Path(path), mapping)
-    return RecordingSet(recordings, inspect(recordings), str(path))
+    if mapping is None:
+        recordings = _read(Path(path))
+        return RecordingSet(recordings, inspect(recordings), str(path))
+    column_map = read_map(Path(mapping))
+    recordings, unread = read_mapped(Path(path), column_map)
+    defects = [*unread_defects(unread, "the map"), *accepted(inspect(recordings), column_map.table.accepted)]
+    return RecordingSet(recordings, tuple(defects), str(path))
 
 
-def _read(path: Path, mapping: str | Path | None) -> tuple[Recording, ...]:
-    if mapping is not None:
-        return read_mapped(path, read_map(Path(mapping)))
+def _read(path: Path) -> tuple[Recording, ...]:
+    """Recordings in the formats of this project."""
     if path.is_dir() and (path / NAME).exists():
         return read_folder(path)
     if path.is_file() and path.suffix.lower() in (".h5", ".hdf5", ".nc"):
@@ -74,5 +77,5 @@ def _read(path: Path, mapping: str | Path | None) -> tuple[Recording, ...]:
     tables = sorted(each.name for each in path.glob("*.[cC][sS][vV]"))
     if tables:
         found = f"no {NAME} for {', '.join(tables[:5])}{', …' * (len(tables) > 5)}"
-        raise FileDefect(str(path), found, f"{expected}; {ONE_TABLE}")
+        raise FileDefect(str(path), found, f"{expected} (swg map drafts one)")
     raise FileDefect(str(path), "neither a manifest nor a file of recordings", expected)

@@ -52,6 +52,8 @@ class Recording:
     conditions : Conditions
     label : str
         Condition of the gear, empty if unknown.
+    lost : int
+        Samples that were left out knowingly, as their readings were lost.
 
     Raises
     ------
@@ -68,6 +70,7 @@ class Recording:
     channels: Mapping[str, Float[np.ndarray, " time"]]
     conditions: Conditions = field(default_factory=Conditions)
     label: str = ""
+    lost: int = 0
 
     def __post_init__(self) -> None:
         unknown = [name for name in self.channels if name not in CHANNELS]

@@ -1,31 +1,28 @@
-"""Session, run and perhaps joint from the path of a file.
+"""Facts from the path of a file, such as its session, its run or its speed.
 
 A regular expression of Python may never end on a short text, such as ``(a+)+b``. Those of RE2, which come with Arrow,
 take a time in proportion to the text and refuse expressions that need much memory. They have no back references and no
 look-around.
 """
 
+from collections.abc import Sequence
+
 from swgsim.common.checks import require_known
 from swgsim.tables.file_defect import FileDefect, shown
 
-GROUPS = ("session", "run", "joint")
 # RE2's memory grows with the expression; those of the shipped sources have less than 150 characters.
 LONGEST_PATTERN = 1000
 
 
-def require_pattern(pattern: str) -> None:
-    """Raise a ValueError unless a pattern has the groups ``session`` and ``run``, and at most ``joint`` besides."""
+def require_pattern(pattern: str, groups: Sequence[str]) -> None:
+    """Raise a ValueError unless a pattern is a regular expression with known groups."""
     if len(pattern) > LONGEST_PATTERN:
         raise ValueError(f"path has {len(pattern)} characters, must have at most {LONGEST_PATTERN}")
-    _, groups = _found(pattern, "")
-    require_known("the groups of path", groups, GROUPS)
-    for name in ("session", "run"):
-        if name not in groups:
-            raise ValueError(f"path {pattern!r} has no group (?P<{name}>...): mark the part that is the {name}")
+    require_known("the groups of path", _found(pattern, "")[1], groups)
 
 
-def path_groups(pattern: str, name: str) -> dict[str, str]:
-    """The groups of a path, without empty ones.
+def path_groups(pattern: str, name: str) -> dict[str, str] | None:
+    """The groups of a path, without empty ones; None if the path does not match.
 
     Parameters
     ----------
@@ -37,14 +34,19 @@ def path_groups(pattern: str, name: str) -> dict[str, str]:
     Raises
     ------
     FileDefect
-        If the path does not match the pattern, or session or run are empty.
+        If a group is not printable.
+
+    Examples
+    --------
+    >>> path_groups(r"(?P<n_in_rpm>\\d+)rpm_(?P<T_out_nm>\\d+)Nm.csv", "2000rpm_39Nm.csv")
+    {'n_in_rpm': '2000', 'T_out_nm': '39'}
     """
     found, _ = _found(rf"\A(?:{pattern})\z", name)
     if found is None:
-        raise FileDefect(name, "a path that does not match 'path' of the source", f"one that matches {pattern}")
-    for group in ("session", "run"):
-        if not found[group] or not found[group].isprintable():
-            raise FileDefect(name, f"{shown(found[group])} as its {group}", "printable text")
+        return None
+    for group, text in found.items():
+        if not text.isprintable():
+            raise FileDefect(name, f"{shown(text)} as its {group}", "printable text")
     return {group: text for group, text in found.items() if text}
 
 

@@ -13,10 +13,10 @@ from hypothesis import strategies as st
 from recording_fixtures import ROWS, SAVERS, SHORT, assert_sound, columns, mapped
 from scipy.io import savemat
 from scipy.sparse import eye_array
+from swgsim.recordings.files.foreign import MATLAB_NUMBERS, read_columns
 
 from swgsim.recordings.files import facts
 from swgsim.recordings.files.assembly import column_of
-from swgsim.recordings.files.foreign import MATLAB_NUMBERS, read_columns
 from swgsim.recordings.files.source_map import SourceMap, read_map
 from swgsim.recordings.files.sources import read_mapped
 from swgsim.recordings.recording import Recording

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from swgsim.joint.intake.run import Run
+from swgsim.joint.intake.scale import reads_zero
 from swgsim.joint.intake.signals import row_findings, signal_findings
 from swgsim.joint.intake.thresholds import (
     APART_REFUSES,
@@ -15,6 +16,7 @@ from swgsim.joint.intake.thresholds import (
     LEAST_MOVED,
     PARTS,
     PARTS_USUAL,
+    SCALE_WARNS,
     SET_SHARE,
     START_BLOCKS,
     START_OFF,
@@ -27,6 +29,9 @@ from swgsim.joint.recording import PREDICTED, JointRecording
 from swgsim.recordings.checks.defect import Defect, Severity
 from swgsim.recordings.files.assembly import no_numbers, standing
 from swgsim.tables.limits import LARGEST_NUMBER
+from swgsim.tables.measured_table import remedy
+
+FROM_ANGLE = "take it from the angle by omega: {from: q, smoothed_s: 0.05}"
 
 
 def unusable(run: Run) -> Iterator[Defect]:
@@ -41,8 +46,8 @@ def unusable(run: Run) -> Iterator[Defect]:
         if len(bad):
             yield Defect(
                 "not_finite", "refuse", run.label, name,
-                f"{np.asarray(values)[bad[0]]} and {len(bad) - 1} more of {len(run)} samples",
-                f"finite numbers within {LARGEST_NUMBER:g}", "record again, or leave the signal out of the source",
+                f"{np.asarray(values)[bad[0]]} and {len(bad) - 1} more of {len(run)} samples in {run.column(name)}",
+                f"finite numbers within {LARGEST_NUMBER:g}", f"{remedy(len(bad))}; or leave the signal out",
                 int(bad[0]) + run.first_row,
             )  # fmt: skip
     back = standing(run.time) if run.time is not None else np.empty(0, int)
@@ -116,16 +121,6 @@ def duplicate_findings(runs: Sequence[Run]) -> Iterator[Defect]:
             )  # fmt: skip
 
 
-def unmatched_findings(files: Sequence[str]) -> Iterator[Defect]:
-    """Files that match no pattern of the source."""
-    if files:
-        more = f" and {len(files) - 1} more" if len(files) > 1 else ""
-        yield Defect(
-            "not_in_source", "warn", files[0], "", f"{files[0]}{more}, which no pattern of the source matches",
-            "a pattern of 'files', 'rest' or 'leave_out'", "name them in the source; they were not read",
-        )  # fmt: skip
-
-
 def _short(run: Run) -> Iterator[Defect]:
     """Less than one revolution of the motor, if the gear ratio is known."""
     if run.joint.gear_ratio is None:
@@ -146,7 +141,7 @@ def _velocity(run: Run, recording: JointRecording) -> Iterator[Defect]:
         yield Defect(
             "implausible_speed", "warn", run.label, "omega", f"{fast:.3g} rad/s in the median",
             f"at most {FASTEST_JOINT:g} at the output of a robot joint",
-            "if angle and velocity are in degrees, or are those of the motor, convert them in the source",
+            "if angle and velocity are in degrees, set their unit; if they are those of the motor, set at: motor",
         )  # fmt: skip
     if np.ptp(q) < LEAST_MOVED:
         return
@@ -154,7 +149,7 @@ def _velocity(run: Run, recording: JointRecording) -> Iterator[Defect]:
         yield Defect(
             "velocity_constant", "refuse", run.label, "omega", f"{omega[0]:.5g} rad/s throughout",
             f"a velocity that fits an angle of {np.ptp(q):.3g} rad",
-            "map a measured velocity; runs without it cannot be used", run.first_row,
+            f"map a measured velocity, or {FROM_ANGLE}", run.first_row,
         )  # fmt: skip
         return
     turns = np.diff(q) != 0
@@ -163,17 +158,32 @@ def _velocity(run: Run, recording: JointRecording) -> Iterator[Defect]:
         yield Defect(
             "velocity_set", "refuse", run.label, "omega",
             f"a velocity that keeps its value in {100 * held:.3g} % of the steps of the angle", "a measured velocity",
-            "this is a set value, or it is sampled too rarely: map a measured velocity; runs without it cannot be used",
+            f"this is a set value, or it is sampled too rarely: map a measured velocity, or {FROM_ANGLE}",
         )  # fmt: skip
         return
+    yield from _dead_band(run, q, omega)
     yield from _apart(run, q, omega, time)
+
+
+def _dead_band(run: Run, q: np.ndarray, omega: np.ndarray) -> Iterator[Defect]:
+    """A velocity that reads 0 while the joint turns slowly."""
+    zero, steps = reads_zero(omega), np.abs(np.diff(q))
+    share = float(steps[zero].sum() / steps.sum())
+    if share > SCALE_WARNS:
+        slowest = float(np.abs(omega[omega != 0]).min())
+        yield Defect(
+            "velocity_dead_band", "warn", run.label, "omega",
+            f"a velocity of exactly 0 on {100 * share:.2g} % of the way, and never between 0 and {slowest:.2g} rad/s",
+            "a velocity that is measured also when it is small", FROM_ANGLE,
+        )  # fmt: skip
 
 
 def _apart(run: Run, q: np.ndarray, omega: np.ndarray, time: np.ndarray) -> Iterator[Defect]:
     """Whether angle and velocity agree in most parts of the run, up to one common factor."""
-    areas = np.concatenate([[0.0], np.cumsum((omega[1:] + omega[:-1]) / 2 * np.diff(time))])
+    shown = ~reads_zero(omega)
+    steps = np.stack([shown * np.diff(q), (omega[1:] + omega[:-1]) / 2 * np.diff(time)])
     edges = np.linspace(0, len(q) - 1, PARTS + 1).astype(int)
-    by_angle, by_velocity = np.diff(q[edges]), np.diff(areas[edges])
+    by_angle, by_velocity = np.add.reduceat(steps, edges[:-1], axis=1)
     scale = float(by_angle @ by_velocity / (by_velocity @ by_velocity)) if by_velocity.any() else 0.0
     beyond = np.abs(by_angle - scale * by_velocity)
     usual = beyond <= np.quantile(beyond, PARTS_USUAL)

@@ -1,25 +1,48 @@
-"""The files of a folder by the patterns of a source; files outside the folder are refused."""
+"""The runs of a folder by the patterns of a source; files outside the folder are refused."""
 
-import os
-from collections.abc import Iterator
+from collections.abc import Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import NamedTuple
 
 from swgsim.joint.intake.source import JointSource
+from swgsim.tables.endings import files_of, is_data
 from swgsim.tables.file_defect import FileDefect
 from swgsim.tables.limits import inside, require_file_count
+from swgsim.tables.path_pattern import path_groups
 
-ENDINGS = (".csv", ".csv.gz", ".parquet", ".mat")
-# Largest number of folders and files in a folder of recordings.
-MOST_ENTRIES = 200_000
+# Names that a message lists.
+LISTED = 10
+
+
+class RunFiles(NamedTuple):
+    """The files of one run.
+
+    Attributes
+    ----------
+    files : dict
+        Value of the group ``signal`` to path in the folder; one file has the key ``""``.
+    session, run : str
+    joint : str
+        Joint that moved, by the path; empty for all.
+    """
+
+    files: dict[str, str]
+    session: str
+    run: str
+    joint: str
+
+    @property
+    def name(self) -> str:
+        """Path of its first file."""
+        return next(iter(self.files.values()))
 
 
 class Places(NamedTuple):
-    """Paths relative to the folder, in order."""
+    """Runs in motion and at standstill, and paths that no pattern matches, in order."""
 
-    moving: tuple[str, ...]
-    resting: tuple[str, ...]
+    moving: tuple[RunFiles, ...]
+    resting: tuple[RunFiles, ...]
     unmatched: tuple[str, ...]
 
 
@@ -33,30 +56,37 @@ def places(folder: Path, source: JointSource) -> Places:
     """
     if not folder.is_dir():
         raise FileDefect(str(folder), "no folder", f"the folder with the recordings of {source.robot}")
-    kinds: dict[str, list[str]] = {"moving": [], "resting": [], "unmatched": []}
-    for name in sorted(_names(folder)):
-        kind = _kind(name, source)
-        if kind in ("moving", "resting"):
-            inside(folder, name, "the source")
-        if kind:
-            kinds[kind].append(name)
+    names = files_of(folder)
+    kinds: dict[str, list[str]] = {"": [], "moving": [], "resting": [], "unmatched": []}
+    for name in names:
+        kinds[_kind(name, source)].append(name)
+    for name in (*kinds["moving"], *kinds["resting"]):
+        inside(folder, name, "the source")
     if not kinds["moving"]:
-        found = f"no file that matches {', '.join(source.files)}"
-        raise FileDefect(str(folder), found, f"recordings of {source.robot} that end in {', '.join(ENDINGS)}")
-    require_file_count(folder, len(kinds["moving"]) + len(kinds["resting"]))
-    return Places(**{kind: tuple(names) for kind, names in kinds.items()})
+        found = f"no file that matches {', '.join(source.files)} among {', '.join(names[:LISTED]) or 'none'}"
+        raise FileDefect(str(folder), found, f"recordings of {source.robot}, by 'files' of the source")
+    moving, resting = (_runs(kinds[kind], source) for kind in ("moving", "resting"))
+    require_file_count(folder, len(moving) + len(resting))
+    return Places(moving, resting, tuple(filter(is_data, kinds["unmatched"])))
 
 
-def _names(folder: Path) -> Iterator[str]:
-    """Files with a known ending; links to folders are not followed."""
-    entries = 0
-    for place, folders, files in os.walk(folder):
-        entries += len(folders) + len(files)
-        if entries > MOST_ENTRIES:
-            raise FileDefect(str(folder), f"more than {MOST_ENTRIES} files and folders", "a folder of recordings")
-        for file in files:
-            if file.lower().endswith(ENDINGS):
-                yield (Path(place) / file).relative_to(folder).as_posix()
+def _runs(names: Sequence[str], source: JointSource) -> tuple[RunFiles, ...]:
+    """Runs by the groups of their paths; files whose groups differ by the signal only are one run."""
+    runs: dict[tuple[str, ...], RunFiles] = {}
+    for name in names:
+        groups = path_groups(source.table.path, name) if source.table.path else {}
+        if groups is None:
+            expected = f"one that matches {source.table.path}"
+            raise FileDefect(name, "a path that does not match 'path' of the source", expected)
+        signal = groups.get("signal", "")
+        place = name.rpartition("/")[0]
+        run = groups.get("run") or groups.get("session") or (place or "run" if signal else name.partition(".")[0])
+        found = RunFiles({}, groups.get("session", run), run, groups.get("joint", ""))
+        own = runs.setdefault(found[1:] if signal else (name,), found)
+        if signal in own.files:
+            raise FileDefect(name, f"the same run as {own.files[signal]}", "other groups of 'path' for each file")
+        own.files[signal] = name
+    return tuple(runs.values())
 
 
 def _kind(name: str, source: JointSource) -> str:

@@ -12,7 +12,6 @@ from swgsim.joint.intake.findings import (
     at_rest_findings,
     duplicate_findings,
     moving_findings,
-    unmatched_findings,
     unusable,
     wrap_findings,
 )
@@ -23,8 +22,9 @@ from swgsim.joint.intake.signals import gap_findings
 from swgsim.joint.intake.source import JointSource
 from swgsim.joint.intake.source_file import read_source
 from swgsim.joint.recording import SIGNALS, JointRecording
-from swgsim.recordings.checks.defect import Defect, summary
+from swgsim.recordings.checks.defect import Defect, accepted, summary, unread_defects
 from swgsim.tables.file_defect import FileDefect, shown
+from swgsim.tables.formats.matlab import MatlabReader
 
 
 @dataclass(frozen=True, repr=False)
@@ -92,13 +92,14 @@ def read_joints(folder: Path, source: JointSource | Path) -> JointRecordings:
     """
     source = read_source(source) if isinstance(source, Path) else source
     found = places(folder, source)
-    in_motion = [run for name in found.moving for run in read_runs(folder, name, source, start=True)]
+    with MatlabReader() as matlab:
+        in_motion = [run for files in found.moving for run in read_runs(folder, files, source, True, matlab)]
+        resting = [run for files in found.resting for run in read_runs(folder, files, source, False, matlab)]
     every = moving = [run for run in in_motion if not run.stands]
     # Standing joints only give noise: one that is unusable or moves is left out without a finding.
     standing = [run for run in in_motion if run.stands and not any(chain(unusable(run), at_rest_findings(run)))]
-    resting = [run for name in found.resting for run in read_runs(folder, name, source, start=False)]
     _require_unique([*moving, *resting])
-    defects = [*unmatched_findings(found.unmatched)]
+    defects = [*unread_defects(found.unmatched, "the source")]
     defects += [defect for run in [*moving, *resting] for defect in chain(unusable(run), wrap_findings(run))]
     refused = {defect.recording for defect in defects}
     moving, resting = ([run for run in runs if run.label not in refused] for runs in (moving, resting))
@@ -118,6 +119,7 @@ def read_joints(folder: Path, source: JointSource | Path) -> JointRecordings:
     defects += [defect for run in {run.name: run for run in moving}.values() for defect in gap_findings(run)]
     defects += [defect for run in resting for defect in at_rest_findings(run)]
     defects += duplicate_findings([*moving, *resting])
+    defects = list(accepted(defects, source.table.accepted))
     refused |= {defect.recording for defect in defects if defect.severity == "refuse"}
     return JointRecordings(
         _kept(moving, recordings, refused),

@@ -5,7 +5,7 @@ from math import pi
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from swgsim.joint.intake.run import Run
 from swgsim.joint.intake.source import JointSource
@@ -31,6 +31,7 @@ MISTAKES = (
     ("time_unit", 1e-3, "the time is in milliseconds, or the velocity a thousand times too large"),
     ("time_unit", 1e3, "the time is a thousand times too small, or the velocity is"),
 )
+# Where no clock was recorded.
 HALVES = (
     ("half_rate", 2.0, "every other row is missing, or the velocity is half of its true value"),
     ("double_rate", 0.5, "every row is written twice, or the velocity is twice its true value"),
@@ -58,7 +59,8 @@ def way(
     """Distance that a joint moved, by its angle and by its velocity; the two are equal if both signals are right.
 
     A run in one direction is taken as a whole, so that the noise of the angle cancels. In a run that reverses, each
-    step counts with the local direction of rotation, because the displacement is near zero.
+    step counts with the local direction of rotation, because the displacement is near zero. Steps with a velocity of
+    exactly 0 do not count: drives write 0 below some speed, and the angle may move there.
 
     Parameters
     ----------
@@ -67,7 +69,7 @@ def way(
     time : array (time,), optional
         [s]; steps of 1 without it.
     """
-    steps = np.diff(q)
+    steps = np.where(reads_zero(omega), 0.0, np.diff(q))
     areas = (omega[1:] + omega[:-1]) / 2 * (1.0 if time is None else np.diff(time))
     sense = np.full(len(steps), 1.0 if q[-1] >= q[0] else -1.0)
     if abs(q[-1] - q[0]) < ONE_WAY * np.ptp(q):
@@ -76,6 +78,11 @@ def way(
         behind = np.maximum(np.arange(len(steps)) - half, 0)
         sense = np.sign(q[ahead] - q[behind])
     return Way(float(sense @ steps), float(sense @ areas))
+
+
+def reads_zero(omega: Float[np.ndarray, " time"]) -> Bool[np.ndarray, " step"]:
+    """Steps at whose ends a velocity is exactly 0."""
+    return (omega[1:] == 0) & (omega[:-1] == 0)
 
 
 def measured_rates(runs: Sequence[Run]) -> dict[str, float]:
@@ -106,7 +113,7 @@ def usual_rates(runs: Sequence[Run], measured: Mapping[str, float], source: Join
     return usual
 
 
-def mistake(ratio: float, gear_ratio: float | None) -> tuple[str, str] | None:
+def mistake(ratio: float, gear_ratio: float | None, clock: bool) -> tuple[str, str] | None:
     """Kind of finding and likely reason; None if no known mistake has this ratio.
 
     Parameters
@@ -114,11 +121,13 @@ def mistake(ratio: float, gear_ratio: float | None) -> tuple[str, str] | None:
     ratio : float
         Distance by the angle over distance by the velocity, without its sign.
     gear_ratio : float or None
+    clock : bool
+        Whether a clock was recorded, which rules out missing rows.
 
-    >>> mistake(57.0, None)
+    >>> mistake(57.0, None, clock=True)
     ('angle_in_degrees', 'the angle is in degrees')
     """
-    for kind, factor, reason in HALVES:
+    for kind, factor, reason in () if clock else HALVES:
         if abs(ratio / factor - 1) < NAMED_HALF:
             return kind, reason
     if gear_ratio is not None and abs(ratio * gear_ratio - 1) < NAMED:
@@ -135,15 +144,14 @@ def clock_findings(run: Run, rate: float | None) -> Iterator[Defect]:
     ----------
     run : Run
     rate : float or None
-        The declared rate [Hz]; None if the run has a time.
+        The declared rate [Hz]; None if a clock was recorded.
     """
-    time = run.time if run.time is not None else np.arange(len(run)) / (rate or 1.0)
-    moved = way(run.signals["q"], run.signals["omega"], time)
+    moved = way(run.signals["q"], run.signals["omega"], run.time)
     if abs(moved.by_angle) < LEAST_MOVED or not moved.by_velocity:
         return
     yield from _sign(run, moved)
-    basis = "by the clock" if run.time is not None else f"at {rate:g} Hz"
-    yield from _scale(run, abs(moved.by_angle / moved.by_velocity), basis)
+    basis = "by the clock" if rate is None else f"at {rate:g} Hz"
+    yield from _scale(run, abs(moved.by_angle / moved.by_velocity), basis, clock=rate is None)
 
 
 def rate_findings(runs: Sequence[Run], measured: Mapping[str, float], source: JointSource) -> Iterator[Defect]:
@@ -201,16 +209,17 @@ def _sign(run: Run, moved: Way) -> Iterator[Defect]:
         )  # fmt: skip
 
 
-def _scale(run: Run, ratio: float, basis: str) -> Iterator[Defect]:
+def _scale(run: Run, ratio: float, basis: str, clock: bool = False) -> Iterator[Defect]:
     """Finding for a ratio of the distance by the angle to that by the velocity, unless the two agree."""
     off = abs(ratio - 1)
     if off <= SCALE_WARNS:
         return
-    known = mistake(ratio, run.joint.gear_ratio)
-    kind, reason = known or ("velocity_scale", f"a unit is wrong, or rows are missing; a factor of {ratio:.4g} fits")
+    known = mistake(ratio, run.joint.gear_ratio, clock)
+    rows = "" if clock else ", or rows are missing"
+    kind, reason = known or ("velocity_scale", f"a unit is wrong{rows}; a factor of {ratio:.4g} fits")
     refuses = known is not None or off > SCALE_REFUSES
     yield Defect(
         kind, "refuse" if refuses else "warn", run.label, "omega",
         f"an angle that moves {ratio:.4g} times as far as the velocity gives {basis}", "1 time",
-        f"likely {reason}; correct the source, or leave the file out",
+        f"likely {reason}; correct unit or factor in the source, or set omega: {{from: q, smoothed_s: 0.05}}",
     )  # fmt: skip

@@ -18,10 +18,13 @@ def clock_defects(recording: Recording) -> Iterator[Defect]:
     gaps = np.flatnonzero(ratio > GAP)
     if len(gaps):
         lost = int(np.sum(np.round(ratio[gaps]) - 1))
+        known = lost <= recording.lost
         yield Defect(
-            "samples_dropped", "refuse", recording.name, "t",
+            "readings_left_out" if known else "samples_dropped", "warn" if known else "refuse", recording.name, "t",
             f"{len(gaps)} gaps with about {lost} lost samples, the first of {steps[gaps[0]]:.3g} s",
-            f"steps of {usual:.3g} s", "record again without losses, or cut the recording before the first gap",
+            f"steps of {usual:.3g} s",
+            "their readings were lost, and the map leaves them out" if known
+            else "record again without losses, or cut the recording before the first gap",
             int(gaps[0]) + 1 + FIRST_ROW,
         )  # fmt: skip
     short = np.flatnonzero(ratio < SHORT_STEP)

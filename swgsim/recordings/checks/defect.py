@@ -1,7 +1,7 @@
 """A defect in the numbers of recordings; it is reported and never silently corrected."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Literal
 
 # Whether a defect forbids the use of the recordings.
@@ -52,3 +52,30 @@ def summary(defects: Sequence[Defect]) -> str:
         also = f"; also in {len(names)} others: {', '.join(names)}" if names else ""
         lines.append(f"- {first.severity}: {first}{also}")
     return "\n".join(lines)
+
+
+def accepted(defects: Iterable[Defect], kinds: Sequence[str]) -> tuple[Defect, ...]:
+    """Findings of which some kinds only warn, as the user accepts them knowingly.
+
+    Parameters
+    ----------
+    defects : iterable of Defect
+    kinds : sequence of str
+        ``accept`` of the map.
+    """
+    return tuple(
+        replace(each, severity="warn", remedy=f"accepted in the map; else {each.remedy}")
+        if each.kind in kinds
+        else each
+        for each in defects
+    )
+
+
+def unread_defects(files: Sequence[str], where: str) -> Iterator[Defect]:
+    """Finding of files that no entry of a map names."""
+    if files:
+        more = f" and {len(files) - 1} more" if len(files) > 1 else ""
+        yield Defect(
+            "not_in_map", "warn", files[0], "", f"{files[0]}{more}, which {where} does not name",
+            "an entry for each file", "name them in the map; they were not read",
+        )  # fmt: skip

@@ -14,7 +14,7 @@ from swgsim.tables.limits import LARGEST_NUMBER, SMALLEST_STEP, require_rows
 # Span of an angle that is wrapped to one revolution, with the jitter of an encoder at its index [rad].
 WRAPPED = 2 * np.pi * 1.001
 
-ONE_TABLE = "one file must hold all channels of a recording: join files of single channels, as columns of one table"
+ONE_TABLE = "a recording has all channels: files of single channels are joined by the group 'signal' of 'path' in a map"
 
 
 def assemble(file: str, facts: Mapping, columns: Mapping[str, Float[np.ndarray, " time"]]) -> Recording:

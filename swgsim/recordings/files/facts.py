@@ -1,6 +1,5 @@
 """Facts of a recording, from a manifest, the attributes of a file or a column map."""
 
-import re
 from collections.abc import Mapping
 from math import isfinite, nan
 
@@ -8,6 +7,7 @@ from swgsim.gear.conditions import REFERENCE_TEMPERATURE, Conditions
 from swgsim.gear.gear import OperatingPoint
 from swgsim.recordings.recording import Recording
 from swgsim.tables.file_defect import FileDefect, shown
+from swgsim.tables.text_stream import NUMBER
 
 TEXTS = ("recording", "gear", "session")
 NUMBERS = ("n_in_rpm", "T_out_nm")
@@ -17,9 +17,6 @@ KNOWN = (*NEEDED, *OPTIONAL)
 
 LONGEST_TEXT = 200
 MOST_REPEATS = 1_000_000
-
-# Digits can be split in one way only. Otherwise a cell of many digits would take quadratic time.
-NUMBER = re.compile(r"\s*[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\s*", re.ASCII)
 
 
 def parse(given: Mapping[str, object], file: str, row: int | None = None) -> dict[str, object]:

@@ -7,10 +7,11 @@ from pathlib import Path
 
 from swgsim.recordings.files import facts, manifest
 from swgsim.recordings.files.assembly import assemble, column_of, require_alike, require_sound
-from swgsim.recordings.files.csv_table import read_table
 from swgsim.recordings.recording import CHANNELS, Recording
 from swgsim.tables.file_defect import FileDefect, shown
-from swgsim.tables.limits import require_file_count
+from swgsim.tables.layout import Layout
+from swgsim.tables.limits import require_file_count, require_readable
+from swgsim.tables.text import read_text, start_of
 
 OR_MAPPING = "or give other names and units in a column map, with mapping="
 CHANNEL_OF = {"t_s": "t", **{channel.column: name for name, channel in CHANNELS.items()}}
@@ -30,13 +31,16 @@ def read_folder(folder: Path) -> tuple[Recording, ...]:
     recordings = []
     for path, known in manifest.read(folder):
         name = str(path.relative_to(folder))
-        table = read_table(path, name)
-        for column in table:
+        require_readable(path)
+        columns = start_of(path, name, Layout()).names
+        for column in columns:
             if column not in CHANNEL_OF:
                 raise FileDefect(name, f"unknown column {shown(column)}", _choices(column), 1)
-        if "t_s" not in table:
+        if "t_s" not in columns:
             raise FileDefect(name, "no column t_s", f"the time of each sample in seconds, {OR_MAPPING}", 1)
-        recordings.append(assemble(name, known, {CHANNEL_OF[column]: values for column, values in table.items()}))
+        table = read_text(path, name, columns, Layout())
+        channels = {CHANNEL_OF[str(column)]: values.astype(float) for column, values in table.items()}
+        recordings.append(assemble(name, known, channels))
     require_alike(recordings)
     return tuple(recordings)
 

@@ -1,21 +1,41 @@
 """Recordings from files of other formats, through a column map."""
 
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
-
-import numpy as np
+from typing import NamedTuple
 
 from swgsim.recordings.files import facts
 from swgsim.recordings.files.assembly import assemble, require_alike
-from swgsim.recordings.files.foreign import READERS, read_columns
-from swgsim.recordings.files.source_map import SourceMap
+from swgsim.recordings.files.source_map import SIGNAL, SourceMap
 from swgsim.recordings.recording import Recording
-from swgsim.tables.file_defect import FileDefect
+from swgsim.tables.endings import files_of, is_data
+from swgsim.tables.file_defect import FileDefect, shown
 from swgsim.tables.formats.matlab import MatlabReader
-from swgsim.tables.limits import inside, require_file_count, require_rows
+from swgsim.tables.limits import inside, require_file_count
+from swgsim.tables.measured_table import first_lost, read_measured
+from swgsim.tables.path_pattern import path_groups
+
+# Names that a message lists.
+LISTED = 10
 
 
-def read_mapped(path: Path, mapping: SourceMap) -> tuple[Recording, ...]:
-    """Recordings of one MATLAB, Parquet or CSV file, or of all in a folder.
+class Run(NamedTuple):
+    """The files of one recording, by their signal, and the facts that their names or the map give."""
+
+    files: dict[str, str]
+    known: dict[str, object]
+
+
+class Mapped(NamedTuple):
+    """Recordings through a column map, and files of the folder that it does not name."""
+
+    recordings: tuple[Recording, ...]
+    unread: tuple[str, ...]
+
+
+def read_mapped(path: Path, mapping: SourceMap) -> Mapped:
+    """Recordings of one file, or of all in a folder.
 
     Parameters
     ----------
@@ -28,42 +48,83 @@ def read_mapped(path: Path, mapping: SourceMap) -> tuple[Recording, ...]:
     FileDefect
         If files and map disagree, or a file cannot be read.
     """
-    folder, files = _files(path, mapping)
-    require_file_count(path, len(files))
-    with MatlabReader() as matlab:
-        recordings = tuple(_read_one(folder, name, mapping, matlab) for name in files)
-    require_alike(recordings)
-    return recordings
-
-
-def _files(path: Path, mapping: SourceMap) -> tuple[Path, list[str]]:
-    """Folder and names of the files; files that the map lists must be those of the folder."""
-    if path.is_file():
-        return path.parent, [path.name]
-    if not path.is_dir():
+    folder = path.parent if path.is_file() else path
+    if not folder.is_dir():
         raise FileDefect(str(path), "nothing", "a file or a folder")
-    present = sorted(each.name for each in path.iterdir() if each.suffix.lower() in READERS)
-    if not mapping.files:
-        return path, present
+    names = [path.name] if path.is_file() else files_of(folder)
+    runs = list(_by_path(path, names, mapping) if mapping.table.path else _by_name(path, names, mapping))
+    require_file_count(path, len(runs))
+    with MatlabReader() as matlab:
+        whole = [_read_one(folder, run, mapping, matlab) for run in runs]
+    recordings = tuple(part for recording in whole for part in _parts(recording, mapping))
+    require_alike(recordings)
+    read = {file for run in runs for file in run.files.values()}
+    return Mapped(recordings, tuple(name for name in names if is_data(name) and name not in read))
+
+
+def _by_name(path: Path, names: list[str], mapping: SourceMap) -> Iterator[Run]:
+    """One recording for each file of the folder; files that the map lists must be those of the folder."""
+    present = names if path.is_file() else [name for name in names if "/" not in name and is_data(name)]
     for name in present:
-        if name not in mapping.files:
+        if mapping.files and name not in mapping.files:
             raise FileDefect(name, "no entry for this file under 'files' of the map", "one entry per file")
-    return path, list(mapping.files)
+    for name in mapping.files if mapping.files and not path.is_file() else present:
+        yield Run({"": name}, dict(mapping.files.get(name, {})))
 
 
-def _read_one(folder: Path, name: str, mapping: SourceMap, matlab: MatlabReader) -> Recording:
-    """The recording of one file; its name is that of the file unless the map gives one."""
-    path = inside(folder, name, "the column map")
-    own = mapping.files.get(name, {})
-    known = facts.parse({"recording": path.stem, **mapping.facts, **own}, name)
-    columns = read_columns(path, name, [source.column for source in mapping.channels], matlab)
-    lengths = {column: len(values) for column, values in columns.items()}
-    if len(set(lengths.values())) > 1:
-        raise FileDefect(name, f"columns of different lengths {lengths}", "as many values of every channel")
-    with np.errstate(over="ignore"):  # Infinite numbers are refused below.
-        channels = {source.channel: source.values(columns[source.column]) for source in mapping.channels}
-    if mapping.sampling_rate_hz:
-        length = next(iter(lengths.values()), 0)
-        require_rows(name, length)
-        channels["t"] = np.arange(length) / mapping.sampling_rate_hz
-    return assemble(name, known, channels)
+def _by_path(path: Path, names: list[str], mapping: SourceMap) -> Iterator[Run]:
+    """Recordings by the groups of their paths; files whose groups differ by the signal only are one recording."""
+    runs: dict[tuple, Run] = {}
+    for name in names:
+        groups = path_groups(mapping.table.path, name)
+        if groups is None:
+            continue
+        signal = groups.pop(SIGNAL, "")
+        run = runs.setdefault(tuple(groups.items()) if signal else (name,), Run({}, dict(groups)))
+        if signal in run.files:
+            raise FileDefect(name, f"the same facts as of {run.files[signal]}", "other groups of 'path' for each file")
+        run.files[signal] = name
+    if not runs:
+        found = f"no file that matches 'path' of the map among {', '.join(names[:LISTED])}"
+        raise FileDefect(str(path), found, f"files that match {mapping.table.path}")
+    yield from runs.values()
+
+
+def _read_one(folder: Path, run: Run, mapping: SourceMap, matlab: MatlabReader) -> Recording:
+    """One recording; its name is that of its file unless path or map give one."""
+    name = next(iter(run.files.values()))
+    for file in run.files.values():
+        inside(folder, file, "the column map")
+    stem = name.partition(".")[0] if len(run.files) == 1 else " ".join(map(str, run.known.values()))
+    known = facts.parse({"recording": stem, **mapping.facts, **run.known}, name)
+    table = read_measured(
+        folder, run.files, mapping.channels, mapping.clock, mapping.sampling_rate_hz, mapping.table.layout, matlab
+    )
+    lost = first_lost(folder, run.files, mapping.channels, table, mapping.table.layout)
+    if lost:
+        raise lost
+    pairs = zip(mapping.channels, table.numbers, strict=True)
+    channels = {column.quantity: column.values(numbers) for column, numbers in pairs}
+    assert table.time is not None  # a map has a clock or a rate
+    return replace(assemble(name, known, {"t": table.time, **channels}), lost=table.lost)
+
+
+def _parts(recording: Recording, mapping: SourceMap) -> Iterator[Recording]:
+    """A recording, or its parts that the map names; they are repeats that follow one another."""
+    parts = mapping.table.parts
+    if not parts:
+        yield recording
+    for number, part in enumerate(parts, 1):
+        chosen = part.of(recording.time)
+        if not len(recording.time[chosen]):
+            length = recording.time[-1] - recording.time[0]
+            expected = f"a length beyond {part.start:g} s, where part {shown(part.name)} begins"
+            raise FileDefect(recording.name, f"{length:.4g} s", expected)
+        yield replace(
+            recording,
+            name=f"{recording.name} {part.name}",
+            repeat=(recording.repeat - 1) * len(parts) + number,
+            time=recording.time[chosen],
+            channels={name: values[chosen] for name, values in recording.channels.items()},
+            conditions=replace(recording.conditions, elapsed=recording.conditions.elapsed + part.start),
+        )

@@ -1,4 +1,4 @@
-"""Named columns of MATLAB, Parquet and CSV files. Only numbers are read, never objects."""
+"""Named columns of MATLAB, HDF5 and Parquet files. Only numbers are read, never objects."""
 
 from collections.abc import Iterable, Sequence
 from contextlib import nullcontext
@@ -9,9 +9,6 @@ import h5py
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.recordings.files.assembly import ONE_TABLE
-from swgsim.recordings.files.csv_table import read_table
-from swgsim.recordings.files.recording_file import numbers
 from swgsim.tables.file_defect import FileDefect, shown
 from swgsim.tables.formats.matlab import MatlabReader
 from swgsim.tables.limits import require_expansion, require_readable, require_rows
@@ -54,10 +51,26 @@ def read_columns(path: Path, name: str, wanted: Sequence[str], matlab: MatlabRea
         raise FileDefect(name, f"a damaged file ({type(error).__name__}: {error})", f"a sound {suffix}") from error
 
 
-def _read_csv(path: Path, name: str, wanted: Sequence[str]) -> Columns:
-    table = read_table(path, name)
-    _require_present(name, wanted, table)
-    return {column: table[column] for column in wanted}
+def is_binary(path: Path) -> bool:
+    """Whether the ending of a file is that of a binary format."""
+    return path.suffix.lower() in READERS
+
+
+def numbers(variable: h5py.Dataset, where: str, column: str) -> np.ndarray:
+    """The values of one variable: real numbers in one row or column.
+
+    Raises
+    ------
+    FileDefect
+        If the variable holds anything else, or its data are in another file.
+    """
+    if variable.is_virtual or variable.external:
+        raise FileDefect(where, "data in another file", "data in the file itself", column=column)
+    if variable.dtype.kind not in "fiu" or sum(length != 1 for length in variable.shape) != 1:
+        found = f"{variable.dtype} of shape {variable.shape}"
+        raise FileDefect(where, found, "real numbers in one row or column", column=column)
+    require_rows(where, variable.size)
+    return variable[()].ravel()
 
 
 def _read_matlab_73(path: Path, name: str, wanted: Sequence[str]) -> Columns:
@@ -114,7 +127,7 @@ def _require_present(name: str, wanted: Sequence[str], present: Iterable[str]) -
     for column in wanted:
         if column not in names:
             found, expected = f"columns {', '.join(names[:20])}", f"{shown(column)}, as in the column map (mapping=)"
-            raise FileDefect(name, found, expected + (f"; {ONE_TABLE}" if len(names) <= 2 else ""))
+            raise FileDefect(name, found, expected)
 
 
 def _real(values: object, name: str, column: str) -> Float[np.ndarray, " time"]:
@@ -123,7 +136,8 @@ def _real(values: object, name: str, column: str) -> Float[np.ndarray, " time"]:
     if not isinstance(values, np.ndarray) or not sound or sum(length != 1 for length in values.shape) != 1:
         found = f"{getattr(values, 'dtype', type(values))} of shape {getattr(values, 'shape', ())}"
         raise FileDefect(name, found, "real numbers in one row or column", column=column)
-    return values.astype("f8").ravel()
+    return values.ravel()
 
 
-READERS = {".mat": _read_matlab_73, ".parquet": _read_parquet, ".csv": _read_csv}
+READERS = {".mat": _read_matlab_73, ".h5": _read_matlab_73, ".hdf5": _read_matlab_73, ".parquet": _read_parquet}
+ENDINGS = tuple(READERS)

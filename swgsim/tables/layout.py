@@ -1,0 +1,125 @@
+"""How a table is written in a file: separator, decimal sign, encoding, and the rows of names and of numbers."""
+
+import codecs
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from swgsim.common.checks import require_integer, require_known
+from swgsim.tables.file_defect import shown
+from swgsim.tables.plain_file import require_names
+
+# Names of separators that are hard to see in a YAML file.
+SEPARATORS = {"tab": "\t", "blanks": " "}
+# What recorders and spreadsheets write in place of a number that they did not get.
+LOST_READINGS = ("", "nan", "NaN", "NAN", "NA", "N/A", "#N/A", "null", "NULL", "None", "-", "--", "1.#QNAN", "-1.#IND")
+LONGEST_PREAMBLE = 10_000
+LEAVE_OUT = "leave_out"
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Layout of a table.
+
+    Attributes
+    ----------
+    separator : str
+        One character between the cells. A blank stands for any number of blanks and tabs.
+    decimal : str
+        Decimal sign, ``.`` or ``,``.
+    encoding : str
+        Name of the encoding of the text, as Python knows it.
+    header_row : int, optional
+        Row of the names of the columns, as an editor counts; by default the first row that is no comment. It is 0 for a
+        file without names, whose columns have numbers from 1.
+    first_row : int, optional
+        First row of numbers; by default that after the names.
+    comment : str
+        Character that begins a comment; none if empty.
+    sheet : str
+        Sheet of a spreadsheet; the only one if empty.
+    lost_values : tuple of str
+        Texts that stand for a lost reading, besides :data:`LOST_READINGS`.
+    lost_rows : int or float
+        How many rows with a lost reading may be left out: a number, or a share of all rows below 1.
+
+    Raises
+    ------
+    ValueError
+        If a value is unknown or contradicts another one.
+    """
+
+    separator: str = ","
+    decimal: str = "."
+    encoding: str = "utf-8-sig"
+    header_row: int | None = None
+    first_row: int | None = None
+    comment: str = ""
+    sheet: str = ""
+    lost_values: tuple[str, ...] = ()
+    lost_rows: float = 0
+
+    def __post_init__(self) -> None:
+        require_known("decimal signs", [self.decimal], [".", ","])
+        if len(self.separator) != 1 or self.separator in '"\r\n':
+            names = ", ".join(SEPARATORS)
+            raise ValueError(f"separator is {shown(self.separator)}, must be one character, or one of {names}")
+        if self.separator == self.decimal:
+            raise ValueError(f"separator and decimal are both {shown(self.decimal)}: cells and numbers need two signs")
+        if len(self.comment) > 1:
+            raise ValueError(f"comment is {shown(self.comment)}, must be one character, such as '#'")
+        try:
+            codecs.lookup(self.encoding)
+        except LookupError:
+            raise ValueError(f"encoding is {shown(self.encoding)}, must be one such as utf-8, utf-16, cp1252") from None
+        for name, row, least in (("header_row", self.header_row, 0), ("first_row", self.first_row, 1)):
+            if row is not None:
+                require_integer("the layout", name, row, least, LONGEST_PREAMBLE)
+        if self.header_row and self.first_row and self.first_row <= self.header_row:
+            raise ValueError(f"first_row is {self.first_row}, must be after header_row {self.header_row}")
+
+    @property
+    def named(self) -> bool:
+        """Whether the columns have names."""
+        return self.header_row != 0
+
+
+KEYS = ("separator", "decimal", "encoding", "header", "header_row", "first_row", "comment", "sheet", "lost")
+
+
+def read_layout(config: Mapping[str, Any]) -> Layout:
+    """The layout from the entries of a map; all others are ignored.
+
+    Raises
+    ------
+    ValueError
+        If an entry has no sense.
+    """
+    given = {key: config[key] for key in KEYS if key in config}
+    for key in ("separator", "decimal", "encoding", "comment", "sheet"):
+        if not isinstance(given.get(key, ""), str):
+            raise ValueError(f"{key} is {shown(given[key])}, must be a text in quotes")
+    header = given.pop("header", True)
+    if not isinstance(header, bool):
+        raise ValueError(f"header is {shown(header)}, must be true or false; the row belongs to header_row")
+    if not header:
+        if given.get("header_row"):
+            raise ValueError(f"header is false, and header_row is {given['header_row']}: keep one of them")
+        given["header_row"] = 0
+    if "separator" in given:
+        given["separator"] = SEPARATORS.get(given["separator"], given["separator"])
+    return Layout(**given | _lost(given.pop("lost", {})))
+
+
+def _lost(entry: Any) -> dict[str, Any]:
+    """What a lost reading is, and how many rows with one are left out."""
+    if entry == LEAVE_OUT:
+        # A bus loses single readings. More than a hundredth is no accident, and the gaps would bias the fits.
+        return {"lost_rows": 0.01}
+    require_names("lost", entry, ("values", LEAVE_OUT))
+    values, rows = entry.get("values", []), entry.get(LEAVE_OUT, 0)
+    if not isinstance(values, list) or not all(isinstance(each, str | int | float) for each in values):
+        raise ValueError(f"values of lost is {shown(values)}, must be a list such as [-9999, ERR]")
+    if not isinstance(rows, int | float) or isinstance(rows, bool) or not 0 <= rows <= LONGEST_PREAMBLE:
+        raise ValueError(f"{LEAVE_OUT} of lost is {shown(rows)}, must be a number of rows, or a share such as 0.01")
+    return {"lost_values": tuple(map(str, values)), "lost_rows": rows}

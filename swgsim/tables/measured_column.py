@@ -1,0 +1,164 @@
+"""One column of a file: where it is, and what its numbers mean."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import pi
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float, Shaped
+
+from swgsim.common.checks import require, require_integer
+from swgsim.tables.file_defect import shown
+from swgsim.tables.plain_file import require_names
+from swgsim.tables.units import unit_factor
+
+# No table has more columns; six joints of a UR10e have 31.
+MOST_COLUMNS = 10_000
+LONGEST_TEXT = 1000
+# What the unit of a column may need.
+OF_UNIT = ("per_revolution", "rated", "full_scale", "gauge_factor", "active_arms")
+KEYS = ("column", "file", "unit", "factor", "offset", "inverted", *OF_UNIT)
+LARGEST = 1e15
+
+
+@dataclass(frozen=True)
+class MeasuredColumn:
+    """A column.
+
+    Attributes
+    ----------
+    quantity : str
+        Name of the channel or signal.
+    column : str or int
+        Name in the file, path in a structure such as ``Joint_state.q[4]``, or number from 1.
+    unit : str
+        Unit in the file.
+    gain, offset : float
+        The quantity in its own unit is gain times number, plus offset.
+    revolution : float
+        What the numbers of an angle grow by in one revolution of what it measures.
+    wraps : bool
+        Whether an angle is wrapped to one revolution.
+    file : str
+        Which file of a run has it, by the group ``signal`` of the path; empty if each file has all columns.
+    interleaved : int
+        How many signals follow one another in the only column of the file; ``column`` is the number of this one.
+    """
+
+    quantity: str
+    column: str | int
+    unit: str
+    gain: float = 1.0
+    offset: float = 0.0
+    revolution: float = 2 * pi
+    wraps: bool = False
+    file: str = ""
+    interleaved: int = 1
+
+    def values(self, numbers: Shaped[np.ndarray, " time"]) -> Float[np.ndarray, " time"]:
+        """The quantity from the numbers in the file; jumps of a wrapped angle are removed."""
+        found = np.asarray(numbers, dtype=float)
+        # Numbers that are not finite have a finding of their own.
+        with np.errstate(over="ignore", invalid="ignore"):
+            if self.wraps and np.isfinite(found).all():
+                found = np.unwrap(found, period=self.revolution)
+            return found * self.gain + self.offset
+
+    @property
+    def place(self) -> str | int:
+        """The column of the file that has the numbers."""
+        return 1 if self.interleaved > 1 else self.column
+
+    def own(self, numbers: Shaped[np.ndarray, " number"]) -> Shaped[np.ndarray, " time"]:
+        """The numbers of this signal among those that follow one another in its column."""
+        if self.interleaved == 1:
+            return numbers
+        return numbers[: len(numbers) // self.interleaved * self.interleaved].reshape(-1, self.interleaved)[
+            :, int(self.column) - 1
+        ]
+
+
+def read_column(
+    quantity: str, entry: Any, target: str, more: Sequence[str] = (), interleaved: int = 1
+) -> MeasuredColumn:
+    """A column from plain data.
+
+    Parameters
+    ----------
+    quantity : str
+    entry : mapping
+        Entry of a map: ``column``, ``unit`` and more of :data:`KEYS`.
+    target : str
+        Unit of the quantity.
+    more : sequence of str
+        Further keys that the caller reads.
+    interleaved : int
+        As in :class:`MeasuredColumn`.
+
+    Raises
+    ------
+    ValueError
+        If an entry is unknown or has no sense.
+    """
+    require_names(quantity, entry, (*KEYS, *(("wraps",) if target == "rad" else ()), *more))
+    column = column_name(quantity, entry.get("column"))
+    if interleaved > 1:
+        require_integer(quantity, "column", column, 1, interleaved)
+    factor, offset = entry.get("factor", 1.0), entry.get("offset", 0.0)
+    for name, value in (("factor", factor), ("offset", offset)):
+        require(quantity, name, value, low=-LARGEST, high=LARGEST)
+    if not factor:
+        raise ValueError(f"factor of {quantity} is 0, must be another number")
+    unit = text("unit of " + quantity, entry.get("unit"))
+    per_unit = unit_factor(quantity, target, unit, **{name: entry[name] for name in OF_UNIT if name in entry})
+    sign = -1.0 if truth(f"inverted of {quantity}", entry.get("inverted", False)) else 1.0
+    return MeasuredColumn(
+        quantity,
+        column,
+        unit,
+        sign * per_unit * factor,
+        sign * per_unit * offset,
+        abs(2 * pi / (per_unit * factor)),
+        truth(f"wraps of {quantity}", entry.get("wraps", False)),
+        text(f"file of {quantity}", entry["file"]) if "file" in entry else "",
+        interleaved,
+    )
+
+
+def column_name(owner: str, value: Any) -> str | int:
+    """Name or number of a column.
+
+    Raises
+    ------
+    ValueError
+        If it is neither.
+    """
+    if isinstance(value, int) and not isinstance(value, bool):
+        require_integer(owner, "column", value, 1, MOST_COLUMNS)
+        return value
+    return text(f"column of {owner}", value)
+
+
+def text(name: str, value: Any) -> str:
+    """A text of a map; a ValueError for anything else."""
+    if not isinstance(value, str) or not value or not value.isprintable() or len(value) > LONGEST_TEXT:
+        raise ValueError(f"{name} is {shown(value)}, must be printable text of at most {LONGEST_TEXT} characters")
+    return value
+
+
+def truth(name: str, value: Any) -> bool:
+    """A switch of a map; a ValueError for anything else."""
+    if not isinstance(value, bool):
+        raise ValueError(f"{name} is {shown(value)}, must be true or false")
+    return value
+
+
+def number(name: str, entry: Mapping[str, Any], otherwise: float | None = None) -> float | None:
+    """A number of a map; a ValueError for anything else."""
+    value = entry.get(name, otherwise)
+    if value is None:
+        return None
+    if not isinstance(value, int | float) or isinstance(value, bool):
+        raise ValueError(f"{name} is {shown(value)}, must be a number")
+    return float(value)

@@ -1,0 +1,148 @@
+"""The columns of one run, from its file or its files, with the time of each sample."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import chain
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from swgsim.tables import binary
+from swgsim.tables.clock import Clock
+from swgsim.tables.file_defect import FileDefect, shown
+from swgsim.tables.formats.matlab import MatlabReader
+from swgsim.tables.layout import LEAVE_OUT, Layout
+from swgsim.tables.limits import LARGEST_NUMBER, require_readable
+from swgsim.tables.measured_column import MeasuredColumn
+from swgsim.tables.text import Columns, read_text, start_of
+from swgsim.tables.text_defects import row_of
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredTable:
+    """Columns of one run.
+
+    Attributes
+    ----------
+    numbers : tuple of array (time,)
+        Of each wanted column, as in the file; rows with lost readings that may be left out are left out.
+    time : array (time,), optional
+        [s].
+    lost : int
+        Rows that were left out.
+    first_row : int
+        Row of the file with the first sample.
+    """
+
+    numbers: tuple[Float[np.ndarray, " time"], ...]
+    time: Float[np.ndarray, " time"] | None
+    lost: int
+    first_row: int
+
+    def __len__(self) -> int:
+        return len(self.numbers[0])
+
+
+def read_measured(
+    folder: Path,
+    files: Mapping[str, str],
+    columns: Sequence[MeasuredColumn],
+    clock: Clock | None,
+    rate_hz: float | None,
+    layout: Layout,
+    matlab: MatlabReader | None = None,
+) -> MeasuredTable:
+    """Read the columns of one run.
+
+    Parameters
+    ----------
+    folder : Path
+    files : mapping
+        Value of the group ``signal`` to path in the folder; one file has the key ``""``.
+    columns : sequence of MeasuredColumn
+    clock : Clock, optional
+    rate_hz : float, optional
+        Sampling rate [Hz] in place of a clock; without both the run has no time.
+    layout : Layout
+    matlab : MatlabReader, optional
+        Reader that the files of a folder share.
+
+    Raises
+    ------
+    FileDefect
+        If a file is missing or cannot be read, the lengths differ, or more readings are lost than may be left out.
+    """
+    read = {signal: _read(folder, files, signal, columns, clock, layout, matlab) for signal in _signals(columns, clock)}
+    numbers = [each.own(read[each.file][each.place]).astype(float) for each in columns]
+    time = clock.seconds(read[clock.file], files[clock.file]) if clock else None
+    lengths = {f"{each.file} {each.column}".strip(): len(values) for each, values in zip(columns, numbers, strict=True)}
+    lengths |= {"time": len(time)} if time is not None else {}
+    name = next(iter(files.values()))
+    if len(set(lengths.values())) > 1:
+        raise FileDefect(name, f"columns of different lengths {lengths}", "as many values in each column")
+    if rate_hz is not None:
+        time = np.arange(len(numbers[0])) / rate_hz
+    lost = _lost([*numbers, *([time] if time is not None else [])])
+    first_row = 1 if binary.is_binary(folder / name) else start_of(folder / name, name, layout).row
+    if not layout.lost_rows or not len(lost):
+        return MeasuredTable(tuple(numbers), time, 0, first_row)
+    most = int(layout.lost_rows * (len(numbers[0]) if layout.lost_rows < 1 else 1))
+    if len(lost) > most:
+        expected = f"at most {most}, as lost in the map says; {LEAVE_OUT} of lost can be another number of rows"
+        raise FileDefect(name, f"{len(lost)} rows with lost readings", expected, first_row + int(lost[0]))
+    if time is None:
+        expected = f"a time or a rate, without which no row can be left out by {LEAVE_OUT} of lost"
+        raise FileDefect(name, "no time", expected, first_row + int(lost[0]))
+    kept = np.delete(np.arange(len(time)), lost)
+    return MeasuredTable(tuple(values[kept] for values in numbers), time[kept], len(lost), first_row)
+
+
+def first_lost(
+    folder: Path, files: Mapping[str, str], columns: Sequence[MeasuredColumn], table: MeasuredTable, layout: Layout
+) -> FileDefect | None:
+    """The first number that is not finite, with its row, its column and what the map can say about it."""
+    for column, values in zip(columns, table.numbers, strict=True):
+        bad = _lost([values])
+        if len(bad):
+            name, index = files[column.file], int(bad[0])
+            text = not binary.is_binary(folder / name)
+            row = row_of(folder / name, layout, table.first_row, index) if text else index + 1
+            more = f" and {len(bad) - 1} more" if len(bad) > 1 else ""
+            expected = f"a finite number within {LARGEST_NUMBER:g}; {remedy(len(bad))}"
+            return FileDefect(name, f"{values[index]}{more}", expected, row, str(column.column))
+    return None
+
+
+def remedy(count: int) -> str:
+    """What the map can say about lost readings."""
+    return f"if readings were lost, set lost: {{{LEAVE_OUT}: {count}}} in the map, which leaves their rows out"
+
+
+def _signals(columns: Iterable[MeasuredColumn], clock: Clock | None) -> list[str]:
+    """Files of a run that have a wanted column."""
+    return list(dict.fromkeys([*(column.file for column in columns), *([clock.file] if clock else [])]))
+
+
+def _read(
+    folder: Path, files: Mapping[str, str], signal: str, columns: Sequence[MeasuredColumn], clock: Clock | None,
+    layout: Layout, matlab: MatlabReader | None,
+) -> Columns:  # fmt: skip
+    """The wanted columns of one file of a run."""
+    if signal not in files:
+        found = f"the files {', '.join(files.values())}"
+        raise FileDefect(str(folder), found, f"one with the signal {shown(signal)}, by 'path' and 'file' of the map")
+    path, name = folder / files[signal], files[signal]
+    require_readable(path)
+    own = [each.place for each in columns if each.file == signal]
+    stamps = clock.stamps if clock and clock.file == signal else ()
+    times = clock.columns if clock and clock.file == signal else ()
+    wanted = list(dict.fromkeys(chain(own, times)))
+    if binary.is_binary(path):
+        return binary.read_columns(path, name, wanted, matlab)
+    return read_text(path, name, wanted, layout, stamps)
+
+
+def _lost(columns: Sequence[Float[np.ndarray, " time"]]) -> Int[np.ndarray, " lost"]:
+    """Rows in which a number is not finite."""
+    return np.flatnonzero(~np.all([np.abs(values) <= LARGEST_NUMBER for values in columns], axis=0))

@@ -1,0 +1,92 @@
+"""What the maps of gauges and of joints share: layout, names of files, parts of a recording, and accepted findings."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.common.checks import require, require_integer
+from swgsim.tables.file_defect import shown
+from swgsim.tables.layout import KEYS as OF_LAYOUT
+from swgsim.tables.layout import Layout, read_layout
+from swgsim.tables.measured_column import text
+from swgsim.tables.plain_file import require_names
+
+KEYS = (*OF_LAYOUT, "path", "interleaved", "parts", "accept")
+LATEST = 1e9
+MOST_INTERLEAVED = 1000
+
+
+class Part(NamedTuple):
+    """A part of each recording, from and to a time after its start [s]."""
+
+    name: str
+    start: float
+    stop: float
+
+    def of(self, time: Float[np.ndarray, " time"]) -> slice:
+        """Its samples."""
+        first, last = np.searchsorted(time - time[0], [self.start, self.stop])
+        return slice(int(first), int(last))
+
+
+@dataclass(frozen=True)
+class TableMap:
+    """Entries that both maps have.
+
+    Attributes
+    ----------
+    layout : Layout
+    path : str
+        Regular expression of RE2 for the path of a file in its folder, with named groups.
+    interleaved : int
+        How many signals follow one another in the only column of a file.
+    parts : tuple of Part
+        Each recording is split into these; not at all if empty.
+    accepted : tuple of str
+        Kinds of findings that do not refuse a recording, as the user accepts them knowingly.
+    """
+
+    layout: Layout = field(default_factory=Layout)
+    path: str = ""
+    interleaved: int = 1
+    parts: tuple[Part, ...] = ()
+    accepted: tuple[str, ...] = ()
+
+
+def read_table_map(config: Mapping[str, Any]) -> TableMap:
+    """The entries that both maps have; all others are ignored.
+
+    Raises
+    ------
+    ValueError
+        If an entry has no sense.
+    """
+    interleaved = config.get("interleaved", 1)
+    require_integer("the map", "interleaved", interleaved, 1, MOST_INTERLEAVED)
+    parts = config.get("parts", {})
+    require_names("parts", parts)
+    return TableMap(
+        read_layout(config),
+        text("path", config["path"]) if "path" in config else "",
+        interleaved,
+        tuple(_part(name, limits) for name, limits in parts.items()),
+        _kinds(config.get("accept", [])),
+    )
+
+
+def _part(name: str, limits: Any) -> Part:
+    if not isinstance(limits, list) or len(limits) != 2:
+        raise ValueError(f"part {name} is {shown(limits)}, must be [from, to] in seconds after the start")
+    for edge, value in zip(("start", "end"), limits, strict=True):
+        require(f"part {name}", edge, value, low=0, high=LATEST)
+    if not limits[0] < limits[1]:
+        raise ValueError(f"part {name} ends at {limits[1]} s, must end after its start at {limits[0]} s")
+    return Part(text("name of a part", name), float(limits[0]), float(limits[1]))
+
+
+def _kinds(value: Any) -> tuple[str, ...]:
+    kinds: Sequence[Any] = value if isinstance(value, list) else [value]
+    return tuple(text("accept", kind) for kind in kinds)
