@@ -11,7 +11,7 @@ from jaxtyping import Float, Shaped
 from swgsim.common.checks import require, require_integer
 from swgsim.tables.file_defect import shown
 from swgsim.tables.plain_file import require_names
-from swgsim.tables.units import unit_factor
+from swgsim.tables.units import known_unit, unit_factor
 
 # No table has more columns; six joints of a UR10e have 31.
 MOST_COLUMNS = 10_000
@@ -110,7 +110,7 @@ def read_column(
         require(quantity, name, value, low=-LARGEST, high=LARGEST)
     if not factor:
         raise ValueError(f"factor of {quantity} is 0, must be another number")
-    unit = text("unit of " + quantity, entry.get("unit"))
+    unit = known_unit(text(f"unit of {quantity}", entry.get("unit")))
     per_unit = unit_factor(quantity, target, unit, **{name: entry[name] for name in OF_UNIT if name in entry})
     sign = -1.0 if truth(f"inverted of {quantity}", entry.get("inverted", False)) else 1.0
     return MeasuredColumn(

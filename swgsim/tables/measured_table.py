@@ -110,13 +110,14 @@ def first_lost(
             row = row_of(folder / name, layout, table.first_row, index) if text else index + 1
             more = f" and {len(bad) - 1} more" if len(bad) > 1 else ""
             expected = f"a finite number within {LARGEST_NUMBER:g}; {remedy(len(bad))}"
-            return FileDefect(name, f"{values[index]}{more}", expected, row, str(column.column))
+            found = "no number" if np.isnan(values[index]) else str(values[index])
+            return FileDefect(name, f"{found}{more}", expected, row, str(column.column))
     return None
 
 
 def remedy(count: int) -> str:
     """What the map can say about lost readings."""
-    return f"if readings were lost, set lost: {{{LEAVE_OUT}: {count}}} in the map, which leaves their rows out"
+    return f"if readings were lost, set lost: {{{LEAVE_OUT}: {count}}} in a map, which leaves their rows out"
 
 
 def _signals(columns: Iterable[MeasuredColumn], clock: Clock | None) -> list[str]:

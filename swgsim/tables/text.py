@@ -34,6 +34,8 @@ class Start(NamedTuple):
     ----------
     names : list of str
         Names of the columns; their numbers where they have none.
+    names_row : int, optional
+        Their row.
     row : int
         Row of the first sample.
     line : str
@@ -41,6 +43,7 @@ class Start(NamedTuple):
     """
 
     names: list[str]
+    names_row: int | None
     row: int
     line: str
 
@@ -101,16 +104,18 @@ def start_of(path: Path, name: str, layout: Layout) -> Start:
 
 def _start(rows: TextStream, name: str, layout: Layout) -> Start:
     names: list[str] = []
+    names_row = None
     for row in range(1, LONGEST_PREAMBLE):
         line = rows.readline()
         if not line:
             expected = "a row of numbers for each sample"
             raise FileDefect(name, "names without rows" if names else "an empty file", expected, row)
         if row == layout.header_row or (layout.header_row is None and not names and not _skipped(line, layout)):
-            names = cells_of(line.lstrip().removeprefix(layout.comment), layout)
+            names_row, names = row, cells_of(line.lstrip().removeprefix(layout.comment), layout)
             require_separated(names, name, layout, row)
         elif row >= (layout.first_row or 1) and (names or not layout.named) and not is_comment(line, layout):
-            return Start(names or [str(number) for number, _ in enumerate(cells_of(line, layout), 1)], row, line)
+            numbers = [str(number) for number, _ in enumerate(cells_of(line, layout), 1)]
+            return Start(names or numbers, names_row, row, line)
     raise FileDefect(name, f"{LONGEST_PREAMBLE} rows without numbers", "header_row and first_row of the map to be less")
 
 
@@ -122,7 +127,7 @@ def _skipped(line: str, layout: Layout) -> bool:
 def _place(column: str | int, path: Path, name: str, layout: Layout, start: Start) -> int:
     """Place of a column; the error for a missing one says which row has its name."""
     try:
-        return column_place(column, start.names, name, layout.header_row)
+        return column_place(column, start.names, name, start.names_row)
     except FileDefect as defect:
         raise with_header_row(defect, path, layout, column) from None
 

@@ -26,7 +26,7 @@ def require_separated(header: Sequence[str], name: str, layout: Layout, row: int
     for sign, key in ((";", "';'"), ("\t", "tab")):
         if len(header) == 1 and sign in header[0] and sign != layout.separator:
             decimal = ", and decimal: ',' if its numbers have decimal commas" if sign == ";" else ""
-            expected = f"cells separated by {shown(layout.separator)}; set separator: {key} in the map{decimal}"
+            expected = f"cells separated by {shown(layout.separator)}; set separator: {key} in a map{decimal}"
             raise FileDefect(name, shown(header[0]), expected, row)
 
 
@@ -34,7 +34,7 @@ def with_header_row(defect: FileDefect, path: Path, layout: Layout, wanted: str 
     """The defect of a missing column, with the row that has its name if there is one."""
     for row, line in islice(numbered_lines(path, layout, 1), PREAMBLE):
         if wanted in cells_of(line[:LONGEST_LINE], layout) and row != defect.row:
-            expected = f"{defect.expected}; row {row} has it: set header_row: {row} in the map"
+            expected = f"{defect.expected}; row {row} has it: set header_row: {row} in a map"
             return FileDefect(defect.file, defect.found, expected, defect.row)
     return defect
 
@@ -46,7 +46,7 @@ def odd_row(path: Path, name: str, layout: Layout, width: int, first_row: int) -
         while len(cells) > width and not cells[-1]:
             cells.pop()
         if len(cells) > width:
-            hint = "; if its numbers have decimal commas, set separator and decimal in the map"
+            hint = "; if its numbers have decimal commas, set separator and decimal in a map"
             expected = f"{width}, as the row of names has{hint if layout.separator == ',' else ''}"
             return FileDefect(name, f"{len(cells)} cells", expected, row)
     return None
@@ -55,12 +55,10 @@ def odd_row(path: Path, name: str, layout: Layout, width: int, first_row: int) -
 def number_expected(cell: str, layout: Layout, row: int, first_row: int) -> str:
     """What a cell in a row should hold, with the entry of the map that would help."""
     if layout.decimal == "." and DECIMAL_COMMA.fullmatch(cell):
-        return "a number with a decimal point; set decimal: ',' in the map"
+        return "a number with a decimal point; set decimal: ',' in a map"
     if row == first_row:
-        return f"a number; if this is a row of units or text, set first_row: {row + 1} in the map"
-    return (
-        f"a number; if this is a lost reading, set lost: {{values: [{shown(cell.strip())}], leave_out: 1}} in the map"
-    )
+        return f"a number; if this is a row of units or text, set first_row: {row + 1} in a map"
+    return f"a number; if this is a lost reading, set lost: {{values: [{shown(cell.strip())}], leave_out: 1}} in a map"
 
 
 def not_text(path: Path, name: str, layout: Layout) -> FileDefect:
@@ -69,12 +67,12 @@ def not_text(path: Path, name: str, layout: Layout) -> FileDefect:
         if raw.read(2) in BYTE_ORDER:
             found, expected = (
                 "the mark of text in UTF-16",
-                f"text in {layout.encoding}; set encoding: utf-16 in the map",
+                f"text in {layout.encoding}; set encoding: utf-16 in a map",
             )
             return FileDefect(name, found, expected, 1)
         raw.seek(0)
         row = next((row for row, line in enumerate(raw, 1) if not _is_text(line, layout)), 1)
-    expected = f"text in {layout.encoding}; set encoding in the map, such as cp1252 for text from Windows"
+    expected = f"text in {layout.encoding}; set encoding in a map, such as cp1252 for text from Windows"
     return FileDefect(name, "bytes that are not text", expected, row)
 
 

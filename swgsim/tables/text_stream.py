@@ -4,9 +4,9 @@ import csv
 import gzip
 import re
 from collections.abc import Iterator
-from io import TextIOBase
+from io import TextIOBase, TextIOWrapper
 from pathlib import Path
-from typing import TextIO
+from typing import cast
 
 from swgsim.tables.file_defect import FileDefect
 from swgsim.tables.layout import Layout
@@ -21,7 +21,7 @@ NUMBER = re.compile(r"\s*[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\s*", re.ASCII)
 class TextStream(TextIOBase):
     """Text of a file for pandas, up to a number of characters in all and in one line."""
 
-    def __init__(self, stream: TextIO, name: str, most: int) -> None:
+    def __init__(self, stream: TextIOBase, name: str, most: int) -> None:
         self._stream, self._name, self._left = stream, name, most
         self._line, self._waiting = 0, ""
 
@@ -55,10 +55,10 @@ class TextStream(TextIOBase):
             raise FileDefect(self._name, "more text than its size allows", expected)
 
 
-def opened(path: Path, layout: Layout) -> TextIO:
+def opened(path: Path, layout: Layout) -> TextIOWrapper:
     """A text file, also compressed by gzip."""
     if path.suffix.lower() == ".gz":
-        return gzip.open(path, "rt", encoding=layout.encoding, newline="")
+        return cast(TextIOWrapper, gzip.open(path, "rt", encoding=layout.encoding, newline=""))
     return path.open(encoding=layout.encoding, newline="")
 
 

@@ -3,8 +3,9 @@
 import re
 from collections.abc import Mapping
 from math import pi
+from typing import Any
 
-from swgsim.common.checks import require_known, require_positive
+from swgsim.common.checks import require, require_known, require_one_of, require_positive
 from swgsim.tables.file_defect import shown
 
 # Unit of the quantity to unit of the column, and the factor between them.
@@ -58,11 +59,11 @@ def unit_factor(
     target: str,
     unit: str,
     *,
-    per_revolution: float | None = None,
-    rated: float | str | None = None,
-    full_scale: str | None = None,
-    gauge_factor: float | None = None,
-    active_arms: int | None = None,
+    per_revolution: Any = None,
+    rated: Any = None,
+    full_scale: Any = None,
+    gauge_factor: Any = None,
+    active_arms: Any = None,
 ) -> float:
     """Factor from the unit of a column to that of its quantity.
 
@@ -117,37 +118,35 @@ def unit_factor(
     if unit in FACTORS[target]:
         return FACTORS[target][unit]
     if unit == STRAIN:
-        return bridge_factor(owner, float(gauge_factor or 0), int(active_arms or 0))
+        return bridge_factor(owner, gauge_factor, active_arms)
     if unit in SHARES:
         return SHARES[unit] * _rated(owner, target, rated)
     require_positive(owner, per_revolution=per_revolution)
-    return FACTORS[target][COUNTS[target][1]] / float(per_revolution or 1)
+    return FACTORS[target][COUNTS[target][1]] / per_revolution
 
 
-def bridge_factor(owner: str, gauge_factor: float, active_arms: int) -> float:
+def bridge_factor(owner: str, gauge_factor: Any, active_arms: Any) -> float:
     """Bridge signal [mV/V] per strain [um/m] of each active arm: k / 4 for one arm.
 
     >>> bridge_factor("s1", 2.0, 4)
     0.002
     """
-    if not 0.5 <= gauge_factor <= 300:
-        raise ValueError(f"gauge_factor of {owner} is {gauge_factor:g}, must be from 0.5 to 300")
-    if active_arms not in (1, 2, 4):
-        raise ValueError(f"active_arms of {owner} is {active_arms}, must be one of 1, 2, 4")
+    require(owner, "gauge_factor", gauge_factor, low=0.5, high=300)
+    require_one_of(owner, "active_arms", active_arms, (1, 2, 4))
     return gauge_factor / 4 * active_arms * 1e-3
 
 
-def _rated(owner: str, target: str, rated: float | str | None) -> float:
+def _rated(owner: str, target: str, rated: Any) -> float:
     """A rated value in the unit of its quantity."""
     if isinstance(rated, str):
         number, _, unit = rated.strip().partition(" ")
         require_known(f"the unit of rated of {owner}", [known_unit(unit)], FACTORS[target])
         return _number(owner, "rated", number) * FACTORS[target][known_unit(unit)]
     require_positive(owner, rated=rated)
-    return float(rated or 0)
+    return float(rated)
 
 
-def _full_scale(owner: str, target: str, unit: str, text: str) -> float:
+def _full_scale(owner: str, target: str, unit: str, text: Any) -> float:
     """Factor from an output to its quantity."""
     found = FULL_SCALE.fullmatch(text) if isinstance(text, str) else None
     if found is None:

@@ -60,7 +60,7 @@ UNWRITABLE = {
     "twice": (GOOD[0], GOOD[0]),
     "the channels": (GOOD[0], replace(GOOD[1], channels={"s1": GOOD[1].channels["s1"]})),
     "no channel": (replace(GOOD[0], channels={}),),
-    "nan": (replace(GOOD[0], channels={"s1": np.full(ROWS, np.nan)}),),
+    "no number": (replace(GOOD[0], channels={"s1": np.full(ROWS, np.nan)}),),
     "a time that increases": (replace(GOOD[0], time=np.zeros(ROWS)),),
     "printable text": (replace(GOOD[0], name="two\nlines"),),
     "from 1 to": (),
@@ -135,7 +135,7 @@ BAD_FILES: dict[str, tuple[Callable[[Path], object], str]] = {
         lambda f: (f / "more.CSV").write_text(HEADER), "more.CSV: found no row for this file in the manifest",
     ),
     "empty file": (lambda f: (f / FIRST).write_text(""), f"{FIRST}, row 1: found an empty file"),
-    "only a header": (lambda f: (f / FIRST).write_text(HEADER + "\n\n"), "row 2: found a header without rows"),
+    "only a header": (lambda f: (f / FIRST).write_text(HEADER + "\n\n"), "row 2: found rows without numbers"),
     "too few rows": (edited(FIRST, lambda x: x.__delitem__(slice(9, None))), f"{FIRST}: found 8 samples"),
     "no time": (cell(FIRST, 1, 0, "T_in_nm2"), "row 1: found unknown column 'T_in_nm2', expected T_in_nm in N m"),
     "time missing": (
@@ -147,28 +147,28 @@ BAD_FILES: dict[str, tuple[Callable[[Path], object], str]] = {
     "angle in degrees by its name": (cell(FIRST, 1, 1, "phi_in_deg"), "'phi_in_deg', expected phi_in_rad in rad"),
     "unknown unit": (cell(FIRST, 1, 6, "s1_um_m"), "found unknown column 's1_um_m', expected s1_mv_v in mV/V"),
     "unknown column": (cell(FIRST, 1, 1, "colour"), "found unknown column 'colour', expected some of t_s"),
-    "column twice": (cell(FIRST, 1, 1, "n_in_rpm"), "row 1: found 'n_in_rpm' as column 3"),
-    "column without a name": (cell(FIRST, 1, 1, ""), "row 1: found '' as column 2"),
+    "column twice": (cell(FIRST, 1, 1, "n_in_rpm"), "row 1: found 2 columns 'n_in_rpm'"),
+    "column without a name": (cell(FIRST, 1, 1, ""), "row 1: found unknown column ''"),
     "semicolons": (
-        lambda f: (f / FIRST).write_text((f / FIRST).read_text().replace(",", ";")), "expected commas",
+        lambda f: (f / FIRST).write_text((f / FIRST).read_text().replace(",", ";")), "set separator: ';' in a map",
     ),
     "text in a cell": (
-        cell(FIRST, 5, 1, "abc"), f"{FIRST}, row 5, column phi_in_rad: found 'abc', expected a finite number",
+        cell(FIRST, 5, 1, "abc"), f"{FIRST}, row 5, column phi_in_rad: found 'abc', expected a number",
     ),
-    "empty cell": (cell(FIRST, 7, 9, ""), "row 7, column s4_mv_v: found ''"),
+    "empty cell": (cell(FIRST, 7, 9, ""), "row 7, column s4_mv_v: found no number"),
     "hexadecimal": (cell(FIRST, 7, 9, "0x1F"), "row 7, column s4_mv_v: found '0x1F'"),
     "underscore": (cell(FIRST, 7, 9, "1_0"), "row 7, column s4_mv_v: found '1_0'"),
-    "comment": (edited(FIRST, lambda x: x.insert(4, "# a comment")), "row 5: found 1 cells, expected 10"),
-    "not a number": (cell(FIRST, 9, 6, "nan"), "row 9, column s1_mv_v: found nan, expected a finite number"),
+    "comment": (edited(FIRST, lambda x: x.insert(4, "# a comment")), "row 5, column t_s: found '# a comment'"),
+    "not a number": (cell(FIRST, 9, 6, "nan"), "row 9, column s1_mv_v: found no number, expected a finite number"),
     "infinite": (cell(FIRST, 9, 6, "-inf"), "row 9, column s1_mv_v: found -inf"),
     "beyond all limits": (cell(FIRST, 9, 6, "-2e15"), "row 9, column s1_mv_v: found -2000000000000000.0"),
     "beyond floating point": (cell(FIRST, 9, 6, "1e999"), "row 9, column s1_mv_v: found inf"),
-    "a cell too few": (edited(FIRST, lambda x: x.__setitem__(10, "1,2")), "row 11: found 2 cells, expected 10"),
+    "a cell too few": (edited(FIRST, lambda x: x.__setitem__(10, "1,2")), "row 11, column n_in_rpm: found no number"),
     "a cell too many": (edited(FIRST, lambda x: x.__setitem__(10, x[10] + ",1")), "row 11: found 11 cells"),
     "a cell too many everywhere": (
         edited(FIRST, lambda x: x.__setitem__(slice(1, None), [r + ",1" for r in x[1:]])), "row 2: found 11 cells",
     ),
-    "blank line": (edited(FIRST, lambda x: x.insert(10, "")), "row 11: found a blank line"),
+    "blank line": (edited(FIRST, lambda x: x.insert(10, "")), "row 11, column t_s: found no number"),
     "no text": (
         lambda f: (f / FIRST).write_bytes((f / FIRST).read_bytes()[:9000] + b"\xff\xfe"), "bytes that are not text",
     ),
@@ -195,8 +195,8 @@ def test_sizes_are_bounded(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     with pytest.raises(FileDefect, match="found 3 recordings, expected from 1 to 2"):
         read_folder(folder)
     monkeypatch.setattr(limits, "MOST_FILES", 3)
-    monkeypatch.setattr("swgsim.recordings.files.csv_table.MOST_ROWS", 50)
-    with pytest.raises(FileDefect, match="row 52: found more rows, expected at most 50"):
+    monkeypatch.setattr("swgsim.tables.text.MOST_ROWS", 50)
+    with pytest.raises(FileDefect, match="found more rows, expected at most 50"):
         read_folder(folder)
     monkeypatch.setattr(limits, "LARGEST_FILE", 1000)
     with pytest.raises(FileDefect, match="bytes, expected at most 1000"):

@@ -80,10 +80,10 @@ def test_files_of_single_channels_are_explained(tmp_path: Path) -> None:
         read_recordings(tmp_path / "absent")
     for name in ("phi_in", "s1"):
         save_csv(tmp_path / f"{name}.csv", {"t_s": GOOD[0].time, name: GOOD[0].channels[name]})
-    with pytest.raises(ValueError, match=r"no manifest\.csv for phi_in\.csv, s1\.csv.*join files of single channels"):
+    with pytest.raises(ValueError, match=r"no manifest\.csv for phi_in\.csv, s1\.csv.*swg map drafts one"):
         read_recordings(tmp_path)
     single = [
         replace(each, channels={name: each.channels[name]}) for each, name in zip(GOOD, ("s1", "s2"), strict=False)
     ]
-    with pytest.raises(ValueError, match=r"found the channels s2_mv_v.*join files of single channels"):
+    with pytest.raises(ValueError, match=r"found the channels s2_mv_v.*files of single channels are joined"):
         write_folder(tmp_path / "bench", single)

@@ -15,12 +15,13 @@ from swgsim.recordings.files import facts
 from swgsim.recordings.files.source_map import read_map
 from swgsim.recordings.files.sources import read_mapped
 from swgsim.tables.file_defect import FileDefect
+from swgsim.tables.units import known_unit
 
 
 def test_a_sampling_rate_replaces_the_time(tmp_path: Path) -> None:
     channels = {"s1": {"column": "Bridge1", "unit": "V/V"}}
     folder, path = mapped(tmp_path, "plain.parquet", channels=channels, sampling_rate_hz=3000)
-    (found,) = read_mapped(folder, read_map(path))
+    (found,) = read_mapped(folder, read_map(path)).recordings
     np.testing.assert_allclose(found.time, SHORT[0].time)
     assert list(found.channels) == ["s1"]
 
@@ -30,11 +31,11 @@ BAD_MAPS: dict[str, tuple[dict[str, object], str]] = {
     "unknown channel": ({"channels": {"s9": {"column": "a", "unit": "V/V"}}}, "unknown choice 's9' of channels"),
     "unknown unit": ({"channels": {"s1": {"column": "a", "unit": "bar"}}}, "unknown choice 'bar' of the unit of s1"),
     "unit of another quantity": ({"channels": {"t": {"column": "a", "unit": "rad"}}}, "unknown choice 'rad'"),
-    "no unit": ({"channels": {"s1": {"column": "a"}}}, "unit of channel s1 is 'None'"),
-    "strain without a bridge": ({"channels": {"s1": {"column": "a", "unit": "um/m"}}}, "gauge_factor and active_arms"),
+    "no unit": ({"channels": {"s1": {"column": "a"}}}, "unit of s1 is 'None'"),
+    "strain without a bridge": ({"channels": {"s1": {"column": "a", "unit": "um/m"}}}, "active_arms: 2, gauge"),
     "arms that are not a number": (
-        {"channels": {"s1": {"column": "a", "unit": "um/m", "gauge_factor": 2.0, "active_arms": True}}},
-        "active_arms of s1 is True, must be one of 1, 2, 4",
+        {"channels": {"s1": {"column": "a", "unit": "um/m", "gauge_factor": 2.0, "active_arms": "two"}}},
+        "active_arms of s1 is 'two', must be one of 1, 2, 4",
     ),
     "no time": ({"channels": {"s1": {"column": "a", "unit": "V/V"}}}, "either the channel t or sampling_rate_hz"),
     "time twice": ({"sampling_rate_hz": 1000}, "either the channel t or sampling_rate_hz"),
@@ -45,7 +46,7 @@ BAD_MAPS: dict[str, tuple[dict[str, object], str]] = {
     "channels are a list": ({"channels": [1]}, "channels is '\\[1\\]', must be names with values"),
     "missing column": (
         {"channels": {"t": {"column": "Clock", "unit": "s"}}},
-        "run1.csv: found columns Time.*expected 'Clock', as in the column map \\(mapping=\\)",
+        "run1.csv, row 1: found the columns 'Time'.*expected 'Clock', as the map says",
     ),
     "unknown fact": ({"facts": {"gear": "A", "session": "b", "weather": 1}}, "unknown fact 'weather'"),
     "no gear": ({"facts": {"session": "b"}}, "found no gear"),
@@ -104,14 +105,17 @@ def test_a_map_is_named_or_followed_in_all_its_entries(csv: tuple[Path, Path], c
     path.write_text(yaml.safe_dump(config))
     try:
         source = read_map(path)
-        (found,) = read_mapped(folder, source)
+        (found,) = read_mapped(folder, source).recordings
     except FileDefect:
         return
     given = yaml.safe_load(path.read_text())
-    assert {each.channel for each in source.channels} == set(given["channels"])
+    assert {"t", *(each.quantity for each in source.channels)} == set(given["channels"])
     assert {"t", *found.channels} == {"t", *given["channels"]}
     for each in source.channels:
-        assert {key: getattr(each, key) for key in given["channels"][each.channel]} == given["channels"][each.channel]
+        entry = given["channels"][each.quantity]
+        assert (each.column, each.unit) == (entry["column"], known_unit(entry["unit"]))
+        assert (each.gain < 0) == entry.get("inverted", False)
+        assert each.offset == -entry.get("zero_rad", 0)
     assert source.sampling_rate_hz == given.get("sampling_rate_hz")
     known = facts.of(found)
     for name, value in {**given.get("facts", {}), **given.get("files", {}).get("run1.csv", {})}.items():

@@ -94,7 +94,7 @@ def read_runs(folder: Path, files: RunFiles, source: JointSource, start: bool, m
     rate = None if source.rate_from_motion else source.rate_hz
     table = read_measured(folder, files.files, columns, source.clock, rate, source.table.layout, matlab)
     cut = _start(table, source) if start else 0
-    time = None if table.time is None else table.time[cut:]
+    time = None if table.time is None else table.time[cut:] - (0.0 if source.clock else table.time[cut : cut + 1].sum())
     numbers = dict(zip(columns, (values[cut:] for values in table.numbers), strict=True))
     posture = np.array([column.values(numbers[column]) for column in source.posture])
     runs = [

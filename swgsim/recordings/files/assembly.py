@@ -60,7 +60,8 @@ def require_sound(file: str, columns: Mapping[str, Float[np.ndarray, " time"]]) 
         bad = no_numbers(values)
         if len(bad):
             expected = f"a finite number within {LARGEST_NUMBER:g}"
-            raise FileDefect(file, str(values[bad[0]]), expected, int(bad[0]) + FIRST_ROW, column_of(name))
+            found = "no number" if np.isnan(values[bad[0]]) else str(values[bad[0]])
+            raise FileDefect(file, found, expected, int(bad[0]) + FIRST_ROW, column_of(name))
     back = standing(columns["t"])
     if len(back):
         found = f"{columns['t'][back[0]]} after {columns['t'][back[0] - 1]}"
