@@ -17,6 +17,8 @@ from swgsim.tables.plain_file import require_names
 KEYS = (*OF_LAYOUT, "path", "interleaved", "parts", "accept")
 LATEST = 1e9
 MOST_INTERLEAVED = 1000
+# Nothing can be computed with such numbers.
+NEVER_ACCEPTED = ("not_finite", "clock_backwards", "too_short", "too_few_samples", "no_rate")
 
 
 class Part(NamedTuple):
@@ -89,4 +91,7 @@ def _part(name: str, limits: Any) -> Part:
 
 def _kinds(value: Any) -> tuple[str, ...]:
     kinds: Sequence[Any] = value if isinstance(value, list) else [value]
-    return tuple(text("accept", kind) for kind in kinds)
+    for kind in kinds:
+        if text("accept", kind) in NEVER_ACCEPTED:
+            raise ValueError(f"accept has {kind!r}, with which nothing can be computed: leave it out")
+    return tuple(kinds)

@@ -1,0 +1,131 @@
+"""Maps of gauges and of joints: lost readings, parts, files of single signals, accepted findings."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+from formats import GAUGES, IN_PLAIN, LOG, OF_LOG, PLAIN, TIME, table
+
+from swgsim.joint.intake.read import JointRecordings, read_joints
+from swgsim.recordings.read import inspect_recordings
+from swgsim.recordings.recording_set import RecordingSet
+from swgsim.tables.file_defect import FileDefect
+
+FACTS = {"facts": {"gear": "A", "session": "b", "n_in_rpm": 2000, "T_out_nm": 39.5, "repeat": 1}}
+
+
+def gauges(place: Path, columns: dict[str, Any], **entries: Any) -> RecordingSet:
+    table("files/run1.csv", columns)(place)
+    (place / "map.yaml").write_text(yaml.safe_dump(yaml.safe_load(IN_PLAIN) | FACTS | entries))
+    return inspect_recordings(place / "files", place / "map.yaml")
+
+
+def joints(place: Path, *files: Any, **entries: Any) -> JointRecordings:
+    for write in files:
+        write(place / "files")
+    config = {"robot": "mine", "files": ["*"]} | yaml.safe_load(OF_LOG) | entries
+    (place / "source.yaml").write_text(yaml.safe_dump(config))
+    return read_joints(place / "files", place / "source.yaml")
+
+
+def lost(values: np.ndarray, *rows: int) -> list[object]:
+    return ["nan" if row in rows else value for row, value in enumerate(values)]
+
+
+def test_lost_readings_of_gauges_are_named_or_left_out(tmp_path: Path) -> None:
+    spoiled = PLAIN | {"bridge": lost(PLAIN["bridge"], 30, 80)}
+    with pytest.raises(FileDefect, match=r"row 32, column bridge: found no number and 1 more.*lost: \{leave_out: 2\}"):
+        gauges(tmp_path, spoiled)
+    with pytest.raises(FileDefect, match=r"row 32: found 2 rows with lost readings, expected at most 1"):
+        gauges(tmp_path, spoiled, lost={"leave_out": 1})
+    (found,) = (read := gauges(tmp_path, spoiled, lost={"leave_out": 2}))
+    np.testing.assert_allclose(found.time, np.delete(TIME, [30, 80]))
+    assert ("readings_left_out", "warn") in {(each.kind, each.severity) for each in read.defects}
+    gap = {name: np.delete(np.array(values, object), 50) for name, values in spoiled.items()}
+    read = gauges(tmp_path, gap, lost={"leave_out": 2})  # one more sample is missing than the map knows of
+    assert ("samples_dropped", "refuse") in {(each.kind, each.severity) for each in read.defects}
+
+
+def test_lost_readings_of_joints_are_a_finding_or_left_out(tmp_path: Path) -> None:
+    write = table("run1.csv", LOG | {"i": lost(LOG["i"], 60)})
+    read = joints(tmp_path, write)
+    assert not read.recordings
+    assert "column i" in str(read.defects[0])
+    assert "leave_out: 1" in str(read.defects[0])
+    (found,) = joints(tmp_path, write, lost="leave_out").recordings
+    np.testing.assert_allclose(found.time, np.delete(TIME, 60))
+    config = yaml.safe_load((tmp_path / "source.yaml").read_text())
+    del config["time"]
+    (tmp_path / "source.yaml").write_text(yaml.safe_dump(config | {"rate": "from_motion"}))
+    with pytest.raises(FileDefect, match="found no time, expected a time or a rate"):
+        read_joints(tmp_path / "files", tmp_path / "source.yaml")
+
+
+def test_a_recording_is_split_into_its_parts(tmp_path: Path) -> None:
+    parts = {"early": [0, 0.03], "late": [0.06, 9]}
+    read = gauges(tmp_path, PLAIN, parts=parts)
+    assert [each.name for each in read] == ["run1 early", "run1 late"]
+    assert [each.repeat for each in read] == [1, 2]
+    np.testing.assert_allclose(read[1].channels["s1"], GAUGES["s1"][60:])
+    assert read[1].conditions.elapsed == pytest.approx(0.06)
+    with pytest.raises(FileDefect, match="expected a length beyond 1 s, where part 'later' begins"):
+        gauges(tmp_path, PLAIN, parts={"later": [1, 2]})
+    with pytest.raises(FileDefect, match="must end after its start"):
+        gauges(tmp_path, PLAIN, parts={"early": [3, 2]})
+
+
+def test_a_log_is_split_into_runs_that_can_be_held_out(tmp_path: Path) -> None:
+    time = np.arange(360) / 1000
+    long = {"t": time, "q": 0.8 * np.sin(20 * time), "qd": 16 * np.cos(20 * time), "i": np.cos(20 * time)}
+    read = joints(tmp_path, table("run1.csv", long), parts={"fit": [0, 0.2], "judge": [0.2, 9]})
+    assert [each.name for each in read.recordings] == ["run1 fit", "run1 judge"]
+    assert [len(each) for each in read.recordings] == [200, 160]
+
+
+def test_files_of_single_signals_are_joined(tmp_path: Path) -> None:
+    names = {"q": "position", "qd": "velocity", "i": "current"}
+    write = [table(f"r1_{file}.csv", {"t": TIME, name: LOG[name]}) for name, file in names.items()]
+    config = yaml.safe_load(OF_LOG)
+    config["time"]["file"] = "position"
+    for entry, file in zip(config["joints"]["elbow"]["signals"].values(), names.values(), strict=True):
+        entry["file"] = file
+    path = r"(?P<run>r\d+)_(?P<signal>[a-z]+)\.csv"
+    (found,) = joints(tmp_path, *write, path=path, **config).recordings
+    np.testing.assert_allclose(found.signals["current"], LOG["i"], rtol=1e-8)
+    (tmp_path / "files" / "r1_current.csv").unlink()
+    with pytest.raises(FileDefect, match="expected one with the signal 'current'"):
+        read_joints(tmp_path / "files", tmp_path / "source.yaml")
+    table("r1_current.csv", {"t": TIME[:-1], "i": LOG["i"][:-1]})(tmp_path / "files")
+    with pytest.raises(FileDefect, match="columns of different lengths"):
+        read_joints(tmp_path / "files", tmp_path / "source.yaml")
+
+
+def test_an_accepted_finding_only_warns(tmp_path: Path) -> None:
+    write = table("run1.csv", LOG | {"qd": 1.5 * LOG["qd"]})
+    assert not joints(tmp_path, write).recordings
+    read = joints(tmp_path, write, accept=["velocity_scale"])
+    assert len(read.recordings) == 1
+    assert "accepted in the map; else" in read.findings()
+    with pytest.raises(FileDefect, match="'not_finite'"):
+        joints(tmp_path, write, accept=["not_finite"])
+
+
+def test_the_velocity_is_the_slope_of_the_angle(tmp_path: Path) -> None:
+    config = yaml.safe_load(OF_LOG)
+    signals = config["joints"]["elbow"]["signals"]
+    signals["omega"] = {"from": "q", "smoothed_s": 0.005}
+    (found,) = joints(tmp_path, table("run1.csv", LOG), **config).recordings
+    np.testing.assert_allclose(found.signals["omega"][5:-5], LOG["qd"][5:-5], atol=2e-2)
+    del signals["omega"]
+    with pytest.raises(FileDefect, match=r"omega: \{from: q, smoothed_s: 0\.05\}"):
+        joints(tmp_path, table("run1.csv", LOG), **config)
+
+
+def test_signals_of_the_motor_need_the_gear_ratio(tmp_path: Path) -> None:
+    config = yaml.safe_load(OF_LOG)
+    config["joints"]["elbow"]["signals"]["q"]["at"] = "motor"
+    del config["joints"]["elbow"]["gear_ratio"]
+    with pytest.raises(FileDefect, match="the joint has no gear_ratio: give it"):
+        joints(tmp_path, table("run1.csv", LOG), **config)

@@ -1,0 +1,132 @@
+"""Text tables: every number is read as it is written, and a message names row, column and the entry that helps."""
+
+import gzip
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from swgsim.tables import limits
+from swgsim.tables.file_defect import FileDefect
+from swgsim.tables.layout import Layout, read_layout
+from swgsim.tables.text import read_text
+
+NAMES = "t,q,note\n"
+
+
+def read(folder: Path, text: str | bytes, wanted: list[str | int], texts: tuple[str, ...] = (), **layout: Any) -> dict:
+    path = folder / "log.csv"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return read_text(path, path.name, wanted, read_layout(layout), texts)
+
+
+@settings(deadline=None, derandomize=True, max_examples=60)
+@given(
+    values=st.lists(st.floats(-1e300, 1e300, allow_nan=False), min_size=2, max_size=8),
+    separator=st.sampled_from([",", ";", "tab", "blanks", "|"]),
+    decimal=st.sampled_from([".", ","]),
+    encoding=st.sampled_from(["utf-8", "utf-16", "cp1252"]),
+    preamble=st.integers(0, 3),
+    ending=st.sampled_from(["\n", "\r\n"]),
+)
+def test_every_number_comes_back_exactly(
+    tmp_path_factory: pytest.TempPathFactory, values: list[float], separator: str, decimal: str, encoding: str,
+    preamble: int, ending: str,
+) -> None:  # fmt: skip
+    sign = {"tab": "\t", "blanks": "  "}.get(separator, separator)
+    if sign == decimal:
+        return
+    rows = ["of the recorder"] * preamble + [sign.join(["a", "ü"])]
+    rows += [sign.join([str(value).replace(".", decimal), "1"]) for value in values]
+    layout = {"separator": separator, "decimal": decimal, "encoding": encoding, "header_row": preamble + 1}
+    text = (ending.join(rows) + ending).encode(encoding)
+    found = read(tmp_path_factory.mktemp("text"), text, ["a", "ü"], **layout)
+    np.testing.assert_array_equal(found["a"].astype(float), values)
+
+
+def test_only_named_columns_are_looked_at(tmp_path: Path) -> None:
+    text = '"t","q, angle",note,note,\n0,1.5,OK,,\n1,2.5,,x\n2,3.5\n'
+    np.testing.assert_array_equal(read(tmp_path, text, ["q, angle"])["q, angle"], [1.5, 2.5, 3.5])
+    with pytest.raises(FileDefect, match=r"row 1: found 2 columns 'note', 'note'.*its number from 1"):
+        read(tmp_path, text, ["note"])
+    np.testing.assert_array_equal(read(tmp_path, text, [1], header=False, first_row=2)[1], [0, 1, 2])
+
+
+def test_whole_numbers_keep_all_their_digits(tmp_path: Path) -> None:
+    stamps = [1647000000123456789, 1647000000123456790]
+    found = read(tmp_path, "t,x\n" + "".join(f"{each},1\n" for each in stamps), ["t"])["t"]
+    assert found.tolist() == stamps
+
+
+def test_lost_readings_are_no_numbers(tmp_path: Path) -> None:
+    text = "t,q\n0,1\n1,nan\n2,\n3,-9999\n4,ERR\n5,6\n\n\n"
+    found = read(tmp_path, text, ["t", "q"], lost={"values": [-9999, "ERR"]})
+    np.testing.assert_array_equal(found["q"], [1, np.nan, np.nan, np.nan, np.nan, 6])
+    assert found["t"].tolist() == [0, 1, 2, 3, 4, 5]
+
+
+BAD: dict[str, tuple[str | bytes, dict[str, Any], str]] = {
+    "semicolons": ("t;q\n0;1\n", {}, r"row 1: found 't;q'.*set separator: ';' in a map"),
+    "decimal commas": ("t;q\n0;1,5\n", {"separator": ";"}, r"row 2, column q: found '1,5'.*set decimal: ','"),
+    "commas of both kinds": ("t,q\n0,0,1,5\n", {}, r"row 2: found 4 cells, expected 2.*separator and decimal"),
+    "Windows": ("t,q\n0,1\n°,2\n".encode("cp1252"), {}, r"row 3: found bytes that are not text.*such as cp1252"),
+    "UTF-16": ("t,q\n0,1\n".encode("utf-16"), {}, r"row 1: found the mark of text in UTF-16.*encoding: utf-16"),
+    "units": ("t,q\ns,rad\n0,1\n", {}, r"row 2, column q: found 'rad'.*set first_row: 3 in a map"),
+    "lines before": ("Recorder 7\nt,q\n0,1\n", {}, r"found the columns 'Recorder 7'.*row 2 has it: set header_row: 2"),
+    "a word": ("t,q\n0,1\n1,lost\n", {}, r"row 3, column q: found 'lost'.*set lost: \{values: \['lost'\]"),
+    "a word after comments": ("t,q\n0,1\n# a\n# b\n1,x\n", {"comment": "#"}, r"row 5, column q: found 'x'"),
+    "too many cells": ("t,q\n0,1\n1,2,3\n", {}, r"row 3: found 3 cells, expected 2"),
+    "names only": ("t,q\n", {}, "names without rows"),
+    "nothing": ("", {}, "an empty file"),
+    "nearly": ("t,qq\n0,1\n", {}, r"expected 'q', as the map says \(is 'qq' meant\?\)"),
+    "hexadecimal": ("t,q\n0,0x1F\n1,2\n", {}, r"row 2, column q: found '0x1F'"),
+    "underscore": ("t,q\n0,1_0\n", {}, "found '1_0'"),
+    "truth": ("t,q\n0,True\n1,False\n", {}, "found 'True'"),
+    "an open quote": ('t,q\n0,"1\n1,2\n', {}, "found .*quote|EOF|a number"),
+    "a long line": ("t,q\n" + "1" * 200_000, {}, "a line of more than 100000 characters"),
+}
+
+
+@pytest.mark.parametrize("name", list(BAD))
+def test_what_is_no_table_of_the_layout_is_named(tmp_path: Path, name: str) -> None:
+    text, layout, message = BAD[name]
+    with pytest.raises(FileDefect, match=message):
+        read(tmp_path, text, ["q"], **layout)
+
+
+LAYOUTS: dict[str, tuple[Callable[[], object], str]] = {
+    "separator": (lambda: read_layout({"separator": "::"}), "must be one character, or one of tab, blanks"),
+    "same sign": (lambda: read_layout({"decimal": ","}), "cells and numbers need two signs"),
+    "decimal": (lambda: read_layout({"decimal": "x"}), "unknown choice 'x' of decimal signs"),
+    "encoding": (lambda: read_layout({"encoding": "latin-99"}), "must be one such as utf-8, utf-16, cp1252"),
+    "rows": (lambda: read_layout({"header_row": 3, "first_row": 3}), "must be after header_row 3"),
+    "two": (lambda: read_layout({"header_row": 3, "header": False}), "keep one of them"),
+    "comment": (lambda: read_layout({"comment": "//"}), "must be one character, such as '#'"),
+    "lost": (lambda: read_layout({"lost": {"values": "x"}}), "must be a list such as"),
+    "lost rows": (lambda: read_layout({"lost": {"leave_out": -1}}), "must be a number of rows, or a share"),
+    "number": (lambda: read_layout({"separator": 1}), "must be a text in quotes"),
+}
+
+
+@pytest.mark.parametrize("name", list(LAYOUTS))
+def test_a_layout_without_sense_is_named(name: str) -> None:
+    make, message = LAYOUTS[name]
+    with pytest.raises(ValueError, match=message):
+        make()
+
+
+def test_what_is_compressed_is_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "log.csv.gz"
+    path.write_bytes(gzip.compress(("t,q\n" + "1,1\n" * 100_000).encode()))
+    assert len(read_text(path, path.name, ["q"], Layout())["q"]) == 100_000
+    monkeypatch.setattr(limits, "ALWAYS_EXPANDED", 10_000)
+    with pytest.raises(FileDefect, match=r"more text than its size allows.*write it less compressed"):
+        read_text(path, path.name, ["q"], Layout())
+    path.write_bytes(path.read_bytes()[:-20])
+    monkeypatch.undo()
+    with pytest.raises(FileDefect, match="a damaged file"):
+        read_text(path, path.name, ["q"], Layout())
