@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from pathlib import Path
 
-from swgsim.recordings.checks.defect import Defect, accepted, summary, unread_defects
+from swgsim.recordings.checks.defect import Defect, accepted, summary, unread_defects, with_columns
 from swgsim.recordings.checks.inspection import inspect
 from swgsim.recordings.files.folder import read_folder
 from swgsim.recordings.files.manifest import NAME
@@ -61,7 +61,8 @@ def inspect_recordings(path: str | Path, mapping: str | Path | None = None) -> R
         return RecordingSet(recordings, inspect(recordings), str(path))
     column_map = read_map(Path(mapping))
     recordings, unread = read_mapped(Path(path), column_map)
-    defects = [*unread_defects(unread, "the map"), *accepted(inspect(recordings), column_map.table.accepted)]
+    found = with_columns(inspect(recordings), lambda defect: column_map.columns.get(defect.channel, ""))
+    defects = [*unread_defects(unread, "the map"), *accepted(found, column_map.table.accepted)]
     return RecordingSet(recordings, tuple(defects), str(path))
 
 

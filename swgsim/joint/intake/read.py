@@ -22,7 +22,7 @@ from swgsim.joint.intake.signals import gap_findings
 from swgsim.joint.intake.source import JointSource
 from swgsim.joint.intake.source_file import read_source
 from swgsim.joint.recording import SIGNALS, JointRecording
-from swgsim.recordings.checks.defect import Defect, accepted, summary, unread_defects
+from swgsim.recordings.checks.defect import Defect, accepted, summary, unread_defects, with_columns
 from swgsim.tables.file_defect import FileDefect, shown
 from swgsim.tables.formats.matlab import MatlabReader
 
@@ -119,7 +119,9 @@ def read_joints(folder: Path, source: JointSource | Path) -> JointRecordings:
     defects += [defect for run in {run.name: run for run in moving}.values() for defect in gap_findings(run)]
     defects += [defect for run in resting for defect in at_rest_findings(run)]
     defects += duplicate_findings([*moving, *resting])
-    defects = list(accepted(defects, source.table.accepted))
+    columns = {run.label: run.columns for run in every} | {run.label: run.columns for run in resting}
+    named = with_columns(defects, lambda defect: columns.get(defect.recording, {}).get(defect.channel, ""))
+    defects = list(accepted(named, source.table.accepted))
     refused |= {defect.recording for defect in defects if defect.severity == "refuse"}
     return JointRecordings(
         _kept(moving, recordings, refused),

@@ -63,9 +63,10 @@ class Run:
     def __len__(self) -> int:
         return len(self.signals["q"])
 
-    def column(self, quantity: str) -> str:
-        """How the file calls a signal, as text for findings; empty if it has no column."""
-        return next((f"column {each.column}" for each in self.joint.signals if each.quantity == quantity), "")
+    @property
+    def columns(self) -> dict[str, str]:
+        """Signal to the name of its column in the files."""
+        return {each.quantity: str(each.column) for each in self.joint.signals}
 
 
 def read_runs(folder: Path, files: RunFiles, source: JointSource, start: bool, matlab: MatlabReader) -> list[Run]:

@@ -1,6 +1,6 @@
 """A defect in the numbers of recordings; it is reported and never silently corrected."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -24,6 +24,8 @@ class Defect:
     found, expected, remedy : str
     row : int, optional
         First affected row of a CSV file: the header is row 1, the first sample row 2.
+    column : str
+        How the file calls the channel, if it has another name there.
     """
 
     kind: str
@@ -34,9 +36,11 @@ class Defect:
     expected: str
     remedy: str
     row: int | None = None
+    column: str = ""
 
     def __str__(self) -> str:
-        place = [f"recording {self.recording}", *([self.channel] if self.channel else [])]
+        channel = f"{self.channel} (column {self.column})" if self.column else self.channel
+        place = [f"recording {self.recording}", *([channel] if channel else [])]
         place += [f"row {self.row}"] if self.row else []
         return f"{', '.join(place)}: found {self.found}, expected {self.expected}: {self.remedy} [{self.kind}]"
 
@@ -69,6 +73,18 @@ def accepted(defects: Iterable[Defect], kinds: Sequence[str]) -> tuple[Defect, .
         else each
         for each in defects
     )
+
+
+def with_columns(defects: Iterable[Defect], column_of: Callable[[Defect], str]) -> tuple[Defect, ...]:
+    """Findings with the names of the columns in the files of the user.
+
+    Parameters
+    ----------
+    defects : iterable of Defect
+    column_of : callable
+        The column of a finding's channel; empty if it has none.
+    """
+    return tuple(replace(each, column=column_of(each)) for each in defects)
 
 
 def unread_defects(files: Sequence[str], where: str) -> Iterator[Defect]:

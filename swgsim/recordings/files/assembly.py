@@ -11,13 +11,20 @@ from swgsim.recordings.recording import CHANNELS, Recording
 from swgsim.tables.file_defect import FIRST_ROW, FileDefect, shown
 from swgsim.tables.limits import LARGEST_NUMBER, SMALLEST_STEP, require_rows
 
+NO_NAMES: Mapping[str, str] = {}
 # Span of an angle that is wrapped to one revolution, with the jitter of an encoder at its index [rad].
 WRAPPED = 2 * np.pi * 1.001
 
 ONE_TABLE = "a recording has all channels: files of single channels are joined by the group 'signal' of 'path' in a map"
 
 
-def assemble(file: str, facts: Mapping, columns: Mapping[str, Float[np.ndarray, " time"]]) -> Recording:
+def assemble(
+    file: str,
+    facts: Mapping,
+    columns: Mapping[str, Float[np.ndarray, " time"]],
+    names: Mapping[str, str] = NO_NAMES,
+    first_row: int = FIRST_ROW,
+) -> Recording:
     """A recording of one file, with a continuous angle.
 
     Parameters
@@ -28,13 +35,17 @@ def assemble(file: str, facts: Mapping, columns: Mapping[str, Float[np.ndarray, 
         As :func:`swgsim.recordings.files.facts.parse` returns them.
     columns : mapping
         ``t`` [s] and names of :data:`swgsim.recordings.recording.CHANNELS` to their values.
+    names : mapping
+        How the file calls them, where it has other names.
+    first_row : int
+        Row of the file with the first sample.
 
     Raises
     ------
     FileDefect
         If a number is not finite or the time does not increase, with row and column.
     """
-    require_sound(file, columns)
+    require_sound(file, columns, names, first_row)
     channels = {name: columns[name] for name in CHANNELS if name in columns}
     if "phi_in" in channels:
         channels["phi_in"] = unwrapped(channels["phi_in"])
@@ -51,7 +62,12 @@ def assemble(file: str, facts: Mapping, columns: Mapping[str, Float[np.ndarray, 
     )
 
 
-def require_sound(file: str, columns: Mapping[str, Float[np.ndarray, " time"]]) -> None:
+def require_sound(
+    file: str,
+    columns: Mapping[str, Float[np.ndarray, " time"]],
+    names: Mapping[str, str] = NO_NAMES,
+    first_row: int = FIRST_ROW,
+) -> None:
     """Raise a FileDefect unless there are channels, enough rows, finite numbers and an increasing time."""
     if set(columns) <= {"t"}:
         raise FileDefect(file, "no channel", f"at least one of {', '.join(each.column for each in CHANNELS.values())}")
@@ -59,13 +75,13 @@ def require_sound(file: str, columns: Mapping[str, Float[np.ndarray, " time"]]) 
     for name, values in columns.items():
         bad = no_numbers(values)
         if len(bad):
-            expected = f"a finite number within {LARGEST_NUMBER:g}"
+            expected, column = f"a finite number within {LARGEST_NUMBER:g}", names.get(name, column_of(name))
             found = "no number" if np.isnan(values[bad[0]]) else str(values[bad[0]])
-            raise FileDefect(file, found, expected, int(bad[0]) + FIRST_ROW, column_of(name))
+            raise FileDefect(file, found, expected, int(bad[0]) + first_row, column)
     back = standing(columns["t"])
     if len(back):
         found = f"{columns['t'][back[0]]} after {columns['t'][back[0] - 1]}"
-        raise FileDefect(file, found, "a time that increases", int(back[0]) + FIRST_ROW, "t_s")
+        raise FileDefect(file, found, "a time that increases", int(back[0]) + first_row, names.get("t", column_of("t")))
 
 
 def no_numbers(values: Float[np.ndarray, " time"]) -> Int[np.ndarray, " bad"]:

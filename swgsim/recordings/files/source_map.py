@@ -63,6 +63,12 @@ class SourceMap:
             raise ValueError("the column map has both path and files: facts come from the path or from files")
         require_pattern(self.table.path, (*KNOWN, SIGNAL))
 
+    @property
+    def columns(self) -> dict[str, str]:
+        """Channel, or ``t``, to the name of its column in the files."""
+        found = {each.quantity: str(each.column) for each in self.channels}
+        return found | ({"t": " and ".join(map(str, self.clock.columns))} if self.clock else {})
+
 
 def read_map(path: Path) -> SourceMap:
     """A column map from YAML.

@@ -106,7 +106,8 @@ def _read_one(folder: Path, run: Run, mapping: SourceMap, matlab: MatlabReader) 
     pairs = zip(mapping.channels, table.numbers, strict=True)
     channels = {column.quantity: column.values(numbers) for column, numbers in pairs}
     assert table.time is not None  # a map has a clock or a rate
-    return replace(assemble(name, known, {"t": table.time, **channels}), lost=table.lost)
+    made = assemble(name, known, {"t": table.time, **channels}, mapping.columns, table.first_row)
+    return replace(made, lost=table.lost)
 
 
 def _parts(recording: Recording, mapping: SourceMap) -> Iterator[Recording]:
