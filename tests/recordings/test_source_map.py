@@ -45,7 +45,7 @@ BAD_MAPS: dict[str, tuple[dict[str, object], str]] = {
     "channels are a list": ({"channels": [1]}, "channels is '\\[1\\]', must be names with values"),
     "missing column": (
         {"channels": {"t": {"column": "Clock", "unit": "s"}}},
-        "run1.csv: found columns Time.*expected 'Clock', as in the column map \\(mapping=\\)",
+        "run1.csv, row 1: found the columns 'Time'.*expected 'Clock', as the map says",
     ),
     "unknown fact": ({"facts": {"gear": "A", "session": "b", "weather": 1}}, "unknown fact 'weather'"),
     "no gear": ({"facts": {"session": "b"}}, "found no gear"),
