@@ -9,10 +9,8 @@ import numpy as np
 
 from swgsim.tables.column_names import LISTED, column_place
 from swgsim.tables.file_defect import FileDefect, shown
-from swgsim.tables.formats.contents import CONTAINERS, NUMBERS, Contents, Listed
+from swgsim.tables.formats.contents import CONTAINERS, NUMBERS, OBJECTS, Contents, Listed
 
-# What MATLAB keeps in a form of its own, which only MATLAB reads.
-OBJECTS = ("object", "opaque", "table", "timetable", "string", "datetime", "duration", "categorical")
 TABLE_REMEDY = "for a table t, in MATLAB: s = table2struct(t, 'ToScalar', true); save('run1.mat', '-struct', 's')"
 
 
@@ -129,7 +127,8 @@ def _require_numbers(entry: Listed, contents: Contents, file: str) -> None:
         if not members:
             raise FileDefect(file, f"a {entry.kind} without numbers", "real numbers", column=entry.name)
         found = f"a {entry.kind} with {_listing(members)}"
-        raise FileDefect(file, found, f"real numbers: name one of these, such as {members[0].name}", column=entry.name)
+        example = next((each.name for each in members if each.kind in NUMBERS), members[0].name)
+        raise FileDefect(file, found, f"real numbers: name one of these, such as {example}", column=entry.name)
     if entry.kind not in NUMBERS:
         found = f"{shown(entry.kind)} of shape {shown(entry.shape)}"
         remedy = f"; {TABLE_REMEDY}" if entry.kind in OBJECTS else ""

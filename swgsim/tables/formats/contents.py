@@ -21,6 +21,8 @@ NUMBERS = (
     *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)),
 )  # fmt: skip
 CONTAINERS = ("struct", "cell", "group")
+# What MATLAB keeps in a form of its own, which only MATLAB reads.
+OBJECTS = ("object", "opaque", "table", "timetable", "string", "datetime", "duration", "categorical")
 
 T = TypeVar("T")
 

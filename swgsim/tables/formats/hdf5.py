@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 
 from swgsim.tables.file_defect import FileDefect
-from swgsim.tables.formats.contents import MOST_NAMES, Contents, Listed, few, meant
+from swgsim.tables.formats.contents import MOST_NAMES, OBJECTS, Contents, Listed, few, meant
 
 DEEPEST = 20
 LONGEST_TEXT = 200  # bytes of a unit or a class
@@ -78,7 +78,7 @@ class _Walk:
         """An object of the file, and all within it."""
         kind = _attribute(item, "MATLAB_class")
         if _attribute(item, "MATLAB_object_decode"):
-            yield Listed(name, getattr(item, "shape", ()), kind if kind == "table" else "object"), _nothing
+            yield Listed(name, getattr(item, "shape", ()), kind if kind in OBJECTS else "object"), _nothing
         elif isinstance(item, h5py.Group):
             sparse = "MATLAB_sparse" in item.attrs
             yield Listed(name, (), "sparse" if sparse else kind or "group"), _nothing

@@ -13,7 +13,7 @@ from scipy.io import loadmat, whosmat
 from scipy.io.matlab import MatlabFunction, MatlabObject, MatlabOpaque
 
 from swgsim.tables.file_defect import FileDefect
-from swgsim.tables.formats.contents import Contents, Listed, few, meant
+from swgsim.tables.formats.contents import OBJECTS, Contents, Listed, few, meant
 
 CLASSES = {"float64": "double", "float32": "single", "bool": "logical"}
 KINDS: dict[type, str] = {MatlabOpaque: "opaque", MatlabObject: "object", MatlabFunction: "function"}
@@ -25,9 +25,13 @@ Entry = tuple[Listed, Callable[[], np.ndarray]]
 @contextmanager
 def opened(path: Path, file: str, wanted: Sequence[str | int] | None) -> Iterator[Contents]:
     """The variables of a file, and the members of the structs and cell arrays that may be meant."""
-    variables = whosmat(path, appendmat=False)
-    inside = [name for name, _, kind in variables if kind in ("struct", "cell") and meant(name, wanted)]
-    content = loadmat(path, variable_names=inside, appendmat=False) if inside else {}
+    try:
+        variables = whosmat(path, appendmat=False)
+        inside = [name for name, _, kind in variables if kind in ("struct", "cell") and meant(name, wanted)]
+        content = loadmat(path, variable_names=inside, appendmat=False) if inside else {}
+    except TypeError:  # SciPy lists no file with an object, which it calls None, but reads it
+        content = {name: each for name, each in loadmat(path, appendmat=False).items() if not name.startswith("__")}
+        variables = [(name, (), "object") for name in content]
 
     def entries(name: str, shape: tuple[int, ...], kind: str) -> Iterator[Entry]:
         if name in content:
@@ -41,6 +45,9 @@ def opened(path: Path, file: str, wanted: Sequence[str | int] | None) -> Iterato
 def _entries(name: str, value: object, file: str, depth: int = 0) -> Iterator[Entry]:
     """A value and all within it; the elements of struct arrays and cell arrays count from 1, column by column."""
     kind = next((kind for each, kind in KINDS.items() if isinstance(value, each)), None)
+    if kind == "opaque":
+        name = _text(value, "s0") or name
+        kind = _text(value, "s2") if _text(value, "s2") in OBJECTS else kind
     if kind or not isinstance(value, np.ndarray):
         yield Listed(name, getattr(value, "shape", ()), kind or type(value).__name__), lambda: np.array(None)
     elif depth == DEEPEST:
@@ -54,7 +61,8 @@ def _entries(name: str, value: object, file: str, depth: int = 0) -> Iterator[En
         for number, element in enumerate(value.ravel("F"), 1):
             yield from _entries(f"{name}[{number}]", element, file, depth + 1)
     else:
-        yield Listed(name, value.shape, CLASSES.get(value.dtype.name, value.dtype.name)), lambda: value
+        kind = "char" if value.dtype.kind == "U" else CLASSES.get(value.dtype.name, value.dtype.name)
+        yield Listed(name, value.shape, kind), lambda: value
 
 
 def _field(name: str, field: str, elements: np.ndarray, file: str, depth: int) -> Iterator[Entry]:
@@ -67,6 +75,12 @@ def _field(name: str, field: str, elements: np.ndarray, file: str, depth: int) -
     else:
         for number, each in enumerate(values, 1):
             yield from _entries(f"{name}[{number}].{field}", each, file, depth + 1)
+
+
+def _text(value: object, field: str) -> str:
+    """A text within an object: its name or its class."""
+    found = value[field].ravel()[0] if isinstance(value, MatlabOpaque) and value.size else b""
+    return found.decode("latin1") if isinstance(found, bytes) else ""
 
 
 def _is_number(value: object) -> bool:
