@@ -17,7 +17,12 @@ from swgsim.tables.references import Reference, column, referred
 
 # Ending to the module of its reader. Those of the first line are safe in this process.
 HERE = {".h5": hdf5, ".hdf5": hdf5, ".parquet": parquet}
-IN_CHILD: Mapping[str, str] = {".mat": "matlab5"}
+IN_CHILD = {
+    ".mat": "matlab5", ".tdms": "tdms", ".mf4": "mdf", ".mf3": "mdf", ".mdf": "mdf",
+    ".uff": "uff", ".unv": "uff", ".uf58": "uff",
+}  # fmt: skip
+# Beginnings of an MDF file, whose older versions share the ending .dat with text.
+MDF_BEGINS = (b"MDF     ", b"UnFinMF ")
 
 # The time of the other columns, where the format knows it.
 TIME = "time"
@@ -29,7 +34,7 @@ def is_binary(path: Path) -> bool:
     >>> is_binary(Path("run1.MAT")), is_binary(Path("run1.dat"))
     (True, False)
     """
-    return path.suffix.lower() in {*HERE, *IN_CHILD}
+    return path.suffix.lower() in {*HERE, *IN_CHILD} or _is_mdf(path)
 
 
 def read_columns(
@@ -99,15 +104,23 @@ def _opened(
         if suffix in HERE or (suffix == ".mat" and h5py.is_hdf5(path)):  # MATLAB 7.3
             with HERE.get(suffix, hdf5).opened(path, name, wanted) as contents:
                 yield contents
-        elif suffix in IN_CHILD:
+        elif suffix in IN_CHILD or _is_mdf(path):
             with nullcontext(reader) if reader else LimitedReader() as child:
-                yield child.contents(path, name, IN_CHILD[suffix], wanted)
+                yield child.contents(path, name, IN_CHILD.get(suffix, "mdf"), wanted)
         else:
             raise FileDefect(name, shown(path.suffix), f"a file that ends in {', '.join([*HERE, *IN_CHILD])}")
     except FileDefect:
         raise
     except Exception as error:  # The libraries raise errors of many kinds for damaged bytes, also their own.
         raise FileDefect(name, f"a damaged file ({type(error).__name__}: {error})", f"a sound {suffix}") from error
+
+
+def _is_mdf(path: Path) -> bool:
+    """Whether a file that ends in .dat is MDF."""
+    if path.suffix.lower() != ".dat" or not path.is_file():
+        return False
+    with path.open("rb") as raw:
+        return raw.read(8) in MDF_BEGINS
 
 
 def _is_pseudo(wanted: str | int, contents: Contents) -> bool:
