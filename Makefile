@@ -45,7 +45,7 @@ $(READY): pyproject.toml constraints.txt
 	touch $@
 
 $(DEV): $(READY)
-	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[data,rocket,dask,slurm,postgresql,embedded,dev,site]'
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[data,rocket,formats,dask,slurm,postgresql,embedded,dev,site]'
 	touch $@
 
 install: $(READY)  ## virtual environment with what the commands need

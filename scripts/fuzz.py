@@ -22,6 +22,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))  # for the sound files
 
+import format_fixtures as formats
+import member_fixtures as members
 import recording_fixtures as sound
 from fabricated_joints import KINOVA, kinova_run, write_kinova
 
@@ -37,11 +39,13 @@ from swgsim.recordings.files.recording_file import read_file
 from swgsim.recordings.files.source_map import read_map
 from swgsim.storage import storage
 from swgsim.storage.storage import SEAL_SIZE, SEAL_START, seal_start
-from swgsim.tables.formats.matlab import MatlabReader
+from swgsim.tables import binary
+from swgsim.tables.formats import spreadsheet
+from swgsim.tables.formats.limited import LimitedReader
 
 # One child process reads all MATLAB files of a batch.
-MATLAB = MatlabReader()
-sources.MatlabReader = lambda: nullcontext(MATLAB)  # type: ignore[assignment,misc]
+MATLAB = LimitedReader()
+sources.LimitedReader = lambda: nullcontext(MATLAB)  # type: ignore[assignment,misc]
 
 KEPT = Path("outputs/fuzz")
 MEMORY, SECONDS, BATCH = 2 * 2**30, 10.0, 25  # beyond the libraries [byte]; of one reading [s]; readings of one process
@@ -73,9 +77,27 @@ READERS: dict[str, tuple[Callable[[Path], object], str, Callable[[Path], object]
     **{
         saver: (
             partial(sound.mapped, saver=saver), "files/*",
-            lambda place: sources.read_mapped(place / "files", read_map(place / "map.yaml")),
+            lambda place: sources.read_mapped(place / "files", read_map(place / "map.yaml")).recordings,
         )
         for saver in sound.SAVERS
+    },
+    **{
+        name: (
+            lambda place, name=name: formats.SAVED[name](place / name), name,
+            lambda place, name=name: binary.read_columns(place / name, name, ["time", *formats.COLUMNS[name]], MATLAB),
+        )
+        for name in formats.COLUMNS
+    },
+    "a.xlsx": (
+        lambda place: formats.save_xlsx(place / "a.xlsx"), "a.xlsx",
+        lambda place: spreadsheet.cells(place / "a.xlsx", "a.xlsx", None, MATLAB),
+    ),
+    **{
+        f"members of {save.__name__[5:]}.mat": (
+            lambda place, save=save: save(place / "run1.mat"), "run1.mat",
+            lambda place: binary.read_columns(place / "run1.mat", "run1.mat", list(members.MEANT), MATLAB),
+        )
+        for save in (members.save_v5, members.save_v73)
     },
     "column map": (partial(sound.mapped, saver="x.csv"), "map.yaml", lambda place: read_map(place / "map.yaml")),
     "joint logs": (

@@ -1,143 +1,158 @@
-"""Named columns of MATLAB, HDF5 and Parquet files. Only numbers are read, never objects."""
+"""Columns of numbers of binary files, whose ending says the format."""
 
-from collections.abc import Iterable, Sequence
-from contextlib import nullcontext
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, nullcontext
 from math import prod
 from pathlib import Path
 
 import h5py
 import numpy as np
-from jaxtyping import Float
 
 from swgsim.tables.file_defect import FileDefect, shown
-from swgsim.tables.formats.matlab import MatlabReader
+from swgsim.tables.formats import hdf5, parquet
+from swgsim.tables.formats.contents import Contents, Listed
+from swgsim.tables.formats.limited import LimitedReader
 from swgsim.tables.limits import require_expansion, require_readable, require_rows
+from swgsim.tables.references import Reference, column, referred
 
-Columns = dict[str, Float[np.ndarray, " time"]]
-# Classes of MATLAB that are numbers; all others are refused by their name.
-MATLAB_NUMBERS = ("double", "single", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)))
+# Ending to the module of its reader. Those of the first line are safe in this process.
+HERE = {".h5": hdf5, ".hdf5": hdf5, ".parquet": parquet}
+IN_CHILD = {
+    ".mat": "matlab5", ".tdms": "tdms", ".mf4": "mdf", ".mf3": "mdf", ".mdf": "mdf",
+    ".uff": "uff", ".unv": "uff", ".uf58": "uff",
+}  # fmt: skip
+# Beginnings of an MDF file, whose older versions share the ending .dat with text.
+MDF_BEGINS = (b"MDF     ", b"UnFinMF ")
+
+# The time of the other columns, where the format knows it.
+TIME = "time"
 
 
-def read_columns(path: Path, name: str, wanted: Sequence[str], matlab: MatlabReader | None = None) -> Columns:
-    """Some columns of a file, each with as many samples as in the file.
+def is_binary(path: Path) -> bool:
+    """Whether :func:`read_columns` reads a file; others are text.
+
+    >>> is_binary(Path("run1.MAT")), is_binary(Path("run1.dat"))
+    (True, False)
+    """
+    return path.suffix.lower() in {*HERE, *IN_CHILD} or _is_mdf(path)
+
+
+def read_columns(
+    path: Path, name: str, wanted: Sequence[str | int], reader: LimitedReader | None = None
+) -> dict[str | int, np.ndarray]:
+    """Some columns of a file, in the numeric type of the file: integers keep all digits.
 
     Parameters
     ----------
     path : Path
-        Its suffix gives the format.
+        Its ending gives the format.
     name : str
         Name of the file in messages.
-    wanted : sequence of str
-    matlab : MatlabReader, optional
-        Reader that the files of a folder share; without it, each old MATLAB file starts one (0.3 s).
+    wanted : sequence of str or int
+        References as :func:`~swgsim.tables.references.referred` takes them, and ``time`` [s] for the time base of the
+        other columns where the format keeps one (TDMS, MDF, UFF).
+    reader : LimitedReader, optional
+        Child process that the files of a folder share; without it, each file of MATLAB starts one (0.3 s).
+
+    Returns
+    -------
+    dict
+        Reference to array (time,), each with as many samples as in the file.
 
     Raises
     ------
     FileDefect
-        If the file is damaged or of an unknown format, or a column is missing or holds no real numbers.
+        If the file is damaged, or a reference means no column of real numbers, or several.
     """
+    wanted = list(dict.fromkeys(wanted))
+    with _opened(path, name, wanted, reader) as contents:
+        pseudo = [each for each in wanted if _is_pseudo(each, contents)]
+        found = {each: referred(each, contents, name) for each in wanted if each not in pseudo}
+        based = _based(found, bool(pseudo), contents, name)
+        for place, _ in found.values():
+            require_rows(name, max(contents.listed[place].shape, default=1))
+        places = dict.fromkeys([place for place, _ in found.values()])
+        require_expansion(path, name, sum(prod(contents.listed[place].shape) for place in places))
+        arrays = {place: _real(contents.read(place), contents.listed[place], name) for place in places}
+        columns = {each: column(arrays[place], line) for each, (place, line) in found.items()}
+        for each in pseudo:
+            assert contents.time
+            columns[each] = contents.time(based)
+        return {each: columns[each] for each in wanted}
+
+
+def listed(path: Path, name: str, reader: LimitedReader | None = None) -> list[Listed]:
+    """What a file holds, for messages and for drafts of maps.
+
+    Raises
+    ------
+    FileDefect
+        If the file is damaged.
+    """
+    with _opened(path, name, None, reader) as contents:
+        return list(contents.listed)
+
+
+@contextmanager
+def _opened(
+    path: Path, name: str, wanted: Sequence[str | int] | None, reader: LimitedReader | None
+) -> Iterator[Contents]:
+    """The contents of a file; errors of its library become a FileDefect."""
     require_readable(path)
     suffix = path.suffix.lower()
-    if suffix not in READERS:
-        raise FileDefect(name, shown(path.suffix), f"a file that ends in {', '.join(READERS)}")
     try:
-        if suffix == ".mat" and not h5py.is_hdf5(path):
-            with nullcontext(matlab) if matlab else MatlabReader() as reader:
-                return _read_matlab(path, name, wanted, reader)
-        return READERS[suffix](path, name, wanted)
+        if suffix in HERE or (suffix == ".mat" and h5py.is_hdf5(path)):  # MATLAB 7.3
+            with HERE.get(suffix, hdf5).opened(path, name, wanted) as contents:
+                yield contents
+        elif suffix in IN_CHILD or _is_mdf(path):
+            with nullcontext(reader) if reader else LimitedReader() as child:
+                yield child.contents(path, name, IN_CHILD.get(suffix, "mdf"), wanted)
+        else:
+            raise FileDefect(name, shown(path.suffix), f"a file that ends in {', '.join([*HERE, *IN_CHILD])}")
     except FileDefect:
         raise
     except Exception as error:  # The libraries raise errors of many kinds for damaged bytes, also their own.
         raise FileDefect(name, f"a damaged file ({type(error).__name__}: {error})", f"a sound {suffix}") from error
 
 
-def is_binary(path: Path) -> bool:
-    """Whether the ending of a file is that of a binary format."""
-    return path.suffix.lower() in READERS
+def _is_mdf(path: Path) -> bool:
+    """Whether a file that ends in .dat is MDF."""
+    if path.suffix.lower() != ".dat" or not path.is_file():
+        return False
+    with path.open("rb") as raw:
+        return raw.read(8) in MDF_BEGINS
 
 
-def numbers(variable: h5py.Dataset, where: str, column: str) -> np.ndarray:
-    """The values of one variable: real numbers in one row or column.
+def _is_pseudo(wanted: str | int, contents: Contents) -> bool:
+    """Whether a reference means the time base."""
+    names = {each.name for each in contents.listed}
+    return wanted == TIME and contents.time is not None and TIME not in names and TIME not in contents.others
+
+
+def _based(found: Mapping[str | int, Reference], asked: bool, contents: Contents, file: str) -> int:
+    """Place of an entry with the time base of all, which is asked for or where the format keeps one.
 
     Raises
     ------
     FileDefect
-        If the variable holds anything else, or its data are in another file.
+        If there are several bases, or none although it is asked for.
     """
-    if variable.is_virtual or variable.external:
-        raise FileDefect(where, "data in another file", "data in the file itself", column=column)
-    if variable.dtype.kind not in "fiu" or sum(length != 1 for length in variable.shape) != 1:
-        found = f"{variable.dtype} of shape {variable.shape}"
-        raise FileDefect(where, found, "real numbers in one row or column", column=column)
-    require_rows(where, variable.size)
-    return variable[()].ravel()
+    places = {place for place, _ in found.values()} or set(range(len(contents.listed)))
+    bases = {contents.listed[place].base: place for place in sorted(places)}
+    known = {base: place for base, place in bases.items() if base}
+    if len(known) > 1 and (asked or found):
+        texts = "; ".join(f"{shown(contents.listed[place].name)}: {base}" for base, place in list(known.items())[:5])
+        raise FileDefect(file, f"different time bases ({texts})", "one: export these channels resampled to one")
+    if asked and (not known or "" in bases):
+        without = contents.listed[bases[""]].name if "" in bases else "any channel"
+        raise FileDefect(
+            file, f"no time base of {without}", "one: map a column with the time, or give the sampling rate"
+        )
+    return next(iter(known.values()), 0)
 
 
-def _read_matlab_73(path: Path, name: str, wanted: Sequence[str]) -> Columns:
-    """A MATLAB file of version 7.3, which is HDF5 behind a text of 512 bytes."""
-    with h5py.File(path, "r") as file:
-        _require_present(name, wanted, file)
-        for column in wanted:
-            link = file.get(column, getlink=True)
-            if not isinstance(link, h5py.HardLink) or not isinstance(file[column], h5py.Dataset):
-                raise FileDefect(name, "a link or a struct", "a variable with numbers", column=column)
-        require_expansion(path, name, sum(file[column].size or 0 for column in wanted))
-        return {column: numbers(file[column], name, column) for column in wanted}
-
-
-def _read_matlab(path: Path, name: str, wanted: Sequence[str], reader: MatlabReader) -> Columns:
-    """A MATLAB file of version 4 or 5. Shapes are checked first, as compressed numbers may exceed the file by far."""
-    variables = reader.variables(path, name)
-    names = [variable.name for variable in variables]
-    _require_present(name, wanted, names)
-    chosen = [variable for variable in variables if variable.name in wanted]
-    for column, shape, kind in chosen:
-        if names.count(column) > 1:
-            raise FileDefect(name, f"{names.count(column)} variables of this name", "one", column=column)
-        if kind not in MATLAB_NUMBERS:
-            raise FileDefect(name, f"{shown(kind)} of shape {shown(shape)}", "real numbers", column=column)
-        require_rows(name, prod(shape))
-    require_expansion(path, name, sum(prod(variable.shape) for variable in chosen))
-    return {column: _real(values, name, column) for column, values in reader.numbers(path, name, wanted).items()}
-
-
-def _read_parquet(path: Path, name: str, wanted: Sequence[str]) -> Columns:
-    from pyarrow import parquet, types  # type: ignore[import-untyped]
-
-    with parquet.ParquetFile(path) as file:
-        _require_present(name, wanted, file.schema_arrow.names)
-        for column in wanted:
-            if file.schema_arrow.names.count(column) > 1:
-                raise FileDefect(name, "several columns of this name", "one", column=column)
-            kind = file.schema_arrow.field(column).type
-            # One long text or list may be stored once for all rows.
-            if not (types.is_integer(kind) or types.is_floating(kind)):
-                raise FileDefect(name, shown(str(kind)), "real numbers", column=column)
-        groups = range(file.num_row_groups)
-        rows = max(file.metadata.num_rows, sum(file.metadata.row_group(group).num_rows for group in groups))
-        require_rows(name, rows)
-        require_expansion(path, name, rows * len(wanted))
-        table = file.read(columns=list(wanted))
-    return {column: _real(table[column].to_numpy(), name, column) for column in wanted}
-
-
-def _require_present(name: str, wanted: Sequence[str], present: Iterable[str]) -> None:
-    """Raise a FileDefect unless a file has all columns of the map."""
-    names = list(present)
-    for column in wanted:
-        if column not in names:
-            found, expected = f"columns {', '.join(names[:20])}", f"{shown(column)}, as in the column map (mapping=)"
-            raise FileDefect(name, found, expected)
-
-
-def _real(values: object, name: str, column: str) -> Float[np.ndarray, " time"]:
-    """One row or column of real numbers."""
-    sound = isinstance(values, np.ndarray) and values.dtype.kind in "fiu"
-    if not isinstance(values, np.ndarray) or not sound or sum(length != 1 for length in values.shape) != 1:
-        found = f"{getattr(values, 'dtype', type(values))} of shape {getattr(values, 'shape', ())}"
-        raise FileDefect(name, found, "real numbers in one row or column", column=column)
-    return values.ravel()
-
-
-READERS = {".mat": _read_matlab_73, ".h5": _read_matlab_73, ".hdf5": _read_matlab_73, ".parquet": _read_parquet}
-ENDINGS = tuple(READERS)
+def _real(values: np.ndarray, entry: Listed, file: str) -> np.ndarray:
+    """Values as they were listed."""
+    if values.dtype.kind not in "fiu" or prod(values.shape) != prod(entry.shape):
+        raise FileDefect(file, f"{values.dtype} of shape {values.shape}", "real numbers", column=entry.name)
+    return values

@@ -34,13 +34,16 @@ def column_place(wanted: str | int, present: Sequence[str], file: str, row: int 
     --------
     >>> column_place("X*_time", ["X097_s0", "X097_time"], "run1.mat")
     1
+    >>> column_place("Angle * [deg]", ["Angle 1 d", "Angle 1 [deg]"], "run1.mat")
+    1
     """
     if isinstance(wanted, int):
         if not 1 <= wanted <= len(present):
             raise FileDefect(file, f"{len(present)} columns", f"a column {wanted}, as the map says", row)
         return wanted - 1
     places = [place for place, name in enumerate(present) if name == wanted]
-    places = places or [place for place, name in enumerate(present) if fnmatchcase(name, wanted)]
+    pattern = wanted.replace("[", "[[]")  # brackets are parts of names, such as "Angle [deg]"
+    places = places or [place for place, name in enumerate(present) if fnmatchcase(name, pattern)]
     if len(places) == 1:
         return places[0]
     if places:

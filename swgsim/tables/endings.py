@@ -3,12 +3,13 @@
 import os
 from pathlib import Path
 
-from swgsim.tables.binary import ENDINGS as OF_BINARY
+from swgsim.tables.binary import HERE, IN_CHILD
 from swgsim.tables.file_defect import FileDefect
+from swgsim.tables.formats.spreadsheet import ENDINGS as OF_SPREADSHEETS
 
 # Files that end in .txt or .log are often notes: they are read where a map names them.
 OF_TEXT = (".csv", ".tsv", ".asc", ".dat", ".lvm")
-ENDINGS = (*OF_BINARY, *OF_TEXT, *(f"{ending}.gz" for ending in OF_TEXT))
+ENDINGS = (*HERE, *IN_CHILD, *OF_SPREADSHEETS, *OF_TEXT, *(f"{ending}.gz" for ending in OF_TEXT))
 # Largest number of folders and files in a folder of recordings.
 MOST_ENTRIES = 200_000
 

@@ -11,10 +11,12 @@ from jaxtyping import Float, Int
 from swgsim.tables import binary
 from swgsim.tables.clock import Clock
 from swgsim.tables.file_defect import FileDefect, shown
-from swgsim.tables.formats.matlab import MatlabReader
+from swgsim.tables.formats.limited import LimitedReader
+from swgsim.tables.formats.spreadsheet import is_spreadsheet
 from swgsim.tables.layout import LEAVE_OUT, Layout
-from swgsim.tables.limits import LARGEST_NUMBER, require_readable
+from swgsim.tables.limits import require_readable
 from swgsim.tables.measured_column import MeasuredColumn
+from swgsim.tables.spreadsheet_table import first_row_of, read_spreadsheet
 from swgsim.tables.text import Columns, read_text, start_of
 from swgsim.tables.text_defects import row_of
 
@@ -51,7 +53,7 @@ def read_measured(
     clock: Clock | None,
     rate_hz: float | None,
     layout: Layout,
-    matlab: MatlabReader | None = None,
+    reader: LimitedReader | None = None,
 ) -> MeasuredTable:
     """Read the columns of one run.
 
@@ -65,7 +67,7 @@ def read_measured(
     rate_hz : float, optional
         Sampling rate [Hz] in place of a clock; without both the run has no time.
     layout : Layout
-    matlab : MatlabReader, optional
+    reader : LimitedReader, optional
         Reader that the files of a folder share.
 
     Raises
@@ -73,7 +75,7 @@ def read_measured(
     FileDefect
         If a file is missing or cannot be read, the lengths differ, or more readings are lost than may be left out.
     """
-    read = {signal: _read(folder, files, signal, columns, clock, layout, matlab) for signal in _signals(columns, clock)}
+    read = {signal: _read(folder, files, signal, columns, clock, layout, reader) for signal in _signals(columns, clock)}
     numbers = [each.own(read[each.file][each.place]).astype(float) for each in columns]
     time = clock.seconds(read[clock.file], files[clock.file]) if clock else None
     lengths = {f"{each.file} {each.column}".strip(): len(values) for each, values in zip(columns, numbers, strict=True)}
@@ -84,7 +86,7 @@ def read_measured(
     if rate_hz is not None:
         time = np.arange(len(numbers[0])) / rate_hz
     lost = _lost([*numbers, *([time] if time is not None else [])])
-    first_row = 1 if binary.is_binary(folder / name) else start_of(folder / name, name, layout).row
+    first_row = _first_row(folder / name, name, layout, reader)
     if not layout.lost_rows or not len(lost):
         return MeasuredTable(tuple(numbers), time, 0, first_row)
     most = int(layout.lost_rows * (len(numbers[0]) if layout.lost_rows < 1 else 1))
@@ -106,10 +108,10 @@ def first_lost(
         bad = _lost([values])
         if len(bad):
             name, index = files[column.file], int(bad[0])
-            text = not binary.is_binary(folder / name)
-            row = row_of(folder / name, layout, table.first_row, index) if text else index + 1
+            text = not binary.is_binary(folder / name) and not is_spreadsheet(folder / name)
+            row = row_of(folder / name, layout, table.first_row, index) if text else index + table.first_row
             more = f" and {len(bad) - 1} more" if len(bad) > 1 else ""
-            expected = f"a finite number within {LARGEST_NUMBER:g}; {remedy(len(bad))}"
+            expected = f"a finite number; {remedy(len(bad))}"
             found = "no number" if np.isnan(values[index]) else str(values[index])
             return FileDefect(name, f"{found}{more}", expected, row, str(column.column))
     return None
@@ -127,7 +129,7 @@ def _signals(columns: Iterable[MeasuredColumn], clock: Clock | None) -> list[str
 
 def _read(
     folder: Path, files: Mapping[str, str], signal: str, columns: Sequence[MeasuredColumn], clock: Clock | None,
-    layout: Layout, matlab: MatlabReader | None,
+    layout: Layout, reader: LimitedReader | None,
 ) -> Columns:  # fmt: skip
     """The wanted columns of one file of a run."""
     if signal not in files:
@@ -140,10 +142,21 @@ def _read(
     times = clock.columns if clock and clock.file == signal else ()
     wanted = list(dict.fromkeys(chain(own, times)))
     if binary.is_binary(path):
-        return binary.read_columns(path, name, wanted, matlab)
+        return binary.read_columns(path, name, wanted, reader)
+    if is_spreadsheet(path):
+        return read_spreadsheet(path, name, wanted, layout, stamps, reader)
     return read_text(path, name, wanted, layout, stamps)
+
+
+def _first_row(path: Path, name: str, layout: Layout, reader: LimitedReader | None) -> int:
+    """Row of the first sample."""
+    if binary.is_binary(path):
+        return 1
+    if is_spreadsheet(path):
+        return first_row_of(path, name, layout, reader)
+    return start_of(path, name, layout).row
 
 
 def _lost(columns: Sequence[Float[np.ndarray, " time"]]) -> Int[np.ndarray, " lost"]:
     """Rows in which a number is not finite."""
-    return np.flatnonzero(~np.all([np.abs(values) <= LARGEST_NUMBER for values in columns], axis=0))
+    return np.flatnonzero(~np.isfinite(columns).all(axis=0))

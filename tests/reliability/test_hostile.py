@@ -14,7 +14,7 @@ import recording_fixtures as sound
 from recording_fixtures import ROWS, SAVERS, columns, mapped, sealed
 from scipy.io import savemat
 
-from swgsim.recordings.files import facts, foreign
+from swgsim.recordings.files import facts
 from swgsim.recordings.files.folder import read_folder
 from swgsim.recordings.files.recording_file import read_file
 from swgsim.recordings.files.source_map import read_map
@@ -22,7 +22,11 @@ from swgsim.recordings.files.sources import read_mapped
 from swgsim.storage import storage
 from swgsim.storage.storage import SEAL_SIZE, SEAL_START
 from swgsim.tables import limits
+from swgsim.tables.endings import ENDINGS
 from swgsim.tables.file_defect import FileDefect, shown
+from swgsim.tables.layout import Layout
+from swgsim.tables.measured_column import MeasuredColumn
+from swgsim.tables.measured_table import read_measured
 
 MANY = 40_000_000  # numbers; 320 MB
 
@@ -125,8 +129,8 @@ def two_of_a_name(path: Path) -> None:
 
 FOREIGN: dict[str, tuple[str, Callable[[Path], object], str]] = {
     "zeros": ("mat", matlab_of(**{name: np.zeros(200_000) for name in columns()}), "numbers in"),
-    "cells": ("mat", matlab_of(Speed=np.array([1, "a"] * 12, object)), "found 'cell'"),
-    "struct": ("mat", matlab_of(Speed={"a": 1.0}), "found 'struct'"),
+    "cells": ("mat", matlab_of(Speed=np.array([1, "a"] * 12, object)), "found a cell with 'Speed\\[1\\]'"),
+    "struct": ("mat", matlab_of(Speed={"a": 1.0}), "found a struct with 'Speed.a'"),
     "complex": ("mat", matlab_of(Speed=columns()["Speed"] + 1j), "expected real numbers"),
     "matrix": ("mat", matlab_of(Speed=np.ones((20, 30))), "expected real numbers in one row or column"),
     "shorter": ("mat", matlab_of(Speed=columns()["Speed"][:-1]), "columns of different lengths"),
@@ -135,7 +139,7 @@ FOREIGN: dict[str, tuple[str, Callable[[Path], object], str]] = {
         "mat", matlab_73_with(lambda f: f.create_dataset("Speed", (MANY,), "f8", compression="gzip")), "numbers in",
     ),
     "HDF5, link to a file": (
-        "mat", matlab_73_with(lambda f: f.__setitem__("Speed", h5py.ExternalLink("/etc/passwd", "/"))), "a link",
+        "mat", matlab_73_with(lambda f: f.__setitem__("Speed", h5py.ExternalLink("/etc/passwd", "/"))), "found 'link'",
     ),
     "HDF5, virtual": ("mat", matlab_73_with(in_another_file), "data in another file"),
     "HDF5, raw data of a file": (
@@ -146,10 +150,10 @@ FOREIGN: dict[str, tuple[str, Callable[[Path], object], str]] = {
         "mat", matlab_73_with(lambda f: f.create_dataset("Speed", (24,), h5py.ref_dtype)), "real numbers",
     ),
     "one number for all rows": ("parquet", parquet_with(0.0, 400_000), "numbers in"),
-    "long text": ("parquet", parquet_with("x" * 100_000), "string', expected real numbers"),
+    "long text": ("parquet", parquet_with("x" * 100_000), "string' of shape .*expected real numbers"),
     "lists": ("parquet", parquet_with([[1.0]] * 24), "expected real numbers"),
     **{f"pickle as {ending}": (ending[1:], lambda path: path.write_bytes(pickle.dumps(columns())), "found")
-       for ending in foreign.READERS},
+       for ending in ENDINGS},
 }  # fmt: skip
 
 
@@ -169,7 +173,7 @@ def test_a_folder_or_a_pipe_is_no_file(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "b.csv")
     for name in ("a.csv", "b.csv"):
         with pytest.raises(FileDefect, match=name):
-            foreign.read_columns(tmp_path / name, name, ["a"])
+            read_measured(tmp_path, {"": name}, [MeasuredColumn("s1", "a", "V/V")], None, 1.0, Layout())
 
 
 # Files with a seal, which anybody can compute.

@@ -24,7 +24,7 @@ from swgsim.joint.intake.source_file import read_source
 from swgsim.joint.recording import SIGNALS, JointRecording
 from swgsim.recordings.checks.defect import Defect, accepted, summary, unread_defects, with_columns
 from swgsim.tables.file_defect import FileDefect, shown
-from swgsim.tables.formats.matlab import MatlabReader
+from swgsim.tables.formats.limited import LimitedReader
 
 
 @dataclass(frozen=True, repr=False)
@@ -92,9 +92,9 @@ def read_joints(folder: Path, source: JointSource | Path) -> JointRecordings:
     """
     source = read_source(source) if isinstance(source, Path) else source
     found = places(folder, source)
-    with MatlabReader() as matlab:
-        in_motion = [run for files in found.moving for run in read_runs(folder, files, source, True, matlab)]
-        resting = [run for files in found.resting for run in read_runs(folder, files, source, False, matlab)]
+    with LimitedReader() as reader:
+        in_motion = [run for files in found.moving for run in read_runs(folder, files, source, True, reader)]
+        resting = [run for files in found.resting for run in read_runs(folder, files, source, False, reader)]
     every = moving = [run for run in in_motion if not run.stands]
     # Standing joints only give noise: one that is unusable or moves is left out without a finding.
     standing = [run for run in in_motion if run.stands and not any(chain(unusable(run), at_rest_findings(run)))]

@@ -11,7 +11,7 @@ from scipy.signal import savgol_filter
 from swgsim.joint.intake.places import RunFiles
 from swgsim.joint.intake.source import JointColumns, JointSource
 from swgsim.tables.file_defect import FileDefect, shown
-from swgsim.tables.formats.matlab import MatlabReader
+from swgsim.tables.formats.limited import LimitedReader
 from swgsim.tables.measured_column import MeasuredColumn
 from swgsim.tables.measured_table import MeasuredTable, read_measured
 from swgsim.tables.table_map import Part
@@ -69,7 +69,7 @@ class Run:
         return {each.quantity: str(each.column) for each in self.joint.signals}
 
 
-def read_runs(folder: Path, files: RunFiles, source: JointSource, start: bool, matlab: MatlabReader) -> list[Run]:
+def read_runs(folder: Path, files: RunFiles, source: JointSource, start: bool, reader: LimitedReader) -> list[Run]:
     """All joints of a run, or the joint that the path names, with the others if the source says that they stand.
 
     Parameters
@@ -79,7 +79,7 @@ def read_runs(folder: Path, files: RunFiles, source: JointSource, start: bool, m
     source : JointSource
     start : bool
         Whether the run has a start-up, which is cut.
-    matlab : MatlabReader
+    reader : LimitedReader
 
     Raises
     ------
@@ -93,7 +93,7 @@ def read_runs(folder: Path, files: RunFiles, source: JointSource, start: bool, m
     joints = source.joints if source.others_stand else moved
     columns = [*(column for joint in joints for column in joint.signals), *source.posture]
     rate = None if source.rate_from_motion else source.rate_hz
-    table = read_measured(folder, files.files, columns, source.clock, rate, source.table.layout, matlab)
+    table = read_measured(folder, files.files, columns, source.clock, rate, source.table.layout, reader)
     cut = _start(table, source) if start else 0
     time = None if table.time is None else table.time[cut:] - (0.0 if source.clock else table.time[cut : cut + 1].sum())
     numbers = dict(zip(columns, (values[cut:] for values in table.numbers), strict=True))

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import h5py
+import numpy as np
 
 from swgsim.common.files import replacing
 from swgsim.recordings.files import facts
@@ -12,9 +13,8 @@ from swgsim.recordings.recording import CHANNELS, Recording
 from swgsim.storage.attributes import attribute, set_attributes
 from swgsim.storage.hdf5_writer import created
 from swgsim.storage.storage import SEAL_SIZE, seal, verify
-from swgsim.tables.binary import numbers
 from swgsim.tables.file_defect import FileDefect, shown
-from swgsim.tables.limits import require_file_count, require_readable
+from swgsim.tables.limits import require_file_count, require_readable, require_rows
 
 TITLE = "recordings of strain wave gears"
 
@@ -109,7 +109,7 @@ def _read_group(file: h5py.File, name: str, where: str) -> Recording:
         variable = _plain(group, key, h5py.Dataset, where)
         if (found := attribute(variable, "units")) != unit:
             raise FileDefect(where, f"unit {shown(found)}", unit, column=key)
-        columns["t" if key == "time" else key] = numbers(variable, where, key).astype("f8")
+        columns["t" if key == "time" else key] = _numbers(variable, where, key)
     lengths = {key: len(values) for key, values in columns.items()}
     if "t" not in columns or len(set(lengths.values())) != 1:
         raise FileDefect(where, f"lengths {lengths}", "a time and as many values of every channel")
@@ -121,3 +121,20 @@ def _plain(group: h5py.Group, name: str, kind: type, where: str) -> h5py.Group |
     if not isinstance(group.get(name, getlink=True), h5py.HardLink) or not isinstance(group[name], kind):
         raise FileDefect(where, f"{shown(name)}, which is a link or of another kind", f"a {kind.__name__.lower()}")
     return group[name]
+
+
+def _numbers(variable: h5py.Dataset, where: str, column: str) -> np.ndarray:
+    """The values of one variable: real numbers in one row or column.
+
+    Raises
+    ------
+    FileDefect
+        If the variable holds anything else, or its data are in another file.
+    """
+    if variable.is_virtual or variable.external:
+        raise FileDefect(where, "data in another file", "data in the file itself", column=column)
+    if variable.dtype.kind not in "fiu" or sum(length != 1 for length in variable.shape) != 1:
+        found = f"{variable.dtype} of shape {variable.shape}"
+        raise FileDefect(where, found, "real numbers in one row or column", column=column)
+    require_rows(where, variable.size)
+    return variable[()].astype("f8").ravel()

@@ -11,7 +11,7 @@ from swgsim.recordings.files.source_map import SIGNAL, SourceMap
 from swgsim.recordings.recording import Recording
 from swgsim.tables.endings import files_of, is_data
 from swgsim.tables.file_defect import FileDefect, shown
-from swgsim.tables.formats.matlab import MatlabReader
+from swgsim.tables.formats.limited import LimitedReader
 from swgsim.tables.limits import inside, require_file_count
 from swgsim.tables.measured_table import first_lost, read_measured
 from swgsim.tables.path_pattern import path_groups
@@ -54,8 +54,8 @@ def read_mapped(path: Path, mapping: SourceMap) -> Mapped:
     names = [path.name] if path.is_file() else files_of(folder)
     runs = list(_by_path(path, names, mapping) if mapping.table.path else _by_name(path, names, mapping))
     require_file_count(path, len(runs))
-    with MatlabReader() as matlab:
-        whole = [_read_one(folder, run, mapping, matlab) for run in runs]
+    with LimitedReader() as reader:
+        whole = [_read_one(folder, run, mapping, reader) for run in runs]
     recordings = tuple(part for recording in whole for part in _parts(recording, mapping))
     require_alike(recordings)
     read = {file for run in runs for file in run.files.values()}
@@ -90,7 +90,7 @@ def _by_path(path: Path, names: list[str], mapping: SourceMap) -> Iterator[Run]:
     yield from runs.values()
 
 
-def _read_one(folder: Path, run: Run, mapping: SourceMap, matlab: MatlabReader) -> Recording:
+def _read_one(folder: Path, run: Run, mapping: SourceMap, reader: LimitedReader) -> Recording:
     """One recording; its name is that of its file unless path or map give one."""
     name = next(iter(run.files.values()))
     for file in run.files.values():
@@ -98,7 +98,7 @@ def _read_one(folder: Path, run: Run, mapping: SourceMap, matlab: MatlabReader) 
     stem = name.partition(".")[0] if len(run.files) == 1 else " ".join(map(str, run.known.values()))
     known = facts.parse({"recording": stem, **mapping.facts, **run.known}, name)
     table = read_measured(
-        folder, run.files, mapping.channels, mapping.clock, mapping.sampling_rate_hz, mapping.table.layout, matlab
+        folder, run.files, mapping.channels, mapping.clock, mapping.sampling_rate_hz, mapping.table.layout, reader
     )
     lost = first_lost(folder, run.files, mapping.channels, table, mapping.table.layout)
     if lost:

@@ -1,0 +1,77 @@
+"""Columns of a sheet of a spreadsheet, by the layout that text has too."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Shaped
+
+from swgsim.tables.column_names import column_place
+from swgsim.tables.file_defect import FileDefect, shown
+from swgsim.tables.formats.limited import LimitedReader
+from swgsim.tables.formats.spreadsheet import cells
+from swgsim.tables.layout import LOST_READINGS, Layout
+from swgsim.tables.text import Columns, Start
+from swgsim.tables.text_defects import number_expected
+from swgsim.tables.text_stream import NUMBER
+
+Cell = float | int | str | bool | None
+
+
+def read_spreadsheet(
+    path: Path,
+    name: str,
+    wanted: Sequence[str | int],
+    layout: Layout,
+    texts: Sequence[str | int] = (),
+    reader: LimitedReader | None = None,
+) -> Columns:
+    """Columns of a sheet; parameters, result and errors as for :func:`swgsim.tables.text.read_text`."""
+    rows = cells(path, name, layout.sheet or None, reader)
+    start = _start(rows, name, layout)
+    samples = rows[start.row - 1 :]
+    while samples and not any(cell not in (None, "") for cell in samples[-1]):
+        samples.pop()
+    found: Columns = {}
+    for column in dict.fromkeys(wanted):
+        place = column_place(column, start.names, name, start.names_row)
+        values = [row[place] if place < len(row) else None for row in samples]
+        if column in texts:
+            found[column] = np.array([str(value) for value in values], dtype=object)
+        else:
+            found[column] = _numbers(values, start.names[place], name, layout, start.row)
+    return found
+
+
+def first_row_of(path: Path, name: str, layout: Layout, reader: LimitedReader | None = None) -> int:
+    """Row of the first sample of a sheet."""
+    return _start(cells(path, name, layout.sheet or None, reader), name, layout).row
+
+
+def _start(rows: Sequence[Sequence[Cell]], name: str, layout: Layout) -> Start:
+    """Names of the columns and the first row of numbers."""
+    filled = [row for row, line in enumerate(rows, 1) if any(cell not in (None, "") for cell in line)]
+    if not filled:
+        raise FileDefect(name, "an empty sheet", "a row of numbers for each sample")
+    if not layout.named:
+        first = layout.first_row or filled[0]
+        return Start([str(number + 1) for number in range(max(map(len, rows)))], None, first, "")
+    names_row = layout.header_row or filled[0]
+    first = layout.first_row or names_row + 1
+    if first > len(rows):
+        raise FileDefect(name, f"{len(rows)} rows", "a row of numbers for each sample", first)
+    return Start(["" if cell is None else str(cell).strip() for cell in rows[names_row - 1]], names_row, first, "")
+
+
+def _numbers(
+    values: Sequence[Cell], column: str, name: str, layout: Layout, first_row: int
+) -> Shaped[np.ndarray, " time"]:
+    """The numbers of one column; texts that are numbers count as such."""
+    found = []
+    for row, value in enumerate(values, first_row):
+        lost = value is None or (isinstance(value, str) and value.strip() in (*LOST_READINGS, *layout.lost_values))
+        text = str(value).replace(layout.decimal, ".") if isinstance(value, str) else ""
+        if isinstance(value, bool) or (isinstance(value, str) and not lost and not NUMBER.fullmatch(text)):
+            raise FileDefect(name, shown(str(value)), number_expected(str(value), layout, row, first_row), row, column)
+        found.append(np.nan if lost else float(text) if text else value)
+    return np.array(found)
