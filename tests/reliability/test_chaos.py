@@ -242,4 +242,4 @@ def test_a_store_whose_creation_was_killed_is_created_again(tmp_path: Path) -> N
     for left in (".mlflow.db.tmp", ".mlflow.db.tmp-journal"):
         (tmp_path / left).write_bytes(b"of a process that was killed")
     assert tracking.local_store(str(tmp_path)).experiment_id
-    assert {path.name.split("-")[0] for path in tmp_path.iterdir()} == {"creation.lock", "mlflow.db"}
+    assert {path.name.split("-")[0] for path in tmp_path.iterdir()} == {"mlflow.db"}

@@ -15,6 +15,7 @@ from swgsim.recordings.files.file_defect import FileDefect, shown
 from swgsim.recordings.files.limits import require_expansion, require_readable, require_rows
 from swgsim.recordings.files.matlab import MatlabReader
 from swgsim.recordings.files.recording_file import numbers
+from swgsim.storage.hdf5_reader import opened
 
 Columns = dict[str, Float[np.ndarray, " time"]]
 # Classes of MATLAB that are numbers; all others are refused by their name.
@@ -62,7 +63,7 @@ def _read_csv(path: Path, name: str, wanted: Sequence[str]) -> Columns:
 
 def _read_matlab_73(path: Path, name: str, wanted: Sequence[str]) -> Columns:
     """A MATLAB file of version 7.3, which is HDF5 behind a text of 512 bytes."""
-    with h5py.File(path, "r") as file:
+    with opened(path) as file:
         _require_present(name, wanted, file)
         for column in wanted:
             link = file.get(column, getlink=True)
