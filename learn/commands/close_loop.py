@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import logging
 from collections.abc import Mapping
 from typing import Any
 
@@ -10,6 +11,8 @@ from swgsim.identification.report import close_loop as of_gauges
 from swgsim.joint import close_joint_loop as of_joint
 
 EXPERIMENT = "loop"
+log = logging.getLogger(__name__)
+
 # Choices that apply to recordings of a robot joint only, and to strain gauges only.
 OF_JOINT: tuple[str, ...] = ("joint", "signal", "holdout", "without")
 OF_GAUGES: tuple[str, ...] = ("commissioning", "mapping", "commissioning_mapping", "effects", "truth")
@@ -28,7 +31,16 @@ def require_one_kind(config: Mapping[str, Any]) -> None:
 
 
 def record(config: Mapping[str, Any], outcome: Outcome) -> None:
-    """Keep the answer as an MLflow run."""
+    """Keep the answer as an MLflow run; the answer is written already, so a run that cannot be kept is a warning."""
+    from learn.tracking import StoreAway
+
+    try:
+        _record(config, outcome)
+    except StoreAway as error:
+        log.warning("the answer is in %s; its run could not be kept: %s", config["out"], error)
+
+
+def _record(config: Mapping[str, Any], outcome: Outcome) -> None:
     import pandas as pd
 
     from learn import tracking

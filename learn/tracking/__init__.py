@@ -9,7 +9,7 @@ os.environ.setdefault("MLFLOW_ENABLE_ARTIFACTS_PROGRESS_BAR", "false")  # one fo
 
 from learn.tracking.job_run import Results, job_run
 from learn.tracking.queries import finished_metrics, finished_runs, table_of
-from learn.tracking.store import EXPERIMENT, ServerAway, Store, local_store, server_store
+from learn.tracking.store import EXPERIMENT, Store, StoreAway, local_store, server_store
 from learn.tracking.sweeps import SWEEP, close_sweep, find_sweep, open_sweep
 from learn.tracking.upload import upload
 
@@ -17,8 +17,8 @@ __all__ = [
     "EXPERIMENT",
     "SWEEP",
     "Results",
-    "ServerAway",
     "Store",
+    "StoreAway",
     "close_sweep",
     "find_sweep",
     "finished_metrics",

@@ -1,4 +1,7 @@
-"""The run of one job; if the server goes away meanwhile, the results are kept on disk until they are uploaded."""
+"""The run of one job; if the server goes away meanwhile, the results are kept on disk until they are uploaded.
+
+If a folder takes no more runs, the error names another choice.
+"""
 
 import logging
 import os
@@ -13,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from learn.tracking.store import Store, lost
+from learn.tracking.store import Store, StoreAway, lost
 from learn.tracking.sweeps import SWEEP
 
 if TYPE_CHECKING:
@@ -74,6 +77,11 @@ def job_run(
         Resolved configuration, kept as ``config.yaml``.
     tags : mapping
         Further facts.
+
+    Raises
+    ------
+    StoreAway
+        If a folder takes no runs.
     """
     from mlflow.entities import Param
 
@@ -108,15 +116,22 @@ def job_run(
 
 
 def _pending(store: Store, name: str, error: Exception) -> Store:
-    """The store that keeps the job instead, with a warning; without one the error is raised again."""
+    """The store that keeps the job instead, with a warning; without one the error is raised, with a remedy."""
     if store.pending is None:
-        raise error
+        if store.folder is None or isinstance(error, StoreAway) or _is_defect(error):
+            raise error
+        raise store.away(error) from error
     log.warning(
         "%s: the MLflow server at %s has gone away; the results are kept in %s. When it is back, upload them with "
         "'swg upload tracking.uri=%s tracking.pending=%s'. The error was: %s",
         name, store.uri, store.pending.folder, store.uri, store.pending.folder, str(error)[:300],
     )  # fmt: skip
     return store.pending
+
+
+def _is_defect(error: Exception) -> bool:
+    """Whether no store takes a run, such as one with a wrong name."""
+    return getattr(error, "error_code", None) == "INVALID_PARAMETER_VALUE"
 
 
 def _now() -> int:

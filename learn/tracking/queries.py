@@ -15,8 +15,8 @@ def finished_metrics(store: Store, key: str) -> dict[str, float] | None:
 
     Raises
     ------
-    ServerAway
-        If the server does not answer. Within a sweep the jobs go on instead, and wait for upload.
+    StoreAway
+        If the store does not answer. Within a sweep the jobs go on instead, and wait for upload.
     """
     waiting = _metrics(store.pending, key) if store.pending and store.pending.exists else None
     try:

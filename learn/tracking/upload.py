@@ -27,7 +27,7 @@ def upload(server: Store) -> int:
     Raises
     ------
     ValueError
-        If there is no pending store, or it has no finished run, or the server does not answer.
+        If there is no pending store, or it has no finished run, or one of both stores does not answer.
     """
     waiting = server.pending
     if waiting is None or waiting.folder is None or not waiting.exists:
@@ -35,8 +35,9 @@ def upload(server: Store) -> int:
             f"no runs to upload to {server.uri} in {waiting.folder if waiting else None}: "
             f"'swg upload tracking.uri={server.uri} tracking.pending=FOLDER' uploads those of a local store"
         )
+    local = waiting.client  # a folder that cannot be used is named first
     with sole_maker(waiting.folder / "upload", wait=True):
-        names = [experiment.name for experiment in waiting.client.search_experiments()]
+        names = [experiment.name for experiment in local.search_experiments()]
         uploads = [Upload(*(replace(each, experiment=name) for each in (waiting, server))) for name in names]
         if not any(each.jobs for each in uploads):
             raise ValueError(f"{waiting.folder} has no finished run to upload: give another folder as tracking.pending")

@@ -4,7 +4,6 @@ Locks are those of Linux and macOS (flock). The kernel releases them when a proc
 """
 
 import errno
-import fcntl
 import json
 import os
 from collections.abc import Iterator, Mapping
@@ -12,6 +11,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryFile
 from typing import IO, Any
+
+try:
+    import fcntl
+except ModuleNotFoundError:
+    raise ImportError("swgsim needs Linux or macOS: on Windows run it in WSL") from None
 
 # Remedies where a file cannot be written.
 ROOM = "make room and start again, what is finished is kept"
@@ -125,8 +129,10 @@ def _locked(lock: Path, path: Path, wait: bool) -> IO[bytes]:
         raw = lock.open("wb")
         try:
             fcntl.flock(raw, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
+        except OSError as error:
             raw.close()
+            if not isinstance(error, BlockingIOError):
+                raise
             raise RuntimeError(f"another process is making {path}: wait for it, or choose another folder") from None
         if _is_at(raw, lock):
             return raw

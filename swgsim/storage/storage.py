@@ -18,6 +18,7 @@ import pandas as pd
 
 from swgsim.common.files import replacing
 from swgsim.storage.attributes import attribute, set_attributes
+from swgsim.storage.hdf5_reader import opened
 from swgsim.storage.hdf5_writer import created
 from swgsim.storage.labelled_signals import CLASSES, COLUMNS, SENSORS, LabelledSignals
 
@@ -219,7 +220,7 @@ def shape(path: Path) -> tuple[int, int, int]:
 def _opened(path: Path) -> Iterator[h5py.File]:
     """A file to read; every error of the library about its content becomes a ValueError."""
     try:
-        with h5py.File(path) as file:
+        with opened(path) as file:
             yield file
     except FileNotFoundError:
         raise

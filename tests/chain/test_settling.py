@@ -8,12 +8,12 @@ from jaxtyping import Complex
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
-from swgsim.chain import unsteady
+from swgsim.chain import settling, unsteady
 from swgsim.chain.dynamics import OMEGA_IN, PHI_IN, PHI_OUT, Drive, State
 from swgsim.chain.motion import Motion, NoSteadyState, run, shooting
 from swgsim.chain.newton import TIMES, stable_revolution
 from swgsim.chain.settling import steady_revolution, steady_state
-from swgsim.chain.unsteady import mean_revolution
+from swgsim.chain.unsteady import Averaged, mean_revolution
 from swgsim.common.seeds import generator
 from swgsim.gear.gear import OperatingPoint, Transmission
 
@@ -127,10 +127,11 @@ def test_the_mean_revolution_of_a_hunting_gear_is_that_of_solve_ivp() -> None:
     drive = Drive([HUNTING[0]], [HUNTING[1]])
     assert stable_revolution(drive, 0.0, POINTS) is None
     expected, _ = integrated(HUNTING, drive.at_rest_in_rotating_frame(), 240, averaged=160)
-    found = lines(steady_revolution(drive, np.zeros(1), 256))
+    found = lines(steady_revolution(drive, np.zeros(1), POINTS))
     np.testing.assert_allclose(found, expected, atol=0.05 * np.abs(expected[1:]).max())
 
 
+@pytest.mark.end_to_end
 def test_the_mean_of_a_motion_that_repeats_is_that_motion() -> None:
     points = [OperatingPoint(n, T) for n in (1500, 2000) for T in (7, 70)]
     drive, start = Drive([NOMINAL] * 4, points), np.array([0.0, 0.7, -0.4, 3.0])
@@ -149,6 +150,7 @@ def test_newtons_method_finds_what_the_harmonic_balance_finds() -> None:
     np.testing.assert_allclose(found.start[PHI_IN], 0.7)
 
 
+@pytest.mark.end_to_end
 def test_a_run_that_is_hard_leaves_the_others_of_its_batch_as_they_are() -> None:
     easy = [(NOMINAL, OperatingPoint(n, 39)) for n in (1500, 3000)]
     mixed = Drive(*zip(easy[0], LIFTING[0], easy[1], strict=True))
@@ -161,23 +163,40 @@ def test_a_run_that_is_hard_leaves_the_others_of_its_batch_as_they_are() -> None
     np.testing.assert_allclose(window.T_out[0], together.T_out[1], atol=0.02 * np.ptp(window.T_out))
 
 
+@pytest.mark.end_to_end
 def test_no_gear_of_the_hard_corner_raises() -> None:
     """Without those that hunt, whose integration takes long."""
     found = revolution(drawn(generator("hard corner"), 30, resonant=True, slowest=3.0))
     assert np.isfinite(found.T_out).all()
 
 
+@pytest.fixture
+def each_mean_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same mean revolution is integrated once: a motion and a state from it are two questions."""
+    known: dict[tuple[object, ...], Averaged] = {}
+
+    def remembered(drive: Drive, start: np.ndarray, points: int) -> Averaged:
+        key = (drive.transmissions, drive.points, start.tobytes(), points)
+        if key not in known:
+            known[key] = mean_revolution(drive, start, points)
+        return known[key]
+
+    monkeypatch.setattr(settling, "mean_revolution", remembered)
+
+
 @pytest.mark.slow
+@pytest.mark.usefixtures("each_mean_once")
 def test_no_gear_of_two_hundred_raises() -> None:
     """Half of them over the whole range, half close to a resonance."""
     rng = generator("two hundred gears")
     cases = [*drawn(rng, 100, resonant=False), *drawn(rng, 100, resonant=True)]
-    found = revolution(cases)
+    drive = Drive(*zip(*cases, strict=True))
+    found = steady_revolution(drive, np.zeros(len(cases)), TIMES)  # at as many times as a state is searched
     assert np.isfinite(found.T_out).all()
     speed, load = ([getattr(point, name) for _, point in cases] for name in ("n_in_rpm", "T_out"))
     np.testing.assert_allclose(found.omega_in[:, :-1].mean(axis=1) * 30 / np.pi, speed, rtol=0.01)
     np.testing.assert_allclose(found.T_out[:, :-1].mean(axis=1), load, rtol=0.05, atol=1.0)
-    states = steady_state(Drive(*zip(*cases, strict=True)))
+    states = steady_state(drive)
     assert np.isfinite(states).all()
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from chain_fixtures import small_plan
 from fabricated import recordings
+from prepared_store import prepared
 
 from learn import tracking
 from swgsim.common import cluster
@@ -191,7 +192,7 @@ def test_engines_that_are_none_are_answered_with_the_choices(chosen: dict[str, s
 def test_a_sweep_elsewhere_loses_no_run(engine: str, two_workers: str, tmp_path: Path) -> None:
     made = recordings(variants=4)
     storage.write(tmp_path / "small-clean.h5", [made], len(made))
-    where = ["grid=small", f"data={tmp_path}", f"tracking.folder={tmp_path}", f"hydra.sweep.dir={tmp_path}"]
+    where = ["grid=small", f"data={tmp_path}", f"tracking.folder={prepared(tmp_path)}", f"hydra.sweep.dir={tmp_path}"]
     words = ["compute=dask", f"scheduler={two_workers}"] if engine == "dask" else ["hydra/launcher=submitit_local"]
     command = [sys.executable, "scripts/train.py", "-m", "classifier=nb,knn", *where, *words]
     answer = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)

@@ -10,7 +10,9 @@ import pandas as pd
 import pytest
 import yaml
 from joint_fixtures import Hidden, trajectories
+from prepared_store import prepared
 
+from learn import tracking
 from swgsim.effects.text import from_text
 from swgsim.joint import JointAnswer, JointRecordings, cases, identify_joint, recordings_of
 from swgsim.joint import close_joint_loop as job
@@ -223,8 +225,14 @@ def test_configurations_are_refused_before_anything_is_computed(files, tmp_path)
 def test_the_command_keeps_the_answer_as_a_run(files, tmp_path):
     command = [sys.executable, str(Path(job.__file__).parents[2] / "scripts" / "close_loop.py")]
     choices = [f"recordings={files / 'logs'}", f"source={files / 'source.yaml'}", "holdout=day4"]
-    choices += ["searched=[stribeck_friction]", f"out={tmp_path / 'answer'}", f"tracking.folder={tmp_path / 'runs'}"]
+    choices += [
+        "searched=[stribeck_friction]",
+        f"out={tmp_path / 'answer'}",
+        f"tracking.folder={prepared(tmp_path / 'runs')}",
+    ]
     done = subprocess.run([*command, *choices], capture_output=True, text=True, cwd=tmp_path, check=False)
     assert done.returncode == 0, done.stderr
     assert "effects found" in done.stdout
-    assert (tmp_path / "runs").is_dir()
+    store = tracking.local_store(str(tmp_path / "runs"), "loop")
+    (run,) = store.client.search_runs([store.experiment_id])
+    assert run.info.status == "FINISHED"

@@ -183,7 +183,7 @@ def test_jobs_of_a_sweep_go_on_without_their_server_and_say_so(data, tmp_path, m
 def test_a_job_stops_before_training_if_the_server_is_absent(data, tmp_path, monkeypatch):
     monkeypatch.setattr(zero_shot, "results", not_trained)
     uri = f"http://127.0.0.1:{free_port()}"
-    with pytest.raises(tracking.ServerAway, match=f"no MLflow server answers at tracking.uri={uri}: start it"):
+    with pytest.raises(tracking.StoreAway, match=f"no MLflow server answers at tracking.uri={uri}: start it"):
         job.run(on_server(data, uri, tmp_path))
 
 

@@ -10,14 +10,13 @@ import sys
 from pathlib import Path
 from typing import TypeVar
 
-import h5py
-
 from swgsim.common.files import replacing
 from swgsim.common.version import __version__
 from swgsim.effects.base import Effect
 from swgsim.effects.text import entries, from_entries
 from swgsim.storage.attributes import attribute, set_attributes
 from swgsim.storage.dataclass_tree import Notation, Room, layout_of, read_member, write_member
+from swgsim.storage.hdf5_reader import opened
 from swgsim.storage.hdf5_writer import created
 from swgsim.storage.storage import SEAL_SIZE, is_sealed, seal, verify
 
@@ -63,7 +62,7 @@ def read_unit(path: Path, kind: type[T]) -> T:
         raise ValueError(f"{path}: no such file, expected a unit; {AGAIN}")
     verify(path, WHAT, AGAIN)
     try:
-        with h5py.File(path, "r") as file:
+        with opened(path) as file:
             found, by = str(attribute(file, "version"))[:80], str(attribute(file, "swgsim"))[:80]
             if found != _version(kind):
                 raise ValueError(

@@ -11,6 +11,7 @@ from swgsim.recordings.files import facts
 from swgsim.recordings.files.assembly import assemble, require_alike, require_sound
 from swgsim.recordings.recording import CHANNELS, Recording
 from swgsim.storage.attributes import attribute, set_attributes
+from swgsim.storage.hdf5_reader import opened
 from swgsim.storage.hdf5_writer import created
 from swgsim.storage.storage import SEAL_SIZE, seal, verify
 from swgsim.tables.file_defect import FileDefect, shown
@@ -48,7 +49,7 @@ def read_file(path: Path) -> tuple[Recording, ...]:
     require_readable(path)
     verify(path)
     try:
-        with h5py.File(path, "r") as file:
+        with opened(path) as file:
             title = attribute(file, "title")
             if title != TITLE:
                 expected = f"a file titled {TITLE!r}; data sets of swg generate have another layout"

@@ -13,6 +13,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from swgsim.storage import hdf5_reader
 from swgsim.tables.file_defect import FileDefect
 from swgsim.tables.formats.contents import MOST_NAMES, OBJECTS, Contents, Listed, few, meant
 
@@ -25,7 +26,7 @@ Entry = tuple[Listed, Callable[[], np.ndarray]]
 @contextmanager
 def opened(path: Path, file: str, wanted: Sequence[str | int] | None) -> Iterator[Contents]:
     """The variables of a file in the order of their names, and the members of its groups."""
-    with h5py.File(path, "r") as source:
+    with hdf5_reader.opened(path) as source:
         matlab = any(_attribute(source[name], "MATLAB_class") for name in source if _inside(source, name))
         walk = _Walk(source, file, "." if matlab else "/", wanted)
         found = few(walk.members(source, "", 0), file)
