@@ -23,7 +23,7 @@ def there(way=0.8, seconds=4.0, standing=1.0):
     rate = np.pi / seconds
     demand = np.stack([1 - np.cos(rate * time), rate * np.sin(rate * time), rate**2 * np.cos(rate * time)]) * way / 2
     rest = np.zeros((3, round(standing / CYCLE)))
-    return np.hstack([demand, rest + [[way], [0], [0]]])
+    return np.hstack([demand, rest + np.array([[way], [0], [0]])])
 
 
 @pytest.mark.parametrize("width", [0.0, 2e-3])
@@ -33,12 +33,12 @@ def test_the_current_at_steady_speed_is_that_of_coulomb_and_viscous_friction(spe
     assert current.mean() == pytest.approx(np.sign(speed) * (6 + 4 * abs(speed)) / 10, rel=1e-3)
 
 
-@pytest.mark.parametrize("speed", [0.01, 0.05, 0.5])
-def test_lugre_at_steady_speed_is_its_stribeck_curve(speed):
+@pytest.mark.parametrize(("speed", "excess"), [(0.025, 0.8), (0.05, 0.5), (0.5, 1 / 101)])
+def test_lugre_at_steady_speed_is_its_stribeck_curve(speed, excess):
     plant = PLANT._replace(bristle=3e4, stiction=9.0, stribeck=0.05)
     current = moved(plant, DRIVE, steady(speed), 0.0)[3, -1000:]
+    assert stribeck(plant, speed) == pytest.approx(6 + 3 * excess)
     assert current.mean() == pytest.approx((stribeck(plant, speed) + 4 * speed) / 10, rel=5e-3)
-    assert 6 < stribeck(plant, speed) < 9
 
 
 @pytest.mark.parametrize("start", [0.1, 2.0])
@@ -70,6 +70,14 @@ def test_work_of_the_motor_is_heat_of_friction_and_height(extra):
     heat = ((level * np.abs(speed) + plant.viscous * speed**2) * CYCLE).sum()
     height = plant.gravity * (np.sin(angle[-1] + 0.5) - np.sin(0.5))
     assert work == pytest.approx(heat + height, rel=0.01)
+
+
+def test_the_kinematic_error_is_a_lever_of_the_load_on_the_motor():
+    plant = PLANT._replace(gravity=15.0, stiffness=3e4, error=2e-4, ratio=50.0)
+    angle, _, _, current, _, _ = moved(plant, DRIVE, steady(0.01, 15.0), 0.0)[:, 2000:]
+    waves = np.stack([np.cos(100 * angle), np.sin(100 * angle), angle**2, angle, np.ones_like(angle)], axis=1)
+    size = np.hypot(*np.linalg.lstsq(waves, current, rcond=None)[0][:2])
+    assert size == pytest.approx(15.0 * 2 * 50 * 2e-4 / 10, rel=0.05)
 
 
 def test_the_kinematic_error_makes_its_ripple_twice_per_motor_revolution():

@@ -49,9 +49,7 @@ def joint(seed: int, kind: str = "healthy") -> Campaign:
         for k, (form, speed) in enumerate(zip(forms, speeds, strict=True)):
             warm = ambient + truth.warming * (1 - np.exp(-k * PAUSE / WARM_UP)) - REFERENCE
             thin = np.exp(-truth.viscous_rate * warm)
-            plant = truth.plant._replace(
-                gravity=payload * truth.plant.gravity, viscous=thin * truth.plant.viscous
-            )
+            plant = truth.plant._replace(gravity=payload * truth.plant.gravity, viscous=thin * truth.plant.viscous)
             demand = form(truth.limits._replace(speed=speed), rng)
             moving.append(_recorded(f"day{day}_run{k}", f"day{day}", truth, plant, demand, base, rng))
         still = np.zeros((3, round(REST / CYCLE)))

@@ -1,13 +1,14 @@
-"""A joint of random size. Ranges are from data sheets and the literature, and were set before any answer was seen.
+"""A joint of random size. Ranges were set before any answer was seen.
 
-Sizes: Universal Robots UR10e (12 kinds of torque limit: 330, 150, 56 N m; 120 to 180 deg/s), KUKA LBR iiwa (320 to 40
-N m; 75 to 180 deg/s), Franka Panda (87 and 12 N m; accelerations 7.5 to 20 rad/s^2), Kinova Gen3 (54 and 34 N m).
-Friction: no-load running torque and starting torque in the catalogue of Harmonic Drive SE (CSG-2A), 3 to 15 % of the
-rated torque, and C. Gaz et al., Dynamic identification of the Franka Emika Panda robot, IEEE RA-L 4(4), 2019.
-Temperature, Stribeck curve and load: A. C. Bittencourt and S. Gunnarsson, Static friction in a robot joint - modeling and
-identification of load and temperature effects, ASME J. Dyn. Syst. Meas. Control 134(5), 2012.
-Encoders: 17 to 20 bit (RLS AksIM-2), or 14 bit on the motor. Torque sensors: 0.05 to 0.3 % of the range noise, 0.1 to
-1 % zero. What has no source is an estimate and says so.
+- Torque, speed, acceleration: data sheets of UR10e (330, 150 and 56 N m; 2.1 to 3.1 rad/s), KUKA LBR iiwa (320 to 40
+  N m; 1.3 to 3.1 rad/s), Franka Panda (87 and 12 N m; 2.2 and 2.6 rad/s; 7.5 to 20 rad/s^2), Kinova Gen3 (54 and
+  34 N m).
+- Friction: estimate after the no-load running and starting torques in the catalogues of Harmonic Drive SE (CSG-2A).
+- Temperature and load: A. C. Bittencourt and S. Gunnarsson, Static friction in a robot joint: modeling and
+  identification of load and temperature effects, ASME J. Dyn. Syst. Meas. Control 134, 051013, 2012.
+- Stiffness, hardening and kinematic error: estimate after the same catalogues (K1, K2, K3; positioning accuracy).
+- Encoders: 17 to 20 bit at the output (RLS AksIM-2), or 14 bit on the motor. Noise and zeros: estimates, in shares of
+  the rated current and torque.
 """
 
 from collections.abc import Mapping

@@ -3,7 +3,7 @@
 Sharp Coulomb friction is set-valued and solved implicitly, so that the joint really sticks: V. Acary and B. Brogliato,
 Numerical Methods for Nonsmooth Dynamical Systems, Springer 2008. Two masses on a spring: M. W. Spong, Modeling and
 control of elastic joint robots, ASME J. Dyn. Syst. Meas. Control 109, 1987. Kinematic error of a strain wave gear:
-T. D. Tuttle and W. P. Seering, A nonlinear model of a harmonic drive gear transmission, IEEE Trans. Robot. Autom. 12(3),
+T. D. Tuttle and W. P. Seering, A nonlinear model of a harmonic drive gear transmission, IEEE Trans. Robot. Autom. 12,
 1996; its torque on the motor follows from virtual work.
 """
 
@@ -61,8 +61,8 @@ def stribeck(plant: Plant, speed: float) -> float:
 def braked(plant: Plant, inertia: float, speed: float, push: float, load: float, bend: float) -> tuple[float, float]:
     """Speed and bending of the bristles after a step.
 
-    LuGre: C. Canudas de Wit, H. Olsson, K. J. Astrom and P. Lischinsky, A new model for control of systems with friction,
-    IEEE Trans. Autom. Control 40(3), 1995; with their damping sqrt(stiffness * inertia).
+    LuGre: C. Canudas de Wit, H. Olsson, K. J. Astrom and P. Lischinsky, A new model for control of systems with
+    friction, IEEE Trans. Autom. Control 40, 1995; with their damping sqrt(stiffness * inertia).
     """
     if plant.bristle > 0:
         bent = (bend + STEP * speed) / (1 + STEP * plant.bristle * abs(speed) / stribeck(plant, speed))
