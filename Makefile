@@ -34,7 +34,7 @@ JOBS := $(shell echo $$(( ($(CORES) + 3) / 4 )))
 export MLFLOW_DISABLE_TELEMETRY := true
 
 .DEFAULT_GOAL := help
-.PHONY: help install install-dev site data experiments report paper transfer loop blind other-benches sim-to-real joints embedded test lint fuzz chaos scale benchmark convergence docs ui clean $(TABLES)
+.PHONY: help install install-dev site data experiments report paper transfer loop blind other-benches robots sim-to-real joints embedded test lint fuzz chaos scale benchmark convergence docs ui clean $(TABLES)
 
 help:  ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-12s %s\n", $$1, $$2}'
@@ -91,6 +91,9 @@ blind: $(READY)  ## the loop judged on sealed cases, report/blind.json (SMALL=1:
 
 other-benches: $(DEV)  ## the loop on gears that other authors simulated, report/other_benches.json (SMALL=1: one gear of each)
 	OMP_NUM_THREADS=1 $(BIN)/python tests/benches benches $(if $(SMALL),--cases 6 --report report/small)
+
+robots: $(DEV)  ## the loop on virtual robot joints of other physics: false effects, report/robots.json (SMALL=1: a dozen joints)
+	OMP_NUM_THREADS=1 $(BIN)/python tests/robots robots $(if $(SMALL),--count 6 --foreign 1 --report report/small)
 
 sim-to-real: $(READY)  ## classifiers before and after the loop found an undeclared effect, report/sim_to_real.html (SMALL=1: one effect)
 	$(SWG) sim-to-real $(if $(SMALL),grid.variants=4 $(addprefix ~undeclared.,$(LEFT_OUT)))
