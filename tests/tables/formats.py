@@ -11,8 +11,15 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from textwrap import dedent
 
+import h5py
 import numpy as np
+import openpyxl
 import pandas as pd
+import pyuff
+from asammdf import MDF, Signal
+from format_fixtures import function
+from nptdms import ChannelObject, TdmsWriter
+from scipy.io import savemat
 
 HEAD = Path(__file__).parent / "formats_head.md"
 PAGE = Path(__file__).parents[2] / "docs" / "formats.md"
@@ -249,7 +256,104 @@ TEXT = (
             table("run1.csv", LOG | {"qd": 1.5 * OMEGA}), "accept: [velocity_scale]" + OF_LOG),
 )  # fmt: skip
 
-EXAMPLES = TEXT
+OF_LOG_IN = OF_LOG.replace("column: t,", "column: time,")
+
+
+def saved(name: str, save: Callable[[Path], object]) -> Callable[[Path], None]:
+    """A writer of one binary file."""
+
+    def write(folder: Path) -> None:
+        save(folder / name)
+
+    return write
+
+
+def save_matlab_73(path: Path) -> None:
+    """As MATLAB does: HDF5 with transposed rows, behind a block of 512 bytes; a struct is a group."""
+    with h5py.File(path, "w", userblock_size=512) as file:
+        group = file.create_group("bench")
+        group.attrs["MATLAB_class"] = np.bytes_("struct")
+        for name, values in PLAIN.items():
+            group.create_dataset(name, data=values[None]).attrs["MATLAB_class"] = np.bytes_("double")
+
+
+def save_hdf5(path: Path) -> None:
+    """Groups and variables."""
+    with h5py.File(path, "w") as file:
+        for name, values in PLAIN.items():
+            file[f"bench/{name}"] = values
+
+
+def save_tdms(path: Path) -> None:
+    """Channels of one group, whose time is in their properties."""
+    with TdmsWriter(path) as writer:
+        channels = (ChannelObject("bench", name, values, {"wf_increment": 1e-3}) for name, values in PLAIN.items())
+        writer.write_segment([each for each in channels if each.channel != "t"])
+
+
+def save_mdf(path: Path) -> None:
+    """Channels of one group, with their time."""
+    with MDF(version="4.10") as file:
+        file.append([Signal(values, TIME, name=name) for name, values in PLAIN.items() if name != "t"])
+        file.save(path, overwrite=True)
+
+
+def save_uff(path: Path) -> None:
+    """Functions of data set 58 over even times."""
+    functions = [
+        function(name, np.asarray(values), abscissa_min=0.0, abscissa_inc=1e-3, x=TIME)
+        for name, values in PLAIN.items()
+        if name != "t"
+    ]
+    pyuff.UFF(str(path)).write_sets(functions, "overwrite")
+
+
+def save_xlsx(path: Path) -> None:
+    """A sheet with a title above the names."""
+    book = openpyxl.Workbook()
+    book.active.title = "data"
+    for row in (
+        ["Bench 3"],
+        list(PLAIN),
+        *zip(*(np.asarray(values).tolist() for values in PLAIN.values()), strict=True),
+    ):
+        book.active.append(row)
+    book.save(path)
+
+
+SHARES = np.array([[1.5], [1.0], [2.5]])  # of three joints
+STRUCTS = {
+    "time": TIME,
+    "Joint_state": {"q": SHARES * Q, "dq": SHARES * OMEGA},
+    "Motor": {"i": JOINT["current"]},
+}
+BINARY = (
+    Example("MATLAB: variables whose names differ by file", GAUGES,
+            saved("run1.mat", lambda path: savemat(path, {f"X097_{name}": values for name, values in PLAIN.items()})),
+            IN_PLAIN.replace("column: ", "column: X*_")),
+    Example("MATLAB: structs, one with matrices of all joints", JOINT,
+            saved("run1.mat", lambda path: savemat(path, STRUCTS)),
+            OF_LOG_IN.replace("column: qd", "column: 'Joint_state.dq[2]'")
+            .replace("column: q,", "column: 'Joint_state.q[2]',").replace("column: i", "column: Motor.i")),
+    Example("MATLAB: a table, saved by save('run1.mat', '-struct', 's') after s = table2struct(T, 'ToScalar', true)",
+            GAUGES, saved("run1.mat", lambda path: savemat(path, PLAIN)), IN_PLAIN),
+    Example("MATLAB 7.3: a struct", GAUGES, saved("run1.mat", save_matlab_73),
+            IN_PLAIN.replace("column: ", "column: bench.")),
+    Example("HDF5: variables in a group", GAUGES, saved("run1.h5", save_hdf5),
+            IN_PLAIN.replace("column: ", "column: bench/")),
+    Example("Parquet", GAUGES, saved("run1.parquet", lambda path: pd.DataFrame(PLAIN).to_parquet(path)), IN_PLAIN),
+    Example("Excel: a sheet with a title above the names", GAUGES, saved("run1.xlsx", save_xlsx),
+            "sheet: data\nheader_row: 2" + IN_PLAIN),
+    Example("TDMS: the time is that of the channels", GAUGES, saved("run1.tdms", save_tdms),
+            IN_PLAIN.replace("column: t,", "column: time,")),
+    Example("MDF 4: the time is that of the channels", GAUGES, saved("run1.mf4", save_mdf),
+            IN_PLAIN.replace("column: t,", "column: time,")),
+    Example("UFF58: the time is that of the functions", GAUGES, saved("run1.uff", save_uff),
+            IN_PLAIN.replace("column: t,", "column: time,").replace("column: angle", "column: 'angle*'")
+            .replace("column: torque", "column: 'torque*'").replace("column: bridge", "column: 'bridge*'")),
+)  # fmt: skip
+
+EXAMPLES = (*TEXT, *BINARY)
 
 
 def first_rows(folder: Path) -> str:
