@@ -131,7 +131,6 @@ def test_the_mean_revolution_of_a_hunting_gear_is_that_of_solve_ivp() -> None:
     np.testing.assert_allclose(found, expected, atol=0.05 * np.abs(expected[1:]).max())
 
 
-@pytest.mark.end_to_end
 def test_the_mean_of_a_motion_that_repeats_is_that_motion() -> None:
     points = [OperatingPoint(n, T) for n in (1500, 2000) for T in (7, 70)]
     drive, start = Drive([NOMINAL] * 4, points), np.array([0.0, 0.7, -0.4, 3.0])
