@@ -109,7 +109,7 @@ def _read_group(file: h5py.File, name: str, where: str) -> Recording:
         variable = _plain(group, key, h5py.Dataset, where)
         if (found := attribute(variable, "units")) != unit:
             raise FileDefect(where, f"unit {shown(found)}", unit, column=key)
-        columns["t" if key == "time" else key] = numbers(variable, where, key)
+        columns["t" if key == "time" else key] = _numbers(variable, where, key)
     lengths = {key: len(values) for key, values in columns.items()}
     if "t" not in columns or len(set(lengths.values())) != 1:
         raise FileDefect(where, f"lengths {lengths}", "a time and as many values of every channel")
@@ -123,7 +123,7 @@ def _plain(group: h5py.Group, name: str, kind: type, where: str) -> h5py.Group |
     return group[name]
 
 
-def numbers(variable: h5py.Dataset, where: str, column: str) -> np.ndarray:
+def _numbers(variable: h5py.Dataset, where: str, column: str) -> np.ndarray:
     """The values of one variable: real numbers in one row or column.
 
     Raises
