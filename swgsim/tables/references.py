@@ -49,7 +49,7 @@ def referred(wanted: str | int, contents: Contents, file: str) -> Reference:
         raise _missing(wanted, contents, file)
     entry = contents.listed[place]
     _require_numbers(entry, contents, file)
-    if line is not None or _is_matrix(entry.shape):
+    if line is not None or _is_matrix(entry):
         _require_line(entry, line, file)
     return Reference(place, line)
 
@@ -71,11 +71,10 @@ def _numbered(wanted: int, contents: Contents, file: str) -> Reference:
     """The column of a number from 1."""
     names = [entry.name for entry in contents.listed]
     if not contents.ordered:
-        matrices = [place for place, entry in enumerate(contents.listed) if entry.kind in NUMBERS]
+        matrices = [place for place, entry in enumerate(contents.listed) if _is_matrix(entry)]
         if len(matrices) != 1:
-            raise FileDefect(
-                file, f"the number {wanted} for one of {len(names)} variables", "a name: they have no order"
-            )
+            found = f"the number {wanted} and {len(matrices)} matrices"
+            raise FileDefect(file, found, "a name: the variables have no order")
         entry = contents.listed[matrices[0]]
         _require_line(entry, wanted - 1, file)
         return Reference(matrices[0], wanted - 1)
@@ -153,8 +152,9 @@ def _require_line(entry: Listed, line: int | None, file: str) -> None:
         raise FileDefect(file, found, expected, column=entry.name)
 
 
-def _is_matrix(shape: tuple[int, ...]) -> bool:
-    return len([length for length in shape if length != 1]) == 2
+def _is_matrix(entry: Listed) -> bool:
+    """Whether an entry is numbers in several rows and columns."""
+    return entry.kind in NUMBERS and len([length for length in entry.shape if length != 1]) == 2
 
 
 def _members(entry: Listed, contents: Contents) -> list[Listed]:

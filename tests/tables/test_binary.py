@@ -162,10 +162,11 @@ def test_a_bomb_of_cells_is_refused(tmp_path: Path, name: str, monkeypatch: pyte
         cells(tmp_path / "a.xlsx", "a.xlsx")
 
 
-def test_a_claimed_width_is_not_believed(tmp_path: Path, reader: LimitedReader) -> None:
-    row = '<row r="1"><c r="A1"><v>1</v></c></row>'
-    with_rows(tmp_path / "a.xlsx", f'<dimension ref="A1:XFD1048576"/><sheetData>{row}</sheetData>')
-    assert cells(tmp_path / "a.xlsx", "a.xlsx", None, reader) == [[1]]
+@pytest.mark.parametrize("claimed", ["A1", "A1:XFD1048576"])
+def test_a_claimed_size_is_not_believed(tmp_path: Path, reader: LimitedReader, claimed: str) -> None:
+    row = '<row r="1"><c r="A1"><v>1</v></c><c r="B1"><v>2</v></c></row>'  # other programs claim A1 and write more
+    with_rows(tmp_path / "a.xlsx", f'<dimension ref="{claimed}"/><sheetData>{row}</sheetData>')
+    assert cells(tmp_path / "a.xlsx", "a.xlsx", None, reader) == [[1, 2]]
 
 
 @pytest.mark.parametrize("ending", sorted({*IN_CHILD, ".xlsx", ".h5", ".parquet"}))

@@ -55,8 +55,6 @@ def test_what_is_no_column_is_named_with_a_remedy(saved: Path, reader: LimitedRe
     for name, message in NOT_MEANT.items():
         with pytest.raises(FileDefect, match=rf"^run1\.mat.*{message}"):
             read_columns(saved, saved.name, [name], reader)
-    with pytest.raises(FileDefect, match="a name: they have no order"):
-        read_columns(saved, saved.name, [1], reader)
 
 
 def test_what_a_file_holds_is_listed(saved: Path, reader: LimitedReader) -> None:
@@ -68,8 +66,22 @@ def test_what_a_file_holds_is_listed(saved: Path, reader: LimitedReader) -> None
 
 
 def test_a_number_means_a_column_of_the_only_matrix(tmp_path: Path, reader: LimitedReader) -> None:
-    savemat(tmp_path / "a.mat", {"data": Q})
+    savemat(tmp_path / "a.mat", {"data": Q, "rate_hz": 1000.0, "info": {"q": Q}})
     assert read_columns(tmp_path / "a.mat", "a.mat", [2, 3], reader)[3].tolist() == Q[:, 2].tolist()
+    savemat(tmp_path / "a.mat", {"data": Q, "more": Q})
+    with pytest.raises(FileDefect, match="found the number 1 and 2 matrices, expected a name"):
+        read_columns(tmp_path / "a.mat", "a.mat", [1], reader)
+
+
+def test_a_reader_that_ends_is_started_again(saved: Path) -> None:
+    savemat(saved.parent / "a.mat", {"time": TIME})
+    with LimitedReader() as reader:
+        contents = reader.contents(saved.parent / "a.mat", "a.mat", "matlab5", None)
+        assert reader._child
+        reader._child.kill()
+        with pytest.raises(FileDefect, match=r"a\.mat: found .* its reader ended with status -9"):
+            contents.read(0)
+        assert read_columns(saved.parent / "a.mat", "a.mat", ["time"], reader)["time"].tolist() == TIME.tolist()
 
 
 def opaque(path: Path) -> None:

@@ -117,8 +117,11 @@ class LimitedReader:
         dtype, shape = np.dtype(answer["kind"]), tuple(answer["shape"])
         if dtype.kind not in "fiu":
             raise FileDefect(file, f"{dtype} of shape {shape}", "real numbers", column=column)
-        count = prod(shape)
-        return np.frombuffer(self._streams()[1].read(count * dtype.itemsize), dtype, count).reshape(shape)
+        size = prod(shape) * dtype.itemsize
+        raw = self._streams()[1].read(size)
+        if len(raw) < size:
+            raise FileDefect(file, f"a damaged file: its reader ended with status {self._end()}", "a sound file")
+        return np.frombuffer(raw, dtype).reshape(shape).copy()  # which may be changed
 
     def _streams(self) -> tuple[IO[bytes], IO[bytes]]:
         """Input and output of the child, which is started with one thread: each thread would reserve memory."""

@@ -28,7 +28,7 @@ def cells(path: Path, file: str, sheet: str | int | None) -> list[list[Cell]]:
     book = openpyxl.load_workbook(path, read_only=True, data_only=True, keep_links=False)
     try:
         page = book.worksheets[_number(sheet, [each.title for each in book.worksheets], file)]
-        page.reset_dimensions()  # a file may claim more columns than it has
+        page.reset_dimensions()  # which other programs write wrongly, as A1
         rows: list[list[Cell]] = []
         count = 0
         for row in page.iter_rows(values_only=True):
