@@ -23,7 +23,7 @@ class TextStream(TextIOBase):
 
     def __init__(self, stream: TextIOBase, name: str, most: int) -> None:
         self._stream, self._name, self._left = stream, name, most
-        self._line, self._waiting = 0, ""
+        self._row, self._line, self._waiting = 1, 0, ""
 
     def read(self, size: int | None = -1) -> str:
         """The next characters, at most a chunk."""
@@ -44,15 +44,16 @@ class TextStream(TextIOBase):
 
     def _count(self, text: str) -> None:
         """Raise a FileDefect at a limit."""
-        first, *others = text.split("\n")
-        longest = max(self._line + len(first), *map(len, others)) if others else self._line + len(first)
-        self._line = len(others[-1]) if others else longest
-        self._left -= len(text)
-        if longest > LONGEST_LINE:
-            raise FileDefect(self._name, f"a line of more than {LONGEST_LINE} characters", "rows of a table")
+        lengths = [len(part) for part in text.split("\n")]
+        lengths[0] += self._line
+        for row, length in enumerate(lengths, self._row):
+            if length > LONGEST_LINE:
+                found = f"a line of more than {LONGEST_LINE} characters"
+                raise FileDefect(self._name, found, "rows of a table", row)
+        self._row, self._line, self._left = self._row + len(lengths) - 1, lengths[-1], self._left - len(text)
         if self._left < 0:
             expected = "less in a file of this size: write it less compressed, or split it"
-            raise FileDefect(self._name, "more text than its size allows", expected)
+            raise FileDefect(self._name, "more text than its size allows", expected, self._row)
 
 
 def opened(path: Path, layout: Layout) -> TextIOWrapper:
