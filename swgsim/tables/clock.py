@@ -11,13 +11,14 @@ from jaxtyping import Float, Shaped
 
 from swgsim.common.checks import require_known
 from swgsim.tables.file_defect import FileDefect, shown
-from swgsim.tables.measured_column import column_name, text
+from swgsim.tables.layout import LOST_READINGS
+from swgsim.tables.measured_column import chosen_rows, column_name, text
 from swgsim.tables.plain_file import require_names
 from swgsim.tables.units import FACTORS, known_unit
 
 # The unit of a time stamp by ISO 8601; another form is given by its format, as strftime has it.
 STAMP = "iso"
-KEYS = ("column", "unit", "columns", "units", "file")
+KEYS = ("column", "unit", "columns", "units", "file", "rows")
 
 
 @dataclass(frozen=True)
@@ -31,19 +32,22 @@ class Clock:
         Of each column: a unit of time, ``iso``, or a format such as ``%d.%m.%Y %H:%M:%S.%f``.
     file : str
         Which file of a run has them, by the group ``signal`` of the path.
+    rows : tuple of (str or int, str)
+        Columns of text, and what they say in the rows of this time.
     """
 
     columns: tuple[str | int, ...]
     units: tuple[str, ...]
     file: str = ""
+    rows: tuple[tuple[str | int, str], ...] = ()
 
     @property
     def stamps(self) -> tuple[str | int, ...]:
         """Columns of text."""
         return tuple(column for column, unit in zip(self.columns, self.units, strict=True) if unit not in FACTORS["s"])
 
-    def seconds(self, read: Mapping[str | int, Shaped[np.ndarray, " time"]], file: str) -> Float[np.ndarray, " time"]:
-        """Time of each sample [s]. Whole numbers and time stamps count from the first sample: so none loses digits.
+    def origin(self, read: Mapping[str | int, Shaped[np.ndarray, " time"]], file: str) -> tuple[Any, ...]:
+        """What times count from: the first whole number or time stamp of each column, and 0 for other numbers.
 
         Parameters
         ----------
@@ -57,24 +61,47 @@ class Clock:
         FileDefect
             If a text is no time stamp of the format.
         """
-        parts = [
-            _seconds(read[column], unit, file, str(column))
-            for column, unit in zip(self.columns, self.units, strict=True)
-        ]
+        return tuple(_origin(_times(read[column], unit, file, str(column))) for column, unit in self._pairs)
+
+    def seconds(
+        self, read: Mapping[str | int, Shaped[np.ndarray, " time"]], file: str, origin: tuple[Any, ...] | None = None
+    ) -> Float[np.ndarray, " time"]:
+        """Time of each sample [s]; parameters and errors as for :meth:`origin`.
+
+        Whole numbers and time stamps count from the first sample, so that none loses digits, or from the origin of
+        another clock of the same units.
+        """
+        origin = self.origin(read, file) if origin is None else origin
+        parts = []
+        for (column, unit), zero in zip(self._pairs, origin, strict=True):
+            since = _times(read[column], unit, file, str(column)) - zero
+            stamps = unit not in FACTORS["s"]
+            parts.append(since.dt.total_seconds() if stamps else since.astype(float) * FACTORS["s"][unit])
         return np.sum(parts, axis=0)
 
+    @property
+    def _pairs(self) -> list[tuple[str | int, str]]:
+        return list(zip(self.columns, self.units, strict=True))
 
-def _seconds(values: Shaped[np.ndarray, " time"], unit: str, file: str, column: str) -> Float[np.ndarray, " time"]:
+
+def _times(values: Shaped[np.ndarray, " time"], unit: str, file: str, column: str) -> pd.Series:
+    """Numbers as they are; time stamps from their texts."""
     if unit in FACTORS["s"]:
-        if values.dtype.kind in "iu" and len(values):
-            return (values - values[0]).astype(float) * FACTORS["s"][unit]
-        return values.astype(float) * FACTORS["s"][unit]
-    stamps = pd.to_datetime(pd.Series(values), format="ISO8601" if unit == STAMP else unit, errors="coerce", utc=True)
-    bad = np.flatnonzero(stamps.isna() & (pd.Series(values).astype(str) != "nan"))
+        return pd.Series(values)
+    texts = pd.Series(values).astype(str)
+    stamps = pd.to_datetime(texts, format="ISO8601" if unit == STAMP else unit, errors="coerce", utc=True)
+    bad = np.flatnonzero(stamps.isna() & ~texts.isin(LOST_READINGS))
     if len(bad):
         expected = "a time stamp by ISO 8601, such as 2026-03-12T10:22:31.123" if unit == STAMP else f"one as {unit}"
-        raise FileDefect(file, shown(str(values[bad[0]])), f"{expected} (sample {bad[0] + 1})", column=column)
-    return (stamps - stamps.min()).dt.total_seconds().to_numpy(dtype=float)
+        raise FileDefect(file, shown(texts[bad[0]]), f"{expected} (sample {bad[0] + 1})", column=column)
+    return stamps
+
+
+def _origin(times: pd.Series) -> Any:
+    """The first time stamp or whole number."""
+    if times.dtype.kind in "iu":
+        return times.iloc[0] if len(times) else 0
+    return times.dropna().iloc[0] if times.dtype.kind == "M" and times.notna().any() else 0.0
 
 
 def read_clock(entry: Any) -> Clock:
@@ -97,4 +124,5 @@ def read_clock(entry: Any) -> Clock:
         if not re.search("%", unit):
             require_known("the unit of time", [unit], [*FACTORS["s"], STAMP])
     file = text("file of time", entry["file"]) if "file" in entry else ""
-    return Clock(tuple(column_name("time", column) for column in columns), found, file)
+    names = tuple(column_name("time", column) for column in columns)
+    return Clock(names, found, file, chosen_rows("time", entry.get("rows", {})))

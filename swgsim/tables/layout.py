@@ -14,6 +14,7 @@ SEPARATORS = {"tab": "\t", "blanks": " "}
 # What recorders and spreadsheets write in place of a number that they did not get.
 LOST_READINGS = ("", "nan", "NaN", "NAN", "NA", "N/A", "#N/A", "null", "NULL", "None", "-", "--", "1.#QNAN", "-1.#IND")
 LONGEST_PREAMBLE = 10_000
+MOST_LOST = 1_000_000
 LEAVE_OUT = "leave_out"
 
 
@@ -27,6 +28,8 @@ class Layout:
         One character between the cells. A blank stands for any number of blanks and tabs.
     decimal : str
         Decimal sign, ``.`` or ``,``.
+    thousands : str
+        Sign between groups of three digits; none if empty.
     encoding : str
         Name of the encoding of the text, as Python knows it.
     header_row : int, optional
@@ -51,6 +54,7 @@ class Layout:
 
     separator: str = ","
     decimal: str = "."
+    thousands: str = ""
     encoding: str = "utf-8-sig"
     header_row: int | None = None
     first_row: int | None = None
@@ -64,8 +68,8 @@ class Layout:
         if len(self.separator) != 1 or self.separator in '"\r\n':
             names = ", ".join(SEPARATORS)
             raise ValueError(f"separator is {shown(self.separator)}, must be one character, or one of {names}")
-        if self.separator == self.decimal:
-            raise ValueError(f"separator and decimal are both {shown(self.decimal)}: cells and numbers need two signs")
+        if len(self.thousands) > 1 or (self.thousands and self.thousands in self.decimal + "+-0123456789"):
+            raise ValueError(f"thousands is {shown(self.thousands)}, must be a sign such as '.' and not the decimal")
         if len(self.comment) > 1:
             raise ValueError(f"comment is {shown(self.comment)}, must be one character, such as '#'")
         try:
@@ -84,7 +88,18 @@ class Layout:
         return self.header_row != 0
 
 
-KEYS = ("separator", "decimal", "encoding", "header", "header_row", "first_row", "comment", "sheet", "lost")
+KEYS = (
+    "separator",
+    "decimal",
+    "thousands",
+    "encoding",
+    "header",
+    "header_row",
+    "first_row",
+    "comment",
+    "sheet",
+    "lost",
+)
 
 
 def read_layout(config: Mapping[str, Any]) -> Layout:
@@ -96,7 +111,7 @@ def read_layout(config: Mapping[str, Any]) -> Layout:
         If an entry has no sense.
     """
     given = {key: config[key] for key in KEYS if key in config}
-    for key in ("separator", "decimal", "encoding", "comment", "sheet"):
+    for key in ("separator", "decimal", "thousands", "encoding", "comment", "sheet"):
         if not isinstance(given.get(key, ""), str):
             raise ValueError(f"{key} is {shown(given[key])}, must be a text in quotes")
     header = given.pop("header", True)
@@ -120,6 +135,8 @@ def _lost(entry: Any) -> dict[str, Any]:
     values, rows = entry.get("values", []), entry.get(LEAVE_OUT, 0)
     if not isinstance(values, list) or not all(isinstance(each, str | int | float) for each in values):
         raise ValueError(f"values of lost is {shown(values)}, must be a list such as [-9999, ERR]")
-    if not isinstance(rows, int | float) or isinstance(rows, bool) or not 0 <= rows <= LONGEST_PREAMBLE:
-        raise ValueError(f"{LEAVE_OUT} of lost is {shown(rows)}, must be a number of rows, or a share such as 0.01")
+    if not isinstance(rows, int | float) or isinstance(rows, bool) or not 0 <= rows <= MOST_LOST:
+        raise ValueError(
+            f"{LEAVE_OUT} of lost is {shown(rows)}, must be a number of rows up to {MOST_LOST}, or a share such as 0.01"
+        )
     return {"lost_values": tuple(map(str, values)), "lost_rows": rows}

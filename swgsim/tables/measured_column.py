@@ -18,7 +18,7 @@ MOST_COLUMNS = 10_000
 LONGEST_TEXT = 1000
 # What the unit of a column may need.
 OF_UNIT = ("per_revolution", "rated", "full_scale", "gauge_factor", "active_arms")
-KEYS = ("column", "file", "unit", "factor", "offset", "inverted", *OF_UNIT)
+KEYS = ("column", "file", "unit", "factor", "offset", "inverted", "time", "rows", *OF_UNIT)
 LARGEST = 1e15
 
 
@@ -44,6 +44,10 @@ class MeasuredColumn:
         Which file of a run has it, by the group ``signal`` of the path; empty if each file has all columns.
     interleaved : int
         How many signals follow one another in the only column of the file; ``column`` is the number of this one.
+    time : str, int or None
+        Column of a time of its own, in the unit of the time of all: the signal is interpolated linearly to that.
+    rows : tuple of (str or int, str)
+        Columns of text, and what they say in the rows of this signal.
     """
 
     quantity: str
@@ -55,6 +59,8 @@ class MeasuredColumn:
     wraps: bool = False
     file: str = ""
     interleaved: int = 1
+    time: str | int | None = None
+    rows: tuple[tuple[str | int, str], ...] = ()
 
     def values(self, numbers: Shaped[np.ndarray, " time"]) -> Float[np.ndarray, " time"]:
         """The quantity from the numbers in the file; jumps of a wrapped angle are removed."""
@@ -123,7 +129,15 @@ def read_column(
         truth(f"wraps of {quantity}", entry.get("wraps", False)),
         text(f"file of {quantity}", entry["file"]) if "file" in entry else "",
         interleaved,
+        column_name(f"time of {quantity}", entry["time"]) if "time" in entry else None,
+        chosen_rows(quantity, entry.get("rows", {})),
     )
+
+
+def chosen_rows(owner: str, entry: Any) -> tuple[tuple[str | int, str], ...]:
+    """Columns of text, and what they say in the rows of a signal."""
+    require_names(f"rows of {owner}", entry)
+    return tuple((column, text(f"rows of {owner}", str(said))) for column, said in entry.items())
 
 
 def column_name(owner: str, value: Any) -> str | int:

@@ -1,12 +1,11 @@
 """The columns of one run, from its file or its files, with the time of each sample."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from itertools import chain
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Float, Int, Shaped
 
 from swgsim.tables import binary
 from swgsim.tables.clock import Clock
@@ -76,28 +75,111 @@ def read_measured(
         If a file is missing or cannot be read, the lengths differ, or more readings are lost than may be left out.
     """
     read = {signal: _read(folder, files, signal, columns, clock, layout, reader) for signal in _signals(columns, clock)}
-    numbers = [each.own(read[each.file][each.place]).astype(float) for each in columns]
-    time = clock.seconds(read[clock.file], files[clock.file]) if clock else None
-    lengths = {f"{each.file} {each.column}".strip(): len(values) for each, values in zip(columns, numbers, strict=True)}
-    lengths |= {"time": len(time)} if time is not None else {}
     name = next(iter(files.values()))
+    numbers = [_chosen(read[each.file], each.rows, each.own(read[each.file][each.place])) for each in columns]
+    numbers = [each.astype(float) for each in numbers]
+    time: Float[np.ndarray, " time"] | None = None
+    if clock:
+        times = _chosen_all(read[clock.file], clock.rows)
+        origin = clock.origin(times, files[clock.file])
+        time = clock.seconds(times, files[clock.file], origin)
+        _require_same_clock(read, files, clock, columns)
+    own = [each.time is not None for each in columns]
+    lengths = {
+        f"{each.file} {each.column}".strip(): len(values)
+        for each, values, alone in zip(columns, numbers, own, strict=True)
+        if not alone
+    } | ({"time": len(time)} if time is not None else {})
     if len(set(lengths.values())) > 1:
-        raise FileDefect(name, f"columns of different lengths {lengths}", "as many values in each column")
+        expected = "as many values in each column; a signal with other times needs its own, such as time: t"
+        raise FileDefect(name, f"columns of different lengths {lengths}", expected)
     if rate_hz is not None:
-        time = np.arange(len(numbers[0])) / rate_hz
-    lost = _lost([*numbers, *([time] if time is not None else [])])
+        time = np.arange(next(iter(lengths.values()))) / rate_hz
     first_row = _first_row(folder / name, name, layout, reader)
-    if not layout.lost_rows or not len(lost):
-        return MeasuredTable(tuple(numbers), time, 0, first_row)
-    most = int(layout.lost_rows * (len(numbers[0]) if layout.lost_rows < 1 else 1))
-    if len(lost) > most:
+    together = [values for values, alone in zip(numbers, own, strict=True) if not alone]
+    lost = _lost([*together, *([time] if time is not None else [])])
+    if layout.lost_rows and len(lost):
+        _require_few(len(lost), len(time if time is not None else together[0]), layout, name, first_row + int(lost[0]))
+        if time is None:
+            expected = f"a time or a rate, without which no row can be left out by {LEAVE_OUT} of lost"
+            raise FileDefect(name, "no time", expected, first_row + int(lost[0]))
+        kept = np.delete(np.arange(len(time)), lost)
+        numbers = [values if alone else values[kept] for values, alone in zip(numbers, own, strict=True)]
+        time = time[kept]
+    if any(own):
+        if not clock or time is None:
+            raise FileDefect(name, "signals with times of their own", "a time of all, to which they are interpolated")
+        others = {each: _own_time(each, clock, read, files, origin) for each in columns if each.time is not None}
+        numbers, time = _interpolated(columns, numbers, time, others, name)
+    return MeasuredTable(tuple(numbers), time, len(lost) if layout.lost_rows else 0, first_row)
+
+
+def _chosen(
+    read: Columns, rows: Sequence[tuple[str | int, str]], values: Shaped[np.ndarray, " _"]
+) -> Shaped[np.ndarray, " _"]:
+    """The values in the rows in which columns of text say something."""
+    return values[np.all([read[column] == said for column, said in rows], axis=0)] if rows else values
+
+
+def _chosen_all(read: Columns, rows: Sequence[tuple[str | int, str]]) -> Columns:
+    """All columns in the chosen rows."""
+    return {column: _chosen(read, rows, values) for column, values in read.items()}
+
+
+def _require_few(lost: int, rows: int, layout: Layout, name: str, row: int) -> None:
+    """Raise a FileDefect if more readings are lost than may be left out."""
+    most = int(layout.lost_rows * (rows if layout.lost_rows < 1 else 1))
+    if lost > most:
         expected = f"at most {most}, as lost in the map says; {LEAVE_OUT} of lost can be another number of rows"
-        raise FileDefect(name, f"{len(lost)} rows with lost readings", expected, first_row + int(lost[0]))
-    if time is None:
-        expected = f"a time or a rate, without which no row can be left out by {LEAVE_OUT} of lost"
-        raise FileDefect(name, "no time", expected, first_row + int(lost[0]))
-    kept = np.delete(np.arange(len(time)), lost)
-    return MeasuredTable(tuple(values[kept] for values in numbers), time[kept], len(lost), first_row)
+        raise FileDefect(name, f"{lost} of {rows} rows with lost readings", expected, row)
+
+
+def _require_same_clock(
+    read: Mapping[str, Columns], files: Mapping[str, str], clock: Clock, columns: Sequence[MeasuredColumn]
+) -> None:
+    """Raise a FileDefect if a file of a run has other times in columns of the same names."""
+    for signal, table in read.items():
+        alone = all(each.time is not None for each in columns if each.file == signal)
+        for column in clock.columns if signal != clock.file and not alone else ():
+            named = isinstance(column, str) and column in table
+            if named and not np.array_equal(table[column], read[clock.file][column]):
+                expected = f"the times of {files[clock.file]}; give its signals their own time, such as time: {column}"
+                raise FileDefect(files[signal], "other times", expected, column=str(column))
+
+
+def _own_time(
+    column: MeasuredColumn, clock: Clock, read: Mapping[str, Columns], files: Mapping[str, str], origin: tuple
+) -> Float[np.ndarray, " own"]:
+    """Time of each value of a signal that has its own [s]."""
+    assert column.time is not None
+    if len(clock.columns) > 1:
+        raise FileDefect(files[column.file], "a time of several columns", "one column, where a signal has its own time")
+    table = _chosen_all(read[column.file], column.rows)
+    return replace(clock, columns=(column.time,)).seconds(table, files[column.file], origin)
+
+
+def _interpolated(
+    columns: Sequence[MeasuredColumn],
+    numbers: Sequence[Float[np.ndarray, " _"]],
+    time: Float[np.ndarray, " time"],
+    others: Mapping[MeasuredColumn, Float[np.ndarray, " _"]],
+    name: str,
+) -> tuple[list[Float[np.ndarray, " kept"]], Float[np.ndarray, " kept"]]:
+    """All signals at the times that they share; those with times of their own are interpolated linearly."""
+    known = {}
+    for each, values in zip(columns, numbers, strict=True):
+        if each in others:
+            there = np.isfinite(values) & np.isfinite(others[each])
+            known[each] = others[each][there], values[there]
+            if there.sum() < 2 or not (np.diff(known[each][0]) > 0).all():
+                raise FileDefect(name, "a time that does not increase", "later times", column=str(each.time))
+    first, last = max(times[0] for times, _ in known.values()), min(times[-1] for times, _ in known.values())
+    kept = (time >= first) & (time <= last)
+    found = [
+        np.interp(time[kept], *known[each]) if each in known else values[kept]
+        for each, values in zip(columns, numbers, strict=True)
+    ]
+    return found, time[kept]
 
 
 def first_lost(
@@ -137,15 +219,29 @@ def _read(
         raise FileDefect(str(folder), found, f"one with the signal {shown(signal)}, by 'path' and 'file' of the map")
     path, name = folder / files[signal], files[signal]
     require_readable(path)
-    own = [each.place for each in columns if each.file == signal]
-    stamps = clock.stamps if clock and clock.file == signal else ()
-    times = clock.columns if clock and clock.file == signal else ()
-    wanted = list(dict.fromkeys(chain(own, times)))
+    own = [each for each in columns if each.file == signal]
+    times = [each.time for each in own if each.time is not None]
+    rows = [column for each in own for column, _ in each.rows]
+    if clock and clock.file == signal:
+        times += clock.columns
+        rows += [column for column, _ in clock.rows]
+    stamps = [*rows, *(times if clock and clock.stamps else ())]
+    wanted = list(dict.fromkeys([*(each.place for each in own), *times, *rows]))
+    if clock and clock.file != signal:
+        wanted += _also(path, name, clock, wanted, layout)
     if binary.is_binary(path):
         return binary.read_columns(path, name, wanted, reader)
     if is_spreadsheet(path):
         return read_spreadsheet(path, name, wanted, layout, stamps, reader)
     return read_text(path, name, wanted, layout, stamps)
+
+
+def _also(path: Path, name: str, clock: Clock, wanted: Sequence[str | int], layout: Layout) -> list[str | int]:
+    """Columns of another text file of a run that have the names of the time: they must say the same."""
+    if binary.is_binary(path) or is_spreadsheet(path) or not layout.named or clock.stamps:
+        return []
+    names = start_of(path, name, layout).names
+    return [column for column in clock.columns if names.count(str(column)) == 1 and column not in wanted]
 
 
 def _first_row(path: Path, name: str, layout: Layout, reader: LimitedReader | None) -> int:

@@ -13,7 +13,7 @@ from swgsim.tables.formats.spreadsheet import cells
 from swgsim.tables.layout import LOST_READINGS, Layout
 from swgsim.tables.text import Columns, Start
 from swgsim.tables.text_defects import number_expected
-from swgsim.tables.text_stream import NUMBER
+from swgsim.tables.text_stream import number_of
 
 Cell = float | int | str | bool | None
 
@@ -70,8 +70,8 @@ def _numbers(
     found = []
     for row, value in enumerate(values, first_row):
         lost = value is None or (isinstance(value, str) and value.strip() in (*LOST_READINGS, *layout.lost_values))
-        text = str(value).replace(layout.decimal, ".") if isinstance(value, str) else ""
-        if isinstance(value, bool) or (isinstance(value, str) and not lost and not NUMBER.fullmatch(text)):
+        number = number_of(value, layout) if isinstance(value, str) and not lost else value
+        if isinstance(value, bool) or (number is None and not lost):
             raise FileDefect(name, shown(str(value)), number_expected(str(value), layout, row, first_row), row, column)
-        found.append(np.nan if lost else float(text) if text else value)
+        found.append(np.nan if lost else number)
     return np.array(found)

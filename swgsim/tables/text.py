@@ -22,9 +22,9 @@ from swgsim.tables.text_defects import (
     row_of,
     with_header_row,
 )
-from swgsim.tables.text_stream import NUMBER, TextStream, cells_of, is_comment, opened
+from swgsim.tables.text_stream import TextStream, cells_of, is_comment, number_of, opened
 
-Columns = dict[str | int, Shaped[np.ndarray, " time"]]
+Columns = dict[str | int, Shaped[np.ndarray, " _"]]
 
 
 class Start(NamedTuple):
@@ -74,6 +74,9 @@ def read_text(
     FileDefect
         If the file is damaged or no text in the encoding, a column is missing, or a cell is no number.
     """
+    if layout.separator == layout.decimal:
+        signs = f"separator and decimal are both {shown(layout.decimal)}"
+        raise FileDefect(name, signs, "two signs; set separator in a map")
     try:
         with opened(path, layout) as stream:
             rows = TextStream(stream, name, most_expanded(path))
@@ -169,10 +172,12 @@ def _numbers(values: pd.Series, path: Path, name: str, layout: Layout, start: St
     """The numbers of one column."""
     if values.dtype.kind in "iuf":
         return values.to_numpy()
-    cells = values.astype(str).str.replace(layout.decimal, ".", regex=False)
+    found = np.full(len(values), np.nan)
     for index in np.flatnonzero(values.notna()):
-        if not NUMBER.fullmatch(cells.iloc[index]):
-            found, column = str(values.iloc[index]), start.names[int(str(values.name))]
+        number = number_of(str(values.iloc[index]), layout)
+        if number is None:
+            cell, column = str(values.iloc[index]), start.names[int(str(values.name))]
             row = row_of(path, layout, start.row, int(index))
-            raise FileDefect(name, shown(found), number_expected(found, layout, row, start.row), row, column)
-    return np.array([float(cell) if known else np.nan for cell, known in zip(cells, values.notna(), strict=True)])
+            raise FileDefect(name, shown(cell), number_expected(cell, layout, row, start.row), row, column)
+        found[index] = number
+    return found

@@ -12,6 +12,7 @@ from swgsim.tables.text_stream import LONGEST_LINE, cells_of, numbered_lines
 
 BYTE_ORDER = (b"\xff\xfe", b"\xfe\xff")
 DECIMAL_COMMA = re.compile(r"\s*[+-]?\d+,\d+([eE][+-]?\d+)?\s*")
+GROUPED = re.compile(r"\s*[+-]?\d{1,3}([.,' ]\d+)+([eE][+-]?\d+)?\s*")
 # Rows in which the names of the columns are looked for.
 PREAMBLE = 200
 
@@ -55,7 +56,9 @@ def odd_row(path: Path, name: str, layout: Layout, width: int, first_row: int) -
 def number_expected(cell: str, layout: Layout, row: int, first_row: int) -> str:
     """What a cell in a row should hold, with the entry of the map that would help."""
     if layout.decimal == "." and DECIMAL_COMMA.fullmatch(cell):
-        return "a number with a decimal point; set decimal: ',' in a map"
+        return "a number with a decimal point; set decimal: ',' in a map, or thousands: ','"
+    if GROUPED.fullmatch(cell):
+        return f"a number with {shown(layout.decimal)} as its decimal sign; set decimal or thousands in a map"
     if row == first_row:
         return f"a number; if this is a row of units or text, set first_row: {row + 1} in a map"
     return f"a number; if this is a lost reading, set lost: {{values: [{shown(cell.strip())}], leave_out: 1}} in a map"

@@ -18,6 +18,21 @@ CHUNK = 2**18
 NUMBER = re.compile(r"\s*[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\s*", re.ASCII)
 
 
+def number_of(cell: str, layout: Layout) -> float | None:
+    """The number that a cell is by the signs of its layout; None if it is none.
+
+    >>> number_of("1.024,5", Layout(decimal=",", thousands=".")), number_of("1.024", Layout(decimal=","))
+    (1024.5, None)
+    """
+    sign = re.escape(layout.thousands)
+    if sign and re.fullmatch(rf"\s*[+-]?\d{{1,3}}({sign}\d{{3}})+({re.escape(layout.decimal)}\d*)?\s*", cell):
+        cell = cell.replace(layout.thousands, "")
+    if layout.decimal != "." and "." in cell:
+        return None
+    cell = cell.replace(layout.decimal, ".")
+    return float(cell) if NUMBER.fullmatch(cell) else None
+
+
 class TextStream(TextIOBase):
     """Text of a file for pandas, up to a number of characters in all and in one line."""
 

@@ -38,7 +38,7 @@ def test_lost_readings_of_gauges_are_named_or_left_out(tmp_path: Path) -> None:
     spoiled = PLAIN | {"bridge": lost(PLAIN["bridge"], 30, 80)}
     with pytest.raises(FileDefect, match=r"row 32, column bridge: found no number and 1 more.*lost: \{leave_out: 2\}"):
         gauges(tmp_path, spoiled)
-    with pytest.raises(FileDefect, match=r"row 32: found 2 rows with lost readings, expected at most 1"):
+    with pytest.raises(FileDefect, match=r"row 32: found 2 of 120 rows with lost readings, expected at most 1"):
         gauges(tmp_path, spoiled, lost={"leave_out": 1})
     (found,) = (read := gauges(tmp_path, spoiled, lost={"leave_out": 2}))
     np.testing.assert_allclose(found.time, np.delete(TIME, [30, 80]))
@@ -98,8 +98,11 @@ def test_files_of_single_signals_are_joined(tmp_path: Path) -> None:
     with pytest.raises(FileDefect, match="expected one with the signal 'current'"):
         read_joints(tmp_path / "files", tmp_path / "source.yaml")
     table("r1_current.csv", {"t": TIME[:-1], "i": LOG["i"][:-1]})(tmp_path / "files")
-    with pytest.raises(FileDefect, match="columns of different lengths"):
+    with pytest.raises(FileDefect, match=r"r1_current\.csv, column t: found other times, expected the times of r1_pos"):
         read_joints(tmp_path / "files", tmp_path / "source.yaml")
+    config["joints"]["elbow"]["signals"]["current"]["time"] = "t"
+    (found,) = joints(tmp_path, path=path, **config).recordings
+    np.testing.assert_allclose(found.signals["current"], LOG["i"][:-1], rtol=1e-8)
 
 
 def test_an_accepted_finding_only_warns(tmp_path: Path) -> None:
@@ -129,3 +132,42 @@ def test_signals_of_the_motor_need_the_gear_ratio(tmp_path: Path) -> None:
     del config["joints"]["elbow"]["gear_ratio"]
     with pytest.raises(FileDefect, match="the joint has no gear_ratio: give it"):
         joints(tmp_path, table("run1.csv", LOG), **config)
+
+
+def test_a_signal_with_its_own_time_is_interpolated(tmp_path: Path) -> None:
+    slow = np.arange(0.0005, 0.119, 0.002)
+    own = {"t2": [*slow, *[""] * (len(TIME) - len(slow))]}
+    current = {"i": [*np.cos(20 * slow), *[""] * (len(TIME) - len(slow))]}
+    config = yaml.safe_load(OF_LOG)
+    config["joints"]["elbow"]["signals"]["current"]["time"] = "t2"
+    (found,) = joints(tmp_path, table("run1.csv", LOG | own | current), **config).recordings
+    inside = (slow[0] <= TIME) & (slow[-1] >= TIME)
+    np.testing.assert_allclose(found.time, TIME[inside])
+    np.testing.assert_allclose(found.signals["q"], LOG["q"][inside], rtol=1e-8)
+    np.testing.assert_allclose(found.signals["current"], np.cos(20 * TIME[inside]), atol=1e-3)
+
+
+def test_one_row_for_each_joint_and_time(tmp_path: Path) -> None:
+    two = {
+        name: np.repeat(values, 2) * (1 if name == "t" else np.tile([1.0, 3.0], len(TIME)))
+        for name, values in LOG.items()
+    }
+    long = {"name": ["elbow", "wrist"] * len(TIME), **two}
+    config = yaml.safe_load(OF_LOG)
+    for entry in (config["time"], *config["joints"]["elbow"]["signals"].values()):
+        entry["rows"] = {"name": "elbow"}
+    (found,) = joints(tmp_path, table("run1.csv", long), **config).recordings
+    np.testing.assert_allclose(found.signals["q"], LOG["q"], rtol=1e-8)
+    np.testing.assert_allclose(found.time, TIME)
+
+
+def test_one_row_for_each_signal_and_time(tmp_path: Path) -> None:
+    rows = [(time, name, LOG[name][number]) for number, time in enumerate(TIME) for name in ("q", "qd", "i")]
+    ticks, tags, values = zip(*rows, strict=True)
+    config = yaml.safe_load(OF_LOG)
+    config["time"]["rows"] = {"tag": "q"}
+    for entry in config["joints"]["elbow"]["signals"].values():
+        entry["rows"] = {"tag": entry["column"]}
+        entry["column"] = "value"
+    (found,) = joints(tmp_path, table("log.csv", {"t": ticks, "tag": tags, "value": values}), **config).recordings
+    np.testing.assert_allclose(found.signals["current"], LOG["i"], rtol=1e-8)

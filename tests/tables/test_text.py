@@ -62,6 +62,14 @@ def test_whole_numbers_keep_all_their_digits(tmp_path: Path) -> None:
     assert found.tolist() == stamps
 
 
+def test_groups_of_three_digits_are_one_number(tmp_path: Path) -> None:
+    text = "t;q\n0;1.024,5\n1;12,25\n2;-2.000\n"
+    found = read(tmp_path, text, ["q"], separator=";", decimal=",", thousands=".")["q"]
+    assert found.tolist() == [1024.5, 12.25, -2000.0]
+    with pytest.raises(FileDefect, match=r"row 3, column q: found '1\.02\.4'"):
+        read(tmp_path, "t;q\n0;1.024\n1;1.02.4\n", ["q"], separator=";", decimal=",", thousands=".")
+
+
 def test_lost_readings_are_no_numbers(tmp_path: Path) -> None:
     text = "t,q\n0,1\n1,nan\n2,\n3,-9999\n4,ERR\n5,6\n\n\n"
     found = read(tmp_path, text, ["t", "q"], lost={"values": [-9999, "ERR"]})
@@ -70,6 +78,8 @@ def test_lost_readings_are_no_numbers(tmp_path: Path) -> None:
 
 
 BAD: dict[str, tuple[str | bytes, dict[str, Any], str]] = {
+    "same sign": ("t,q\n0,1\n", {"decimal": ","}, "separator and decimal are both ','.*set separator in a map"),
+    "thousands": ("t;q\n0;1.024\n", {"separator": ";", "decimal": ","}, r"found '1\.024'.*decimal or thousands"),
     "semicolons": ("t;q\n0;1\n", {}, r"row 1: found 't;q'.*set separator: ';' in a map"),
     "decimal commas": ("t;q\n0;1,5\n", {"separator": ";"}, r"row 2, column q: found '1,5'.*set decimal: ','"),
     "commas of both kinds": ("t,q\n0,0,1,5\n", {}, r"row 2: found 4 cells, expected 2.*separator and decimal"),
@@ -100,14 +110,17 @@ def test_what_is_no_table_of_the_layout_is_named(tmp_path: Path, name: str) -> N
 
 LAYOUTS: dict[str, tuple[Callable[[], object], str]] = {
     "separator": (lambda: read_layout({"separator": "::"}), "must be one character, or one of tab, blanks"),
-    "same sign": (lambda: read_layout({"decimal": ","}), "cells and numbers need two signs"),
+    "thousands": (lambda: read_layout({"thousands": "."}), "must be a sign such as '.' and not the decimal"),
     "decimal": (lambda: read_layout({"decimal": "x"}), "unknown choice 'x' of decimal signs"),
     "encoding": (lambda: read_layout({"encoding": "latin-99"}), "must be one such as utf-8, utf-16, cp1252"),
     "rows": (lambda: read_layout({"header_row": 3, "first_row": 3}), "must be after header_row 3"),
     "two": (lambda: read_layout({"header_row": 3, "header": False}), "keep one of them"),
     "comment": (lambda: read_layout({"comment": "//"}), "must be one character, such as '#'"),
     "lost": (lambda: read_layout({"lost": {"values": "x"}}), "must be a list such as"),
-    "lost rows": (lambda: read_layout({"lost": {"leave_out": -1}}), "must be a number of rows, or a share"),
+    "lost rows": (
+        lambda: read_layout({"lost": {"leave_out": -1}}),
+        "must be a number of rows up to 1000000, or a share",
+    ),
     "number": (lambda: read_layout({"separator": 1}), "must be a text in quotes"),
 }
 

@@ -45,7 +45,7 @@ class JointColumns:
                 f"{self.name} has no signal omega: map the velocity, or take it from the angle by "
                 "omega: {from: q, smoothed_s: 0.05}"
             )
-        places = [(column.file, column.column) for column in self.signals]
+        places = [(column.file, column.column, column.rows) for column in self.signals]
         for place in places:
             if places.count(place) > 1:
                 raise ValueError(f"column {place[1]!r} is two signals of {self.name}: give each its own")

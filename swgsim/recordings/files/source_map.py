@@ -55,7 +55,7 @@ class SourceMap:
             raise ValueError("a column map needs either the channel t or sampling_rate_hz")
         if self.sampling_rate_hz is not None:
             require("the column map", "sampling_rate_hz", self.sampling_rate_hz, low=1e-3, high=1e9)
-        places = [(each.file, each.column) for each in self.channels]
+        places = [(each.file, each.column, each.rows) for each in self.channels]
         for place in places:
             if places.count(place) > 1:
                 raise ValueError(f"column {place[1]!r} is mapped to two channels: give each another column")
