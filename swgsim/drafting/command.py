@@ -1,0 +1,34 @@
+"""The command ``swg map``."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from swgsim.drafting.draft import draft_map
+
+
+def run(config: Mapping[str, Any]) -> None:
+    """Draft a map, write it with its picture, and print what was taken for what.
+
+    Raises
+    ------
+    ValueError
+        If no files are given, or they hold no table of numbers.
+    """
+    if config["files"] is None:
+        raise ValueError("files is not given: swg map my_logs, or swg map files=my_logs")
+    draft = draft_map(config["files"], config["kind"], {key: value for key, value in config["known"].items() if value is not None})
+    out = Path(config["out"])
+    draft.save(out)
+    print(draft)
+    use = "read_recordings(files, map)" if draft.kind == "gauges" else "recordings_of(map, files)"
+    print(f"draft: {out}; picture: {out.with_suffix('.png')}; correct it, then use it: swg.{use}")
+
+
+def spelled(words: Sequence[str]) -> list[str]:
+    """The words of the command in the spelling of Hydra: a word alone names the files.
+
+    >>> spelled(["my logs", "kind=joints"])
+    ['files="my logs"', 'kind=joints']
+    """
+    return [word if "=" in word or word.startswith("-") else f'files="{word}"' for word in words]

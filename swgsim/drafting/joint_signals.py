@@ -1,0 +1,223 @@
+"""Signals of the joints of a robot: which column is whose angle, velocity, current and torque."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.drafting.motion import EXPLAINED, RATIOS, slope_of
+from swgsim.drafting.motion_units import motion_units
+from swgsim.drafting.seen import SeenColumn
+from swgsim.drafting.taken import Taken, place
+from swgsim.drafting.words import MODEL, MOTOR, OUTPUT, Meaning
+from swgsim.tables.units import FACTORS, SHARES
+
+# Objects of drives (CiA 402) that are in per mille of a rated value, and those of the drive's own encoder.
+OF_RATED = {"6077h", "6078h"}
+OF_DRIVE = {"6064h", "606ch"}
+
+
+@dataclass(frozen=True, eq=False)
+class Named:
+    """A column with what its name says."""
+
+    column: SeenColumn
+    meaning: Meaning
+
+    @property
+    def index(self) -> int | None:
+        """The number in the name."""
+        return self.meaning.index
+
+    @property
+    def at_motor(self) -> bool:
+        """Whether it is on the motor's side of the gear by its name."""
+        return self.meaning.says(MOTOR) or self.meaning.says(OF_DRIVE)
+
+
+def joint_signals(
+    columns: Sequence[SeenColumn],
+    meanings: Sequence[Meaning],
+    time: Float[np.ndarray, " time"],
+    known: Mapping[str, Any],
+) -> list[Taken]:
+    """What the columns of a robot's log are taken for; those that are not understood come last.
+
+    Parameters
+    ----------
+    columns : sequence of SeenColumn
+        Those that are no time.
+    meanings : sequence of Meaning
+    time : array (time,)
+        [s].
+    known : mapping
+        Facts of the user, such as ``gear_ratio``.
+    """
+    named = [Named(each, meaning) for each, meaning in zip(columns, meanings, strict=True)]
+    usable = [each for each in named if not each.column.is_text and not _is_set_point(each.meaning)]
+    kinds = {kind: [each for each in usable if each.meaning.quantity == kind] for kind in ("angle", "speed", "current")}
+    torques = [each for each in usable if each.meaning.quantity == "torque"]
+    unnamed = [each for each in usable if not each.meaning.quantity and not each.column.stands]
+    angles = _one_for_each_index(kinds["angle"])
+    pairs = _by_slope(unnamed, time) if not angles else {}
+    angles = angles or list(pairs)
+    joints = _names(angles)
+    taken: list[Taken] = []
+    for name, angle in joints.items():
+        alone = len(joints) == 1
+        speed = pairs.get(angle) or _velocity(angle, kinds["speed"], time, alone)
+        motor = next((each for each in kinds["angle"] if each is not angle and each.index == angle.index and each.at_motor), None)
+        taken += _moving(name, angle, speed, motor, time, known)
+        for signal in _forces(angle, kinds["current"], torques, alone):
+            taken.append(replace(_force(*signal, known), joint=name))
+    if unnamed and pairs:
+        left = [each for each in unnamed if each.column not in [one.column for one in taken]]
+        taken += _suggested(left, list(joints))
+    used = {id(each.column) for each in taken}
+    return taken + [Taken(each.column, "", why=_why_not(each)) for each in named if id(each.column) not in used]
+
+
+def _is_set_point(meaning: Meaning) -> bool:
+    """Whether a value was asked for; the torque that a model asks for is a signal of its own."""
+    return meaning.is_set_point and not (meaning.quantity == "torque" and meaning.says(MODEL))
+
+
+def _one_for_each_index(angles: Sequence[Named]) -> list[Named]:
+    """One angle for each joint: that of the output before that of the motor."""
+    chosen: dict[int | None, Named] = {}
+    for each in sorted(angles, key=lambda each: each.at_motor):
+        chosen.setdefault(each.index, each)
+    return [each for each in angles if each in chosen.values()]
+
+
+def _by_slope(columns: Sequence[Named], time: Float[np.ndarray, " time"]) -> dict[Named, Named]:
+    """Angles and their velocities among columns without names: a velocity explains its angle best, and an angle too."""
+    shares = {
+        (angle, speed): slope_of(angle.column.values, speed.column.values, time).share
+        for angle, speed in product(columns, columns)
+        if angle is not speed
+    }
+    found: dict[Named, Named] = {}
+    for (angle, speed), share in sorted(shares.items(), key=lambda item: -item[1]):
+        # A velocity is no angle itself, though its slope, the acceleration, may be among the columns.
+        if share > EXPLAINED and angle not in {*found, *found.values()} and speed not in {*found, *found.values()}:
+            found[angle] = speed
+    return {angle: found[angle] for angle in columns if angle in found}
+
+
+def _names(angles: Sequence[Named]) -> dict[str, Named]:
+    """Joints by their names, from joint_1 on: by the numbers in the names of the columns, else by their order."""
+    indices = [each.index for each in angles]
+    if len(angles) == 1 or None in indices:
+        return {f"joint_{number}": each for number, each in enumerate(angles, 1)}
+    first = 1 if 0 in indices else 0
+    return {f"joint_{int(each.index or 0) + first}": each for each in angles}
+
+
+def _velocity(angle: Named, speeds: Sequence[Named], time: Float[np.ndarray, " time"], alone: bool) -> Named | None:
+    """The velocity of an angle: that of the same joint which explains it best."""
+    own = [each for each in speeds if each.index == angle.index] or (list(speeds) if alone or _bare(speeds) else [])
+    return max(own, key=lambda each: slope_of(angle.column.values, each.column.values, time).share, default=None)
+
+
+def _bare(columns: Sequence[Named]) -> bool:
+    """Whether no name has a number."""
+    return all(each.index is None for each in columns)
+
+
+def _moving(
+    name: str, angle: Named, speed: Named | None, motor: Named | None, time: Float[np.ndarray, " time"],
+    known: Mapping[str, Any],
+) -> Iterator[Taken]:  # fmt: skip
+    """Angle and velocity of one joint."""
+    units = motion_units(angle.column, speed.column if speed else None, time)
+    drive = angle.at_motor or units.ratio < 1 / RATIOS[0]
+    of_motor = speed is not None and (speed.at_motor or units.ratio > RATIOS[0])
+    if abs(units.ratio - 1) < 0.5 and speed is not None:
+        # One turn of the angle is one of the velocity: both are on one side.
+        of_motor = drive = drive or of_motor
+    ratio, ask = known.get("gear_ratio"), ""
+    if units.ratio != 1 and ratio is None:
+        ratio = round(max(units.ratio, 1 / units.ratio))
+    elif motor is not None and ratio is None:
+        found = ratio_of_angles(motor.column, angle.column)
+        ratio = round(found) if RATIOS[0] <= found <= RATIOS[1] else None
+    if (drive or of_motor) and ratio is None:
+        ratio, ask = 1, "gear ratio: the angle is that of the motor"
+    side = {"at": "motor"}
+    yield Taken(
+        angle.column, "q", place(angle.column) | units.angle | (side if drive else {}),
+        _joined(angle.meaning.why, "" if speed else units.why, "jumps by one turn" if "wraps" in units.angle else ""),
+        units.of_angle, name,
+    )  # fmt: skip
+    if ratio is not None:
+        why = "" if ask else "given" if "gear_ratio" in known else units.why or "angles of motor and output"
+        yield Taken(angle.column, "gear_ratio", {"gear_ratio": ratio}, why, ask, name)
+    if speed is not None:
+        entry = place(speed.column) | units.speed | (side if of_motor else {})
+        yield Taken(speed.column, "omega", entry, _joined(speed.meaning.why, units.why), units.of_speed, name)
+
+
+def ratio_of_angles(motor: SeenColumn, output: SeenColumn) -> float:
+    """Turns of the motor per turn of the output, from two angles in known units; 0 if they do not say it."""
+    if motor.unit not in FACTORS["rad"] or output.unit not in FACTORS["rad"]:
+        return 0.0
+    fast, slow = (each.values.astype(float) * FACTORS["rad"][each.unit] for each in (motor, output))
+    return float(abs(np.polyfit(slow, fast, 1)[0])) if np.ptp(slow) > 0 else 0.0
+
+
+def _forces(
+    angle: Named, currents: Sequence[Named], torques: Sequence[Named], alone: bool
+) -> Iterator[tuple[str, Named]]:
+    """Current and torques of a joint: for each signal the first column, measured ones before others."""
+
+    def own(columns: Sequence[Named]) -> list[Named]:
+        found = [each for each in columns if each.index == angle.index]
+        return found or (list(columns) if alone else [])
+
+    yield from (("current", each) for each in own(currents)[:1])
+    measured = [each for each in own(torques) if not each.meaning.says(MODEL) and not each.at_motor]
+    yield from (("T_sensor", each) for each in sorted(measured, key=lambda each: not each.meaning.says(OUTPUT))[:1])
+    yield from (("T_rigid", each) for each in [each for each in own(torques) if each.meaning.says(MODEL)][:1])
+
+
+def _force(signal: str, each: Named, known: Mapping[str, Any]) -> Taken:
+    """One current or torque."""
+    column, target = each.column, "A" if signal == "current" else "N m"
+    unit, more, ask, active = column.unit, {}, "", True
+    if not unit and each.meaning.says(OF_RATED):
+        unit = "permille"
+    if unit in SHARES:
+        more = {"rated": known.get("rated", f"1 {target}")}
+        ask, active = ("", True) if "rated" in known else ("its rated value", False)
+    elif unit not in FACTORS[target]:
+        ask = "" if not unit else f"the file says {unit}"
+        unit, ask = target, ask or f"no unit is said: {target} is assumed"
+    if signal == "T_sensor" and each.meaning.says({"effort", "efforts"}):
+        ask = "effort: a measured torque, or one by the current? then it is no T_sensor"
+    return Taken(column, signal, place(column) | {"unit": unit} | more, each.meaning.why, ask, "", active)
+
+
+def _suggested(columns: Sequence[Named], joints: Sequence[str]) -> Iterator[Taken]:
+    """Lines for columns without names that come one for each joint, which the user may turn into signals."""
+    for number, joint in enumerate(joints if len(columns) >= len(joints) else []):
+        column = columns[number].column
+        yield Taken(column, "current", place(column) | {"unit": "A"}, "", "current, T_sensor or T_rigid?", joint, False)
+
+
+def _why_not(each: Named) -> str:
+    """Why a column is not taken."""
+    if each.column.is_text:
+        return "text"
+    if each.meaning.is_set_point:
+        return "a set point"
+    if each.column.stands:
+        return "always the same"
+    return each.meaning.quantity and f"{each.meaning.quantity}, not needed"
+
+
+def _joined(*reasons: str) -> str:
+    return "; ".join(reason for reason in reasons if reason)
