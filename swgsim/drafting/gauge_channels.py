@@ -45,7 +45,7 @@ def gauge_channels(
     angle = _angle(taken, time, known)
     gauges = kinds["gauge"]
     if not gauges and angle is not None:
-        gauges = [pair for pair in pairs if not pair[1].quantity and has_order_2(pair[0], angle)]
+        gauges = [pair for pair in pairs if pair[1].quantity in ("", "voltage") and has_order_2(pair[0], angle)]
     taken += _torques(kinds["torque"])
     taken += _bridges(gauges, angle, known)
     used = {id(each.column) for each in taken}
@@ -154,7 +154,7 @@ def _bridges(
     names, why, ask = _numbered(gauges, angle)
     for name, (column, meaning) in zip(names, gauges, strict=False):
         unit, more, need, doubt = _bridge_unit(column, known)
-        share = f"order 2 has {min(abs(order_2(column, angle)), 1.0):.0%} of its range" if angle is not None else ""
+        share = f"order 2 has {min(abs(order_2(column, angle)), 1.0):.0%} of its range" if angle is not None and np.ptp(angle) > 2 * pi else ""
         reason = _joined(meaning.why, why, share)
         yield Taken(column, name, place(column) | {"unit": unit} | more, reason, _joined(ask, need, doubt), "", not need)
 
@@ -190,6 +190,9 @@ def _bridge_unit(column: SeenColumn, known: Mapping[str, Any]) -> tuple[str, dic
     if unit in OUTPUTS:
         scale = known.get("full_scale", f"10 {unit} = 2 mV/V")
         return unit, {"full_scale": scale}, _missing(known, ["full_scale"]), ""
+    if unit in ("uV", "µV"):
+        scale = known.get("full_scale", "10 mV = 2 mV/V")
+        return "mV", {"factor": 1e-3, "full_scale": scale}, _missing(known, ["full_scale"]), ""
     if unit in FACTORS["mV/V"]:
         return unit, {}, "", ""
     half = float(np.nanmax(column.values) - np.nanmin(column.values)) / 2

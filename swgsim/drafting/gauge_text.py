@@ -47,7 +47,7 @@ def _lines(
     known: Mapping[str, Any],
 ) -> Iterator[str]:  # fmt: skip
     yield f"# A first column map, drafted from {next(iter(looked.runs))}. Decide the lines with {ASK[2:]}, then read with it."
-    yield from layout_lines(seen)
+    yield from layout_lines(seen, taken)
     if names.path:
         yield line("path", names.path)
     if clock is None:

@@ -158,7 +158,7 @@ def _moving(
         yield Taken(angle.column, "gear_ratio", {"gear_ratio": ratio}, why, ask, name)
     if speed is not None:
         entry = place(speed.column) | units.speed | (side if of_motor else {})
-        yield Taken(speed.column, "omega", entry, _joined(speed.meaning.why, units.why), units.of_speed, name)
+        yield Taken(speed.column, "omega", entry, _joined(speed.meaning.why, units.why), units.of_speed, name, units.fits)
 
 
 def ratio_of_angles(motor: SeenColumn, output: SeenColumn) -> float:

@@ -32,7 +32,7 @@ def _lines(
 ) -> Iterator[str]:  # fmt: skip
     yield f"# A first source, drafted from {next(iter(looked.runs))}. Decide the lines with {ASK[2:]}, then read with it."
     yield line("robot", known.get("robot", "my robot"), "", "" if "robot" in known else "its name")
-    yield from layout_lines(seen)
+    yield from layout_lines(seen, taken)
     endings = sorted({"".join(PurePosixPath(name).suffixes[-2:]) if name.endswith(".gz") else PurePosixPath(name).suffix for name in looked.names})
     one = looked.names[0] if len(looked.names) == 1 else ""
     yield line("files", [one] if one else [f"*{ending}" for ending in endings])
@@ -66,8 +66,8 @@ def _joint(joint: str, own: Sequence[Taken], known: Mapping[str, Any]) -> Iterat
     signals = sorted((each for each in own if each.quantity in ORDER), key=lambda each: ORDER.index(each.quantity))
     for each in signals:
         yield line(each.quantity, each.entry, each.why, each.question, 6, each.active)
-        if each.quantity == "q" and not any(other.quantity == "omega" for other in signals):
-            yield line("omega", {"from": "q", "smoothed_s": 0.05}, "no velocity was found: the slope of the angle", "", 6)
+        if each.quantity == "q" and not any(other.quantity == "omega" and other.active for other in signals):
+            yield line("omega", {"from": "q", "smoothed_s": 0.05}, "no velocity that fits: the slope of the angle", "", 6)
 
 
 def _stands(run: Seen, seen: Seen, taken: Sequence[Taken]) -> bool:
@@ -78,4 +78,4 @@ def _stands(run: Seen, seen: Seen, taken: Sequence[Taken]) -> bool:
         return {(each.column, each.file): float(np.nanmax(each.values) - np.nanmin(each.values)) for each in one.columns if (each.column, each.file) in angles}
 
     usual, found = travel(seen), travel(run)
-    return all(found[angle] < STANDS * max(usual.values()) for angle in angles)
+    return bool(angles) and all(found[angle] < STANDS * max(usual.values()) for angle in angles)

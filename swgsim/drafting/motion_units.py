@@ -15,6 +15,8 @@ from swgsim.tables.units import FACTORS
 
 # An angle in whole numbers with a larger range counts; 720 degrees may be written without decimals.
 COUNTED = 1000.0
+# Share of an angle that its velocity explains; a dead band or a wrong column explains less.
+FITS = 0.9
 # Most robots turn less to either side; beyond, an angle without unit is in degrees [rad].
 MOST_TURNED = 4 * pi
 
@@ -32,6 +34,8 @@ class MotionUnits:
     why : str
     of_angle, of_speed : str
         What the user must decide.
+    fits : bool
+        Whether the velocity is that of the angle.
     """
 
     angle: dict[str, Any]
@@ -40,6 +44,7 @@ class MotionUnits:
     why: str = ""
     of_angle: str = ""
     of_speed: str = ""
+    fits: bool = True
 
 
 def motion_units(
@@ -70,9 +75,9 @@ def motion_units(
     asked = "" if said or wrap else f"no unit is said: {units[0]} is assumed"
     if slope is None:
         return MotionUnits({"unit": units[0], **wraps}, of_angle=doubt or asked)
-    if slope.share < 0.9:
-        of_speed = f"the slope of {angle.column} explains only {max(slope.share, 0):.0%} of it"
-        return MotionUnits({"unit": units[0], **wraps}, {"unit": rates[0]}, of_angle=doubt or asked, of_speed=of_speed)
+    if slope.share < FITS:
+        of_speed = f"{max(slope.share, 0):.0%} of {angle.column} is its integral, so omega is the slope of the angle"
+        return MotionUnits({"unit": units[0], **wraps}, {"unit": rates[0]}, of_angle=doubt or asked, of_speed=of_speed, fits=False)
     turned = {"inverted": True} if slope.factor < 0 else {}
     of_speed = "its sign is against the slope of the angle" if turned else ""
     found = abs(slope.factor)

@@ -105,10 +105,6 @@ class Seen:
         """What files that are read by the same map have in common."""
         return tuple((each.column, each.unit) for each in self.columns)
 
-    @property
-    def lost(self) -> int:
-        """Most lost readings of a column that has readings."""
-        return max((each.lost for each in self.columns if not each.is_empty), default=0)
 
 
 def see(path: Path, name: str) -> Seen:
@@ -147,7 +143,7 @@ def joined(seen: Mapping[str, Seen], name: str) -> Seen:
         raise FileDefect(name, f"files of one run with different lengths {lengths}", "as many rows in each")
     columns: list[SeenColumn] = []
     for signal, one in seen.items():
-        whole = [replace(each, file=signal, name=f"{signal} {each.name}".strip()) for each in one.columns]
+        whole = [replace(each, file=signal) for each in one.columns]
         columns += _in_turn(whole[0], turns) if turns > 1 and lengths[signal] == rows * turns else whole
     return Seen(tuple(columns), {}, first.layout, turns)
 
@@ -156,7 +152,7 @@ def _in_turn(column: SeenColumn, turns: int) -> Iterator[SeenColumn]:
     """The signals that follow one another in a column."""
     for number in range(turns):
         yield replace(
-            column, column=number + 1, name=f"{column.name}[{number + 1}]", values=column.values[number::turns]
+            column, column=number + 1, name=f"{column.file}[{number + 1}]", values=column.values[number::turns]
         )
 
 
@@ -190,7 +186,7 @@ def _text_columns(path: Path, found: TextLayout) -> Iterator[SeenColumn]:
             values = numbers if 2 * numbers.notna().sum() > values.notna().sum() else values.astype(str)
         lost = int(pd.isna(values).sum())
         column = name if name and found.names.count(name) == 1 else place + 1
-        yield SeenColumn(column, bare, unit_in(found.units[place]) or unit, values.to_numpy(), "", lost)
+        yield SeenColumn(column, bare, unit or unit_in(found.units[place]), values.to_numpy(), "", lost)
 
 
 def _binary(path: Path, name: str) -> Seen:

@@ -70,7 +70,7 @@ def text_layout(path: Path, name: str) -> TextLayout:
         raise FileDefect(name, found, "a table of numbers; if it has one, write the map by hand (docs/formats.md)")
     rows = [_cells(line, separator) for line in lines]
     first = _first(rows, decimal, width)
-    names_at, units_at = _header(rows[:first], lines, width)
+    names_at, units_at = _header(rows[:first], width)
     comment = next((line.lstrip()[0] for line in lines if line.lstrip()[:1] and line.lstrip()[0] in COMMENTS), "")
     names = tuple(rows[names_at][:width]) if names_at is not None else ()
     plain = _plain_header(lines, comment)
@@ -109,21 +109,40 @@ def _cells(line: str, separator: str) -> list[str]:
 
 
 def _fit(lines: Sequence[str], separator: str, decimal: str) -> tuple[int, int, int]:
-    """Digits in numbers of the rows of the most frequent width, the width if the row above has it too, and the width."""
+    """Digits in the numbers of the table, its width if the row above has it too, and its width."""
+    rows = [[] if line.lstrip()[:1] in COMMENTS else _cells(line, separator) for line in lines]
     digits: Counter[int] = Counter()
-    before: dict[int, int] = {}
-    for place, line in enumerate(lines):
-        if line.lstrip()[:1] in COMMENTS:
-            continue
-        cells = _cells(line, separator)
-        found = sum(len(DIGIT.findall(cell)) for cell in cells if _is_number(cell, decimal))
-        if found and not digits[len(cells)]:
-            before[len(cells)] = len(_cells(lines[place - 1], separator)) if place else len(cells)
-        digits[len(cells)] += found
-    if not digits:
-        return 0, 0, 0
-    width, count = digits.most_common(1)[0]
-    return count, width if before.get(width) == width else 0, width
+    for row in rows:
+        digits[len(row)] += _digits(row, decimal)
+    width = digits.most_common(1)[0][0] if digits else 0
+    numeric = _numeric(rows, decimal, width)
+    places = [place for place, row in enumerate(rows) if _is_sample(row, numeric, decimal, width)]
+    count = sum(_digits(rows[place], decimal) for place in places)
+    above = places and (places[0] == 0 or len(_cells(lines[places[0] - 1], separator)) == width)
+    return count, width if above else 0, width
+
+
+def _digits(row: Sequence[str], decimal: str) -> int:
+    """Digits of a row that belong to numbers."""
+    return sum(len(DIGIT.findall(cell)) for cell in row if _is_number(cell, decimal))
+
+
+def _numeric(rows: Sequence[Sequence[str]], decimal: str, width: int) -> list[int]:
+    """Places of the cells that are numbers in most rows of a width."""
+    table = [row for row in rows if len(row) == width]
+    return [
+        place
+        for place in range(width)
+        if 2 * sum(_is_number(row[place], decimal) for row in table) > sum(bool(row[place]) for row in table)
+    ]
+
+
+def _is_sample(row: Sequence[str], numeric: Sequence[int], decimal: str, width: int) -> bool:
+    """Whether a row has numbers, or lost readings, wherever most rows have numbers."""
+    known = [row[place] for place in numeric if row[place]] if len(row) == width else []
+    return any(_is_number(cell, decimal) for cell in known) and all(
+        _is_number(cell, decimal) or cell in LOST_READINGS for cell in known
+    )
 
 
 def _is_number(cell: str, decimal: str) -> bool:
@@ -134,23 +153,12 @@ def _is_number(cell: str, decimal: str) -> bool:
 
 
 def _first(rows: Sequence[Sequence[str]], decimal: str, width: int) -> int:
-    """Place of the first row that has numbers wherever most rows have numbers."""
-    table = [row for row in rows if len(row) == width]
-    numeric = [
-        place
-        for place in range(width)
-        if 2 * sum(_is_number(row[place], decimal) for row in table) > len([row for row in table if row[place]])
-    ]
-    for place, row in enumerate(rows):
-        known = [row[each] for each in numeric if row[each]] if len(row) == width else []
-        if any(_is_number(cell, decimal) for cell in known) and all(
-            _is_number(cell, decimal) or cell in LOST_READINGS for cell in known
-        ):
-            return place
-    return 0
+    """Place of the first sample."""
+    numeric = _numeric(rows, decimal, width)
+    return next(place for place, row in enumerate(rows) if _is_sample(row, numeric, decimal, width))
 
 
-def _header(above: Sequence[Sequence[str]], lines: Sequence[str], width: int) -> tuple[int | None, int | None]:
+def _header(above: Sequence[Sequence[str]], width: int) -> tuple[int | None, int | None]:
     """Places of the rows of names and of units: the last block of rows that are as wide as the numbers."""
     wide = [place for place, row in enumerate(above) if _filled(row) and abs(_filled(row) - width) <= 1]
     units = next((place for place in reversed(wide) if _are_units(above[place])), None)

@@ -12,7 +12,7 @@ FOREIGN = {
     "°C": "temperature", "C": "temperature", "K": "temperature", "degC": "temperature", "N": "force", "bar": "pressure",
     "rad/s^2": "acceleration", "rad/s²": "acceleration", "deg/s^2": "acceleration", "°/s²": "acceleration",
     "°/s^2": "acceleration", "m/s²": "acceleration", "m/s^2": "acceleration", "g": "acceleration", "Hz": "rate",
-    "W": "power",
+    "W": "power", "uV": "voltage", "µV": "voltage",
 }  # fmt: skip
 # Besides those of the maps, where a name or a row of units says them.
 MORE = {

@@ -11,12 +11,12 @@ from swgsim.drafting.units import quantity_of
 WORDS = {
     "time": "t time zeit timestamp stamp zeitstempel clock secs nsecs sec nanosec nsec elapsed uhrzeit datum date "
             "datetime x_value ts tijd",
-    "angle": "q pos position angle winkel phi theta encoder drehgeber lage istposition winkelposition joint_pos 6064h "
+    "angle": "q pos position angle winkel phi theta qm thetam encoder drehgeber lage istposition winkelposition joint_pos 6064h "
              "6064 6064hex positions pos_actual rotation drehwinkel angles",
-    "speed": "qd dq qdot dqdt vel velocity speed omega drehzahl geschwindigkeit n rpm w 606ch 606c velocities thetadot "
+    "speed": "qd dq qdot dqdt vel velocity speed omega wm dqm qdm omegam drehzahl geschwindigkeit n rpm w 606ch 606c velocities thetadot "
              "phidot istgeschwindigkeit winkelgeschwindigkeit nist speeds rate thetad",
     "torque": "torque tau drehmoment moment effort m md mom momente torques efforts nm kraftmoment",
-    "current": "current strom i iq amps cur motorstrom i_q 6078h 6078 6077h 6077 currents ampere",
+    "current": "current strom i im iq amps cur motorstrom i_q 6078h 6078 6077h 6077 currents ampere",
     "gauge": "strain dehnung dms bridge brucke bruecke gauge sg dehnungsmessstreifen",
     "temperature": "temp temperature temperatur motortemperatur",
     "acceleration": "acc accel acceleration beschleunigung qdd ddq qddot",
@@ -40,7 +40,7 @@ SET = set(
     "following error 607ah 607a 60ffh 60ff 6071h 6071 6062h 606bh".split()
 )
 MODEL = set("model rigid dynamics idyn gravity feedforward ff modell target".split())
-MOTOR = set("motor mot motorseitig rotor".split())
+MOTOR = set("motor mot motorseitig rotor qm thetam wm dqm qdm omegam im".split())
 INPUT = set("in input antrieb eingang drive motor wg an wavegenerator fast mot ein".split())
 OUTPUT = set("out output abtrieb ausgang load link last flange ab aus arm abtriebs joint".split())
 # Behind these words stands the place of a channel, such as A, and no quantity.
@@ -86,6 +86,12 @@ def meaning_of(column: SeenColumn) -> Meaning:
     words, index = words_of(column.name)
     by_unit = quantity_of(column.unit)
     by_word, word = _quantity(words)
+    if not by_word and column.file:
+        # A file of one signal may call its column "value": then the name of the file says what it is.
+        words, index = words_of(f"{column.file} {column.name}")
+        by_word, word = _quantity(words)
+    if words[-1:] == ("s",) and index in range(5):
+        by_word, word = "gauge", f"s{index}"
     # A unit is more certain than a word: "M1 [A]" is a current.
     if by_unit and by_unit != by_word:
         return Meaning(by_unit, words, index, f"unit {column.unit}")

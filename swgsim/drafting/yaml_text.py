@@ -39,7 +39,7 @@ def short(text: str) -> str:
     return one if len(one) <= LONGEST else one[: LONGEST - 1] + "…"
 
 
-def layout_lines(seen: Seen) -> Iterable[str]:
+def layout_lines(seen: Seen, taken: Sequence[Taken]) -> Iterable[str]:
     """Entries of the layout that are not the usual ones."""
     layout, usual = seen.layout, Layout()
     if layout is not None:
@@ -54,8 +54,11 @@ def layout_lines(seen: Seen) -> Iterable[str]:
             yield line("header_row", layout.header_row)
         if layout.first_row is not None:
             yield line("first_row", layout.first_row)
-    if seen.lost:
-        yield line("lost", "leave_out", "", f"{seen.lost} readings are lost; their rows are left out, at most a hundredth")
+    read = [each.column for each in taken if each.quantity and each.active]
+    if lost := max((each.lost for each in read), default=0):
+        share = lost / len(read[0].values)
+        value = "leave_out" if share < 0.01 else {"leave_out": lost}
+        yield line("lost", value, "", f"up to {lost} readings are lost in a column: leave out their rows?")
     if seen.interleaved > 1:
         yield line("interleaved", seen.interleaved, "so many signals follow one another in each column")
 
