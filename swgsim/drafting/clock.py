@@ -17,7 +17,7 @@ from swgsim.tables.units import FACTORS
 LOOKED = 200
 # Share of the steps that must be forward: a clock may stand where two samples have one stamp.
 FORWARD = 0.99
-# Scatter of the steps, as a share of a step, of a column without a name for time. Clocks of computers jitter by a tenth.
+# Scatter of the steps, as a share of a step, of a column without a name for time. Computers jitter by a tenth.
 EVEN = 0.2
 # Seconds since 1970 from 2000 to 2100.
 EPOCH = (9.4e8, 4.1e9)
@@ -68,7 +68,7 @@ def drafted_clock(columns: Sequence[SeenColumn], meanings: Sequence[Meaning]) ->
 def _draft(columns: Sequence[SeenColumn], units: Sequence[str], why: str, question: str = "") -> ClockDraft:
     file = {"file": columns[0].file} if columns[0].file else {}
     if len(columns) == 1:
-        entry = {"column": columns[0].column, "unit": units[0], **file}
+        entry: dict[str, Any] = {"column": columns[0].column, "unit": units[0], **file}
     else:
         entry = {"columns": [each.column for each in columns], "units": list(units), **file}
     time = read_clock(entry).seconds({each.column: each.values for each in columns}, "the file")
@@ -79,7 +79,9 @@ def _pair(columns: Sequence[SeenColumn], meanings: Sequence[Meaning]) -> list[Se
     """Seconds and nanoseconds in two columns, as ROS writes them."""
     found = []
     for words in ({"sec", "secs"}, {"nsec", "nsecs", "nanosec", "nanosecs"}):
-        same = (each for each, meaning in zip(columns, meanings, strict=True) if not each.is_text and _last(meaning, words))
+        same = (
+            each for each, meaning in zip(columns, meanings, strict=True) if not each.is_text and _last(meaning, words)
+        )
         found.append(next(same, None))
     return [each for each in found if each] if all(found) else []
 

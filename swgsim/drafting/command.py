@@ -17,7 +17,9 @@ def run(config: Mapping[str, Any]) -> None:
     """
     if config["files"] is None:
         raise ValueError("files is not given: swg map my_logs, or swg map files=my_logs")
-    draft = draft_map(config["files"], config["kind"], {key: value for key, value in config["known"].items() if value is not None})
+    draft = draft_map(
+        config["files"], config["kind"], {key: value for key, value in config["known"].items() if value is not None}
+    )
     out = Path(config["out"])
     draft.save(out)
     print(draft)

@@ -16,12 +16,15 @@ from swgsim.drafting.gauge_text import facts_of, gauge_text
 from swgsim.drafting.joint_signals import joint_signals
 from swgsim.drafting.joint_text import joint_text
 from swgsim.drafting.map_draft import MapDraft
+from swgsim.drafting.motion import unwrapped
+from swgsim.drafting.order_2 import has_order_2
 from swgsim.drafting.seen import Seen
 from swgsim.drafting.taken import Taken
 from swgsim.drafting.words import meaning_of
 from swgsim.joint.intake.read import read_joints
 from swgsim.recordings.checks.defect import summary
 from swgsim.recordings.read import inspect_recordings
+from swgsim.tables.units import FACTORS
 
 GAUGES, JOINTS = "gauges", "joints"
 # Facts that a user may give, as they are in no column.
@@ -29,6 +32,8 @@ OF_GAUGES = (
     "gear", "session", "n_in_rpm", "T_out_nm", "repeat", "temperature_c", "elapsed_s", "label", "gauge_factor",
     "active_arms", "full_scale",
 )  # fmt: skip
+# Angle of a wave generator in a recording [rad]; robots turn less.
+TURNED = 6 * np.pi
 OF_JOINTS = ("robot", "gear_ratio", "torque_constant", "rated")
 
 
@@ -90,9 +95,19 @@ def read_back(text: str, path: Path, kind: str) -> str:
 
 
 def _kind(seen: Seen, known: Mapping[str, Any]) -> str:
-    """Gauges if a column is one by its name or its unit, or if what is known is of gauges; else joints."""
+    """Gauges if a column is one by its name, its unit or its numbers, or if what is known is of gauges; else joints."""
     quantities = {meaning_of(each).quantity for each in seen.columns}
-    return GAUGES if "gauge" in quantities or set(known) & set(OF_GAUGES) else JOINTS
+    if "gauge" in quantities or set(known) & set(OF_GAUGES):
+        return GAUGES
+    # Two lobes that pass a gauge in each of many revolutions are those of a wave generator.
+    _, taken = _understood(seen, JOINTS, known)
+    for each in taken:
+        if each.quantity == "q" and each.entry["unit"] in FACTORS["rad"]:
+            angle = unwrapped(each.column.values) * FACTORS["rad"][each.entry["unit"]]
+            others = [other.column for other in taken if not other.quantity and not other.column.is_text]
+            if np.ptp(angle) > TURNED and any(has_order_2(other, angle) for other in others):
+                return GAUGES
+    return JOINTS
 
 
 def _names(looked: LookedAt, kind: str) -> FileNames:
@@ -112,9 +127,7 @@ def _understood(seen: Seen, kind: str, known: Mapping[str, Any]) -> tuple[ClockD
     meanings = [meaning_of(each) for each in seen.columns]
     clock = drafted_clock(seen.columns, meanings)
     time = clock.time if clock else np.arange(len(seen.columns[0].values), dtype=float)
-    pairs = [
-        pair for pair in zip(seen.columns, meanings, strict=True) if clock is None or pair[0] not in clock.columns
-    ]
+    pairs = [pair for pair in zip(seen.columns, meanings, strict=True) if clock is None or pair[0] not in clock.columns]
     columns, own = [pair[0] for pair in pairs], [pair[1] for pair in pairs]
     channels = gauge_channels if kind == GAUGES else joint_signals
     taken = channels(columns, own, time, known)

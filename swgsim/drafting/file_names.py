@@ -4,8 +4,8 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from swgsim.drafting.vocabulary import WORDS
 from swgsim.drafting.words import words_of
-from swgsim.drafting.words import WORDS
 
 # Parts of a path: words, numbers and single signs.
 PART = re.compile(r"[^\W\d_]+|\d+(?:\.\d+)?|.")
@@ -42,7 +42,7 @@ def signals_of(names: Sequence[str]) -> dict[str, dict[str, str]]:
         stem = file.partition(".")[0]
         signal = re.split(r"[_\-. ]", stem)[-1]
         words, _ = words_of(signal)
-        if not any(word in WORDS[kind].split() for word in words for kind in SIGNALS):
+        if not any(word in WORDS[kind] for word in words for kind in SIGNALS):
             return {}
         before = f"{place}/" * bool(place) + stem.removesuffix(signal)
         found.setdefault(before, {})[signal] = name
@@ -56,7 +56,9 @@ def signals_path(names: Sequence[str], kind: str) -> FileNames:
     runs = signals_of(names)
     run = r"(?P<run>.+?)_?" if kind == "joints" and all(runs) else r"(?P<recording>.+?)_?" if all(runs) else ""
     signal = "|".join(map(re.escape, sorted({signal for files in runs.values() for signal in files})))
-    return FileNames(f"{run}(?P<signal>{signal}){ending}", tuple(each for each in ("run", "signal") if each in run + "signal"))
+    return FileNames(
+        f"{run}(?P<signal>{signal}){ending}", tuple(each for each in ("run", "signal") if each in run + "signal")
+    )
 
 
 def fact_names(names: Sequence[str]) -> FileNames:
@@ -74,9 +76,13 @@ def fact_names(names: Sequence[str]) -> FileNames:
     for place, parts in enumerate(columns[:stem]):
         if NUMBER.fullmatch(parts[0]):
             behind = next(iter(columns[place + 1]), "").lower() if place + 1 < len(columns) else ""
-            before = next((columns[each][0].lower() for each in range(place - 1, -1, -1) if columns[each][0].isalpha()), "")
+            before = next(
+                (columns[each][0].lower() for each in range(place - 1, -1, -1) if columns[each][0].isalpha()), ""
+            )
             near = place > 0 and columns[place - 1][0].lower() == before
-            group = BEHIND.get(behind) or (BEFORE.get(before) if near or before in ("rep", "run", "wdh", "repeat") else None)
+            group = BEHIND.get(behind) or (
+                BEFORE.get(before) if near or before in ("rep", "run", "wdh", "repeat") else None
+            )
             if group and group not in groups.values():
                 groups[place] = group
     varying = [place for place, parts in enumerate(columns[:stem]) if len(set(parts)) > 1 and place not in groups]

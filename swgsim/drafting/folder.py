@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from swgsim.drafting.file_names import signals_of
+from swgsim.drafting.name_patterns import by_pattern
 from swgsim.drafting.seen import Seen, joined, see
 from swgsim.recordings.files.manifest import NAME
 from swgsim.tables.endings import files_of, is_data
@@ -70,6 +71,7 @@ def look_at(path: Path) -> LookedAt:
             others[files[0][1]] = str(defect)
     if not seen:
         raise FileDefect(str(path), f"no table of numbers ({next(iter(others.values()))})", "recordings")
+    seen = by_pattern(seen)
     alike = _alike(seen)
     others |= {name: "other columns" for name in seen if name not in alike}
     kept = tuple(name for files in runs for _, name in files if files[0][1] not in others)

@@ -19,6 +19,8 @@ from swgsim.tables.units import FACTORS
 ORDER = ("phi_in", "n_in", "T_in", "T_out", "s0", "s1", "s2", "s3", "s4")
 # A set speed is meant to so many per cent.
 MEANT = 0.005
+# What stands in a draft for a set speed or load that was not measured.
+UNKNOWN = {"n_in_rpm": 1000, "T_out_nm": 0}
 
 
 def gauge_text(
@@ -46,7 +48,7 @@ def _lines(
     looked: LookedAt, seen: Seen, clock: ClockDraft | None, taken: Sequence[Taken], names: FileNames,
     known: Mapping[str, Any],
 ) -> Iterator[str]:  # fmt: skip
-    yield f"# A first column map, drafted from {next(iter(looked.runs))}. Decide the lines with {ASK[2:]}, then read with it."
+    yield f"# A first column map, drafted from {next(iter(looked.runs))}. Decide the lines with {ASK[2:]}, then read."
     yield from layout_lines(seen, taken)
     if names.path:
         yield line("path", names.path)
@@ -54,8 +56,12 @@ def _lines(
         yield line("sampling_rate_hz", 10000, "", "no time was found: the sampling rate")
     yield "channels:"
     yield from clock_lines("t", clock, 2)
+    asked: set[str] = set()
     for each in sorted((each for each in taken if each.quantity in ORDER), key=lambda each: ORDER.index(each.quantity)):
-        yield line(each.quantity, each.entry, each.why, each.question, 2, each.active)
+        again = each.active and each.question in asked
+        why = f"as above: {each.question}" if again and each.question else each.why
+        yield line(each.quantity, each.entry, why, "" if again else each.question, 2, each.active)
+        asked.add(each.question)
     yield ""
     yield "# Facts of all recordings; the set speed and load are those that were asked of the bench."
     yield "facts:"
@@ -64,11 +70,19 @@ def _lines(
     measured = _measured(seen, clock, taken, known)
     for fact in ("gear", "session"):
         if fact not in names.groups:
-            yield line(fact, known.get(fact, "unknown"), "given" if fact in known else "", f"name of the {fact}" * (fact not in known), 2)
+            yield line(
+                fact,
+                known.get(fact, "unknown"),
+                "given" if fact in known else "",
+                f"name of the {fact}" * (fact not in known),
+                2,
+            )
     for fact in ("n_in_rpm", "T_out_nm"):
         if fact not in names.groups and (alone or fact in known):
-            question = "" if fact in known else f"{fact} as it was set; {'the mean' if fact in measured else 'not measured'}"
-            yield line(fact, measured.get(fact, 0), "given" if fact in known else "", question, 2)
+            question = (
+                "" if fact in known else f"{fact} as it was set; {'the mean' if fact in measured else 'not measured'}"
+            )
+            yield line(fact, measured.get(fact, UNKNOWN[fact]), "given" if fact in known else "", question, 2)
     if "repeat" not in names.groups and alone:
         yield line("repeat", 1, "", "", 2)
     for fact in KNOWN:
@@ -85,12 +99,14 @@ def _files(per_file: Mapping[str, Mapping[str, float]], known: Mapping[str, Any]
     yield f"files:  {ASK} set speed and load of each file; these are the means"
     points: list[tuple] = []
     for name, measured in per_file.items():
-        facts = {fact: measured.get(fact, 0) for fact in ("n_in_rpm", "T_out_nm") if fact not in known}
+        facts = {fact: measured.get(fact, UNKNOWN[fact]) for fact in ("n_in_rpm", "T_out_nm") if fact not in known}
         points.append(tuple(facts.values()))
         yield f"  {flow(name)}: {flow(facts | {'repeat': points.count(points[-1])})}"
 
 
-def _measured(seen: Seen, clock: ClockDraft | None, taken: Sequence[Taken], known: Mapping[str, Any]) -> dict[str, float]:
+def _measured(
+    seen: Seen, clock: ClockDraft | None, taken: Sequence[Taken], known: Mapping[str, Any]
+) -> dict[str, float]:
     """Speed and load of a file: those of the user, else the means; the speed is also the slope of the angle."""
     found: dict[str, float] = {fact: known[fact] for fact in ("n_in_rpm", "T_out_nm") if fact in known}
     own = {each.quantity: each.entry["unit"] for each in taken if each.active and "unit" in each.entry}

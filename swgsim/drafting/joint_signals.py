@@ -1,41 +1,21 @@
 """Signals of the joints of a robot: which column is whose angle, velocity, current and torque."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import product
 from typing import Any
 
 import numpy as np
 from jaxtyping import Float
 
+from swgsim.drafting.joint_forces import Named, force, forces
 from swgsim.drafting.motion import EXPLAINED, RATIOS, slope_of
 from swgsim.drafting.motion_units import motion_units
 from swgsim.drafting.seen import SeenColumn
-from swgsim.drafting.taken import Taken, place
-from swgsim.drafting.words import MODEL, MOTOR, OUTPUT, Meaning
-from swgsim.tables.units import FACTORS, SHARES
-
-# Objects of drives (CiA 402) that are in per mille of a rated value, and those of the drive's own encoder.
-OF_RATED = {"6077h", "6078h"}
-OF_DRIVE = {"6064h", "606ch"}
-
-
-@dataclass(frozen=True, eq=False)
-class Named:
-    """A column with what its name says."""
-
-    column: SeenColumn
-    meaning: Meaning
-
-    @property
-    def index(self) -> int | None:
-        """The number in the name."""
-        return self.meaning.index
-
-    @property
-    def at_motor(self) -> bool:
-        """Whether it is on the motor's side of the gear by its name."""
-        return self.meaning.says(MOTOR) or self.meaning.says(OF_DRIVE)
+from swgsim.drafting.taken import Taken, joined, place
+from swgsim.drafting.vocabulary import MODEL
+from swgsim.drafting.words import Meaning
+from swgsim.tables.units import FACTORS
 
 
 def joint_signals(
@@ -66,13 +46,20 @@ def joint_signals(
     angles = angles or list(pairs)
     joints = _names(angles)
     taken: list[Taken] = []
+    if not joints and usable:
+        # A source needs an angle: the user must say which column it is.
+        taken.append(
+            Taken(usable[0].column, "q", place(usable[0].column) | {"unit": "rad"}, "", "no angle was found", "joint_1")
+        )
     for name, angle in joints.items():
         alone = len(joints) == 1
         speed = pairs.get(angle) or _velocity(angle, kinds["speed"], time, alone)
-        motor = next((each for each in kinds["angle"] if each is not angle and each.index == angle.index and each.at_motor), None)
+        motor = next(
+            (each for each in kinds["angle"] if each is not angle and each.index == angle.index and each.at_motor), None
+        )
         taken += _moving(name, angle, speed, motor, time, known)
-        for signal in _forces(angle, kinds["current"], torques, alone):
-            taken.append(replace(_force(*signal, known), joint=name))
+        for signal in forces(angle, kinds["current"], torques, alone):
+            taken.append(replace(force(*signal, known), joint=name))
     if unnamed and pairs:
         left = [each for each in unnamed if each.column not in [one.column for one in taken]]
         taken += _suggested(left, list(joints))
@@ -150,7 +137,7 @@ def _moving(
     side = {"at": "motor"}
     yield Taken(
         angle.column, "q", place(angle.column) | units.angle | (side if drive else {}),
-        _joined(angle.meaning.why, "" if speed else units.why, "jumps by one turn" if "wraps" in units.angle else ""),
+        joined(angle.meaning.why, "" if speed else units.why, "jumps by one turn" if "wraps" in units.angle else ""),
         units.of_angle, name,
     )  # fmt: skip
     if ratio is not None:
@@ -158,7 +145,9 @@ def _moving(
         yield Taken(angle.column, "gear_ratio", {"gear_ratio": ratio}, why, ask, name)
     if speed is not None:
         entry = place(speed.column) | units.speed | (side if of_motor else {})
-        yield Taken(speed.column, "omega", entry, _joined(speed.meaning.why, units.why), units.of_speed, name, units.fits)
+        yield Taken(
+            speed.column, "omega", entry, joined(speed.meaning.why, units.why), units.of_speed, name, units.fits
+        )
 
 
 def ratio_of_angles(motor: SeenColumn, output: SeenColumn) -> float:
@@ -167,38 +156,6 @@ def ratio_of_angles(motor: SeenColumn, output: SeenColumn) -> float:
         return 0.0
     fast, slow = (each.values.astype(float) * FACTORS["rad"][each.unit] for each in (motor, output))
     return float(abs(np.polyfit(slow, fast, 1)[0])) if np.ptp(slow) > 0 else 0.0
-
-
-def _forces(
-    angle: Named, currents: Sequence[Named], torques: Sequence[Named], alone: bool
-) -> Iterator[tuple[str, Named]]:
-    """Current and torques of a joint: for each signal the first column, measured ones before others."""
-
-    def own(columns: Sequence[Named]) -> list[Named]:
-        found = [each for each in columns if each.index == angle.index]
-        return found or (list(columns) if alone else [])
-
-    yield from (("current", each) for each in own(currents)[:1])
-    measured = [each for each in own(torques) if not each.meaning.says(MODEL) and not each.at_motor]
-    yield from (("T_sensor", each) for each in sorted(measured, key=lambda each: not each.meaning.says(OUTPUT))[:1])
-    yield from (("T_rigid", each) for each in [each for each in own(torques) if each.meaning.says(MODEL)][:1])
-
-
-def _force(signal: str, each: Named, known: Mapping[str, Any]) -> Taken:
-    """One current or torque."""
-    column, target = each.column, "A" if signal == "current" else "N m"
-    unit, more, ask, active = column.unit, {}, "", True
-    if not unit and each.meaning.says(OF_RATED):
-        unit = "permille"
-    if unit in SHARES:
-        more = {"rated": known.get("rated", f"1 {target}")}
-        ask, active = ("", True) if "rated" in known else ("its rated value", False)
-    elif unit not in FACTORS[target]:
-        ask = "" if not unit else f"the file says {unit}"
-        unit, ask = target, ask or f"no unit is said: {target} is assumed"
-    if signal == "T_sensor" and each.meaning.says({"effort", "efforts"}):
-        ask = "effort: a measured torque, or one by the current? then it is no T_sensor"
-    return Taken(column, signal, place(column) | {"unit": unit} | more, each.meaning.why, ask, "", active)
 
 
 def _suggested(columns: Sequence[Named], joints: Sequence[str]) -> Iterator[Taken]:
@@ -217,7 +174,3 @@ def _why_not(each: Named) -> str:
     if each.column.stands:
         return "always the same"
     return each.meaning.quantity and f"{each.meaning.quantity}, not needed"
-
-
-def _joined(*reasons: str) -> str:
-    return "; ".join(reason for reason in reasons if reason)

@@ -1,6 +1,7 @@
 """The draft of a source for the logs of a robot."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -30,10 +31,15 @@ def _lines(
     looked: LookedAt, seen: Seen, clock: ClockDraft | None, taken: Sequence[Taken], names: FileNames,
     known: Mapping[str, Any],
 ) -> Iterator[str]:  # fmt: skip
-    yield f"# A first source, drafted from {next(iter(looked.runs))}. Decide the lines with {ASK[2:]}, then read with it."
+    yield f"# A first source, drafted from {next(iter(looked.runs))}. Decide the lines with {ASK[2:]}, then read."
     yield line("robot", known.get("robot", "my robot"), "", "" if "robot" in known else "its name")
     yield from layout_lines(seen, taken)
-    endings = sorted({"".join(PurePosixPath(name).suffixes[-2:]) if name.endswith(".gz") else PurePosixPath(name).suffix for name in looked.names})
+    endings = sorted(
+        {
+            "".join(PurePosixPath(name).suffixes[-2:]) if name.endswith(".gz") else PurePosixPath(name).suffix
+            for name in looked.names
+        }
+    )
     one = looked.names[0] if len(looked.names) == 1 else ""
     yield line("files", [one] if one else [f"*{ending}" for ending in endings])
     standing = [name for name, run in looked.runs.items() if _stands(run, seen, taken)]
@@ -42,15 +48,27 @@ def _lines(
     if looked.others and not one:
         yield line("leave_out", list(looked.others), "see below")
     if names.path:
-        yield line("path", names.path, "", "" if looked.by_signal else "the session: between sessions something was dismounted")
+        yield line(
+            "path", names.path, "", "" if looked.by_signal else "the session: between sessions something was dismounted"
+        )
     yield from clock_lines("time", clock)
     if clock is None:
         yield line("rate_hz", 1000, "", "no time was found: the sampling rate")
     yield ""
     yield "joints:"
+    asked: set[tuple[str, str]] = set()
     for joint in dict.fromkeys(each.joint for each in taken if each.joint):
-        yield from _joint(joint, [each for each in taken if each.joint == joint], known)
+        own = [_once(each, asked) for each in taken if each.joint == joint]
+        yield from _joint(joint, own, known)
+        asked |= {(each.quantity, each.question) for each in own}
     yield from left_lines(taken, seen, looked.others)
+
+
+def _once(each: Taken, asked: Collection[tuple[str, str]]) -> Taken:
+    """A line whose question was asked for another joint already points to it."""
+    if each.active and (each.quantity, each.question) in asked:
+        return replace(each, question="", why=f"as above: {each.question}" if each.question else each.why)
+    return each
 
 
 def _joint(joint: str, own: Sequence[Taken], known: Mapping[str, Any]) -> Iterator[str]:
@@ -67,7 +85,9 @@ def _joint(joint: str, own: Sequence[Taken], known: Mapping[str, Any]) -> Iterat
     for each in signals:
         yield line(each.quantity, each.entry, each.why, each.question, 6, each.active)
         if each.quantity == "q" and not any(other.quantity == "omega" and other.active for other in signals):
-            yield line("omega", {"from": "q", "smoothed_s": 0.05}, "no velocity that fits: the slope of the angle", "", 6)
+            yield line(
+                "omega", {"from": "q", "smoothed_s": 0.05}, "no velocity that fits: the slope of the angle", "", 6
+            )
 
 
 def _stands(run: Seen, seen: Seen, taken: Sequence[Taken]) -> bool:
@@ -75,7 +95,11 @@ def _stands(run: Seen, seen: Seen, taken: Sequence[Taken]) -> bool:
     angles = [(each.column.column, each.column.file) for each in taken if each.quantity == "q"]
 
     def travel(one: Seen) -> dict:
-        return {(each.column, each.file): float(np.nanmax(each.values) - np.nanmin(each.values)) for each in one.columns if (each.column, each.file) in angles}
+        return {
+            (each.column, each.file): float(np.nanmax(each.values) - np.nanmin(each.values))
+            for each in one.columns
+            if (each.column, each.file) in angles
+        }
 
     usual, found = travel(seen), travel(run)
     return bool(angles) and all(found[angle] < STANDS * max(usual.values()) for angle in angles)

@@ -82,7 +82,7 @@ def filled(values: Shaped[np.ndarray, " time"]) -> Float[np.ndarray, " time"]:
 def slope_of(
     angle: Shaped[np.ndarray, " time"], speed: Shaped[np.ndarray, " time"], time: Float[np.ndarray, " time"]
 ) -> Slope:
-    """Compare an angle with the integral of a velocity, which noise and the steps of an encoder spoil less than a slope."""
+    """Compare an angle with the integral of a velocity, which noise spoils less than a slope."""
     q, w = unwrapped(angle), filled(speed)
     moved = cumulative_trapezoid(w, filled(time), initial=0.0)
     q, moved = q - q.mean(), moved - moved.mean()

@@ -77,7 +77,9 @@ def motion_units(
         return MotionUnits({"unit": units[0], **wraps}, of_angle=doubt or asked)
     if slope.share < FITS:
         of_speed = f"{max(slope.share, 0):.0%} of {angle.column} is its integral, so omega is the slope of the angle"
-        return MotionUnits({"unit": units[0], **wraps}, {"unit": rates[0]}, of_angle=doubt or asked, of_speed=of_speed, fits=False)
+        return MotionUnits(
+            {"unit": units[0], **wraps}, {"unit": rates[0]}, of_angle=doubt or asked, of_speed=of_speed, fits=False
+        )
     turned = {"inverted": True} if slope.factor < 0 else {}
     of_speed = "its sign is against the slope of the angle" if turned else ""
     found = abs(slope.factor)
@@ -87,7 +89,9 @@ def motion_units(
         unit, rate = pairs[0]
         why = share if len(units) == len(rates) == 1 else f"{share}, factor {found:.4g}: {rate} and {unit}"
         sure = len({pair[0] for pair in pairs}) == 1
-        return MotionUnits({"unit": unit, **wraps}, {"unit": rate, **turned}, 1.0, why, doubt or asked * (not sure), of_speed)
+        return MotionUnits(
+            {"unit": unit, **wraps}, {"unit": rate, **turned}, 1.0, why, doubt or asked * (not sure), of_speed
+        )
     unit, rate = units[0], rates[0]
     ratio = expected(unit, rate) / found
     if RATIOS[0] <= max(ratio, 1 / ratio) <= RATIOS[1]:
@@ -126,5 +130,3 @@ def _counted(factor: float, rates: Sequence[str], revolution: float, wraps: dict
     of_speed = asked if speed["unit"] == "counts/s" else ""
     speed |= more if speed["unit"] == "counts/s" else {}
     return MotionUnits({"unit": "counts", **more, **wraps}, speed, 1.0, why, asked, of_speed)
-
-

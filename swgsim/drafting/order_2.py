@@ -39,4 +39,4 @@ def has_order_2(column: SeenColumn, angle: Float[np.ndarray, " time"]) -> bool:
 
 def clearest(columns: Sequence[SeenColumn], angles: Sequence[Float[np.ndarray, " time"]]) -> int:
     """Place of the angle by which the channels show the most of two cycles per revolution."""
-    return int(np.argmax([sum(abs(order_2(column, angle)) for column in columns) for angle in angles]))
+    return int(np.argmax([sum(float(abs(order_2(column, angle))) for column in columns) for angle in angles]))

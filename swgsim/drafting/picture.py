@@ -28,7 +28,12 @@ def picture(taken: Sequence[Taken], clock: ClockDraft | None) -> Figure:
         axes.plot(time[::step], values[::step], color=colour, linewidth=0.8)
         name = " ".join(filter(None, [each.joint, each.quantity])) or "not read"
         unit = each.entry.get("unit", each.column.unit)
-        style.label(axes, "time [s]" if clock is not None else "sample", f"[{unit}]" if unit else "", f"{name}: {each.column.column}")
+        style.label(
+            axes,
+            "time [s]" if clock is not None else "sample",
+            f"[{unit}]" if unit else "",
+            f"{name}: {each.column.column}",
+        )
     for axes in panels[len(shown) :]:
         axes.set_visible(False)
     return figure

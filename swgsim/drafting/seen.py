@@ -106,7 +106,6 @@ class Seen:
         return tuple((each.column, each.unit) for each in self.columns)
 
 
-
 def see(path: Path, name: str) -> Seen:
     """Look at a file.
 
@@ -218,4 +217,3 @@ def _binary_column(column: str, unit: str, values: np.ndarray) -> SeenColumn:
     bare, own = split_unit(column)
     lost = 0 if values.dtype.kind in "iu" else int(np.isnan(values).sum())
     return SeenColumn(column, bare, unit_in(unit) or own, values, "", lost)
-

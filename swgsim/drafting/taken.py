@@ -37,6 +37,11 @@ class Taken:
     active: bool = True
 
 
+def joined(*reasons: str) -> str:
+    """Reasons that are not empty, as one text."""
+    return "; ".join(reason for reason in reasons if reason)
+
+
 def place(column: SeenColumn) -> dict[str, Any]:
     """Where a map finds a column."""
     return {"column": column.column} | ({"file": column.file} if column.file else {})

@@ -105,7 +105,9 @@ def _lines(path: Path) -> tuple[str, list[str]]:
 def _cells(line: str, separator: str) -> list[str]:
     """Cells of a line; the sign of a comment is no part of the first one."""
     text = line.lstrip().lstrip(COMMENTS) if line.lstrip()[:1] in COMMENTS else line
-    return [cell.strip() for cell in cells_of(text, Layout(separator=separator, decimal="." if separator == "," else ","))]
+    return [
+        cell.strip() for cell in cells_of(text, Layout(separator=separator, decimal="." if separator == "," else ","))
+    ]
 
 
 def _fit(lines: Sequence[str], separator: str, decimal: str) -> tuple[int, int, int]:
@@ -162,7 +164,9 @@ def _header(above: Sequence[Sequence[str]], width: int) -> tuple[int | None, int
     """Places of the rows of names and of units: the last block of rows that are as wide as the numbers."""
     wide = [place for place, row in enumerate(above) if _filled(row) and abs(_filled(row) - width) <= 1]
     units = next((place for place in reversed(wide) if _are_units(above[place])), None)
-    names = [place for place in wide if place != units and any(map(str.strip, above[place])) and _are_names(above[place])]
+    names = [
+        place for place in wide if place != units and any(map(str.strip, above[place])) and _are_names(above[place])
+    ]
     if units is not None and not any(place < units for place in names):
         units = None
     return (max(names, key=lambda place: (len(set(above[place])), place)) if names else None), units

@@ -17,7 +17,7 @@ FOREIGN = {
 # Besides those of the maps, where a name or a row of units says them.
 MORE = {
     "Grad": "deg", "grad": "deg", "degree": "deg", "seconds": "s", "Sekunden": "s", "Sek": "s", "microstrain": "um/m",
-    "ue": "um/m", "mue": "um/m", "rads": "rad/s", "radps": "rad/s", "degps": "deg/s", "rad_s": "rad/s", "deg_s": "deg/s",
+    "ue": "um/m", "rads": "rad/s", "radps": "rad/s", "degps": "deg/s", "rad_s": "rad/s", "deg_s": "deg/s",
     "Grad/s": "deg/s", "rpm": "rpm", "upm": "rpm", "Upm": "rpm", "r/min": "rpm", "rev/min": "rpm", "um_m": "um/m",
     "mv_v": "mV/V", "uv_v": "uV/V", "v_v": "V/V", "nsec": "ns", "nsecs": "ns", "secs": "s", "msec": "ms", "usec": "us",
     "inc": "counts", "Inc": "counts", "cnt": "counts", "ticks": "counts", "inc/s": "counts/s", "nm": "N m",

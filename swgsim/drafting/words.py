@@ -1,50 +1,14 @@
-"""What names of columns mean: words of the field in English and German, and those of common recorders and drives."""
+"""What the name and the unit of a column say."""
 
 import re
 import unicodedata
+from collections.abc import Set
 from dataclasses import dataclass
 
 from swgsim.drafting.seen import SeenColumn
 from swgsim.drafting.units import quantity_of
+from swgsim.drafting.vocabulary import CHANNEL, PARTS, SET, WORDS
 
-# Words of a name, in small letters without accents. Whole words first, then beginnings and parts of compound words.
-WORDS = {
-    "time": "t time zeit timestamp stamp zeitstempel clock secs nsecs sec nanosec nsec elapsed uhrzeit datum date "
-            "datetime x_value ts tijd",
-    "angle": "q pos position angle winkel phi theta qm thetam encoder drehgeber lage istposition winkelposition joint_pos 6064h "
-             "6064 6064hex positions pos_actual rotation drehwinkel angles",
-    "speed": "qd dq qdot dqdt vel velocity speed omega wm dqm qdm omegam drehzahl geschwindigkeit n rpm w 606ch 606c velocities thetadot "
-             "phidot istgeschwindigkeit winkelgeschwindigkeit nist speeds rate thetad",
-    "torque": "torque tau drehmoment moment effort m md mom momente torques efforts nm kraftmoment",
-    "current": "current strom i im iq amps cur motorstrom i_q 6078h 6078 6077h 6077 currents ampere",
-    "gauge": "strain dehnung dms bridge brucke bruecke gauge sg dehnungsmessstreifen",
-    "temperature": "temp temperature temperatur motortemperatur",
-    "acceleration": "acc accel acceleration beschleunigung qdd ddq qddot",
-    "voltage": "voltage spannung volt udc",
-    "counter": "seq sample samples index count counter nr no number row id idx cycle messwert",
-    "status": "status mode state error flag trigger frame name comment bemerkung fehler",
-}  # fmt: skip
-PARTS = {
-    "time": ("zeit",),
-    "angle": ("position", "winkel", "angle"),
-    "speed": ("geschwindigkeit", "drehzahl", "velocity", "speed"),
-    "torque": ("moment", "torque"),
-    "current": ("strom", "current"),
-    "gauge": ("strain", "dehnung", "brucke", "bridge"),
-    "temperature": ("temperatur",),
-    "acceleration": ("beschleunigung", "accel"),
-}
-# A value that was asked for, or the difference to it, not one that was measured.
-SET = set(
-    "target soll desired des cmd command commanded ref reference setpoint demand demanded set sollwert goal "
-    "following error 607ah 607a 60ffh 60ff 6071h 6071 6062h 606bh".split()
-)
-MODEL = set("model rigid dynamics idyn gravity feedforward ff modell target".split())
-MOTOR = set("motor mot motorseitig rotor qm thetam wm dqm qdm omegam im".split())
-INPUT = set("in input antrieb eingang drive motor wg an wavegenerator fast mot ein".split())
-OUTPUT = set("out output abtrieb ausgang load link last flange ab aus arm abtriebs joint".split())
-# Behind these words stands the place of a channel, such as A, and no quantity.
-CHANNEL = {"channel", "kanal", "ch", "chan", "input"}
 # Derivatives are written behind or before the name of an angle.
 DOT = re.compile(r"(theta|phi|q)_?(dot|d)$|^(dot|d)_?(theta|phi|q)$")
 CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
@@ -58,7 +22,7 @@ class Meaning:
     Attributes
     ----------
     quantity : str
-        A key of :data:`WORDS`, or empty.
+        A key of :data:`swgsim.drafting.vocabulary.WORDS`, or empty.
     words : tuple of str
     index : int or None
         The number in it, such as 4 of ``q[4]``.
@@ -70,9 +34,9 @@ class Meaning:
     index: int | None
     why: str
 
-    def says(self, words: set[str]) -> bool:
+    def says(self, words: Set[str]) -> bool:
         """Whether one of some words is in it."""
-        return bool(words & set(self.words))
+        return any(word in words for word in self.words)
 
     @property
     def is_set_point(self) -> bool:
@@ -123,7 +87,7 @@ def _quantity(words: tuple[str, ...]) -> tuple[str, str]:
         if len(word) == 1 and CHANNEL & set(words):
             continue
         for quantity, known in WORDS.items():
-            if word in known.split():
+            if word in known:
                 return quantity, word
         for quantity, parts in PARTS.items():
             if any(part in word for part in parts):

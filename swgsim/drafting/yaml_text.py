@@ -11,6 +11,7 @@ from swgsim.drafting.taken import Taken
 from swgsim.tables.layout import Layout
 
 ASK = "# ???"
+NOT_UNDERSTOOD = "???"
 SEPARATORS = {"\t": "tab", " ": "blanks"}
 # Longest comment, so that a line is read at a glance.
 LONGEST = 110
@@ -71,10 +72,12 @@ def left_lines(taken: Sequence[Taken], seen: Seen, others: Mapping[str, str]) ->
         yield "# Columns that are not read, with their first values:"
     for each in left:
         file = f" of {each.column.file}" if each.column.file else ""
-        yield f"#   {short(f'{each.column.column}{file}: {each.column.first}  ({each.why or chr(63) * 3})')}"
+        yield f"#   {short(f'{each.column.column}{file}: {each.column.first}  ({each.why or NOT_UNDERSTOOD})')}"
     if seen.others:
         yield ""
-        yield "# What else is in the file: " + short("; ".join(f"{name} ({what})" for name, what in seen.others.items()))
+        yield "# What else is in the file: " + short(
+            "; ".join(f"{name} ({what})" for name, what in seen.others.items())
+        )
     for name, why in list(others.items())[:10]:
         yield f"# Not read: {short(f'{name}: {why}')}"
 

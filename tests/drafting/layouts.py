@@ -71,19 +71,27 @@ def joint(rng: np.random.Generator, seconds: float = 12.0, rate: float = 250.0, 
     }
 
 
-def rows(path: Path, before: str, columns: list, separator: str, after: str = "", decimal: str = ".", encoding: str = "utf-8", form: str = "%.8g", end: str = "") -> None:  # fmt: skip
+def rows(
+    path: Path, before: str, columns: list, separator: str, decimal: str = ".", encoding: str = "utf-8",
+    form: str = "%.8g", end: str = "",
+) -> None:  # fmt: skip
     """Write a table of text."""
     cells = [[each if isinstance(each, str) else form % each for each in column] for column in columns]
     body = "\n".join(separator.join(row) + end for row in zip(*cells, strict=True))
     body = body.replace(".", decimal) if decimal != "." else body
-    path.write_text(before + body + "\n" + after, encoding=encoding)
+    path.write_text(before + body + "\n", encoding=encoding)
+
+
+def numbered(joints: list[dict], *more: str) -> dict:
+    """Truth of several joints."""
+    return {f"joint_{i}": {s: each[s] for s in ("t", "q", "omega", *more)} for i, each in enumerate(joints, 1)}
 
 
 def catman(folder: Path, rng: np.random.Generator) -> Case:
     m = gauges(rng)
     names = ["Zeit  1 - default [s]", "Drehgeber Antrieb [°]", "Drehzahl Antrieb [1/min]", "Drehmoment Antrieb [Nm]",
              "Drehmoment Abtrieb [Nm]", *(f"DMS S{i} [mV/V]" for i in range(5))]  # fmt: skip
-    before = "HBM_CATMAN_DATAFILE_40\nDatei: prüfstand.tst\nDatum: 12.03.2026\nKanäle: 10\n\n" + "\t".join(names) + "\n"
+    before = "CATMAN\nDatei: prüfstand.tst\nDatum: 12.03.2026\nKanäle: 10\n\n" + "\t".join(names) + "\n"
     columns = [m["t"], m["phi_in"] * RAD, m["n_in"], m["T_in"], m["T_out"], *(m[f"s{i}"] for i in range(5))]
     rows(folder / "versuch.asc", before, columns, "\t", decimal=",", encoding="cp1252")
     return Case("gauges", {"versuch": m}, GEAR)
@@ -98,7 +106,13 @@ def labview(folder: Path, rng: np.random.Generator) -> Case:
         "Multi_Headings\tNo\nX_Columns\tOne\nTime_Pref\tRelative\nDate\t2026/03/12\nTime\t10:22:31.5\n"
         "***End_of_Header***\t\n\t\n"
         f"Channels\t{width}" + "\t" * width + "\n"
-        "Samples" + "\t3000" * width + "\t\nDate" + "\t2026/03/12" * width + "\t\nTime" + "\t10:22:31.5" * width + "\t\n"
+        "Samples"
+        + "\t3000" * width
+        + "\t\nDate"
+        + "\t2026/03/12" * width
+        + "\t\nTime"
+        + "\t10:22:31.5" * width
+        + "\t\n"
         "X_Dimension" + "\tTime" * width + "\t\nX0" + "\t0.0E+0" * width + "\t\nDelta_X" + "\t0.0002" * width + "\t\n"
         "***End_of_Header***" + "\t" * (width + 1) + "\nX_Value\t" + "\t".join(channels) + "\tComment\n"
     )
@@ -114,7 +128,13 @@ def german_excel(folder: Path, rng: np.random.Generator) -> Case:
         stem = f"{n_in}rpm_{load}Nm_{repeat}"
         before = "Zeit in ms;Winkel in °;Drehzahl in U/min;Moment Abtrieb in Nm;Brücke 1 in mV/V;Brücke 2 in mV/V;"
         before += "Brücke 3 in mV/V;Brücke 4 in mV/V\n"
-        columns = [m["t"] * 1e3, np.mod(m["phi_in"] * RAD, 360), m["n_in"], m["T_out"], *(m[f"s{i}"] for i in range(1, 5))]
+        columns = [
+            m["t"] * 1e3,
+            np.mod(m["phi_in"] * RAD, 360),
+            m["n_in"],
+            m["T_out"],
+            *(m[f"s{i}"] for i in range(1, 5)),
+        ]
         rows(folder / f"{stem}.csv", before, columns, ";", decimal=",", encoding="cp1252")
         truth[stem] = {n: m[n] for n in ("t", "phi_in", "n_in", "T_out", "s1", "s2", "s3", "s4")}
     return Case("gauges", truth, GEAR)
@@ -136,7 +156,7 @@ def rtde(folder: Path, rng: np.random.Generator) -> Case:
     columns = [joints[0]["t"] + 5000.0, *(each["q"] + 0.001 for each in joints)]
     columns += [each[s] for s in signals.values() for each in joints]
     rows(folder / "robot.csv", " ".join(names) + "\n", columns, " ", form="%.9g")
-    truth = {f"joint_{i + 1}": {s: each[s] for s in ("t", "q", "omega", "current")} for i, each in enumerate(joints)}
+    truth = numbered(joints, "current")
     return Case("joints", truth)
 
 
@@ -146,11 +166,12 @@ def ros(folder: Path, rng: np.random.Generator) -> Case:
     before += "velocity[0],velocity[1],effort[0],effort[1]\n"
     start = 1_700_000_123_200_000_000
     ns = start + np.round(joints[0]["t"] * 1e9).astype(int)
-    columns = [[str(i) for i in range(len(ns))], [str(each // 10**9) for each in ns], [str(each % 10**9) for each in ns],
+    seconds, nanoseconds = [str(each // 10**9) for each in ns], [str(each % 10**9) for each in ns]
+    columns = [[str(i) for i in range(len(ns))], seconds, nanoseconds,
                ["world"] * len(ns), ["shoulder"] * len(ns), ["elbow"] * len(ns),
                *(each[s] for s in ("q", "omega", "T_sensor") for each in joints)]  # fmt: skip
     rows(folder / "joint_states.csv", before, columns, ",")
-    return Case("joints", {f"joint_{i + 1}": {s: each[s] for s in ("t", "q", "omega", "T_sensor")} for i, each in enumerate(joints)})  # fmt: skip
+    return Case("joints", numbered(joints, "T_sensor"))
 
 
 def nanoseconds(folder: Path, rng: np.random.Generator) -> Case:
@@ -163,8 +184,11 @@ def nanoseconds(folder: Path, rng: np.random.Generator) -> Case:
 
 def iso(folder: Path, rng: np.random.Generator) -> Case:
     m = joint(rng)
-    stamps = [(datetime(2026, 3, 12, 10, 22, 31) + timedelta(seconds=float(s))).isoformat("T", "milliseconds") for s in m["t"]]
-    rows(folder / "axis.tsv", "# recorder 4.2, axis test\n# operator: k\nTimestamp\tposition [rad]\tvelocity [rad/s]\tmotor current [mA]\n",
+    stamps = [
+        (datetime(2026, 3, 12, 10, 22, 31) + timedelta(seconds=float(s))).isoformat("T", "milliseconds") for s in m["t"]
+    ]
+    before = "# recorder 4.2, axis test\n# operator: k\n"
+    rows(folder / "axis.tsv", before + "Timestamp\tposition [rad]\tvelocity [rad/s]\tmotor current [mA]\n",
          [stamps, m["q"], m["omega"], m["current"] * 1e3], "\t")  # fmt: skip
     return Case("joints", {"joint_1": {s: m[s] for s in ("t", "q", "omega", "current")}})
 
@@ -185,16 +209,17 @@ def no_header(folder: Path, rng: np.random.Generator) -> Case:
     joints = [joint(rng) for _ in range(3)]
     columns = [joints[0]["t"], *(each[s] for s in ("q", "omega", "current") for each in joints)]
     rows(folder / "traj.csv", "", columns, ",")
-    truth = {f"joint_{i + 1}": {s: each[s] for s in ("t", "q", "omega")} for i, each in enumerate(joints)}
+    truth = numbered(joints)
     return Case("joints", truth)
 
 
 def matlab_struct(folder: Path, rng: np.random.Generator) -> Case:
     joints = [joint(rng) for _ in range(4)]
     state = {"t": joints[0]["t"], "q": np.array([each["q"] for each in joints]).T,
-             "dq": np.array([each["omega"] for each in joints]).T, "tau": np.array([each["T_sensor"] for each in joints]).T}  # fmt: skip
+             "dq": np.array([each["omega"] for each in joints]).T,
+             "tau": np.array([each["T_sensor"] for each in joints]).T}  # fmt: skip
     savemat(folder / "test1.mat", {"Joint_state": state, "robot": "arm"})
-    truth = {f"joint_{i + 1}": {s: each[s] for s in ("t", "q", "omega", "T_sensor")} for i, each in enumerate(joints)}
+    truth = numbered(joints, "T_sensor")
     return Case("joints", truth)
 
 
@@ -215,7 +240,7 @@ def hdf5(folder: Path, rng: np.random.Generator) -> Case:
             file[f"daq/{name}"].attrs["units"] = np.bytes_(unit.encode())
         for i in range(1, 5):
             file[f"daq/bridge{i}"] = m[f"s{i}"] * 1e3
-            file[f"daq/bridge{i}"].attrs["units"] = np.bytes_("uV/V".encode())
+            file[f"daq/bridge{i}"].attrs["units"] = np.bytes_(b"uV/V")
     return Case("gauges", {"bench": {n: m[n] for n in m if n != "s0"}}, GEAR)
 
 
@@ -239,21 +264,27 @@ def one_file_per_signal(folder: Path, rng: np.random.Generator) -> Case:
 
 def several_axes(folder: Path, rng: np.random.Generator) -> Case:
     joints = [joint(rng) for _ in range(6)]
-    names = ["Zeit [s]", *(f"A{i} {what}" for i in range(1, 7) for what in ("Istposition [°]", "Istgeschwindigkeit [°/s]", "Sollposition [°]", "Motorstrom [A]", "Motortemperatur [°C]"))]  # fmt: skip
+    what = ("Istposition [°]", "Istgeschwindigkeit [°/s]", "Sollposition [°]", "Motorstrom [A]", "Motortemperatur [°C]")
+    names = ["Zeit [s]", *(f"A{i} {each}" for i in range(1, 7) for each in what)]
     columns = [joints[0]["t"]]
     for each in joints:
         columns += [each["q"] * RAD, each["omega"] * RAD, each["q"] * RAD + 0.02, each["current"], 40 + 0 * each["q"]]
     rows(folder / "kuka.txt", ";".join(names) + "\n", columns, ";", encoding="utf-8-sig")
-    truth = {f"joint_{i + 1}": {s: each[s] for s in ("t", "q", "omega", "current")} for i, each in enumerate(joints)}
+    truth = numbered(joints, "current")
     return Case("joints", truth)
 
 
 def drive_counts(folder: Path, rng: np.random.Generator) -> Case:
     m = joint(rng)
     counts, ratio = 131072, 101
-    columns = [m["t"] * 1e3, np.round(m["q"] * ratio * counts / (2 * np.pi)), m["omega"] * ratio * RPM, m["current"] / 2.4 * 1e3]
-    rows(folder / "ethercat.csv", "Time [ms],Position actual value (6064h),Velocity actual value (606Ch) [rpm],Torque actual value (6077h)\n",
-         columns, ",", form="%.10g")  # fmt: skip
+    columns = [
+        m["t"] * 1e3,
+        np.round(m["q"] * ratio * counts / (2 * np.pi)),
+        m["omega"] * ratio * RPM,
+        m["current"] / 2.4 * 1e3,
+    ]
+    names = "Time [ms],Position actual value (6064h),Velocity actual value (606Ch) [rpm],Torque actual value (6077h)\n"
+    rows(folder / "ethercat.csv", names, columns, ",", form="%.10g")  # fmt: skip
     return Case("joints", {"joint_1": {s: m[s] for s in ("t", "q", "omega", "current")}},
                 {"gear_ratio": ratio, "rated": "2.4 A"})  # fmt: skip
 
@@ -262,7 +293,9 @@ def degrees_wrapped(folder: Path, rng: np.random.Generator) -> Case:
     m = joint(rng, swing=4.0)
     rows(folder / "spindle.dat", "t|angle|speed|torque\n",
          [m["t"], np.mod(m["q"] * RAD + 20, 360), m["omega"] * RPM, m["T_sensor"]], "|")  # fmt: skip
-    return Case("joints", {"joint_1": {"t": m["t"], "q": m["q"] + 20 / RAD, "omega": m["omega"], "T_sensor": m["T_sensor"]}})
+    return Case(
+        "joints", {"joint_1": {"t": m["t"], "q": m["q"] + 20 / RAD, "omega": m["omega"], "T_sensor": m["T_sensor"]}}
+    )
 
 
 def motor_side(folder: Path, rng: np.random.Generator) -> Case:
@@ -275,17 +308,22 @@ def motor_side(folder: Path, rng: np.random.Generator) -> Case:
 def microstrain(folder: Path, rng: np.random.Generator) -> Case:
     m = gauges(rng)
     before = "t (s),phi (rad),n (rpm),M_out (Nm),Ch0 (µm/m),Ch1 (µm/m),Ch2 (µm/m),Ch3 (µm/m),Ch4 (µm/m)\n"
-    rows(folder / "m.csv", before, [m["t"], m["phi_in"], m["n_in"], m["T_out"], *(m[f"s{i}"] * 500 for i in range(5))], ",")
+    rows(
+        folder / "m.csv",
+        before,
+        [m["t"], m["phi_in"], m["n_in"], m["T_out"], *(m[f"s{i}"] * 500 for i in range(5))],
+        ",",
+    )
     truth = {n: m[n] for n in m if n != "T_in"}
     return Case("gauges", {"m": truth}, {**GEAR, "gauge_factor": 2.0, "active_arms": 4})
 
 
-LAYOUTS: Mapping[str, Callable[[Path, np.random.Generator], Case]] = {
-    each.__name__: each
-    for each in (catman, labview, german_excel, picoscope, rtde, ros, nanoseconds, iso, two_header_rows, no_header,
-                 matlab_struct, matlab_matrix, hdf5, parquet, one_file_per_signal, several_axes, drive_counts,
-                 degrees_wrapped, motor_side, microstrain)  # fmt: skip
-}  # fmt: skip
+ALL = (
+    catman, labview, german_excel, picoscope, rtde, ros, nanoseconds, iso, two_header_rows, no_header, matlab_struct,
+    matlab_matrix, hdf5, parquet, one_file_per_signal, several_axes, drive_counts, degrees_wrapped, motor_side,
+    microstrain,
+)  # fmt: skip
+LAYOUTS: Mapping[str, Callable[[Path, np.random.Generator], Case]] = {each.__name__: each for each in ALL}
 
 
 def made(folder: Path) -> Iterator[tuple[str, Path, Case]]:
