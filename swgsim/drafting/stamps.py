@@ -34,7 +34,7 @@ def form_of(cells: Sequence[str]) -> str | None:
     """
     if cells and all(ISO.fullmatch(cell) for cell in cells):
         return STAMP
-    for form in FORMS:
+    for form in FORMS if all(map(is_stamp, cells)) else ():
         if cells and pd.to_datetime(pd.Series(cells), format=form, errors="coerce").notna().all():
             return form
     return None

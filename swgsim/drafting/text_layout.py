@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
+from typing import NamedTuple
 
 from swgsim.drafting.stamps import is_stamp
 from swgsim.drafting.units import is_unit
@@ -19,9 +20,9 @@ from swgsim.tables.file_defect import FileDefect
 from swgsim.tables.layout import LOST_READINGS, Layout
 from swgsim.tables.text_stream import NUMBER, cells_of
 
-# What is looked at [byte], [rows]: preambles have at most a few hundred rows.
+# What is looked at [byte], [rows]: preambles have at most some hundred rows.
 LOOKED = 2**20
-ROWS = 1000
+ROWS = 400
 MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
 # In the order in which they win if they fit equally well: a blank splits also what a tab separates.
 SEPARATORS = ("\t", ";", ",", "|", " ")
@@ -52,6 +53,33 @@ class TextLayout:
     first_row: int
 
 
+class Fit(NamedTuple):
+    """What a separator and a decimal sign make of the lines.
+
+    Attributes
+    ----------
+    rows : list of list of str
+        Cells of all lines.
+    digits : int
+        Digits that belong to numbers of samples.
+    width : int
+        Cells of a sample.
+    first : int
+        Place of the first sample.
+    """
+
+    rows: list[list[str]]
+    digits: int
+    width: int
+    first: int
+
+    @property
+    def rank(self) -> tuple[int, int]:
+        """Digits in numbers; where they are equal, the width if the row above the numbers has it too."""
+        headed = self.first == 0 or len(self.rows[self.first - 1]) == self.width
+        return self.digits, self.width if headed else 0
+
+
 def text_layout(path: Path, name: str) -> TextLayout:
     """The layout of a text file.
 
@@ -61,15 +89,12 @@ def text_layout(path: Path, name: str) -> TextLayout:
         If no rows of numbers are found.
     """
     encoding, lines = _lines(path)
-    choices = [each for each in product(SEPARATORS, ",.") if each[0] != each[1]]
-    fits = {choice: _fit(lines, *choice) for choice in choices}
-    separator, decimal = max(choices, key=lambda choice: fits[choice][:2])
-    digits, _, width = fits[separator, decimal]
-    if not digits:
+    fits = {each: _fit(lines, *each) for each in product(SEPARATORS, ",.") if each[0] != each[1]}
+    (separator, decimal), fit = max(fits.items(), key=lambda item: item[1].rank)
+    if not fit.digits:
         found = f"no rows of numbers in the first {len(lines)} rows"
         raise FileDefect(name, found, "a table of numbers; if it has one, write the map by hand (docs/formats.md)")
-    rows = [_cells(line, separator) for line in lines]
-    first = _first(rows, decimal, width)
+    rows, width, first = fit.rows, fit.width, fit.first
     names_at, units_at = _header(rows[:first], width)
     comment = next((line.lstrip()[0] for line in lines if line.lstrip()[:1] and line.lstrip()[0] in COMMENTS), "")
     names = tuple(rows[names_at][:width]) if names_at is not None else ()
@@ -102,62 +127,43 @@ def _lines(path: Path) -> tuple[str, list[str]]:
     return encoding, (lines if whole else lines[:-1])[:ROWS]
 
 
-def _cells(line: str, separator: str) -> list[str]:
-    """Cells of a line; the sign of a comment is no part of the first one."""
-    text = line.lstrip().lstrip(COMMENTS) if line.lstrip()[:1] in COMMENTS else line
-    return [
-        cell.strip() for cell in cells_of(text, Layout(separator=separator, decimal="." if separator == "," else ","))
-    ]
+def _split(lines: Sequence[str], separator: str) -> list[list[str]]:
+    """Cells of all lines; the sign of a comment is no part of the first one."""
+    layout = Layout(separator=separator, decimal="." if separator == "," else ",")
+    bare = (line.lstrip().lstrip(COMMENTS) if line.lstrip()[:1] in COMMENTS else line for line in lines)
+    return [[cell.strip() for cell in cells_of(line, layout)] for line in bare]
 
 
-def _fit(lines: Sequence[str], separator: str, decimal: str) -> tuple[int, int, int]:
-    """Digits in the numbers of the table, its width if the row above has it too, and its width."""
-    rows = [[] if line.lstrip()[:1] in COMMENTS else _cells(line, separator) for line in lines]
-    digits: Counter[int] = Counter()
-    for row in rows:
-        digits[len(row)] += _digits(row, decimal)
-    width = digits.most_common(1)[0][0] if digits else 0
-    numeric = _numeric(rows, decimal, width)
-    places = [place for place, row in enumerate(rows) if _is_sample(row, numeric, decimal, width)]
-    count = sum(_digits(rows[place], decimal) for place in places)
-    above = places and (places[0] == 0 or len(_cells(lines[places[0] - 1], separator)) == width)
-    return count, width if above else 0, width
-
-
-def _digits(row: Sequence[str], decimal: str) -> int:
-    """Digits of a row that belong to numbers."""
-    return sum(len(DIGIT.findall(cell)) for cell in row if _is_number(cell, decimal))
-
-
-def _numeric(rows: Sequence[Sequence[str]], decimal: str, width: int) -> list[int]:
-    """Places of the cells that are numbers in most rows of a width."""
-    table = [row for row in rows if len(row) == width]
-    return [
+def _fit(lines: Sequence[str], separator: str, decimal: str) -> Fit:
+    """The table that a separator and a decimal sign make of the lines."""
+    rows = _split(lines, separator)
+    said = [line.lstrip()[:1] not in COMMENTS or not line.strip() for line in lines]
+    digits = [[_digits(cell, decimal) for cell in row] if real else [] for row, real in zip(rows, said, strict=True)]
+    by_width: Counter[int] = Counter()
+    for row in digits:
+        by_width[len(row)] += sum(max(each, 0) for each in row)
+    width = max(by_width, key=by_width.__getitem__, default=0)
+    table = [row for row in digits if len(row) == width]
+    # Columns of numbers are those in which more cells are numbers than texts.
+    numeric = [place for place in range(width) if sum((row[place] > 0) - (row[place] < 0) for row in table) > 0]
+    samples = [
         place
-        for place in range(width)
-        if 2 * sum(_is_number(row[place], decimal) for row in table) > sum(bool(row[place]) for row in table)
+        for place, row in enumerate(digits)
+        if len(row) == width
+        and numeric
+        and min(row[each] for each in numeric) >= 0 < max(row[each] for each in numeric)
     ]
+    if not samples:
+        return Fit(rows, 0, width, 0)
+    return Fit(rows, sum(max(each, 0) for place in samples for each in digits[place]), width, samples[0])
 
 
-def _is_sample(row: Sequence[str], numeric: Sequence[int], decimal: str, width: int) -> bool:
-    """Whether a row has numbers, or lost readings, wherever most rows have numbers."""
-    known = [row[place] for place in numeric if row[place]] if len(row) == width else []
-    return any(_is_number(cell, decimal) for cell in known) and all(
-        _is_number(cell, decimal) or cell in LOST_READINGS for cell in known
-    )
-
-
-def _is_number(cell: str, decimal: str) -> bool:
-    """Whether a cell is a number or a time stamp."""
-    if decimal == ",":
-        return ("." not in cell and bool(NUMBER.fullmatch(cell.replace(",", ".")))) or is_stamp(cell)
-    return bool(NUMBER.fullmatch(cell)) or is_stamp(cell)
-
-
-def _first(rows: Sequence[Sequence[str]], decimal: str, width: int) -> int:
-    """Place of the first sample."""
-    numeric = _numeric(rows, decimal, width)
-    return next(place for place, row in enumerate(rows) if _is_sample(row, numeric, decimal, width))
+def _digits(cell: str, decimal: str) -> int:
+    """Digits of a number or time stamp; 0 for a lost reading, -1 for another text."""
+    number = cell.replace(",", ".") if decimal == "," and "." not in cell else cell
+    if (NUMBER.fullmatch(number) and not (decimal == "," and "." in cell)) or is_stamp(cell):
+        return len(DIGIT.findall(cell))
+    return 0 if cell in LOST_READINGS else -1
 
 
 def _header(above: Sequence[Sequence[str]], width: int) -> tuple[int | None, int | None]:
