@@ -126,7 +126,7 @@ def _understood(seen: Seen, kind: str, known: Mapping[str, Any]) -> tuple[ClockD
     """The time, and what each other column is taken for."""
     meanings = [meaning_of(each) for each in seen.columns]
     clock = drafted_clock(seen.columns, meanings)
-    time = clock.time if clock else np.arange(len(seen.columns[0].values), dtype=float)
+    time = clock.time if clock else None
     pairs = [pair for pair in zip(seen.columns, meanings, strict=True) if clock is None or pair[0] not in clock.columns]
     columns, own = [pair[0] for pair in pairs], [pair[1] for pair in pairs]
     channels = gauge_channels if kind == GAUGES else joint_signals

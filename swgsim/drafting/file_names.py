@@ -86,10 +86,16 @@ def fact_names(names: Sequence[str]) -> FileNames:
             if group and group not in groups.values():
                 groups[place] = group
     varying = [place for place, parts in enumerate(columns[:stem]) if len(set(parts)) > 1 and place not in groups]
-    last = [place for place in varying if all(part.isdigit() for part in columns[place])]
-    if last and "repeat" not in groups.values() and last[-1] == max(varying):
-        groups[last[-1]] = "repeat"
-        varying.remove(last[-1])
+    # A number at the end of a name is that of a repeat, if it differs or the other numbers have a meaning.
+    end = stem - 1
+    if (
+        columns[end][0].isdigit()
+        and end not in groups
+        and "repeat" not in groups.values()
+        and (groups or end in varying)
+    ):
+        groups[end] = "repeat"
+        varying = [place for place in varying if place != end]
     text = ""
     folder_end = max((place for place, parts in enumerate(columns[:stem]) if parts[0] == "/"), default=-1)
     if any(place < folder_end for place in varying):

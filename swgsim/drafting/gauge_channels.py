@@ -21,7 +21,7 @@ from swgsim.tables.units import FACTORS, OUTPUTS
 def gauge_channels(
     columns: Sequence[SeenColumn],
     meanings: Sequence[Meaning],
-    time: Float[np.ndarray, " time"],
+    time: Float[np.ndarray, " time"] | None,
     known: Mapping[str, Any],
 ) -> list[Taken]:
     """What the columns of a test bench are taken for; those that are not understood come last.
@@ -31,8 +31,8 @@ def gauge_channels(
     columns : sequence of SeenColumn
         Those that are no time.
     meanings : sequence of Meaning
-    time : array (time,)
-        [s].
+    time : array (time,), optional
+        [s]; None if no time was found.
     known : mapping
         Facts of the user, such as ``n_in_rpm`` or ``full_scale``.
     """
@@ -57,7 +57,7 @@ def _left(column: SeenColumn, meaning: Meaning) -> Taken:
 
 
 def _turning(
-    angles: Sequence[Pair], speeds: Sequence[Pair], gauges: Sequence[Pair], time: Float[np.ndarray, " time"],
+    angles: Sequence[Pair], speeds: Sequence[Pair], gauges: Sequence[Pair], time: Float[np.ndarray, " time"] | None,
     known: Mapping[str, Any],
 ) -> Iterator[Taken]:  # fmt: skip
     """Angle and speed of the wave generator: the fastest where the names do not say the side."""
@@ -90,9 +90,9 @@ def _of_input(pairs: Sequence[Pair], size: Any) -> Pair | None:
     return max(of_input or rest, key=lambda pair: size(pair[0]), default=None)
 
 
-def _units_by_speed(angle: SeenColumn, time: Float[np.ndarray, " time"], known: Mapping[str, Any]) -> list[str]:
+def _units_by_speed(angle: SeenColumn, time: Float[np.ndarray, " time"] | None, known: Mapping[str, Any]) -> list[str]:
     """Unit of an angle that turns at the set speed; none if the speed is not known."""
-    if "n_in_rpm" not in known:
+    if "n_in_rpm" not in known or time is None:
         return []
     turned = slope_of(angle.values, np.ones(len(time)), time).factor
     wanted = float(known["n_in_rpm"]) * pi / 30
@@ -110,7 +110,7 @@ def _units_by_lobes(angle: SeenColumn, gauges: Sequence[Pair]) -> list[str]:
 
 
 def _angle(
-    taken: Sequence[Taken], time: Float[np.ndarray, " time"], known: Mapping[str, Any]
+    taken: Sequence[Taken], time: Float[np.ndarray, " time"] | None, known: Mapping[str, Any]
 ) -> Float[np.ndarray, " time"] | None:
     """Angle of the wave generator [rad]; by the set speed if it was not recorded."""
     for each in taken:
@@ -118,6 +118,8 @@ def _angle(
             return unwrapped(each.column.values) * FACTORS["rad"][each.entry["unit"]]
         if each.quantity == "phi_in":
             return unwrapped(each.column.values) * 2 * pi / each.entry["per_revolution"]
+    if time is None:
+        return None
     for each in taken:
         if each.quantity == "n_in" and each.entry["unit"] in FACTORS["rad/s"]:
             mean = float(np.nanmean(each.column.values)) * FACTORS["rad/s"][each.entry["unit"]]

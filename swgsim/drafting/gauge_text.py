@@ -54,7 +54,7 @@ def _lines(
         yield line("path", names.path)
     if clock is None:
         yield line("sampling_rate_hz", 10000, "", "no time was found: the sampling rate")
-    yield "channels:"
+    yield "channels:" if clock or any(each.active and each.quantity for each in taken) else "channels: {}"
     yield from clock_lines("t", clock, 2)
     asked: set[str] = set()
     for each in sorted((each for each in taken if each.quantity in ORDER), key=lambda each: ORDER.index(each.quantity)):
@@ -118,7 +118,7 @@ def _measured(
     }
     for fact, channel, target, digits in (("n_in_rpm", "n_in", "rpm", 10), ("T_out_nm", "T_out", "N m", 1)):
         if fact not in found and own.get(channel) in FACTORS[target]:
-            found[fact] = _round(float(np.nanmean(values[channel])) * FACTORS[target][own[channel]], digits)
+            found[fact] = _round(abs(float(np.nanmean(values[channel]))) * FACTORS[target][own[channel]], digits)
     if "n_in_rpm" not in found and own.get("phi_in") in FACTORS["rad"] and clock is not None:
         turned = np.ptp(unwrapped(values["phi_in"])) * FACTORS["rad"][own["phi_in"]]
         found["n_in_rpm"] = _round(turned / float(np.ptp(clock.time)) * 30 / np.pi, 10)

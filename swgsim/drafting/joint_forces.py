@@ -6,7 +6,7 @@ from typing import Any
 
 from swgsim.drafting.seen import SeenColumn
 from swgsim.drafting.taken import Taken, place
-from swgsim.drafting.vocabulary import MODEL, MOTOR, OUTPUT
+from swgsim.drafting.vocabulary import COMMON, MODEL, MOTOR, OUTPUT, WORDS
 from swgsim.drafting.words import Meaning
 from swgsim.tables.units import FACTORS, SHARES
 
@@ -28,6 +28,17 @@ class Named:
         return self.meaning.index
 
     @property
+    def words(self) -> tuple[str, ...]:
+        """The words that tell its joint from others, such as shoulder."""
+        known = (COMMON, MOTOR, OUTPUT, *WORDS.values())
+        return tuple(word for word in self.meaning.words if not any(word in words for words in known))
+
+    @property
+    def joint(self) -> int | tuple[str, ...]:
+        """What its name says of its joint: a number, else words."""
+        return self.words if self.index is None else self.index
+
+    @property
     def at_motor(self) -> bool:
         """Whether it is on the motor's side of the gear by its name."""
         return self.meaning.says(MOTOR) or self.meaning.says(OF_DRIVE)
@@ -39,7 +50,7 @@ def forces(
     """Current and torques of a joint: for each signal the first column, measured ones before others."""
 
     def own(columns: Sequence[Named]) -> list[Named]:
-        found = [each for each in columns if each.index == angle.index]
+        found = [each for each in columns if each.joint == angle.joint]
         return found or (list(columns) if alone else [])
 
     yield from (("current", each) for each in own(currents)[:1])

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.drafting.joint_forces import Named, force, forces
-from swgsim.drafting.motion import EXPLAINED, RATIOS, slope_of
+from swgsim.drafting.motion import EXPLAINED, RATIOS, slope_of, wrap_of
 from swgsim.drafting.motion_units import motion_units
 from swgsim.drafting.seen import SeenColumn
 from swgsim.drafting.taken import Taken, joined, place
@@ -21,7 +21,7 @@ from swgsim.tables.units import FACTORS
 def joint_signals(
     columns: Sequence[SeenColumn],
     meanings: Sequence[Meaning],
-    time: Float[np.ndarray, " time"],
+    time: Float[np.ndarray, " time"] | None,
     known: Mapping[str, Any],
 ) -> list[Taken]:
     """What the columns of a robot's log are taken for; those that are not understood come last.
@@ -31,8 +31,8 @@ def joint_signals(
     columns : sequence of SeenColumn
         Those that are no time.
     meanings : sequence of Meaning
-    time : array (time,)
-        [s].
+    time : array (time,), optional
+        [s]; None if no time was found.
     known : mapping
         Facts of the user, such as ``gear_ratio``.
     """
@@ -41,9 +41,10 @@ def joint_signals(
     kinds = {kind: [each for each in usable if each.meaning.quantity == kind] for kind in ("angle", "speed", "current")}
     torques = [each for each in usable if each.meaning.quantity == "torque"]
     unnamed = [each for each in usable if not each.meaning.quantity and not each.column.stands]
-    angles = _one_for_each_index(kinds["angle"])
+    angles = _one_for_each_joint(kinds["angle"])
     pairs = _by_slope(unnamed, time) if not angles else {}
-    angles = angles or list(pairs)
+    # A column that jumps by one turn is an angle, whatever its name.
+    angles = angles or list(pairs) or [each for each in unnamed if wrap_of(each.column.values)]
     joints = _names(angles)
     taken: list[Taken] = []
     if not joints and usable:
@@ -55,7 +56,7 @@ def joint_signals(
         alone = len(joints) == 1
         speed = pairs.get(angle) or _velocity(angle, kinds["speed"], time, alone)
         motor = next(
-            (each for each in kinds["angle"] if each is not angle and each.index == angle.index and each.at_motor), None
+            (each for each in kinds["angle"] if each is not angle and each.joint == angle.joint and each.at_motor), None
         )
         taken += _moving(name, angle, speed, motor, time, known)
         for signal in forces(angle, kinds["current"], torques, alone):
@@ -72,15 +73,15 @@ def _is_set_point(meaning: Meaning) -> bool:
     return meaning.is_set_point and not (meaning.quantity == "torque" and meaning.says(MODEL))
 
 
-def _one_for_each_index(angles: Sequence[Named]) -> list[Named]:
+def _one_for_each_joint(angles: Sequence[Named]) -> list[Named]:
     """One angle for each joint: that of the output before that of the motor."""
-    chosen: dict[int | None, Named] = {}
+    chosen: dict[int | tuple[str, ...], Named] = {}
     for each in sorted(angles, key=lambda each: each.at_motor):
-        chosen.setdefault(each.index, each)
+        chosen.setdefault(each.joint, each)
     return [each for each in angles if each in chosen.values()]
 
 
-def _by_slope(columns: Sequence[Named], time: Float[np.ndarray, " time"]) -> dict[Named, Named]:
+def _by_slope(columns: Sequence[Named], time: Float[np.ndarray, " time"] | None) -> dict[Named, Named]:
     """Angles and their velocities among columns without names: a velocity explains its angle best, and an angle too."""
     shares = {
         (angle, speed): slope_of(angle.column.values, speed.column.values, time).share
@@ -96,27 +97,27 @@ def _by_slope(columns: Sequence[Named], time: Float[np.ndarray, " time"]) -> dic
 
 
 def _names(angles: Sequence[Named]) -> dict[str, Named]:
-    """Joints by their names, from joint_1 on: by the numbers in the names of the columns, else by their order."""
-    indices = [each.index for each in angles]
-    if len(angles) == 1 or None in indices:
+    """Joints by their names: those of the columns, or joint_1 and so on by their numbers, else by their order."""
+    words = ["_".join(each.words) for each in angles]
+    if len(angles) > 1 and all(words) and len(set(words)) == len(words):
+        return dict(zip(words, angles, strict=True))
+    indices = [each.index for each in angles if each.index is not None]
+    if len(angles) == 1 or len(set(indices)) < len(angles):
         return {f"joint_{number}": each for number, each in enumerate(angles, 1)}
     first = 1 if 0 in indices else 0
-    return {f"joint_{int(each.index or 0) + first}": each for each in angles}
+    return {f"joint_{index + first}": each for index, each in zip(indices, angles, strict=True)}
 
 
-def _velocity(angle: Named, speeds: Sequence[Named], time: Float[np.ndarray, " time"], alone: bool) -> Named | None:
+def _velocity(
+    angle: Named, speeds: Sequence[Named], time: Float[np.ndarray, " time"] | None, alone: bool
+) -> Named | None:
     """The velocity of an angle: that of the same joint which explains it best."""
-    own = [each for each in speeds if each.index == angle.index] or (list(speeds) if alone or _bare(speeds) else [])
+    own = [each for each in speeds if each.joint == angle.joint] or (list(speeds) if alone else [])
     return max(own, key=lambda each: slope_of(angle.column.values, each.column.values, time).share, default=None)
 
 
-def _bare(columns: Sequence[Named]) -> bool:
-    """Whether no name has a number."""
-    return all(each.index is None for each in columns)
-
-
 def _moving(
-    name: str, angle: Named, speed: Named | None, motor: Named | None, time: Float[np.ndarray, " time"],
+    name: str, angle: Named, speed: Named | None, motor: Named | None, time: Float[np.ndarray, " time"] | None,
     known: Mapping[str, Any],
 ) -> Iterator[Taken]:  # fmt: skip
     """Angle and velocity of one joint."""

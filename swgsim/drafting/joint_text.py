@@ -53,9 +53,14 @@ def _lines(
         )
     yield from clock_lines("time", clock)
     if clock is None:
-        yield line("rate_hz", 1000, "", "no time was found: the sampling rate")
+        if any(each.quantity == "omega" and each.active for each in taken):
+            yield line(
+                "rate", "from_motion", "no time was found: the rate is mean velocity over mean step of the angle"
+            )
+        else:
+            yield line("rate_hz", 1000, "", "no time was found: the sampling rate")
     yield ""
-    yield "joints:"
+    yield "joints:" if any(each.joint for each in taken) else "joints: {}"
     asked: set[tuple[str, str]] = set()
     for joint in dict.fromkeys(each.joint for each in taken if each.joint):
         own = [_once(each, asked) for each in taken if each.joint == joint]

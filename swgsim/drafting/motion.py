@@ -80,11 +80,14 @@ def filled(values: Shaped[np.ndarray, " time"]) -> Float[np.ndarray, " time"]:
 
 
 def slope_of(
-    angle: Shaped[np.ndarray, " time"], speed: Shaped[np.ndarray, " time"], time: Float[np.ndarray, " time"]
+    angle: Shaped[np.ndarray, " time"], speed: Shaped[np.ndarray, " time"], time: Float[np.ndarray, " time"] | None
 ) -> Slope:
-    """Compare an angle with the integral of a velocity, which noise spoils less than a slope."""
+    """Compare an angle with the integral of a velocity, which noise spoils less than a slope.
+
+    Without a time its factor is per sample.
+    """
     q, w = unwrapped(angle), filled(speed)
-    moved = cumulative_trapezoid(w, filled(time), initial=0.0)
+    moved = cumulative_trapezoid(w, None if time is None else filled(time), initial=0.0)
     q, moved = q - q.mean(), moved - moved.mean()
     power = float(moved @ moved)
     if not power or not float(q @ q):

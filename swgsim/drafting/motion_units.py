@@ -48,7 +48,7 @@ class MotionUnits:
 
 
 def motion_units(
-    angle: SeenColumn, speed: SeenColumn | None, time: Float[np.ndarray, " time"], likely: Sequence[str] = ()
+    angle: SeenColumn, speed: SeenColumn | None, time: Float[np.ndarray, " time"] | None, likely: Sequence[str] = ()
 ) -> MotionUnits:
     """Units of an angle and of its velocity.
 
@@ -56,8 +56,8 @@ def motion_units(
     ----------
     angle : SeenColumn
     speed : SeenColumn, optional
-    time : array (time,)
-        [s].
+    time : array (time,), optional
+        [s]; without it the factor of the slope says nothing.
     likely : sequence of str
         Units of an angle that says none, the most likely first.
     """
@@ -81,6 +81,11 @@ def motion_units(
             {"unit": units[0], **wraps}, {"unit": rates[0]}, of_angle=doubt or asked, of_speed=of_speed, fits=False
         )
     turned = {"inverted": True} if slope.factor < 0 else {}
+    if time is None:
+        of_time = "no time, by which its unit could be checked"
+        return MotionUnits(
+            {"unit": units[0], **wraps}, {"unit": rates[0], **turned}, of_angle=doubt or asked, of_speed=of_time
+        )
     of_speed = "its sign is against the slope of the angle" if turned else ""
     found = abs(slope.factor)
     share = f"slope explains {slope.share:.1%}"

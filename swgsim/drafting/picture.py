@@ -12,11 +12,14 @@ from swgsim.drafting.taken import Taken
 # Panels beside one another, and samples that are drawn of each column.
 BESIDE = 3
 DRAWN = 5000
+# Most panels: those of six joints with all that a controller logs.
+MOST = 60
 
 
 def picture(taken: Sequence[Taken], clock: ClockDraft | None) -> Figure:
     """Draw all columns; those that are not read are grey."""
-    shown = [each for each in taken if each.quantity not in ("t", "gear_ratio") and not each.column.is_text]
+    numbers = [each for each in taken if each.quantity not in ("t", "gear_ratio") and not each.column.is_text]
+    shown = numbers[:MOST]
     rows = max(-(-len(shown) // BESIDE), 1)
     figure = style.figure(4.2 * BESIDE, 1.9 * rows)
     panels = figure.subplots(rows, BESIDE, squeeze=False).ravel()
@@ -32,7 +35,7 @@ def picture(taken: Sequence[Taken], clock: ClockDraft | None) -> Figure:
             axes,
             "time [s]" if clock is not None else "sample",
             f"[{unit}]" if unit else "",
-            f"{name}: {each.column.column}",
+            f"{name}: {each.column.column}".replace("$", r"\$"),  # no formula
         )
     for axes in panels[len(shown) :]:
         axes.set_visible(False)

@@ -20,6 +20,8 @@ from swgsim.tables.layout import LOST_READINGS, Layout
 MOST_ROWS = 100_000
 # A matrix with more signals is a picture or a table of results.
 MOST_SIGNALS = 64
+# Beyond every unit, also nanoseconds since 1970; squares are still finite.
+LARGEST = 1e20
 # Values of a column that are shown.
 SHOWN = 3
 
@@ -183,9 +185,10 @@ def _text_columns(path: Path, found: TextLayout) -> Iterator[SeenColumn]:
             numbers = pd.to_numeric(values.astype(str).str.replace(layout.decimal, ".", regex=False), errors="coerce")
             # A column is one of numbers if most of its cells are.
             values = numbers if 2 * numbers.notna().sum() > values.notna().sum() else values.astype(str)
-        lost = int(pd.isna(values).sum())
+        readings = _within(values.to_numpy())
+        lost = int(pd.isna(readings).sum())
         column = name if name and found.names.count(name) == 1 else place + 1
-        yield SeenColumn(column, bare, unit or unit_in(found.units[place]), values.to_numpy(), "", lost)
+        yield SeenColumn(column, bare, unit or unit_in(found.units[place]), readings, "", lost)
 
 
 def _binary(path: Path, name: str) -> Seen:
@@ -215,5 +218,13 @@ def _binary(path: Path, name: str) -> Seen:
 
 def _binary_column(column: str, unit: str, values: np.ndarray) -> SeenColumn:
     bare, own = split_unit(column)
+    values = _within(values)
     lost = 0 if values.dtype.kind in "iu" else int(np.isnan(values).sum())
     return SeenColumn(column, bare, unit_in(unit) or own, values, "", lost)
+
+
+def _within(values: np.ndarray) -> np.ndarray:
+    """Numbers that are too large for a measured value are lost readings."""
+    if values.dtype.kind != "f":
+        return values
+    return np.where(np.abs(values) < LARGEST, values, np.nan)

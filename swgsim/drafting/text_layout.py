@@ -18,6 +18,7 @@ from swgsim.drafting.stamps import is_stamp
 from swgsim.drafting.units import is_unit
 from swgsim.tables.file_defect import FileDefect
 from swgsim.tables.layout import LOST_READINGS, Layout
+from swgsim.tables.limits import FEWEST_ROWS
 from swgsim.tables.text_stream import NUMBER, cells_of
 
 # What is looked at [byte], [rows]: preambles have at most some hundred rows.
@@ -64,14 +65,15 @@ class Fit(NamedTuple):
         Digits that belong to numbers of samples.
     width : int
         Cells of a sample.
-    first : int
-        Place of the first sample.
+    first, samples : int
+        Place of the first sample, and number of samples.
     """
 
     rows: list[list[str]]
     digits: int
     width: int
     first: int
+    samples: int
 
     @property
     def rank(self) -> tuple[int, int]:
@@ -91,8 +93,8 @@ def text_layout(path: Path, name: str) -> TextLayout:
     encoding, lines = _lines(path)
     fits = {each: _fit(lines, *each) for each in product(SEPARATORS, ",.") if each[0] != each[1]}
     (separator, decimal), fit = max(fits.items(), key=lambda item: item[1].rank)
-    if not fit.digits:
-        found = f"no rows of numbers in the first {len(lines)} rows"
+    if fit.samples < FEWEST_ROWS:
+        found = f"{fit.samples} rows of numbers in the first {len(lines)} rows"
         raise FileDefect(name, found, "a table of numbers; if it has one, write the map by hand (docs/formats.md)")
     rows, width, first = fit.rows, fit.width, fit.first
     names_at, units_at = _header(rows[:first], width)
@@ -154,8 +156,8 @@ def _fit(lines: Sequence[str], separator: str, decimal: str) -> Fit:
         and min(row[each] for each in numeric) >= 0 < max(row[each] for each in numeric)
     ]
     if not samples:
-        return Fit(rows, 0, width, 0)
-    return Fit(rows, sum(max(each, 0) for place in samples for each in digits[place]), width, samples[0])
+        return Fit(rows, 0, width, 0, 0)
+    return Fit(rows, sum(max(each, 0) for place in samples for each in digits[place]), width, samples[0], len(samples))
 
 
 def _digits(cell: str, decimal: str) -> int:

@@ -15,7 +15,7 @@ WORDS: Mapping[str, frozenset[str]] = {
     ),
     "angle": _words(
         "q pos position positions angle angles winkel drehwinkel winkelposition istposition phi theta qm thetam "
-        "encoder drehgeber lage rotation 6064h"
+        "enc encoder drehgeber lage rotation 6064h"
     ),
     "speed": _words(
         "qd dq qdot dqdt vel velocity velocities speed speeds omega w wm dqm qdm omegam drehzahl geschwindigkeit "
@@ -50,5 +50,9 @@ MODEL = _words("model modell rigid dynamics idyn gravity feedforward ff target")
 MOTOR = _words("motor mot motorseitig rotor qm thetam wm dqm qdm omegam im")
 INPUT = _words("in input antrieb eingang drive motor mot wg wavegenerator an ein fast")
 OUTPUT = _words("out output abtrieb abtriebs ausgang load link last flange ab aus arm joint")
+# Words of names that do not tell one joint from another.
+COMMON = _words(
+    "actual act ist is meas measured value val state states joints axis axes achse robot data log filtered raw"
+)
 # Behind these words stands the place of a channel, such as A, and no quantity.
 CHANNEL = _words("channel kanal ch chan input")

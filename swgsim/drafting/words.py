@@ -83,13 +83,14 @@ def _quantity(words: tuple[str, ...]) -> tuple[str, str]:
     if DOT.search(whole):
         return "speed", whole
     # Two words may be one, such as i_q.
-    for word in ("_".join(words[-2:]), *reversed(words)):
+    both = "_".join(words[-2:])
+    for word in (both, *reversed(words)):
         if len(word) == 1 and CHANNEL & set(words):
             continue
         for quantity, known in WORDS.items():
             if word in known:
                 return quantity, word
         for quantity, parts in PARTS.items():
-            if any(part in word for part in parts):
+            if word != both and any(part in word for part in parts):
                 return quantity, word
     return "", ""

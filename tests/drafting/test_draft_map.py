@@ -70,3 +70,39 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert "actual_qd_5" in capsys.readouterr().out
     with pytest.raises(ValueError, match="files is not given"):
         command.run({"files": None, "out": str(out), "kind": None, "known": {}})
+
+
+ODD = {
+    "empty.csv": b"",
+    "header_only.csv": b"t,q,w\n",
+    "no_text.csv": np.random.default_rng(0).bytes(5000),
+    "notes.txt": b"these are notes\nof a test on 12.03.2026\n",
+    "texts.csv": b"a,b\n" + b"x,y\n" * 30,
+}
+
+
+@pytest.mark.parametrize("name", ODD)
+def test_what_is_no_table_is_refused(name: str, tmp_path: Path) -> None:
+    """With the file and what was found."""
+    (tmp_path / name).write_bytes(ODD[name])
+    with pytest.raises(ValueError, match=f"{name}: found 0 rows of numbers|found 1 rows"):
+        swg.draft_map(tmp_path)
+
+
+def test_unusual_numbers_are_drafted(tmp_path: Path) -> None:
+    """A column that stands, one without readings, numbers without end, and a name that looks like a formula."""
+    lines = [f"{i / 100},{np.sin(i / 9)},1,nan,1e300,{i % 7}" for i in range(300)]
+    (tmp_path / "a.csv").write_text("\n".join(["t,q$_{,vel,temp,x,y", *lines]) + "\n", encoding="utf-8")
+    draft = swg.draft_map(tmp_path)
+    assert "smoothed_s" in draft.text
+    assert draft.plot().axes
+
+
+def test_a_wrong_velocity_is_not_read(tmp_path: Path) -> None:
+    """The column of another joint, or one with a dead band, is no velocity of this angle."""
+    t = np.arange(2000) / 200
+    table = np.column_stack([t, np.sin(t), np.cos(3 * t)])
+    np.savetxt(tmp_path / "a.csv", table, delimiter=",", header="time_s,pos_rad,vel_rad_s", comments="")
+    draft = swg.draft_map(tmp_path)
+    assert "omega: {from: q, smoothed_s: 0.05}" in draft.text
+    assert any("vel_rad_s" in line and line.startswith("# ???") for line in draft.questions)
