@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from swgsim.drafting.motion import filled
 from swgsim.drafting.order_2 import order_2
-from swgsim.drafting.seen import SeenColumn
+from swgsim.drafting.seen_column import SeenColumn
 from swgsim.drafting.taken import Taken, joined, place
 from swgsim.drafting.words import Meaning
 from swgsim.recordings.checks.thresholds import GAUGE_LARGEST, GAUGE_SMALLEST

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.drafting.seen import SeenColumn
+from swgsim.drafting.seen_column import SeenColumn
 from swgsim.drafting.stamps import form_of
 from swgsim.drafting.words import Meaning
 from swgsim.tables.clock import STAMP, read_clock

@@ -11,7 +11,7 @@ from swgsim.drafting.bridges import Pair, bridges
 from swgsim.drafting.motion import ANGLE_UNITS, slope_of, unwrapped
 from swgsim.drafting.motion_units import motion_units
 from swgsim.drafting.order_2 import clearest, has_order_2
-from swgsim.drafting.seen import SeenColumn
+from swgsim.drafting.seen_column import SeenColumn
 from swgsim.drafting.taken import Taken, joined, place
 from swgsim.drafting.vocabulary import INPUT, OUTPUT
 from swgsim.drafting.words import Meaning

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from swgsim.drafting.seen import SeenColumn
+from swgsim.drafting.seen_column import SeenColumn
 from swgsim.drafting.taken import Taken, place
 from swgsim.drafting.vocabulary import COMMON, MODEL, MOTOR, OUTPUT, WORDS
 from swgsim.drafting.words import Meaning

@@ -11,7 +11,7 @@ from jaxtyping import Float
 from swgsim.drafting.joint_forces import Named, force, forces
 from swgsim.drafting.motion import EXPLAINED, RATIOS, slope_of, wrap_of
 from swgsim.drafting.motion_units import motion_units
-from swgsim.drafting.seen import SeenColumn
+from swgsim.drafting.seen_column import SeenColumn
 from swgsim.drafting.taken import Taken, joined, place
 from swgsim.drafting.vocabulary import MODEL
 from swgsim.drafting.words import Meaning

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from pandas import DataFrame
 
-WIDEST = 44
+WIDEST = 36
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -89,7 +89,16 @@ class MapDraft:
 
     def __repr__(self) -> str:
         """The table, the lines to decide, and what the reading says."""
-        table = self.table().map(lambda cell: cell if len(cell) <= WIDEST else cell[: WIDEST - 1] + "…")
-        parts = [table.to_string(index=False, justify="left")]
+        parts = [_aligned(self.table())]
         parts += ["to decide:", *(f"  {line}" for line in self.questions)] if self.questions else ["nothing to decide"]
         return "\n".join([*parts, "read back:", *(f"  {line}" for line in self.findings.splitlines())])
+
+
+def _aligned(table: "DataFrame") -> str:
+    """A table as text, each column as wide as its longest cell, but none wider than :data:`WIDEST`."""
+    rows = [list(table.columns), *table.to_numpy().tolist()]
+    cells = [[cell if len(cell) <= WIDEST else cell[: WIDEST - 1] + "…" for cell in row] for row in rows]
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    return "\n".join(
+        "  ".join(f"{cell:{width}}" for cell, width in zip(row, widths, strict=True)).rstrip() for row in cells
+    )

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.drafting.motion import ANGLE_UNITS, RATIOS, SPEED_UNITS, expected, near, slope_of, wrap_of
-from swgsim.drafting.seen import SeenColumn
+from swgsim.drafting.seen_column import SeenColumn
 from swgsim.tables.units import FACTORS
 
 # An angle in whole numbers with a larger range counts; 720 degrees may be written without decimals.
@@ -100,7 +100,7 @@ def motion_units(
     unit, rate = units[0], rates[0]
     ratio = expected(unit, rate) / found
     if RATIOS[0] <= max(ratio, 1 / ratio) <= RATIOS[1]:
-        why = f"{share}, {max(ratio, 1 / ratio):.4g} turns of one for a turn of the other"
+        why = f"{share}, {max(ratio, 1 / ratio):.4g} turns for one"
         return MotionUnits({"unit": unit, **wraps}, {"unit": rate, **turned}, ratio, why, doubt or asked, of_speed)
     contradiction = f"as {rate} it is {1 / ratio:.4g} times too small for the slope of the angle in {unit}"
     return MotionUnits({"unit": unit, **wraps}, {"unit": rate, **turned}, 1.0, share, doubt or asked, contradiction)

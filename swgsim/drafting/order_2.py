@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Complex, Float
 
 from swgsim.drafting.motion import filled
-from swgsim.drafting.seen import SeenColumn
+from swgsim.drafting.seen_column import SeenColumn
 from swgsim.recordings.checks.thresholds import ORDER_2_SHARE
 
 ORDERS = 4

@@ -91,7 +91,12 @@ def text_layout(path: Path, name: str) -> TextLayout:
         If no rows of numbers are found.
     """
     encoding, lines = _lines(path)
-    fits = {each: _fit(lines, *each) for each in product(SEPARATORS, ",.") if each[0] != each[1]}
+    return layout_of(lines, [each for each in product(SEPARATORS, ",.") if each[0] != each[1]], encoding, name)
+
+
+def layout_of(lines: Sequence[str], choices: Sequence[tuple[str, str]], encoding: str, name: str) -> TextLayout:
+    """The layout of lines by some choices of separator and decimal sign; errors as for :func:`text_layout`."""
+    fits = {each: _fit(lines, *each) for each in choices}
     (separator, decimal), fit = max(fits.items(), key=lambda item: item[1].rank)
     if fit.samples < FEWEST_ROWS:
         found = f"{fit.samples} rows of numbers in the first {len(lines)} rows"
@@ -125,7 +130,8 @@ def _lines(path: Path) -> tuple[str, list[str]]:
             encoding = "utf-8-sig"
         except UnicodeDecodeError:
             encoding = "cp1252"
-    lines = head.decode(encoding, errors="replace").splitlines()
+    # An editor counts rows by these ends only; Python knows further ones.
+    lines = re.split(r"\r\n|\n|\r", head.decode(encoding, errors="replace"))
     return encoding, (lines if whole else lines[:-1])[:ROWS]
 
 

@@ -5,7 +5,7 @@ import unicodedata
 from collections.abc import Set
 from dataclasses import dataclass
 
-from swgsim.drafting.seen import SeenColumn
+from swgsim.drafting.seen_column import SeenColumn
 from swgsim.drafting.units import quantity_of
 from swgsim.drafting.vocabulary import CHANNEL, PARTS, SET, WORDS
 
