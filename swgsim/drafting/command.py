@@ -23,7 +23,9 @@ def run(config: Mapping[str, Any]) -> None:
     out = Path(config["out"])
     draft.save(out)
     print(draft)
-    use = "read_recordings(files, map)" if draft.kind == "gauges" else "recordings_of(map, files)"
+    files, map_file = repr(str(config["files"])), repr(str(out))
+    gauges = draft.kind == "gauges"
+    use = f"read_recordings({files}, {map_file})" if gauges else f"recordings_of({map_file}, {files})"
     print(f"draft: {out}; picture: {out.with_suffix('.png')}; correct it, then use it: swg.{use}")
 
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from pandas import DataFrame
 
-WIDEST = 36
+WIDEST = 28
 
 
 @dataclass(frozen=True, eq=False, repr=False)

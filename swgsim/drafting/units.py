@@ -18,16 +18,21 @@ FOREIGN = {
 MORE = {
     "Grad": "deg", "grad": "deg", "degree": "deg", "seconds": "s", "Sekunden": "s", "Sek": "s", "microstrain": "um/m",
     "ue": "um/m", "rads": "rad/s", "radps": "rad/s", "degps": "deg/s", "rad_s": "rad/s", "deg_s": "deg/s",
-    "Grad/s": "deg/s", "rpm": "rpm", "upm": "rpm", "Upm": "rpm", "r/min": "rpm", "rev/min": "rpm", "um_m": "um/m",
-    "mv_v": "mV/V", "uv_v": "uV/V", "v_v": "V/V", "nsec": "ns", "nsecs": "ns", "secs": "s", "msec": "ms", "usec": "us",
-    "inc": "counts", "Inc": "counts", "cnt": "counts", "ticks": "counts", "inc/s": "counts/s", "nm": "N m",
-    "mnm": "mN m", "amps": "A", "amp": "A", "Ampere": "A", "a": "A", "ma": "mA", "‰": "permille", "volt": "V",
-    "mNm": "mN m", "revolutions": "rev", "Umdr": "rev", "ms": "ms", "strain": "um/m",
+    "mrad_s": "mrad/s", "Grad/s": "deg/s", "rpm": "rpm", "upm": "rpm", "Upm": "rpm", "r/min": "rpm", "rev/min": "rpm",
+    "um_m": "um/m", "mv_v": "mV/V", "uv_v": "uV/V", "v_v": "V/V", "nsec": "ns", "nsecs": "ns", "secs": "s",
+    "msec": "ms", "usec": "us", "inc": "counts", "Inc": "counts", "cnt": "counts", "ticks": "counts",
+    "inc/s": "counts/s", "nm": "N m", "mnm": "mN m", "amps": "A", "amp": "A", "Ampere": "A", "a": "A", "ma": "mA",
+    "‰": "permille", "volt": "V", "mNm": "mN m", "revolutions": "rev", "Umdr": "rev", "ms": "ms", "strain": "um/m",
 }  # fmt: skip
-# At the end of a name behind an underscore, longer ones first; single letters only where they can hardly be an index.
+# A single letter at the end of a name is a unit behind these words only; else it may be the name of an axis.
+SINGLE = {
+    "s": {"t", "time", "stamp", "timestamp", "zeit", "elapsed", "clock"}, "v": {"u", "voltage", "out", "output", "sg"},
+    "a": {"i", "iq", "q", "cur", "current", "strom", "motorstrom"}, "c": {"temp", "temperature", "temperatur"},
+}  # fmt: skip
+# At the end of a name behind an underscore, longer ones first.
 SUFFIX = re.compile(
-    r"(?i)_(rad_s|deg_s|radps|degps|rads|mv_v|uv_v|um_m|counts|permille|percent|rpm|rad|deg|nsecs?|msec|usec|ms|us|ns"
-    r"|mnm|nm|ma|s|a|v|mv|c)$"
+    r"(?i)_(mrad_s|rad_s|deg_s|radps|degps|rads|mv_v|uv_v|um_m|counts|permille|percent|rpm|mrad|rad|deg"
+    r"|nsecs?|msec|usec|ms|us|ns|mnm|nm|ma|s|a|v|mv|c)$"
 )
 BRACKETS = re.compile(r"\s*[\[({<]\s*([^\[\](){}<>]*?)\s*[\])}>]\s*$")
 IN_WORDS = re.compile(r"\s+in\s+(\S+)$")
@@ -60,9 +65,21 @@ def split_unit(name: str) -> tuple[str, str]:
     """
     for pattern in (BRACKETS, IN_WORDS, SUFFIX):
         found = pattern.search(name)
-        if found and is_unit(found[1]) and not found[1].isdigit():
+        if not found or not is_unit(found[1]) or found[1].isdigit():
+            continue
+        if pattern is not SUFFIX or len(found[1]) > 1 or not _is_axis(name):
             return name[: found.start()].strip(), unit_in(found[1])
     return name.strip(), ""
+
+
+def _is_axis(name: str) -> bool:
+    """Whether the single letter at the end of a name is more likely an axis than a unit.
+
+    >>> _is_axis("pos_a"), _is_axis("motor_current_a")
+    (True, False)
+    """
+    *words, last = re.findall(r"[a-z]+", name.lower())
+    return last in SINGLE and not SINGLE[last] & set(words)
 
 
 def quantity_of(unit: str) -> str:

@@ -21,7 +21,7 @@ WORDS: Mapping[str, frozenset[str]] = {
         "qd dq qdot dqdt vel velocity velocities speed speeds omega w wm dqm qdm omegam drehzahl geschwindigkeit "
         "istgeschwindigkeit winkelgeschwindigkeit n nist rpm thetadot phidot thetad 606ch"
     ),
-    "torque": _words("torque torques tau drehmoment moment momente effort efforts m md mom nm"),
+    "torque": _words("torque torques trq tau drehmoment moment momente effort efforts m md mom nm"),
     "current": _words("current currents strom motorstrom i im iq i_q amps ampere cur 6077h 6078h"),
     "gauge": _words("strain dehnung dms dehnungsmessstreifen bridge brucke bruecke gauge sg"),
     "temperature": _words("temp temperature temperatur motortemperatur"),
