@@ -5,6 +5,7 @@
 - :class:`Gear`, :class:`OperatingPoint`, :mod:`effects`: what is simulated. ``Gear.load("mine.yaml")`` reads a gear.
 - :func:`simulate`: one run of the chain; the result plots itself and becomes a table or a recording.
 - :func:`read_recordings`: a folder of measurements. :func:`recordings_of`: the logs of a robot joint.
+- :func:`draft_map`: a first map of files of others, by looking at them; it is then corrected by hand.
 - :func:`commission`, :func:`identify`: what the healthy gear is like, and which physical effect a model of it lacks.
   ``unit.save("gear7.unit.h5")`` and ``Unit.load("gear7.unit.h5")`` keep what was learned.
 - :func:`record`, :func:`generate`: recordings of a virtual test bench, and labelled data sets for :mod:`learn`.

@@ -1,5 +1,5 @@
 from . import effects
-from .api import SimulatedRun, generate, identify, record, simulate
+from .api import MapDraft, SimulatedRun, draft_map, generate, identify, record, simulate
 from .chain import Run, simulate_runs
 from .common.version import __version__
 from .gear import Conditions, Gear, KinematicError, OperatingPoint, Population, Transmission, WaveGenerator, Window
@@ -14,6 +14,7 @@ __all__ = [
     "JointAnswer",
     "JointRecordings",
     "KinematicError",
+    "MapDraft",
     "OperatingPoint",
     "Population",
     "Recording",
@@ -26,6 +27,7 @@ __all__ = [
     "Window",
     "__version__",
     "commission",
+    "draft_map",
     "effects",
     "generate",
     "identify",

@@ -6,5 +6,6 @@ Imports every room but ``commands``.
 from swgsim.api.data_set import generate, record
 from swgsim.api.identify import identify
 from swgsim.api.simulate import SimulatedRun, simulate
+from swgsim.drafting import MapDraft, draft_map
 
-__all__ = ["SimulatedRun", "generate", "identify", "record", "simulate"]
+__all__ = ["MapDraft", "SimulatedRun", "draft_map", "generate", "identify", "record", "simulate"]

@@ -7,8 +7,8 @@ from hydra.core.hydra_config import HydraConfig
 from omegaconf import DictConfig, OmegaConf
 
 # Choices that are names of files and folders, or patterns of them.
-NAMES = {"blind", "commissioning", "commissioning_mapping", "data", "docs", "embedded", "folder", "holdout", "mapping"}
-NAMES |= {"model", "models", "only", "out", "recordings", "report", "truth", "without"}
+NAMES = {"blind", "commissioning", "commissioning_mapping", "data", "docs", "embedded", "files", "folder", "holdout"}
+NAMES |= {"mapping", "model", "models", "only", "out", "recordings", "report", "truth", "without"}
 
 
 def conf_folder() -> Path:

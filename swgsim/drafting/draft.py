@@ -1,0 +1,151 @@
+"""From files to the draft of a map: look, understand, write, and read it back."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+
+from swgsim.common.checks import require_known
+from swgsim.drafting.clock import ClockDraft, drafted_clock
+from swgsim.drafting.file_names import FileNames, fact_names, run_names, signals_path
+from swgsim.drafting.folder import LookedAt, look_at
+from swgsim.drafting.gauge_channels import gauge_channels
+from swgsim.drafting.gauge_text import facts_of, gauge_text
+from swgsim.drafting.joint_signals import joint_signals
+from swgsim.drafting.joint_text import joint_text
+from swgsim.drafting.map_draft import MapDraft
+from swgsim.drafting.motion import unwrapped
+from swgsim.drafting.order_2 import has_order_2
+from swgsim.drafting.seen import Seen
+from swgsim.drafting.taken import Taken
+from swgsim.drafting.words import meaning_of
+from swgsim.joint.intake.read import read_joints
+from swgsim.recordings.checks.defect import summary
+from swgsim.recordings.read import inspect_recordings
+from swgsim.tables.units import FACTORS
+
+GAUGES, JOINTS = "gauges", "joints"
+# Facts that a user may give, as they are in no column.
+OF_GAUGES = (
+    "gear", "session", "n_in_rpm", "T_out_nm", "repeat", "temperature_c", "elapsed_s", "label", "gauge_factor",
+    "active_arms", "full_scale",
+)  # fmt: skip
+# Angle of a wave generator in a recording [rad]; robots turn less.
+TURNED = 6 * np.pi
+OF_JOINTS = ("robot", "gear_ratio", "torque_constant", "rated")
+
+
+def draft_map(path: str | Path, kind: str | None = None, known: Mapping[str, Any] | None = None) -> MapDraft:
+    """Draft a column map or a source by looking at files.
+
+    Parameters
+    ----------
+    path : str or Path
+        A file, or a folder.
+    kind : {"gauges", "joints"}, optional
+        Recordings of a test bench with strain gauges, or logs of a robot; by default it is guessed.
+    known : mapping, optional
+        Facts that are in no file, such as ``{"gear": "A17", "gauge_factor": 2.0, "active_arms": 4}`` or
+        ``{"gear_ratio": 101}``.
+
+    Returns
+    -------
+    MapDraft
+        A guess: read it before you use it.
+
+    Raises
+    ------
+    ValueError
+        If there is no table of numbers, or a choice is unknown.
+    """
+    given = dict(known or {})
+    require_known("known", given, [*OF_GAUGES, *OF_JOINTS])
+    if kind is not None:
+        require_known("the kind", [kind], [GAUGES, JOINTS])
+    looked = look_at(Path(path))
+    kind = kind or _kind(next(iter(looked.runs.values())), given)
+    names = _names(looked, kind)
+    seen = next(iter(looked.runs.values()))
+    clock, taken = _understood(seen, kind, given | _facts(names, looked, seen))
+    moving = _most_moving(looked, taken)
+    if moving is not seen:
+        seen = moving
+        clock, taken = _understood(seen, kind, given | _facts(names, looked, seen))
+    write = gauge_text if kind == GAUGES else joint_text
+    text = write(looked, seen, clock, taken, names, given)
+    findings = read_back(text, Path(path), kind)
+    return MapDraft(kind, Path(path), text, tuple(taken), clock, findings)
+
+
+def read_back(text: str, path: Path, kind: str) -> str:
+    """What the reading says of a draft: its findings, or why it refuses."""
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / "draft.yaml"
+        file.write_text(text, encoding="utf-8")
+        try:
+            if kind == GAUGES:
+                found = inspect_recordings(path, file)
+                return "\n".join([f"{len(found)} recordings are read", summary(found.defects)]).strip()
+            read = read_joints(path.parent if path.is_file() else path, file)
+            return "\n".join([repr(read), read.findings()]).strip()
+        except ValueError as error:
+            return str(error).replace(f"{file}: ", "").replace(str(file), "the draft")
+
+
+def _kind(seen: Seen, known: Mapping[str, Any]) -> str:
+    """Gauges if a column is one by its name, its unit or its numbers, or if what is known is of gauges; else joints."""
+    quantities = {meaning_of(each).quantity for each in seen.columns}
+    if "gauge" in quantities or set(known) & set(OF_GAUGES):
+        return GAUGES
+    # Two lobes that pass a gauge in each of many revolutions are those of a wave generator.
+    _, taken = _understood(seen, JOINTS, known)
+    for each in taken:
+        if each.quantity == "q" and each.entry["unit"] in FACTORS["rad"]:
+            angle = unwrapped(each.column.values) * FACTORS["rad"][each.entry["unit"]]
+            others = [other.column for other in taken if not other.quantity and not other.column.is_text]
+            if np.ptp(angle) > TURNED and any(has_order_2(other, angle) for other in others):
+                return GAUGES
+    return JOINTS
+
+
+def _names(looked: LookedAt, kind: str) -> FileNames:
+    if looked.by_signal:
+        return signals_path(looked.names, kind)
+    return fact_names(looked.names) if kind == GAUGES else run_names(looked.names)
+
+
+def _facts(names: FileNames, looked: LookedAt, seen: Seen) -> dict[str, str]:
+    """Facts that the name of the drafted file says."""
+    file = next(name for name, run in looked.runs.items() if run is seen)
+    return facts_of(names, file)
+
+
+def _understood(seen: Seen, kind: str, known: Mapping[str, Any]) -> tuple[ClockDraft | None, list[Taken]]:
+    """The time, and what each other column is taken for."""
+    meanings = [meaning_of(each) for each in seen.columns]
+    clock = drafted_clock(seen.columns, meanings)
+    time = clock.time if clock else None
+    pairs = [pair for pair in zip(seen.columns, meanings, strict=True) if clock is None or pair[0] not in clock.columns]
+    columns, own = [pair[0] for pair in pairs], [pair[1] for pair in pairs]
+    channels = gauge_channels if kind == GAUGES else joint_signals
+    taken = channels(columns, own, time, known)
+    if clock is None:
+        return None, taken
+    return clock, [*_of_clock(clock), *taken]
+
+
+def _of_clock(clock: ClockDraft) -> list[Taken]:
+    return [Taken(each, "t", clock.entry, clock.why, clock.question) for each in clock.columns]
+
+
+def _most_moving(looked: LookedAt, taken: Sequence[Taken]) -> Seen:
+    """The run in which the angles move most, in which units and velocities show best."""
+    angles = [(each.column.column, each.column.file) for each in taken if each.quantity in ("q", "phi_in")]
+
+    def travel(run: Seen) -> float:
+        moved = [each.values for each in run.columns if (each.column, each.file) in angles]
+        return sum(float(np.nanmax(values) - np.nanmin(values)) for values in moved)
+
+    return max(looked.runs.values(), key=travel)

@@ -1,0 +1,86 @@
+"""The files of a folder that one map reads together, by what they show."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from swgsim.drafting.file_names import signals_of
+from swgsim.drafting.name_patterns import by_pattern
+from swgsim.drafting.seen import Seen, joined, see
+from swgsim.recordings.files.manifest import NAME
+from swgsim.tables.endings import files_of, is_data
+from swgsim.tables.file_defect import FileDefect
+
+# Files that are looked at; further ones are taken to be like these.
+LOOKED = 50
+# Endings of text that may be notes.
+NOTES = (".txt", ".log", ".txt.gz", ".log.gz")
+
+
+@dataclass(frozen=True, eq=False)
+class LookedAt:
+    """Runs of a folder.
+
+    Attributes
+    ----------
+    folder : Path
+    runs : mapping of str to Seen
+        First file of a run to what it shows; all have the same columns.
+    names : tuple of str
+        All files that are read, also those that were not looked at.
+    by_signal : bool
+        Whether each signal has a file of its own.
+    others : mapping of str to str
+        Files that the map does not read, and why.
+    """
+
+    folder: Path
+    runs: Mapping[str, Seen]
+    names: tuple[str, ...]
+    by_signal: bool
+    others: Mapping[str, str]
+
+
+def look_at(path: Path) -> LookedAt:
+    """Look at a file, or at the files of a folder.
+
+    Raises
+    ------
+    FileDefect
+        If there is no table of numbers, or a manifest, which needs no map.
+    """
+    folder = path.parent if path.is_file() else path
+    if not folder.is_dir():
+        raise FileDefect(str(path), "nothing", "a file or a folder with recordings")
+    names = [path.name] if path.is_file() else files_of(folder)
+    if NAME in names:
+        raise FileDefect(str(path), NAME, "files of others: recordings with a manifest need no map")
+    chosen = [name for name in names if is_data(name) or path.is_file()]
+    chosen = chosen or [name for name in names if name.lower().endswith(NOTES)]
+    if not chosen:
+        raise FileDefect(str(path), f"the files {', '.join(names[:10]) or 'none'}", "files with tables of numbers")
+    by_signal = signals_of(chosen)
+    seen: dict[str, Seen] = {}
+    others: dict[str, str] = {}
+    runs = [list(files.items()) for files in by_signal.values()] or [[("", name)] for name in chosen]
+    for files in runs[:LOOKED]:
+        try:
+            tables = {signal: see(folder / name, name) for signal, name in files}
+            seen[files[0][1]] = joined(tables, files[0][1]) if by_signal else tables[""]
+        except FileDefect as defect:
+            others[files[0][1]] = str(defect)
+    if not seen:
+        raise FileDefect(str(path), f"no table of numbers ({next(iter(others.values()))})", "recordings")
+    seen = by_pattern(seen)
+    alike = _alike(seen)
+    others |= {name: "other columns" for name in seen if name not in alike}
+    kept = tuple(name for files in runs for _, name in files if files[0][1] not in others)
+    return LookedAt(folder, {name: seen[name] for name in alike}, kept, bool(by_signal), others)
+
+
+def _alike(seen: Mapping[str, Seen]) -> Sequence[str]:
+    """The largest group of files with the same columns and the same layout."""
+    groups: dict[tuple, list[str]] = {}
+    for name, each in seen.items():
+        groups.setdefault((each.layout, each.interleaved, each.names), []).append(name)
+    return max(groups.values(), key=len)

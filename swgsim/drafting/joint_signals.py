@@ -1,0 +1,177 @@
+"""Signals of the joints of a robot: which column is whose angle, velocity, current and torque."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import product
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.drafting.joint_forces import Named, force, forces
+from swgsim.drafting.motion import EXPLAINED, RATIOS, slope_of, wrap_of
+from swgsim.drafting.motion_units import motion_units
+from swgsim.drafting.seen_column import SeenColumn
+from swgsim.drafting.taken import Taken, joined, place
+from swgsim.drafting.vocabulary import MODEL
+from swgsim.drafting.words import Meaning
+from swgsim.tables.units import FACTORS
+
+
+def joint_signals(
+    columns: Sequence[SeenColumn],
+    meanings: Sequence[Meaning],
+    time: Float[np.ndarray, " time"] | None,
+    known: Mapping[str, Any],
+) -> list[Taken]:
+    """What the columns of a robot's log are taken for; those that are not understood come last.
+
+    Parameters
+    ----------
+    columns : sequence of SeenColumn
+        Those that are no time.
+    meanings : sequence of Meaning
+    time : array (time,), optional
+        [s]; None if no time was found.
+    known : mapping
+        Facts of the user, such as ``gear_ratio``.
+    """
+    named = [Named(each, meaning) for each, meaning in zip(columns, meanings, strict=True)]
+    usable = [each for each in named if not each.column.is_text and not _is_set_point(each.meaning)]
+    kinds = {kind: [each for each in usable if each.meaning.quantity == kind] for kind in ("angle", "speed", "current")}
+    torques = [each for each in usable if each.meaning.quantity == "torque"]
+    unnamed = [each for each in usable if not each.meaning.quantity and not each.column.stands]
+    angles = _one_for_each_joint(kinds["angle"])
+    pairs = _by_slope(unnamed, time) if not angles else {}
+    # A column that jumps by one turn is an angle, whatever its name.
+    angles = angles or list(pairs) or [each for each in unnamed if wrap_of(each.column.values)]
+    joints = _names(angles)
+    taken: list[Taken] = []
+    if not joints and usable:
+        # A source needs an angle: the user must say which column it is.
+        taken.append(
+            Taken(usable[0].column, "q", place(usable[0].column) | {"unit": "rad"}, "", "no angle was found", "joint_1")
+        )
+    for name, angle in joints.items():
+        alone = len(joints) == 1
+        speed = pairs.get(angle) or _velocity(angle, kinds["speed"], time, alone)
+        motor = next(
+            (each for each in kinds["angle"] if each is not angle and each.joint == angle.joint and each.at_motor), None
+        )
+        taken += _moving(name, angle, speed, motor, time, known)
+        for signal in forces(angle, kinds["current"], torques, alone):
+            taken.append(replace(force(*signal, known), joint=name))
+    if unnamed and pairs:
+        left = [each for each in unnamed if each.column not in [one.column for one in taken]]
+        taken += _suggested(left, list(joints))
+    used = {id(each.column) for each in taken}
+    return taken + [Taken(each.column, "", why=_why_not(each)) for each in named if id(each.column) not in used]
+
+
+def _is_set_point(meaning: Meaning) -> bool:
+    """Whether a value was asked for; the torque that a model asks for is a signal of its own."""
+    return meaning.is_set_point and not (meaning.quantity == "torque" and meaning.says(MODEL))
+
+
+def _one_for_each_joint(angles: Sequence[Named]) -> list[Named]:
+    """One angle for each joint: that of the output before that of the motor."""
+    chosen: dict[int | tuple[str, ...], Named] = {}
+    for each in sorted(angles, key=lambda each: each.at_motor):
+        chosen.setdefault(each.joint, each)
+    return [each for each in angles if each in chosen.values()]
+
+
+def _by_slope(columns: Sequence[Named], time: Float[np.ndarray, " time"] | None) -> dict[Named, Named]:
+    """Angles and their velocities among columns without names: a velocity explains its angle best, and an angle too."""
+    shares = {
+        (angle, speed): slope_of(angle.column.values, speed.column.values, time).share
+        for angle, speed in product(columns, columns)
+        if angle is not speed
+    }
+    found: dict[Named, Named] = {}
+    for (angle, speed), share in sorted(shares.items(), key=lambda item: -item[1]):
+        # A velocity is no angle itself, though its slope, the acceleration, may be among the columns.
+        if share > EXPLAINED and angle not in {*found, *found.values()} and speed not in {*found, *found.values()}:
+            found[angle] = speed
+    return {angle: found[angle] for angle in columns if angle in found}
+
+
+def _names(angles: Sequence[Named]) -> dict[str, Named]:
+    """Joints by their names: those of the columns, or joint_1 and so on by their numbers, else by their order."""
+    words = ["_".join(each.words) for each in angles]
+    if len(angles) > 1 and all(words) and len(set(words)) == len(words):
+        return dict(zip(words, angles, strict=True))
+    indices = [each.index for each in angles if each.index is not None]
+    if len(angles) == 1 or len(set(indices)) < len(angles):
+        return {f"joint_{number}": each for number, each in enumerate(angles, 1)}
+    first = 1 if 0 in indices else 0
+    return {f"joint_{index + first}": each for index, each in zip(indices, angles, strict=True)}
+
+
+def _velocity(
+    angle: Named, speeds: Sequence[Named], time: Float[np.ndarray, " time"] | None, alone: bool
+) -> Named | None:
+    """The velocity of an angle: that of the same joint which explains it best."""
+    own = [each for each in speeds if each.joint == angle.joint] or (list(speeds) if alone else [])
+    return max(own, key=lambda each: slope_of(angle.column.values, each.column.values, time).share, default=None)
+
+
+def _moving(
+    name: str, angle: Named, speed: Named | None, motor: Named | None, time: Float[np.ndarray, " time"] | None,
+    known: Mapping[str, Any],
+) -> Iterator[Taken]:  # fmt: skip
+    """Angle and velocity of one joint."""
+    units = motion_units(angle.column, speed.column if speed else None, time)
+    drive = angle.at_motor or units.ratio < 1 / RATIOS[0]
+    of_motor = speed is not None and (speed.at_motor or units.ratio > RATIOS[0])
+    if abs(units.ratio - 1) < 0.5 and speed is not None:
+        # One turn of the angle is one of the velocity: both are on one side.
+        of_motor = drive = drive or of_motor
+    ratio, ask = known.get("gear_ratio"), ""
+    if units.ratio != 1 and ratio is None:
+        ratio = round(max(units.ratio, 1 / units.ratio))
+    elif motor is not None and ratio is None:
+        found = ratio_of_angles(motor.column, angle.column)
+        ratio = round(found) if RATIOS[0] <= found <= RATIOS[1] else None
+    if (drive or of_motor) and ratio is None:
+        ratio, ask = 1, "gear ratio: the angle is that of the motor"
+    side = {"at": "motor"}
+    yield Taken(
+        angle.column, "q", place(angle.column) | units.angle | (side if drive else {}),
+        joined(angle.meaning.why, "" if speed else units.why, "jumps by one turn" if "wraps" in units.angle else ""),
+        units.of_angle, name,
+    )  # fmt: skip
+    if ratio is not None:
+        why = "" if ask else "given" if "gear_ratio" in known else units.why or "angles of motor and output"
+        yield Taken(angle.column, "gear_ratio", {"gear_ratio": ratio}, why, ask, name)
+    if speed is not None:
+        entry = place(speed.column) | units.speed | (side if of_motor else {})
+        yield Taken(
+            speed.column, "omega", entry, joined(speed.meaning.why, units.why), units.of_speed, name, units.fits
+        )
+
+
+def ratio_of_angles(motor: SeenColumn, output: SeenColumn) -> float:
+    """Turns of the motor per turn of the output, from two angles in known units; 0 if they do not say it."""
+    if motor.unit not in FACTORS["rad"] or output.unit not in FACTORS["rad"]:
+        return 0.0
+    fast, slow = (each.values.astype(float) * FACTORS["rad"][each.unit] for each in (motor, output))
+    return float(abs(np.polyfit(slow, fast, 1)[0])) if np.ptp(slow) > 0 else 0.0
+
+
+def _suggested(columns: Sequence[Named], joints: Sequence[str]) -> Iterator[Taken]:
+    """Lines for columns without names that come one for each joint, which the user may turn into signals."""
+    for number, joint in enumerate(joints if len(columns) >= len(joints) else []):
+        column = columns[number].column
+        yield Taken(column, "current", place(column) | {"unit": "A"}, "", "current, T_sensor or T_rigid?", joint, False)
+
+
+def _why_not(each: Named) -> str:
+    """Why a column is not taken."""
+    if each.column.is_text:
+        return "text"
+    if each.meaning.is_set_point:
+        return "a set point"
+    if each.column.stands:
+        return "always the same"
+    return each.meaning.quantity and f"{each.meaning.quantity}, not needed"

@@ -1,0 +1,110 @@
+"""The draft of a source for the logs of a robot."""
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import PurePosixPath
+from typing import Any
+
+import numpy as np
+
+from swgsim.drafting.clock import ClockDraft
+from swgsim.drafting.file_names import FileNames
+from swgsim.drafting.folder import LookedAt
+from swgsim.drafting.seen import Seen
+from swgsim.drafting.taken import Taken
+from swgsim.drafting.yaml_text import ASK, clock_lines, layout_lines, left_lines, line
+
+ORDER = ("q", "omega", "T_sensor", "current", "T_rigid")
+# A joint stands if it moves by less than this share of its travel in the file that was drafted.
+STANDS = 1e-3
+
+
+def joint_text(
+    looked: LookedAt, seen: Seen, clock: ClockDraft | None, taken: Sequence[Taken], names: FileNames,
+    known: Mapping[str, Any],
+) -> str:  # fmt: skip
+    """The source as YAML; parameters as for :func:`swgsim.drafting.gauge_text.gauge_text`."""
+    return "\n".join(_lines(looked, seen, clock, taken, names, known)) + "\n"
+
+
+def _lines(
+    looked: LookedAt, seen: Seen, clock: ClockDraft | None, taken: Sequence[Taken], names: FileNames,
+    known: Mapping[str, Any],
+) -> Iterator[str]:  # fmt: skip
+    yield f"# A first source, drafted from {next(iter(looked.runs))}. Decide the lines with {ASK[2:]}, then read."
+    yield line("robot", known.get("robot", "my robot"), "", "" if "robot" in known else "its name")
+    yield from layout_lines(seen, taken)
+    endings = sorted(
+        {
+            "".join(PurePosixPath(name).suffixes[-2:]) if name.endswith(".gz") else PurePosixPath(name).suffix
+            for name in looked.names
+        }
+    )
+    one = looked.names[0] if len(looked.names) == 1 else ""
+    yield line("files", [one] if one else [f"*{ending}" for ending in endings])
+    standing = [name for name, run in looked.runs.items() if _stands(run, seen, taken)]
+    if standing:
+        yield line("rest", standing, "the angles stand")
+    if looked.others and not one:
+        yield line("leave_out", list(looked.others), "see below")
+    if names.path:
+        yield line(
+            "path", names.path, "", "" if looked.by_signal else "the session: between sessions something was dismounted"
+        )
+    yield from clock_lines("time", clock)
+    if clock is None:
+        if any(each.quantity == "omega" and each.active for each in taken):
+            yield line(
+                "rate", "from_motion", "no time was found: the rate is mean velocity over mean step of the angle"
+            )
+        else:
+            yield line("rate_hz", 1000, "", "no time was found: the sampling rate")
+    yield ""
+    yield "joints:" if any(each.joint for each in taken) else "joints: {}"
+    asked: set[tuple[str, str]] = set()
+    for joint in dict.fromkeys(each.joint for each in taken if each.joint):
+        own = [_once(each, asked) for each in taken if each.joint == joint]
+        yield from _joint(joint, own, known)
+        asked |= {(each.quantity, each.question) for each in own}
+    yield from left_lines(taken, seen, looked.others)
+
+
+def _once(each: Taken, asked: Collection[tuple[str, str]]) -> Taken:
+    """A line whose question was asked for another joint already points to it."""
+    if each.active and (each.quantity, each.question) in asked:
+        return replace(each, question="", why=f"as above: {each.question}" if each.question else each.why)
+    return each
+
+
+def _joint(joint: str, own: Sequence[Taken], known: Mapping[str, Any]) -> Iterator[str]:
+    """One joint."""
+    yield f"  {joint}:"
+    for each in own:
+        if each.quantity == "gear_ratio":
+            yield line("gear_ratio", each.entry["gear_ratio"], each.why, each.question, 4)
+    for name in ("gear_ratio", "torque_constant"):
+        if name in known and not any(each.quantity == name for each in own):
+            yield line(name, known[name], "given", "", 4)
+    yield "    signals:"
+    signals = sorted((each for each in own if each.quantity in ORDER), key=lambda each: ORDER.index(each.quantity))
+    for each in signals:
+        yield line(each.quantity, each.entry, each.why, each.question, 6, each.active)
+        if each.quantity == "q" and not any(other.quantity == "omega" and other.active for other in signals):
+            yield line(
+                "omega", {"from": "q", "smoothed_s": 0.05}, "no velocity that fits: the slope of the angle", "", 6
+            )
+
+
+def _stands(run: Seen, seen: Seen, taken: Sequence[Taken]) -> bool:
+    """Whether all angles of a run stand."""
+    angles = [(each.column.column, each.column.file) for each in taken if each.quantity == "q"]
+
+    def travel(one: Seen) -> dict:
+        return {
+            (each.column, each.file): float(np.nanmax(each.values) - np.nanmin(each.values))
+            for each in one.columns
+            if (each.column, each.file) in angles
+        }
+
+    usual, found = travel(seen), travel(run)
+    return bool(angles) and all(found[angle] < STANDS * max(usual.values()) for angle in angles)

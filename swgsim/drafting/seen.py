@@ -1,0 +1,139 @@
+"""What a file shows: its columns with their names, their units and their first numbers."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from swgsim.drafting.binary_columns import SHEET, binary_columns, sheet_lines
+from swgsim.drafting.interleaved import interleaved_in
+from swgsim.drafting.seen_column import MOST_ROWS, SeenColumn, within
+from swgsim.drafting.text_layout import TextLayout, layout_of, text_layout
+from swgsim.drafting.units import split_unit, unit_in
+from swgsim.tables import binary
+from swgsim.tables.file_defect import FileDefect
+from swgsim.tables.formats.spreadsheet import is_spreadsheet
+from swgsim.tables.layout import LOST_READINGS, Layout
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """One file, or the files of one run that are joined.
+
+    Attributes
+    ----------
+    columns : tuple of SeenColumn
+        Of numbers or time stamps, all of the same length.
+    others : mapping of str to str
+        Name of what else the file holds, and what it is.
+    layout : Layout, optional
+        Of text.
+    interleaved : int
+        How many signals follow one another in the only column.
+    """
+
+    columns: tuple[SeenColumn, ...]
+    others: Mapping[str, str] = field(default_factory=dict)
+    layout: Layout | None = None
+    interleaved: int = 1
+
+    @property
+    def names(self) -> tuple[tuple[str | int, str], ...]:
+        """What files that are read by the same map have in common."""
+        return tuple((each.column, each.unit) for each in self.columns)
+
+
+def see(path: Path, name: str) -> Seen:
+    """Look at a file.
+
+    Raises
+    ------
+    FileDefect
+        If it holds no table of numbers.
+    """
+    if binary.is_binary(path):
+        columns, others = binary_columns(path, name)
+        return Seen(columns, others)
+    if is_spreadsheet(path):
+        lines = sheet_lines(path, name)
+        found = layout_of(lines, [SHEET], Layout().encoding, name)
+        return _text(found, StringIO("\n".join(lines)), replace(found.layout, separator=Layout().separator))
+    found = text_layout(path, name)
+    return _text(found, path, found.layout)
+
+
+def _text(found: TextLayout, source: Path | StringIO, layout: Layout) -> Seen:
+    """The columns of a table of text."""
+    columns = tuple(_text_columns(source, found))
+    numbers = tuple(each for each in columns if not each.is_empty)
+    others = {str(each.column): "empty" for each in columns if each.is_empty}
+    return Seen(numbers, others, layout)
+
+
+def joined(seen: Mapping[str, Seen], name: str) -> Seen:
+    """The files of one run, by their signal, as one; files with one column may have several signals in turn.
+
+    Raises
+    ------
+    FileDefect
+        If their lengths differ otherwise.
+    """
+    first = next(iter(seen.values()))
+    lengths = {signal: len(each.columns[0].values) for signal, each in seen.items()}
+    single = all(len(each.columns) == 1 for each in seen.values())
+    turns = max(lengths.values()) // min(lengths.values())
+    if single and turns == 1:
+        turns = min(interleaved_in(each.columns[0].values) for each in seen.values())
+    rows = max(lengths.values()) // turns
+    if any(length not in (rows, rows * turns) for length in lengths.values()) or (turns > 1 and not single):
+        raise FileDefect(name, f"files of one run with different lengths {lengths}", "as many rows in each")
+    columns: list[SeenColumn] = []
+    for signal, one in seen.items():
+        whole = [replace(each, file=signal) for each in one.columns]
+        columns += _in_turn(whole[0], turns) if turns > 1 and lengths[signal] == rows * turns else whole
+    return Seen(tuple(columns), {}, first.layout, turns)
+
+
+def _in_turn(column: SeenColumn, turns: int) -> Iterator[SeenColumn]:
+    """The signals that follow one another in a column."""
+    for number in range(turns):
+        yield replace(
+            column, column=number + 1, name=f"{column.file}[{number + 1}]", values=column.values[number::turns]
+        )
+
+
+def _text_columns(source: Path | StringIO, found: TextLayout) -> Iterator[SeenColumn]:
+    layout = found.layout
+    table = pd.read_csv(
+        source,
+        sep=r"\s+" if layout.separator == " " else layout.separator,
+        decimal=layout.decimal,
+        encoding=layout.encoding,
+        skiprows=found.first_row - 1,
+        names=range(found.width),
+        index_col=False,
+        comment=layout.comment or None,
+        na_values=list(LOST_READINGS),
+        keep_default_na=False,
+        skipinitialspace=True,
+        on_bad_lines="skip",
+        nrows=MOST_ROWS,
+        low_memory=False,
+    )
+    # Empty rows at the end are none.
+    table = table[: int(np.flatnonzero(table.notna().any(axis=1)).max(initial=-1)) + 1]
+    for place in range(found.width):
+        name = found.names[place] if place < len(found.names) else ""
+        bare, unit = split_unit(name)
+        values = table[place]
+        if values.dtype.kind not in "iuf":
+            numbers = pd.to_numeric(values.astype(str).str.replace(layout.decimal, ".", regex=False), errors="coerce")
+            # A column is one of numbers if most of its cells are.
+            values = numbers if 2 * numbers.notna().sum() > values.notna().sum() else values.astype(str)
+        readings = within(values.to_numpy())
+        lost = int(pd.isna(readings).sum())
+        column = name if name and found.names.count(name) == 1 else place + 1
+        yield SeenColumn(column, bare, unit or unit_in(found.units[place]), readings, "", lost)
