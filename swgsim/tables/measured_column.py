@@ -1,5 +1,6 @@
 """One column of a file: where it is, and what its numbers mean."""
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import pi
@@ -111,7 +112,7 @@ def read_column(
     column = column_name(quantity, entry.get("column"))
     if interleaved > 1:
         require_integer(quantity, "column", column, 1, interleaved)
-    factor, offset = entry.get("factor", 1.0), entry.get("offset", 0.0)
+    factor, offset = number("factor", entry, 1.0), number("offset", entry, 0.0)
     for name, value in (("factor", factor), ("offset", offset)):
         require(quantity, name, value, low=-LARGEST, high=LARGEST)
     if not factor:
@@ -123,9 +124,9 @@ def read_column(
         quantity,
         column,
         unit,
-        sign * per_unit * factor,
-        sign * per_unit * offset,
-        abs(2 * pi / (per_unit * factor)),
+        sign * per_unit * (factor or 1.0),
+        sign * per_unit * (offset or 0.0),
+        abs(2 * pi / (per_unit * (factor or 1.0))),
         truth(f"wraps of {quantity}", entry.get("wraps", False)),
         text(f"file of {quantity}", entry["file"]) if "file" in entry else "",
         interleaved,
@@ -171,6 +172,8 @@ def truth(name: str, value: Any) -> bool:
 def number(name: str, entry: Mapping[str, Any], otherwise: float | None = None) -> float | None:
     """A number of a map; a ValueError for anything else."""
     value = entry.get(name, otherwise)
+    if isinstance(value, str) and re.fullmatch(r"[+-]?\d+(\.\d*)?[eE][+-]?\d+", value):
+        value = float(value)  # YAML takes 1e6 for a text
     if value is None:
         return None
     if not isinstance(value, int | float) or isinstance(value, bool):

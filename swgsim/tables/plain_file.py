@@ -38,7 +38,7 @@ def described(path: Path, what: str, example: str, make: Callable[[Any], T]) -> 
     try:
         return make(plain(path.read_bytes()))
     except (TypeError, ValueError, OverflowError) as error:
-        raise FileDefect(str(path), str(error), f"{what} such as {example}") from None
+        raise FileDefect(str(path), str(error), f"{what} (docs/formats.md; an example is {example})") from None
 
 
 def require_names(owner: str, value: Any, known: Sequence[str] | None = None) -> None:

@@ -13,7 +13,7 @@ from swgsim.tables.formats.spreadsheet import cells
 from swgsim.tables.layout import LOST_READINGS, Layout
 from swgsim.tables.text import Columns, Start
 from swgsim.tables.text_defects import number_expected
-from swgsim.tables.text_stream import number_of
+from swgsim.tables.text_stream import is_comment, number_of
 
 Cell = float | int | str | bool | None
 
@@ -29,18 +29,29 @@ def read_spreadsheet(
     """Columns of a sheet; parameters, result and errors as for :func:`swgsim.tables.text.read_text`."""
     rows = cells(path, name, layout.sheet or None, reader)
     start = _start(rows, name, layout)
-    samples = rows[start.row - 1 :]
-    while samples and not any(cell not in (None, "") for cell in samples[-1]):
-        samples.pop()
+    numbered = [(row, line) for row, line in enumerate(rows, 1) if row >= start.row and not _is_comment(line, layout)]
+    while numbered and not _filled(numbered[-1][1]):
+        numbered.pop()
     found: Columns = {}
     for column in dict.fromkeys(wanted):
         place = column_place(column, start.names, name, start.names_row)
-        values = [row[place] if place < len(row) else None for row in samples]
+        values = [(row, line[place] if place < len(line) else None) for row, line in numbered]
         if column in texts:
-            found[column] = np.array([str(value) for value in values], dtype=object)
+            found[column] = np.array([str(value) for _, value in values], dtype=object)
         else:
             found[column] = _numbers(values, start.names[place], name, layout, start.row)
     return found
+
+
+def _filled(line: Sequence[Cell]) -> bool:
+    """Whether a row has a cell that is not empty."""
+    return any(cell not in (None, "") for cell in line)
+
+
+def _is_comment(line: Sequence[Cell], layout: Layout) -> bool:
+    """Whether the first cell that is not empty begins with the sign of comments."""
+    first = next((cell for cell in line if cell not in (None, "")), None)
+    return isinstance(first, str) and is_comment(first, layout)
 
 
 def first_row_of(path: Path, name: str, layout: Layout, reader: LimitedReader | None = None) -> int:
@@ -50,7 +61,7 @@ def first_row_of(path: Path, name: str, layout: Layout, reader: LimitedReader | 
 
 def _start(rows: Sequence[Sequence[Cell]], name: str, layout: Layout) -> Start:
     """Names of the columns and the first row of numbers."""
-    filled = [row for row, line in enumerate(rows, 1) if any(cell not in (None, "") for cell in line)]
+    filled = [row for row, line in enumerate(rows, 1) if _filled(line) and not _is_comment(line, layout)]
     if not filled:
         raise FileDefect(name, "an empty sheet", "a row of numbers for each sample")
     if not layout.named:
@@ -64,11 +75,11 @@ def _start(rows: Sequence[Sequence[Cell]], name: str, layout: Layout) -> Start:
 
 
 def _numbers(
-    values: Sequence[Cell], column: str, name: str, layout: Layout, first_row: int
+    values: Sequence[tuple[int, Cell]], column: str, name: str, layout: Layout, first_row: int
 ) -> Shaped[np.ndarray, " time"]:
     """The numbers of one column; texts that are numbers count as such."""
     found = []
-    for row, value in enumerate(values, first_row):
+    for row, value in values:
         lost = value is None or (isinstance(value, str) and value.strip() in (*LOST_READINGS, *layout.lost_values))
         number = number_of(value, layout) if isinstance(value, str) and not lost else value
         if isinstance(value, bool) or (number is None and not lost):

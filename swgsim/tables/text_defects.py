@@ -13,6 +13,8 @@ from swgsim.tables.text_stream import LONGEST_LINE, cells_of, numbered_lines
 BYTE_ORDER = (b"\xff\xfe", b"\xfe\xff")
 DECIMAL_COMMA = re.compile(r"\s*[+-]?\d+,\d+([eE][+-]?\d+)?\s*")
 GROUPED = re.compile(r"\s*[+-]?\d{1,3}([.,' ]\d+)+([eE][+-]?\d+)?\s*")
+# Bytes in which text has no zero.
+PROBE = 4096
 # Rows in which the names of the columns are looked for.
 PREAMBLE = 200
 
@@ -73,6 +75,9 @@ def not_text(path: Path, name: str, layout: Layout) -> FileDefect:
                 f"text in {layout.encoding}; set encoding: utf-16 in a map",
             )
             return FileDefect(name, found, expected, 1)
+        raw.seek(0)
+        if b"\0" in raw.read(PROBE):
+            return FileDefect(name, "a binary file", "text, or a file that ends in .mat, .h5, .parquet, .tdms or .xlsx")
         raw.seek(0)
         row = next((row for row, line in enumerate(raw, 1) if not _is_text(line, layout)), 1)
     expected = f"text in {layout.encoding}; set encoding in a map, such as cp1252 for text from Windows"

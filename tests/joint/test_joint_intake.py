@@ -233,7 +233,7 @@ def test_a_bad_source_is_named(tmp_path: Path, name: str) -> None:
     with pytest.raises(FileDefect) as error:
         read_source(write_source(tmp_path / "source.yaml", config))
     assert message in str(error.value)
-    assert "expected a source such as conf/sources/kinova_gen3.yaml" in str(error.value)
+    assert "expected a source (docs/formats.md" in str(error.value)
 
 
 def test_a_source_is_small_and_plain_yaml(tmp_path: Path) -> None:

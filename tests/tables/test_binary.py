@@ -125,9 +125,10 @@ def test_cells_of_a_spreadsheet_are_plain_values(tmp_path: Path, reader: Limited
     expected = [["t", "q"], [], [1, 2.5], ["2024-02-29T12:00:00"], [True, "#N/A"]]
     assert cells(tmp_path / "a.xlsx", "a.xlsx", "run 1", reader) == expected
     assert cells(tmp_path / "a.xlsx", "a.xlsx", 2) == expected
-    assert cells(tmp_path / "a.xlsx", "a.xlsx") == []
-    with pytest.raises(FileDefect, match="the sheets 'Sheet', 'run 1', expected the sheet 'run 2'"):
-        cells(tmp_path / "a.xlsx", "a.xlsx", "run 2", reader)
+    assert cells(tmp_path / "a.xlsx", "a.xlsx", 1) == []
+    for sheet in (None, "run 2"):
+        with pytest.raises(FileDefect, match="the sheets 'Sheet', 'run 1', expected one of them: set sheet in a map"):
+            cells(tmp_path / "a.xlsx", "a.xlsx", sheet, reader)
     (tmp_path / "a.xls").write_bytes(b"")
     with pytest.raises(FileDefect, match="save the spreadsheet in this format"):
         cells(tmp_path / "a.xls", "a.xls")

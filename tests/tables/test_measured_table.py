@@ -4,6 +4,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import openpyxl
+import pandas as pd
 import pytest
 import yaml
 from formats import GAUGES, IN_PLAIN, LOG, OF_LOG, PLAIN, TIME, table
@@ -132,6 +134,33 @@ def test_signals_of_the_motor_need_the_gear_ratio(tmp_path: Path) -> None:
     del config["joints"]["elbow"]["gear_ratio"]
     with pytest.raises(FileDefect, match="the joint has no gear_ratio: give it"):
         joints(tmp_path, table("run1.csv", LOG), **config)
+
+
+def test_an_angle_within_a_turn_of_the_motor_is_named(tmp_path: Path) -> None:
+    config = yaml.safe_load(OF_LOG)
+    config["joints"]["elbow"]["signals"]["q"] |= {"at": "motor", "wraps": True}
+    read = joints(tmp_path, table("run1.csv", LOG | {"q": np.mod(100 * LOG["q"], 2 * np.pi)}), **config)
+    assert "angle_of_motor_turn" in {each.kind for each in read.defects}
+
+
+def test_notes_between_the_rows_of_a_sheet_are_comments(tmp_path: Path) -> None:
+    book = openpyxl.Workbook()
+    rows = pd.DataFrame(PLAIN).to_numpy().tolist()
+    for row in (list(PLAIN), *rows[:50], ["# load was changed"], *rows[50:]):
+        book.active.append(row)
+    (tmp_path / "files").mkdir()
+    book.save(tmp_path / "files" / "run1.xlsx")
+    (tmp_path / "map.yaml").write_text(yaml.safe_dump(yaml.safe_load(IN_PLAIN) | FACTS | {"comment": "#"}))
+    (found,) = inspect_recordings(tmp_path / "files", tmp_path / "map.yaml")
+    np.testing.assert_allclose(found.channels["s1"], GAUGES["s1"])
+
+
+def test_a_folder_without_files_of_numbers_is_named(tmp_path: Path) -> None:
+    (tmp_path / "files").mkdir()
+    (tmp_path / "files" / "notes.txt").write_text("bench 3")
+    (tmp_path / "map.yaml").write_text(yaml.safe_dump(yaml.safe_load(IN_PLAIN) | FACTS))
+    with pytest.raises(FileDefect, match=r"no file of numbers among notes\.txt, expected files that end in \.h5"):
+        inspect_recordings(tmp_path / "files", tmp_path / "map.yaml")
 
 
 def test_a_signal_with_its_own_time_is_interpolated(tmp_path: Path) -> None:

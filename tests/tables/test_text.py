@@ -84,6 +84,7 @@ BAD: dict[str, tuple[str | bytes, dict[str, Any], str]] = {
     "decimal commas": ("t;q\n0;1,5\n", {"separator": ";"}, r"row 2, column q: found '1,5'.*set decimal: ','"),
     "commas of both kinds": ("t,q\n0,0,1,5\n", {}, r"row 2: found 4 cells, expected 2.*separator and decimal"),
     "Windows": ("t,q\n0,1\n°,2\n".encode("cp1252"), {}, r"row 3: found bytes that are not text.*such as cp1252"),
+    "a program": (b"\x7fELF\x00\xff" + bytes(100), {}, "a binary file, expected text, or a file that ends in"),
     "UTF-16": ("t,q\n0,1\n".encode("utf-16"), {}, r"row 1: found the mark of text in UTF-16.*encoding: utf-16"),
     "units": ("t,q\ns,rad\n0,1\n", {}, r"row 2, column q: found 'rad'.*set first_row: 3 in a map"),
     "lines before": ("Recorder 7\nt,q\n0,1\n", {}, r"found the columns 'Recorder 7'.*row 2 has it: set header_row: 2"),

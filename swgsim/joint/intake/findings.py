@@ -84,6 +84,7 @@ def wrap_findings(run: Run) -> Iterator[Defect]:
 
 def moving_findings(run: Run, recording: JointRecording) -> Iterator[Defect]:
     """All findings of one joint in motion with a known rate."""
+    yield from _motor_turn(run)
     yield from _short(run)
     for detect in (_velocity, row_findings, signal_findings):
         yield from detect(run, recording)
@@ -119,6 +120,18 @@ def duplicate_findings(runs: Sequence[Run]) -> Iterator[Defect]:
                 "same_twice", "refuse", run.label, "", f"the same numbers as in {label}", "different runs",
                 "leave one of the files out",
             )  # fmt: skip
+
+
+def _motor_turn(run: Run) -> Iterator[Defect]:
+    """An angle of the motor that is known within one of its revolutions only."""
+    column = next(column for column in run.joint.signals if column.quantity == "q")
+    if column.wraps and column.revolution * abs(column.gain) < 2 * np.pi * (1 - WRAP_STEP):
+        yield Defect(
+            "angle_of_motor_turn", "warn", run.label, "q", "an angle within one revolution of the motor",
+            "an angle that is known at the output",
+            "its zero is another one in each run: gravity and orders of the output are wrong; use a counter of "
+            "revolutions, or runs that all begin in one revolution of the motor",
+        )  # fmt: skip
 
 
 def _short(run: Run) -> Iterator[Defect]:

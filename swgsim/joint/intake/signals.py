@@ -35,15 +35,19 @@ def gap_findings(run: Run) -> Iterator[Defect]:
     """Jumps of a recorded time; they belong to the file and thus to all of its joints."""
     if run.time is None:
         return
+    if run.lost:
+        yield Defect(
+            "readings_left_out", "warn", run.name, "", f"{run.lost} of {run.lost + len(run)} rows with lost readings",
+            "none", "the source leaves them out",
+        )  # fmt: skip
     steps = np.diff(run.time)
     usual = float(np.median(steps))
     odd = np.flatnonzero((steps > GAP * usual) | (steps < SHORT_STEP * usual))
     if len(odd):
         severity: Severity = "refuse" if len(odd) > ROWS_REFUSE * len(steps) else "warn"
-        lost = f"{run.lost} readings were lost and left out by the source, and perhaps more" if run.lost else ""
         yield Defect(
             "time_jumps", severity, run.name, "t", f"{len(odd)} steps such as {steps[odd[0]]:.3g} s",
-            f"steps of about {usual:.3g} s", lost or "rows are missing or were written late: cut the run there",
+            f"steps of about {usual:.3g} s", "rows are missing or were written late: cut the run there",
             int(odd[0]) + 1 + run.first_row,
         )  # fmt: skip
 

@@ -9,7 +9,7 @@ from swgsim.recordings.files import facts
 from swgsim.recordings.files.assembly import assemble, require_alike
 from swgsim.recordings.files.source_map import SIGNAL, SourceMap
 from swgsim.recordings.recording import Recording
-from swgsim.tables.endings import files_of, is_data
+from swgsim.tables.endings import ENDINGS, files_of, is_data
 from swgsim.tables.file_defect import FileDefect, shown
 from swgsim.tables.formats.limited import LimitedReader
 from swgsim.tables.limits import inside, require_file_count
@@ -65,6 +65,11 @@ def read_mapped(path: Path, mapping: SourceMap) -> Mapped:
 def _by_name(path: Path, names: list[str], mapping: SourceMap) -> Iterator[Run]:
     """One recording for each file of the folder; files that the map lists must be those of the folder."""
     present = names if path.is_file() else [name for name in names if "/" not in name and is_data(name)]
+    if not present and not mapping.files:
+        found = f"no file of numbers among {', '.join(names[:LISTED]) or 'none'}"
+        raise FileDefect(
+            str(path), found, f"files that end in {', '.join(ENDINGS)}, or others under 'files' of the map"
+        )
     for name in present:
         if mapping.files and name not in mapping.files:
             raise FileDefect(name, "no entry for this file under 'files' of the map", "one entry per file")

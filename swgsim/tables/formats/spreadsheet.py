@@ -31,15 +31,15 @@ def cells(
     name : str
         Name of the file in messages.
     sheet : str or int, optional
-        Name of the sheet, or its number from 1; by default the first.
+        Name of the sheet, or its number from 1; by default the only one.
     reader : LimitedReader, optional
         Child process that the files of a folder share.
 
     Returns
     -------
     list of list
-        Numbers, texts, truth values, and None for an empty cell. A date is a text as ISO 8601 has it. The value of a
-        formula is the one that was saved with it.
+        Numbers, texts, truth values, and None for an empty cell. A date is a text as ISO 8601 has it, a time of day a
+        number of seconds. The value of a formula is the one that was saved with it.
 
     Raises
     ------

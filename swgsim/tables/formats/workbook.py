@@ -23,7 +23,7 @@ def cells(path: Path, file: str, sheet: str | int | None) -> list[list[Cell]]:
     file : str
         Its name in messages.
     sheet : str or int, optional
-        Its name, or its number from 1; by default the first.
+        Its name, or its number from 1; by default the only one.
     """
     book = openpyxl.load_workbook(path, read_only=True, data_only=True, keep_links=False)
     try:
@@ -49,18 +49,22 @@ def cells(path: Path, file: str, sheet: str | int | None) -> list[list[Cell]]:
 
 def _number(sheet: str | int | None, names: list[str], file: str) -> int:
     """Place of a sheet, from 0."""
-    if sheet is None and names:
+    if sheet is None and len(names) == 1:
         return 0
     if isinstance(sheet, int) and 1 <= sheet <= len(names):
         return sheet - 1
     if sheet in names:
         return names.index(str(sheet))
-    raise FileDefect(file, f"the sheets {', '.join(map(shown, names[:20])) or 'none'}", f"the sheet {shown(sheet)}")
+    raise FileDefect(
+        file, f"the sheets {', '.join(map(shown, names[:20])) or 'none'}", "one of them: set sheet in a map"
+    )
 
 
 def _plain(value: object) -> Cell:
-    """A cell as a plain value; a date is a text as ISO 8601 has it, a duration a number of seconds."""
-    if isinstance(value, datetime | date | time):
+    """A cell as a plain value: a date is a text as ISO 8601 has it; a duration or a time of day is in seconds."""
+    if isinstance(value, time):
+        return value.hour * 3600 + value.minute * 60 + value.second + value.microsecond * 1e-6
+    if isinstance(value, datetime | date):
         return value.isoformat()
     if isinstance(value, timedelta):
         return value.total_seconds()
