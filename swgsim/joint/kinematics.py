@@ -4,12 +4,10 @@ from itertools import combinations_with_replacement
 
 import numpy as np
 from jaxtyping import Float
-from scipy.signal import savgol_filter
+from scipy.signal import savgol_coeffs, savgol_filter
 
 # Window of the smoothing of speeds [s]; trajectories and speed controls are slower.
 SMOOTHED = 0.15
-# Friction changes its sign smoothly below this speed of the output [rad/s], the noise of a measured speed.
-CREEP = 0.01
 # Share of the rigid-body torque that the inertia must explain.
 EXPLAINED = 0.8
 # Least inertia, as a share of the mean: a fit may go below in postures with few samples.
@@ -18,9 +16,24 @@ LEAST = 0.1
 
 def smooth(omega: Float[np.ndarray, " time"], rate: float, derivative: int) -> Float[np.ndarray, " time"]:
     """A smoothed speed, or its derivative."""
-    length = max(5, int(SMOOTHED * rate) // 2 * 2 + 1)
-    length = min(length, (len(omega) - 1) // 2 * 2 + 1)
-    return savgol_filter(omega, length, 2, deriv=derivative, delta=1 / rate)
+    return savgol_filter(omega, _window(len(omega), rate), 2, deriv=derivative, delta=1 / rate)
+
+
+def smoothed_noise(omega: Float[np.ndarray, " time"], rate: float) -> float:
+    """Standard deviation of the noise of a smoothed speed [rad/s].
+
+    It follows from what the smoothing takes away. Of white noise with variance s^2, a smoothing with the central
+    coefficient c leaves c s^2 and takes (1 - c) s^2 away, because least squares project.
+    """
+    length = _window(len(omega), rate)
+    c = float(savgol_coeffs(length, 2)[length // 2])
+    taken = omega - smooth(omega, rate, 0)
+    return float(np.sqrt(np.mean(taken**2) * c / (1 - c)))
+
+
+def _window(samples: int, rate: float) -> int:
+    """Odd number of samples of the smoothing."""
+    return min(max(5, int(SMOOTHED * rate) // 2 * 2 + 1), (samples - 1) // 2 * 2 + 1)
 
 
 def play(values: Float[np.ndarray, " time"], width: float) -> Float[np.ndarray, " time"]:

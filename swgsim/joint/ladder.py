@@ -1,7 +1,7 @@
 """The ladder: forward selection of effects by cross-validated error, from the textbook model upwards."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -12,8 +12,10 @@ from swgsim.joint.naming import in_words
 from swgsim.joint.recording import SIGNALS
 from swgsim.joint.regression import Fit, Table, fit, rms
 from swgsim.joint.shaping import shaped
+from swgsim.joint.shared import OfFriction
+from swgsim.joint.sign_width import with_sign_width
 from swgsim.joint.term import Term
-from swgsim.joint.textbook import textbook
+from swgsim.joint.textbook import fitted_textbook
 from swgsim.joint.waves import LOOKED_AT, Wave, waves
 
 # Significance level of an effect or wave in one round, and of an order that stands out of the spectrum.
@@ -123,14 +125,15 @@ def climb(
     bar : bool
         Whether to show a progress bar of the candidates.
     """
-    now = start = fit(table, textbook(table.recordings, table.of))
+    now = start = fitted_textbook(table)
     unit, ratio = SIGNALS[table.of].unit, table.recordings[0].gear_ratio
     progress(f"textbook model: error {now.error:.4g} {unit} on the {len(table.recordings)} fitted recordings")
     steps: list[Trial] = []
     known: dict[float, tuple[Wave, ...]] = {}
-    possible = [k for k in kinds if table.of in k.explains and all(map(k.possible, table.recordings))]
+    library = [kind().beside(start.terms) for kind in kinds]
+    possible = [term for term in library if _possible(term, start)]
     while True:
-        sought = [kind for kind in possible if kind not in {type(term) for term in now.terms}]
+        sought = [term.beside(now.terms) for term in possible if type(term) not in {type(each) for each in now.terms}]
         candidates = _candidates(now, sought, known)
         tested = tqdm(
             candidates, f"step {len(steps) + 1}", unit=" candidates", leave=False, disable=None if bar else True
@@ -140,16 +143,29 @@ def climb(
         if best is None or len(steps) == MOST:
             progress(f"step {len(steps) + 1}: none of {len(trials)} candidates is accepted")
             return Ladder(start, tuple(steps), tuple(trials))
-        steps.append(best)
-        now = best.fit
+        now = with_sign_width(best.fit)
+        steps.append(replace(best, term=now.terms[-1], fit=now))
         what = in_words(best.term, ratio)
         progress(f"step {len(steps)}: + {what}: error {now.error:.4g} {unit} on the fitted recordings")
 
 
-def _candidates(now: Fit, sought: Sequence[type[Term]], known: dict[float, tuple[Wave, ...]]) -> Iterator[Trial]:
+def _possible(term: Term, textbook: Fit) -> bool:
+    """Whether an effect may explain the signal, beside the textbook model."""
+    table = textbook.table
+    brakes = not isinstance(term, OfFriction) or any(isinstance(each, OfFriction) for each in textbook.terms)
+    measured = any(getattr(each, "measured", False) for each in textbook.terms)
+    return (
+        table.of in term.explains
+        and brakes
+        and not (term.of_model and measured)
+        and all(map(term.possible, table.recordings))
+    )
+
+
+def _candidates(now: Fit, sought: Sequence[Term], known: dict[float, tuple[Wave, ...]]) -> Iterator[Trial]:
     """Effects of the library with their best inner parameters, and waves."""
-    for kind in sought:
-        yield _tried(now, shaped(now, kind()), len(sought))
+    for term in sought:
+        yield _tried(now, shaped(now, term), len(sought))
     for shapes in waves(now, LINE_ALPHA, known):
         yield _best(now, shapes)
 

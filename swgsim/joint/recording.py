@@ -1,7 +1,7 @@
 """One recording of one joint of a robot: motion of the output, torque and motor current."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.effects.sense import sense
-from swgsim.joint.kinematics import CREEP, inertia, smooth
+from swgsim.joint.kinematics import inertia, smooth, smoothed_noise
 
 
 class Signal(NamedTuple):
@@ -26,8 +26,9 @@ SIGNALS: Mapping[str, Signal] = {
     "current": Signal("A", "motor current"),
     "T_rigid": Signal("N m", "torque at the output by the controller's rigid-body model, without friction"),
 }
-# Least share of the time in each direction of a joint that reverses.
-BACK = 0.02
+# Least share of the way in each direction of a joint that reverses. A joint that creeps in one direction and sticks on
+# its way swings back by up to 0.024 of its way; one that is moved to and fro has 0.5.
+BACK = 0.05
 # Accuracy [rad] with which a joint's angle must agree with an angle of the posture to be the same.
 SAME = 1e-6
 # Signals that the model predicts; the others are its inputs.
@@ -93,10 +94,25 @@ class JointRecording:
         return smooth(self.signals["omega"], self.rate, 1)
 
     @cached_property
-    def sense(self) -> Float[np.ndarray, " time"]:
-        """Sign of Coulomb friction, from -1 to 1; constant for a joint that never reverses."""
-        if turns_back([self]):
-            return sense(self.signals["omega"], CREEP)
+    def reverses(self) -> bool:
+        """Whether the joint moved in both directions."""
+        return turns_back([self])
+
+    @cached_property
+    def speed_doubt(self) -> float:
+        """Speed below which the recording does not show the direction of the motion [rad/s]: the noise of the smoothed
+        speed, and its change within a sample, after which a reversal is seen.
+        """
+        within = float(np.sqrt(np.mean(self.acceleration**2))) / self.rate / np.sqrt(12)
+        return float(np.hypot(smoothed_noise(self.signals["omega"], self.rate), within))
+
+    def sense(self, width: float) -> Float[np.ndarray, " time"]:
+        """Sign of Coulomb friction, from -1 to 1, that changes within a speed ``width`` [rad/s].
+
+        It is constant for a joint that never reverses.
+        """
+        if self.reverses:
+            return sense(self.speed, width)
         return np.full(len(self), float(np.sign(self.speed.sum())))
 
     @cached_property
@@ -119,6 +135,12 @@ class JointRecording:
                 return np.cumsum(self.posture, axis=0), int(same.argmax())
         return own, 0
 
+    def part(self, rows: slice) -> "JointRecording":
+        """Some of its samples."""
+        signals = {name: values[rows] for name, values in self.signals.items()}
+        posture = None if self.posture is None else self.posture[:, rows]
+        return replace(self, time=self.time[rows], signals=signals, posture=posture)
+
     @property
     def rate(self) -> float:
         """Sampling rate [Hz], the mean over the recording."""
@@ -127,5 +149,5 @@ class JointRecording:
 
 def turns_back(recordings: Iterable[JointRecording]) -> bool:
     """Whether a joint was moved in both directions."""
-    speed = np.concatenate([each.speed for each in recordings])
-    return min(float((speed > CREEP).mean()), float((speed < -CREEP).mean())) > BACK
+    ways = np.array([[speed[speed > 0].sum(), -speed[speed < 0].sum()] for speed in (each.speed for each in recordings)])
+    return bool(ways.sum(axis=0).min() > BACK * ways.sum())
