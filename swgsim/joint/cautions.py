@@ -27,7 +27,7 @@ def cautions(judged: Judged, left_out: Sequence[str]) -> list[str]:
     unit = SIGNALS[judged.table.of].unit
     found = [f"not used: {each}" for each in left_out if not each.endswith("without=")]
     if judged.table.of == "current" and not _load(judged).measured and _measured(judged):
-        found.append("the measured torque (T_sensor) predicts the current worse than the model without it, so it is not used")
+        found.append("T_sensor predicts the current no better than the model without it, and is not used as its load")
     if not _load(judged).modelled:
         found.append(
             "there is no rigid-body torque (T_rigid), so the textbook model has the inertia and gravity of a single "
@@ -38,7 +38,7 @@ def cautions(judged: Judged, left_out: Sequence[str]) -> list[str]:
             f"{each} of the textbook model would be negative, which is impossible, so it is zero: something else makes "
             "that part of the signal; check the signs of speed, current and torque in the source"
         )
-    found += [f"{each}" for each in _sides(judged)]
+    found += _sides(judged)
     found += _small(judged)
     return found
 
@@ -96,10 +96,10 @@ def _sides(judged: Judged) -> Iterator[str]:
     if judged.table.of == "T_sensor" and friction is not None:
         start = len(load.weights)
         if friction.weights[0] > float(textbook.half_interval[start]):
-            side = "motor" if friction.side < 0 else "output"
+            side, size = "motor" if friction.side < 0 else "output", significant(friction.weights[0])
             yield (
-                f"there is friction between the torque sensor and the rigid-body torque ({significant(friction.weights[0])} "
-                f"N m): T_rigid is the torque on the {side}'s side of it"
+                f"there is Coulomb friction of {size} N m between T_rigid and the torque sensor: T_rigid is the torque "
+                f"on the {side}'s side of it"
             )
 
 
@@ -112,8 +112,8 @@ def _small(judged: Judged) -> Iterator[str]:
     if small:
         yield (
             f"{len(small)} of {len(recordings)} recordings move by {max(small):.2g} rad or less, which is less than a "
-            f"revolution of the motor ({way:.2g} rad): they show friction and hysteresis, but no wave of the motor, and "
-            "gravity near one angle only"
+            f"revolution of the motor ({way:.2g} rad): they show friction and hysteresis, but no wave of the motor, "
+            "and gravity near one angle only"
         )
 
 

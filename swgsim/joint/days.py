@@ -70,7 +70,7 @@ class Days:
 
 
 def days(top: Fit, tables: Sequence[Table]) -> Days | None:
-    """Speed-dependent friction of every session; None for fewer than two sessions.
+    """Speed-dependent friction of every session in the current; None for fewer than two sessions.
 
     A session needs three runs, because their scatter gives the deviation.
 
@@ -81,7 +81,7 @@ def days(top: Fit, tables: Sequence[Table]) -> Days | None:
     tables : sequence of Table
         Fitted and held-out recordings.
     """
-    if not any(isinstance(term, Friction) for term in top.terms):
+    if top.table.of != "current":
         return None
     recordings: dict[str, list[JointRecording]] = {}
     for each in (each for table in tables for each in table.recordings):

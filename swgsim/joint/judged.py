@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -78,7 +79,7 @@ class Judged:
     def steps(self) -> tuple[tuple[Rung, Rung], ...]:
         """Every accepted model with the one before it."""
         kept = self.rungs[: len(self.ladder.steps) + 1]
-        return tuple(zip(kept, kept[1:], strict=False))
+        return tuple(pairwise(kept))
 
     @property
     def contradicted(self) -> tuple[Trial, ...]:

@@ -5,12 +5,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
-from scipy.stats import ttest_1samp
+from scipy.stats import skew, t, ttest_1samp
 from tqdm import tqdm
 
 from swgsim.joint.naming import in_words
 from swgsim.joint.recording import SIGNALS
-from swgsim.joint.regression import Fit, Table, fit, rms
+from swgsim.joint.regression import WORTH, Fit, Table, fit, rms
 from swgsim.joint.shaping import shaped
 from swgsim.joint.shared import OfFriction
 from swgsim.joint.sign_width import with_sign_width
@@ -20,8 +20,6 @@ from swgsim.joint.waves import LOOKED_AT, Wave, waves
 
 # Significance level of an effect or wave in one round, and of an order that stands out of the spectrum.
 ALPHA, LINE_ALPHA = 0.05, 0.005
-# Relative reduction of the cross-validated error that is worth a term.
-LEAST = 0.005
 # Largest number of added effects.
 MOST = 24
 
@@ -62,7 +60,7 @@ class Trial:
 
     @property
     def _helps(self) -> bool:
-        return not self._unsound and self.gain > LEAST and self.worst > -self.gain
+        return not self._unsound and self.gain > WORTH and self.worst > -self.gain
 
     @property
     def _unsound(self) -> Term | None:
@@ -77,7 +75,7 @@ class Trial:
             return "its size would have the wrong sign" if own else f"{self._unsound.title()} would have the wrong sign"
         if self.gain <= 0:
             return f"raises the cross-validated error by {-100 * self.gain:.2g} %"
-        if self.gain <= LEAST:
+        if self.gain <= WORTH:
             return f"lowers the cross-validated error by only {100 * self.gain:.2g} %"
         if self.worst <= -self.gain:
             return f"lowers the error by {100 * self.gain:.2g} %, raises that of a session by {-100 * self.worst:.2g} %"
@@ -183,23 +181,44 @@ def _tried(now: Fit, term: Term, trials: int) -> Trial:
     before, after = now.unseen, added.unseen
     session = now.table.session
     worst = 1 - float(np.sqrt((np.bincount(session, after**2) / np.bincount(session, before**2)).max()))
-    chance = _p_value(now.table, before, after, relative=isinstance(term, Wave))
+    chance = _p_value(now, added, relative=isinstance(term, Wave))
     return Trial(added.terms[-1], added, 1 - rms(after) / rms(before), worst, min(1.0, chance * trials))
 
 
-def _p_value(
-    table: Table, before: Float[np.ndarray, " row"], after: Float[np.ndarray, " row"], *, relative: bool
-) -> float:
+def _p_value(now: Fit, added: Fit, *, relative: bool) -> float:
     """p-value of the reduction of the error over the stretches of the recordings.
 
     A wave acts everywhere, so its ``relative`` reduction in each stretch counts. Other effects may act in few
-    stretches, such as friction at standstill, so their mean square counts.
+    stretches, such as friction at standstill, so their mean square counts. The zero of a signal may differ from run to
+    run, which is no evidence for an effect: each run has its own zero here. A run in one direction shows friction and
+    zero as one number, so it counts once for effects that are no waves.
     """
-    rows = np.bincount(table.stretch)
+    once = not relative and not any(each.reverses for each in now.table.recordings)
+    table = now.table
+    unit = table.run if once else table.stretch
+    before, after = (each.unseen if once else each.unseen_but_zeros for each in (now, added))
+    rows = np.bincount(unit)
     whole = rows > np.median(rows) / 2  # stretches at the end of a recording may be short
     if whole.sum() < 3:
         return 1.0
-    squares = [np.bincount(table.stretch, residual**2)[whole] / rows[whole] for residual in (before, after)]
+    squares = [np.bincount(unit, residual**2)[whole] / rows[whole] for residual in (before, after)]
     roots = np.sqrt(squares)
-    saved = (roots[0] - roots[1]) / np.maximum(roots.sum(axis=0), 1e-300) if relative else squares[0] - squares[1]
-    return float(ttest_1samp(saved, 0, alternative="greater").pvalue)
+    if relative:
+        saved = (roots[0] - roots[1]) / np.maximum(roots.sum(axis=0), 1e-300)
+        return float(ttest_1samp(saved, 0, alternative="greater").pvalue)
+    return _p_value_of_skewed(squares[0] - squares[1])
+
+
+def _p_value_of_skewed(saved: Float[np.ndarray, " stretch"]) -> float:
+    """p-value of a positive mean of a skewed distribution: few stretches may save much.
+
+    The t-test with the transformation of Hall (1992, J. R. Stat. Soc. B 54, 221), which removes the effect of the skew
+    to the first order.
+    """
+    number, deviation = len(saved), float(saved.std(ddof=1))
+    if deviation == 0:
+        return 1.0
+    x = float(saved.mean()) / deviation
+    g = float(skew(saved))
+    corrected = x + g * x**2 / 3 + g**2 * x**3 / 27 + g / (6 * number)
+    return float(t.sf(np.sqrt(number) * corrected, number - 1))

@@ -149,5 +149,6 @@ class JointRecording:
 
 def turns_back(recordings: Iterable[JointRecording]) -> bool:
     """Whether a joint was moved in both directions."""
-    ways = np.array([[speed[speed > 0].sum(), -speed[speed < 0].sum()] for speed in (each.speed for each in recordings)])
-    return bool(ways.sum(axis=0).min() > BACK * ways.sum())
+    speed = np.concatenate([each.speed for each in recordings])
+    forwards, backwards = speed[speed > 0].sum(), -speed[speed < 0].sum()
+    return bool(min(forwards, backwards) > BACK * (forwards + backwards))

@@ -18,6 +18,8 @@ from swgsim.joint.term import Term
 SLOW = 5.0
 # Length of a stretch [s]; errors of different stretches count as independent.
 STRETCH = 1.0
+# Relative reduction of a cross-validated error that is worth a term.
+WORTH = 0.005
 # Groups for the cross-validation of a single recording.
 PARTS = 5
 
@@ -57,8 +59,12 @@ class Table:
         """Columns of a term of which those of one group depend on that group only, for cross-validation."""
         if not term.of_whole or len(self.recordings) > 1:
             return self.columns(term)
-        (whole,) = self.recordings
-        return self.rows([np.vstack([term.columns(whole.part(rows)) for rows in self.parts])])
+        parts = [self.recordings[0].part(rows) for rows in self.parts]
+        return (
+            self.rows([np.vstack([term.columns(part) for part in parts])])
+            if all(map(term.possible, parts))
+            else (self.columns(term))
+        )
 
     def rows(self, each: Sequence[Float[np.ndarray, "_ column"]]) -> Float[np.ndarray, "row column"]:
         """Columns of all recordings; for a torque sensor the mean of each run is removed."""
@@ -79,6 +85,10 @@ class Table:
     def group(self) -> Int[np.ndarray, " row"]:
         """Number of the group of every row for cross-validation: a run, or a part of a single run."""
         return self.run if len(self.recordings) > 1 else np.arange(len(self.run)) * PARTS // len(self.run)
+
+    def means_of_runs(self, values: Float[np.ndarray, " row"]) -> Float[np.ndarray, " row"]:
+        """Mean of each run, in all its rows."""
+        return (np.bincount(self.run, values) / np.bincount(self.run))[self.run]
 
     @cached_property
     def parts(self) -> list[slice]:
@@ -149,9 +159,24 @@ class Fit:
     @cached_property
     def unseen(self) -> Float[np.ndarray, " row"]:
         """Residual of every group, predicted by a fit to the other groups."""
-        whole = any(term.of_whole for term in self.terms)
-        X = np.hstack([self.table.columns_by_group(term) for term in self.terms]) if whole else self.X
-        scaled, y, parts = X / _scale(X), self.table.signal, self.table.parts
+        return self._unseen(self._by_group, self.table.signal)
+
+    @cached_property
+    def unseen_but_zeros(self) -> Float[np.ndarray, " row"]:
+        """The same if the signal of each run had a zero of its own, which is known."""
+        X = self._by_group
+        means = np.stack([self.table.means_of_runs(column) for column in X.T], axis=1)
+        return self._unseen(X - means, self.table.signal - self.table.means_of_runs(self.table.signal))
+
+    @cached_property
+    def _by_group(self) -> Float[np.ndarray, "row column"]:
+        """Columns of which those of one group depend on that group only."""
+        if any(term.of_whole for term in self.terms):
+            return np.hstack([self.table.columns_by_group(term) for term in self.terms])
+        return self.X
+
+    def _unseen(self, X: Float[np.ndarray, "row column"], y: Float[np.ndarray, " row"]) -> Float[np.ndarray, " row"]:
+        scaled, parts = X / _scale(X), self.table.parts
         squares = [scaled[part].T @ scaled[part] for part in parts]
         products = [scaled[part].T @ y[part] for part in parts]
         square, product = sum(squares), sum(products)

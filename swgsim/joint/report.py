@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from swgsim.common.outcome import FOUND
 from swgsim.effects.quantity import Role, quantities
 from swgsim.joint.cautions import DIFFERENT, SLOWEST, cautions, likely, next_experiment
 from swgsim.joint.days import Days
@@ -22,7 +23,6 @@ from swgsim.joint.verdict import explained, fails, sentence, verdict
 from swgsim.joint.waves import SLOW
 
 
-
 def report(
     judged: Judged, days: Days | None, lines: Sequence[RemainingLine], left_out: Sequence[str] = ()
 ) -> dict[str, Any]:
@@ -30,14 +30,14 @@ def report(
     first, top, unit = judged.table.recordings[0], judged.ladder.top, SIGNALS[judged.table.of].unit
     ratio, steps, base = first.gear_ratio, judged.ladder.steps, len(judged.ladder.textbook.terms)
     words = [*map(str, lines), *([_friction_by_session(days)] if days and days.chance < DIFFERENT else [])]
-    share = judged.explained(judged.ladder.textbook)
+    share, word = judged.explained(judged.ladder.textbook), verdict(judged, words)
     return {
         "textbook_explains": share.value,
         "textbook_explains_ci95": [share.value - share.half, share.value + share.half],
         "explains": explained(judged),
-        "verdict": verdict(judged, words),
+        "verdict": word,
         "sentence": sentence(judged, words),
-        "lacks": listed([step.term for step in judged.confirmed], ratio),
+        "lacks": listed([step.term for step in judged.confirmed], ratio) if word == FOUND else "",
         "contradicted": listed([step.term for step in judged.contradicted], ratio),
         "robot": first.robot,
         "joint": first.joint,
@@ -137,8 +137,8 @@ def _weights(top: Fit, first: int, last: int, unit: str) -> dict[str, dict[str, 
             continue
         each_unit = units if len(units) > 1 else units * len(term.weights)
         for number, (name, weight, own) in enumerate(zip(term.names(), term.weights, each_unit, strict=True)):
-            half = float(top.half_interval[start + number])
-            found[name] = {"value": weight, "ci95": [weight - half, weight + half], "unit": own}
+            half, least = float(top.half_interval[start + number]), float(top.least[start + number])
+            found[name] = {"value": weight, "ci95": [max(weight - half, least), weight + half], "unit": own}
         start += len(term.weights)
     return found
 

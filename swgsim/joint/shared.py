@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TypeVar
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
@@ -10,8 +10,6 @@ from jaxtyping import Float
 from swgsim.effects.quantity import shape
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.term import Term
-
-T = TypeVar("T", bound=Term)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,7 +26,7 @@ class OfFriction(Term):
     explains = ("current", "T_sensor")
     side: int = 1
 
-    def beside(self, terms: Sequence[Term]) -> Term:
+    def beside(self, terms: Sequence[Term]) -> Any:
         """On the side of the model's friction."""
         return replace(super().beside(terms), side=_of_model(OfFriction, terms, self).side)
 
@@ -40,8 +38,8 @@ class OfSign(OfFriction):
     Attributes
     ----------
     sign_width : float
-        Speed within which the sign changes [rad/s]. It belongs to Coulomb friction of the textbook, which has it fitted;
-        all terms of a model have the same.
+        Speed within which the sign changes [rad/s]. It is fitted with Coulomb friction of the textbook, and all terms
+        of a model have the same.
     """
 
     sign_width: float = shape(0.01, unit="rad/s", low=1e-9, high=1e3)
@@ -50,7 +48,7 @@ class OfSign(OfFriction):
         """The sign of the friction in the signal."""
         return self.side * recording.sense(self.sign_width)
 
-    def beside(self, terms: Sequence[Term]) -> Term:
+    def beside(self, terms: Sequence[Term]) -> Any:
         """With the width of the model's sign."""
         return replace(super().beside(terms), sign_width=_of_model(OfSign, terms, self).sign_width)
 
@@ -80,11 +78,11 @@ class OfLoad(Term):
         """Whether a recording has the load, and all other signals."""
         return all(name in recording.signals for name in (*self.needs, self.signal_of_load))
 
-    def beside(self, terms: Sequence[Term]) -> Term:
+    def beside(self, terms: Sequence[Term]) -> Any:
         """With the load of the model."""
         return replace(super().beside(terms), measured=_of_model(OfLoad, terms, self).measured)
 
 
-def _of_model(kind: type[T], terms: Sequence[Term], own: T) -> T:
+def _of_model(kind: type, terms: Sequence[Term], own: Term) -> Any:
     """First term of a kind in a model, from which others take what they share; the own one if there is none."""
     return next((each for each in terms if isinstance(each, kind)), own)

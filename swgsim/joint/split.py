@@ -11,8 +11,8 @@ from swgsim.joint.judged import noise_floor, standing_noise
 from swgsim.joint.recording import PREDICTED, SIGNALS, JointRecording
 from swgsim.joint.regression import SLOW, Table
 
-# A joint must move by this angle [rad], 0.3 degrees: several times the lost motion of a strain wave gear, so that friction
-# reverses. What smaller motions than a revolution of the motor do not show is a caution of the answer.
+# A joint must move by this angle [rad], 0.3 degrees: several times the lost motion of a strain wave gear, so that
+# friction reverses. What motions below a revolution of the motor do not show is a caution of the answer.
 LEAST_WAY = 0.005
 
 

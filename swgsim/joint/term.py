@@ -3,7 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from jaxtyping import Float
@@ -65,7 +65,7 @@ class Term(Effect, ABC):
         """Smallest possible weight of each column: 0 or minus infinity."""
         return np.full(columns, -np.inf)
 
-    def beside(self, terms: Sequence["Term"]) -> "Term":
+    def beside(self, terms: Sequence["Term"]) -> Any:
         """The effect with what it shares with the terms of a model, to which it is added."""
         return self
 

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.joint.recording import JointRecording, turns_back
-from swgsim.joint.regression import Fit, Table, fit, rms
+from swgsim.joint.regression import WORTH, Fit, Table, fit, rms
 from swgsim.joint.shared import OfLoad, OfSign
 from swgsim.joint.sign_width import with_sign_width
 from swgsim.joint.term import Term
@@ -93,25 +93,24 @@ def fitted_textbook(table: Table) -> Fit:
     """The textbook model with the width of the sign, the side of the friction, and the load that predict best.
 
     The friction is in front of a current. A torque sensor may be on either side of it. The measured torque is the load
-    of a current, unless it predicts the current within each run worse than the model does. A joint without a load shows
-    little but the zero of its sensor, which differs from run to run as friction at different speeds does.
+    of a current if it predicts the current better than the model does, by as much as an effect must, over all and
+    within the runs. A joint without a load shows little but the zero of its sensor, which differs from run to run as
+    friction at different speeds does.
     """
-    loads = [textbook(table.recordings, table.of)]
-    if table.of == "current" and all("T_sensor" in each.signals for each in table.recordings):
-        loads.append(textbook(table.recordings, table.of, measured=True))
-    both = table.of == "T_sensor" and any(isinstance(term, Friction) for term in loads[0])
-    fits = [
-        with_sign_width(fit(table, [replace(term, side=side) if isinstance(term, Friction) else term for term in terms]))
-        for terms in loads
-        for side in ((1, -1) if both else (1,))
-    ]
-    return min(fits, key=_error_within_runs)
+    terms = textbook(table.recordings, table.of)
+    plain = with_sign_width(fit(table, terms))
+    if table.of == "T_sensor":
+        other = [replace(term, side=-1) if isinstance(term, Friction) else term for term in terms]
+        return min(plain, with_sign_width(fit(table, other)), key=lambda each: each.error)
+    if not all("T_sensor" in each.signals for each in table.recordings):
+        return plain
+    measured = with_sign_width(fit(table, textbook(table.recordings, table.of, measured=True)))
+    return measured if (_errors(measured) < (1 - WORTH) * _errors(plain)).all() else plain
 
 
-def _error_within_runs(found: Fit) -> float:
-    """Cross-validated error without the mean of each run."""
-    run = found.table.run
-    return rms(found.unseen - (np.bincount(run, found.unseen) / np.bincount(run))[run])
+def _errors(found: Fit) -> Float[np.ndarray, " error"]:
+    """Cross-validated error over all, and without the mean of each run."""
+    return np.array([rms(found.unseen), rms(found.unseen - found.table.means_of_runs(found.unseen))])
 
 
 def wrong_signs(textbook: Fit, unit: str) -> Iterator[str]:

@@ -9,7 +9,8 @@ from swgsim.joint.naming import listed
 from swgsim.joint.recording import SIGNALS
 from swgsim.joint.term import Term
 
-# Verdicts for effects that do not lower the error on the held-out recordings, and for a model that does not describe them.
+# Verdicts for effects that do not lower the error on the held-out recordings, and for a model that does not describe
+# these.
 NOT_CONFIRMED, FAILS = "not_confirmed", "textbook_fails"
 # Share of the variance of the held-out signal that a model explains at least: it leaves less than it explains. Errors
 # above the frequency SLOW are forgiven, as they are not the textbook's.
@@ -28,9 +29,9 @@ def verdict(judged: Judged, remaining: Sequence[str]) -> str:
 
 
 def fails(judged: Judged) -> bool:
-    """Whether the model, with the effects found, certainly leaves more of the held-out signal than it explains."""
-    share = judged.explained(judged.ladder.top, slowly=True)
-    return share.value + share.half < LEAST_EXPLAINED
+    """Whether the textbook model leaves certainly more of the held-out signal than it explains, with the effects too."""
+    shares = (judged.explained(fit, slowly=True) for fit in (judged.ladder.textbook, judged.ladder.top))
+    return all(share.value + share.half < LEAST_EXPLAINED for share in shares)
 
 
 def sentence(judged: Judged, remaining: Sequence[str]) -> str:
@@ -42,10 +43,10 @@ def sentence(judged: Judged, remaining: Sequence[str]) -> str:
     found = [step.term for step in judged.ladder.steps]
     before, after = judged.before.heldout, judged.after.heldout
     if fails(judged):
-        model = f"the textbook model, even with {_named(judged, found)}," if found else "the textbook model"
+        more = f", and with {_named(judged, found)} {significant(after)} {of.unit}" if found else ""
         return (
-            f"{where}: {model} does not describe these recordings; its error on recordings not seen is "
-            f"{significant(after)} {of.unit}, where the signal has a standard deviation of "
+            f"{where}: the textbook model does not describe these recordings; its error on recordings not seen is "
+            f"{significant(before)} {of.unit}{more}, where the signal has a standard deviation of "
             f"{significant(judged.scatter)} {of.unit}{rest}."
         )
     if not found:
@@ -61,8 +62,8 @@ def sentence(judged: Judged, remaining: Sequence[str]) -> str:
     good, bad = ([step.term for step in steps] for steps in (judged.confirmed, judged.contradicted))
     against = ""
     if bad:
-        many = len(bad) > 1
-        against = f"; {_named(judged, bad)} {'were' if many else 'was'} found too, but {'raise' if many else 'raises'} it"
+        were, raise_ = ("were", "raise") if bad[1:] else ("was", "raises")
+        against = f"; {_named(judged, bad)} {were} found too, but {raise_} it"
         them = "all effects found"
     return (
         f"{where}: the textbook model lacks {_named(judged, good)}; with {them} the error on recordings not seen "
