@@ -16,23 +16,30 @@ LEAST = 0.1
 
 def smooth(omega: Float[np.ndarray, " time"], rate: float, derivative: int) -> Float[np.ndarray, " time"]:
     """A smoothed speed, or its derivative."""
-    return savgol_filter(omega, _window(len(omega), rate), 2, deriv=derivative, delta=1 / rate)
+    return savgol_filter(omega, window(len(omega), rate), 2, deriv=derivative, delta=1 / rate)
 
 
-def smoothed_noise(omega: Float[np.ndarray, " time"], rate: float) -> float:
-    """Standard deviation of the noise of a smoothed speed [rad/s].
+def least_doubt(omega: Float[np.ndarray, " time"], rate: float) -> tuple[Float[np.ndarray, " time"], float]:
+    """A speed, smoothed over the window that leaves the least error, and this error [rad/s].
 
-    It follows from what the smoothing takes away. Of white noise with variance s^2, a smoothing with the central
-    coefficient c leaves c s^2 and takes (1 - c) s^2 away, because least squares project.
+    A longer window averages more noise, but rounds a motion that changes within it. The estimate of the error is that
+    of Stein (1981, Ann. Stat. 9, 1135): a smoothing with the central coefficient c leaves c s^2 of white noise with
+    variance s^2, and the mean square of what it takes away, minus (1 - c) s^2, is what it takes from the motion. Third
+    differences show the noise.
     """
-    length = _window(len(omega), rate)
-    c = float(savgol_coeffs(length, 2)[length // 2])
-    taken = omega - smooth(omega, rate, 0)
-    return float(np.sqrt(np.mean(taken**2) * c / (1 - c)))
+    s2 = float(np.mean(np.diff(omega, 3) ** 2)) / 20
+    best, least = omega, s2
+    for length in range(5, window(len(omega), rate) + 1, 2):
+        c = float(savgol_coeffs(length, 2)[length // 2])
+        smoothed = savgol_filter(omega, length, 2)
+        error = max(float(np.mean((omega - smoothed) ** 2)) - (1 - c) * s2, 0.0) + c * s2
+        if error < least:
+            best, least = smoothed, error
+    return best, float(np.sqrt(least))
 
 
-def _window(samples: int, rate: float) -> int:
-    """Odd number of samples of the smoothing."""
+def window(samples: int, rate: float) -> int:
+    """Odd number of samples of the smoothing of a speed."""
     return min(max(5, int(SMOOTHED * rate) // 2 * 2 + 1), (samples - 1) // 2 * 2 + 1)
 
 

@@ -57,14 +57,10 @@ class Table:
 
     def columns_by_group(self, term: Term) -> Float[np.ndarray, "row column"]:
         """Columns of a term of which those of one group depend on that group only, for cross-validation."""
-        if not term.of_whole or len(self.recordings) > 1:
+        parts = [self.recordings[0].part(rows) for rows in self.parts] if len(self.recordings) == 1 else []
+        if not (term.of_whole and parts and all(map(term.possible, parts))):
             return self.columns(term)
-        parts = [self.recordings[0].part(rows) for rows in self.parts]
-        return (
-            self.rows([np.vstack([term.columns(part) for part in parts])])
-            if all(map(term.possible, parts))
-            else (self.columns(term))
-        )
+        return self.rows([np.vstack([term.columns(part) for part in parts])])
 
     def rows(self, each: Sequence[Float[np.ndarray, "_ column"]]) -> Float[np.ndarray, "row column"]:
         """Columns of all recordings; for a torque sensor the mean of each run is removed."""

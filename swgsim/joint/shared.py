@@ -40,17 +40,22 @@ class OfSign(OfFriction):
     sign_width : float
         Speed within which the sign changes [rad/s]. It is fitted with Coulomb friction of the textbook, and all terms
         of a model have the same.
+    lag : float
+        Time by which the signal follows the change of the sign [s]: current and speed pass different filters. Fitted
+        and shared likewise.
     """
 
     sign_width: float = shape(0.01, unit="rad/s", low=1e-9, high=1e3)
+    lag: float = shape(0.0, unit="s", low=-1.0, high=1.0)
 
     def sense(self, recording: JointRecording) -> Float[np.ndarray, " time"]:
         """The sign of the friction in the signal."""
-        return self.side * recording.sense(self.sign_width)
+        return self.side * recording.sense(self.sign_width, self.lag)
 
     def beside(self, terms: Sequence[Term]) -> Any:
-        """With the width of the model's sign."""
-        return replace(super().beside(terms), sign_width=_of_model(OfSign, terms, self).sign_width)
+        """With the sign of the model."""
+        known = _of_model(OfSign, terms, self)
+        return replace(super().beside(terms), sign_width=known.sign_width, lag=known.lag)
 
 
 @dataclass(frozen=True, kw_only=True)

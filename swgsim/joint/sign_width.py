@@ -1,5 +1,6 @@
-"""The speed within which the sign of Coulomb friction changes, fitted with the model."""
+"""The speed within which the sign of Coulomb friction changes, and its lag, fitted with the model."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -10,12 +11,14 @@ from swgsim.joint.shared import OfSign
 
 # Widest change of the sign [rad/s]. Above begins Stribeck friction, which is friction that depends on the speed.
 WIDEST = 0.02
-# Values of the first search, evenly in the logarithm.
-POINTS = 8
+# Longest lag between a signal and the motion, either way [s]: filters of drives and of their speeds.
+LONGEST = 0.02
+# Values of the first search of each.
+POINTS = 7
 
 
 def with_sign_width(now: Fit) -> Fit:
-    """The model at the most likely width of the sign.
+    """The model at the most likely width and lag of the sign.
 
     Friction changes its sign at a reversal at once, but for elastic seals and grease. A measured speed with noise, or
     sampled coarsely, shows the reversal only up to a speed, below which the direction is uncertain. This is the least
@@ -25,17 +28,22 @@ def with_sign_width(now: Fit) -> Fit:
     if not doubts or not any(isinstance(term, OfSign) for term in now.terms):
         return now
     least = max(float(np.sqrt(np.mean(np.square(doubts)))), 1e-3 * WIDEST)
-    widest = max(WIDEST, least)
+    # A sign that changes within its least width has no shape of which more could be told.
+    ends = np.log(least), np.log(max(WIDEST, least * (1 + 1e-9)))
 
-    def at(width: float) -> Fit:
-        terms = [replace(term, sign_width=width) if isinstance(term, OfSign) else term for term in now.terms]
-        return fit(now.table, terms)
+    def at(**sign: float) -> Fit:
+        return fit(now.table, [replace(term, **sign) if isinstance(term, OfSign) else term for term in now.terms])
 
-    grid = np.linspace(np.log(least), np.log(widest), POINTS)
-    best = int(np.argmin([at(float(np.exp(x))).error for x in grid]))
-    ends = grid[max(best - 1, 0)], grid[min(best + 1, POINTS - 1)]
-    found = float(np.exp(grid[best]))
-    if ends[0] < ends[1]:
-        refined = minimize_scalar(lambda x: at(float(np.exp(x))).error, bounds=ends, options={"xatol": 1e-2})
-        found = min((found, float(np.exp(refined.x))), key=lambda width: at(width).error)
-    return at(found)
+    width = _lowest(lambda x: at(sign_width=float(np.exp(x))).error, *ends)
+    lag = _lowest(lambda x: at(sign_width=float(np.exp(width)), lag=x).error, -LONGEST, LONGEST)
+    width = _lowest(lambda x: at(sign_width=float(np.exp(x)), lag=lag).error, *ends)
+    return at(sign_width=float(np.exp(width)), lag=lag)
+
+
+def _lowest(error: Callable[[float], float], low: float, high: float) -> float:
+    """Place of the lowest error between two ends: on a grid, then between its neighbours."""
+    grid = np.linspace(low, high, POINTS).tolist()
+    best = int(np.argmin([error(x) for x in grid]))
+    between = grid[max(best - 1, 0)], grid[min(best + 1, POINTS - 1)]
+    refined = minimize_scalar(error, bounds=between, options={"xatol": 0.05 * (grid[1] - grid[0])})
+    return min((grid[best], float(refined.x)), key=error)

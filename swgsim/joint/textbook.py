@@ -67,6 +67,23 @@ class Friction(OfSign):
 
 
 @dataclass(frozen=True)
+class Stiction(OfSign):
+    """Coulomb friction that holds a joint at rest. It may have any size up to that of the motion; here it has a part of
+    it that is the same at every standstill, in the direction of the motion before.
+    """
+
+    weight_names = ("Coulomb friction at rest",)
+
+    def columns(self, recording: JointRecording) -> Float[np.ndarray, "time column"]:
+        """Direction of the last motion."""
+        return (self.side * recording.held * (1 - np.abs(self.sense(recording))))[:, None]
+
+    def least(self, columns: int) -> Float[np.ndarray, " column"]:
+        """It does not drive."""
+        return np.zeros(columns)
+
+
+@dataclass(frozen=True)
 class Zero(Term):
     """A constant."""
 
@@ -84,9 +101,10 @@ def textbook(recordings: tuple[JointRecording, ...], of: str, *, measured: bool 
     """
     modelled = measured or all("T_rigid" in each.signals for each in recordings)
     rigid, back = RigidBody(modelled=modelled, measured=measured), turns_back(recordings)
+    rest = (Stiction(),) if back and any(each.held.any() for each in recordings) else ()
     if of == "T_sensor":
-        return (rigid, Friction()) if modelled and back else (rigid,)
-    return (rigid, Friction(), Zero()) if back else (rigid, Friction())
+        return (rigid, Friction(), *rest) if modelled and back else (rigid,)
+    return (rigid, Friction(), *rest, Zero()) if back else (rigid, Friction())
 
 
 def fitted_textbook(table: Table) -> Fit:
@@ -100,7 +118,7 @@ def fitted_textbook(table: Table) -> Fit:
     terms = textbook(table.recordings, table.of)
     plain = with_sign_width(fit(table, terms))
     if table.of == "T_sensor":
-        other = [replace(term, side=-1) if isinstance(term, Friction) else term for term in terms]
+        other = [replace(term, side=-1) if isinstance(term, OfSign) else term for term in terms]
         return min(plain, with_sign_width(fit(table, other)), key=lambda each: each.error)
     if not all("T_sensor" in each.signals for each in table.recordings):
         return plain

@@ -29,7 +29,7 @@ def verdict(judged: Judged, remaining: Sequence[str]) -> str:
 
 
 def fails(judged: Judged) -> bool:
-    """Whether the textbook model leaves certainly more of the held-out signal than it explains, with the effects too."""
+    """Whether the model leaves certainly more of the held-out signal than it explains, without and with effects."""
     shares = (judged.explained(fit, slowly=True) for fit in (judged.ladder.textbook, judged.ladder.top))
     return all(share.value + share.half < LEAST_EXPLAINED for share in shares)
 

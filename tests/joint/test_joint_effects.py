@@ -287,5 +287,7 @@ def test_friction_keeps_its_sense_where_a_joint_sticks_on_its_way_and_changes_it
     sticking = 0.5 * (np.arange(len(TIME)) < len(TIME) / 2)
     np.testing.assert_array_equal(recorded(np.cumsum(sticking), sticking).sense(0.01), 1.0)
     here = swing()
-    np.testing.assert_allclose(here.sense(0.01), np.tanh(here.speed / 0.01))
+    np.testing.assert_allclose(here.sense(0.01), np.tanh(here.signals["omega"] / 0.01), atol=1e-3)
+    shifted = here.sense(0.01, lag=5 / RATE)
+    np.testing.assert_allclose(shifted[5:], here.sense(0.01)[:-5], atol=1e-9)
     assert Friction(side=-1).columns(here)[:, 0] == pytest.approx(-here.sense(0.01))

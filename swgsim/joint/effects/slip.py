@@ -12,8 +12,6 @@ from swgsim.joint.shared import OfFriction, OfLoad
 
 # Each element slips at so many times the distance of the element before.
 NEXT, ELEMENTS = 5.0, 2
-# An element below this share of the larger one counts as absent, with any sign.
-ABSENT = 0.1
 
 
 @dataclass(frozen=True)
@@ -69,7 +67,11 @@ class MaxwellSlip(OfFriction):
         q = recording.signals["q"]
         return self.side * np.stack([play(q, self.distance * NEXT**number) for number in range(ELEMENTS)], axis=1)
 
+    def least(self, columns: int) -> Float[np.ndarray, " column"]:
+        """No element drives."""
+        return np.zeros(columns)
+
     @property
     def sound(self) -> bool:
-        """Friction brakes; one of the elements may be almost absent."""
-        return min(self.weights) > -ABSENT * max(self.weights)
+        """Friction brakes; one of the elements may be absent."""
+        return max(self.weights) > 0
