@@ -29,9 +29,12 @@ def verdict(judged: Judged, remaining: Sequence[str]) -> str:
 
 
 def fails(judged: Judged) -> bool:
-    """Whether the model leaves certainly more of the held-out signal than it explains, without and with effects."""
-    shares = (judged.explained(fit, slowly=True) for fit in (judged.ladder.textbook, judged.ladder.top))
-    return all(share.value + share.half < LEAST_EXPLAINED for share in shares)
+    """Whether the model leaves more of the held-out signal than it explains, without and with effects; or is certainly
+    worse than a constant.
+    """
+    fits = judged.ladder.textbook, judged.ladder.top
+    slow, whole = [judged.explained(fit, slowly=True) for fit in fits], [judged.explained(fit) for fit in fits]
+    return all(share.value < LEAST_EXPLAINED for share in slow) or all(share.value + share.half < 0 for share in whole)
 
 
 def sentence(judged: Judged, remaining: Sequence[str]) -> str:

@@ -59,7 +59,7 @@ def test_no_sentence_contradicts_its_numbers(sizes: list[float], seed: int) -> N
     assert ("contradict" in text) <= (after > before)
     assert ("textbook model lacks" in text) == (said["verdict"] == "effect_found")
     assert (said["verdict"] == "effect_found") <= (after < before)
-    assert (said["verdict"] == "nothing_missing") <= (not said["effects"] and said["textbook_explains"] > 0)
+    assert (said["verdict"] == "nothing_missing") <= (not said["effects"] and said["textbook_explains_ci95"][1] > 0)
     assert bool(said["likely"]) == (said["verdict"] == "textbook_fails")
     lacks = text.partition("lacks")[2].partition(";")[0]
     for last, rung in pairwise(kept):
