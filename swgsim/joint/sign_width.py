@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize_scalar
@@ -31,7 +32,7 @@ def with_sign_width(now: Fit) -> Fit:
     # A sign that changes within its least width has no shape of which more could be told.
     ends = np.log(least), np.log(max(WIDEST, least * (1 + 1e-9)))
 
-    def at(**sign: float) -> Fit:
+    def at(**sign: Any) -> Fit:
         return fit(now.table, [replace(term, **sign) if isinstance(term, OfSign) else term for term in now.terms])
 
     width = _lowest(lambda x: at(sign_width=float(np.exp(x))).error, *ends)

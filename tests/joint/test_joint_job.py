@@ -144,6 +144,22 @@ def test_refused_recordings_are_named_with_the_reason(files, tmp_path):
         identify_joint(recordings_of(files / "source.yaml", tmp_path), holdout="day4")
 
 
+def test_an_answer_names_what_it_does_not_use_and_what_small_motions_cannot_show(files, tmp_path):
+    """One run is refused, one moves too little, and one moves by less than a revolution of the motor."""
+    factors = {"day1": (np.degrees(1), 1), "day2": (2e-3, 2e-3), "day3": (0.05, 0.05), "day4": (0.05, 0.05)}
+    for day, (angle, speed) in factors.items():
+        table = pd.read_csv(files / "logs" / f"{day}_run.csv")
+        table.assign(q=angle * table.q, v=speed * table.v).to_csv(tmp_path / f"{day}_run.csv", index=False)
+    answer = identify_joint(recordings_of(files / "source.yaml", tmp_path), holdout="day4", searched=SEARCHED)
+    left_out = answer.report["split"]["left_out"]
+    assert [each.split(":")[0] for each in left_out] == ["day2_run", "day1_run"]
+    assert "less than 0.005 rad" in left_out[0]
+    assert "refused for angle_in_degrees" in left_out[1]
+    cautions = answer.report["cautions"]
+    assert [each for each in cautions if each.startswith("not used")] == [f"not used: {each}" for each in left_out]
+    assert any("2 of 2 recordings move by" in each and "hysteresis" in each for each in cautions)
+
+
 def test_unused_recordings_are_named_if_too_few_remain(files, tmp_path):
     for day in ("day1", "day4"):
         table = pd.read_csv(files / "logs" / f"{day}_run.csv")
