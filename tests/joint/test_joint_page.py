@@ -205,8 +205,8 @@ def test_page_begins_with_the_verdict_and_folds_the_details(torque: Torque) -> N
 
 def test_a_higher_error_on_recordings_not_seen_is_said_plainly() -> None:
     """Stribeck friction on the fitted days, and the opposite on the held-out day."""
-    fitted = tuple(steady(v, "here", Hidden(stribeck=(0.2, 0.15)), "A", rate=100.0) for v in (0.05, 0.1, 0.3, 0.8))
-    held = tuple(steady(v, "there", Hidden(stribeck=(-0.2, 0.15)), "B", rate=100.0) for v in (0.05, 0.1, 0.3, 0.8))
+    fitted = tuple(steady(v, "here", Hidden(stribeck=(0.07, 0.15)), "A", rate=100.0) for v in (0.05, 0.1, 0.3, 0.8))
+    held = tuple(steady(v, "there", Hidden(stribeck=(-0.07, 0.15)), "B", rate=100.0) for v in (0.05, 0.1, 0.3, 0.8))
     found = judged(fitted, held, "current", StribeckFriction(v_s=0.15))
     answer = full(report(found, None, []))
     assert answer["verdict"] == "not_confirmed"
