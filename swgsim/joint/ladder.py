@@ -190,7 +190,7 @@ def _p_value(now: Fit, added: Fit, *, relative: bool) -> float:
     A wave acts everywhere, so its ``relative`` reduction in each stretch counts. Other effects may act in few
     stretches, such as friction at standstill, so their mean square counts. The zero of a signal may differ from run to
     run, which is no evidence for an effect: each run has its own zero here. A run in one direction shows friction and
-    zero as one number, so it counts once for effects that are no waves.
+    zero as one number, so it counts once for effects that are no waves, by its relative reduction: runs are few.
     """
     once = not relative and not any(each.reverses for each in now.table.recordings)
     table = now.table
@@ -202,5 +202,6 @@ def _p_value(now: Fit, added: Fit, *, relative: bool) -> float:
         return 1.0
     squares = [np.bincount(unit, residual**2)[whole] / rows[whole] for residual in (before, after)]
     roots = np.sqrt(squares)
-    saved = (roots[0] - roots[1]) / np.maximum(roots.sum(axis=0), 1e-300) if relative else squares[0] - squares[1]
+    everywhere = relative or once
+    saved = (roots[0] - roots[1]) / np.maximum(roots.sum(axis=0), 1e-300) if everywhere else squares[0] - squares[1]
     return float(ttest_1samp(saved, 0, alternative="greater").pvalue)
