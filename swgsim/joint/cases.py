@@ -22,7 +22,19 @@ LADDER, REASONS = ("ladder",), ("waves", "unexplained", "friction")
 # Choices of the command close-loop that a case may leave out.
 OPTIONAL: Mapping[str, Any] = {"joint": None, "signal": None, "without": None, "searched": None, "library": []}
 # Fields of a report in joints.json.
-FIELDS = ("sentence", "verdict", "rungs", "noise_floor", "noise_floor_how", "unit", "split", "unknown", "days")
+FIELDS = (
+    "sentence",
+    "verdict",
+    "textbook_explains",
+    "rungs",
+    "noise_floor",
+    "noise_floor_how",
+    "unit",
+    "split",
+    "unknown",
+    "days",
+    "speeds",
+)
 
 
 def run(config: Mapping[str, Any]) -> None:

@@ -70,7 +70,7 @@ class Days:
 
 
 def days(top: Fit, tables: Sequence[Table]) -> Days | None:
-    """Speed-dependent friction of every session; None for fewer than two sessions.
+    """Speed-dependent friction of every session in the current; None for fewer than two sessions.
 
     A session needs three runs, because their scatter gives the deviation.
 
@@ -81,7 +81,7 @@ def days(top: Fit, tables: Sequence[Table]) -> Days | None:
     tables : sequence of Table
         Fitted and held-out recordings.
     """
-    if not any(isinstance(term, Friction) for term in top.terms):
+    if top.table.of != "current":
         return None
     recordings: dict[str, list[JointRecording]] = {}
     for each in (each for table in tables for each in table.recordings):
@@ -101,12 +101,13 @@ def _day(session: str, table: Table, terms: Sequence[Term]) -> Day | None:
     if len(table.recordings) < LEAST_RUNS:
         return None
     curve = np.concatenate([rising(each, terms) for each in table.recordings])
-    sense = np.concatenate([each.sense for each in table.recordings])
+    (friction,) = (term for term in terms if isinstance(term, Friction))
+    sense = np.concatenate([friction.sense(each) for each in table.recordings])
     others = [term for term in terms if not isinstance(term, (*OF_SPEED, Zero))]
     left = table.signal - sum(table.columns(term) @ np.array(term.weights) for term in others)
     open_ = np.stack([sense, np.ones(len(sense))], axis=1)
     free = curve - open_ @ solved(open_, curve)
-    if free @ free < FLAT**2 * (curve @ curve):
+    if free @ free <= FLAT**2 * (curve @ curve):
         return None
     share = float(free @ left / (free @ free))
     constant = solved(open_, left - share * curve)

@@ -75,11 +75,14 @@ class JointAnswer:
         floor = self.report["noise_floor"]
         return "\n".join(
             [
+                f"textbook model explains {self.report['explains']}",
                 self.sentence,
                 f"error before   {both['before']}",
                 f"error after    {both['after']}",
                 f"noise at rest  {significant(floor)}" + (f" {unit}" if floor is not None else ""),
                 f"effects found  {self.report['lacks'] or 'none'}",
+                *([f"contradicted   {self.report['contradicted']}"] if self.report["contradicted"] else []),
+                *(f"likely cause   {each}" for each in self.report["likely"]),
             ]
         )
 
@@ -190,9 +193,7 @@ def identify_joint(
     used = (*case.table.recordings, *case.heldout.recordings)
     known = {f"{each.name} {each.joint}" for each in used} | {each.name for each in used}
     defects = (*recordings.defects, *(judging.defects if judging else ()))
-    content = report(judged, by_day, lines)
-    content["split"]["left_out"] = list(case.left_out)
-    content |= {
+    content = report(judged, by_day, lines, case.left_out) | {
         "noise_floor_how": case.floor_how,
         "defects": [str(each) for each in defects if each.recording in known or each.severity == "refuse"],
         "seconds": round(time.perf_counter() - start, 1),

@@ -2,8 +2,11 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
+from scipy.stats import t
 
 from swgsim.joint.ladder import Ladder, Trial
 from swgsim.joint.regression import Fit, Table, rms, slow
@@ -29,6 +32,13 @@ class Rung:
     heldout: float
     heldout_slow: float
     kept: bool
+
+
+class Share(NamedTuple):
+    """A share with half of its 95 % interval, for errors that are independent between stretches."""
+
+    value: float
+    half: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +74,47 @@ class Judged:
     def helps(self) -> bool:
         """Whether the accepted terms lower the error on the held-out recordings."""
         return self.after.heldout < self.before.heldout
+
+    @property
+    def steps(self) -> tuple[tuple[Rung, Rung], ...]:
+        """Every accepted model with the one before it."""
+        kept = self.rungs[: len(self.ladder.steps) + 1]
+        return tuple(pairwise(kept))
+
+    @property
+    def contradicted(self) -> tuple[Trial, ...]:
+        """Accepted effects that raise the error on the held-out recordings."""
+        return tuple(now.trial for last, now in self.steps if now.trial and now.heldout > last.heldout)
+
+    @property
+    def confirmed(self) -> tuple[Trial, ...]:
+        """Accepted effects that do not."""
+        return tuple(now.trial for last, now in self.steps if now.trial and now.heldout <= last.heldout)
+
+    @property
+    def scatter(self) -> float:
+        """Standard deviation of the signal of the held-out recordings, which is the error of a constant."""
+        return float(np.std(self.heldout.signal))
+
+    def explained(self, fit: Fit, *, slowly: bool = False) -> Share:
+        """Share of the variance of the held-out signal that a model explains.
+
+        Parameters
+        ----------
+        fit : Fit
+        slowly : bool
+            Whether errors above the frequency SLOW are forgiven: ripples and noise, which the textbook does not have.
+        """
+        missed = fit.missed(self.heldout)
+        errors, variance = (slow(self.heldout, missed) if slowly else missed) ** 2, self.scatter**2
+        share = 1 - float(errors.mean()) / variance if variance else 0.0
+        # Of a ratio of two sums over stretches, to the first order.
+        signal = self.heldout.signal
+        off = errors - (1 - share) * (signal - signal.mean()) ** 2
+        sums = np.bincount(self.heldout.stretch, off)
+        number = max(len(sums), 2)
+        deviation = float(np.sqrt(number / (number - 1) * (sums**2).sum())) / (len(signal) * variance or 1.0)
+        return Share(share, float(t.ppf(0.975, number - 1)) * deviation)
 
     @cached_property
     def before(self) -> Rung:

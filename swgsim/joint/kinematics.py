@@ -4,12 +4,10 @@ from itertools import combinations_with_replacement
 
 import numpy as np
 from jaxtyping import Float
-from scipy.signal import savgol_filter
+from scipy.signal import savgol_coeffs, savgol_filter
 
 # Window of the smoothing of speeds [s]; trajectories and speed controls are slower.
 SMOOTHED = 0.15
-# Friction changes its sign smoothly below this speed of the output [rad/s], the noise of a measured speed.
-CREEP = 0.01
 # Share of the rigid-body torque that the inertia must explain.
 EXPLAINED = 0.8
 # Least inertia, as a share of the mean: a fit may go below in postures with few samples.
@@ -18,9 +16,31 @@ LEAST = 0.1
 
 def smooth(omega: Float[np.ndarray, " time"], rate: float, derivative: int) -> Float[np.ndarray, " time"]:
     """A smoothed speed, or its derivative."""
-    length = max(5, int(SMOOTHED * rate) // 2 * 2 + 1)
-    length = min(length, (len(omega) - 1) // 2 * 2 + 1)
-    return savgol_filter(omega, length, 2, deriv=derivative, delta=1 / rate)
+    return savgol_filter(omega, window(len(omega), rate), 2, deriv=derivative, delta=1 / rate)
+
+
+def least_doubt(omega: Float[np.ndarray, " time"], rate: float) -> tuple[Float[np.ndarray, " time"], float]:
+    """A speed, smoothed over the window that leaves the least error, and this error [rad/s].
+
+    A longer window averages more noise, but rounds a motion that changes within it. The estimate of the error is that
+    of Stein (1981, Ann. Stat. 9, 1135): a smoothing with the central coefficient c leaves c s^2 of white noise with
+    variance s^2, and the mean square of what it takes away, minus (1 - c) s^2, is what it takes from the motion. Third
+    differences show the noise.
+    """
+    s2 = float(np.mean(np.diff(omega, 3) ** 2)) / 20
+    best, least = omega, s2
+    for length in range(5, window(len(omega), rate) + 1, 2):
+        c = float(savgol_coeffs(length, 2)[length // 2])
+        smoothed = savgol_filter(omega, length, 2)
+        error = max(float(np.mean((omega - smoothed) ** 2)) - (1 - c) * s2, 0.0) + c * s2
+        if error < least:
+            best, least = smoothed, error
+    return best, float(np.sqrt(least))
+
+
+def window(samples: int, rate: float) -> int:
+    """Odd number of samples of the smoothing of a speed."""
+    return min(max(5, int(SMOOTHED * rate) // 2 * 2 + 1), (samples - 1) // 2 * 2 + 1)
 
 
 def play(values: Float[np.ndarray, " time"], width: float) -> Float[np.ndarray, " time"]:

@@ -1,25 +1,24 @@
 """The ladder: forward selection of effects by cross-validated error, from the textbook model upwards."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Float
 from scipy.stats import ttest_1samp
 from tqdm import tqdm
 
 from swgsim.joint.naming import in_words
 from swgsim.joint.recording import SIGNALS
-from swgsim.joint.regression import Fit, Table, fit, rms
+from swgsim.joint.regression import WORTH, Fit, Table, fit, rms
 from swgsim.joint.shaping import shaped
+from swgsim.joint.shared import OfFriction
+from swgsim.joint.sign_width import with_sign_width
 from swgsim.joint.term import Term
-from swgsim.joint.textbook import textbook
+from swgsim.joint.textbook import fitted_textbook
 from swgsim.joint.waves import LOOKED_AT, Wave, waves
 
 # Significance level of an effect or wave in one round, and of an order that stands out of the spectrum.
 ALPHA, LINE_ALPHA = 0.05, 0.005
-# Relative reduction of the cross-validated error that is worth a term.
-LEAST = 0.005
 # Largest number of added effects.
 MOST = 24
 
@@ -60,7 +59,7 @@ class Trial:
 
     @property
     def _helps(self) -> bool:
-        return not self._unsound and self.gain > LEAST and self.worst > -self.gain
+        return not self._unsound and self.gain > WORTH and self.worst > -self.gain
 
     @property
     def _unsound(self) -> Term | None:
@@ -75,7 +74,7 @@ class Trial:
             return "its size would have the wrong sign" if own else f"{self._unsound.title()} would have the wrong sign"
         if self.gain <= 0:
             return f"raises the cross-validated error by {-100 * self.gain:.2g} %"
-        if self.gain <= LEAST:
+        if self.gain <= WORTH:
             return f"lowers the cross-validated error by only {100 * self.gain:.2g} %"
         if self.worst <= -self.gain:
             return f"lowers the error by {100 * self.gain:.2g} %, raises that of a session by {-100 * self.worst:.2g} %"
@@ -123,14 +122,15 @@ def climb(
     bar : bool
         Whether to show a progress bar of the candidates.
     """
-    now = start = fit(table, textbook(table.recordings, table.of))
+    now = start = fitted_textbook(table)
     unit, ratio = SIGNALS[table.of].unit, table.recordings[0].gear_ratio
     progress(f"textbook model: error {now.error:.4g} {unit} on the {len(table.recordings)} fitted recordings")
     steps: list[Trial] = []
     known: dict[float, tuple[Wave, ...]] = {}
-    possible = [k for k in kinds if table.of in k.explains and all(map(k.possible, table.recordings))]
+    library = [kind().beside(start.terms) for kind in kinds]
+    possible = [term for term in library if _possible(term, start)]
     while True:
-        sought = [kind for kind in possible if kind not in {type(term) for term in now.terms}]
+        sought = [term.beside(now.terms) for term in possible if type(term) not in {type(each) for each in now.terms}]
         candidates = _candidates(now, sought, known)
         tested = tqdm(
             candidates, f"step {len(steps) + 1}", unit=" candidates", leave=False, disable=None if bar else True
@@ -140,16 +140,29 @@ def climb(
         if best is None or len(steps) == MOST:
             progress(f"step {len(steps) + 1}: none of {len(trials)} candidates is accepted")
             return Ladder(start, tuple(steps), tuple(trials))
-        steps.append(best)
-        now = best.fit
+        now = with_sign_width(best.fit)
+        steps.append(replace(best, term=now.terms[-1], fit=now))
         what = in_words(best.term, ratio)
         progress(f"step {len(steps)}: + {what}: error {now.error:.4g} {unit} on the fitted recordings")
 
 
-def _candidates(now: Fit, sought: Sequence[type[Term]], known: dict[float, tuple[Wave, ...]]) -> Iterator[Trial]:
+def _possible(term: Term, textbook: Fit) -> bool:
+    """Whether an effect may explain the signal, beside the textbook model."""
+    table = textbook.table
+    brakes = not isinstance(term, OfFriction) or any(isinstance(each, OfFriction) for each in textbook.terms)
+    measured = any(getattr(each, "measured", False) for each in textbook.terms)
+    return (
+        table.of in term.explains
+        and brakes
+        and not (term.of_model and measured)
+        and all(map(term.possible, table.recordings))
+    )
+
+
+def _candidates(now: Fit, sought: Sequence[Term], known: dict[float, tuple[Wave, ...]]) -> Iterator[Trial]:
     """Effects of the library with their best inner parameters, and waves."""
-    for kind in sought:
-        yield _tried(now, shaped(now, kind()), len(sought))
+    for term in sought:
+        yield _tried(now, shaped(now, term), len(sought))
     for shapes in waves(now, LINE_ALPHA, known):
         yield _best(now, shapes)
 
@@ -167,23 +180,28 @@ def _tried(now: Fit, term: Term, trials: int) -> Trial:
     before, after = now.unseen, added.unseen
     session = now.table.session
     worst = 1 - float(np.sqrt((np.bincount(session, after**2) / np.bincount(session, before**2)).max()))
-    chance = _p_value(now.table, before, after, relative=isinstance(term, Wave))
+    chance = _p_value(now, added, relative=isinstance(term, Wave))
     return Trial(added.terms[-1], added, 1 - rms(after) / rms(before), worst, min(1.0, chance * trials))
 
 
-def _p_value(
-    table: Table, before: Float[np.ndarray, " row"], after: Float[np.ndarray, " row"], *, relative: bool
-) -> float:
+def _p_value(now: Fit, added: Fit, *, relative: bool) -> float:
     """p-value of the reduction of the error over the stretches of the recordings.
 
     A wave acts everywhere, so its ``relative`` reduction in each stretch counts. Other effects may act in few
-    stretches, such as friction at standstill, so their mean square counts.
+    stretches, such as friction at standstill, so their mean square counts. The zero of a signal may differ from run to
+    run, which is no evidence for an effect: each run has its own zero here. A run in one direction shows friction and
+    zero as one number, so it counts once for effects that are no waves, by its relative reduction: runs are few.
     """
-    rows = np.bincount(table.stretch)
+    once = not relative and not any(each.reverses for each in now.table.recordings)
+    table = now.table
+    unit = table.run if once else table.stretch
+    before, after = (each.unseen if once else each.unseen_but_zeros for each in (now, added))
+    rows = np.bincount(unit)
     whole = rows > np.median(rows) / 2  # stretches at the end of a recording may be short
     if whole.sum() < 3:
         return 1.0
-    squares = [np.bincount(table.stretch, residual**2)[whole] / rows[whole] for residual in (before, after)]
+    squares = [np.bincount(unit, residual**2)[whole] / rows[whole] for residual in (before, after)]
     roots = np.sqrt(squares)
-    saved = (roots[0] - roots[1]) / np.maximum(roots.sum(axis=0), 1e-300) if relative else squares[0] - squares[1]
+    everywhere = relative or once
+    saved = (roots[0] - roots[1]) / np.maximum(roots.sum(axis=0), 1e-300) if everywhere else squares[0] - squares[1]
     return float(ttest_1samp(saved, 0, alternative="greater").pvalue)

@@ -1,7 +1,7 @@
 """One recording of one joint of a robot: motion of the output, torque and motor current."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.effects.sense import sense
-from swgsim.joint.kinematics import CREEP, inertia, smooth
+from swgsim.joint.kinematics import inertia, least_doubt, smooth, window
 
 
 class Signal(NamedTuple):
@@ -26,8 +26,11 @@ SIGNALS: Mapping[str, Signal] = {
     "current": Signal("A", "motor current"),
     "T_rigid": Signal("N m", "torque at the output by the controller's rigid-body model, without friction"),
 }
-# Least share of the time in each direction of a joint that reverses.
-BACK = 0.02
+# Least share of the way in each direction of a joint that reverses. A joint that creeps in one direction and sticks on
+# its way swings back by up to 0.024 of its way; one that is moved to and fro has 0.5.
+BACK = 0.05
+# A joint moves for certain above so many times the doubt of its speed.
+CERTAIN = 3.0
 # Accuracy [rad] with which a joint's angle must agree with an angle of the posture to be the same.
 SAME = 1e-6
 # Signals that the model predicts; the others are its inputs.
@@ -93,11 +96,46 @@ class JointRecording:
         return smooth(self.signals["omega"], self.rate, 1)
 
     @cached_property
-    def sense(self) -> Float[np.ndarray, " time"]:
-        """Sign of Coulomb friction, from -1 to 1; constant for a joint that never reverses."""
-        if turns_back([self]):
-            return sense(self.signals["omega"], CREEP)
-        return np.full(len(self), float(np.sign(self.speed.sum())))
+    def reverses(self) -> bool:
+        """Whether the joint moved in both directions."""
+        return turns_back([self])
+
+    @cached_property
+    def _direct(self) -> tuple[Float[np.ndarray, " time"], float]:
+        """Speed that shows the direction best, with its error [rad/s]."""
+        return least_doubt(self.signals["omega"], self.rate)
+
+    @property
+    def speed_doubt(self) -> float:
+        """Speed below which the recording does not show the direction of the motion [rad/s]: the error of the speed,
+        and its change within a sample, after which a reversal is seen.
+        """
+        within = float(np.sqrt(np.mean(self.acceleration**2))) / self.rate / np.sqrt(12)
+        return float(np.hypot(self._direct[1], within))
+
+    def sense(self, width: float, lag: float = 0.0) -> Float[np.ndarray, " time"]:
+        """Sign of Coulomb friction, from -1 to 1, that changes within a speed ``width`` [rad/s] and a time ``lag`` [s]
+        after the motion.
+
+        It is constant for a joint that never reverses.
+        """
+        if not self.reverses:
+            return np.full(len(self), float(np.sign(self.speed.sum())))
+        speed, _ = self._direct
+        return sense(np.interp(self.time - lag, self.time, speed) if lag else speed, width)
+
+    @cached_property
+    def held(self) -> Float[np.ndarray, " time"]:
+        """Direction of the motion before a standstill, while the joint stands after it; 0 while it moves."""
+        speed, _ = self._direct
+        moving = np.abs(speed) > CERTAIN * self.speed_doubt
+        last = np.maximum.accumulate(np.where(moving, np.arange(len(self)), -1))
+        direction = np.where(last >= 0, np.sign(speed)[last], 0.0)
+        # A reversal takes less than the window of the smoothing, or its speed is more than doubt.
+        number = np.cumsum(np.diff(moving, prepend=moving[0]))
+        samples, squares = np.bincount(number), np.bincount(number, speed**2)
+        still = (samples > window(len(self), self.rate)) & (squares < 2 * self.speed_doubt**2 * samples)
+        return np.where(~moving & still[number], direction, 0.0)
 
     @cached_property
     def inertia(self) -> Float[np.ndarray, " time"] | None:
@@ -119,6 +157,12 @@ class JointRecording:
                 return np.cumsum(self.posture, axis=0), int(same.argmax())
         return own, 0
 
+    def part(self, rows: slice) -> "JointRecording":
+        """Some of its samples."""
+        signals = {name: values[rows] for name, values in self.signals.items()}
+        posture = None if self.posture is None else self.posture[:, rows]
+        return replace(self, time=self.time[rows], signals=signals, posture=posture)
+
     @property
     def rate(self) -> float:
         """Sampling rate [Hz], the mean over the recording."""
@@ -128,4 +172,5 @@ class JointRecording:
 def turns_back(recordings: Iterable[JointRecording]) -> bool:
     """Whether a joint was moved in both directions."""
     speed = np.concatenate([each.speed for each in recordings])
-    return min(float((speed > CREEP).mean()), float((speed < -CREEP).mean())) > BACK
+    forwards, backwards = speed[speed > 0].sum(), -speed[speed < 0].sum()
+    return bool(min(forwards, backwards) > BACK * (forwards + backwards))

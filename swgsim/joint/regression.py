@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 from jaxtyping import Float, Int
+from scipy.optimize import lsq_linear
 from scipy.signal import butter, sosfiltfilt
 from scipy.stats import t
 
@@ -17,6 +18,8 @@ from swgsim.joint.term import Term
 SLOW = 5.0
 # Length of a stretch [s]; errors of different stretches count as independent.
 STRETCH = 1.0
+# Relative reduction of a cross-validated error that is worth a term.
+WORTH = 0.005
 # Groups for the cross-validation of a single recording.
 PARTS = 5
 
@@ -52,6 +55,13 @@ class Table:
         """Columns of a term, treated like the signal."""
         return self.rows([term.columns(each) for each in self.recordings])
 
+    def columns_by_group(self, term: Term) -> Float[np.ndarray, "row column"]:
+        """Columns of a term of which those of one group depend on that group only, for cross-validation."""
+        parts = [self.recordings[0].part(rows) for rows in self.parts] if len(self.recordings) == 1 else []
+        if not (term.of_whole and parts and all(map(term.possible, parts))):
+            return self.columns(term)
+        return self.rows([np.vstack([term.columns(part) for part in parts])])
+
     def rows(self, each: Sequence[Float[np.ndarray, "_ column"]]) -> Float[np.ndarray, "row column"]:
         """Columns of all recordings; for a torque sensor the mean of each run is removed."""
         return np.vstack([part - part.mean(axis=0) for part in each] if self.of == "T_sensor" else list(each))
@@ -71,6 +81,16 @@ class Table:
     def group(self) -> Int[np.ndarray, " row"]:
         """Number of the group of every row for cross-validation: a run, or a part of a single run."""
         return self.run if len(self.recordings) > 1 else np.arange(len(self.run)) * PARTS // len(self.run)
+
+    def means_of_runs(self, values: Float[np.ndarray, " row"]) -> Float[np.ndarray, " row"]:
+        """Mean of each run, in all its rows."""
+        return (np.bincount(self.run, values) / np.bincount(self.run))[self.run]
+
+    @cached_property
+    def parts(self) -> list[slice]:
+        """Rows of every group."""
+        starts = np.flatnonzero(np.diff(self.group, prepend=-1)).tolist()
+        return [slice(a, b) for a, b in zip(starts, [*starts[1:], len(self.group)], strict=True)]
 
     @cached_property
     def stretch(self) -> Int[np.ndarray, " row"]:
@@ -95,11 +115,20 @@ class Fit:
         With weights.
     X : array (row, column)
         Columns of all terms.
+    bounded : bool
+        Whether the weights are kept at or above their smallest possible values.
     """
 
     table: Table
     terms: tuple[Term, ...]
     X: Float[np.ndarray, "row column"]
+    bounded: bool = True
+
+    @cached_property
+    def least(self) -> Float[np.ndarray, " column"]:
+        """Smallest possible weights of all columns."""
+        every = [term.least(len(term.weights)) for term in self.terms]
+        return np.concatenate(every) if self.bounded else np.full(self.X.shape[1], -np.inf)
 
     @cached_property
     def weights(self) -> Float[np.ndarray, " column"]:
@@ -113,8 +142,9 @@ class Fit:
 
     @cached_property
     def basis(self) -> Float[np.ndarray, "row rank"]:
-        """Orthonormal directions of all columns."""
-        U, s, _ = svd(self.X / _scale(self.X))
+        """Orthonormal directions of all columns whose weight is free to change: not at its smallest value."""
+        X = self.X[:, self.weights > self.least]
+        U, s, _ = svd(X / _scale(X))
         return U[:, s > 1e-9 * s.max()]
 
     @property
@@ -125,15 +155,30 @@ class Fit:
     @cached_property
     def unseen(self) -> Float[np.ndarray, " row"]:
         """Residual of every group, predicted by a fit to the other groups."""
-        scaled, y = self.X / _scale(self.X), self.table.signal
-        starts = np.flatnonzero(np.diff(self.table.group, prepend=-1))
-        parts = [slice(a, b) for a, b in zip(starts, [*starts[1:], len(y)], strict=True)]
+        return self._unseen(self._by_group, self.table.signal)
+
+    @cached_property
+    def unseen_but_zeros(self) -> Float[np.ndarray, " row"]:
+        """The same if the signal of each run had a zero of its own, which is known."""
+        X = self._by_group
+        means = np.stack([self.table.means_of_runs(column) for column in X.T], axis=1)
+        return self._unseen(X - means, self.table.signal - self.table.means_of_runs(self.table.signal))
+
+    @cached_property
+    def _by_group(self) -> Float[np.ndarray, "row column"]:
+        """Columns of which those of one group depend on that group only."""
+        if any(term.of_whole for term in self.terms):
+            return np.hstack([self.table.columns_by_group(term) for term in self.terms])
+        return self.X
+
+    def _unseen(self, X: Float[np.ndarray, "row column"], y: Float[np.ndarray, " row"]) -> Float[np.ndarray, " row"]:
+        scaled, parts = X / _scale(X), self.table.parts
         squares = [scaled[part].T @ scaled[part] for part in parts]
         products = [scaled[part].T @ y[part] for part in parts]
         square, product = sum(squares), sum(products)
         # With scaled columns the normal equations are accurate enough.
         return np.concatenate([
-            y[part] - scaled[part] @ np.linalg.lstsq(square - own, product - other, rcond=1e-9)[0]
+            y[part] - scaled[part] @ _solved(square - own, product - other, self.least)
             for part, own, other in zip(parts, squares, products, strict=True)
         ])  # fmt: skip
 
@@ -153,13 +198,18 @@ class Fit:
         return other.signal - sum(other.columns(term) @ np.array(term.weights) for term in self.terms)
 
 
-def fit(table: Table, terms: Sequence[Term]) -> Fit:
-    """The weights of terms by least squares."""
+def fit(table: Table, terms: Sequence[Term], *, bounded: bool = True) -> Fit:
+    """The weights of terms by least squares, each at or above its smallest possible value if ``bounded``."""
     columns = [table.columns(term) for term in terms]
     X = np.hstack(columns)
-    ends = np.cumsum([each.shape[1] for each in columns])[:-1]
-    weights = np.split(solved(X, table.signal), ends)
-    return Fit(table, tuple(term.weighted(own) for term, own in zip(terms, weights, strict=True)), X)
+    weights = solved(X, table.signal)
+    least = np.concatenate([term.least(own.shape[1]) for term, own in zip(terms, columns, strict=True)])
+    if bounded and (weights < least).any():
+        scaled = X / _scale(X)
+        weights = _solved(scaled.T @ scaled, scaled.T @ table.signal, least) / _scale(X)
+    each = np.split(weights, np.cumsum([own.shape[1] for own in columns])[:-1])
+    found = tuple(term.weighted(own) for term, own in zip(terms, each, strict=True))
+    return Fit(table, found, X, bounded)
 
 
 def solved(X: Float[np.ndarray, "row column"], y: Float[np.ndarray, " row"]) -> Float[np.ndarray, " column"]:
@@ -181,6 +231,20 @@ def slow(table: Table, residual: Float[np.ndarray, " row"]) -> Float[np.ndarray,
 def rms(values: Float[np.ndarray, " row"]) -> float:
     """Root of the mean square."""
     return float(np.sqrt(np.mean(values**2)))
+
+
+def _solved(
+    square: Float[np.ndarray, "column column"], product: Float[np.ndarray, " column"],
+    least: Float[np.ndarray, " column"],
+) -> Float[np.ndarray, " column"]:  # fmt: skip
+    """Weights from normal equations, each at or above 0 where ``least`` is 0."""
+    free = np.linalg.lstsq(square, product, rcond=1e-9)[0]
+    if (free >= least).all():
+        return free
+    s, V = np.linalg.eigh(square)
+    kept = s > 1e-9 * s.max()
+    root = np.sqrt(s[kept])
+    return lsq_linear(root[:, None] * V[:, kept].T, V[:, kept].T @ product / root, (least, np.inf), method="bvls").x
 
 
 def _scale(X: Float[np.ndarray, "row column"]) -> Float[np.ndarray, " column"]:

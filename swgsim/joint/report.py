@@ -6,39 +6,39 @@ from typing import Any
 
 import numpy as np
 
-from swgsim.common.numbers import significant
-from swgsim.common.outcome import FOUND, NOTHING, UNKNOWN
+from swgsim.common.outcome import FOUND
 from swgsim.effects.quantity import Role, quantities
+from swgsim.joint.cautions import DIFFERENT, SLOWEST, cautions, likely, next_experiment
 from swgsim.joint.days import Days
 from swgsim.joint.effects.friction import PositionFriction
 from swgsim.joint.effects.ripple import Ripple
+from swgsim.joint.extrapolation import by_speed
 from swgsim.joint.judged import Judged, Rung
 from swgsim.joint.naming import in_words, listed
 from swgsim.joint.recording import SIGNALS
 from swgsim.joint.regression import Fit, rms
 from swgsim.joint.remaining import RemainingLine
 from swgsim.joint.term import Term
-from swgsim.joint.textbook import RigidBody
+from swgsim.joint.verdict import explained, fails, sentence, verdict
 from swgsim.joint.waves import SLOW
 
-# Verdict for effects that do not lower the error on the held-out recordings.
-NOT_CONFIRMED = "not_confirmed"
-# p-value below which sessions differ in friction.
-DIFFERENT = 0.02
-# No strain wave gear has a smaller ratio.
-SLOWEST = 30
 
-
-def report(judged: Judged, days: Days | None, lines: Sequence[RemainingLine]) -> dict[str, Any]:
-    """The answer as plain numbers and text; unknown values are None."""
+def report(
+    judged: Judged, days: Days | None, lines: Sequence[RemainingLine], left_out: Sequence[str] = ()
+) -> dict[str, Any]:
+    """The answer as plain numbers and text; unknown values are None. ``left_out`` names recordings with the reason."""
     first, top, unit = judged.table.recordings[0], judged.ladder.top, SIGNALS[judged.table.of].unit
     ratio, steps, base = first.gear_ratio, judged.ladder.steps, len(judged.ladder.textbook.terms)
     words = [*map(str, lines), *([_friction_by_session(days)] if days and days.chance < DIFFERENT else [])]
-    found = FOUND if judged.helps else NOT_CONFIRMED
+    share, word = judged.explained(judged.ladder.textbook), verdict(judged, words)
     return {
-        "verdict": found if steps else UNKNOWN if words else NOTHING,
+        "textbook_explains": share.value,
+        "textbook_explains_ci95": [share.value - share.half, share.value + share.half],
+        "explains": explained(judged),
+        "verdict": word,
         "sentence": sentence(judged, words),
-        "lacks": listed([step.term for step in steps], ratio),
+        "lacks": listed([step.term for step in judged.confirmed], ratio) if word == FOUND else "",
+        "contradicted": listed([step.term for step in judged.contradicted], ratio),
         "robot": first.robot,
         "joint": first.joint,
         "signal": judged.table.of,
@@ -46,6 +46,7 @@ def report(judged: Judged, days: Days | None, lines: Sequence[RemainingLine]) ->
         "split": {
             "fit": [each.name for each in judged.table.recordings],
             "heldout": [each.name for each in judged.heldout.recordings],
+            "left_out": list(left_out),
         },
         "noise_floor": judged.floor,
         "gear_ratio": gear_ratio(judged),
@@ -72,47 +73,15 @@ def report(judged: Judged, days: Days | None, lines: Sequence[RemainingLine]) ->
             "before": _errors(judged.before), "after": _errors(judged.after), "noise_floor": judged.floor, "unit": unit,
         },
         "runs": runs(judged),
+        "speeds": by_speed(judged),
         "days": None if days is None else {
             "sessions": [vars(day) for day in days.days], "chance": days.chance, "spread": days.spread,
         },
         "unknown": {"words": words, "lines": [vars(line) for line in lines]} if words else None,
-        "cautions": _cautions(judged),
-        "next_experiment": _next(judged, days),
+        "cautions": cautions(judged, left_out),
+        "likely": likely(judged) if fails(judged) else [],
+        "next_experiment": next_experiment(judged, days),
     }  # fmt: skip
-
-
-def sentence(judged: Judged, remaining: Sequence[str]) -> str:
-    """The verdict in one sentence."""
-    ratio, of = judged.table.recordings[0].gear_ratio, SIGNALS[judged.table.of]
-    where = f"{judged.table.recordings[0].robot}, {judged.table.recordings[0].joint.replace('_', ' ')}, {of.meaning}"
-    more = "one regularity of the residual remains" if len(remaining) == 1 else f"{len(remaining)} regularities remain"
-    rest = f"; {more} unexplained" if remaining else ""
-    if not judged.ladder.steps:
-        return f"{where}: no effect of the library helps the textbook model on recordings it has not seen{rest}."
-    terms = [step.term for step in judged.ladder.steps]
-    change = _change(judged.before.heldout, judged.after.heldout, of.unit)
-    if judged.helps:
-        them = "them" if terms[1:] else "it"
-        return (
-            f"{where}: the textbook model lacks {listed(terms, ratio)}; with {them} the error on recordings not seen "
-            f"{change}{rest}."
-        )
-    return (
-        f"{where}: the effects found on the fitted recordings do not help on recordings not seen; with "
-        f"{listed(terms, ratio)} the error there {change}{rest}."
-    )
-
-
-def _change(before: float, after: float, unit: str) -> str:
-    """A change of an error in words, with as many digits as it needs."""
-    if before == after:
-        return f"stays at {significant(before)} {unit}"
-    first, last = next(
-        pair
-        for digits in range(3, 18)
-        if len(set(pair := (significant(before, digits), significant(after, digits)))) > 1
-    )
-    return f"{'falls' if after < before else 'rises'} from {first} to {last} {unit}"
 
 
 def runs(judged: Judged) -> list[dict[str, Any]]:
@@ -168,8 +137,8 @@ def _weights(top: Fit, first: int, last: int, unit: str) -> dict[str, dict[str, 
             continue
         each_unit = units if len(units) > 1 else units * len(term.weights)
         for number, (name, weight, own) in enumerate(zip(term.names(), term.weights, each_unit, strict=True)):
-            half = float(top.half_interval[start + number])
-            found[name] = {"value": weight, "ci95": [weight - half, weight + half], "unit": own}
+            half, least = float(top.half_interval[start + number]), float(top.least[start + number])
+            found[name] = {"value": weight, "ci95": [max(weight - half, least), weight + half], "unit": own}
         start += len(term.weights)
     return found
 
@@ -199,15 +168,17 @@ def _shape(term: Term) -> dict[str, dict[str, Any]]:
 def _rungs(judged: Judged, ratio: float | None) -> list[dict[str, Any]]:
     """Accepted and refused terms with their errors, and a remark where there is one."""
     found = []
-    for number, rung in enumerate(judged.rungs):
-        worse = rung.kept and number > 0 and rung.heldout > judged.rungs[number - 1].heldout
-        remark = "raises the error on held-out recordings" if worse else ""
+    against = judged.contradicted
+    for rung in judged.rungs:
+        raises = rung.kept and any(rung.trial is trial for trial in against)
+        remark = "contradicted: raises the error on held-out recordings" if raises else ""
         found.append(
             {
                 "effect": rung.trial.term.name() if rung.trial else "textbook",
                 "title": in_words(rung.trial.term, ratio) if rung.trial else "textbook model",
                 **_errors(rung),
                 "kept": rung.kept,
+                "contradicted": raises,
                 "why": remark if rung.kept or not rung.trial else rung.trial.why,
             }
         )
@@ -225,44 +196,3 @@ def _friction_by_session(days: Days) -> str:
         f"speed-dependent friction differs between sessions by {share}; grease at another temperature would explain "
         "it, but no temperature was recorded, so the cause is unknown"
     )
-
-
-def _cautions(judged: Judged) -> list[str]:
-    """Limits of the model that a reader must know."""
-    found, unit = [], SIGNALS[judged.table.of].unit
-    if any(isinstance(term, RigidBody) and not term.modelled for term in judged.ladder.textbook.terms):
-        found.append(
-            "there is no rigid-body torque (T_rigid), so the textbook model has the inertia and gravity of a single "
-            "link; for a joint that carries several links, map T_rigid in the source"
-        )
-    if _fails(judged):
-        scatter = float(np.std(judged.heldout.signal))
-        found.append(
-            f"the textbook model predicts the held-out recordings worse than a constant (error "
-            f"{significant(judged.before.heldout)} {unit}, standard deviation of the signal {significant(scatter)} "
-            f"{unit}), so its parameters and the effects are not reliable"
-        )
-    return found
-
-
-def _fails(judged: Judged) -> bool:
-    """Whether the textbook model predicts the held-out recordings worse than a constant."""
-    return judged.before.heldout > float(np.std(judged.heldout.signal))
-
-
-def _next(judged: Judged, days: Days | None) -> dict[str, Any] | None:
-    """The next recordings that would answer an open question."""
-    wishes = []
-    if _fails(judged):
-        wishes.append("record larger motions, map T_rigid, and check units and signs in the source")
-    if judged.ladder.steps and not judged.helps:
-        wishes.append("fit more sessions, such as the held-out ones: they differ from the fitted ones")
-    if days and days.chance < DIFFERENT:
-        wishes.append("log the temperature of the joint, and record one session cold and warm on the same day")
-    if judged.floor is None:
-        wishes.append("record the joint at rest, for the noise of its signals")
-    undecided = [r.trial.term for r in judged.rungs if r.trial and not r.kept and r.trial.unsteady]
-    if undecided:
-        ratio = judged.table.recordings[0].gear_ratio
-        wishes.append(f"record more sessions, to decide about {listed(undecided, ratio)}")
-    return {"words": "; ".join(wishes)} if wishes else None

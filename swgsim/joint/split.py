@@ -1,6 +1,6 @@
 """Selection of the recordings to fit and of the held-out recordings."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
@@ -11,8 +11,9 @@ from swgsim.joint.judged import noise_floor, standing_noise
 from swgsim.joint.recording import PREDICTED, SIGNALS, JointRecording
 from swgsim.joint.regression import SLOW, Table
 
-# A joint must move one revolution of its motor, or this angle [rad] if the gear ratio is unknown.
-LEAST_WAY = 0.05
+# A joint must move by this angle [rad], 0.3 degrees: several times the lost motion of a strain wave gear, so that
+# friction reverses. What motions below a revolution of the motor do not show is a caution of the answer.
+LEAST_WAY = 0.005
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +29,7 @@ class Case:
     floor_how : str
         Origin of this noise, in words; empty if it is unknown.
     left_out : tuple of str
-        Names of unused recordings with the reason.
+        Names of unused and of refused recordings, each with the reason.
     """
 
     table: Table
@@ -73,6 +74,7 @@ def select(
     reasons = {id(each): _unused(each, signal, without) for each in own}
     used = [each for each in own if not reasons[id(each)]]
     left_out = tuple(f"{each.name}: {reasons[id(each)]}" for each in own if reasons[id(each)])
+    left_out += tuple(line for each in (files, judging) if each for line in _refused(each, joint))
     apart = {id(each) for each in judging.recordings} if judging else {id(e) for e in used if _matches(e, holdout)}
     fitted, heldout = (tuple(e for e in used if (id(e) in apart) == held) for held in (False, True))
     if not fitted or not heldout:
@@ -127,11 +129,17 @@ def _unused(recording: JointRecording, signal: str, without: str | None) -> str:
         return "left out by without="
     if signal not in recording.signals:
         return f"has no {signal}"
-    ratio = recording.gear_ratio
-    way = 2 * np.pi / ratio if ratio else LEAST_WAY
     moved = float(np.ptp(recording.signals["q"]))
-    limit = "a revolution of the motor" if ratio else f"{LEAST_WAY} rad"
-    return f"moved {moved:.2g} rad, less than {limit}" if moved < way else ""
+    return f"moved {moved:.2g} rad, less than {LEAST_WAY} rad" if moved < LEAST_WAY else ""
+
+
+def _refused(files: JointRecordings, joint: str) -> Iterator[str]:
+    """Refused recordings of a joint with their findings."""
+    for _, run, own in files.refused:
+        if own == joint:
+            labels = run, f"{run} {joint}"
+            kinds = dict.fromkeys(d.kind for d in files.defects if d.severity == "refuse" and d.recording in labels)
+            yield f"{run}: refused for {', '.join(kinds)}"
 
 
 def _only(what: str, wanted: str | None, available: Sequence[str], refused: set[str] | None = None) -> str:

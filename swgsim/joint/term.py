@@ -1,8 +1,9 @@
 """Base class of the effects on a joint: columns over time, each with a weight that least squares finds."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from jaxtyping import Float
@@ -35,6 +36,10 @@ class Term(Effect, ABC):
     per: ClassVar[tuple[str, ...]] = ("",)
     #: Whether all weights must be positive, because friction brakes.
     brakes: ClassVar[bool] = False
+    #: Whether the effect corrects the rigid-body model, so that a measured load leaves it no meaning.
+    of_model: ClassVar[bool] = False
+    #: Whether the columns at one time depend on the inputs at all times of the recording.
+    of_whole: ClassVar[bool] = False
 
     weights: tuple[float, ...] = ()
 
@@ -56,6 +61,14 @@ class Term(Effect, ABC):
         """Contribution in the unit of the fitted signal."""
         return self.columns(recording) @ np.array(self.weights)
 
+    def least(self, columns: int) -> Float[np.ndarray, " column"]:
+        """Smallest possible weight of each column: 0 or minus infinity."""
+        return np.full(columns, -np.inf)
+
+    def beside(self, terms: Sequence["Term"]) -> Any:
+        """The effect with what it shares with the terms of a model, to which it is added."""
+        return self
+
     @property
     def sound(self) -> bool:
         """Whether the weights have the sign that physics requires."""
@@ -65,7 +78,6 @@ class Term(Effect, ABC):
         """The effect with its weights."""
         return replace(self, weights=tuple(np.asarray(weights, float).tolist()))
 
-    @classmethod
-    def possible(cls, recording: JointRecording) -> bool:
+    def possible(self, recording: JointRecording) -> bool:
         """Whether a recording has all signals that the columns need."""
-        return all(name in recording.signals for name in cls.needs)
+        return all(name in recording.signals for name in self.needs)

@@ -34,11 +34,14 @@ def waves(now: Fit, level: float, known: dict[float, tuple[Wave, ...]]) -> list[
     known : dict
         Cache: the shapes of every order that was tested in earlier rounds.
     """
-    slow = sorted((Ripple(order=float(n)) for n in range(2, SLOW + 1)), key=lambda term: -gain(now, term))
+    longest = max(float(np.ptp(each.signals["q"])) for each in now.table.recordings)
+    # Less than half of a wave is not told from gravity and the zero.
+    orders = (float(n) for n in range(2, SLOW + 1) if n * longest >= np.pi)
+    slow = sorted(map(Ripple, orders), key=lambda term: -gain(now, term))
     laws: list[Wave] = [Ripple(), Ripple(power=1)]
     if now.table.of == "current" and turns_back(now.table.recordings):
-        laws.append(PositionFriction())
-    if now.table.of == "current" and all(map(InertiaRipple.possible, now.table.recordings)):
+        laws.append(PositionFriction().beside(now.terms))
+    if now.table.of == "current" and all(map(InertiaRipple().possible, now.table.recordings)):
         laws.append(InertiaRipple())
     present = {_what(term) for term in now.terms}
     found: list[tuple[Wave, ...]] = [(term,) for term in slow[:SLOW_ORDERS] if _what(term) not in present]
@@ -96,4 +99,4 @@ def _shapes(now: Fit, wave: Wave) -> tuple[Wave, ...]:
         if max(gain(now, each) for each in found) <= OTHERWISE * max(gain(now, each) for each in whole):
             found = whole
             break
-    return tuple(dict.fromkeys((*found, type(wave)(order=found[0].order))))
+    return tuple(dict.fromkeys((*found, type(wave)(order=found[0].order).beside(now.terms))))

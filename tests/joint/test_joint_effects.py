@@ -19,8 +19,8 @@ from swgsim.joint.effects.friction import (
 from swgsim.joint.effects.load import EncoderEccentricity, GravityError, InertiaError, LoadCurve
 from swgsim.joint.effects.ripple import STATED, InertiaRipple, Ripple
 from swgsim.joint.effects.slip import LoadDependentFriction, MaxwellSlip
-from swgsim.joint.kinematics import CREEP
 from swgsim.joint.recording import JointRecording
+from swgsim.joint.shared import OfLoad
 from swgsim.joint.term import Term
 from swgsim.joint.textbook import Friction, RigidBody, Zero, textbook
 
@@ -61,9 +61,9 @@ def test_units_are_those_of_the_columns(term: Term) -> None:
 @pytest.mark.parametrize("kind", SEARCHED)
 def test_an_effect_needs_the_signals_of_its_columns(kind: type[Term]) -> None:
     whole = swing()
-    assert kind.possible(whole)
+    assert kind().possible(whole)
     bare = replace(whole, signals={name: whole.signals[name] for name in ("q", "omega")})
-    assert kind.possible(bare) == ("T_rigid" not in kind.needs)
+    assert kind().possible(bare) == ("T_rigid" not in kind.needs and not issubclass(kind, OfLoad))
 
 
 GROWTH = {
@@ -266,9 +266,13 @@ def test_textbook_takes_the_controllers_model_where_there_is_one() -> None:
     whole = swing()
     bare = replace(whole, signals={name: whole.signals[name] for name in ("q", "omega")})
     assert [name(term) for term in textbook((whole,), "current")] == ["RigidBody", "Friction", "Zero"]
-    assert [name(term) for term in textbook((whole,), "T_sensor")] == ["RigidBody"]
+    assert [name(term) for term in textbook((whole,), "T_sensor")] == ["RigidBody", "Friction"]
+    assert [name(term) for term in textbook((bare,), "T_sensor")] == ["RigidBody"]
     assert textbook((whole,), "current")[0].columns(whole).shape[1] == 1
     assert textbook((whole, bare), "current")[0].columns(whole).shape[1] == 3
+    measured = replace(whole, signals={**whole.signals, "T_sensor": 3 * TIME})
+    load, *_ = textbook((measured,), "current", measured=True)
+    np.testing.assert_array_equal(load.columns(measured)[:, 0], 3 * TIME)
 
 
 def test_one_link_without_a_model_or_a_posture() -> None:
@@ -281,6 +285,9 @@ def test_one_link_without_a_model_or_a_posture() -> None:
 
 def test_friction_keeps_its_sense_where_a_joint_sticks_on_its_way_and_changes_it_where_it_turns() -> None:
     sticking = 0.5 * (np.arange(len(TIME)) < len(TIME) / 2)
-    np.testing.assert_array_equal(recorded(np.cumsum(sticking), sticking).sense, 1.0)
+    np.testing.assert_array_equal(recorded(np.cumsum(sticking), sticking).sense(0.01), 1.0)
     here = swing()
-    np.testing.assert_allclose(here.sense, np.tanh(here.signals["omega"] / CREEP))
+    np.testing.assert_allclose(here.sense(0.01), np.tanh(here.signals["omega"] / 0.01), atol=1e-3)
+    shifted = here.sense(0.01, lag=5 / RATE)
+    np.testing.assert_allclose(shifted[5:], here.sense(0.01)[:-5], atol=1e-9)
+    assert Friction(side=-1).columns(here)[:, 0] == pytest.approx(-here.sense(0.01))

@@ -82,7 +82,9 @@ def test_the_answer_names_the_hidden_effect_and_tests_it_on_other_recordings(fil
 def test_recordings_and_answer_describe_themselves(recordings, answer, progress):
     assert "4 joint recordings of tester" in repr(recordings)
     assert "elbow: 4 runs of sessions day1, day2, day3, day4; signals q, omega, current, T_rigid" in repr(recordings)
-    assert repr(answer).startswith(answer.sentence)
+    first, second, *_ = repr(answer).splitlines()
+    assert first.startswith("textbook model explains 98.")
+    assert second == answer.sentence
     assert list(answer.table().effect[:2]) == ["textbook", "load_dependent_friction"]
     assert [line.split(":")[0] for line in progress[:3]] == ["textbook model", "step 1", "step 2"]
     assert "+ load dependent friction: error 0.0" in progress[1]
@@ -144,12 +146,28 @@ def test_refused_recordings_are_named_with_the_reason(files, tmp_path):
         identify_joint(recordings_of(files / "source.yaml", tmp_path), holdout="day4")
 
 
+def test_an_answer_names_what_it_does_not_use_and_what_small_motions_cannot_show(files, tmp_path):
+    """One run is refused, one moves too little, and one moves by less than a revolution of the motor."""
+    factors = {"day1": (np.degrees(1), 1), "day2": (2e-3, 2e-3), "day3": (0.05, 0.05), "day4": (0.05, 0.05)}
+    for day, (angle, speed) in factors.items():
+        table = pd.read_csv(files / "logs" / f"{day}_run.csv")
+        table.assign(q=angle * table.q, v=speed * table.v).to_csv(tmp_path / f"{day}_run.csv", index=False)
+    answer = identify_joint(recordings_of(files / "source.yaml", tmp_path), holdout="day4", searched=SEARCHED)
+    left_out = answer.report["split"]["left_out"]
+    assert [each.split(":")[0] for each in left_out] == ["day2_run", "day1_run"]
+    assert "less than 0.005 rad" in left_out[0]
+    assert "refused for angle_in_degrees" in left_out[1]
+    cautions = answer.report["cautions"]
+    assert [each for each in cautions if each.startswith("not used")] == [f"not used: {each}" for each in left_out]
+    assert any("2 of 2 recordings move by" in each and "hysteresis" in each for each in cautions)
+
+
 def test_unused_recordings_are_named_if_too_few_remain(files, tmp_path):
     for day in ("day1", "day4"):
         table = pd.read_csv(files / "logs" / f"{day}_run.csv")
-        small = table.assign(q=0.01 * table.q, v=0.01 * table.v)
+        small = table.assign(q=0.001 * table.q, v=0.001 * table.v)
         small.to_csv(tmp_path / f"{day}_run.csv", index=False)
-    with pytest.raises(ValueError, match=r"not used: day1_run: moved 0\.0\d+ rad, less than 0\.05 rad"):
+    with pytest.raises(ValueError, match=r"not used: day1_run: moved 0\.00\d+ rad, less than 0\.005 rad"):
         identify_joint(recordings_of(files / "source.yaml", tmp_path), holdout="day4")
 
 

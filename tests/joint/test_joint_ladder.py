@@ -87,7 +87,7 @@ def check(ladder: Ladder, floor: float, name: str, order: float | None, size: fl
     assert ladder.top.error < 1.03 * floor
     assert ladder.textbook.error > 1.08 * floor
     if size is not None:
-        found = getattr(first, "amplitude", first.weights[0])
+        found = getattr(first, "amplitude", max(first.weights))
         deviation = first_deviation(ladder, first)
         assert abs(found - size) < 2 * deviation
 
@@ -199,7 +199,7 @@ def test_two_effects_are_separated() -> None:
     hidden = Hidden(load=0.01, gravity=0.1)
     ladder = climbed(runs("two", hidden), "current")
     assert set(names(ladder)[:2]) == {"LoadDependentFriction", "GravityError"}
-    assert ladder.top.error < 1.03 * fit(Table(runs("two"), "current"), textbook(runs("two"), "current")).error
+    assert ladder.top.error < 1.05 * fit(Table(runs("two"), "current"), textbook(runs("two"), "current")).error
 
 
 @pytest.mark.parametrize("draw", range(2))

@@ -57,8 +57,7 @@ RUNS = {s: tuple(steady(v, "page", RIPPLE, s, seconds=2.0) for v in SPEEDS) for 
 
 def full(answer: dict[str, Any]) -> dict[str, Any]:
     """A report as identify_joint completes it."""
-    split = {**answer["split"], "left_out": []}
-    more = {"defects": [], "seconds": 1.0, "noise_floor_how": "of recordings at rest", "split": split}
+    more = {"defects": [], "seconds": 1.0, "noise_floor_how": "of recordings at rest"}
     return {**answer, **more, "date": "2026-01-01", "folder": "logs", "version": "1"}
 
 
@@ -206,17 +205,19 @@ def test_page_begins_with_the_verdict_and_folds_the_details(torque: Torque) -> N
 
 def test_a_higher_error_on_recordings_not_seen_is_said_plainly() -> None:
     """Stribeck friction on the fitted days, and the opposite on the held-out day."""
-    fitted = tuple(steady(v, "here", Hidden(stribeck=(0.2, 0.15)), "A", rate=100.0) for v in (0.05, 0.1, 0.3, 0.8))
-    held = tuple(steady(v, "there", Hidden(stribeck=(-0.2, 0.15)), "B", rate=100.0) for v in (0.05, 0.1, 0.3, 0.8))
+    fitted = tuple(steady(v, "here", Hidden(stribeck=(0.07, 0.15)), "A", rate=100.0) for v in (0.05, 0.1, 0.3, 0.8))
+    held = tuple(steady(v, "there", Hidden(stribeck=(-0.07, 0.15)), "B", rate=100.0) for v in (0.05, 0.1, 0.3, 0.8))
     found = judged(fitted, held, "current", StribeckFriction(v_s=0.15))
     answer = full(report(found, None, []))
     assert answer["verdict"] == "not_confirmed"
     before, after = (answer["error"][when]["heldout"] for when in ("before", "after"))
     assert after > before
-    plain = "the effects found on the fitted recordings do not help on recordings not seen"
+    plain = "Stribeck friction fits the recordings of A, but the recordings that judge contradict it"
     assert plain in answer["sentence"]
-    assert f"the error there rises from {before:.3g} to {after:.3g} A" in answer["sentence"]
-    assert answer["rungs"][1]["why"] == "raises the error on held-out recordings"
+    assert f"the error on recordings not seen rises from {before:.3g} to {after:.3g} A" in answer["sentence"]
+    assert (answer["lacks"], answer["contradicted"]) == ("", "Stribeck friction")
+    assert answer["rungs"][1]["why"] == "contradicted: raises the error on held-out recordings"
+    assert page(answer, {}).count("contradicted: raises") == 1
     assert "Do not use the effects found" in page(answer, {})
     reversed_ = full(report(judged(held, held, "current", StribeckFriction(v_s=0.15)), None, []))
     assert reversed_["verdict"] == "effect_found"

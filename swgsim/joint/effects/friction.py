@@ -7,11 +7,11 @@ from jaxtyping import Float
 
 from swgsim.effects.quantity import shape
 from swgsim.joint.recording import JointRecording
-from swgsim.joint.term import Term
+from swgsim.joint.shared import OfFriction, OfLoad, OfSign
 
 
 @dataclass(frozen=True)
-class AsymmetricFriction(Term):
+class AsymmetricFriction(OfSign):
     """Coulomb and viscous friction that are larger in one direction, because flanks and seals ran in that way
     (physics.md DY6: 14 % in one drive). The weights are half of the difference.
 
@@ -23,11 +23,11 @@ class AsymmetricFriction(Term):
 
     def columns(self, recording: JointRecording) -> Float[np.ndarray, "time column"]:
         """The part of each friction that keeps its sign."""
-        return np.stack([np.abs(recording.sense), np.abs(recording.speed)], axis=1)
+        return np.stack([np.abs(self.sense(recording)), np.abs(recording.speed)], axis=1)
 
 
 @dataclass(frozen=True)
-class QuadraticFriction(Term):
+class QuadraticFriction(OfSign):
     """Friction with the square of the speed, c omega^2, besides viscous friction: grease that is thrown, or the cubic
     part of eq. (5) over a range of speeds (an estimate of form).
     """
@@ -37,11 +37,11 @@ class QuadraticFriction(Term):
 
     def columns(self, recording: JointRecording) -> Float[np.ndarray, "time column"]:
         """The square of the speed, with the sign of the friction."""
-        return (recording.sense * recording.speed**2)[:, None]
+        return (self.sense(recording) * recording.speed**2)[:, None]
 
 
 @dataclass(frozen=True)
-class SublinearFriction(Term):
+class SublinearFriction(OfSign):
     """Friction c |omega|^p of grease that is churned or thinned by shear. Palmgren's exponent is 2/3, as in the effect
     churning loss of the chain.
 
@@ -57,11 +57,11 @@ class SublinearFriction(Term):
 
     def columns(self, recording: JointRecording) -> Float[np.ndarray, "time column"]:
         """The power of the speed, with the sign of the friction."""
-        return (recording.sense * np.abs(recording.speed) ** self.power)[:, None]
+        return (self.sense(recording) * np.abs(recording.speed) ** self.power)[:, None]
 
 
 @dataclass(frozen=True)
-class StribeckFriction(Term):
+class StribeckFriction(OfSign):
     """Friction that rises by b_s exp(-(omega / v_s)^2) at low speed, where no film carries the flanks (physics.md DY2),
     as the effect Stribeck friction of the chain, in the speed of the output.
 
@@ -81,27 +81,26 @@ class StribeckFriction(Term):
 
     def columns(self, recording: JointRecording) -> Float[np.ndarray, "time column"]:
         """The friction of thin films."""
-        return (recording.sense * np.exp(-((recording.speed / self.v_s) ** 2)))[:, None]
+        return (self.sense(recording) * np.exp(-((recording.speed / self.v_s) ** 2)))[:, None]
 
 
 @dataclass(frozen=True)
-class LoadViscosity(Term):
+class LoadViscosity(OfFriction, OfLoad):
     """Viscous friction in proportion to the load, c |T| omega, as more balls and flanks carry (an estimate of form).
 
     Signature: load friction that rises with speed.
     """
 
-    needs = ("omega", "T_rigid")
     per = (" s/(N m rad)",)
     brakes = True
 
     def columns(self, recording: JointRecording) -> Float[np.ndarray, "time column"]:
         """Size of the load times the speed."""
-        return (np.abs(recording.signals["T_rigid"]) * recording.speed)[:, None]
+        return (self.side * np.abs(self.load(recording)) * recording.speed)[:, None]
 
 
 @dataclass(frozen=True)
-class PositionFriction(Term):
+class PositionFriction(OfSign):
     """Friction that varies over the angle, sign(omega) (A cos(order q) + B sin(order q)): one of the flanks or lobes is
     tighter (physics.md DY5), as in the effect position friction of the chain.
 
@@ -118,5 +117,5 @@ class PositionFriction(Term):
 
     def columns(self, recording: JointRecording) -> Float[np.ndarray, "time column"]:
         """Cosine and sine with the sign of the friction."""
-        wave = np.exp(1j * self.order * recording.signals["q"]) * recording.sense
+        wave = np.exp(1j * self.order * recording.signals["q"]) * self.sense(recording)
         return np.stack([wave.real, wave.imag], axis=1)

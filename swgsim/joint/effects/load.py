@@ -7,6 +7,7 @@ from jaxtyping import Float
 
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.regression import solved
+from swgsim.joint.shared import OfLoad
 from swgsim.joint.term import Term
 
 
@@ -22,6 +23,7 @@ class GravityError(Term):
 
     explains = ("current", "T_sensor")
     needs = ("q", "T_rigid")
+    of_model = True
 
     def columns(self, recording: JointRecording) -> Float[np.ndarray, "time column"]:
         """Cosine and sine of the angle of each link against the first one's base."""
@@ -41,6 +43,7 @@ class InertiaError(Term):
     """
 
     needs = ("omega", "T_rigid")
+    of_model = True
     per = (" s^2/rad",)
 
     def columns(self, recording: JointRecording) -> Float[np.ndarray, "time column"]:
@@ -49,7 +52,7 @@ class InertiaError(Term):
 
 
 @dataclass(frozen=True)
-class LoadCurve(Term):
+class LoadCurve(OfLoad):
     """A signal that is not in proportion to the load, a T |T| + b T^3: saturated iron, a nonlinear bridge (an estimate
     of form).
 
@@ -57,13 +60,13 @@ class LoadCurve(Term):
     """
 
     explains = ("current", "T_sensor")
-    needs = ("T_rigid",)
+    needs = ()
     weight_names = ("quadratic coefficient", "cubic coefficient")
     per = ("/(N m)^2", "/(N m)^3")
 
     def columns(self, recording: JointRecording) -> Float[np.ndarray, "time column"]:
         """Second and third power of the load."""
-        load = recording.signals["T_rigid"]
+        load = self.load(recording)
         return np.stack([load * np.abs(load), load**3], axis=1)
 
 
@@ -83,6 +86,8 @@ class EncoderEccentricity(Term):
 
     explains = ("current", "T_sensor")
     needs = ("q", "T_rigid")
+    of_model = True
+    of_whole = True
     weight_names = ("cosine part", "sine part")
     per = (" rad/(N m)",)
 

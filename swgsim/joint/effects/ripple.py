@@ -81,6 +81,7 @@ class InertiaRipple(Ripple):
 
     explains = ("current",)
     needs = ("q", "omega", "T_rigid")
+    of_whole = True
     per = (" kg m^2",)
 
     def columns(self, recording: JointRecording) -> Float[np.ndarray, "time column"]:
@@ -91,7 +92,6 @@ class InertiaRipple(Ripple):
         wave = np.exp(1j * self.order * recording.signals["q"]) * self.response(recording.speed, np.sqrt(J)) / J
         return np.stack([wave.real, wave.imag], axis=1)
 
-    @classmethod
-    def possible(cls, recording: JointRecording) -> bool:
+    def possible(self, recording: JointRecording) -> bool:
         """Whether the inertia is known."""
         return super().possible(recording) and recording.inertia is not None

@@ -10,7 +10,7 @@ from swgsim.joint.days import OF_SPEED, Days, rising
 from swgsim.joint.figures.parts import WIDTH, face, pieces, session_key, sessions, short, tables, unit
 from swgsim.joint.judged import Judged
 from swgsim.joint.recording import JointRecording
-from swgsim.joint.textbook import Zero
+from swgsim.joint.textbook import Friction, Zero
 
 # Smaller p-values are not shown as numbers.
 SMALL = 1e-6
@@ -21,12 +21,13 @@ def friction(judged: Judged, days: Days) -> Figure:
     picture = style.figure(WIDTH, 6.6)
     over, below = picture.subplots(2, 1, height_ratios=[3, 2])
     look, speeds = sessions(judged), _points(judged, over)
+    sense = next(term for term in judged.ladder.top.terms if isinstance(term, Friction)).sense
     for place, day in enumerate(days.days):
         colour, marker = look[day.session]
         low, high = speeds[day.session]
         grid = np.linspace(low, high, 400)
         at = _at(grid)
-        curve = day.coulomb * at.sense + day.zero + day.share * rising(at, judged.ladder.top.terms)
+        curve = day.coulomb * sense(at) + day.zero + day.share * rising(at, judged.ladder.top.terms)
         over.plot(grid, curve, color=colour, linewidth=1.2)
         below.errorbar(place, day.share, yerr=NORMAL * day.deviation, color=colour, marker=marker, capsize=4)
     below.set_xticks(

@@ -1,0 +1,125 @@
+"""What a reader of an answer must know: limits of the model and of the recordings, and what to record next."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from swgsim.common.numbers import significant
+from swgsim.joint.days import Days
+from swgsim.joint.judged import Judged
+from swgsim.joint.naming import listed
+from swgsim.joint.recording import SIGNALS
+from swgsim.joint.shared import OfFriction
+from swgsim.joint.textbook import RigidBody, wrong_signs
+from swgsim.joint.verdict import fails
+
+# p-value below which sessions differ in friction.
+DIFFERENT = 0.02
+# No strain wave gear has a smaller ratio.
+SLOWEST = 30
+# Angles of held-out recordings beyond the fitted ones, as a share of their samples, that make gravity a guess.
+ELSEWHERE = 0.5
+
+
+def cautions(judged: Judged, left_out: Sequence[str]) -> list[str]:
+    """Limits of the model and of the recordings."""
+    unit = SIGNALS[judged.table.of].unit
+    found = [f"not used: {each}" for each in left_out if not each.endswith("without=")]
+    if judged.table.of == "current" and not _load(judged).measured and _measured(judged):
+        found.append("T_sensor predicts the current no better than the model without it, and is not used as its load")
+    if not _load(judged).modelled:
+        found.append(
+            "there is no rigid-body torque (T_rigid), so the textbook model has the inertia and gravity of a single "
+            "link; for a joint that carries several links, map T_rigid in the source"
+        )
+    for each in wrong_signs(judged.ladder.textbook, unit):
+        found.append(
+            f"{each} of the textbook model would be negative, which is impossible, so it is zero: something else makes "
+            "that part of the signal; check the signs of speed, current and torque in the source"
+        )
+    found += _sides(judged)
+    found += _small(judged)
+    return found
+
+
+def likely(judged: Judged) -> list[str]:
+    """Causes that are likely where a model does not describe the recordings."""
+    of = judged.table.of
+    found = [f"the unit, the sign, or the side of the gear (motor or output) of q, omega or {of} in the source"]
+    load = _load(judged)
+    if not load.modelled:
+        also = "" if of == "T_sensor" else " or T_sensor"
+        found.append(f"a load that a single link does not have: map T_rigid{also}")
+        if judged.table.recordings[0].posture is None:
+            found.append("other joints that moved: their posture is not mapped")
+        if _elsewhere(judged) > ELSEWHERE:
+            found.append("gravity: the held-out recordings are at angles that the fitted ones did not reach")
+    if list(_small(judged)):
+        found.append("too small a motion to determine the load")
+    return found
+
+
+def next_experiment(judged: Judged, days: Days | None) -> dict[str, Any] | None:
+    """The next recordings that would answer an open question."""
+    wishes = []
+    if fails(judged):
+        wishes.append("check " + "; ".join(likely(judged)))
+    if judged.ladder.steps and not judged.helps:
+        wishes.append("fit more sessions, such as the held-out ones: they differ from the fitted ones")
+    if days and days.chance < DIFFERENT:
+        wishes.append("log the temperature of the joint, and record one session cold and warm on the same day")
+    if judged.floor is None:
+        wishes.append("record the joint at rest, for the noise of its signals")
+    undecided = [r.trial.term for r in judged.rungs if r.trial and not r.kept and r.trial.unsteady]
+    if undecided:
+        ratio = judged.table.recordings[0].gear_ratio
+        wishes.append(f"record more sessions, to decide about {listed(undecided, ratio)}")
+    return {"words": "; ".join(wishes)} if wishes else None
+
+
+def _load(judged: Judged) -> RigidBody:
+    return next(term for term in judged.ladder.textbook.terms if isinstance(term, RigidBody))
+
+
+def _measured(judged: Judged) -> bool:
+    return all("T_sensor" in each.signals for each in judged.table.recordings)
+
+
+def _sides(judged: Judged) -> Iterator[str]:
+    """Loads and friction on another side of the gear than usual."""
+    textbook = judged.ladder.textbook
+    load = _load(judged)
+    if load.modelled and load.weights[0] + float(textbook.half_interval[0]) < 0:
+        yield f"the load counts against the signal ({load.names()[0]} is negative): one of them has the opposite sign"
+    friction = next((term for term in textbook.terms if isinstance(term, OfFriction)), None)
+    if judged.table.of == "T_sensor" and friction is not None:
+        start = len(load.weights)
+        if friction.weights[0] > float(textbook.half_interval[start]):
+            side, size = "motor" if friction.side < 0 else "output", significant(friction.weights[0])
+            yield (
+                f"there is Coulomb friction of {size} N m between T_rigid and the torque sensor: T_rigid is the torque "
+                f"on the {side}'s side of it"
+            )
+
+
+def _small(judged: Judged) -> Iterator[str]:
+    """What recordings cannot tell that move by less than a revolution of the motor."""
+    recordings = (*judged.table.recordings, *judged.heldout.recordings)
+    way = 2 * np.pi / (recordings[0].gear_ratio or SLOWEST)
+    spans = [float(np.ptp(each.signals["q"])) for each in recordings]
+    small = [span for span in spans if span < way]
+    if small:
+        yield (
+            f"{len(small)} of {len(recordings)} recordings move by {max(small):.2g} rad or less, which is less than a "
+            f"revolution of the motor ({way:.2g} rad): they show friction and hysteresis, but no wave of the motor, "
+            "and gravity near one angle only"
+        )
+
+
+def _elsewhere(judged: Judged) -> float:
+    """Share of the held-out samples at angles beyond those of the fitted recordings."""
+    fitted, held = (
+        np.concatenate([each.signals["q"] for each in table.recordings]) for table in (judged.table, judged.heldout)
+    )
+    return float(((held < fitted.min()) | (held > fitted.max())).mean())

@@ -1,0 +1,28 @@
+"""Errors on held-out recordings within and beyond the speeds of the fitted recordings."""
+
+from typing import Any
+
+import numpy as np
+
+from swgsim.joint.judged import Judged
+from swgsim.joint.regression import rms
+
+
+def by_speed(judged: Judged) -> dict[str, Any]:
+    """Highest fitted speed [rad/s]; errors of both models up to it and above, and the share of samples above.
+
+    Errors of a range without samples are None.
+    """
+    fitted, held = (
+        np.concatenate([np.abs(each.speed) for each in table.recordings]) for table in (judged.table, judged.heldout)
+    )
+    highest = float(fitted.max())
+    beyond = held > highest
+    ladder = judged.ladder
+    missed = {name: fit.missed(judged.heldout) for name, fit in (("before", ladder.textbook), ("after", ladder.top))}
+    return {
+        "fitted_up_to": highest,
+        "share_beyond": float(beyond.mean()),
+        "within": {name: rms(each[~beyond]) for name, each in missed.items()} if (~beyond).any() else None,
+        "beyond": {name: rms(each[beyond]) for name, each in missed.items()} if beyond.any() else None,
+    }

@@ -1,0 +1,93 @@
+"""What effects share with the textbook model to which they are added: the sign of the motion, and the load."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.effects.quantity import shape
+from swgsim.joint.recording import JointRecording
+from swgsim.joint.term import Term
+
+
+@dataclass(frozen=True, kw_only=True)
+class OfFriction(Term):
+    """Friction of the gear, which brakes the motion.
+
+    Attributes
+    ----------
+    side : int
+        1 if the signal to explain is on the motor's side of the friction, as the current is, so that it is larger by
+        the friction; -1 if the load is on the motor's side, and the signal on the output's.
+    """
+
+    explains = ("current", "T_sensor")
+    side: int = 1
+
+    def beside(self, terms: Sequence[Term]) -> Any:
+        """On the side of the model's friction."""
+        return replace(super().beside(terms), side=_of_model(OfFriction, terms, self).side)
+
+
+@dataclass(frozen=True, kw_only=True)
+class OfSign(OfFriction):
+    """Friction with the sign of the motion.
+
+    Attributes
+    ----------
+    sign_width : float
+        Speed within which the sign changes [rad/s]. It is fitted with Coulomb friction of the textbook, and all terms
+        of a model have the same.
+    lag : float
+        Time by which the signal follows the change of the sign [s]: current and speed pass different filters. Fitted
+        and shared likewise.
+    """
+
+    sign_width: float = shape(0.01, unit="rad/s", low=1e-9, high=1e3)
+    lag: float = shape(0.0, unit="s", low=-1.0, high=1.0)
+
+    def sense(self, recording: JointRecording) -> Float[np.ndarray, " time"]:
+        """The sign of the friction in the signal."""
+        return self.side * recording.sense(self.sign_width, self.lag)
+
+    def beside(self, terms: Sequence[Term]) -> Any:
+        """With the sign of the model."""
+        known = _of_model(OfSign, terms, self)
+        return replace(super().beside(terms), sign_width=known.sign_width, lag=known.lag)
+
+
+@dataclass(frozen=True, kw_only=True)
+class OfLoad(Term):
+    """A term with the load of the gear.
+
+    Attributes
+    ----------
+    measured : bool
+        Whether the load is that of the torque sensor, or else that of the rigid-body model.
+    """
+
+    measured: bool = False
+
+    @property
+    def signal_of_load(self) -> str:
+        """Name of the signal."""
+        return "T_sensor" if self.measured else "T_rigid"
+
+    def load(self, recording: JointRecording) -> Float[np.ndarray, " time"]:
+        """The load [N m]."""
+        return recording.signals[self.signal_of_load]
+
+    def possible(self, recording: JointRecording) -> bool:
+        """Whether a recording has the load, and all other signals."""
+        return all(name in recording.signals for name in (*self.needs, self.signal_of_load))
+
+    def beside(self, terms: Sequence[Term]) -> Any:
+        """With the load of the model."""
+        return replace(super().beside(terms), measured=_of_model(OfLoad, terms, self).measured)
+
+
+def _of_model(kind: type, terms: Sequence[Term], own: Term) -> Any:
+    """First term of a kind in a model, from which others take what they share; the own one if there is none."""
+    return next((each for each in terms if isinstance(each, kind)), own)

@@ -1,0 +1,50 @@
+"""The speed within which the sign of Coulomb friction changes, and its lag, fitted with the model."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from swgsim.joint.regression import Fit, fit
+from swgsim.joint.shared import OfSign
+
+# Widest change of the sign [rad/s]. Above begins Stribeck friction, which is friction that depends on the speed.
+WIDEST = 0.02
+# Longest lag between a signal and the motion, either way [s]: filters of drives and of their speeds.
+LONGEST = 0.02
+# Values of the first search of each.
+POINTS = 7
+
+
+def with_sign_width(now: Fit) -> Fit:
+    """The model at the most likely width and lag of the sign.
+
+    Friction changes its sign at a reversal at once, but for elastic seals and grease. A measured speed with noise, or
+    sampled coarsely, shows the reversal only up to a speed, below which the direction is uncertain. This is the least
+    width.
+    """
+    doubts = [each.speed_doubt for each in now.table.recordings if each.reverses]
+    if not doubts or not any(isinstance(term, OfSign) for term in now.terms):
+        return now
+    least = max(float(np.sqrt(np.mean(np.square(doubts)))), 1e-3 * WIDEST)
+    # A sign that changes within its least width has no shape of which more could be told.
+    ends = np.log(least), np.log(max(WIDEST, least * (1 + 1e-9)))
+
+    def at(**sign: Any) -> Fit:
+        return fit(now.table, [replace(term, **sign) if isinstance(term, OfSign) else term for term in now.terms])
+
+    width = _lowest(lambda x: at(sign_width=float(np.exp(x))).error, *ends)
+    lag = _lowest(lambda x: at(sign_width=float(np.exp(width)), lag=x).error, -LONGEST, LONGEST)
+    width = _lowest(lambda x: at(sign_width=float(np.exp(x)), lag=lag).error, *ends)
+    return at(sign_width=float(np.exp(width)), lag=lag)
+
+
+def _lowest(error: Callable[[float], float], low: float, high: float) -> float:
+    """Place of the lowest error between two ends: on a grid, then between its neighbours."""
+    grid = np.linspace(low, high, POINTS).tolist()
+    best = int(np.argmin([error(x) for x in grid]))
+    between = grid[max(best - 1, 0)], grid[min(best + 1, POINTS - 1)]
+    refined = minimize_scalar(error, bounds=between, options={"xatol": 0.05 * (grid[1] - grid[0])})
+    return min((grid[best], float(refined.x)), key=error)

@@ -1,0 +1,118 @@
+"""The verdict on a joint, and the sentence that says it; both follow the errors on held-out recordings."""
+
+from collections.abc import Iterable, Sequence
+
+from swgsim.common.numbers import significant
+from swgsim.common.outcome import FOUND, NOTHING, UNKNOWN
+from swgsim.joint.judged import Judged
+from swgsim.joint.naming import listed
+from swgsim.joint.recording import SIGNALS
+from swgsim.joint.term import Term
+
+# Verdicts for effects that do not lower the error on the held-out recordings, and for a model that does not describe
+# these.
+NOT_CONFIRMED, FAILS = "not_confirmed", "textbook_fails"
+# Share of the variance of the held-out signal that a model explains at least: it leaves less than it explains. Errors
+# above the frequency SLOW are forgiven, as they are not the textbook's.
+LEAST_EXPLAINED = 0.5
+# Sessions that a sentence names.
+NAMED = 4
+
+
+def verdict(judged: Judged, remaining: Sequence[str]) -> str:
+    """The verdict as one word."""
+    if fails(judged):
+        return FAILS
+    if judged.ladder.steps:
+        return FOUND if judged.helps else NOT_CONFIRMED
+    return UNKNOWN if remaining else NOTHING
+
+
+def fails(judged: Judged) -> bool:
+    """Whether the model leaves more of the held-out signal than it explains, without and with effects; or is certainly
+    worse than a constant.
+    """
+    fits = judged.ladder.textbook, judged.ladder.top
+    slow, whole = [judged.explained(fit, slowly=True) for fit in fits], [judged.explained(fit) for fit in fits]
+    return all(share.value < LEAST_EXPLAINED for share in slow) or all(share.value + share.half < 0 for share in whole)
+
+
+def sentence(judged: Judged, remaining: Sequence[str]) -> str:
+    """The verdict in one sentence."""
+    first, of = judged.table.recordings[0], SIGNALS[judged.table.of]
+    where = f"{first.robot}, {first.joint.replace('_', ' ')}, {of.meaning}"
+    more = "one regularity of the residual remains" if len(remaining) == 1 else f"{len(remaining)} regularities remain"
+    rest = f"; {more} unexplained" if remaining else ""
+    found = [step.term for step in judged.ladder.steps]
+    before, after = judged.before.heldout, judged.after.heldout
+    if fails(judged):
+        more = f", and with {_named(judged, found)} {significant(after)} {of.unit}" if found else ""
+        return (
+            f"{where}: the textbook model does not describe these recordings; its error on recordings not seen is "
+            f"{significant(before)} {of.unit}{more}, where the signal has a standard deviation of "
+            f"{significant(judged.scatter)} {of.unit}{rest}."
+        )
+    if not found:
+        return f"{where}: no effect of the library is accepted; the textbook model explains {_share(judged)}{rest}."
+    change = changed(before, after, of.unit)
+    them = "them" if found[1:] else "it"
+    if not judged.helps:
+        those = "the recordings that judge contradict" if after > before else "the recordings that judge do not confirm"
+        return (
+            f"{where}: {_named(judged, found)} {'fit' if found[1:] else 'fits'} the recordings of {_sessions(judged)}, "
+            f"but {those} {them}: with {them} the error on recordings not seen {change}{rest}."
+        )
+    good, bad = ([step.term for step in steps] for steps in (judged.confirmed, judged.contradicted))
+    against = ""
+    if bad:
+        were, raise_ = ("were", "raise") if bad[1:] else ("was", "raises")
+        against = f"; {_named(judged, bad)} {were} found too, but {raise_} it"
+        them = "all effects found"
+    return (
+        f"{where}: the textbook model lacks {_named(judged, good)}; with {them} the error on recordings not seen "
+        f"{change}{against}{rest}."
+    )
+
+
+def changed(before: float, after: float, unit: str) -> str:
+    """A change of an error in words, with as many digits as it needs."""
+    if before == after:
+        return f"stays at {significant(before)} {unit}"
+    first, last = next(
+        pair
+        for digits in range(3, 18)
+        if len(set(pair := (significant(before, digits), significant(after, digits)))) > 1
+    )
+    return f"{'falls' if after < before else 'rises'} from {first} to {last} {unit}"
+
+
+def explained(judged: Judged) -> str:
+    """What both models explain, in words."""
+    share, more = judged.explained(judged.ladder.textbook), judged.explained(judged.ladder.top)
+    effects = f", with the effects found {percent(more.value)}" if judged.ladder.steps else ""
+    return f"{percent(share.value)} ± {percent(share.half)} of the variance of recordings not seen{effects}"
+
+
+def percent(share: float) -> str:
+    """A share in percent, with a digit more near 1.
+
+    >>> percent(0.42), percent(0.9963), percent(-19.8)
+    ('42 %', '99.6 %', '-1980 %')
+    """
+    return f"{100 * share:.1f} %" if 0.95 < share < 1 or 0 < share < 0.01 else f"{100 * share:.0f} %"
+
+
+def _share(judged: Judged) -> str:
+    return f"{percent(judged.explained(judged.ladder.textbook).value)} of the variance of recordings not seen"
+
+
+def _named(judged: Judged, terms: Iterable[Term]) -> str:
+    return listed(terms, judged.table.recordings[0].gear_ratio)
+
+
+def _sessions(judged: Judged) -> str:
+    """Sessions of the fitted recordings."""
+    sessions = list(dict.fromkeys(each.session for each in judged.table.recordings))
+    if len(sessions) > NAMED:
+        return f"{len(sessions)} sessions"
+    return ", ".join(sessions[:-1]) + (" and " if sessions[1:] else "") + sessions[-1]
