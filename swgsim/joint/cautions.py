@@ -9,7 +9,7 @@ from swgsim.common.numbers import significant
 from swgsim.joint.days import Days
 from swgsim.joint.judged import Judged
 from swgsim.joint.naming import listed
-from swgsim.joint.recording import SIGNALS
+from swgsim.joint.recording import OF_DRIVE, SIGNALS
 from swgsim.joint.shared import OfFriction
 from swgsim.joint.textbook import RigidBody, wrong_signs
 from swgsim.joint.verdict import fails
@@ -26,7 +26,7 @@ def cautions(judged: Judged, left_out: Sequence[str]) -> list[str]:
     """Limits of the model and of the recordings."""
     unit = SIGNALS[judged.table.of].unit
     found = [f"not used: {each}" for each in left_out if not each.endswith("without=")]
-    if judged.table.of == "current" and not _load(judged).measured and _measured(judged):
+    if judged.table.of in OF_DRIVE and not _load(judged).measured and _measured(judged):
         found.append("T_sensor predicts the current no better than the model without it, and is not used as its load")
     if not _load(judged).modelled:
         found.append(

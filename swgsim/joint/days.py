@@ -7,7 +7,7 @@ import numpy as np
 from scipy.stats import f
 
 from swgsim.joint.effects.friction import QuadraticFriction, StribeckFriction, SublinearFriction
-from swgsim.joint.recording import JointRecording
+from swgsim.joint.recording import OF_DRIVE, JointRecording
 from swgsim.joint.regression import Fit, Table, solved
 from swgsim.joint.term import Term
 from swgsim.joint.textbook import Friction, Zero
@@ -81,7 +81,7 @@ def days(top: Fit, tables: Sequence[Table]) -> Days | None:
     tables : sequence of Table
         Fitted and held-out recordings.
     """
-    if top.table.of != "current":
+    if top.table.of not in OF_DRIVE:
         return None
     recordings: dict[str, list[JointRecording]] = {}
     for each in (each for table in tables for each in table.recordings):

@@ -24,6 +24,7 @@ SIGNALS: Mapping[str, Signal] = {
     "omega": Signal("rad/s", "speed of the joint"),
     "T_sensor": Signal("N m", "torque sensor behind the gear"),
     "current": Signal("A", "motor current"),
+    "T_motor": Signal("N m", "torque of the motor, as the drive gives it, with the friction of the joint"),
     "T_rigid": Signal("N m", "torque at the output by the controller's rigid-body model, without friction"),
 }
 # Least share of the way in each direction of a joint that reverses. A joint that creeps in one direction and sticks on
@@ -34,7 +35,9 @@ CERTAIN = 3.0
 # Accuracy [rad] with which a joint's angle must agree with an angle of the posture to be the same.
 SAME = 1e-6
 # Signals that the model predicts; the others are its inputs.
-PREDICTED = ("T_sensor", "current")
+PREDICTED = ("T_sensor", "current", "T_motor")
+# Those of the drive, which the friction of the gear is in.
+OF_DRIVE = ("current", "T_motor")
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.effects.quantity import shape
-from swgsim.joint.recording import JointRecording
+from swgsim.joint.recording import PREDICTED, JointRecording
 from swgsim.joint.term import Term
 
 
@@ -23,7 +23,7 @@ class OfFriction(Term):
         the friction; -1 if the load is on the motor's side, and the signal on the output's.
     """
 
-    explains = ("current", "T_sensor")
+    explains = PREDICTED
     side: int = 1
 
     def beside(self, terms: Sequence[Term]) -> Any:

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.effects.base import Effect
-from swgsim.joint.recording import JointRecording
+from swgsim.joint.recording import OF_DRIVE, JointRecording
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,7 +27,7 @@ class Term(Effect, ABC):
 
     place = "joint"
     #: Signals that the effect may explain.
-    explains: ClassVar[tuple[str, ...]] = ("current",)
+    explains: ClassVar[tuple[str, ...]] = OF_DRIVE
     #: Signals that the columns need.
     needs: ClassVar[tuple[str, ...]] = ("omega",)
     #: Names of the weights.

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.joint.recording import JointRecording, turns_back
+from swgsim.joint.recording import PREDICTED, JointRecording, turns_back
 from swgsim.joint.regression import WORTH, Fit, Table, fit, rms
 from swgsim.joint.shared import OfLoad, OfSign
 from swgsim.joint.sign_width import with_sign_width
@@ -22,7 +22,7 @@ class RigidBody(OfLoad):
     """
 
     modelled: bool = True
-    explains = ("T_sensor", "current")
+    explains = PREDICTED
 
     def columns(self, recording: JointRecording) -> Float[np.ndarray, "time column"]:
         """The load, with the inertia of the motor if it is measured; or three columns of a single link."""

@@ -8,7 +8,7 @@ import numpy as np
 from swgsim.joint.effects.friction import PositionFriction
 from swgsim.joint.effects.ripple import InertiaRipple, Ripple
 from swgsim.joint.orders import NEIGHBOURS, Line, lines
-from swgsim.joint.recording import turns_back
+from swgsim.joint.recording import OF_DRIVE, turns_back
 from swgsim.joint.regression import Fit, slow
 from swgsim.joint.shaping import gain, shapes
 from swgsim.joint.term import Term
@@ -39,9 +39,9 @@ def waves(now: Fit, level: float, known: dict[float, tuple[Wave, ...]]) -> list[
     orders = (float(n) for n in range(2, SLOW + 1) if n * longest >= np.pi)
     slow = sorted(map(Ripple, orders), key=lambda term: -gain(now, term))
     laws: list[Wave] = [Ripple(), Ripple(power=1)]
-    if now.table.of == "current" and turns_back(now.table.recordings):
+    if now.table.of in OF_DRIVE and turns_back(now.table.recordings):
         laws.append(PositionFriction().beside(now.terms))
-    if now.table.of == "current" and all(map(InertiaRipple().possible, now.table.recordings)):
+    if now.table.of in OF_DRIVE and all(map(InertiaRipple().possible, now.table.recordings)):
         laws.append(InertiaRipple())
     present = {_what(term) for term in now.terms}
     found: list[tuple[Wave, ...]] = [(term,) for term in slow[:SLOW_ORDERS] if _what(term) not in present]

@@ -182,3 +182,14 @@ def test_friction_is_found_between_a_torque_sensor_and_the_torque_of_the_other_s
     expected = (4, 5) if side else (0, 0)
     assert friction.weights == pytest.approx(expected, abs=0.15)
     assert not side or friction.side == side
+
+
+def test_a_motor_torque_is_explained_as_a_current_is() -> None:
+    recordings = moved("drive", 0.005)
+    named = tuple(
+        replace(each, signals={**each.signals, "T_motor": 8.0 * each.signals["current"]}) for each in recordings
+    )
+    of_current, of_torque = (fitted_textbook(Table(named, of)) for of in ("current", "T_motor"))
+    assert [type(term) for term in of_torque.terms] == [type(term) for term in of_current.terms]
+    for one, other in zip(of_torque.terms, of_current.terms, strict=True):
+        np.testing.assert_allclose(one.weights, 8.0 * np.array(other.weights), rtol=1e-6, atol=1e-6)

@@ -205,6 +205,10 @@ TEXT = (
               T_out: {column: torque, unit: N m, factor: 20, offset: 3}
               s1: {column: volts, unit: V, full_scale: '10 V = 2 mV/V'}
             """),
+    Example("Two recorders with two clocks: a signal is interpolated to the time of the others", GAUGES,
+            table("run1.csv", {"t": TIME, "angle": DEG(PHI), "bridge": GAUGES["s1"], "t2": TIME,
+                               "torque": GAUGES["T_out"]}),
+            IN_PLAIN.replace("column: torque,", "column: torque, time: t2,")),
     Example("Strain of a half bridge in µm/m, with another sign", GAUGES,
             table("run1.csv", PLAIN | {"bridge": GAUGES["s1"] / -0.001}),
             IN_PLAIN.replace("unit: mV/V", "unit: µm/m, gauge_factor: 2.0, active_arms: 2, inverted: true")),
@@ -234,8 +238,15 @@ TEXT = (
             """, 1e-7),
     Example("Angle and velocity of the motor", JOINT, table("run1.csv", LOG | {"q": 100 * Q, "qd": 100 * OMEGA}),
             OF_LOG.replace("rad}", "rad, at: motor}").replace("rad/s}", "rad/s, at: motor}")),
+    Example("Torque of the motor in N m, as ABB writes it, or as effort in ROS",
+            {"q": Q, "omega": OMEGA, "T_motor": JOINT["current"]}, table("run1.csv", LOG),
+            OF_LOG.replace("current: {column: i, unit: A}", "T_motor: {column: i, unit: N m}")),
     Example("No velocity: it is the slope of the angle", JOINT, table("run1.csv", {k: LOG[k] for k in ("t", "q", "i")}),
             OF_LOG.replace("{column: qd, unit: rad/s}", "{from: q, smoothed_s: 0.005}"), 1e-2),
+    Example("Long table: one row for each joint and time", JOINT,
+            table("run1.csv", {"name": ["elbow", "wrist"] * N, **{k: np.repeat(v, 2) for k, v in LOG.items()}}),
+            OF_LOG.replace("unit: s}", "unit: s, rows: {name: elbow}}").replace("rad}", "rad, rows: {name: elbow}}")
+            .replace("rad/s}", "rad/s, rows: {name: elbow}}").replace("unit: A}", "unit: A, rows: {name: elbow}}")),
     Example("One file for each signal, joints one after another in one column", JOINT,
             several(*(table(f"{name}.txt", {"": np.stack([values] * 7, axis=1).ravel()}, header=False)
                       for name, values in (("positions", Q), ("velocities", OMEGA), ("currents", JOINT["current"]))),

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.joint.recording import JointRecording
+from swgsim.joint.recording import PREDICTED, JointRecording
 from swgsim.joint.regression import solved
 from swgsim.joint.shared import OfLoad
 from swgsim.joint.term import Term
@@ -21,7 +21,7 @@ class GravityError(Term):
     Signature: a residual that depends on the posture only, in both directions and at all speeds.
     """
 
-    explains = ("current", "T_sensor")
+    explains = PREDICTED
     needs = ("q", "T_rigid")
     of_model = True
 
@@ -59,7 +59,7 @@ class LoadCurve(OfLoad):
     Signature: a residual in phase with the load, in both directions.
     """
 
-    explains = ("current", "T_sensor")
+    explains = PREDICTED
     needs = ()
     weight_names = ("quadratic coefficient", "cubic coefficient")
     per = ("/(N m)^2", "/(N m)^3")
@@ -84,7 +84,7 @@ class EncoderEccentricity(Term):
     beyond the joint move or the payload changes. Waves of order n get neighbours of order n - 1 and n + 1.
     """
 
-    explains = ("current", "T_sensor")
+    explains = PREDICTED
     needs = ("q", "T_rigid")
     of_model = True
     of_whole = True

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.effects.quantity import choice, shape
-from swgsim.joint.recording import JointRecording
+from swgsim.joint.recording import OF_DRIVE, PREDICTED, JointRecording
 from swgsim.joint.term import Term
 
 # Frequency at which the amplitudes of waves that grow with speed are given [Hz].
@@ -37,7 +37,7 @@ class Ripple(Term):
         Damping ratio of resonance or filter, from 0.1 to 1.5.
     """
 
-    explains: ClassVar[tuple[str, ...]] = ("current", "T_sensor")
+    explains: ClassVar[tuple[str, ...]] = PREDICTED
     needs: ClassVar[tuple[str, ...]] = ("q", "omega")
     order: float = shape(1.0, unit="-", low=0.25, high=1e5)
     power: int = choice(0, low=0, high=2)
@@ -79,7 +79,7 @@ class InertiaRipple(Ripple):
     rigid-body torque and posture give the inertia (:func:`swgsim.joint.kinematics.inertia`).
     """
 
-    explains = ("current",)
+    explains = OF_DRIVE
     needs = ("q", "omega", "T_rigid")
     of_whole = True
     per = (" kg m^2",)

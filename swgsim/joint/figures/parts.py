@@ -21,7 +21,7 @@ WIDTH = 6.2
 COLOURS = ("#000000", "#E69F00", "#0072B2", "#009E73", "#D55E00", "#56B4E9")
 MARKERS = "os^D"
 # Signal names at axes.
-SHORT = {"T_sensor": "torque", "current": "current"}
+SHORT = {"T_sensor": "torque", "current": "current", "T_motor": "motor torque"}
 # A motion is in one direction if it ends at least this share of its range away from its start.
 ONE_WAY = 0.9
 # Classes of speed in each direction of a joint that reverses, and least samples of a class.
