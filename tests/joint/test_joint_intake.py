@@ -203,6 +203,7 @@ BAD_SOURCES: dict[str, tuple[object, str]] = {
         signal("omega", unit="knots"),
         "'knots' of the unit of omega; choose from rad/s, mrad/s",
     ),
+    "a torque as a current": (signal("current", column="tau", unit="Nm"), "a torque: map it as T_motor"),
     "unknown key of a signal": (signal("q", scale=2), "unknown choice 'scale' of q; choose from column, file, unit"),
     "wraps": (signal("omega", unit="rad/s", wraps=True), "unknown choice 'wraps' of omega"),
     "column by truth": (signal("q", column=True), "column of q is 'True'"),

@@ -14,6 +14,7 @@ from swgsim.tables.measured_column import MOST_COLUMNS, MeasuredColumn, number, 
 from swgsim.tables.plain_file import described, require_names
 from swgsim.tables.table_map import KEYS as OF_TABLE
 from swgsim.tables.table_map import read_table_map
+from swgsim.tables.units import FACTORS, known_unit
 
 KEYS = (
     "robot", "files", "rest", "leave_out", "time", "rate", "rate_hz", "start_up", "joints", "posture", "others_stand",
@@ -80,6 +81,8 @@ def _joint(name: str, entry: Any, interleaved: int) -> JointColumns:
 
 def _signal(signal: str, entry: Any, gear_ratio: float | None, interleaved: int) -> MeasuredColumn:
     """A signal of a joint; angle and velocity of the motor are divided by the gear ratio."""
+    if signal == "current" and isinstance(entry, Mapping) and known_unit(str(entry.get("unit"))) in FACTORS["N m"]:
+        raise ValueError(f"current is in {entry['unit']}, which is a torque: map it as T_motor")
     moves = signal in ("q", "omega")
     column = read_column(signal, entry, SIGNALS[signal].unit, ("at",) if moves else (), interleaved)
     side = entry.get("at", "output")
