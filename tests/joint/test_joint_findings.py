@@ -93,7 +93,7 @@ KINOVA_CASES: dict[str, tuple[Callable[[Table], Table], str, str, str]] = {
     "torque zero": (of(T, np.zeros_like), "all_zero", "refuse", "0 throughout"),
     "torque clipped": (of(T, lambda x: np.minimum(x, 0.13)), "clipped", "warn", "samples of exactly 0.13"),
     "torque clipped for the most part": (of(T, lambda x: np.maximum(x, 0.11)), "clipped", "refuse", "exactly 0.11"),
-    "not a number": (of(T, lambda x: put(x, 900, np.nan)), "not_finite", "refuse", "row 902: found nan and 0 more"),
+    "not a number": (of(T, lambda x: put(x, 900, np.nan)), "not_finite", "refuse", "row 902: found 1 of"),
     "a few rows only": (rows(lambda i: i[: START + 60]), "too_short", "refuse", "60 samples after the start"),
     "less than a turn of the motor": (
         lambda run: {**run, Q: np.linspace(1, 1.05, len(run[Q])), V: 0.044 * run[V]}, "short_way", "warn",

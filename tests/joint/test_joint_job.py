@@ -225,7 +225,7 @@ def test_without_any_files_the_joints_end_with_an_error(files, tmp_path):
 def test_a_message_about_a_file_names_its_folder(files, tmp_path):
     (tmp_path / "day4_run.csv").write_text("t,q,v,i,T\n")
     for choice in ("recordings", "holdout"):
-        message = rf"{choice}={tmp_path}: day4_run\.csv, row 2: found a header without rows"
+        message = rf"{choice}={tmp_path}: day4_run\.csv, row 2: found names without rows"
         with pytest.raises(ValueError, match=message):
             job.run(config(files, **{choice: str(tmp_path)}), lambda _: None)
 

@@ -46,7 +46,7 @@ def unusable(run: Run) -> Iterator[Defect]:
         if len(bad):
             yield Defect(
                 "not_finite", "refuse", run.label, name,
-                f"{np.asarray(values)[bad[0]]} and {len(bad) - 1} more of {len(run)} samples",
+                f"{len(bad)} of {len(run)} samples that are no finite number, the first {np.asarray(values)[bad[0]]}",
                 f"finite numbers within {LARGEST_NUMBER:g}", f"{remedy(len(bad))}; or leave the signal out",
                 int(bad[0]) + run.first_row,
             )  # fmt: skip
