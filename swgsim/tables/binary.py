@@ -93,6 +93,12 @@ def listed(path: Path, name: str, reader: LimitedReader | None = None) -> list[L
         return list(contents.listed)
 
 
+def names(path: Path, name: str, reader: LimitedReader | None = None) -> list[str]:
+    """All names by which entries of a file are found, such as ``group/channel``; errors as for :func:`listed`."""
+    with _opened(path, name, None, reader) as contents:
+        return [*(each.name for each in contents.listed), *contents.others]
+
+
 @contextmanager
 def _opened(
     path: Path, name: str, wanted: Sequence[str | int] | None, reader: LimitedReader | None

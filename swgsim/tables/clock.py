@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ from jaxtyping import Float, Shaped
 from swgsim.common.checks import require_known
 from swgsim.tables.file_defect import FileDefect, shown
 from swgsim.tables.layout import LOST_READINGS
-from swgsim.tables.measured_column import chosen_rows, column_name, text
+from swgsim.tables.measured_column import chosen_rows, column_name, filled, text
 from swgsim.tables.plain_file import require_names
 from swgsim.tables.units import FACTORS, known_unit
 
@@ -40,6 +40,10 @@ class Clock:
     units: tuple[str, ...]
     file: str = ""
     rows: tuple[tuple[str | int, str], ...] = ()
+
+    def of(self, each: str) -> "Clock":
+        """The clock of one of the recordings of a file."""
+        return replace(self, columns=tuple(filled(column, each) for column in self.columns))
 
     @property
     def stamps(self) -> tuple[str | int, ...]:

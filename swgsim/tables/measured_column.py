@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 from typing import Any
 
@@ -21,6 +21,8 @@ LONGEST_TEXT = 1000
 OF_UNIT = ("per_revolution", "rated", "full_scale", "gauge_factor", "active_arms")
 KEYS = ("column", "file", "unit", "factor", "offset", "inverted", "time", "rows", *OF_UNIT)
 LARGEST = 1e15
+# Stands for the name of one of the recordings of a file, in columns and sheet of a map.
+EACH = "{each}"
 
 
 @dataclass(frozen=True)
@@ -63,6 +65,11 @@ class MeasuredColumn:
     time: str | int | None = None
     rows: tuple[tuple[str | int, str], ...] = ()
 
+    def of(self, each: str) -> "MeasuredColumn":
+        """The column in one of the recordings of a file."""
+        time = None if self.time is None else filled(self.time, each)
+        return replace(self, column=filled(self.column, each), time=time)
+
     def values(self, numbers: Shaped[np.ndarray, " time"]) -> Float[np.ndarray, " time"]:
         """The quantity from the numbers in the file; jumps of a wrapped angle are removed."""
         found = np.asarray(numbers, dtype=float)
@@ -84,6 +91,11 @@ class MeasuredColumn:
         return numbers[: len(numbers) // self.interleaved * self.interleaved].reshape(-1, self.interleaved)[
             :, int(self.column) - 1
         ]
+
+
+def filled(column: str | int, each: str) -> str | int:
+    """A column in one of the recordings of a file."""
+    return column.replace(EACH, each) if isinstance(column, str) else column
 
 
 def read_column(

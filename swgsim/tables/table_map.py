@@ -1,20 +1,21 @@
 """What the maps of gauges and of joints share: layout, names of files, parts of a recording, and accepted findings."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 from jaxtyping import Float
 
 from swgsim.common.checks import require, require_integer
+from swgsim.tables.clock import Clock
 from swgsim.tables.file_defect import shown
 from swgsim.tables.layout import KEYS as OF_LAYOUT
 from swgsim.tables.layout import Layout, read_layout
-from swgsim.tables.measured_column import text
+from swgsim.tables.measured_column import EACH, MeasuredColumn, text
 from swgsim.tables.plain_file import require_names
 
-KEYS = (*OF_LAYOUT, "path", "interleaved", "parts", "accept")
+KEYS = (*OF_LAYOUT, "path", "each", "interleaved", "parts", "accept")
 LATEST = 1e9
 MOST_INTERLEAVED = 1000
 # Nothing can be computed with such numbers.
@@ -43,6 +44,8 @@ class TableMap:
     layout : Layout
     path : str
         Regular expression of RE2 for the path of a file in its folder, with named groups.
+    each : str
+        Regular expression for the groups, elements of struct arrays, or sheets of a file that are recordings.
     interleaved : int
         How many signals follow one another in the only column of a file.
     parts : tuple of Part
@@ -53,9 +56,22 @@ class TableMap:
 
     layout: Layout = field(default_factory=Layout)
     path: str = ""
+    each: str = ""
     interleaved: int = 1
     parts: tuple[Part, ...] = ()
     accepted: tuple[str, ...] = ()
+
+    def of(self, each: str) -> "TableMap":
+        """The map of one of the recordings of a file."""
+        return replace(self, layout=replace(self.layout, sheet=self.layout.sheet.replace(EACH, each)))
+
+
+def require_each(table: TableMap, columns: Iterable[MeasuredColumn | Clock]) -> None:
+    """Raise a ValueError if a map has ``each`` and no column or sheet that uses it, or the reverse."""
+    used = EACH in table.layout.sheet or any(each.of("") != each for each in columns)
+    if bool(table.each) != used:
+        given = f"has 'each' and no column or sheet with {EACH}" if table.each else f"has {EACH} and no 'each'"
+        raise ValueError(f"the map {given}: write {EACH} where the name of a recording stands")
 
 
 def read_table_map(config: Mapping[str, Any]) -> TableMap:
@@ -73,6 +89,7 @@ def read_table_map(config: Mapping[str, Any]) -> TableMap:
     return TableMap(
         read_layout(config),
         text("path", config["path"]) if "path" in config else "",
+        text("each", config["each"]) if "each" in config else "",
         interleaved,
         tuple(_part(name, limits) for name, limits in parts.items()),
         _kinds(config.get("accept", [])),

@@ -295,6 +295,34 @@ def save_hdf5(path: Path) -> None:
             file[f"bench/{name}"] = values
 
 
+def trials(number: int) -> np.ndarray:
+    """A struct array."""
+    found = np.zeros((1, number), dtype=[(name, "O") for name in LOG])
+    for trial in range(number):
+        found[0, trial] = tuple(values + trial * (name == "i") for name, values in LOG.items())
+    return found
+
+
+def save_episodes(path: Path) -> None:
+    """A group for each episode, with the joints in columns."""
+    with h5py.File(path, "w") as file:
+        for name, values in LOG.items():
+            for episode in range(2):
+                own = values + episode * (name == "i")
+                file[f"data/demo_{episode}/{name}"] = np.stack([3 * own, own], axis=1)
+
+
+def save_sheets(path: Path) -> None:
+    """A sheet for each recording, behind an overview."""
+    book = openpyxl.Workbook()
+    book.active.append(["Overview"])
+    for repeat in (1, 2):
+        page = book.create_sheet(f"2000 rpm, 39.5 Nm, {repeat}")
+        for row in (list(PLAIN), *pd.DataFrame(PLAIN).to_numpy().tolist()):
+            page.append(row)
+    book.save(path)
+
+
 def save_tdms(path: Path) -> None:
     """Channels of one group, whose time is in their properties."""
     with TdmsWriter(path) as writer:
@@ -353,6 +381,16 @@ BINARY = (
     Example("HDF5: variables in a group", GAUGES, saved("run1.h5", save_hdf5),
             IN_PLAIN.replace("column: ", "column: bench/")),
     Example("Parquet", GAUGES, saved("run1.parquet", lambda path: pd.DataFrame(PLAIN).to_parquet(path)), IN_PLAIN),
+    Example("Several recordings in one file: elements of a struct array of MATLAB", JOINT,
+            saved("day1.mat", lambda path: savemat(path, {"trials": trials(2)})),
+            "each: 'trials.[0-9]+.'" + OF_LOG.replace("column: ", "column: '{each}.").replace(", unit", "', unit")),
+    Example("Several recordings in one file: groups of HDF5, such as episodes", JOINT,
+            saved("day1.h5", save_episodes),
+            "each: 'data/demo_[0-9]+'\nrate_hz: 1000" + OF_LOG.replace("time: {column: t, unit: s}\n", "")
+            .replace("column: ", "column: '{each}/").replace(", unit", "[2]', unit")),
+    Example("Several recordings in one file: sheets of Excel", GAUGES, saved("day1.xlsx", save_sheets),
+            r"each: '(?P<n_in_rpm>[0-9]+) rpm, (?P<T_out_nm>[0-9.]+) Nm, (?P<repeat>[0-9]+)'"
+            "\nsheet: '{each}'" + IN_PLAIN + "facts: {gear: A17, session: monday}"),
     Example("Excel: a sheet with a title above the names", GAUGES, saved("run1.xlsx", save_xlsx),
             "sheet: data\nheader_row: 2" + IN_PLAIN),
     Example("TDMS: the time is that of the channels", GAUGES, saved("run1.tdms", save_tdms),

@@ -17,11 +17,12 @@ def test_a_layout_is_read_by_its_map(tmp_path: Path, example: Example) -> None:
     example.write(folder)
     path.write_text(example.map, encoding="utf-8")
     if "s1" in example.of:
-        (found,) = inspect_recordings(folder, path)
+        found, *others = inspect_recordings(folder, path)
         signals = found.channels
     else:
-        (found,) = read_joints(folder, path).recordings
+        found, *others = read_joints(folder, path).recordings
         signals = found.signals
+    assert len(others) == ("each" in example.map)
     rows = len(found.time)
     assert rows >= len(TIME) - 1
     np.testing.assert_allclose(found.time - found.time[0], TIME[:rows], atol=1e-7)

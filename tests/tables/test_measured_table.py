@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import openpyxl
 import pandas as pd
@@ -200,3 +201,19 @@ def test_one_row_for_each_signal_and_time(tmp_path: Path) -> None:
         entry["column"] = "value"
     (found,) = joints(tmp_path, table("log.csv", {"t": ticks, "tag": tags, "value": values}), **config).recordings
     np.testing.assert_allclose(found.signals["current"], LOG["i"], rtol=1e-8)
+
+
+def test_recordings_within_a_file_are_named(tmp_path: Path) -> None:
+    config = yaml.safe_load(OF_LOG)
+    with pytest.raises(FileDefect, match=r"has 'each' and no column or sheet with \{each\}"):
+        joints(tmp_path, table("run1.csv", LOG), **config, each="a.*")
+    config["time"]["column"] = "{each}/t"
+    with pytest.raises(FileDefect, match=r"has \{each\} and no 'each'"):
+        joints(tmp_path, **config)
+    with pytest.raises(FileDefect, match=r"run1\.csv: found a text file, expected a file with groups"):
+        joints(tmp_path, **config, each="a.*")
+    (tmp_path / "files" / "run1.csv").unlink()
+    with h5py.File(tmp_path / "files" / "run1.h5", "w") as file:
+        file["data/one/t"] = TIME
+    with pytest.raises(FileDefect, match=r"found the parts 'data', 'data/one', expected some that match 'each'"):
+        joints(tmp_path, **config, each="trial.*")

@@ -1,7 +1,7 @@
 """Reading of joint recordings: files through a source, with the findings on their numbers."""
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
@@ -15,7 +15,7 @@ from swgsim.joint.intake.findings import (
     unusable,
     wrap_findings,
 )
-from swgsim.joint.intake.places import places
+from swgsim.joint.intake.places import RunFiles, places
 from swgsim.joint.intake.run import Run, read_runs
 from swgsim.joint.intake.scale import clock_findings, measured_rates, no_rate, rate_findings, usual_rates
 from swgsim.joint.intake.signals import gap_findings
@@ -25,6 +25,7 @@ from swgsim.joint.recording import SIGNALS, JointRecording
 from swgsim.recordings.checks.defect import Defect, accepted, summary, unread_defects, with_columns
 from swgsim.tables.file_defect import FileDefect, shown
 from swgsim.tables.formats.limited import LimitedReader
+from swgsim.tables.several import recordings_in
 
 
 @dataclass(frozen=True, repr=False)
@@ -93,8 +94,8 @@ def read_joints(folder: Path, source: JointSource | Path) -> JointRecordings:
     source = read_source(source) if isinstance(source, Path) else source
     found = places(folder, source)
     with LimitedReader() as reader:
-        in_motion = [run for files in found.moving for run in read_runs(folder, files, source, True, reader)]
-        resting = [run for files in found.resting for run in read_runs(folder, files, source, False, reader)]
+        in_motion = [run for files in found.moving for run in _read_each(folder, files, source, True, reader)]
+        resting = [run for files in found.resting for run in _read_each(folder, files, source, False, reader)]
     every = moving = [run for run in in_motion if not run.stands]
     # Standing joints only give noise: one that is unusable or moves is left out without a finding.
     standing = [run for run in in_motion if run.stands and not any(chain(unusable(run), at_rest_findings(run)))]
@@ -131,6 +132,20 @@ def read_joints(folder: Path, source: JointSource | Path) -> JointRecordings:
         _names([run for run in every if {run.label, run.name} & refused]),
         folder,
     )
+
+
+def _read_each(folder: Path, files: RunFiles, source: JointSource, start: bool, reader: LimitedReader) -> Iterator[Run]:
+    """The runs of one file, or the one of several."""
+    if not source.table.each:
+        yield from read_runs(folder, files, source, start, reader)
+        return
+    for each, groups in recordings_in(folder / files.name, files.name, source.table.each, reader):
+        one = files._replace(
+            run=groups.get("run", f"{files.run} {each}"),
+            session=groups.get("session", files.session),
+            joint=groups.get("joint", files.joint),
+        )
+        yield from read_runs(folder, one, source.of(each), start, reader)
 
 
 def _recording(run: Run, rates: Mapping[str, float], robot: str) -> JointRecording:

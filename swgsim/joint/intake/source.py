@@ -1,12 +1,12 @@
 """A source: the files of a robot, and the signal of each of their columns."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from swgsim.common.checks import require, require_integer
 from swgsim.tables.clock import Clock
 from swgsim.tables.measured_column import MeasuredColumn
 from swgsim.tables.path_pattern import require_pattern
-from swgsim.tables.table_map import TableMap
+from swgsim.tables.table_map import TableMap, require_each
 
 # Limits of the sampling rate [Hz] and of the cut at the start of a run [s].
 SLOWEST, FASTEST = 1e-3, 1e9
@@ -98,6 +98,8 @@ class JointSource:
 
     def __post_init__(self) -> None:
         require_pattern(self.table.path, GROUPS)
+        require_pattern(self.table.each, GROUPS[:3])
+        require_each(self.table, [*self.columns, *([self.clock] if self.clock else [])])
         if not self.files:
             raise ValueError("files is empty, must name the files in motion, such as '*.csv'")
         if not self.joints:
@@ -118,6 +120,16 @@ class JointSource:
             if not self.table.layout.named and not isinstance(column.place, int):
                 where = f"column {column.column!r} of {column.quantity}"
                 raise ValueError(f"{where} must be its number from 1, as the files have no header")
+
+    def of(self, each: str) -> "JointSource":
+        """The source of one of the recordings of a file."""
+        joints = tuple(
+            replace(joint, signals=tuple(signal.of(each) for signal in joint.signals)) for joint in self.joints
+        )
+        clock = self.clock.of(each) if self.clock else None
+        posture = tuple(column.of(each) for column in self.posture)
+        table = replace(self.table.of(each), each="")
+        return replace(self, joints=joints, clock=clock, posture=posture, table=table)
 
     @property
     def columns(self) -> tuple[MeasuredColumn, ...]:

@@ -13,7 +13,7 @@ from swgsim.tables.clock import Clock, read_clock
 from swgsim.tables.measured_column import MeasuredColumn, number, read_column
 from swgsim.tables.path_pattern import require_pattern
 from swgsim.tables.plain_file import described, require_names
-from swgsim.tables.table_map import KEYS, TableMap, read_table_map
+from swgsim.tables.table_map import KEYS, TableMap, read_table_map, require_each
 
 SIGNAL = "signal"
 
@@ -62,6 +62,13 @@ class SourceMap:
         if self.table.path and self.files:
             raise ValueError("the column map has both path and files: facts come from the path or from files")
         require_pattern(self.table.path, (*KNOWN, SIGNAL))
+        require_pattern(self.table.each, KNOWN)
+
+    def of(self, each: str) -> "SourceMap":
+        """The map of one of the recordings of a file."""
+        clock = self.clock.of(each) if self.clock else None
+        channels = tuple(channel.of(each) for channel in self.channels)
+        return replace(self, channels=channels, clock=clock, table=self.table.of(each))
 
     @property
     def columns(self) -> dict[str, str]:
@@ -94,6 +101,7 @@ def _source_map(config: Any) -> SourceMap:
     require_known("channels", channels, ["t", *CHANNELS])
     columns = tuple(_channel(name, entry, table.interleaved) for name, entry in channels.items())
     rate = number("sampling_rate_hz", config)
+    require_each(table, [*columns, *([clock] if clock else [])])
     return SourceMap(columns, clock, config.get("facts", {}), config.get("files", {}), rate, table)
 
 

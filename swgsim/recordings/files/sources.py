@@ -15,6 +15,7 @@ from swgsim.tables.formats.limited import LimitedReader
 from swgsim.tables.limits import inside, require_file_count
 from swgsim.tables.measured_table import first_lost, read_measured
 from swgsim.tables.path_pattern import path_groups
+from swgsim.tables.several import recordings_in
 
 # Names that a message lists.
 LISTED = 10
@@ -55,7 +56,7 @@ def read_mapped(path: Path, mapping: SourceMap) -> Mapped:
     runs = list(_by_path(path, names, mapping) if mapping.table.path else _by_name(path, names, mapping))
     require_file_count(path, len(runs))
     with LimitedReader() as reader:
-        whole = [_read_one(folder, run, mapping, reader) for run in runs]
+        whole = [each for run in runs for each in _read_each(folder, run, mapping, reader)]
     recordings = tuple(part for recording in whole for part in _parts(recording, mapping))
     require_alike(recordings)
     read = {file for run in runs for file in run.files.values()}
@@ -93,6 +94,18 @@ def _by_path(path: Path, names: list[str], mapping: SourceMap) -> Iterator[Run]:
         found = f"no file that matches 'path' of the map among {', '.join(names[:LISTED])}"
         raise FileDefect(str(path), found, f"files that match {mapping.table.path}")
     yield from runs.values()
+
+
+def _read_each(folder: Path, run: Run, mapping: SourceMap, reader: LimitedReader) -> Iterator[Recording]:
+    """The recordings of one file, or the one of several."""
+    if not mapping.table.each:
+        yield _read_one(folder, run, mapping, reader)
+        return
+    name = next(iter(run.files.values()))
+    stem = run.known.get("recording", name.partition(".")[0])
+    for each, groups in recordings_in(inside(folder, name, "the column map"), name, mapping.table.each, reader):
+        known = {"recording": f"{stem} {each}", **{k: v for k, v in run.known.items() if k != "recording"}, **groups}
+        yield _read_one(folder, Run(run.files, known), mapping.of(each), reader)
 
 
 def _read_one(folder: Path, run: Run, mapping: SourceMap, reader: LimitedReader) -> Recording:

@@ -47,6 +47,8 @@ def opened(stack: ExitStack, request: dict) -> tuple[dict, Contents | None]:
     except ModuleNotFoundError as error:
         return {"absent": error.name}, None
     limit(request["memory"], request["seconds"])
+    if "sheets" in request:
+        return {"sheets": reader.sheets(Path(request["open"]))}, None
     if "sheet" in request:
         return {"cells": reader.cells(Path(request["open"]), request["file"], request["sheet"])}, None
     contents = stack.enter_context(reader.opened(Path(request["open"]), request["file"], request["wanted"]))

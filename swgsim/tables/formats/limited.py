@@ -84,6 +84,10 @@ class LimitedReader:
         """
         return self._answer({**_request(path, file, reader), "sheet": sheet}, path, file)["cells"]
 
+    def sheets(self, path: Path, file: str, reader: str) -> list[str]:
+        """Names of the sheets of a spreadsheet; errors as for :meth:`cells`."""
+        return self._answer({**_request(path, file, reader), "sheets": True}, path, file)["sheets"]
+
     def _answer(self, request: dict, path: Path, file: str) -> dict:
         """The header of the child's answer to one request."""
         stdin, stdout = self._streams()

@@ -46,8 +46,20 @@ def cells(
     FileDefect
         If the file is damaged or of an older format, or has no such sheet or too many cells.
     """
+    _require_known(path, name)
+    with nullcontext(reader) if reader else LimitedReader() as child:
+        return child.cells(path, name, "workbook", sheet)
+
+
+def sheets(path: Path, name: str, reader: LimitedReader | None = None) -> list[str]:
+    """Names of the sheets; parameters and errors as for :func:`cells`."""
+    _require_known(path, name)
+    with nullcontext(reader) if reader else LimitedReader() as child:
+        return child.sheets(path, name, "workbook")
+
+
+def _require_known(path: Path, name: str) -> None:
+    """Raise a FileDefect unless a spreadsheet is of a format that is read."""
     require_readable(path)
     if path.suffix.lower() in OTHERS:
         raise FileDefect(name, path.suffix, f"{' or '.join(ENDINGS)}: save the spreadsheet in this format, or as CSV")
-    with nullcontext(reader) if reader else LimitedReader() as child:
-        return child.cells(path, name, "workbook", sheet)

@@ -47,6 +47,15 @@ def cells(path: Path, file: str, sheet: str | int | None) -> list[list[Cell]]:
         book.close()
 
 
+def sheets(path: Path) -> list[str]:
+    """Names of the sheets."""
+    book = openpyxl.load_workbook(path, read_only=True, data_only=True, keep_links=False)
+    try:
+        return [each.title for each in book.worksheets]
+    finally:
+        book.close()
+
+
 def _number(sheet: str | int | None, names: list[str], file: str) -> int:
     """Place of a sheet, from 0."""
     if sheet is None and len(names) == 1:
