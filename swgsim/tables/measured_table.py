@@ -1,11 +1,11 @@
 """The columns of one run, from its file or its files, with the time of each sample."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from jaxtyping import Float, Int, Shaped
+from jaxtyping import Float, Int
 
 from swgsim.tables import binary
 from swgsim.tables.clock import Clock
@@ -15,6 +15,7 @@ from swgsim.tables.formats.spreadsheet import is_spreadsheet
 from swgsim.tables.layout import LEAVE_OUT, Layout
 from swgsim.tables.limits import require_readable
 from swgsim.tables.measured_column import MeasuredColumn
+from swgsim.tables.own_times import chosen, chosen_table, interpolated, own_time, require_same_clock
 from swgsim.tables.spreadsheet_table import first_row_of, read_spreadsheet
 from swgsim.tables.text import Columns, read_text, start_of
 from swgsim.tables.text_defects import row_of
@@ -76,14 +77,14 @@ def read_measured(
     """
     read = {signal: _read(folder, files, signal, columns, clock, layout, reader) for signal in _signals(columns, clock)}
     name = next(iter(files.values()))
-    numbers = [_chosen(read[each.file], each.rows, each.own(read[each.file][each.place])) for each in columns]
+    numbers = [chosen(read[each.file], each.rows, each.own(read[each.file][each.place])) for each in columns]
     numbers = [each.astype(float) for each in numbers]
     time: Float[np.ndarray, " time"] | None = None
     if clock:
-        times = _chosen_all(read[clock.file], clock.rows)
+        times = chosen_table(read[clock.file], clock.rows)
         origin = clock.origin(times, files[clock.file])
         time = clock.seconds(times, files[clock.file], origin)
-        _require_same_clock(read, files, clock, columns)
+        require_same_clock(read, files, clock, columns)
     own = [each.time is not None for each in columns]
     lengths = {
         f"{each.file} {each.column}".strip(): len(values)
@@ -93,7 +94,7 @@ def read_measured(
     if len(set(lengths.values())) > 1:
         expected = "as many values in each column; a signal with other times needs its own, such as time: t"
         raise FileDefect(name, f"columns of different lengths {lengths}", expected)
-    if rate_hz is not None:
+    if rate_hz is not None and lengths:
         time = np.arange(next(iter(lengths.values()))) / rate_hz
     first_row = _first_row(folder / name, name, layout, reader)
     together = [values for values, alone in zip(numbers, own, strict=True) if not alone]
@@ -109,21 +110,9 @@ def read_measured(
     if any(own):
         if not clock or time is None:
             raise FileDefect(name, "signals with times of their own", "a time of all, to which they are interpolated")
-        others = {each: _own_time(each, clock, read, files, origin) for each in columns if each.time is not None}
-        numbers, time = _interpolated(columns, numbers, time, others, name)
+        others = {each: own_time(each, clock, read, files, origin) for each in columns if each.time is not None}
+        numbers, time = interpolated(columns, numbers, time, others, name)
     return MeasuredTable(tuple(numbers), time, len(lost) if layout.lost_rows else 0, first_row)
-
-
-def _chosen(
-    read: Columns, rows: Sequence[tuple[str | int, str]], values: Shaped[np.ndarray, " _"]
-) -> Shaped[np.ndarray, " _"]:
-    """The values in the rows in which columns of text say something."""
-    return values[np.all([read[column] == said for column, said in rows], axis=0)] if rows else values
-
-
-def _chosen_all(read: Columns, rows: Sequence[tuple[str | int, str]]) -> Columns:
-    """All columns in the chosen rows."""
-    return {column: _chosen(read, rows, values) for column, values in read.items()}
 
 
 def _require_few(lost: int, rows: int, layout: Layout, name: str, row: int) -> None:
@@ -132,54 +121,6 @@ def _require_few(lost: int, rows: int, layout: Layout, name: str, row: int) -> N
     if lost > most:
         expected = f"at most {most}, as lost in the map says; {LEAVE_OUT} of lost can be another number of rows"
         raise FileDefect(name, f"{lost} of {rows} rows with lost readings", expected, row)
-
-
-def _require_same_clock(
-    read: Mapping[str, Columns], files: Mapping[str, str], clock: Clock, columns: Sequence[MeasuredColumn]
-) -> None:
-    """Raise a FileDefect if a file of a run has other times in columns of the same names."""
-    for signal, table in read.items():
-        alone = all(each.time is not None for each in columns if each.file == signal)
-        for column in clock.columns if signal != clock.file and not alone else ():
-            named = isinstance(column, str) and column in table
-            if named and not np.array_equal(table[column], read[clock.file][column]):
-                expected = f"the times of {files[clock.file]}; give its signals their own time, such as time: {column}"
-                raise FileDefect(files[signal], "other times", expected, column=str(column))
-
-
-def _own_time(
-    column: MeasuredColumn, clock: Clock, read: Mapping[str, Columns], files: Mapping[str, str], origin: tuple
-) -> Float[np.ndarray, " own"]:
-    """Time of each value of a signal that has its own [s]."""
-    assert column.time is not None
-    if len(clock.columns) > 1:
-        raise FileDefect(files[column.file], "a time of several columns", "one column, where a signal has its own time")
-    table = _chosen_all(read[column.file], column.rows)
-    return replace(clock, columns=(column.time,)).seconds(table, files[column.file], origin)
-
-
-def _interpolated(
-    columns: Sequence[MeasuredColumn],
-    numbers: Sequence[Float[np.ndarray, " _"]],
-    time: Float[np.ndarray, " time"],
-    others: Mapping[MeasuredColumn, Float[np.ndarray, " _"]],
-    name: str,
-) -> tuple[list[Float[np.ndarray, " kept"]], Float[np.ndarray, " kept"]]:
-    """All signals at the times that they share; those with times of their own are interpolated linearly."""
-    known = {}
-    for each, values in zip(columns, numbers, strict=True):
-        if each in others:
-            there = np.isfinite(values) & np.isfinite(others[each])
-            known[each] = others[each][there], values[there]
-            if there.sum() < 2 or not (np.diff(known[each][0]) > 0).all():
-                raise FileDefect(name, "a time that does not increase", "later times", column=str(each.time))
-    first, last = max(times[0] for times, _ in known.values()), min(times[-1] for times, _ in known.values())
-    kept = (time >= first) & (time <= last)
-    found = [
-        np.interp(time[kept], *known[each]) if each in known else values[kept]
-        for each, values in zip(columns, numbers, strict=True)
-    ]
-    return found, time[kept]
 
 
 def first_lost(

@@ -1,0 +1,72 @@
+"""Signals of one run that have rows or times of their own."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from jaxtyping import Float, Shaped
+
+from swgsim.tables.clock import Clock
+from swgsim.tables.file_defect import FileDefect
+from swgsim.tables.measured_column import MeasuredColumn
+from swgsim.tables.text import Columns
+
+
+def chosen(
+    read: Columns, rows: Sequence[tuple[str | int, str]], values: Shaped[np.ndarray, " _"]
+) -> Shaped[np.ndarray, " _"]:
+    """The values in the rows in which columns of text say something."""
+    return values[np.all([read[column] == said for column, said in rows], axis=0)] if rows else values
+
+
+def chosen_table(read: Columns, rows: Sequence[tuple[str | int, str]]) -> Columns:
+    """All columns in the chosen rows."""
+    return {column: chosen(read, rows, values) for column, values in read.items()}
+
+
+def require_same_clock(
+    read: Mapping[str, Columns], files: Mapping[str, str], clock: Clock, columns: Sequence[MeasuredColumn]
+) -> None:
+    """Raise a FileDefect if a file of a run has other times in columns of the same names."""
+    for signal, table in read.items():
+        alone = all(each.time is not None for each in columns if each.file == signal)
+        for column in clock.columns if signal != clock.file and not alone else ():
+            named = isinstance(column, str) and column in table
+            if named and not np.array_equal(table[column], read[clock.file][column]):
+                expected = f"the times of {files[clock.file]}; give its signals their own time, such as time: {column}"
+                raise FileDefect(files[signal], "other times", expected, column=str(column))
+
+
+def own_time(
+    column: MeasuredColumn, clock: Clock, read: Mapping[str, Columns], files: Mapping[str, str], origin: tuple
+) -> Float[np.ndarray, " own"]:
+    """Time of each value of a signal that has its own [s]."""
+    assert column.time is not None
+    if len(clock.columns) > 1:
+        raise FileDefect(files[column.file], "a time of several columns", "one column, where a signal has its own time")
+    table = chosen_table(read[column.file], column.rows)
+    return replace(clock, columns=(column.time,)).seconds(table, files[column.file], origin)
+
+
+def interpolated(
+    columns: Sequence[MeasuredColumn],
+    numbers: Sequence[Float[np.ndarray, " _"]],
+    time: Float[np.ndarray, " time"],
+    others: Mapping[MeasuredColumn, Float[np.ndarray, " _"]],
+    name: str,
+) -> tuple[list[Float[np.ndarray, " kept"]], Float[np.ndarray, " kept"]]:
+    """All signals at the times that they share; those with times of their own are interpolated linearly."""
+    known = {}
+    for each, values in zip(columns, numbers, strict=True):
+        if each in others:
+            there = np.isfinite(values) & np.isfinite(others[each])
+            known[each] = others[each][there], values[there]
+            if there.sum() < 2 or not (np.diff(known[each][0]) > 0).all():
+                raise FileDefect(name, "a time that does not increase", "later times", column=str(each.time))
+    first, last = max(times[0] for times, _ in known.values()), min(times[-1] for times, _ in known.values())
+    kept = (time >= first) & (time <= last)
+    found = [
+        np.interp(time[kept], *known[each]) if each in known else values[kept]
+        for each, values in zip(columns, numbers, strict=True)
+    ]
+    return found, time[kept]
