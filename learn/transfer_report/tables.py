@@ -12,7 +12,7 @@ import pandas as pd
 from learn.evaluation.bootstrap import (
     SPECIMEN,
     difference_to,
-    hierarchical_bootstrap,
+    gear_bootstrap,
     mean_error,
     paired_comparison,
     ratio_to,
@@ -74,14 +74,14 @@ def paired(specimens: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
 
 def with_intervals(specimens: Mapping[str, pd.DataFrame], purpose: str) -> pd.DataFrame:
     """Mean error of each method: ``value``, ``low``, ``high`` [%]."""
-    return hierarchical_bootstrap(paired(specimens), mean_error, generator("report", purpose))
+    return gear_bootstrap(paired(specimens), mean_error, generator("report", purpose))
 
 
 def difference(errors: pd.DataFrame, method: str, reference: str) -> pd.Series:
     """Error of a method minus that of another on the same specimens: ``value``, ``low``, ``high`` [points]."""
     rng = generator("report", "difference", method, reference)
     both = errors[[*SPECIMEN, method, reference]]
-    return row_of(hierarchical_bootstrap(both, difference_to(reference), rng), method)
+    return row_of(gear_bootstrap(both, difference_to(reference), rng), method)
 
 
 def _named(prefix: str, table: pd.DataFrame) -> pd.DataFrame:
@@ -114,9 +114,9 @@ def zero_shot(errors: pd.DataFrame, development: pd.Series, fit_seconds: pd.Seri
     if FOREST not in errors:
         raise ValueError(f"no run of the {FOREST}, the reference of all ratios: add classifier=rf features=selection_1")
     rng = generator("report", "zero-shot")
-    table = hierarchical_bootstrap(errors, mean_error, rng)
-    table = table.join(_named("ratio", hierarchical_bootstrap(errors, ratio_to(FOREST), rng)))
-    table = table.join(_named("oracle", hierarchical_bootstrap(errors, ratio_to(ORACLE), rng)))
+    table = gear_bootstrap(errors, mean_error, rng)
+    table = table.join(_named("ratio", gear_bootstrap(errors, ratio_to(FOREST), rng)))
+    table = table.join(_named("oracle", gear_bootstrap(errors, ratio_to(ORACLE), rng)))
     return table.assign(development=development, fit_seconds=fit_seconds)
 
 
@@ -184,9 +184,9 @@ def few_shot(errors: pd.DataFrame, adapted: Mapping[str, pd.DataFrame]) -> pd.Da
         both = paired({FOREST: forest, **here})
         changes = {name: part.assign(error=part["error"] - part["unadapted"]) for name, part in here.items()}
         rng = generator("report", "few-shot", shots)
-        table = hierarchical_bootstrap(both, mean_error, rng).drop(index=FOREST)
-        table = table.join(_named("ratio", hierarchical_bootstrap(both, ratio_to(FOREST), rng)))
-        table = table.join(_named("gain", hierarchical_bootstrap(paired(changes), mean_error, rng)))
+        table = gear_bootstrap(both, mean_error, rng).drop(index=FOREST)
+        table = table.join(_named("ratio", gear_bootstrap(both, ratio_to(FOREST), rng)))
+        table = table.join(_named("gain", gear_bootstrap(paired(changes), mean_error, rng)))
         unadapted = pd.Series({name: part["unadapted"].mean() for name, part in here.items()})
         rows.append(table.assign(shots=shots, unadapted=unadapted).rename_axis("method").reset_index())
     return pd.concat(rows, ignore_index=True)
