@@ -12,7 +12,7 @@ from learn.inputs.inputs import SPECIMEN, LearningSet
 from learn.protocols.levels import Episode, Target
 from swgsim.common.seeds import seed_hash
 
-SourceModel = Callable[[Any, Any], Any]  # (rows, class names) to a trained model
+SourceModel = Callable[[Any, Any, Any], Any]  # (rows, class names, gears) to a trained model
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ def adapt_and_judge(
     data : LearningSet
     episodes : iterable of Episode
     source_model : callable
-        Trains a model on rows and class names.
+        Trains a model on rows, class names and the gear of every row.
     adaptation : Adaptation
     shots : sequence of int
         Numbers K of labelled variants per class; 0 for methods of level Z2, which need one draw.
@@ -69,7 +69,7 @@ def adapt_and_judge(
     specimens, gears = [], []
     for episode in episodes:
         kept = Labelled(np.asarray(data.features[episode.source]), y[episode.source])
-        model = source_model(*kept)
+        model = source_model(*kept, data.table["gear"].to_numpy()[episode.source])
         before = _accuracy(model, data, y, episode.kept_out)
         for target in episode.targets:
             unadapted = 100.0 * (model.predict(data.features[target.judged]) != y[target.judged])

@@ -41,16 +41,18 @@ def results(
             f"protocol {config['protocol']['name']} leaves no gear to adapt to: take new_gears, or adaptation=none"
         )
     make, adaptation = settings.classifier(config["classifier"], data.layout), config["adaptation"]
-    y = data.table["label"].astype(str).to_numpy()
+    y, gears = data.table["label"].astype(str).to_numpy(), data.table["gear"].to_numpy()
 
-    def source_model(X: np.ndarray, y: np.ndarray, **options: Any) -> Any:
+    def source_model(X: np.ndarray, y: np.ndarray, gears: np.ndarray, **options: Any) -> Any:
         identity_of_source = json.dumps([config["classifier"], options, identity.code_version()], sort_keys=True)
-        return models.trained(Path(config["models"]), identity_of_source, make(**options), X, y)
+        return models.trained(Path(config["models"]), identity_of_source, make(**options), X, y, gears)
 
     def source_score(options: Mapping[str, Any]) -> float:
         shares = [
             np.mean(
-                source_model(np.asarray(data.features[train]), y[train], **options).predict(data.features[test])
+                source_model(np.asarray(data.features[train]), y[train], gears[train], **options).predict(
+                    data.features[test]
+                )
                 == y[test]
             )
             for _, train, test in protocol.development_splits(data.table)

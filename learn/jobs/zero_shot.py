@@ -25,10 +25,10 @@ def results(
 
     protocol = settings.protocol(config["protocol"])
     make = settings.classifier(config["classifier"], data.layout)
-    y = data.table["label"].astype(str).to_numpy()
+    y, gears = data.table["label"].astype(str).to_numpy(), data.table["gear"].to_numpy()
 
     def evaluated(splits: Any, options: Mapping[str, Any]) -> Evaluation:
-        return evaluate(data.features, y, splits, partial(make, **options))
+        return evaluate(data.features, y, splits, partial(make, **options), gears)
 
     options: Mapping[str, Any] = {}
     scores: list[float] = []

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 from threadpoolctl import threadpool_limits
 
+from learn.evaluation.evaluate import fit
 from learn.evaluation.importance import grouped_permutation
 from learn.inputs.inputs import OPERATING_POINT
 from learn.jobs import settings
@@ -90,7 +91,7 @@ def importance(runs: Runs, run: pd.Series, data: Path) -> tuple[pd.DataFrame, in
     points = judged.groupby(list(OPERATING_POINT)).ngroup().to_numpy()
     groups, parts = groups_of(chosen.names), []
     with threadpool_limits(1):  # many small predictions, for which threads would only wait
-        model.fit(chosen.features[split.train], y[split.train])
+        fit(model, chosen.features[split.train], y[split.train], chosen.table["gear"].to_numpy()[split.train])
         for label in PHYSICS:
             pair = np.isin(truth, [label, "healthy"])
             rng = generator("report", "importance", label)

@@ -62,7 +62,7 @@ class Spy:
 
 def spied(data, shots, draws=3):
     spy, source = Spy(), Spy()
-    adapted = adapt_and_judge(data, PROTOCOL.episodes(data.table), lambda X, y: source, spy, shots, draws)
+    adapted = adapt_and_judge(data, PROTOCOL.episodes(data.table), lambda X, y, gears: source, spy, shots, draws)
     return spy, adapted
 
 
@@ -119,7 +119,7 @@ def test_errors_are_counted_by_specimen_and_by_gear(numbered):
 
 
 def test_from_scratch_with_all_shots_is_training_on_the_labelled_rows(data):
-    def source_model(X, y):
+    def source_model(X, y, gears=None):
         return clone(FOREST).fit(X, y)
 
     adapted = adapt_and_judge(data, PROTOCOL.episodes(data.table), source_model, FromScratch(), [2], draws=2)
@@ -146,7 +146,7 @@ def test_from_scratch_with_all_shots_is_training_on_the_labelled_rows(data):
 
 
 def test_the_source_model_itself_forgets_nothing_and_one_that_is_tuned_does(data):
-    def source_model(X, y):
+    def source_model(X, y, gears=None):
         return neural_perceptron(neurons=16, epochs=20, batch=32, device="cpu").fit(X, y)
 
     first, without = (next(replace(PROTOCOL, kept_out=number).episodes(data.table)) for number in (1, 0))
