@@ -93,6 +93,18 @@ def classifier(config: Config, layout: Layout | None = None) -> Callable[..., cl
     return make
 
 
+def on_device(config: Config) -> dict[str, Any]:
+    """The configuration of a classifier with the device that ``auto`` means on this machine.
+
+    Results of a processor and of an accelerator differ in the last digits, so a job must name where it ran.
+    """
+    if config.get("device") != "auto":
+        return dict(config)
+    from learn.methods.training import choose_device  # with torch, which takes seconds
+
+    return {**config, "device": choose_device("auto").type}
+
+
 def adaptation(config: Config) -> Callable[..., "Adaptation"]:
     """Makes the adaptation of ``conf/adaptation``; its arguments replace configured options."""
     from learn.adaptation.adaptations import ADAPTATIONS  # with torch, which takes seconds
