@@ -32,6 +32,12 @@ class Adapted:
     specimens: pd.DataFrame
     gears: pd.DataFrame
 
+    @classmethod
+    def of(cls, parts: Sequence["Adapted"]) -> "Adapted":
+        """The errors of several parts, each of other gears."""
+        specimens, gears = ([getattr(part, name) for part in parts] for name in ("specimens", "gears"))
+        return cls(pd.concat(specimens, ignore_index=True), pd.concat(gears, ignore_index=True))
+
     def mean_error(self) -> float:
         """Mean over gears and numbers of shots [%]."""
         return float(self.gears["error"].mean())

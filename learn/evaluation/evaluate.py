@@ -59,6 +59,11 @@ class Evaluation:
         predicted = pd.DataFrame(self.probabilities.astype("f4"), columns=list(self.classes))
         return facts.assign(label=facts["label"].astype(str)).join(predicted)
 
+    @property
+    def mean_test_score(self) -> float:
+        """Accuracy in test, the mean over splits [%]."""
+        return float(np.mean([score.test for score in self.scores]))
+
     def recall(self) -> Mapping[str, float]:
         """Recall of each tested class [%]."""
         tested = self.confusion.sum(axis=1)
@@ -71,7 +76,7 @@ class Evaluation:
         recall = self.recall()
         exact = {
             "train_score": float(np.mean([s.train for s in self.scores])),
-            "test_score": float(np.mean([s.test for s in self.scores])),
+            "test_score": self.mean_test_score,
             "balanced_accuracy": float(np.mean(list(recall.values()))),
             "fit_seconds": sum(s.fit_seconds for s in self.scores),
             "converged": float(all(s.converged for s in self.scores)),
