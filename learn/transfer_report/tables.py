@@ -17,11 +17,13 @@ from learn.evaluation.bootstrap import (
     paired_comparison,
     ratio_to,
 )
+from learn.transfer_report.seeds import spread_text
 from swgsim.common.seeds import generator
 
 FOREST = "random forest on Selection 1"  # the paper's best on Selection 1, depth 7
 ORACLE, ORACLE_OF_SESSION = "oracle", "oracle that knows the session"
 ORACLES = [ORACLE, ORACLE_OF_SESSION]
+SEEDS = "seeds: standard deviation [points]"
 FROM_SCRATCH = ": from scratch"  # end of the name of a method that uses no source gear
 
 
@@ -155,6 +157,7 @@ def methods_text(table: pd.DataFrame, errors: pd.DataFrame) -> pd.DataFrame:
             "better in gears": gears,
             "error on development gears [%]": [number(100 - score) for score in rows["development"]],
             "fit, all folds [s]": [number(seconds, digits=0) for seconds in rows["fit_seconds"]],
+            SEEDS: ["-" if name in ORACLES else text for name, text in zip(rows.index, spread_text(rows), strict=True)],
         },
         index=rows.index.rename("method"),
     )
@@ -198,16 +201,21 @@ def best_adapted(few: pd.DataFrame, shots: int) -> pd.Series | None:
     return None if here.empty else least(here)
 
 
-def shots_text(few: pd.DataFrame, prefix: str, labelled: int, marks: Mapping[str, str]) -> pd.DataFrame:
+def shots_text(
+    few: pd.DataFrame, prefix: str, labelled: int, marks: Mapping[str, str], runs: pd.DataFrame | None = None
+) -> pd.DataFrame:
     """A figure of :func:`few_shot`, ``gain`` or '' for the error, of every method (rows) and number of shots (columns).
 
-    `labelled` shots are all labels of the gear; `marks` are appended to names of methods.
+    `labelled` shots are all labels of the gear; `marks` are appended to names of methods; `runs`, by method, tell of
+    their seeds.
     """
     wide = few.assign(text=text_of(few, prefix)).pivot(index="method", columns="shots", values="text").fillna("-")
     wide = wide.loc[few.groupby("method")["value"].min().sort_values().index]
     wide.insert(
         0, "source model [%]", [number(error) for error in few.groupby("method")["unadapted"].first()[wide.index]]
     )
+    if runs is not None:
+        wide.insert(1, SEEDS, spread_text(runs.loc[wide.index]))
     names = {k: "Z2, no label" if k == 0 else f"K = {k}{' (Z4)' if k == labelled else ''}" for k in few["shots"]}
     wide.index = pd.Index([f"{name}{marks.get(str(name), '')}" for name in wide.index], name="method")
     return wide.rename(columns=names).rename_axis(None, axis="columns")

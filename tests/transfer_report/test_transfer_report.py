@@ -13,7 +13,7 @@ from learn.inputs.residuals import ERRORS
 from learn.jobs import settings
 from learn.jobs.identity import code_version, flat
 from learn.protocols.levels import NewGears
-from learn.transfer_report import importance, tables, transfer_study
+from learn.transfer_report import importance, seeds, tables, transfer_study
 from learn.transfer_report import runs as transfer_runs
 from swgsim.storage import storage
 
@@ -51,6 +51,7 @@ def test_whole_report_from_made_up_runs(data, store, tmp_path):
     assert z1["ci95"][0] < z1["ratio"] < z1["ci95"][1]
     assert list(content["z3"]) == ["1", "2", "5"]
     assert {row["best_method"] for row in content["z3"].values()} == {"MLP: replay"}
+    assert (z1["seeds"], z1["spread_over_seeds"]) == (1, None)
     assert content["gears"] == 6
     assert content["inputs"]["raw"]["mlp"] < content["inputs_without_efficiency"]["raw"]["mlp"]
     assert content["inputs"]["residual"] == {"mlp": None, "cnn": None, "minirocket": None}
@@ -90,6 +91,25 @@ def test_runs_of_the_present_code_replace_older_ones_of_their_study(store):
     runs = transfer_runs.Runs({}, {}, {}, keep.store, found)
     assert runs.older_code() == ["no_reference", "transfer_map"]
     assert runs.of_study("zero_shot").empty
+
+
+def test_a_sweep_over_seeds_is_one_method_with_means_and_their_spread(tmp_path):
+    keep = Keeper(tmp_path, {"gears-bench": "a"})
+    facts = {"gear": 1, "label": "healthy", "variant": [0, 1]}
+    for seed, error in ((0, 10.0), (1, 13.0), (2, 16.0)):
+        table = pd.DataFrame({**facts, "shots": 5, "error": [error, error + 2], "unadapted": 20.0})
+        keep("transfer", metrics={"test_score": 100 - error}, tables={"specimens": table}, classifier="perceptron",
+             features="harmonics", adaptation="replay", seed=seed, **{"classifier.seed": seed})  # fmt: skip
+    keep("transfer", classifier="perceptron", features="harmonics", adaptation="coral")
+    runs = transfer_runs.Runs({}, {}, {}, keep.store, transfer_runs.present_runs(keep.store, ["a"]))
+    methods = transfer_runs.by_method(runs.of_study("transfer"))
+    assert list(methods.index) == ["MLP: CORAL", "MLP: replay"]
+    assert methods.loc["MLP: replay", ["seeds", "test_score", "spread"]].tolist() == [3, 87.0, 3.0]
+    assert methods["seeds"].tolist() == [1, 3]
+    assert seeds.spread_text(methods) == ["1: -", "3: 3.0"]
+    found = runs.tables(methods.loc[["MLP: replay"]], "specimens")["MLP: replay"]
+    assert found["error"].tolist() == [13.0, 15.0]
+    assert found["unadapted"].tolist() == [20.0, 20.0]
 
 
 def test_every_experiment_of_a_study_is_among_its_commands():
