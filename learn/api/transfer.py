@@ -8,7 +8,8 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from learn.adaptation.adapting import Adapted, adapt_and_judge
+from learn.adaptation.adapted import Adapted
+from learn.adaptation.adapting import adapt_and_judge
 from learn.api.choices import choice
 from learn.evaluation.evaluate import fit
 from learn.inputs.inputs import LearningSet

@@ -29,7 +29,8 @@ def results(
     ValueError
         If the protocol leaves no gears to adapt to.
     """
-    from learn.adaptation.adapting import Adapted, adapt_and_judge
+    from learn.adaptation.adapted import Adapted
+    from learn.adaptation.adapting import adapt_and_judge
     from learn.evaluation import models
     from learn.methods.choosing import Choice, Options, choose, trial_metrics
 

@@ -20,6 +20,7 @@ from learn.protocols.splits import GroupedFolds, LeaveOneGearOut, RandomFolds, S
 from learn.tracking import Store, local_store, server_store
 
 if TYPE_CHECKING:
+    from learn.adaptation.rezero import Rezero
     from learn.adaptation.transfer import Adaptation
 
 NO_OPTIONS = ("name", "trials", "shots")  # entries of a file in conf that are no arguments of its object
@@ -105,7 +106,7 @@ def on_device(config: Config) -> dict[str, Any]:
     return {**config, "device": choose_device("auto").type}
 
 
-def adaptation(config: Config) -> Callable[..., "Adaptation"]:
+def adaptation(config: Config) -> Callable[..., "Adaptation | Rezero"]:
     """Makes the adaptation of ``conf/adaptation``; its arguments replace configured options."""
     from learn.adaptation.adaptations import ADAPTATIONS  # with torch, which takes seconds
 
