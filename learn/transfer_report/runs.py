@@ -26,7 +26,13 @@ EXPERIMENTS: Mapping[str, tuple[str, ...]] = {
     "inputs": ("inputs", "inputs_features"),
     "inputs_operating_point": ("inputs_operating_point",),
     "no_reference": ("no_reference",),
-    "transfer": ("transfer_network", "transfer_forest", "transfer_extra_trees", "transfer_cnn"),
+    "transfer": (
+        "transfer_network",
+        "transfer_forest",
+        "transfer_extra_trees",
+        "transfer_cnn",
+        "transfer_rezero",
+    ),
     "transfer_map": ("transfer_map", "transfer_map_foreign"),
 }
 PAPER_EXPERIMENTS: Mapping[str, tuple[str, ...]] = {"zero_shot_disturbed": ("zero_shot_disturbed",)}
@@ -50,7 +56,12 @@ FEATURES: Mapping[str, str] = {
     "residual": "residual signals",
     "lines": "residual lines",
 }
-ADAPTATIONS: Mapping[str, str] = {"l2_sp": "L2-SP", "coral": "CORAL", "structure_transfer": "STRUT"}
+ADAPTATIONS: Mapping[str, str] = {
+    "l2_sp": "L2-SP",
+    "coral": "CORAL",
+    "structure_transfer": "STRUT",
+    "rezero": "rezero, healthy recordings only",
+}
 FACTS = ["row", *SPECIMEN, "severity", *OPERATING_POINT]
 
 

@@ -25,6 +25,7 @@ ORACLE, ORACLE_OF_SESSION = "oracle", "oracle that knows the session"
 ORACLES = [ORACLE, ORACLE_OF_SESSION]
 SEEDS = "seeds: standard deviation [points]"
 FROM_SCRATCH = ": from scratch"  # end of the name of a method that uses no source gear
+REZERO = ": rezero, healthy recordings only"  # end of the name of a method that uses no recorded fault of the new gear
 
 
 def number(value: float, low: float = np.nan, high: float = np.nan, digits: int = 1, unit: str = "") -> str:
@@ -196,9 +197,14 @@ def few_shot(errors: pd.DataFrame, adapted: Mapping[str, pd.DataFrame]) -> pd.Da
 
 
 def best_adapted(few: pd.DataFrame, shots: int) -> pd.Series | None:
-    """The row of :func:`few_shot` of the best method with source gears; None if none was run with so many shots."""
-    here = few[(few["shots"] == shots) & ~few["method"].str.endswith(FROM_SCRATCH)]
+    """The row of :func:`few_shot` of the best method with source gears and shots of all classes, None without one."""
+    here = few[(few["shots"] == shots) & ~few["method"].str.endswith((FROM_SCRATCH, REZERO))]
     return None if here.empty else least(here)
+
+
+def best_rezeroed(few: pd.DataFrame) -> dict[int, pd.Series]:
+    """The row of :func:`few_shot` of the best method with each number of healthy recordings and no recorded fault."""
+    return {int(str(k)): least(rows) for k, rows in few[few["method"].str.endswith(REZERO)].groupby("shots")}
 
 
 def shots_text(

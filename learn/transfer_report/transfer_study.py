@@ -13,7 +13,16 @@ from learn.paper.paper_page import versions
 from learn.transfer_report import confidence, figures, sentences, studies, tables
 from learn.transfer_report.importance import importance, importance_text
 from learn.transfer_report.runs import Runs, by_method, collected, development_scores, oracle, trials
-from learn.transfer_report.tables import FOREST, ORACLE, ORACLE_OF_SESSION, best_adapted, best_of, highest, row_of
+from learn.transfer_report.tables import (
+    FOREST,
+    ORACLE,
+    ORACLE_OF_SESSION,
+    best_adapted,
+    best_of,
+    best_rezeroed,
+    highest,
+    row_of,
+)
 from swgsim.common.files import write_json, write_text
 from swgsim.common.html import environment
 from swgsim.storage import storage
@@ -216,6 +225,10 @@ def content_of(
                 "ci95": [finite(row["ratio_low"]), finite(row["ratio_high"])],
             }
             for shots, row in adapted.items()
+        },
+        "rezero": {
+            str(shots): {"value": finite(row["value"]), "ci95": [finite(row["low"]), finite(row["high"])]}
+            for shots, row in best_rezeroed(few).items()
         },
         "oracle_error": finite(row_of(zero, ORACLE)["value"]),
         "oracle_session_error": finite(row_of(zero, ORACLE_OF_SESSION)["value"]),

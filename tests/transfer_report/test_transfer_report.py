@@ -50,7 +50,10 @@ def test_whole_report_from_made_up_runs(data, store, tmp_path):
     assert z1["ratio"] == pytest.approx(z1["best_error"] / z1["forest_error"], abs=1e-4)
     assert z1["ci95"][0] < z1["ratio"] < z1["ci95"][1]
     assert list(content["z3"]) == ["1", "2", "5"]
-    assert {row["best_method"] for row in content["z3"].values()} == {"MLP: replay"}
+    assert {row["best_method"] for row in content["z3"].values()} == {"MLP: replay"}  # rezero has no labelled fault
+    assert list(content["rezero"]) == ["0", "1", "2", "5"]
+    low, high = content["rezero"]["2"]["ci95"]
+    assert low < content["rezero"]["2"]["value"] < high
     assert (z1["seeds"], z1["spread_over_seeds"]) == (1, None)
     assert content["gears"] == 6
     assert content["inputs"]["raw"]["mlp"] < content["inputs_without_efficiency"]["raw"]["mlp"]
@@ -69,6 +72,7 @@ def test_whole_report_from_made_up_runs(data, store, tmp_path):
     assert len(set(titles)) == len(titles) > 12
     assert set(re.findall(r'href="#(\w+)"', page)) == set(re.findall(r'<h2 id="(\w+)"', page))
     assert "gears of grid=far" in page
+    assert f"with 2, logistic regression errs in {content['rezero']['2']['value']:.1f} %" in page
     assert "MLP: CORAL (trained on 5 variants)" in page
     assert "replay (trained on" not in page
     assert "experiment=inputs_operating_point grid=gears" in page  # the command of a study without runs
