@@ -45,7 +45,7 @@ def over_window(drive: Drive, start_angle: Float[np.ndarray, " run"], dt: float,
         part = drive.part(others.tolist())
         motion = run(part, steady_state(part, start_angle[others]), dt, count)
         found[:, others] = [getattr(motion, name) for name in CHANNELS]
-    return Motion(*found, dt)
+    return Motion.of(found, dt)
 
 
 def _repeated(
