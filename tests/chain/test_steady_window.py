@@ -45,6 +45,12 @@ def test_friction_over_an_output_revolution_is_that_of_the_middle_of_the_window(
     assert np.abs(repeated.T_out - integrated.T_out).max() < 0.02
 
 
+def test_a_window_in_which_friction_over_an_output_revolution_changes_is_integrated() -> None:
+    drive, samples = Drive([GEAR.transmission] * 2, POINTS), 2000  # up to 13 revolutions
+    integrated = run(drive, steady_state(drive, START), DT, samples)
+    np.testing.assert_array_equal(over_window(drive, START, DT, samples).T_in, integrated.T_in)
+
+
 def test_a_drive_with_effects_is_integrated() -> None:
     one, other = both(0.0, effects=((InputUnbalance(0.01, 0.0),), ()))
     alone = Drive([GEAR.with_transmission(b3=0.0).transmission], POINTS[:1], [(InputUnbalance(0.01, 0.0),)])
