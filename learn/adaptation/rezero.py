@@ -109,7 +109,9 @@ class HealthyEfficiency:
             slope = within[here] @ warmer[here] / max(warmer[here] @ warmer[here], np.finfo(float).tiny)
             warm[every] = slope * temperature[every]
             left = within[here] - slope * warmer[here]
-            variance[every] = left @ left / max(here.sum() - len(np.unique(cell[here])) - 1, 1)
+            # At least rounding, as recordings of a simulation without noise are equal.
+            spread = left @ left / max(here.sum() - len(np.unique(cell[here])) - 1, 1)
+            variance[every] = max(spread, np.finfo(float).eps)
         load, eta = table["T_out_nm"].to_numpy(), table["efficiency"].to_numpy()
         directions = np.column_stack([1 / load, eta / np.exp(change) / load])
         gears = table["gear"].to_numpy()[healthy]

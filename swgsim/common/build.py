@@ -33,11 +33,12 @@ def replaced(instance: T, **changes: Any) -> T:
     TypeError
         If there is no such field.
     """
-    given, names = vars(instance), _names(type(instance))
+    kind: type = type(instance)
+    given, names = vars(instance), _names(kind)
     values = {name: given[name] for name in names} | changes
     if len(values) > len(names):
-        raise TypeError(f"{type(instance).__name__} has no {', '.join(sorted(values.keys() - names))}")
-    new: Any = object.__new__(type(instance))
+        raise TypeError(f"{kind.__name__} has no {', '.join(sorted(values.keys() - names))}")
+    new: Any = object.__new__(kind)
     vars(new).update(values)
     new.__post_init__()
     return cast(T, new)
