@@ -13,7 +13,7 @@ GEARS := $(if $(SMALL),gears_small,gears)
 FOREIGN := $(if $(SMALL),,far-bench few-bench few-noisy few-other_day)
 ON_GEARS := zero_shot $(if $(SMALL),inputs_small,inputs inputs_features) transfer_network transfer_forest \
             $(if $(SMALL),,zero_shot_lines zero_shot_signals inputs_operating_point no_reference) \
-            $(if $(SMALL),,transfer_extra_trees transfer_cnn transfer_map transfer_map_foreign)
+            $(if $(SMALL),,transfer_extra_trees transfer_cnn transfer_rezero transfer_map transfer_map_foreign)
 ON_PAPER := zero_shot_disturbed
 comma := ,
 QUICK := $(if $(SMALL),shots=[1$(comma)2] draws=1 protocol.folds=2 protocol.development=0 \

@@ -1,5 +1,6 @@
 from .adaptations import ADAPTATIONS
-from .adapting import Adapted, adapt_and_judge
+from .adapted import Adapted
+from .adapting import adapt_and_judge
 from .transfer import Adaptation
 
 __all__ = [

@@ -8,6 +8,7 @@ from learn.adaptation.fine_tuning import L2SP, FineTuning, LinearProbe, ProbeThe
 from learn.adaptation.forest_transfer import AddedTrees, LeafRelabelling, StructureTransfer
 from learn.adaptation.prototypes import Prototypes
 from learn.adaptation.retraining import FromScratch
+from learn.adaptation.rezero import Rezero
 from learn.adaptation.transfer import Adaptation
 
 
@@ -18,7 +19,7 @@ def probe_then_fine_tuning(
     return ProbeThenFineTuning(LinearProbe(probe_steps, strength=strength), FineTuning(steps, rate=rate))
 
 
-ADAPTATIONS: Mapping[str, Callable[..., Adaptation]] = {
+ADAPTATIONS: Mapping[str, Callable[..., Adaptation | Rezero]] = {
     "added_trees": AddedTrees,
     "batch_norm": BatchNormAdaptation,
     "coral": Coral,
@@ -31,5 +32,6 @@ ADAPTATIONS: Mapping[str, Callable[..., Adaptation]] = {
     "probe_then_fine_tuning": probe_then_fine_tuning,
     "prototypes": Prototypes,
     "replay": Replay,
+    "rezero": Rezero,
     "structure_transfer": StructureTransfer,
 }

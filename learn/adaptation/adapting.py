@@ -1,53 +1,25 @@
 """Evaluation of transfer: a source model for each fold, adapted to every left-out gear with drawn shots."""
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
+from learn.adaptation.adapted import Adapted
+from learn.adaptation.rezero import Rezero
 from learn.adaptation.transfer import Adaptation, Labelled
-from learn.inputs.inputs import SPECIMEN, LearningSet
+from learn.inputs.inputs import LearningSet
 from learn.protocols.levels import Episode, Target
 from swgsim.common.seeds import seed_hash
 
-SourceModel = Callable[[Any, Any], Any]  # (rows, class names) to a trained model
-
-
-@dataclass(frozen=True)
-class Adapted:
-    """Errors of adapted models.
-
-    Attributes
-    ----------
-    specimens : DataFrame
-        ``gear``, ``label``, ``variant``, ``shots``; ``error``, share of wrong decisions over operating points and draws
-        [%]; ``unadapted``, the same of the source model [%].
-    gears : DataFrame
-        ``gear``, ``shots``; ``error`` and ``unadapted`` as above [%]; ``forgotten``, loss of accuracy on source gears
-        by the adaptation [points].
-    """
-
-    specimens: pd.DataFrame
-    gears: pd.DataFrame
-
-    def mean_error(self) -> float:
-        """Mean over gears and numbers of shots [%]."""
-        return float(self.gears["error"].mean())
-
-    def metrics(self) -> dict[str, float]:
-        """Means over gears for each number of shots, rounded to three decimals, by metric name."""
-        means = self.gears.groupby("shots")[["error", "unadapted", "forgotten"]].mean()
-        each = {f"{name}/{shots}_shots": value for name, column in means.items() for shots, value in column.items()}
-        return {name: round(value, 3) for name, value in {"test_score": 100 - self.mean_error(), **each}.items()}
+SourceModel = Callable[[Any, Any, Any], Any]  # (rows, class names, gears) to a trained model
 
 
 def adapt_and_judge(
     data: LearningSet,
     episodes: Iterable[Episode],
     source_model: SourceModel,
-    adaptation: Adaptation,
+    adaptation: Adaptation | Rezero,
     shots: Sequence[int],
     draws: int,
 ) -> Adapted:
@@ -58,34 +30,45 @@ def adapt_and_judge(
     data : LearningSet
     episodes : iterable of Episode
     source_model : callable
-        Trains a model on rows and class names.
-    adaptation : Adaptation
+        Trains a model on rows, class names and the gear of every row.
+    adaptation : Adaptation or Rezero
     shots : sequence of int
-        Numbers K of labelled variants per class; 0 for methods of level Z2, which need one draw.
+        Numbers K of labelled variants per class; 0 for methods of level Z2, which need one draw. For a :class:`Rezero`
+        they are healthy variants.
     draws : int
         Number of draws of the shots; the draws are the same for all methods.
     """
-    y = data.table["label"].astype(str).to_numpy()
-    specimens, gears = [], []
-    for episode in episodes:
+    y, gears = data.table["label"].astype(str).to_numpy(), data.table["gear"].to_numpy()
+
+    def trained(given: LearningSet, rows: np.ndarray) -> Any:
+        return source_model(np.asarray(given.features[rows]), y[rows], gears[rows])
+
+    def wrong(model: Any, given: LearningSet, rows: np.ndarray) -> np.ndarray:
+        return np.asarray(model.predict(given.features[rows]) != y[rows])
+
+    def adapted(episode: Episode) -> Iterator[Adapted]:
         kept = Labelled(np.asarray(data.features[episode.source]), y[episode.source])
-        model = source_model(*kept)
-        before = _accuracy(model, data, y, episode.kept_out)
-        for target in episode.targets:
-            unadapted = 100.0 * (model.predict(data.features[target.judged]) != y[target.judged])
-            for number in shots:
-                judged, forgotten = [], []
-                for draw in range(draws if number else 1):
-                    adapted = _adapted(data, y, model, kept, target, adaptation, number, draw)
-                    judged.append(adapted.predict(data.features[target.judged]) != y[target.judged])
-                    forgotten.append(before - _accuracy(adapted, data, y, episode.kept_out))
-                error = 100 * np.mean(judged, axis=0)
-                facts = data.table.iloc[target.judged][list(SPECIMEN)]
-                specimens.append(facts.assign(label=y[target.judged], shots=number, error=error, unadapted=unadapted))
-                gears.append((target.gear, number, error.mean(), unadapted.mean(), float(np.mean(forgotten))))
-    each = pd.concat(specimens).groupby([*SPECIMEN, "shots"])[["error", "unadapted"]].mean()
-    names = ["gear", "shots", "error", "unadapted", "forgotten"]
-    return Adapted(each.reset_index(), pd.DataFrame(gears, columns=names))
+        model = trained(data, episode.source)
+        before = wrong(model, data, episode.kept_out)
+        of_target = [wrong(model, data, target.judged) for target in episode.targets]
+        for number in shots:
+            judged: list[list[np.ndarray]] = [[] for _ in episode.targets]
+            forgotten: list[list[float]] = [[] for _ in episode.targets]
+            for draw in range(draws if number else 1):
+                if isinstance(adaptation, Rezero):
+                    given, rows = adaptation.rezeroed(data, episode, number, draw)
+                    corrected = trained(given, rows)
+                for i, target in enumerate(episode.targets):
+                    if isinstance(adaptation, Rezero):
+                        new, inputs = corrected, given
+                    else:
+                        new, inputs = _adapted(data, y, model, kept, target, adaptation, number, draw), data
+                    judged[i].append(wrong(new, inputs, target.judged))
+                    forgotten[i].append(_lost(before, wrong(new, inputs, episode.kept_out)))
+            for target, each, plain, lost in zip(episode.targets, judged, of_target, forgotten, strict=True):
+                yield Adapted.of_gear(data.table, target, number, each, plain, lost)
+
+    return Adapted.of([part for episode in episodes for part in adapted(episode)])
 
 
 def _adapted(
@@ -98,6 +81,6 @@ def _adapted(
     return adaptation.adapt(model, kept, Labelled(np.asarray(data.features[rows]), y[rows]), unlabelled, seed)
 
 
-def _accuracy(model: Any, data: LearningSet, y: np.ndarray, rows: np.ndarray) -> float:
-    """Share of correct decisions [%]; NaN without rows."""
-    return 100 * float(np.mean(model.predict(data.features[rows]) == y[rows])) if len(rows) else float("nan")
+def _lost(before: np.ndarray, after: np.ndarray) -> float:
+    """Loss of accuracy on source gears [points]; NaN without rows."""
+    return 100 * float(after.mean() - before.mean()) if len(before) else float("nan")

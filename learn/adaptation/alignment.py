@@ -125,13 +125,13 @@ class BatchNormAdaptation:
                 f"the {source.architecture.kind} network has no batch normalisation to adapt: "
                 "take a convolutional network, or CORAL"
             )
-        momenta = [layer.momentum for layer in layers]
-        for layer in layers:
-            layer.train()
-            layer.momentum = self.mixing  # in one pass of all rows, this is the weight of their statistics
+        rows = as_tensor(unlabelled).to(network.centre.device)
         with torch.no_grad(), one_thread():
-            network.embed(as_tensor(unlabelled).to(network.centre.device))
-        for layer, momentum in zip(layers, momenta, strict=True):
-            layer.momentum = momentum
-        network.eval()
+            # Layer by layer, as each one is fed by the adapted statistics of those before it.
+            for layer in layers:
+                before, layer.momentum = layer.momentum, self.mixing  # in one pass, the weight of the statistics
+                layer.train()
+                network.embed(rows)
+                layer.eval()
+                layer.momentum = before
         return source.with_network(network)

@@ -95,5 +95,6 @@ def evaluate(
     else:
         make, name = classifier, getattr(classifier, "__name__", type(classifier).__name__)
     labels = data.table["label"].astype(str).to_numpy()
-    evaluation = evaluate_splits(data.features, labels, splitting.split(data.features, data.table), make)
+    splits, gears = splitting.split(data.features, data.table), data.table["gear"].to_numpy()
+    evaluation = evaluate_splits(data.features, labels, splits, make, gears)
     return Scores(f"{name}, {protocol.replace('_', ' ')}", evaluation)

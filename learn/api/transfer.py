@@ -4,13 +4,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from learn.adaptation.adapting import Adapted, adapt_and_judge
+from learn.adaptation.adapted import Adapted
+from learn.adaptation.adapting import adapt_and_judge
 from learn.api.choices import choice
+from learn.evaluation.evaluate import fit
 from learn.inputs.inputs import LearningSet
 from learn.jobs import settings
+from learn.methods.contract import Classifier
 from learn.protocols.levels import NewGears
 from swgsim.common.style import html_figure, label
 
@@ -91,5 +95,11 @@ def transfer(
     make = settings.classifier(choice("classifier", classifier, seed, **options), data.layout)
     change = settings.adaptation(choice("adaptation", adaptation, seed))()
     episodes = protocol.episodes(data.table)
-    judged = adapt_and_judge(data, episodes, lambda X, y: make().fit(X, y), change, list(shots), draws)
+
+    def source_model(X: np.ndarray, y: np.ndarray, gears: np.ndarray) -> Classifier:
+        model = make()
+        fit(model, X, y, gears)
+        return model
+
+    judged = adapt_and_judge(data, episodes, source_model, change, list(shots), draws)
     return Transfer(f"{classifier}, {adaptation.replace('_', ' ')}", judged)

@@ -71,9 +71,13 @@ def _compared(path: Path, found: Agreement) -> None:
 def _trained(config: Mapping[str, Any], data: LearningSet, others: np.ndarray) -> Any:
     """The classifier trained on all gears but the exported one, or kept from before."""
     rows, label = np.asarray(data.features[np.flatnonzero(others)]), data.table["label"].astype(str).to_numpy()
-    description = json.dumps([config["classifier"], config["features"], identity.code_version()], sort_keys=True)
+    description = json.dumps(
+        [settings.on_device(config["classifier"]), config["features"], identity.code_version()], sort_keys=True
+    )
     make = settings.classifier(config["classifier"], data.layout)
-    return models.trained(Path(config["models"]), description, make(), rows, label[others])
+    return models.trained(
+        Path(config["models"]), description, make(), rows, label[others], data.table["gear"].to_numpy()[others]
+    )
 
 
 def _read(path: Path, data: LearningSet) -> Any:

@@ -79,7 +79,7 @@ def folds(
     gear, label = data.table["gear"].to_numpy(), data.table["label"].astype(str).to_numpy()
     for split in splitting.split(data.features, data.table):
         model = make(data.layout)
-        fit(model, np.asarray(data.features[split.train]), label[split.train])
+        fit(model, np.asarray(data.features[split.train]), label[split.train], gear[split.train])
         tested = np.unique(gear[split.test])
         recordings = of_gears(path, tested.tolist())
         kept = recordings.table["reference"].to_numpy().copy()

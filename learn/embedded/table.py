@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from learn.embedded.proof import Agreement
-from learn.evaluation.bootstrap import hierarchical_bootstrap, mean_error
+from learn.evaluation.bootstrap import gear_bootstrap, mean_error
 from learn.inputs.inputs import SPECIMEN
 from swgsim.common.seeds import generator
 
@@ -42,7 +42,7 @@ def variants_of(results: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
         those of the ``longest_push``.
     """
     errors = errors_of(results)
-    accuracy = 100 - hierarchical_bootstrap(errors, mean_error, generator("embedded", 1))
+    accuracy = 100 - gear_bootstrap(errors, mean_error, generator("embedded", 1))
     rows = {}
     for entry in results:
         of_gears = accuracy.loc[name_of(entry)]

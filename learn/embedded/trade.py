@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from learn.embedded.proof import FAITHFUL
-from learn.evaluation.bootstrap import difference_to, hierarchical_bootstrap
+from learn.evaluation.bootstrap import difference_to, gear_bootstrap
 from learn.inputs.inputs import SPECIMEN
 
 
@@ -69,7 +69,7 @@ def recommend(
     variants : DataFrame
         Of :func:`learn.embedded.table.variants_of`, with flash and instructions.
     errors : DataFrame
-        Errors [%] of each variant (column) on unseen gears, as :func:`bootstrap.hierarchical_bootstrap`
+        Errors [%] of each variant (column) on unseen gears, as :func:`bootstrap.gear_bootstrap`
         takes them.
     part : Part
     rng : Generator
@@ -79,7 +79,7 @@ def recommend(
         return None
     of_fitting = errors[[*SPECIMEN, *fitting]]
     best = str(of_fitting[list(fitting)].mean().idxmin())
-    others = hierarchical_bootstrap(of_fitting, difference_to(best), rng)
+    others = gear_bootstrap(of_fitting, difference_to(best), rng)
     none = pd.DataFrame({"value": 0.0, "low": 0.0, "high": 0.0}, index=pd.Index([best]))
     table = pd.concat([none, others])
     candidates = table.index[table["low"] <= 0]  # of few gears the bounds are not known, and the best one stays

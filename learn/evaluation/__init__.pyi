@@ -1,4 +1,4 @@
-from .bootstrap import hierarchical_bootstrap, paired_comparison
+from .bootstrap import gear_bootstrap, paired_comparison
 from .evaluate import Evaluation, evaluate
 from .importance import Predictor
 from .probability_calibration import expected_calibration_error, reliability
@@ -9,7 +9,7 @@ __all__ = [
     "Predictor",
     "evaluate",
     "expected_calibration_error",
-    "hierarchical_bootstrap",
+    "gear_bootstrap",
     "paired_comparison",
     "reliability",
     "risk_coverage",

@@ -1,13 +1,12 @@
-"""Uncertainty of comparisons: the hierarchical bootstrap over gears and specimens.
+"""Uncertainty of comparisons: the bootstrap over gears.
 
 A specimen is one variant of one class of one gear, recorded at several operating points. Recordings of a specimen are
-dependent, and so are specimens of a gear. Claims about new gears therefore rest on the number of gears. Gears are
-resampled first, then the specimens of each class within every drawn gear.
+dependent, and so are specimens of a gear. Claims about new gears therefore rest on the number of gears, and gears are
+resampled as wholes. The errors of gears already differ by the chance of their specimens: to resample specimens as well
+would count that chance twice (Davison and Hinkley, Bootstrap Methods and their Application, 1997, section 3.8).
 """
 
-from collections import defaultdict
 from collections.abc import Callable
-from typing import cast
 
 import numpy as np
 import pandas as pd
@@ -69,33 +68,13 @@ def _name(rows: pd.DataFrame) -> str:
 
 
 def resampled_means(errors: pd.DataFrame, rng: np.random.Generator, *, resamples: int = 2000) -> pd.DataFrame:
-    """Mean errors (resample x method) of gears and their specimens, both drawn with replacement.
-
-    A gear that is drawn twice has two draws of its specimens. Specimens are drawn within their class.
-    """
-    methods = errors.columns.drop(list(SPECIMEN))
-    values = errors[methods].to_numpy(dtype=float)
-    parts: dict[object, list[np.ndarray]] = defaultdict(list)
-    for key, rows in errors.groupby(["gear", "label"], observed=True).indices.items():
-        gear, _ = cast(tuple[object, object], key)
-        parts[gear].append(values[rows])
-    drawn = rng.integers(len(parts), size=(resamples, len(parts)))
-    means = np.empty((*drawn.shape, len(methods)))
-    for number, classes in enumerate(parts.values()):
-        here = drawn == number
-        means[here] = np.mean([_drawn_means(part, int(here.sum()), rng) for part in classes], axis=0)
-    return pd.DataFrame(means.mean(axis=1), columns=methods)
+    """Mean errors (resample x method) of gears drawn with replacement."""
+    by_gear = gear_errors(errors)
+    drawn = rng.integers(len(by_gear), size=(resamples, len(by_gear)))
+    return pd.DataFrame(by_gear.to_numpy(dtype=float)[drawn].mean(axis=1), columns=by_gear.columns)
 
 
-def _drawn_means(
-    values: Float[np.ndarray, "specimen method"], draws: int, rng: np.random.Generator
-) -> Float[np.ndarray, "draw method"]:
-    """Means over specimens drawn with replacement, with multinomial counts."""
-    count = len(values)
-    return rng.multinomial(count, np.full(count, 1 / count), size=draws) @ values / count
-
-
-def hierarchical_bootstrap(
+def gear_bootstrap(
     errors: pd.DataFrame, statistic: Statistic, rng: np.random.Generator, *, resamples: int = 2000
 ) -> pd.DataFrame:
     """A statistic of the mean errors with its 95 % interval, one row per method.
@@ -135,7 +114,7 @@ def paired_comparison(
     Parameters
     ----------
     errors : DataFrame
-        As for :func:`hierarchical_bootstrap`.
+        As for :func:`gear_bootstrap`.
     reference : str
         Column of the reference method.
     rng : Generator

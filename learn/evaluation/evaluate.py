@@ -1,5 +1,6 @@
 """Evaluation of all methods: fit and score on each split."""
 
+import inspect
 import time
 import warnings
 from collections.abc import Callable, Iterable, Mapping
@@ -58,6 +59,11 @@ class Evaluation:
         predicted = pd.DataFrame(self.probabilities.astype("f4"), columns=list(self.classes))
         return facts.assign(label=facts["label"].astype(str)).join(predicted)
 
+    @property
+    def mean_test_score(self) -> float:
+        """Accuracy in test, the mean over splits [%]."""
+        return float(np.mean([score.test for score in self.scores]))
+
     def recall(self) -> Mapping[str, float]:
         """Recall of each tested class [%]."""
         tested = self.confusion.sum(axis=1)
@@ -70,7 +76,7 @@ class Evaluation:
         recall = self.recall()
         exact = {
             "train_score": float(np.mean([s.train for s in self.scores])),
-            "test_score": float(np.mean([s.test for s in self.scores])),
+            "test_score": self.mean_test_score,
             "balanced_accuracy": float(np.mean(list(recall.values()))),
             "fit_seconds": sum(s.fit_seconds for s in self.scores),
             "converged": float(all(s.converged for s in self.scores)),
@@ -94,6 +100,7 @@ def evaluate(
     labels: np.ndarray,
     splits: Iterable[Split],
     method: Callable[[], Classifier],
+    gears: np.ndarray | None = None,
 ) -> Evaluation:
     """Train a new classifier on the training rows of every split, and score it in training and test.
 
@@ -105,6 +112,8 @@ def evaluate(
     splits : iterable of Split
     method : callable
         Returns an untrained classifier.
+    gears : array (row,), optional
+        Gear of every row, for methods that leave gears out while they are trained.
     """
     classes = pd.Index(pd.unique(labels))
     confusion = np.zeros((len(classes), len(classes)), dtype=np.int64)
@@ -112,7 +121,9 @@ def evaluate(
     for split in splits:
         classifier = method()
         start = time.perf_counter()
-        converged = fit(classifier, features[split.train], labels[split.train])
+        converged = fit(
+            classifier, features[split.train], labels[split.train], None if gears is None else gears[split.train]
+        )
         seconds = time.perf_counter() - start
         probabilities = _probabilities(classifier, features[split.test], classes)
         truth = classes.get_indexer(labels[split.test])
@@ -138,13 +149,17 @@ def _probabilities(classifier: Classifier, X: Inputs, classes: pd.Index) -> Floa
     return result
 
 
-def fit(classifier: Classifier, features: Inputs, labels: np.ndarray) -> bool:
-    """Fit, and return whether the optimiser converged, instead of a warning."""
+def fit(classifier: Classifier, features: Inputs, labels: np.ndarray, gears: np.ndarray | None = None) -> bool:
+    """Fit, and return whether the optimiser converged, instead of a warning.
+
+    The gear of every row is passed on to a classifier whose ``fit`` has an argument ``gears``.
+    """
     from sklearn.exceptions import ConvergenceWarning
 
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", ConvergenceWarning)
-        classifier.fit(features, labels)
+        asked = gears is not None and "gears" in inspect.signature(classifier.fit).parameters
+        classifier.fit(features, labels, **({"gears": gears} if asked else {}))
     for other in caught:
         if not issubclass(other.category, ConvergenceWarning):
             warnings.warn_explicit(other.message, other.category, other.filename, other.lineno)

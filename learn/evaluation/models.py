@@ -56,7 +56,9 @@ def load(path: Path, device: str = "auto") -> Any:
         ) from error
 
 
-def trained(folder: Path, identity: str, model: Any, X: np.ndarray, y: np.ndarray) -> Any:
+def trained(
+    folder: Path, identity: str, model: Any, X: np.ndarray, y: np.ndarray, gears: np.ndarray | None = None
+) -> Any:
     """The model trained on these rows, from its file in the folder or else trained and stored.
 
     Classifiers of other packages than this one and scikit-learn are not stored.
@@ -69,22 +71,25 @@ def trained(folder: Path, identity: str, model: Any, X: np.ndarray, y: np.ndarra
     model : classifier
         Untrained.
     X, y : array (row, column), array (row,)
+    gears : array (row,), optional
+        Gear of every row, for a model that leaves gears out while it is trained.
     """
     kind = type(model)
     if (
         kind.__module__.partition(".")[0] not in ("learn", "sklearn")
         and f"{kind.__module__}.{kind.__name__}" not in TRUSTED
     ):
-        fit(model, X, y)
+        fit(model, X, y, gears)
         return model
     digest = hashlib.sha256(identity.encode())
     digest.update(np.ascontiguousarray(X).data)
     digest.update("\x1f".join(map(str, y)).encode())
+    digest.update("\x1f".join(map(str, () if gears is None else gears)).encode())
     is_network = isinstance(model, neural.NeuralClassifier)
     path = folder / f"{digest.hexdigest()[:24]}{neural.SUFFIX if is_network else '.skops'}"
     # Jobs of a sweep with the same source model start together; the first one trains it.
     with sole_maker(path, wait=True):
         if not path.exists():
-            fit(model, X, y)
+            fit(model, X, y, gears)
             save(model, path)
     return load(path, model.device if is_network else "auto")

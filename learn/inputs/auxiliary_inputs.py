@@ -8,6 +8,8 @@ from jaxtyping import Float
 
 from learn.inputs.residuals import HealthyLines
 
+LOG = "log eta_rel"  # name of the input: logarithm of the efficiency relative to the healthy reference
+
 
 @dataclass(frozen=True)
 class AuxiliaryInputs:
@@ -34,18 +36,27 @@ class AuxiliaryInputs:
         table = healthy.table
         speed, load = table["n_in_rpm"].to_numpy(), table["T_out_nm"].to_numpy()
         eta = table["efficiency"].to_numpy()
-        columns = {}
+        columns: dict[str, np.ndarray] = {}
         if self.efficiency and self.reference:
-            change = np.log(eta / healthy.eta_healthy)
-            columns["log eta_rel"] = change
-            columns["root of log eta_rel"] = np.sign(change) * np.abs(change) ** 0.25
-            # As T_in N = T_out / eta, the change of the loss torque at the output over the speed is a change of b1.
-            columns["viscous loss"] = (1 / eta - 1 / healthy.eta_healthy) * load / (speed * np.pi / 30)  # N m s
+            columns |= changes_of_efficiency(eta, healthy.eta_healthy, speed, load)
         elif self.efficiency:
             columns["log eta"] = np.log(eta)
         if self.operating_point:
             columns |= operating_point(table, self.reference * healthy.temperature_healthy)
         return columns
+
+
+def changes_of_efficiency(
+    eta: Float[np.ndarray, " sample"],
+    eta_healthy: Float[np.ndarray, " sample"],
+    speed: Float[np.ndarray, " sample"],
+    load: Float[np.ndarray, " sample"],
+) -> dict[str, Float[np.ndarray, " sample"]]:
+    """Three forms of the change of the efficiency [-] from the healthy one, at a speed [rpm] and load [N m]."""
+    change = np.log(eta / eta_healthy)
+    # As T_in N = T_out / eta, the change of the loss torque at the output over the speed is a change of b1.
+    viscous = (1 / eta - 1 / eta_healthy) * load / (speed * np.pi / 30)  # N m s
+    return {LOG: change, "root of log eta_rel": np.sign(change) * np.abs(change) ** 0.25, "viscous loss": viscous}
 
 
 def operating_point(table: pd.DataFrame, temperature: Float[np.ndarray, " sample"]) -> dict[str, np.ndarray]:

@@ -20,6 +20,7 @@ from learn.protocols.splits import GroupedFolds, LeaveOneGearOut, RandomFolds, S
 from learn.tracking import Store, local_store, server_store
 
 if TYPE_CHECKING:
+    from learn.adaptation.rezero import Rezero
     from learn.adaptation.transfer import Adaptation
 
 NO_OPTIONS = ("name", "trials", "shots")  # entries of a file in conf that are no arguments of its object
@@ -93,7 +94,19 @@ def classifier(config: Config, layout: Layout | None = None) -> Callable[..., cl
     return make
 
 
-def adaptation(config: Config) -> Callable[..., "Adaptation"]:
+def on_device(config: Config) -> dict[str, Any]:
+    """The configuration of a classifier with the device that ``auto`` means on this machine.
+
+    Results of a processor and of an accelerator differ in the last digits, so a job must name where it ran.
+    """
+    if config.get("device") != "auto":
+        return dict(config)
+    from learn.methods.training import choose_device  # with torch, which takes seconds
+
+    return {**config, "device": choose_device("auto").type}
+
+
+def adaptation(config: Config) -> Callable[..., "Adaptation | Rezero"]:
     """Makes the adaptation of ``conf/adaptation``; its arguments replace configured options."""
     from learn.adaptation.adaptations import ADAPTATIONS  # with torch, which takes seconds
 

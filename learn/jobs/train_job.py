@@ -46,7 +46,7 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
         If a choice is unknown, with the list of choices, or the data set does not exist, with the command to make it.
     """
     chosen = {group: config[group]["name"] for group in ("grid", "condition")}  # their content is in the data set
-    config = {**config, **chosen}
+    config = {**config, **chosen, "classifier": settings.on_device(config["classifier"])}
     representation = settings.representation(config["features"])
     settings.protocol(config["protocol"])
     settings.classifier(config["classifier"])

@@ -1,15 +1,15 @@
 """The job of a method without adaptation: train on every split's training rows, judge its test rows."""
 
-from collections.abc import Mapping
-from functools import partial
+import itertools
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import pandas as pd
 
 from learn.inputs.inputs import LearningSet
 from learn.jobs import settings
-from learn.protocols.levels import NewGears
+from learn.protocols.levels import Episode, NewGears, zero_shot_split
+from learn.protocols.splits import Split
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -21,26 +21,30 @@ def results(
     """Metrics, figures and tables of a resolved configuration of ``conf/train.yaml``."""
     from learn.evaluation.confusion import picture
     from learn.evaluation.evaluate import Evaluation, evaluate
-    from learn.methods.choosing import choose, trial_metrics
+    from learn.methods.choosing import CONFIGURED, Choice, Options, choose, trial_metrics
 
     protocol = settings.protocol(config["protocol"])
     make = settings.classifier(config["classifier"], data.layout)
-    y = data.table["label"].astype(str).to_numpy()
+    y, gears = data.table["label"].astype(str).to_numpy(), data.table["gear"].to_numpy()
 
-    def evaluated(splits: Any, options: Mapping[str, Any]) -> Evaluation:
-        return evaluate(data.features, y, splits, partial(make, **options))
+    def evaluated(splits: Sequence[Split], options: Iterable[Options]) -> Evaluation:
+        """With options of its own for every split."""
+        of_split = iter(options)
+        return evaluate(data.features, y, splits, lambda: make(**next(of_split)), gears)
 
-    options: Mapping[str, Any] = {}
-    scores: list[float] = []
+    splits = list(protocol.split(data.features, data.table))
+    choices = [CONFIGURED] * len(splits)
     if isinstance(protocol, NewGears) and protocol.development:
-        splits = list(protocol.development_splits(data.table))
         trials = settings.trials(config["classifier"])
-        options, scores = choose(
-            trials, lambda tried: float(np.mean([s.test for s in evaluated(splits, tried).scores]))
-        )
-    evaluation = evaluated(protocol.split(data.features, data.table), options)
 
-    metrics = evaluation.metrics() | trial_metrics(scores)
+        def chosen(episode: Episode) -> Choice:
+            development = [zero_shot_split(each) for each in protocol.development_episodes(data.table, episode)]
+            return choose(trials, lambda tried: evaluated(development, itertools.repeat(tried)).mean_test_score)
+
+        choices = [chosen(episode) for episode in protocol.episodes(data.table)]
+    evaluation = evaluated(splits, [choice.options for choice in choices])
+
+    metrics = evaluation.metrics() | trial_metrics(choices)
     title = "{study}: {classifier[name]}, {features[name]}".format(**config)
     predictions = (
         {"tables/predictions.parquet": evaluation.predictions(data.table)} if isinstance(protocol, NewGears) else {}

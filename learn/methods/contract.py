@@ -26,7 +26,8 @@ class Classifier(Protocol):
     ``predict_proba``: each of its decisions counts as certain. A class of your own needs four things:
 
     ``fit(X, y)``
-        Trains on features X, float array (row, feature), and class names y, str array (row,).
+        Trains on features X, float array (row, feature), and class names y, str array (row,). With an argument
+        ``gears`` it is also given the gear of every row, for choices that leave gears out.
     ``predict(X)``
         Class name of each row, array (row,).
     ``predict_proba(X)``

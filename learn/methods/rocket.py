@@ -8,11 +8,12 @@ import numpy as np
 from jaxtyping import Float
 
 from learn.inputs.rows import Inputs
+from learn.methods.held_out_ridge import held_out_decisions
 from learn.methods.strong import compression
 from swgsim.common.checks import require_integer
 
 SHORTEST = 9  # points: the length of MiniRocket's kernels
-STRENGTHS = np.logspace(-1, 5, 7)  # of the ridge; chosen by leave-one-out on the training rows
+STRENGTHS = np.logspace(-1, 5, 7)  # of the ridge; chosen on source gears that are left out in turn
 
 
 @dataclass
@@ -48,9 +49,19 @@ class MiniRocket:
                 f"{self.points}: take features=raw, differenced or residual"
             )
 
-    def fit(self, X: Inputs, y: np.ndarray) -> "MiniRocket":
-        """Train on rows and class names."""
-        from sklearn.linear_model import LogisticRegression, RidgeClassifierCV
+    def fit(self, X: Inputs, y: np.ndarray, gears: np.ndarray | None = None) -> "MiniRocket":
+        """Train on rows and class names.
+
+        The strength of the ridge has the most right decisions on gears left out. Its probabilities are fitted to the
+        same decisions, as those on rows of the training are surer than those on a new gear.
+
+        Parameters
+        ----------
+        X, y : array (row, column), array (row,)
+        gears : array (row,), optional
+            Gear of every row; see :func:`learn.methods.held_out_ridge.held_out_decisions`.
+        """
+        from sklearn.linear_model import LogisticRegression, RidgeClassifier
         from sklearn.preprocessing import StandardScaler
 
         signal, side = self._split(X)
@@ -63,8 +74,11 @@ class MiniRocket:
         self._of_rocket = StandardScaler().fit(convolved)
         self._of_side = compression().fit(side) if side.size else None
         features = self._joined(convolved, side)
-        self._ridge = RidgeClassifierCV(STRENGTHS).fit(features, y)
-        self._probability = LogisticRegression().fit(self._ridge.decision_function(features), y)
+        decisions = held_out_decisions(features, y, gears, STRENGTHS)
+        right = (np.unique(y)[decisions.argmax(axis=2)] == y).mean(axis=1)
+        best = int(right.argmax())
+        self._ridge = RidgeClassifier(STRENGTHS[best]).fit(features, y)
+        self._probability = LogisticRegression().fit(decisions[best], y)
         self.classes_ = self._probability.classes_
         return self
 
@@ -72,7 +86,10 @@ class MiniRocket:
         """Probability of each class: a logistic regression on the ridge's decision values."""
         signal, side = self._split(X)
         features = self._joined(self._convolved(signal), side)
-        return self._probability.predict_proba(self._ridge.decision_function(features))
+        decisions = self._ridge.decision_function(features)
+        if decisions.ndim == 1:  # of two classes
+            decisions = np.column_stack([-decisions, decisions])
+        return self._probability.predict_proba(decisions)
 
     def predict(self, X: Inputs) -> np.ndarray:
         """Most probable class of each row."""

@@ -98,7 +98,7 @@ class NewGears:
         Number of folds of judged gears; each fold is left out in turn and has at least one gear.
     development : int
         Number of development gears, those of the highest numbers. They are in every training set and never judged.
-        Hyper-parameters are chosen on them by leaving some out in turn.
+        Hyper-parameters are chosen on them for each fold, by models of the fold's other source gears.
     judged : int or None
         Number of judged gears, those of the lowest numbers, as one fold; None: all but the development gears.
     labelled, unlabelled : int
@@ -136,7 +136,7 @@ class NewGears:
     def split(self, features: object, table: pd.DataFrame) -> Iterator[Split]:
         """Splits without adaptation: the judged rows of each fold are tested."""
         for episode in self.episodes(table):
-            yield _zero_shot(episode)
+            yield zero_shot_split(episode)
 
     def episodes(self, table: pd.DataFrame) -> Iterator[Episode]:
         """One episode for each fold of judged gears."""
@@ -144,15 +144,17 @@ class NewGears:
         judged = gears[: max(0, len(gears) - self.development)][: self.judged]
         yield from self._leaving_out(table, judged, gears, min(self.folds, len(judged)) if self.judged is None else 1)
 
-    def development_splits(self, table: pd.DataFrame) -> Iterator[Split]:
-        """Splits without adaptation among development gears."""
-        for episode in self.development_episodes(table):
-            yield _zero_shot(episode)
+    def development_episodes(self, table: pd.DataFrame, episode: Episode) -> list[Episode]:
+        """Episodes whose targets are the development gears, to choose the options of an episode.
 
-    def development_episodes(self, table: pd.DataFrame) -> Iterator[Episode]:
-        """Episodes among development gears, each of which is left out once."""
-        gears = np.unique(table["gear"])[-self.development :] if self.development else np.empty(0, int)
-        yield from self._leaving_out(table, gears, gears, min(DEVELOPMENT_FOLDS, len(gears)))
+        Their sources are the other source gears of the episode, about as many as the options are used with. The gears
+        that it judges have no say. If it has development gears only, they are left out in turn.
+        """
+        known = np.unique(table["gear"].to_numpy()[episode.source])
+        every = np.unique(table["gear"])
+        development = np.intersect1d(known, every[len(every) - self.development :])
+        alone = len(development) == len(known)
+        return list(self._leaving_out(table, development, known, min(DEVELOPMENT_FOLDS, len(known)) if alone else 1))
 
     def _leaving_out(self, table: pd.DataFrame, judged: np.ndarray, gears: np.ndarray, folds: int) -> Iterator[Episode]:
         if len(judged) < 1 or len(gears) < 2:
@@ -194,5 +196,6 @@ class NewGears:
         return Target(gear, rows[pool == 0], rows[pool == 1], rows[pool == 2])
 
 
-def _zero_shot(episode: Episode) -> Split:
+def zero_shot_split(episode: Episode) -> Split:
+    """The split of an episode without adaptation."""
     return Split(episode.name, episode.source, np.sort(np.concatenate([target.judged for target in episode.targets])))

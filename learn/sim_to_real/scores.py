@@ -5,7 +5,7 @@ from typing import cast
 import numpy as np
 import pandas as pd
 
-from learn.evaluation.bootstrap import LEVEL, resampled_means, specimens
+from learn.evaluation.bootstrap import LEVEL, specimens
 from learn.inputs.inputs import SPECIMEN
 from learn.sim_to_real.judging import MODELS
 from swgsim.common.seeds import generator
@@ -46,7 +46,7 @@ def scores(predictions: pd.DataFrame) -> pd.DataFrame:
 def _of_models(errors: pd.DataFrame) -> pd.DataFrame:
     """Scores from the errors of every specimen under every model (column)."""
     values = errors.groupby("label")[list(MODELS)].mean()
-    draws = resampled_means(errors, generator("specimens of sim to real"), resamples=RESAMPLES)
+    draws = _resampled(errors, generator("specimens of sim to real"))
     healthy = errors.loc[errors["label"] == "healthy", list(MODELS)]
     rows = []
     for model in MODELS:
@@ -55,6 +55,15 @@ def _of_models(errors: pd.DataFrame) -> pd.DataFrame:
         gain = _with_interval("gain", float(values["before"].mean()) - mean, draws["before"] - draws[model])
         rows.append({"model": model, **accuracy, **gain, **_false_alarms(healthy[model])})
     return pd.DataFrame(rows)
+
+
+def _resampled(errors: pd.DataFrame, rng: np.random.Generator) -> pd.DataFrame:
+    """Mean errors (draw x model) over specimens that are drawn with replacement within their class."""
+    means = []
+    for rows in errors.groupby("label").indices.values():
+        values, count = errors[list(MODELS)].to_numpy(dtype=float)[rows], len(rows)
+        means.append(rng.multinomial(count, np.full(count, 1 / count), size=RESAMPLES) @ values / count)
+    return pd.DataFrame(np.mean(means, axis=0), columns=list(MODELS))
 
 
 def _with_interval(name: str, value: float, draws: pd.Series) -> dict[str, float]:

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 from threadpoolctl import threadpool_limits
 
+from learn.evaluation.evaluate import fit
 from learn.evaluation.importance import grouped_permutation
 from learn.inputs.inputs import OPERATING_POINT
 from learn.jobs import settings
@@ -69,7 +70,7 @@ def importance(runs: Runs, run: pd.Series, data: Path) -> tuple[pd.DataFrame, in
     ----------
     runs : Runs
     run : Series
-        Run of the method, with ``run_id`` and ``trial/...``.
+        Run of the method, with ``run_id`` and ``chosen/1``.
     data : Path
         The data set.
 
@@ -90,7 +91,7 @@ def importance(runs: Runs, run: pd.Series, data: Path) -> tuple[pd.DataFrame, in
     points = judged.groupby(list(OPERATING_POINT)).ngroup().to_numpy()
     groups, parts = groups_of(chosen.names), []
     with threadpool_limits(1):  # many small predictions, for which threads would only wait
-        model.fit(chosen.features[split.train], y[split.train])
+        fit(model, chosen.features[split.train], y[split.train], chosen.table["gear"].to_numpy()[split.train])
         for label in PHYSICS:
             pair = np.isin(truth, [label, "healthy"])
             rng = generator("report", "importance", label)
@@ -100,11 +101,10 @@ def importance(runs: Runs, run: pd.Series, data: Path) -> tuple[pd.DataFrame, in
 
 
 def options_of(config: Mapping[str, Any], run: pd.Series, protocol: object) -> Mapping[str, Any]:
-    """The options that the job chose: those of the trial with the highest score."""
-    trials = settings.trials(config["classifier"])
-    scores = [run.get(f"trial/{number}", np.nan) for number in range(1, len(trials) + 1)]
-    if np.isfinite(scores).any():
-        return trials[int(np.nanargmax(scores))]
+    """The options that the job chose for its first fold."""
+    trials, chosen = settings.trials(config["classifier"]), run.get("chosen/1", np.nan)
+    if np.isfinite(chosen):
+        return trials[int(chosen) - 1]
     return trials[0] if isinstance(protocol, NewGears) and protocol.development else {}
 
 

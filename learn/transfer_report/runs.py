@@ -1,7 +1,7 @@
 """The data sets and finished runs of the report, as pandas frames: found by study, named by method."""
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, cast
@@ -14,6 +14,7 @@ from learn.inputs.inputs import OPERATING_POINT, SPECIMEN
 from learn.jobs import settings
 from learn.jobs.identity import code_version
 from learn.tracking import Store, finished_runs, table_of
+from learn.transfer_report.seeds import averaged, mean_of
 from swgsim.common.style import words
 from swgsim.oracle.columns import KNOWN
 from swgsim.storage import storage
@@ -25,7 +26,13 @@ EXPERIMENTS: Mapping[str, tuple[str, ...]] = {
     "inputs": ("inputs", "inputs_features"),
     "inputs_operating_point": ("inputs_operating_point",),
     "no_reference": ("no_reference",),
-    "transfer": ("transfer_network", "transfer_forest", "transfer_extra_trees", "transfer_cnn"),
+    "transfer": (
+        "transfer_network",
+        "transfer_forest",
+        "transfer_extra_trees",
+        "transfer_cnn",
+        "transfer_rezero",
+    ),
     "transfer_map": ("transfer_map", "transfer_map_foreign"),
 }
 PAPER_EXPERIMENTS: Mapping[str, tuple[str, ...]] = {"zero_shot_disturbed": ("zero_shot_disturbed",)}
@@ -49,7 +56,12 @@ FEATURES: Mapping[str, str] = {
     "residual": "residual signals",
     "lines": "residual lines",
 }
-ADAPTATIONS: Mapping[str, str] = {"l2_sp": "L2-SP", "coral": "CORAL", "structure_transfer": "STRUT"}
+ADAPTATIONS: Mapping[str, str] = {
+    "l2_sp": "L2-SP",
+    "coral": "CORAL",
+    "structure_transfer": "STRUT",
+    "rezero": "rezero, healthy recordings only",
+}
 FACTS = ["row", *SPECIMEN, "severity", *OPERATING_POINT]
 
 
@@ -63,7 +75,8 @@ class Runs:
         ``bench`` and ``disturbed`` to the grid, the file and the digest of the data set.
     store : Store
     frame : DataFrame
-        One row per run, newest first: parameters, metrics and ``method``, see :func:`method_of`.
+        One row per configuration, newest first: parameters, metrics (means over its seeds, :func:`.seeds.averaged`) and
+        ``method``, see :func:`method_of`.
     """
 
     grids: Mapping[str, str]
@@ -75,7 +88,8 @@ class Runs:
     def of_study(self, study: str) -> pd.DataFrame:
         """The runs of one study, with the parameters and metrics that its runs have; empty if it was not run."""
         runs = self.frame[self.frame["study"] == study]
-        return runs.dropna(axis="columns", how="all").reset_index(drop=True)
+        unknown = runs.columns[runs.isna().all()].drop("spread", errors="ignore")
+        return runs.drop(columns=unknown).reset_index(drop=True)
 
     def required(self, study: str) -> pd.DataFrame:
         """The runs of one study.
@@ -99,14 +113,20 @@ class Runs:
         return " and ".join(f"'swg train experiment={name} grid={grid}'" for name in names)
 
     def tables(self, runs: pd.DataFrame, name: str) -> dict[str, pd.DataFrame]:
-        """The table ``predictions``, ``specimens`` or ``gears`` of every run, by the runs' index."""
-        return {
-            str(key): table_of(self.store, run_id, f"tables/{name}.parquet") for key, run_id in runs["run_id"].items()
-        }
+        """The table ``specimens`` or ``gears`` of every run, the mean over its seeds, by the runs' index."""
+        return {str(key): mean_of(list(map(self._table(name), ids))) for key, ids in runs["run_ids"].items()}
+
+    def predictions(self, runs: pd.DataFrame) -> dict[str, pd.DataFrame]:
+        """Predictions of every run without adaptation, of its newest seed, by the runs' index."""
+        return {str(key): self._table("predictions")(run_id) for key, run_id in runs["run_id"].items()}
 
     def errors(self, runs: pd.DataFrame) -> dict[str, pd.DataFrame]:
-        """Error of every specimen [%] of every run without adaptation, by the runs' index."""
-        return {key: specimens(table) for key, table in self.tables(runs, "predictions").items()}
+        """Error of every specimen [%] of every run without adaptation, the mean over its seeds, by the runs' index."""
+        read = self._table("predictions")
+        return {str(key): mean_of([specimens(read(each)) for each in ids]) for key, ids in runs["run_ids"].items()}
+
+    def _table(self, name: str) -> Callable[[str], pd.DataFrame]:
+        return lambda run_id: table_of(self.store, run_id, f"tables/{name}.parquet")
 
     def configuration(self, run_id: str) -> dict[str, Any]:
         """The resolved configuration of a run."""
@@ -120,7 +140,8 @@ class Runs:
         """Time to generate the data sets and to fit all methods, as far as runs count it."""
         made = {name: json.loads(path.with_suffix(".json").read_text()) for name, path in self.paths.items()}
         generating = sum(each["seconds"] for each in made.values())
-        return float(generating + self.frame["fit_seconds"].sum() / made["bench"]["cores"])
+        fitting = (self.frame["fit_seconds"] * self.frame["seeds"]).sum()
+        return float(generating + fitting / made["bench"]["cores"])
 
     def older_code(self) -> list[str]:
         """Studies of the report with runs of older code."""
@@ -148,7 +169,7 @@ def collected(config: Mapping[str, Any]) -> Runs:
 
 
 def present_runs(store: Store, digests: Iterable[str], foreign: Iterable[str] = ()) -> pd.DataFrame:
-    """The finished runs on the present data sets, newest first, with their ``method``.
+    """The finished runs on the present data sets, newest first, with their ``method``; seeds are averaged.
 
     If a study has runs of the present code, its runs of older code are left out.
 
@@ -166,6 +187,7 @@ def present_runs(store: Store, digests: Iterable[str], foreign: Iterable[str] = 
     runs = runs[[first in known and others.issuperset(rest) for first, *rest in each]]
     present = runs["code_version"] == code_version()
     runs = runs[present | ~runs["study"].isin(runs.loc[present, "study"])].reset_index(drop=True)
+    runs = averaged(runs)
     return runs.assign(method=[method_of(cast(dict[str, object], run)) for run in runs.to_dict("records")])
 
 
@@ -187,7 +209,7 @@ def method_of(run: Mapping[str, object]) -> str:
 
 
 def by_method(runs: pd.DataFrame) -> pd.DataFrame:
-    """The newest run of every method, with the method's name as index and the run's own index as ``key``."""
+    """The newest configuration of every method, with the method's name as index and the run's own index as ``key``."""
     return runs.rename(index=str).rename_axis("key").reset_index().drop_duplicates("method").set_index("method")
 
 

@@ -10,8 +10,10 @@ from learn.transfer_report.tables import (
     FROM_SCRATCH,
     ORACLE,
     ORACLE_OF_SESSION,
+    REZERO,
     best_adapted,
     best_of,
+    best_rezeroed,
     highest,
     least,
     number,
@@ -66,7 +68,7 @@ def lead(
     cases : DataFrame
         Result of :func:`.studies.disturbed_cases`.
     """
-    parts = [choice(zero), *with_shots(zero, few, development), *lost(few, forgotten)]
+    parts = [choice(zero), rezeroed(few), *with_shots(zero, few, development), *lost(few, forgotten)]
     return [*(part for part in parts if part), disturbed(cases)]
 
 
@@ -80,6 +82,18 @@ def choice(zero: pd.DataFrame) -> str:
     return (
         "The best method is selected on the judged gears, which favours it slightly. The development gears, which are "
         f"never judged, select {chosen} with {row_of(zero, chosen)['value']:.1f} %, {same}."
+    )
+
+
+def rezeroed(few: pd.DataFrame) -> str:
+    """What healthy recordings of the session are worth, without any fault; empty if it was not measured."""
+    rows = best_rezeroed(few)
+    texts = [f"with {k}, {row['method'].removesuffix(REZERO)} errs in {of_row(row)}" for k, row in rows.items() if k]
+    if not texts:
+        return ""
+    return (
+        "Healthy recordings of the session at each operating point show the zeros of the torque flanges, without any "
+        f"recorded fault: {listed(texts)}."
     )
 
 

@@ -12,17 +12,20 @@ import pandas as pd
 from learn.evaluation.bootstrap import (
     SPECIMEN,
     difference_to,
-    hierarchical_bootstrap,
+    gear_bootstrap,
     mean_error,
     paired_comparison,
     ratio_to,
 )
+from learn.transfer_report.seeds import spread_text
 from swgsim.common.seeds import generator
 
 FOREST = "random forest on Selection 1"  # the paper's best on Selection 1, depth 7
 ORACLE, ORACLE_OF_SESSION = "oracle", "oracle that knows the session"
 ORACLES = [ORACLE, ORACLE_OF_SESSION]
+SEEDS = "seeds: standard deviation [points]"
 FROM_SCRATCH = ": from scratch"  # end of the name of a method that uses no source gear
+REZERO = ": rezero, healthy recordings only"  # end of the name of a method that uses no recorded fault of the new gear
 
 
 def number(value: float, low: float = np.nan, high: float = np.nan, digits: int = 1, unit: str = "") -> str:
@@ -74,14 +77,14 @@ def paired(specimens: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
 
 def with_intervals(specimens: Mapping[str, pd.DataFrame], purpose: str) -> pd.DataFrame:
     """Mean error of each method: ``value``, ``low``, ``high`` [%]."""
-    return hierarchical_bootstrap(paired(specimens), mean_error, generator("report", purpose))
+    return gear_bootstrap(paired(specimens), mean_error, generator("report", purpose))
 
 
 def difference(errors: pd.DataFrame, method: str, reference: str) -> pd.Series:
     """Error of a method minus that of another on the same specimens: ``value``, ``low``, ``high`` [points]."""
     rng = generator("report", "difference", method, reference)
     both = errors[[*SPECIMEN, method, reference]]
-    return row_of(hierarchical_bootstrap(both, difference_to(reference), rng), method)
+    return row_of(gear_bootstrap(both, difference_to(reference), rng), method)
 
 
 def _named(prefix: str, table: pd.DataFrame) -> pd.DataFrame:
@@ -114,9 +117,9 @@ def zero_shot(errors: pd.DataFrame, development: pd.Series, fit_seconds: pd.Seri
     if FOREST not in errors:
         raise ValueError(f"no run of the {FOREST}, the reference of all ratios: add classifier=rf features=selection_1")
     rng = generator("report", "zero-shot")
-    table = hierarchical_bootstrap(errors, mean_error, rng)
-    table = table.join(_named("ratio", hierarchical_bootstrap(errors, ratio_to(FOREST), rng)))
-    table = table.join(_named("oracle", hierarchical_bootstrap(errors, ratio_to(ORACLE), rng)))
+    table = gear_bootstrap(errors, mean_error, rng)
+    table = table.join(_named("ratio", gear_bootstrap(errors, ratio_to(FOREST), rng)))
+    table = table.join(_named("oracle", gear_bootstrap(errors, ratio_to(ORACLE), rng)))
     return table.assign(development=development, fit_seconds=fit_seconds)
 
 
@@ -155,6 +158,7 @@ def methods_text(table: pd.DataFrame, errors: pd.DataFrame) -> pd.DataFrame:
             "better in gears": gears,
             "error on development gears [%]": [number(100 - score) for score in rows["development"]],
             "fit, all folds [s]": [number(seconds, digits=0) for seconds in rows["fit_seconds"]],
+            SEEDS: ["-" if name in ORACLES else text for name, text in zip(rows.index, spread_text(rows), strict=True)],
         },
         index=rows.index.rename("method"),
     )
@@ -184,30 +188,40 @@ def few_shot(errors: pd.DataFrame, adapted: Mapping[str, pd.DataFrame]) -> pd.Da
         both = paired({FOREST: forest, **here})
         changes = {name: part.assign(error=part["error"] - part["unadapted"]) for name, part in here.items()}
         rng = generator("report", "few-shot", shots)
-        table = hierarchical_bootstrap(both, mean_error, rng).drop(index=FOREST)
-        table = table.join(_named("ratio", hierarchical_bootstrap(both, ratio_to(FOREST), rng)))
-        table = table.join(_named("gain", hierarchical_bootstrap(paired(changes), mean_error, rng)))
+        table = gear_bootstrap(both, mean_error, rng).drop(index=FOREST)
+        table = table.join(_named("ratio", gear_bootstrap(both, ratio_to(FOREST), rng)))
+        table = table.join(_named("gain", gear_bootstrap(paired(changes), mean_error, rng)))
         unadapted = pd.Series({name: part["unadapted"].mean() for name, part in here.items()})
         rows.append(table.assign(shots=shots, unadapted=unadapted).rename_axis("method").reset_index())
     return pd.concat(rows, ignore_index=True)
 
 
 def best_adapted(few: pd.DataFrame, shots: int) -> pd.Series | None:
-    """The row of :func:`few_shot` of the best method with source gears; None if none was run with so many shots."""
-    here = few[(few["shots"] == shots) & ~few["method"].str.endswith(FROM_SCRATCH)]
+    """The row of :func:`few_shot` of the best method with source gears and shots of all classes, None without one."""
+    here = few[(few["shots"] == shots) & ~few["method"].str.endswith((FROM_SCRATCH, REZERO))]
     return None if here.empty else least(here)
 
 
-def shots_text(few: pd.DataFrame, prefix: str, labelled: int, marks: Mapping[str, str]) -> pd.DataFrame:
+def best_rezeroed(few: pd.DataFrame) -> dict[int, pd.Series]:
+    """The row of :func:`few_shot` of the best method with each number of healthy recordings and no recorded fault."""
+    return {int(str(k)): least(rows) for k, rows in few[few["method"].str.endswith(REZERO)].groupby("shots")}
+
+
+def shots_text(
+    few: pd.DataFrame, prefix: str, labelled: int, marks: Mapping[str, str], runs: pd.DataFrame | None = None
+) -> pd.DataFrame:
     """A figure of :func:`few_shot`, ``gain`` or '' for the error, of every method (rows) and number of shots (columns).
 
-    `labelled` shots are all labels of the gear; `marks` are appended to names of methods.
+    `labelled` shots are all labels of the gear; `marks` are appended to names of methods; `runs`, by method, tell of
+    their seeds.
     """
     wide = few.assign(text=text_of(few, prefix)).pivot(index="method", columns="shots", values="text").fillna("-")
     wide = wide.loc[few.groupby("method")["value"].min().sort_values().index]
     wide.insert(
         0, "source model [%]", [number(error) for error in few.groupby("method")["unadapted"].first()[wide.index]]
     )
+    if runs is not None:
+        wide.insert(1, SEEDS, spread_text(runs.loc[wide.index]))
     names = {k: "Z2, no label" if k == 0 else f"K = {k}{' (Z4)' if k == labelled else ''}" for k in few["shots"]}
     wide.index = pd.Index([f"{name}{marks.get(str(name), '')}" for name in wide.index], name="method")
     return wide.rename(columns=names).rename_axis(None, axis="columns")

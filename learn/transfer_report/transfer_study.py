@@ -13,7 +13,16 @@ from learn.paper.paper_page import versions
 from learn.transfer_report import confidence, figures, sentences, studies, tables
 from learn.transfer_report.importance import importance, importance_text
 from learn.transfer_report.runs import Runs, by_method, collected, development_scores, oracle, trials
-from learn.transfer_report.tables import FOREST, ORACLE, ORACLE_OF_SESSION, best_adapted, best_of, highest, row_of
+from learn.transfer_report.tables import (
+    FOREST,
+    ORACLE,
+    ORACLE_OF_SESSION,
+    best_adapted,
+    best_of,
+    best_rezeroed,
+    highest,
+    row_of,
+)
 from swgsim.common.files import write_json, write_text
 from swgsim.common.html import environment
 from swgsim.storage import storage
@@ -56,13 +65,14 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
         Unix times at which the report and the whole study began; without `started`, seconds of the steps are added.
     """
     methods, adapting = by_method(runs.required("zero_shot")), by_method(runs.required("transfer"))
-    predictions = runs.tables(methods, "predictions")
+    predictions = runs.predictions(methods)
     bench = runs.paths["bench"]
     oracle_path = bench.with_name(f"{bench.stem}-oracle.parquet")
     both = oracle(oracle_path, runs.digests["bench"], next(iter(predictions.values())))
     oracles = dict(zip(tables.ORACLES, both, strict=True))
-    errors = tables.paired({name: specimens(table) for name, table in {**predictions, **oracles}.items()})
+    errors = tables.paired({**runs.errors(methods), **{name: specimens(table) for name, table in oracles.items()}})
     zero = tables.zero_shot(errors, development_scores(methods), methods["fit_seconds"].astype(float))
+    zero = zero.join(methods[["seeds", "spread"]])
     few = tables.few_shot(errors, runs.tables(adapting, "specimens"))
     forgotten = tables.forgetting(runs.tables(adapting, "gears"))
     inputs, cases = runs.required("inputs"), studies.disturbed_cases(runs.required("zero_shot_disturbed"))
@@ -90,7 +100,7 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
         "methods": tables.methods_text(zero, errors),
         "inputs": studies.inputs_text(of_inputs),
         "shots": figures.shots(few, levels) if (few["shots"] > 0).any() else None,
-        "few": tables.shots_text(few, "", labelled, marks),
+        "few": tables.shots_text(few, "", labelled, marks, adapting),
         "gains": tables.shots_text(few, "gain", labelled, marks),
         "draws": adapting["draws"].iloc[0],
         "forgotten": tables.forgetting_text(forgotten),
@@ -202,6 +212,8 @@ def content_of(
             "ratio": finite(row_of(zero, best)["ratio"]),
             "ci95": [finite(row_of(zero, best)["ratio_low"]), finite(row_of(zero, best)["ratio_high"])],
             "ratio_to_oracle": finite(row_of(zero, best)["oracle"]),
+            "seeds": int(row_of(zero, best)["seeds"]),
+            "spread_over_seeds": finite(row_of(zero, best)["spread"]),
             "chosen_on_development_gears": chosen,
             "chosen_error": finite(row_of(zero, chosen)["value"]) if chosen else None,
         },
@@ -213,6 +225,10 @@ def content_of(
                 "ci95": [finite(row["ratio_low"]), finite(row["ratio_high"])],
             }
             for shots, row in adapted.items()
+        },
+        "rezero": {
+            str(shots): {"value": finite(row["value"]), "ci95": [finite(row["low"]), finite(row["high"])]}
+            for shots, row in best_rezeroed(few).items()
         },
         "oracle_error": finite(row_of(zero, ORACLE)["value"]),
         "oracle_session_error": finite(row_of(zero, ORACLE_OF_SESSION)["value"]),

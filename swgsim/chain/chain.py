@@ -1,6 +1,6 @@
 """The simulation chain (Fig. 2): input/output model, flex spline and gauges in a row, for many runs at once."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache, reduce
 
@@ -8,10 +8,11 @@ import numpy as np
 from jaxtyping import Float
 from threadpoolctl import threadpool_limits
 
-from swgsim.chain.influence import InfluenceMap, harmonics
-from swgsim.chain.motion import Motion, run
+from swgsim.chain.influence import FINE, InfluenceMap, harmonics
+from swgsim.chain.motion import Motion
 from swgsim.chain.signal_path import Ideal, all_as_seen, as_seen
-from swgsim.chain.steady_state_cache import Driven, one_turn, settled
+from swgsim.chain.steady_state_cache import Driven, drive_of, one_turn
+from swgsim.chain.steady_window import over_window
 from swgsim.chain.structure import Structure, map_of
 from swgsim.effects.base import Effect, Scene, overrides
 from swgsim.gear.acquisition import Window
@@ -21,6 +22,9 @@ from swgsim.recordings.recording import Recording
 from swgsim.storage.labelled_signals import SENSORS
 
 SECTORS = 100
+
+# Gauge signals of several structures along one motion: maps, angle [rad] and torque [N m] over time.
+Along = Callable[[Sequence[InfluenceMap], np.ndarray, np.ndarray], np.ndarray]
 
 # Orders of an influence map below this share of the largest one are omitted.
 NEGLIGIBLE = 1e-8
@@ -115,9 +119,8 @@ def simulate(runs: Sequence[Run], window: Window, sectors: int = SECTORS) -> Sim
         Ideal signals, without noise, quantisation and disturbance of the acquisition.
     """
     driven, of_run = _driven(runs)
-    drive, state = settled(driven)
-    motion = run(drive, state, 1 / window.rate, window.samples)
-    signals = _gauge_signals(runs, motion, of_run, window.samples, sectors)
+    motion = over_window(*drive_of(driven), 1 / window.rate, window.samples)
+    signals = _gauge_signals(runs, motion, of_run, window.samples, sectors, interpolate)
     ideal = Simulation(signals, motion, of_run)
     seen = {
         i: as_seen(_before_effects(each, window.time, ideal, i))
@@ -151,7 +154,7 @@ def simulate_turns(
     """
     driven, of_run = _driven(runs)
     motion = one_turn(driven, points, search)
-    signals = np.tile(_gauge_signals(runs, motion, of_run, points, sectors), revolutions)
+    signals = np.tile(_gauge_signals(runs, motion, of_run, points, sectors, evaluate), revolutions)
     simulation = Simulation(signals, motion.repeated(revolutions), of_run)
     steps = np.arange(revolutions * points) / points
     times = [steps * 2 * np.pi / each.point.omega_in for each in runs]
@@ -179,7 +182,7 @@ def _driven(runs: Sequence[Run]) -> tuple[list[Driven], np.ndarray]:
 
 
 def _gauge_signals(
-    runs: Sequence[Run], motion: Motion, of_run: np.ndarray, samples: int, sectors: int
+    runs: Sequence[Run], motion: Motion, of_run: np.ndarray, samples: int, sectors: int, along: Along
 ) -> Float[np.ndarray, "run 5 time"]:
     """The bridge signals of every run along its motion [mV/V]."""
     structures, structure_of_run = distinct([Structure.of(r.affected_gear, r.acting) for r in runs])
@@ -188,7 +191,7 @@ def _gauge_signals(
     for m in range(len(motion.phi_in)):
         rows = np.flatnonzero(of_run == m)
         angle, torque = motion.phi_in[m, :samples], motion.T_out[m, :samples]
-        signals[rows] = evaluate([maps[s] for s in structure_of_run[rows]], angle, torque)
+        signals[rows] = along([maps[s] for s in structure_of_run[rows]], angle, torque)
     return signals
 
 
@@ -226,6 +229,26 @@ def evaluate(
     weights = np.concatenate([coefficients.real, coefficients.imag], axis=-1)
     A, B = np.moveaxis((weights.reshape(-1, len(real)) @ real).reshape(*weights.shape[:-1], -1), 1, 0)
     return A + T_out * B
+
+
+def interpolate(
+    maps: Sequence[InfluenceMap], psi: Float[np.ndarray, " time"], T_out: Float[np.ndarray, " time"]
+) -> Float[np.ndarray, "map 5 time"]:
+    """The same as :func:`evaluate` for many times, by cubics through four of the FINE angles of a map.
+
+    A wave of order k errs by 0.023 (2 pi k / FINE)^4 of its amplitude at most: 3e-11 for order 2, 5e-6 for order 40.
+    """
+    place = psi * (FINE / (2 * np.pi))
+    low = np.floor(place)
+    x = place - low
+    four = low.astype(int) % FINE + np.arange(4)[:, None]
+    weights = np.stack([-x * (x - 1) * (x - 2), 3 * (x * x - 1) * (x - 2), -3 * x * (x + 1) * (x - 2), x * (x * x - 1)])
+    weights = weights.T[:, None] / 6
+    signals = np.empty((len(maps), 5, len(psi)))
+    for signal, each in zip(signals, maps, strict=True):
+        A, B = np.matmul(weights, np.take(each.fine, four.T, axis=0))[:, 0].T.reshape(2, 5, -1)
+        np.add(A, T_out * B, out=signal)
+    return signals
 
 
 def _significant(maps: Sequence[InfluenceMap], T_out: float) -> np.ndarray:

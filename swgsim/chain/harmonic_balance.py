@@ -25,7 +25,7 @@ Lines = Complex[np.ndarray, "2 order run"]
 
 
 def one_revolution(
-    drive: Drive, start_angle: Float[np.ndarray, " run"], points: int
+    drive: Drive, start_angle: Float[np.ndarray, " run"], points: int, least: int = TIMES
 ) -> tuple[Motion, Bool[np.ndarray, " run"]]:
     """One periodic revolution of the wave generator in ``points`` even steps of time, and which runs converged.
 
@@ -37,8 +37,10 @@ def one_revolution(
     start_angle : array (run,)
         Angle of the wave generator at the start [rad].
     points : int
+    least : int
+        Least number of times at which the equations hold.
     """
-    each = -(-TIMES // points)
+    each = -(-least // points)
     each += each * points % 2  # an even number of times
     turn = 2 * np.pi * np.arange(points * each)[:, None] / (points * each)
     _, speed_in, phi_out, speed_out, speed_error = drive.at_rest_in_rotating_frame()

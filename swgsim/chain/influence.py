@@ -28,6 +28,8 @@ from swgsim.gear.gear import WaveGenerator
 ORDERS = 120
 ANGLES = 256
 PSI = 2 * np.pi / ANGLES * np.arange(ANGLES)
+# Angles of a map between which long recordings are interpolated; 17 to a wave of the highest order.
+FINE = 2048
 
 # Points per sector at which the tooth forces are sampled; odd, so that one is at the node.
 SUBDIVISION = 5
@@ -46,6 +48,14 @@ class InfluenceMap:
     coefficients: Complex[np.ndarray, "2 5 order"]
 
     @cached_property
+    def fine(self) -> Float[np.ndarray, "angle 2*5"]:
+        """A and B of all sensors at FINE even angles, after the last of them and before the first two."""
+        lines = self.coefficients.reshape(-1, self.coefficients.shape[-1]).copy()
+        lines[:, 1:] /= 2
+        values = np.fft.irfft(lines, FINE, norm="forward").T
+        return np.concatenate([values[-1:], values, values[:2]])
+
+    @cached_property
     def largest(self) -> Float[np.ndarray, "2 order"]:
         """The largest coefficient of all sensors."""
         return np.abs(self.coefficients).max(axis=1)
@@ -58,10 +68,10 @@ class InfluenceMap:
 def harmonics(psi: Float[np.ndarray, " time"], orders: Int[np.ndarray, " order"]) -> Complex[np.ndarray, "order time"]:
     """exp(i k psi) for ascending orders k, by repeated multiplication."""
     turns = np.empty((len(orders), len(psi)), complex)
-    steps = np.diff(orders, prepend=0)
-    powers = {step: np.exp(1j * step * psi) for step in set(steps.tolist())}
+    steps = np.diff(orders, prepend=0).tolist()
+    powers = {step: np.exp(1j * step * psi) if step else np.ones_like(psi) for step in set(steps)}
     before: np.ndarray | float = 1.0
-    for turn, step in zip(turns, steps.tolist(), strict=True):
+    for turn, step in zip(turns, steps, strict=True):
         before = np.multiply(before, powers[step], out=turn)
     return turns
 
@@ -96,12 +106,6 @@ def fine_angles(sectors: int) -> Float[np.ndarray, " theta"]:
     return (2 * np.pi / sectors * (np.arange(sectors)[:, None] + inside)).ravel()
 
 
-@lru_cache(maxsize=16)
-def _sampled_ellipse(wave_generator: WaveGenerator, radius: float, sectors: int) -> Float[np.ndarray, "psi theta"]:
-    """The ellipse at the angles of the maps, for all structures of a gear."""
-    return ellipse(wave_generator, radius, PSI, fine_angles(sectors))
-
-
 @lru_cache(maxsize=4096)
 def lobes(wave_generator: WaveGenerator, radius: float, effects: tuple[Effect, ...]) -> complex:
     """Change of the two lobes by effects, as order 2 of the displacement that turns with the wave generator.
@@ -114,6 +118,17 @@ def lobes(wave_generator: WaveGenerator, radius: float, effects: tuple[Effect, .
         displacement = effect.wave_generator(displacement, psi, theta)
     turning = np.exp(2j * (theta - psi[:, None]))
     return complex((displacement * turning).mean() / (ideal * turning).mean())
+
+
+@lru_cache(maxsize=64)
+def _displacement(
+    wave_generator: WaveGenerator, radius: float, sectors: int, effects: tuple[Effect, ...]
+) -> Float[np.ndarray, "psi theta"]:
+    """Imposed displacement at the angles of the maps [m]; units share what the first of their effects do."""
+    if not effects:
+        return ellipse(wave_generator, radius, PSI, fine_angles(sectors))
+    before = _displacement(wave_generator, radius, sectors, effects[:-1])
+    return effects[-1].wave_generator(before, PSI, fine_angles(sectors))
 
 
 def boundary_conditions(
@@ -140,7 +155,17 @@ def boundary_conditions(
     theta = fine_angles(flex.sector.count)
     for effect in effects:
         displacement = effect.wave_generator(displacement, psi, theta)
-    depth = displacement
+    return _loads(flex, displacement, effects, psi)
+
+
+def _loads(
+    flex: FlexSpline,
+    displacement: Float[np.ndarray, "psi theta"],
+    effects: Sequence[Effect],
+    psi: Float[np.ndarray, " psi"],
+) -> tuple[Float[np.ndarray, "psi sector"], Float[np.ndarray, "psi sector"]]:
+    """Loads of the truss under the displacement of the actual wave generator, as in :func:`boundary_conditions`."""
+    depth, theta = displacement, fine_angles(flex.sector.count)
     for effect in effects:
         depth = effect.engaged(depth, psi, theta)
     share = np.maximum(depth, 0)
@@ -150,7 +175,7 @@ def boundary_conditions(
     total = share.sum(axis=1, keepdims=True)
     for effect in effects:
         share = effect.carried(share, psi, theta)
-    of_sectors = share.reshape(len(psi), flex.sector.count, SUBDIVISION).sum(axis=2)
+    of_sectors = share.reshape(len(psi), flex.sector.count, SUBDIVISION) @ np.ones(SUBDIVISION)
     at_nodes = displacement[:, SUBDIVISION // 2 :: SUBDIVISION]
     return at_nodes, of_sectors / (total * flex.tooth_radius)
 
@@ -175,10 +200,10 @@ def influence_map(
     amplitudes = _load_amplitudes(flex, wave_generator, loading)
     response = gauge_response(flex, gauges, factors)
     cracks = [crack for effect in effects for crack in effect.cracks()]
-    values = np.stack([
-        (amplitude @ response[:, :, load]).real + _cracked(flex, response, amplitude, load, cracks)
-        for load, amplitude in zip((WAVE_GENERATOR, TEETH), amplitudes, strict=True)
-    ])  # fmt: skip
+    of_loads = response[:, :, [WAVE_GENERATOR, TEETH]]
+    if cracks:
+        of_loads = of_loads + _cracked(flex, response, cracks)
+    values = (amplitudes @ np.moveaxis(of_loads, 2, 0)).real
     values[0] += offsets(gauges)
     coefficients = np.fft.rfft(values, axis=1)[:, : ORDERS + 1] / ANGLES
     coefficients[:, 1:] *= 2
@@ -194,57 +219,44 @@ def _load_amplitudes(
     Gears that differ in their gauges only share them.
     """
     sectors = flex.sector.count
-    displacement = _sampled_ellipse(wave_generator, flex.sector.hat.radius, sectors)
-    loads = boundary_conditions(flex, displacement, effects, PSI)
+    deforming = tuple(effect for effect in effects if overrides(effect, "wave_generator"))
+    loads = _loads(flex, _displacement(wave_generator, flex.sector.hat.radius, sectors, deforming), effects, PSI)
     return np.stack([np.fft.rfft(load, axis=1) for load in loads]) / sectors * order_weights(sectors)
 
 
 def _cracked(
-    flex: FlexSpline,
-    response: Complex[np.ndarray, "order 5 load"],
-    amplitude: Complex[np.ndarray, "psi order"],
-    load: int,
-    cracks: Sequence[Crack],
-) -> Float[np.ndarray, "psi 5"] | float:
-    """Change of the signals by root tooth cracks (reduced k_bar, section II-B) under one load.
+    flex: FlexSpline, response: Complex[np.ndarray, "order 5 load"], cracks: Sequence[Crack]
+) -> Complex[np.ndarray, "order 5 2"]:
+    """Change of the response to both loads by root tooth cracks (reduced k_bar, section II-B).
 
     A crack removes the stiffness D [N/m] between the columns of nodes on its two sides. C [m/N] is the compliance
     between these nodes, and u0 [m] their displacement in the sound structure. Then u = (1 - C D)^-1 u0, and the forces
-    D u on the sound structure replace the crack (Woodbury), so no new factorisation is needed.
+    D u on the sound structure replace the crack (Woodbury), so no new factorisation is needed. With the signals S per
+    force the change is S D (1 - C D)^-1 u0. The factors before u0 belong to the gauges, and u0 is linear in each
+    circumferential order of the load, so the crack changes the response to that order.
 
     Parameters
     ----------
     flex : FlexSpline
     response : array (order, 5, load)
         Bridge signals per load [mV/V per m, per N].
-    amplitude : array (psi, order)
-        Circumferential orders of the load.
-    load : int
-        WAVE_GENERATOR or TEETH.
     cracks : sequence of Crack
-
-    Returns
-    -------
-    array (psi, 5)
-        [mV/V], or [mV/V per N m] for the teeth.
     """
-    if not cracks:
-        return 0.0
     sector = flex.sector
     columns = np.array([(gap, gap + 1) for gap in (sector.gap(crack.angle) for crack in cracks)]).ravel()
-    turns = np.exp(1j * sector.pitch * np.outer(columns, orders(sector.count)))
+    turns = np.exp(1j * sector.pitch * np.outer(orders(sector.count), columns))
     lost_stiffness = linalg.block_diag(
         *[(1 - remaining_stiffness(crack, flex)) * flex.crossing_stiffness for crack in cracks]
     )
-    sound_displacement = np.concatenate(
-        [((amplitude * turn) @ flex.fields[:, flex.band, load]).real for turn in turns], axis=1
-    )
     compliance = np.block([[flex.band_compliance[(i - j) % sector.count] for j in columns] for i in columns])
-    forces = lost_stiffness @ np.linalg.solve(
-        np.eye(len(lost_stiffness)) - compliance @ lost_stiffness, sound_displacement.T
+    signal = np.fft.irfft(response[:, :, BAND:], sector.count, axis=0)[-columns % sector.count]  # (column, 5, dof)
+    per_force = signal.swapaxes(1, 2).reshape(len(lost_stiffness), -1)
+    per_displacement = np.linalg.solve(
+        np.eye(len(lost_stiffness)) - lost_stiffness.T @ compliance.T, lost_stiffness.T @ per_force
     )
-    signal = np.fft.irfft(response[:, :, BAND:], sector.count, axis=0)[-columns % sector.count]
-    return np.tensordot(forces.reshape(*signal.shape[::2], -1), signal, axes=((0, 1), (0, 2)))
+    around = turns @ per_displacement.reshape(len(columns), -1)  # (order, dof 5)
+    fields = flex.fields[:, flex.band][:, :, [WAVE_GENERATOR, TEETH]]  # (order, dof, load)
+    return around.reshape(len(turns), fields.shape[1], -1).swapaxes(1, 2) @ fields
 
 
 def remaining_stiffness(crack: Crack, flex: FlexSpline) -> float:

@@ -45,7 +45,7 @@ class Motion:
     dt: float | Float[np.ndarray, " run"]
 
     @classmethod
-    def of(cls, channels: Float[np.ndarray, "six run time"], dt: Float[np.ndarray, " run"]) -> "Motion":
+    def of(cls, channels: Float[np.ndarray, "six run time"], dt: float | Float[np.ndarray, " run"]) -> "Motion":
         """The motion of six arrays in the order of the attributes."""
         phi_in, omega_in, omega_out, T_in, T_out, T_flange = channels
         return cls(phi_in, omega_in, omega_out, T_in, T_out, T_flange, dt)

@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from swgsim.chain.dynamics import Drive, State
+from swgsim.chain.dynamics import Drive
 from swgsim.chain.motion import Motion
-from swgsim.chain.settling import steady_revolution, steady_state
+from swgsim.chain.settling import steady_revolution
 from swgsim.effects.base import Effect
 from swgsim.gear.gear import OperatingPoint, Transmission
 
@@ -35,12 +35,6 @@ def forget() -> None:
     _remembered.clear()
 
 
-def settled(driven: Sequence[Driven]) -> tuple[Drive, State]:
-    """The drive of some motions, and their states at the start."""
-    drive, start = _drive(driven)
-    return drive, steady_state(drive, start)
-
-
 def one_turn(driven: Sequence[Driven], points: int, search: bool = True) -> Motion:
     """One revolution of the wave generator for each motion, in ``points`` even steps of time.
 
@@ -56,11 +50,11 @@ def one_turn(driven: Sequence[Driven], points: int, search: bool = True) -> Moti
         forget()
         new = list(driven)
     if new:
-        _remember(new, steady_revolution(*_drive(new), points, search))
+        _remember(new, steady_revolution(*drive_of(new), points, search))
     return Motion(*(np.stack(part) for part in zip(*(_remembered[each, points] for each in driven), strict=True)))
 
 
-def _drive(driven: Sequence[Driven]) -> tuple[Drive, np.ndarray]:
+def drive_of(driven: Sequence[Driven]) -> tuple[Drive, np.ndarray]:
     """The drive of some motions, and their start angles."""
     transmissions, points, effects, start = zip(*driven, strict=True)
     return Drive(transmissions, points, effects), np.array(start)

@@ -38,4 +38,4 @@ class OffCentre(Effect):
 
     def engaged(self, depth: Field, psi: Psi, theta: Theta) -> Field:
         """The depth, with the share of the shift that loads the lobes unequally."""
-        return depth + (self.unequal - 1) * self.shift(psi, theta)
+        return depth if self.unequal == 1 else depth + (self.unequal - 1) * self.shift(psi, theta)

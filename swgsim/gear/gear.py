@@ -1,12 +1,12 @@
 """A gear and its operating point: immutable, SI units, the paper's symbols."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from math import pi
 from pathlib import Path
 from typing import Any
 
-from swgsim.common.build import build
+from swgsim.common.build import build, replaced
 from swgsim.common.checks import require, require_integer, require_positive
 from swgsim.common.configured import conf_folder
 from swgsim.flexspline.gauges import GaugeSet
@@ -172,7 +172,7 @@ class Gear:
         >>> Gear().with_transmission(b1=0.4).transmission.b1
         0.4
         """
-        return replace(self, transmission=replace(self.transmission, **changes))
+        return replaced(self, transmission=replaced(self.transmission, **changes))
 
 
 def gear_from(config: Mapping[str, Any]) -> Gear:

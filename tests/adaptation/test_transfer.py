@@ -168,6 +168,25 @@ def test_batch_statistics_are_those_of_the_target(convolutional):
     }
 
 
+def test_each_layer_is_measured_behind_the_mixed_statistics_of_the_layers_before_it(convolutional):
+    mixing = 0.3
+    layers = [
+        [module for module in model.network_.modules() if isinstance(module, torch.nn.BatchNorm1d)]
+        for model in (convolutional, adapted(BatchNormAdaptation(mixing), convolutional, unlabelled=TARGET.X))
+    ]
+    mixed = adapted(BatchNormAdaptation(mixing), convolutional, unlabelled=TARGET.X).network_
+    heard = {}
+    for number, layer in enumerate(m for m in mixed.modules() if isinstance(m, torch.nn.BatchNorm1d)):
+        layer.register_forward_pre_hook(lambda _, given, number=number: heard.update({number: given[0]}))
+    with torch.no_grad():
+        mixed.embed(torch.from_numpy(TARGET.X).float())
+    for number, (before, after) in enumerate(zip(*layers, strict=True)):
+        wanted = (1 - mixing) * before.running_mean + mixing * heard[number].mean((0, 2))
+        torch.testing.assert_close(after.running_mean, wanted, atol=1e-5, rtol=1e-4)
+        assert not after.training
+        assert after.momentum == before.momentum
+
+
 def test_reversed_gradients():
     features = torch.tensor([[1.0, -2.0]], requires_grad=True)
     reversed_ = reverse_gradient(features, 0.3)

@@ -69,6 +69,8 @@ def smaller(config, swept):
             for option, value in SMALLER.items()
             if option in config[group] and f"{group}.{option}" not in swept
         }
+    if config["adaptation"]["name"] == "rezero":  # of the three gears two must be sources
+        config["adaptation"]["shots"], config["protocol"]["judged"] = [0, 1], 1
     return config
 
 

@@ -4,11 +4,13 @@ import inspect
 from pathlib import Path
 
 import pytest
+import torch
 import yaml
+from hydra import compose, initialize_config_dir
 from omegaconf import OmegaConf
 
 from learn.adaptation.adaptations import ADAPTATIONS
-from learn.jobs import settings
+from learn.jobs import settings, train_job
 
 CONF = Path(__file__).parents[2] / "conf"
 MAKERS = {
@@ -93,3 +95,21 @@ def test_the_command_that_makes_runs_names_folders_and_servers():
     assert settings.train_command(elsewhere) == "swg train grid=small data='my data' tracking.folder='my runs'"
     server = {**config, "tracking": {"name": "server", "uri": "http://host:1"}}
     assert settings.train_command(server) == "swg train grid=small tracking=server tracking.uri=http://host:1"
+
+
+@pytest.mark.parametrize("chosen", ["auto", "cpu"])
+def test_the_key_of_a_job_names_the_device_that_auto_means(chosen, monkeypatch, tmp_path):
+    keys = []
+    (tmp_path / "few-clean.h5").touch()
+    monkeypatch.setattr(train_job.storage, "digest", lambda path: "digest")
+    monkeypatch.setattr(train_job.settings, "store", lambda config: None)
+    monkeypatch.setattr(
+        train_job.tracking, "finished_metrics", lambda store, key: keys.append(key) or {"test_score": 1.0}
+    )
+    with initialize_config_dir(str(CONF), version_base="1.3"):
+        options = ["grid=few", "classifier=perceptron", f"classifier.device={chosen}", f"data={tmp_path}"]
+        config = OmegaConf.to_container(compose("train", options), resolve=True)
+    for found in (False, True):
+        monkeypatch.setattr(torch.cuda, "is_available", lambda found=found: found)
+        train_job.run(config)
+    assert len(set(keys)) == (2 if chosen == "auto" else 1)

@@ -17,10 +17,11 @@ TRIALS = [{"strength": 0.1}, {"strength": 3.0}, {"strength": 1000.0}]
 
 def test_the_first_of_the_best_is_chosen_and_a_single_trial_needs_no_score():
     trials = [{"a": 1}, {"a": 3}, {"a": 2}, {"a": 3}]
-    options, scores = choose(trials, lambda options: float(options["a"]))
+    options, number, scores = choose(trials, lambda options: float(options["a"]))
     assert options is trials[1]
+    assert number == 1
     assert scores == [1.0, 3.0, 2.0, 3.0]
-    assert choose([{"a": 1}], lambda options: pytest.fail("scored")) == ({"a": 1}, [])
+    assert choose([{"a": 1}], lambda options: pytest.fail("scored")) == ({"a": 1}, 0, ())
 
 
 @pytest.fixture(scope="module")
@@ -52,11 +53,16 @@ def trials_of(metrics):
     return {name: value for name, value in metrics.items() if name.startswith("trial/")}
 
 
+def judging(config, gears):
+    """The same job with the fold alone that judges the first gears; the gears that follow are its sources."""
+    return {**config, "protocol": {**config["protocol"], "judged": gears}}
+
+
 @pytest.mark.parametrize("kind", [few_shot, zero_shot], ids=["with adaptation", "without adaptation"])
-def test_trials_depend_on_labels_of_development_gears_and_not_of_judged_gears(kind, data, tmp_path):
-    config = configuration(tmp_path)
+def test_trials_depend_on_labels_of_development_gears_and_not_of_the_gears_that_the_fold_judges(kind, data, tmp_path):
+    config = judging(configuration(tmp_path), 1)
     clean, judged, development = (
-        kind.results(config, each)[0] for each in (data, poisoned(data, [1, 2]), poisoned(data, [5]))
+        kind.results(config, each)[0] for each in (data, poisoned(data, [1]), poisoned(data, [5]))
     )
     assert len(trials_of(clean)) == (3 if kind is few_shot else 2)
     assert trials_of(judged) == trials_of(clean)
@@ -85,16 +91,16 @@ def spied(config, data, monkeypatch):
 def test_options_are_tried_on_development_gears_and_the_best_are_judged(data, tmp_path, monkeypatch):
     # A development gear unlike its sources, so that it matters how much the shots count.
     calls, metrics = spied({**configuration(tmp_path), "draws": 2}, poisoned(data, [5]), monkeypatch)
-    best = max(trials_of(metrics), key=lambda name: metrics[name])
-    assert calls[:-1] == [(trial["strength"], [2], 1, {3, 4, 5}) for trial in TRIALS]
-    assert calls[-1] == (TRIALS[int(best.removeprefix("trial/")) - 1]["strength"], [1, 2], 2, {1, 2})
+    for fold, of_fold in enumerate((calls[:4], calls[4:]), start=1):
+        assert of_fold[:-1] == [(trial["strength"], [2], 1, {3, 4, 5}) for trial in TRIALS]
+        assert of_fold[-1] == (TRIALS[int(metrics[f"chosen/{fold}"]) - 1]["strength"], [1, 2], 2, {fold})
     assert len(set(trials_of(metrics).values())) > 1  # else any would do
 
 
 @pytest.mark.parametrize(("shots", "tried"), [([3, 1], 1), ([3, 2], 2)])
 def test_options_are_tried_with_few_shots_or_the_fewest_there_are(shots, tried, data, tmp_path, monkeypatch):
     monkeypatch.setattr(few_shot, "TRIED_SHOTS", 1)
-    calls, _ = spied(configuration(tmp_path, shots=shots), data, monkeypatch)
+    calls, _ = spied(judging(configuration(tmp_path, shots=shots), 2), data, monkeypatch)
     assert [call[1] for call in calls] == [[tried]] * 3 + [shots]
 
 
@@ -102,5 +108,5 @@ def test_without_development_gears_the_configured_options_are_taken(data, tmp_pa
     config = configuration(tmp_path, strength=7.0)
     config["protocol"]["development"] = 0
     calls, metrics = spied(config, data, monkeypatch)
-    assert calls == [(7.0, [1, 2], 1, {1, 2, 3, 4, 5})]
+    assert calls == [(7.0, [1, 2], 1, gears) for gears in ({1, 3, 5}, {2, 4})]
     assert not trials_of(metrics)

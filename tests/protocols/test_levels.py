@@ -40,9 +40,10 @@ def grids(draw):
 
 
 def all_episodes(protocol, table):
-    yield from protocol.episodes(table)
-    if protocol.development > 1:
-        yield from protocol.development_episodes(table)
+    for episode in protocol.episodes(table):
+        yield episode
+        if protocol.development > 1:
+            yield from protocol.development_episodes(table, episode)
 
 
 def pools(target):
@@ -91,11 +92,14 @@ def test_every_gear_is_left_out_once_and_development_gears_only_for_the_choice_o
         wanted = len(gears) - len(episode.targets)
         assert len(known) == min(wanted, protocol.sources or wanted)
         assert known <= set(development) or set(development) <= known  # development gears come first
-    if protocol.development >= 2:
-        episodes = list(protocol.development_episodes(table))
-        assert sorted(target.gear for episode in episodes for target in episode.targets) == development
-        for episode in episodes:
-            assert set(table["gear"].iloc[np.append(episode.source, episode.kept_out)]) <= set(development)
+        if protocol.development >= 2 and len(known) >= 2:
+            chosen = protocol.development_episodes(table, episode)
+            targets = [target.gear for each in chosen for target in each.targets]
+            assert sorted(targets) == sorted(known & set(development))
+            for each in chosen:
+                sources = set(table["gear"].iloc[np.append(each.source, each.kept_out)])
+                assert sources.isdisjoint(target.gear for target in episode.targets)
+                assert sources == known - set(development) or known <= set(development)
 
 
 @few
@@ -172,15 +176,29 @@ def test_source_gears_and_their_variants_can_be_limited():
 def test_zero_shot_splits_train_on_the_source_and_test_the_judged_rows():
     table = table_of()
     protocol = NewGears(folds=2, development=2, labelled=2, unlabelled=1)
-    features = np.zeros((len(table), 1))
-    for splits, episodes in (
-        (protocol.split(features, table), protocol.episodes(table)),
-        (protocol.development_splits(table), protocol.development_episodes(table)),
-    ):
-        for split, episode in zip(splits, episodes, strict=True):
-            assert split.name == episode.name
-            assert np.array_equal(split.train, episode.source)
-            assert set(split.test) == {row for target in episode.targets for row in target.judged}
+    splits = protocol.split(np.zeros((len(table), 1)), table)
+    for split, episode in zip(splits, protocol.episodes(table), strict=True):
+        assert split.name == episode.name
+        assert np.array_equal(split.train, episode.source)
+        assert set(split.test) == {row for target in episode.targets for row in target.judged}
+
+
+def test_options_are_tried_with_about_as_many_source_gears_as_they_are_used_with():
+    table = table_of(gears=12)
+    protocol = NewGears(folds=5, development=3, labelled=2, unlabelled=1)
+    for episode in protocol.episodes(table):
+        (chosen,) = protocol.development_episodes(table, episode)
+        assert [target.gear for target in chosen.targets] == [10, 11, 12]
+        used, tried = (table["gear"].iloc[each.source].nunique() for each in (episode, chosen))
+        assert tried == used - 3
+
+
+def test_development_gears_are_left_out_in_turn_where_they_are_the_only_sources():
+    table = table_of(gears=6)
+    protocol = NewGears(folds=2, development=4, labelled=2, unlabelled=1, sources=2)
+    chosen = protocol.development_episodes(table, next(iter(protocol.episodes(table))))
+    assert [set(table["gear"].iloc[each.source]) for each in chosen] == [{6}, {5}]
+    assert [[target.gear for target in each.targets] for each in chosen] == [[5], [6]]
 
 
 def test_more_shots_than_labelled_variants_are_refused():
@@ -206,10 +224,10 @@ def test_a_grid_that_is_too_small_is_refused(change, message):
         list(protocol.episodes(table_of()))
 
 
-def test_choosing_needs_two_development_gears():
-    for development in (0, 1):
-        with pytest.raises(ValueError, match=f"{development} gears to judge .* {development} for development"):
-            list(NewGears(development=development).development_episodes(table_of()))
+def test_choosing_needs_two_source_gears():
+    protocol, table = NewGears(development=1, labelled=2, unlabelled=1, sources=1), table_of()
+    with pytest.raises(ValueError, match="1 gears to judge of 1 in all, with 1 for development"):
+        protocol.development_episodes(table, next(iter(protocol.episodes(table))))
 
 
 @pytest.mark.parametrize(

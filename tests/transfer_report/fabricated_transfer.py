@@ -102,6 +102,9 @@ def keep_required(keep, data):
         few = {"protocol.variants": 5} if adaptation == "coral" else {}
         keep("transfer", metrics={"trial/1": 90.0 - 10 * after}, tables={"specimens": specimens, "gears": gears},
              classifier="perceptron", features="harmonics", adaptation=adaptation, **few)  # fmt: skip
+    specimens, gears = adapted(0.05, 0.15, (0, 1, 2, 5))
+    keep("transfer", tables={"specimens": specimens, "gears": gears}, classifier="logistic_regression",
+         features="harmonics", adaptation="rezero")  # fmt: skip
     specimens, _ = adapted(0.1, 0.2, (5, 14))
     keep("transfer_map", tables={"specimens": specimens}, classifier="perceptron", features="harmonics",
          adaptation="replay", target="far-bench", **{"protocol.sources": 2, "features.acquisitions": 1})  # fmt: skip

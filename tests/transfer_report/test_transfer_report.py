@@ -13,7 +13,7 @@ from learn.inputs.residuals import ERRORS
 from learn.jobs import settings
 from learn.jobs.identity import code_version, flat
 from learn.protocols.levels import NewGears
-from learn.transfer_report import importance, tables, transfer_study
+from learn.transfer_report import importance, seeds, tables, transfer_study
 from learn.transfer_report import runs as transfer_runs
 from swgsim.storage import storage
 
@@ -50,7 +50,11 @@ def test_whole_report_from_made_up_runs(data, store, tmp_path):
     assert z1["ratio"] == pytest.approx(z1["best_error"] / z1["forest_error"], abs=1e-4)
     assert z1["ci95"][0] < z1["ratio"] < z1["ci95"][1]
     assert list(content["z3"]) == ["1", "2", "5"]
-    assert {row["best_method"] for row in content["z3"].values()} == {"MLP: replay"}
+    assert {row["best_method"] for row in content["z3"].values()} == {"MLP: replay"}  # rezero has no labelled fault
+    assert list(content["rezero"]) == ["0", "1", "2", "5"]
+    low, high = content["rezero"]["2"]["ci95"]
+    assert low < content["rezero"]["2"]["value"] < high
+    assert (z1["seeds"], z1["spread_over_seeds"]) == (1, None)
     assert content["gears"] == 6
     assert content["inputs"]["raw"]["mlp"] < content["inputs_without_efficiency"]["raw"]["mlp"]
     assert content["inputs"]["residual"] == {"mlp": None, "cnn": None, "minirocket": None}
@@ -68,6 +72,7 @@ def test_whole_report_from_made_up_runs(data, store, tmp_path):
     assert len(set(titles)) == len(titles) > 12
     assert set(re.findall(r'href="#(\w+)"', page)) == set(re.findall(r'<h2 id="(\w+)"', page))
     assert "gears of grid=far" in page
+    assert f"with 2, logistic regression errs in {content['rezero']['2']['value']:.1f} %" in page
     assert "MLP: CORAL (trained on 5 variants)" in page
     assert "replay (trained on" not in page
     assert "experiment=inputs_operating_point grid=gears" in page  # the command of a study without runs
@@ -90,6 +95,25 @@ def test_runs_of_the_present_code_replace_older_ones_of_their_study(store):
     runs = transfer_runs.Runs({}, {}, {}, keep.store, found)
     assert runs.older_code() == ["no_reference", "transfer_map"]
     assert runs.of_study("zero_shot").empty
+
+
+def test_a_sweep_over_seeds_is_one_method_with_means_and_their_spread(tmp_path):
+    keep = Keeper(tmp_path, {"gears-bench": "a"})
+    facts = {"gear": 1, "label": "healthy", "variant": [0, 1]}
+    for seed, error in ((0, 10.0), (1, 13.0), (2, 16.0)):
+        table = pd.DataFrame({**facts, "shots": 5, "error": [error, error + 2], "unadapted": 20.0})
+        keep("transfer", metrics={"test_score": 100 - error}, tables={"specimens": table}, classifier="perceptron",
+             features="harmonics", adaptation="replay", seed=seed, **{"classifier.seed": seed})  # fmt: skip
+    keep("transfer", classifier="perceptron", features="harmonics", adaptation="coral")
+    runs = transfer_runs.Runs({}, {}, {}, keep.store, transfer_runs.present_runs(keep.store, ["a"]))
+    methods = transfer_runs.by_method(runs.of_study("transfer"))
+    assert list(methods.index) == ["MLP: CORAL", "MLP: replay"]
+    assert methods.loc["MLP: replay", ["seeds", "test_score", "spread"]].tolist() == [3, 87.0, 3.0]
+    assert methods["seeds"].tolist() == [1, 3]
+    assert seeds.spread_text(methods) == ["1: -", "3: 3.0"]
+    found = runs.tables(methods.loc[["MLP: replay"]], "specimens")["MLP: replay"]
+    assert found["error"].tolist() == [13.0, 15.0]
+    assert found["unadapted"].tolist() == [20.0, 20.0]
 
 
 def test_every_experiment_of_a_study_is_among_its_commands():
@@ -120,11 +144,10 @@ def test_oracle_of_another_data_set_is_refused(data):
     assert list(found["row"]) == list(known["row"]) == list(judged["row"])
 
 
-@pytest.mark.parametrize(("scores", "chosen"), [((80, 90, 85), 0.2), ((80, 90, 90), 0.2), ((90, 90, 80), 0.1)])
-def test_options_are_those_of_the_best_trial_the_first_of_equals(scores, chosen):
+def test_options_are_those_of_the_first_fold():
     config = {"classifier": {"trials": [{"columns": 0.1}, {"columns": 0.2}, {"columns": 0.3}]}}
-    run = pd.Series({f"trial/{number}": float(score) for number, score in enumerate(scores, start=1)})
-    assert importance.options_of(config, run, NewGears(**POOLS)) == {"columns": chosen}
+    run = pd.Series({"trial/1": 80.0, "trial/2": 90.0, "trial/3": 85.0, "chosen/1": 3.0, "chosen/2": 2.0})
+    assert importance.options_of(config, run, NewGears(**POOLS)) == {"columns": 0.3}
 
 
 def test_every_feature_of_the_harmonics_has_its_group():

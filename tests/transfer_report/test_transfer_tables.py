@@ -35,7 +35,8 @@ def zero_of(best, forest=30.0, oracle=5.0, gears=6):
         columns={"best": BEST, "forest": tables.FOREST, "second": tables.ORACLE_OF_SESSION}
     )
     names = [BEST, tables.FOREST]
-    return errors, tables.zero_shot(errors, pd.Series([90.0, np.nan], names), pd.Series(1.0, names))
+    zero = tables.zero_shot(errors, pd.Series([90.0, np.nan], names), pd.Series(1.0, names))
+    return errors, zero.assign(seeds=1.0, spread=np.nan)
 
 
 def few_of(errors, after, before=10.0):
