@@ -1,0 +1,66 @@
+"""What is known before the first recording of a gear: the nominal gear, the bench and the faults that may be."""
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+from swgsim.dataset.plan import Plan
+from swgsim.effects import Effect
+from swgsim.gear.conditions import Conditions
+from swgsim.gear.gear import Gear
+from swgsim.identification.data.model import Model, Situation
+from swgsim.oracle.cells import Resolution
+from swgsim.oracle.model import bench_of
+from swgsim.twin.parameters import start_of
+from swgsim.twin.scattered import Scattered
+
+
+@dataclass(frozen=True, eq=False)
+class Knowledge:
+    """The declared choices on which a twin rests; none of them is learned from recordings.
+
+    Attributes
+    ----------
+    plan : Plan
+        Its first gear is the nominal one. Bench, window, mesh, and the classes with their severities and operating
+        points are those that are believed; its other gears are not used.
+    resolution : Resolution
+        Of Bayes' rule.
+    """
+
+    plan: Plan
+    resolution: Resolution = field(default_factory=Resolution)
+
+    @property
+    def nominal(self) -> Gear:
+        """The gear of which every unit is one."""
+        return self.plan.gears[0]
+
+    @property
+    def situations(self) -> list[Situation]:
+        """The operating points without errors of the bench."""
+        conditions = Conditions(temperature=bench_of(self.plan).reference_temperature)
+        return [Situation(point, conditions) for point in self.plan.grid.points]
+
+    def plan_of(self, effects: tuple[Effect, ...]) -> Plan:
+        """The plan for one unit whose imperfections are given: the bench draws none."""
+        drawn = ("eccentricity", "cam_form", "gauge_position")
+        bench = replace(bench_of(self.plan), **dict.fromkeys(drawn, 0.0))
+        return replace(self.plan, bench=bench, effects=(*self.plan.effects, *effects))
+
+    def scattered(self, model: Model) -> Scattered:
+        """How healthy recordings of a gear scatter."""
+        return Scattered.of(self.plan_of(model.effects), self.whole(model), self.resolution.draws)
+
+    @cached_property
+    def start(self) -> Model:
+        """The model from which a fit begins."""
+        return start_of(self.nominal)
+
+    @cached_property
+    def at_start(self) -> Scattered:
+        """How healthy recordings scatter before anything is known of the gear."""
+        return self.scattered(self.start)
+
+    def whole(self, model: Model) -> Gear:
+        """The gear of a model with the part of the friction that the fit leaves out (:func:`start_of`)."""
+        return model.gear.with_transmission(b3=self.nominal.transmission.b3)
