@@ -23,7 +23,9 @@ EFFICIENCY, TEMPERATURE = -2, -1
 FEATURES = len(SENSORS) * (2 * ORDERS + 1) + 2
 
 
-def added_variance(plan: Plan, gear: Gear, point: OperatingPoint, log_efficiency: float) -> Float[np.ndarray, " feature"]:
+def added_variance(
+    plan: Plan, gear: Gear, point: OperatingPoint, log_efficiency: float
+) -> Float[np.ndarray, " feature"]:
     """Variance of the errors that are added to a single recording, without the session of the flanges.
 
     Parameters

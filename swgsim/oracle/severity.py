@@ -1,6 +1,7 @@
 """Severity and position of a fault from the cells in which an observation may lie."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Float
@@ -9,8 +10,8 @@ from scipy.special import ndtr
 from swgsim.oracle.cells import UNIFORM, Partition
 from swgsim.oracle.point import Places
 
-# Halvings of the range in which a quantile is sought: to a millionth of it.
-HALVINGS = 20
+# Halvings of the range in which a quantile is sought: to a ten thousandth of it.
+HALVINGS = 14
 
 
 @dataclass(frozen=True)
@@ -38,8 +39,8 @@ class Severities:
 
     def below(self, severity: Float[np.ndarray, " sample"]) -> Float[np.ndarray, " sample"]:
         """Probability that the severity is below a value."""
-        low, high, here = (self._mixture(each) for each in (self.partition.low, self.partition.high, severity))
-        return np.clip((here - low) / np.maximum(high - low, np.finfo(float).tiny), 0, 1)
+        low, high = self._ends
+        return np.clip((self._mixture(severity) - low) / np.maximum(high - low, np.finfo(float).tiny), 0, 1)
 
     def quantile(self, probability: float) -> Float[np.ndarray, " sample"]:
         """Severity below which the true one lies with a probability."""
@@ -50,6 +51,11 @@ class Severities:
             under = self.below(middle) < probability
             low, high = np.where(under, middle, low), np.where(under, high, middle)
         return (low + high) / 2
+
+    @cached_property
+    def _ends(self) -> tuple[Float[np.ndarray, " sample"], Float[np.ndarray, " sample"]]:
+        """The mixture's distribution function at the extremes of the class."""
+        return self._mixture(self.partition.low), self._mixture(self.partition.high)
 
     def _mixture(self, severity: float | Float[np.ndarray, " sample"]) -> Float[np.ndarray, " sample"]:
         """The mixture's distribution function, which may reach beyond the extremes."""

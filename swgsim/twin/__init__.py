@@ -5,9 +5,9 @@ the fit is that of ``identification``.
 Imports ``identification``, ``oracle`` and rooms below these.
 """
 
-from swgsim.twin.diagnosis import Diagnosis, diagnose
+from swgsim.twin.fitted_gear import FittedGear, fit_gear
 from swgsim.twin.knowledge import Knowledge
 from swgsim.twin.references import References
 from swgsim.twin.twin import Twin
 
-__all__ = ["Diagnosis", "Knowledge", "References", "Twin", "diagnose"]
+__all__ = ["FittedGear", "Knowledge", "References", "Twin", "fit_gear"]

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
+from swgsim.bench.scatter import Bench
 from swgsim.dataset.plan import Plan
 from swgsim.effects import Effect
 from swgsim.gear.conditions import Conditions
@@ -36,15 +37,20 @@ class Knowledge:
         return self.plan.gears[0]
 
     @property
+    def bench(self) -> Bench:
+        """The statistics of the bench; raises a ValueError if the plan has none."""
+        return bench_of(self.plan)
+
+    @property
     def situations(self) -> list[Situation]:
         """The operating points without errors of the bench."""
-        conditions = Conditions(temperature=bench_of(self.plan).reference_temperature)
+        conditions = Conditions(temperature=self.bench.reference_temperature)
         return [Situation(point, conditions) for point in self.plan.grid.points]
 
     def plan_of(self, effects: tuple[Effect, ...]) -> Plan:
         """The plan for one unit whose imperfections are given: the bench draws none."""
         drawn = ("eccentricity", "cam_form", "gauge_position")
-        bench = replace(bench_of(self.plan), **dict.fromkeys(drawn, 0.0))
+        bench = replace(self.bench, **dict.fromkeys(drawn, 0.0))
         return replace(self.plan, bench=bench, effects=(*self.plan.effects, *effects))
 
     def scattered(self, model: Model) -> Scattered:

@@ -3,12 +3,11 @@
 b1 and k1, the kinematic error, the gauges, and the imperfections of the wave generator that a healthy unit may have.
 """
 
-from collections.abc import Callable
 from dataclasses import replace
 from math import atan2, cos, hypot, sin, sqrt
 
 from swgsim.bench.scatter import Bench
-from swgsim.effects import CamForm, EccentricWaveGenerator, Effect
+from swgsim.effects import CamForm, EccentricWaveGenerator
 from swgsim.gear.gear import Gear
 from swgsim.identification.data.model import Model
 from swgsim.identification.fit.priors import Declared, of_unit
@@ -27,9 +26,9 @@ def start_of(gear: Gear) -> Model:
     return Model(gear.with_transmission(b3=0.0), (EccentricWaveGenerator(0.0), CamForm(3, 0.0), CamForm(5, 0.0)))
 
 
-def parameters_of(gear: Gear, bench: Bench) -> dict[str, Declared]:
+def parameters_of(gear: Gear, bench: Bench, structure: float = 0.0) -> dict[str, Declared]:
     """The parameters of :func:`start_of`, with the spreads of a series and of a bench."""
-    of_gear = {name: each for name, each in of_unit(gear).items() if name not in SHARED}
+    of_gear = {name: each for name, each in of_unit(gear, structure=structure).items() if name not in SHARED}
     return of_gear | {
         f"{effect.title()} {number + 1} {part}": _along(number, size, angle, part, largest)
         for number, (effect, size, angle, largest) in enumerate((
@@ -58,6 +57,8 @@ def _along(number: int, size: str, angle: str, part: str, largest: float) -> Dec
         turned = replace(model.effects[number], **{size: hypot(x, y), angle: atan2(y, x)})
         return replace(model, effects=(*model.effects[:number], turned, *model.effects[number + 1 :]))
 
-    value: Callable[[Model], float] = lambda model: parts(model)[part == "sine"]
+    def value(model: Model) -> float:
+        return parts(model)[part == "sine"]
+
     # Within the limits of the effects, for any direction.
     return Declared("m", largest / sqrt(6), value, moved, low=-3 * largest, high=3 * largest)

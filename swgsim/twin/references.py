@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+import pandas as pd
 from jaxtyping import Float
 
 from swgsim.gear.gear import OperatingPoint
@@ -43,8 +44,12 @@ class References:
                 f"references of {len(gears)} gears {gears}, a twin has those of one: give the recordings of one gear, "
                 "with reference = 1 where it is healthy"
             )
-        x = observations(references)
-        rows = references.table.groupby(["n_in_rpm", "T_out_nm"]).indices
+        return cls.of_observations(observations(references), references.table)
+
+    @classmethod
+    def of_observations(cls, x: Float[np.ndarray, "reference feature"], table: pd.DataFrame) -> "References":
+        """The references of one gear, given their observations and facts."""
+        rows = table.groupby(["n_in_rpm", "T_out_nm"]).indices
         points = tuple(OperatingPoint(float(speed), float(load)) for speed, load in rows)
         mean = np.array([x[each].mean(axis=0) for each in rows.values()])
         return cls(points, mean, np.array([len(each) for each in rows.values()], dtype=float))

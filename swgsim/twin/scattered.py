@@ -9,7 +9,6 @@ from swgsim.dataset.plan import Plan
 from swgsim.gear.gear import Gear
 from swgsim.identification.covariance.low_rank_covariance import Covariance
 from swgsim.identification.covariance.recording_covariance import RecordingCovariance
-from swgsim.identification.data.model import Model
 from swgsim.oracle.model import healthy_runs
 from swgsim.oracle.oracle import EFFICIENCY, added_variance, session_columns
 
