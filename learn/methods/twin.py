@@ -1,7 +1,7 @@
 """A classifier that is trained on nothing: the twin of the gear whose references a row has."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
@@ -14,6 +14,8 @@ from learn.inputs.rows import Inputs
 
 if TYPE_CHECKING:
     from swgsim.gear.gear import OperatingPoint
+    from swgsim.oracle.cells import Partition
+    from swgsim.oracle.point import PointModel
     from swgsim.twin import Knowledge, Twin
 
 # Columns of a row before those of its references: operating point and observation.
@@ -64,7 +66,7 @@ class TwinClassifier:
         self.classes_ = np.unique(y)
         unknown = sorted(set(self.classes_) - set(self.classes))
         if unknown:
-            raise ValueError(f"class {unknown[0]!r} is not among the classes of the believed grid: add it there")
+            raise ValueError(f"class {str(unknown[0])!r} is not among the classes of the believed grid: add it there")
         return self
 
     def predict(self, X: Inputs) -> np.ndarray:
@@ -72,9 +74,15 @@ class TwinClassifier:
         return self.classes_[self.predict_proba(X).argmax(axis=1)]
 
     def predict_proba(self, X: Inputs) -> Float[np.ndarray, "row class"]:
-        """Probability of each class, all of them equally frequent."""
-        table = self.diagnosis(X)[list(self.classes_)].to_numpy()
-        return table / table.sum(axis=1, keepdims=True)
+        """Probability of each class, all of them equally frequent; raises like :meth:`diagnosis`."""
+        from swgsim.storage.labelled_signals import CLASSES
+
+        found = np.empty((len(X), len(self.classes_)))
+        columns = [CLASSES.index(name) for name in self.classes_]
+        for rows, model, _, x in self._at_points(X):
+            p = np.exp(model.log_posterior(x))[:, columns]
+            found[rows] = p / p.sum(axis=1, keepdims=True)
+        return found
 
     def diagnosis(self, X: Inputs) -> pd.DataFrame:
         """Probability of every class, and severity and position with intervals (:mod:`swgsim.oracle.diagnosis`).
@@ -84,8 +92,16 @@ class TwinClassifier:
         ValueError
             If the rows are no rows of ``features=referenced``.
         """
-        from swgsim.gear.gear import OperatingPoint
         from swgsim.oracle.diagnosis import diagnosis
+
+        parts = [diagnosis(model, cells, x).set_index(rows) for rows, model, cells, x in self._at_points(X)]
+        return pd.concat(parts).sort_index()
+
+    def _at_points(
+        self, X: Inputs
+    ) -> Iterator[tuple[np.ndarray, "PointModel", Mapping[str, "Partition"], Float[np.ndarray, "sample feature"]]]:
+        """Rows of every gear at every operating point, with its densities, the cells of classes, and observations."""
+        from swgsim.gear.gear import OperatingPoint
         from swgsim.oracle.model import partitions_of
         from swgsim.oracle.oracle import FEATURES
 
@@ -93,17 +109,15 @@ class TwinClassifier:
         before = POINT + FEATURES
         if rows.shape[1] <= before or (rows.shape[1] - before) % (before + 1):
             raise ValueError(f"{rows.shape[1]} columns are no rows with references: choose features=referenced")
-        parts = []
         gears, of_gear = np.unique(rows[:, before:], axis=0, return_inverse=True)
         for number, said in enumerate(gears):
             twin = _twin(self._believed, said.tobytes())
             partitions = partitions_of(twin.knowledge.plan, twin.knowledge.resolution)
             here = np.flatnonzero(of_gear.ravel() == number)
-            for speed, load in np.unique(rows[here, :POINT], axis=0):
+            for speed, load in np.unique(rows[here, :POINT], axis=0).tolist():
                 chosen = here[(rows[here, 0] == speed) & (rows[here, 1] == load)]
-                model = twin.densities([OperatingPoint(float(speed), float(load))])
-                parts.append(diagnosis(model, partitions, rows[chosen, POINT:before]).set_index(chosen))
-        return pd.concat(parts).sort_index()
+                model = twin.densities([OperatingPoint(speed, load)])
+                yield chosen, model, partitions, rows[chosen, POINT:before]
 
 
 @lru_cache(maxsize=KEPT)

@@ -1,6 +1,6 @@
 """The gear of a twin, fitted to references by the code that commissions gears for the loop."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -112,13 +112,11 @@ def fit_gear(
         at, position = found.model, found.position
         J, left = found.J.reshape(mean.size, -1), (measured - found.predicted).ravel()
         from_start = left + J @ np.array(list(position.values()))
-        lack = _likeliest(LACKS, lambda lack: np.hstack([J, lack * lines]), errors, from_start)
+        lack = _likeliest({each: np.hstack([J, each * lines]) for each in LACKS}, errors, from_start)
         if searched and not turn:
-            beyond = errors.with_columns(lack * lines) if lack else errors
             factors = np.array([name.startswith("response") for name in parameters])
-            spread = _likeliest(
-                SPREADS, lambda spread: J * np.where(factors, spread / SPREADS[-1], 1.0), beyond, from_start
-            )
+            columns = {each: J * np.where(factors, each / SPREADS[-1], 1.0) for each in SPREADS}
+            spread = _likeliest(columns, errors.with_columns(lack * lines), from_start)
             parameters = parameters_of(knowledge.nominal, knowledge.bench, spread)
             position = {name: position[name] for name in parameters if not name.startswith("response")}
     directions = np.hstack([J, lack * lines]) if lack else J
@@ -135,13 +133,12 @@ def fit_gear(
 
 
 def _likeliest(
-    choices: Sequence[float],
-    columns: Callable[[float], Float[np.ndarray, "row column"]],
+    columns: Mapping[float, Float[np.ndarray, "row column"]],
     errors: Covariance,
     from_start: Float[np.ndarray, " row"],
 ) -> float:
-    """The choice with which references are likeliest, by the linearised model: the one of the largest evidence."""
-    return max(choices, key=lambda each: errors.with_columns(columns(each)).log_likelihood(from_start))
+    """The choice with the largest evidence, by the linearised model: with its columns references are likeliest."""
+    return max(columns, key=lambda each: errors.with_columns(columns[each]).log_likelihood(from_start))
 
 
 def _of_lines(observation: Float[np.ndarray, "point feature"]) -> Float[np.ndarray, "row line"]:
