@@ -1,7 +1,7 @@
 """A classifier that is trained on nothing: the twin of the gear whose references a row has."""
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
@@ -37,6 +37,8 @@ class TwinClassifier:
         sampling; the mesh. Operating points are those of the references.
     resolution : mapping
         Options of :class:`swgsim.oracle.cells.Resolution`.
+    further : sequence of str
+        As of :class:`swgsim.twin.Knowledge`.
     """
 
     def __init__(
@@ -47,11 +49,12 @@ class TwinClassifier:
         window: Mapping[str, Any],
         mesh: Mapping[str, Any],
         resolution: Mapping[str, Any],
+        further: Sequence[str] = (),
     ):
         self.classes = tuple(grid["classes"])
         believed = {
             "gears": {"nominal": gear}, "grid": {**grid, "population": None}, "condition": condition, "window": window,
-            "mesh": mesh, "resolution": resolution,
+            "mesh": mesh, "resolution": resolution, "further": list(further),
         }  # fmt: skip
         self._believed = json.dumps(believed, sort_keys=True)
 
@@ -144,4 +147,4 @@ def _knowledge(believed: str, points: tuple["OperatingPoint", ...]) -> "Knowledg
     choices = json.loads(believed)
     plan = settings.plan(choices)
     resolution = settings.build(Resolution, choices["resolution"])
-    return Knowledge(replace(plan, grid=replace(plan.grid, points=points)), resolution)
+    return Knowledge(replace(plan, grid=replace(plan.grid, points=points)), resolution, tuple(choices["further"]))

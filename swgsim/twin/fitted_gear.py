@@ -16,7 +16,6 @@ from swgsim.oracle.model import ORDERS
 from swgsim.oracle.oracle import FEATURES
 from swgsim.storage.labelled_signals import SENSORS
 from swgsim.twin.knowledge import Knowledge
-from swgsim.twin.parameters import parameters_of
 from swgsim.twin.references import References
 from swgsim.twin.seen import Seen
 
@@ -91,7 +90,7 @@ def fit_gear(
     else:
         scattered = knowledge.scattered(start)
     searched = parameters is None
-    parameters = parameters_of(knowledge.nominal, knowledge.bench, SPREADS[-1]) if parameters is None else parameters
+    parameters = knowledge.parameters(SPREADS[-1]) if parameters is None else parameters
     rows = _rows(references, plan.grid.points)
     mean, count = references.mean[rows], references.count[rows]
     seen = Seen(N=knowledge.nominal.transmission.N)
@@ -117,7 +116,7 @@ def fit_gear(
             factors = np.array([name.startswith("response") for name in parameters])
             columns = {each: J * np.where(factors, each / SPREADS[-1], 1.0) for each in SPREADS}
             spread = _likeliest(columns, errors.with_columns(lack * lines), from_start)
-            parameters = parameters_of(knowledge.nominal, knowledge.bench, spread)
+            parameters = knowledge.parameters(spread)
             position = {name: position[name] for name in parameters if not name.startswith("response")}
     directions = np.hstack([J, lack * lines]) if lack else J
     white = errors.whiten(directions)

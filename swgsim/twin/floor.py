@@ -16,7 +16,7 @@ from swgsim.twin.twin import Twin
 
 
 def floor_of(knowledge: Knowledge, true: Model, references: References, expected: list[Expectation]) -> Twin:
-    """The twin that has all of the true gear but b1, which it fits to the references.
+    """The twin that has all of the true gear but b1 and further parameters, which it fits to the references.
 
     Parameters
     ----------
@@ -30,8 +30,9 @@ def floor_of(knowledge: Knowledge, true: Model, references: References, expected
     """
     gear: Gear = true.gear
     start = Model(gear.with_transmission(b3=0.0), true.effects)
-    b1 = {"b1": parameters_of(gear, knowledge.bench)["b1"]}
-    fitted = fit_gear(knowledge, references, start, b1, turns=1)
+    of_unit = parameters_of(gear, knowledge.bench, further=knowledge.further)
+    friction = {name: of_unit[name] for name in ("b1", *knowledge.further)}
+    fitted = fit_gear(knowledge, references, start, friction, turns=1)
     seen = Seen(N=gear.transmission.N)
     was, found = predict([start, fitted.model], knowledge.situations, seen, knowledge.plan.sectors)
     moved = [

@@ -9,9 +9,10 @@ from swgsim.effects import Effect
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import Gear
 from swgsim.identification.data.model import Model, Situation
+from swgsim.identification.fit.priors import Declared
 from swgsim.oracle.cells import Resolution
 from swgsim.oracle.model import bench_of
-from swgsim.twin.parameters import start_of
+from swgsim.twin.parameters import parameters_of, start_of
 from swgsim.twin.scattered import Scattered
 
 
@@ -26,10 +27,14 @@ class Knowledge:
         points are those that are believed; its other gears are not used.
     resolution : Resolution
         Of Bayes' rule.
+    further : tuple of str
+        Parameters that units of a series share but may differ by here, such as b0 and mu of the friction
+        (:data:`swgsim.twin.parameters.SHARED`).
     """
 
     plan: Plan
     resolution: Resolution = field(default_factory=Resolution)
+    further: tuple[str, ...] = ()
 
     @property
     def nominal(self) -> Gear:
@@ -66,6 +71,10 @@ class Knowledge:
     def at_start(self) -> Scattered:
         """How healthy recordings scatter before anything is known of the gear."""
         return self.scattered(self.start)
+
+    def parameters(self, structure: float = 0.0) -> dict[str, Declared]:
+        """What may differ between units, with a spread of the factors of the structure."""
+        return parameters_of(self.nominal, self.bench, structure, self.further)
 
     def whole(self, model: Model) -> Gear:
         """The gear of a model with the part of the friction that the fit leaves out (:func:`start_of`)."""

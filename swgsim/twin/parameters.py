@@ -3,10 +3,12 @@
 b1 and k1, the kinematic error, the gauges, and the imperfections of the wave generator that a healthy unit may have.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 from math import atan2, cos, hypot, sin, sqrt
 
 from swgsim.bench.scatter import Bench
+from swgsim.common.checks import require_known
 from swgsim.effects import CamForm, EccentricWaveGenerator
 from swgsim.gear.gear import Gear
 from swgsim.identification.data.model import Model
@@ -14,8 +16,18 @@ from swgsim.identification.fit.priors import Declared, of_unit
 
 # Parameters of a unit that a population shares, or that belong to the bench: recordings without torques and speed
 # hardly show them.
-SHARED = ("b0", "mu", "w0", "J_in", "J_out", "rotor share", "load share", "error lever")
-SHARED += ("control frequency", "control damping")
+SHARED = (
+    "b0",
+    "mu",
+    "w0",
+    "J_in",
+    "J_out",
+    "rotor share",
+    "load share",
+    "error lever",
+    "control frequency",
+    "control damping",
+)
 
 
 def start_of(gear: Gear) -> Model:
@@ -26,9 +38,27 @@ def start_of(gear: Gear) -> Model:
     return Model(gear.with_transmission(b3=0.0), (EccentricWaveGenerator(0.0), CamForm(3, 0.0), CamForm(5, 0.0)))
 
 
-def parameters_of(gear: Gear, bench: Bench, structure: float = 0.0) -> dict[str, Declared]:
-    """The parameters of :func:`start_of`, with the spreads of a series and of a bench."""
-    of_gear = {name: each for name, each in of_unit(gear, structure=structure).items() if name not in SHARED}
+def parameters_of(gear: Gear, bench: Bench, structure: float = 0.0, further: Sequence[str] = ()) -> dict[str, Declared]:
+    """The parameters of :func:`start_of`, with the spreads of a series and of a bench.
+
+    Parameters
+    ----------
+    gear : Gear
+        The nominal one.
+    bench : Bench
+    structure : float
+        Spread of the factors by which the structure differs from the truss (:mod:`swgsim.flexspline`).
+    further : sequence of str
+        Those of :data:`SHARED` by which units differ nevertheless.
+
+    Raises
+    ------
+    ValueError
+        If one of them is unknown; the message lists the choices.
+    """
+    require_known("further parameters of a unit", further, SHARED)
+    known = set(SHARED) - set(further)
+    of_gear = {name: each for name, each in of_unit(gear, structure=structure).items() if name not in known}
     return of_gear | {
         f"{effect.title()} {number + 1} {part}": _along(number, size, angle, part, largest)
         for number, (effect, size, angle, largest) in enumerate((

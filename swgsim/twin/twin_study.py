@@ -41,6 +41,9 @@ from swgsim.twin.twin import Twin
 # Who judges, as prefixes of the columns of probabilities: twin and floor judge recordings and units.
 WHO = ("", "unit:", "floor:", "floor unit:", "oracle:", "oracle known:")
 
+# Choices of the configuration on which the result depends.
+CHOICES = ("resolution", "believed", "further", "compared")
+
 
 def run(config: Mapping[str, Any]) -> dict[str, float]:
     """Write ``<data>/<grid>-<condition>-twin.parquet``.
@@ -66,11 +69,13 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
     believed = settings.plan(_merged(configuration_of(source), config["believed"]))
     resolution = settings.build(Resolution, config["resolution"])
     nominal = settings.gear(next(iter(configuration_of(source)["gears"].values())))
-    knowledge = Knowledge(replace(believed, gears=(nominal,)), resolution)
+    knowledge = Knowledge(replace(believed, gears=(nominal,)), resolution, tuple(config["further"]))
     made_from = {
         "data": storage.digest(source),
         "code": code_version("identification", "oracle", "twin"),
-        "choices": json.dumps([config[each] for each in ("resolution", "believed", "compared")], sort_keys=True),
+        "choices": json.dumps(
+            [config[each] for each in ("resolution", "believed", "further", "compared")], sort_keys=True
+        ),
     }
     chosen = chosen_gears(plan, config["gears"])
     path = source.with_name(f"{source.stem}-twin.parquet")

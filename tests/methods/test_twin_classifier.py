@@ -19,6 +19,7 @@ from swgsim.oracle.model import observations
 from swgsim.storage.labelled_signals import CLASSES, LabelledSignals
 from swgsim.twin import References, Twin, fit_gear
 
+pytestmark = pytest.mark.end_to_end
 CONF = str(Path(__file__).parents[2] / "conf")
 
 

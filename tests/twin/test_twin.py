@@ -13,7 +13,6 @@ from swgsim.dataset.simulate_cases import record
 from swgsim.oracle.model import observations
 from swgsim.storage.labelled_signals import CLASSES
 from swgsim.twin import FittedGear, References, Twin, fit_gear
-from swgsim.twin.parameters import parameters_of
 from swgsim.twin.twin_study import _diagnosed
 
 pytestmark = pytest.mark.end_to_end
@@ -101,7 +100,7 @@ def test_another_mesh_is_another_structure() -> None:
     plan = replace(PLAN, sectors=80)
     cases = [case for case in plan.grid.cases(DRAWN) if case.reference]
     references = References.of(record(plan, cases))
-    exact = fit_gear(KNOWLEDGE, references, KNOWLEDGE.start, parameters_of(KNOWLEDGE.nominal, KNOWLEDGE.bench))
+    exact = fit_gear(KNOWLEDGE, references, KNOWLEDGE.start, KNOWLEDGE.parameters())
     assert exact.misfit > 20
     assert exact.lack > 0
     assert np.abs(exact.offset).max() > 0
