@@ -2,6 +2,7 @@
 
 import numpy as np
 import pandas as pd
+from scipy.special import softmax
 
 from learn.evaluation.decisions import probabilities
 from learn.evaluation.probability_calibration import SMALLEST
@@ -26,5 +27,5 @@ def units(predictions: pd.DataFrame) -> pd.DataFrame:
     of_unit["label"] = of_unit["label"].astype(str)
     grouped = of_unit.groupby(list(SPECIMEN), sort=False)
     together = grouped[list(CLASSES)].sum()
-    p = np.exp(together.sub(together.max(axis=1), axis=0))
-    return p.div(p.sum(axis=1), axis=0).assign(severity=grouped["severity"].first()).reset_index()
+    posterior = together.apply(softmax, axis=1, raw=True)
+    return posterior.assign(severity=grouped["severity"].first()).reset_index()

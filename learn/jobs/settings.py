@@ -24,7 +24,7 @@ from learn.tracking import Store, local_store, server_store
 if TYPE_CHECKING:
     from learn.adaptation.transfer import Adaptation
 
-NO_OPTIONS = ("name", "trials", "shots")  # entries of a file in conf that are no arguments of its object
+NO_OPTIONS = ("name", "trials", "shots", "defaults")  # entries of a file in conf that are no arguments of its object
 
 T = TypeVar("T")
 Config = Mapping[str, Any]

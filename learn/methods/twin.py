@@ -49,7 +49,7 @@ class TwinClassifier:
         window: Mapping[str, Any],
         mesh: Mapping[str, Any],
         resolution: Mapping[str, Any],
-        further: Sequence[str] = (),
+        further: Sequence[str],
     ):
         self.classes = tuple(grid["classes"])
         believed = {

@@ -49,7 +49,8 @@ class References:
     @classmethod
     def of_observations(cls, x: Float[np.ndarray, "reference feature"], table: pd.DataFrame) -> "References":
         """The references of one gear, given their observations and facts."""
-        rows = table.groupby(["n_in_rpm", "T_out_nm"]).indices
-        points = tuple(OperatingPoint(float(speed), float(load)) for speed, load in rows)
-        mean = np.array([x[each].mean(axis=0) for each in rows.values()])
-        return cls(points, mean, np.array([len(each) for each in rows.values()], dtype=float))
+        points, of_row, count = np.unique(
+            table[["n_in_rpm", "T_out_nm"]].to_numpy(), axis=0, return_inverse=True, return_counts=True
+        )
+        mean = np.array([x[of_row.ravel() == number].mean(axis=0) for number in range(len(points))])
+        return cls(tuple(OperatingPoint(*point) for point in points.tolist()), mean, count.astype(float))

@@ -97,14 +97,14 @@ def predict_beside(
         If the model itself has none.
     """
     try:
-        found = predict([model, *others], situations, layout, sectors)
+        found = predict([model, *others], situations, layout, sectors=sectors)
         return found[0], found[1:]
     except NoSteadyState:
-        known = predict([model], situations, layout, sectors)[0]
+        known = predict([model], situations, layout, sectors=sectors)[0]
     beside = np.full((len(others), *known.shape), np.nan)
     for other, row in zip(others, beside, strict=True):
         with suppress(NoSteadyState):
-            row[:] = predict([other], situations, layout, sectors)[0]
+            row[:] = predict([other], situations, layout, sectors=sectors)[0]
     return known, beside
 
 

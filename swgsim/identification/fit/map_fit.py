@@ -73,7 +73,7 @@ def linearised(
         value, by = parameter.value(model), DIFFERENCE * min(1.0, parameter.scale / parameter.sd)
         moved.append(by if value + by * parameter.sd <= parameter.high else -by)
         models.append(parameter.at(model, value + moved[-1] * parameter.sd))
-    predicted, beside = predict_beside(model, models, situations, layout, sectors)
+    predicted, beside = predict_beside(model, models, situations, layout, sectors=sectors)
     changes = (beside - predicted) / np.array(moved)[:, None, None]
     return predicted, np.moveaxis(np.where(np.isnan(changes), 0.0, changes), 0, -1)
 
@@ -161,7 +161,7 @@ def _predicted(
 ) -> Float[np.ndarray, "situation feature"]:
     """What a model predicts; worse than anything where it has no steady state, or none that is found at once."""
     try:
-        return predict([model], situations, layout, sectors, search=search)[0]
+        return predict([model], situations, layout, sectors=sectors, search=search)[0]
     except NoSteadyState:
         return np.full((len(situations), len(layout)), NOWHERE)
 
