@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from learn.methods.contract import own_source_digests
+from swgsim.common.version import code_version as version_of_rooms
 from swgsim.storage import orders
 
 # Parts of a configuration that do not change a result.
@@ -24,9 +25,15 @@ def decisive(config: Mapping[str, Any]) -> dict[str, Any]:
 
 def job_key(config: Mapping[str, Any], data_digest: str) -> str:
     """Sixteen hexadecimal digits that change when the result of a job may change."""
-    code = [code_version(), *own_source_digests(config)]
+    code = [code_version(), *own_source_digests(config), *_physics(config)]
     text = json.dumps([decisive(config), data_digest, *code], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def _physics(config: Mapping[str, Any]) -> list[str]:
+    """Digest of the rooms of swgsim that a twin needs, as it simulates; empty for all other classifiers."""
+    is_twin = config.get("classifier", {}).get("name") == "twin"
+    return [version_of_rooms("identification", "oracle", "twin")] if is_twin else []
 
 
 @cache

@@ -11,9 +11,11 @@ from learn.inputs.features import Selection
 from learn.inputs.harmonics import Harmonics
 from learn.inputs.inputs import NO_SIGNAL, Layout, Representation
 from learn.inputs.lines import ResidualLines
+from learn.inputs.referenced import Referenced
 from learn.inputs.signals import Signals
 from learn.methods import classical, contract, neural, strong
 from learn.methods.rocket import MiniRocket
+from learn.methods.twin import TwinClassifier
 from learn.protocols.harder_splits import LeaveOperatingPointOut, LeaveSeverityOut
 from learn.protocols.levels import NewGears
 from learn.protocols.splits import GroupedFolds, LeaveOneGearOut, RandomFolds, Splitting
@@ -23,7 +25,7 @@ if TYPE_CHECKING:
     from learn.adaptation.rezero import Rezero
     from learn.adaptation.transfer import Adaptation
 
-NO_OPTIONS = ("name", "trials", "shots")  # entries of a file in conf that are no arguments of its object
+NO_OPTIONS = ("name", "trials", "shots", "defaults")  # entries of a file in conf that are no arguments of its object
 
 T = TypeVar("T")
 Config = Mapping[str, Any]
@@ -32,6 +34,7 @@ REPRESENTATIONS: Mapping[str, Callable[..., Representation]] = {
     **dict.fromkeys(("raw", "differenced", "residual"), Signals),
     "lines": ResidualLines,
     "harmonics": Harmonics,
+    "referenced": Referenced,
 }
 CLASSIFIERS: Mapping[str, Callable[..., classical.Classifier]] = {
     "mlp": classical.multi_layer_perceptron,
@@ -45,6 +48,7 @@ CLASSIFIERS: Mapping[str, Callable[..., classical.Classifier]] = {
     "minirocket": MiniRocket,
     "perceptron": neural.neural_perceptron,
     "cnn": neural.convolutional_network,
+    "twin": TwinClassifier,
 }
 PROTOCOLS: Mapping[str, Callable[..., Splitting]] = {
     "random_folds": RandomFolds,

@@ -86,5 +86,6 @@ def run_name(config: Mapping[str, Any], parameters: Mapping[str, Any]) -> str:
     groups = ["protocol", "classifier", "features", "adaptation", "study"]
     if parameters["adaptation"] == "none":
         groups.remove("adaptation")
-    options = [f"{k}={v}" for k, v in config["classifier"].items() if k not in ("name", "seed", "trials")]
+    classifier = {k: v for k, v in config["classifier"].items() if k not in ("name", "seed", "trials")}
+    options = [f"{k}={v}" for k, v in classifier.items() if not isinstance(v, Mapping)]
     return " ".join([*(str(parameters[group]) for group in groups), *options])

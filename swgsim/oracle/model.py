@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from itertools import chain, product
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Complex, Float
 
 from swgsim.bench.scatter import Bench
 from swgsim.chain.chain import Run
@@ -39,6 +39,8 @@ ADDED = (
     "speed_reading",
 )
 MOVING = ("load", "speed", "index_angle", "output_angle", "temperature")
+
+SOUND = Variant("healthy", 0, np.nan, np.nan, ())
 
 
 @dataclass(frozen=True)
@@ -80,27 +82,12 @@ def expectations(plan: Plan, gear: Gear, resolution: Resolution) -> list[Expecta
     ValueError
         If the plan has no bench, no healthy class, or fault variants that are not drawn.
     """
-    bench = bench_of(plan)
-    if "healthy" not in plan.grid.classes:
-        raise ValueError(f"no 'healthy' among the classes {plan.grid.classes}, to which the oracle compares: add it")
-    if not plan.grid.variants.drawn:
-        raise ValueError(
-            "the fault variants of this grid are a list (drawn is false), while the oracle spreads each class evenly "
-            "between its extremes: choose a grid whose variants are drawn, such as grid=sampled"
-        )
-    varying = _with_bench(plan, replace(bench, **dict.fromkeys(ADDED, 0.0)))
-    still = _with_bench(plan, replace(bench, **dict.fromkeys(ADDED + MOVING, 0.0)))
-    sound = Variant("healthy", 0, np.nan, np.nan, ())
-    draws = [replace(sound, number=number) for number in range(resolution.draws)]
-    healthy = _observed(varying, gear, draws, plan.grid.scatter)
-    partitions = {
-        label: Partition.of(label, plan.grid.variants.severities[label], resolution, plan.sectors)
-        for label in FAULTS
-        if label in plan.grid.classes
-    }
+    healthy = healthy_runs(plan, gear, resolution.draws)
+    partitions = partitions_of(plan, resolution)
     variants = {label: partition.variants() for label, partition in partitions.items()}
+    still = _with_bench(plan, replace(bench_of(plan), **dict.fromkeys(ADDED + MOVING, 0.0)))
     # All at once, as shared motions and structures are computed once.
-    found = _observed(still, gear, [sound, *chain.from_iterable(variants.values())])
+    found = _observed(still, gear, [SOUND, *chain.from_iterable(variants.values())])
     ends = np.cumsum([len(each) for each in variants.values()], dtype=int)
     pieces = np.split(found[:, 1:] - found[:, :1], ends, axis=1)  # and an empty one after the last end
     changes = dict(zip(variants, pieces, strict=False))
@@ -108,6 +95,40 @@ def expectations(plan: Plan, gear: Gear, resolution: Resolution) -> list[Expecta
         Expectation(point, healthy[i], {label: each.cells(changes[label][i]) for label, each in partitions.items()})
         for i, point in enumerate(plan.grid.points)
     ]
+
+
+def healthy_runs(plan: Plan, gear: Gear, draws: int) -> Float[np.ndarray, "point draw feature"]:
+    """Observations of healthy runs at every operating point, with the scatter of the bench and without added errors.
+
+    Raises
+    ------
+    ValueError
+        If the plan has no bench.
+    """
+    varying = _with_bench(plan, replace(bench_of(plan), **dict.fromkeys(ADDED, 0.0)))
+    return _observed(varying, gear, [replace(SOUND, number=number) for number in range(draws)], plan.grid.scatter)
+
+
+def partitions_of(plan: Plan, resolution: Resolution) -> dict[str, Partition]:
+    """The cells of each fault class of a plan.
+
+    Raises
+    ------
+    ValueError
+        If the plan has no healthy class, or fault variants that are not drawn.
+    """
+    if "healthy" not in plan.grid.classes:
+        raise ValueError(f"no 'healthy' among the classes {plan.grid.classes}, to which the oracle compares: add it")
+    if not plan.grid.variants.drawn:
+        raise ValueError(
+            "the fault variants of this grid are a list (drawn is false), while the oracle spreads each class evenly "
+            "between its extremes: choose a grid whose variants are drawn, such as grid=sampled"
+        )
+    return {
+        label: Partition.of(label, plan.grid.variants.severities[label], resolution, plan.sectors)
+        for label in FAULTS
+        if label in plan.grid.classes
+    }
 
 
 def observations(recordings: LabelledSignals) -> Float[np.ndarray, "sample feature"]:
@@ -122,9 +143,17 @@ def observations(recordings: LabelledSignals) -> Float[np.ndarray, "sample featu
     efficiency = table["efficiency"].to_numpy()
     if not (efficiency > 0).all():
         raise ValueError(f"efficiency {efficiency.min():g} found, the oracle takes its logarithm: leave out low loads")
-    lines = lines_of(recordings, ORDERS)
+    return observed(lines_of(recordings, ORDERS), efficiency, table["temperature_c"].to_numpy())
+
+
+def observed(
+    lines: Complex[np.ndarray, "sample sensor order"],
+    efficiency: Float[np.ndarray, " sample"],
+    temperature: Float[np.ndarray, " sample"],
+) -> Float[np.ndarray, "sample feature"]:
+    """Observations of order lines 0 to ORDERS [mV/V], efficiency and temperature [degC]."""
     parts = (lines.real.reshape(len(lines), -1), lines.imag[:, :, 1:].reshape(len(lines), -1))
-    return np.column_stack([*parts, np.log(efficiency), table["temperature_c"]])
+    return np.column_stack([*parts, np.log(efficiency), temperature])
 
 
 def _with_bench(plan: Plan, bench: Bench) -> Plan:

@@ -7,18 +7,71 @@ from collections.abc import Sequence
 
 import numpy as np
 from jaxtyping import Float
+from scipy.linalg import block_diag
 
-from swgsim.bench.scatter import Session
 from swgsim.common.seeds import generator
 from swgsim.dataset.plan import Plan
-from swgsim.gear.gear import Gear
+from swgsim.gear.gear import Gear, OperatingPoint
+from swgsim.oracle.cells import Cells
 from swgsim.oracle.model import ORDERS, Expectation, bench_of, observations
 from swgsim.oracle.point import PointModel
 from swgsim.storage.labelled_signals import CLASSES, SENSORS, LabelledSignals
 from swgsim.storage.orders import whole_revolutions
 
-# Indices of the logarithm of the efficiency and of the temperature in an observation.
+# Indices of the logarithm of the efficiency and of the temperature in an observation, and the length of one.
 EFFICIENCY, TEMPERATURE = -2, -1
+FEATURES = len(SENSORS) * (2 * ORDERS + 1) + 2
+
+
+def added_variance(
+    plan: Plan, gear: Gear, point: OperatingPoint, log_efficiency: float
+) -> Float[np.ndarray, " feature"]:
+    """Variance of the errors that are added to a single recording, without the session of the flanges.
+
+    Parameters
+    ----------
+    plan : Plan
+        With bench and window.
+    gear : Gear
+    point : OperatingPoint
+    log_efficiency : float
+        Of the healthy gear, from which the torque at the input follows.
+
+    Raises
+    ------
+    ValueError
+        If a part of the observation has no random error, so that the classes would be certain.
+    """
+    bench = bench_of(plan)
+    length = whole_revolutions(point.n_in_rpm, plan.window.rate, plan.window.samples)
+    white = (bench.noise**2 + plan.window.noise**2 + plan.window.quantum**2 / 12) / length
+    added = np.full(FEATURES, 2 * white)
+    added[np.arange(len(SENSORS)) * (ORDERS + 1)] = white + bench.zero_drift**2
+    T_in, T_out = _torques(gear, point, log_efficiency)
+    added[EFFICIENCY] = (bench.flange_out / T_out) ** 2 + (bench.flange_in / T_in) ** 2 + bench.speed_reading**2
+    added[TEMPERATURE] = bench.temperature_error**2
+    if not (added > 0).all():
+        raise ValueError(
+            "the bench adds nothing random to the signals, the efficiency or the temperature, and the oracle would be "
+            "infinitely sure: give it noise, flange_in or flange_out, and temperature_error above 0"
+        )
+    return added
+
+
+def session_columns(
+    plan: Plan, gear: Gear, point: OperatingPoint, log_efficiency: float
+) -> Float[np.ndarray, "feature 2"]:
+    """What the biases of both torque flanges make of the observation, one standard deviation each."""
+    bench = bench_of(plan)
+    T_in, T_out = _torques(gear, point, log_efficiency)
+    columns = np.zeros((FEATURES, 2))
+    columns[EFFICIENCY] = -bench.flange_in_bias / T_in, bench.flange_out_bias / T_out
+    return columns
+
+
+def _torques(gear: Gear, point: OperatingPoint, log_efficiency: float) -> tuple[float, float]:
+    """Torques at input and output [N m]."""
+    return point.T_out / ((gear.transmission.N + 1) * float(np.exp(log_efficiency))), point.T_out
 
 
 def point_model(plan: Plan, gear: Gear, expected: Expectation, session_known: bool) -> PointModel:
@@ -37,32 +90,51 @@ def point_model(plan: Plan, gear: Gear, expected: Expectation, session_known: bo
     Raises
     ------
     ValueError
-        If a part of the observation has no random error, so that the classes would be certain.
+        As :func:`added_variance`.
     """
-    bench, point = bench_of(plan), expected.point
-    mean = expected.healthy.mean(axis=0)
-    length = whole_revolutions(point.n_in_rpm, plan.window.rate, plan.window.samples)
-    white = (bench.noise**2 + plan.window.noise**2 + plan.window.quantum**2 / 12) / length
-    means = np.arange(len(SENSORS)) * (ORDERS + 1)
-    added = np.full(len(mean), 2 * white)
-    added[means] = white + bench.zero_drift**2
+    point = expected.point
+    log_efficiency = float(expected.healthy[:, EFFICIENCY].mean())
+    if not session_known:
+        return joint_model(plan, gear, [expected], session_columns(plan, gear, point, log_efficiency))
+    session = bench_of(plan).session(generator("session", plan.grid.seed, gear.number, False))
+    T_in, T_out = _torques(gear, point, log_efficiency)
+    model = joint_model(plan, gear, [expected], np.zeros((FEATURES, 0)))
+    model.mean[EFFICIENCY] += np.log1p(session.T_out / T_out) - np.log1p(session.T_in / T_in)
+    return model
 
-    T_out = point.T_out
-    T_in = T_out / ((gear.transmission.N + 1) * np.exp(mean[EFFICIENCY]))
-    session = Session(0.0, 0.0)
-    added[EFFICIENCY] = (bench.flange_out / T_out) ** 2 + (bench.flange_in / T_in) ** 2 + bench.speed_reading**2
-    if session_known:
-        session = bench.session(generator("session", plan.grid.seed, gear.number, False))
-    else:
-        added[EFFICIENCY] += (bench.flange_out_bias / T_out) ** 2 + (bench.flange_in_bias / T_in) ** 2
-    mean[EFFICIENCY] += np.log1p(session.T_out / T_out) - np.log1p(session.T_in / T_in)
-    added[TEMPERATURE] = bench.temperature_error**2
-    if not (added > 0).all():
-        raise ValueError(
-            "the bench adds nothing random to the signals, the efficiency or the temperature, and the oracle would be "
-            "infinitely sure: give it noise, flange_in or flange_out, and temperature_error above 0"
+
+def joint_model(
+    plan: Plan, gear: Gear, expected: Sequence[Expectation], shared: Float[np.ndarray, "row column"]
+) -> PointModel:
+    """The distributions of one recording, or of one recording at each of several operating points together.
+
+    Parameters
+    ----------
+    plan, gear
+        As in :func:`point_model`.
+    expected : sequence of Expectation
+        One for each operating point; the observations follow each other in this order.
+    shared : array (row, column)
+        Errors that are the same at all these operating points, one standard deviation each.
+
+    Raises
+    ------
+    ValueError
+        As :func:`added_variance`.
+    """
+    means = [each.healthy.mean(axis=0) for each in expected]
+    covariances = [
+        np.cov(each.healthy, rowvar=False) + np.diag(added_variance(plan, gear, each.point, mean[EFFICIENCY]))
+        for each, mean in zip(expected, means, strict=True)
+    ]
+    faults = {
+        label: Cells(
+            np.concatenate([each.faults[label].shift for each in expected], axis=-1),
+            np.concatenate([each.faults[label].spread for each in expected], axis=-1),
         )
-    return PointModel(mean, np.cov(expected.healthy, rowvar=False) + np.diag(added), expected.faults)
+        for label in expected[0].faults
+    }
+    return PointModel(np.concatenate(means), block_diag(*covariances) + shared @ shared.T, faults)
 
 
 def judge(

@@ -23,6 +23,7 @@ from swgsim.dataset.simulate_cases import record
 from swgsim.gear.acquisition import Window
 from swgsim.gear.gear import Gear, OperatingPoint
 from swgsim.jobs import generate_data_set as generation
+from swgsim.oracle import by_gear
 from swgsim.oracle import oracle_study as oracle_job
 from swgsim.oracle.cells import Cells, Partition, Resolution
 from swgsim.oracle.model import Expectation, expectations, observations
@@ -289,6 +290,6 @@ def test_job_names_what_is_missing(change: dict[str, Any], message: str, data: P
 
 
 def test_job_refuses_a_data_set_of_other_code(data: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(oracle_job, "code_version", lambda *_: "another")
+    monkeypatch.setattr(by_gear, "code_version", lambda *_: "another")
     with pytest.raises(ValueError, match=r"was made by code .*, while this is another.*make the data set again"):
         oracle_job.run(composed("oracle", f"data={data}", *COARSE))

@@ -13,7 +13,7 @@ from swgsim.chain.motion import NoSteadyState
 from swgsim.effects.base import Effect, overrides
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import Gear, OperatingPoint
-from swgsim.identification.data.features import Layout, features_alike
+from swgsim.identification.data.features import Layout
 from swgsim.identification.data.unit_lines import Lines, OwnLines
 
 # Samples per revolution; the highest order that is fitted needs more than twice its number.
@@ -82,12 +82,12 @@ def predict(
     _, first = np.unique(row, return_index=True)
     recordings = simulate_turns([runs[i] for i in first], revolutions=1, points=POINTS, sectors=sectors, search=search)
     some = (recordings[i : i + AT_ONCE] for i in range(0, len(recordings), AT_ONCE))
-    found = np.concatenate([features_alike(each, layout) for each in some])
+    found = np.concatenate([layout.of(each) for each in some])
     return found[row].reshape(len(models), len(situations), len(layout))
 
 
 def predict_beside(
-    model: Model, others: Sequence[Model], situations: Sequence[Situation], layout: Layout
+    model: Model, others: Sequence[Model], situations: Sequence[Situation], layout: Layout, sectors: int = SECTORS
 ) -> tuple[Float[np.ndarray, "situation feature"], Float[np.ndarray, "other situation feature"]]:
     """Features of every situation by a model, and by others that need not exist: nan where one has no steady state.
 
@@ -97,14 +97,14 @@ def predict_beside(
         If the model itself has none.
     """
     try:
-        found = predict([model, *others], situations, layout)
+        found = predict([model, *others], situations, layout, sectors=sectors)
         return found[0], found[1:]
     except NoSteadyState:
-        known = predict([model], situations, layout)[0]
+        known = predict([model], situations, layout, sectors=sectors)[0]
     beside = np.full((len(others), *known.shape), np.nan)
     for other, row in zip(others, beside, strict=True):
         with suppress(NoSteadyState):
-            row[:] = predict([other], situations, layout)[0]
+            row[:] = predict([other], situations, layout, sectors=sectors)[0]
     return known, beside
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.optimize import brentq, lsq_linear
 
-from swgsim.chain import NoSteadyState
+from swgsim.chain import SECTORS, NoSteadyState
 from swgsim.identification.covariance.low_rank_covariance import Covariance
 from swgsim.identification.data.features import Layout
 from swgsim.identification.data.model import Model, Situation, predict, predict_beside
@@ -53,7 +53,11 @@ class Calibrated:
 
 
 def linearised(
-    model: Model, parameters: Mapping[str, Declared], situations: Sequence[Situation], layout: Layout
+    model: Model,
+    parameters: Mapping[str, Declared],
+    situations: Sequence[Situation],
+    layout: Layout,
+    sectors: int = SECTORS,
 ) -> tuple[Float[np.ndarray, "situation feature"], Float[np.ndarray, "situation feature parameter"]]:
     """Prediction of a model, and its change by one spread of each parameter.
 
@@ -69,7 +73,7 @@ def linearised(
         value, by = parameter.value(model), DIFFERENCE * min(1.0, parameter.scale / parameter.sd)
         moved.append(by if value + by * parameter.sd <= parameter.high else -by)
         models.append(parameter.at(model, value + moved[-1] * parameter.sd))
-    predicted, beside = predict_beside(model, models, situations, layout)
+    predicted, beside = predict_beside(model, models, situations, layout, sectors=sectors)
     changes = (beside - predicted) / np.array(moved)[:, None, None]
     return predicted, np.moveaxis(np.where(np.isnan(changes), 0.0, changes), 0, -1)
 
@@ -83,6 +87,7 @@ def calibrate(
     of_recording: np.ndarray,
     layout: Layout,
     position: Mapping[str, float] | None = None,
+    sectors: int = SECTORS,
 ) -> Calibrated:
     """The likeliest parameters of a model.
 
@@ -101,10 +106,12 @@ def calibrate(
     layout : Layout
     position : mapping, optional
         Where to begin, in spreads.
+    sectors : int
+        Of the flex spline's truss.
     """
     names = list(parameters)
     if not names:
-        return Calibrated(start, {}, *linearised(start, parameters, situations, layout), True)
+        return Calibrated(start, {}, *linearised(start, parameters, situations, layout, sectors), True)
     low, high = _bounds(start, parameters)
     here = np.clip([(position or {}).get(name, 0.0) for name in names], low, high)
 
@@ -119,8 +126,8 @@ def calibrate(
 
     model = model_at(here)
     # A fit that begins where motions are found at once takes no step to where they are not; the search takes long.
-    search = bool((_predicted(model, situations, layout, False) == NOWHERE).any())
-    predicted, J = linearised(model, parameters, situations, layout)
+    search = bool((_predicted(model, situations, layout, sectors, False) == NOWHERE).any())
+    predicted, J = linearised(model, parameters, situations, layout, sectors)
     r, cost = missed(predicted, here)
     length, settled = 1.0, False
     for _ in range(STEPS):
@@ -132,7 +139,7 @@ def calibrate(
             step = _step(curvature, slope, room, length)
             expected = float(step @ (2 * slope - curvature @ step))
             there = model_at(here + step)
-            predicted_there = _predicted(there, situations, layout, search)
+            predicted_there = _predicted(there, situations, layout, sectors, search)
             r_there, cost_there = missed(predicted_there, here + step)
             if cost_there <= cost or not expected >= little:  # nor is it a number
                 break
@@ -144,17 +151,17 @@ def calibrate(
         if settled or not fell >= 0:
             break
         length *= 0.5 if fell < LITTLE * expected else 2.0 if fell > MUCH * expected and length < 1 else 1.0
-        J = linearised(model, parameters, situations, layout)[1]
+        J = linearised(model, parameters, situations, layout, sectors)[1]
     position_found = dict(zip(names, here.tolist(), strict=True))
     return Calibrated(model, position_found, predicted, J, settled, max(1.0, cost / len(r)))
 
 
 def _predicted(
-    model: Model, situations: Sequence[Situation], layout: Layout, search: bool
+    model: Model, situations: Sequence[Situation], layout: Layout, sectors: int, search: bool
 ) -> Float[np.ndarray, "situation feature"]:
     """What a model predicts; worse than anything where it has no steady state, or none that is found at once."""
     try:
-        return predict([model], situations, layout, search=search)[0]
+        return predict([model], situations, layout, sectors=sectors, search=search)[0]
     except NoSteadyState:
         return np.full((len(situations), len(layout)), NOWHERE)
 

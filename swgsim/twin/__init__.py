@@ -1,0 +1,13 @@
+"""The twin of a gear: the simulation chain fitted to its healthy references, on which Bayes' rule diagnoses faults.
+
+It needs no other gear, no label and no recorded fault. Bayes' rule is that of ``oracle``, which knows the true gear;
+the fit is that of ``identification``.
+Imports ``identification``, ``oracle`` and rooms below these.
+"""
+
+from swgsim.twin.fitted_gear import FittedGear, fit_gear
+from swgsim.twin.knowledge import Knowledge
+from swgsim.twin.references import References
+from swgsim.twin.twin import Twin
+
+__all__ = ["FittedGear", "Knowledge", "References", "Twin", "fit_gear"]

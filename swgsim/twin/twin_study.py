@@ -1,0 +1,187 @@
+"""The job of ``swg twin``: the twin of every gear of a data set judges its recordings and its units.
+
+A unit is one specimen: a recording at every operating point. The oracle and the floor of references
+(:mod:`swgsim.twin.floor`) judge the same, for comparison.
+"""
+
+import json
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from jaxtyping import Float
+from omegaconf import OmegaConf
+from threadpoolctl import threadpool_limits
+
+from swgsim.common.compute import Engine
+from swgsim.common.seeds import generator
+from swgsim.common.version import code_version
+from swgsim.dataset.plan import Plan
+from swgsim.gear.gear import Gear
+from swgsim.identification.data.model import Model
+from swgsim.jobs import settings
+from swgsim.oracle.by_gear import GearByGear, chosen_gears, configuration_of, data_set, plan_of
+from swgsim.oracle.cells import Partition, Resolution
+from swgsim.oracle.diagnosis import diagnosis
+from swgsim.oracle.model import bench_of, expectations, observations, partitions_of
+from swgsim.oracle.oracle import judge
+from swgsim.oracle.point import PointModel
+from swgsim.oracle.severity import Severities
+from swgsim.storage import storage
+from swgsim.storage.labelled_signals import CLASSES, LabelledSignals
+from swgsim.twin.fitted_gear import fit_gear
+from swgsim.twin.floor import floor_of
+from swgsim.twin.knowledge import Knowledge
+from swgsim.twin.references import References
+from swgsim.twin.twin import Twin
+
+# Who judges, as prefixes of the columns of probabilities: twin and floor judge recordings and units.
+WHO = ("", "unit:", "floor:", "floor unit:", "oracle:", "oracle known:")
+
+# Choices of the configuration on which the result depends.
+CHOICES = ("resolution", "believed", "further", "compared")
+
+
+def run(config: Mapping[str, Any]) -> dict[str, float]:
+    """Write ``<data>/<grid>-<condition>-twin.parquet``.
+
+    Columns: ``row``, the number among the data set's samples; the probability of every class by every one of
+    :data:`WHO`; those of :data:`~swgsim.oracle.diagnosis.FOUND` for the recording and, with ``unit:``, for its unit;
+    ``below`` and ``unit:below``, the posterior probability of a severity below the true one, given the true class;
+    ``misfit`` of the references, and ``fit_seconds`` and ``seconds`` that the fit and the whole twin took, the same for
+    all recordings of a gear.
+
+    Returns
+    -------
+    dict
+        Accuracy by everyone, and the number of samples.
+
+    Raises
+    ------
+    ValueError
+        If the data set is missing or made by other code, or lacks a chosen gear.
+    """
+    source = data_set(config)
+    plan = plan_of(source)
+    believed = settings.plan(_merged(configuration_of(source), config["believed"]))
+    resolution = settings.build(Resolution, config["resolution"])
+    nominal = settings.gear(next(iter(configuration_of(source)["gears"].values())))
+    knowledge = Knowledge(replace(believed, gears=(nominal,)), resolution, tuple(config["further"]))
+    made_from = {
+        "data": storage.digest(source),
+        "code": code_version("identification", "oracle", "twin"),
+        "choices": json.dumps(
+            [config[each] for each in ("resolution", "believed", "further", "compared")], sort_keys=True
+        ),
+    }
+    chosen = chosen_gears(plan, config["gears"])
+    path = source.with_name(f"{source.stem}-twin.parquet")
+    found = GearByGear(plan, source, path, chosen, made_from).table(
+        _judged,
+        lambda gear, first, recordings: (knowledge, plan, gear, first, recordings, config["compared"]),
+        Engine.of(config),
+    )
+    truth = np.array([
+        case.variant.label
+        for gear in plan.gears
+        if gear.number in chosen
+        for case in plan.grid.cases(gear)
+        if not case.reference
+    ])  # fmt: skip
+    result: dict[str, float] = {"samples": len(found)}
+    for who in WHO if config["compared"] else WHO[:2]:
+        said = np.array(CLASSES)[found[[who + label for label in CLASSES]].to_numpy().argmax(axis=1)]
+        name = who.strip(": ").replace(": ", "_").replace(":", "_").replace(" ", "_") or "twin"
+        result[f"{name}_accuracy"] = float(np.mean(said == truth))
+        print(f"{path}, {name}: accuracy {result[f'{name}_accuracy']:.2%}")
+    return result
+
+
+def _merged(configuration: Mapping[str, Any], believed: Mapping[str, Any]) -> dict[str, Any]:
+    """The choices of a data set, with those that the twin believes instead."""
+    merged = OmegaConf.to_container(OmegaConf.merge(dict(configuration), dict(believed)))
+    assert isinstance(merged, dict)
+    return {str(key): value for key, value in merged.items()}
+
+
+def _judged(
+    knowledge: Knowledge, plan: Plan, gear: Gear, first: int, recordings: LabelledSignals, compared: bool
+) -> pd.DataFrame:
+    """What everyone says of one gear's samples."""
+    with threadpool_limits(1):
+        references, samples = References.of(recordings), recordings.samples
+        began = time.perf_counter()
+        fitted = fit_gear(knowledge, references)
+        fit_seconds = time.perf_counter() - began
+        twin = Twin.of(knowledge, fitted)
+        seconds = time.perf_counter() - began
+        tables = [_diagnosed(twin, samples, each).add_prefix(prefix) for each, prefix in ((False, ""), (True, "unit:"))]
+        tables += _compared(knowledge, plan, gear, references, samples) if compared else []
+    table = pd.concat(tables, axis=1).assign(misfit=fitted.misfit, fit_seconds=fit_seconds, seconds=seconds)
+    table.insert(0, "row", np.arange(first, first + len(samples)))
+    return table
+
+
+def _compared(
+    knowledge: Knowledge, plan: Plan, gear: Gear, references: References, samples: LabelledSignals
+) -> list[pd.DataFrame]:
+    """Class probabilities by those who know the gear."""
+    own = replace(knowledge, plan=replace(plan, gears=knowledge.plan.gears))
+    expected = expectations(plan, gear, knowledge.resolution)
+    unit = Model(*bench_of(plan).unit(gear, generator("unit", plan.grid.seed, gear.number)))
+    floor = floor_of(own, unit, references, expected)
+    judged = {"floor:": _probabilities(floor, samples, False), "floor unit:": _probabilities(floor, samples, True)}
+    judged["oracle:"] = judge(plan, gear, expected, samples, session_known=False)
+    judged["oracle known:"] = judge(plan, gear, expected, samples, session_known=True)
+    return [pd.DataFrame(p, columns=list(CLASSES)).add_prefix(prefix) for prefix, p in judged.items()]
+
+
+def _observed(
+    twin: Twin, samples: LabelledSignals, of_units: bool
+) -> Iterator[tuple[PointModel, Float[np.ndarray, "sample feature"], np.ndarray]]:
+    """Densities, observations, and the rows (sample, recording) of the observations: by operating point, or of units.
+
+    Recordings of a unit follow each other, one at every operating point, in the order of the plan.
+    """
+    x, points = observations(samples), twin.knowledge.plan.grid.points
+    rows = np.arange(len(x)).reshape(-1, len(points))
+    if of_units:
+        yield twin.densities(points), x.reshape(len(rows), -1), rows
+        return
+    for point, here in zip(points, rows.T, strict=True):
+        yield twin.densities([point]), x[here], here[:, None]
+
+
+def _probabilities(twin: Twin, samples: LabelledSignals, of_units: bool) -> Float[np.ndarray, "sample class"]:
+    """Class probabilities of every recording, by itself or of its unit."""
+    found = np.empty((len(samples), len(CLASSES)))
+    for model, x, rows in _observed(twin, samples, of_units):
+        found[rows] = np.exp(model.log_posterior(x))[:, None]
+    return found
+
+
+def _diagnosed(twin: Twin, samples: LabelledSignals, of_units: bool) -> pd.DataFrame:
+    """Diagnosis of every recording, by itself or of its unit, and the rank of its true severity."""
+    parts = []
+    partitions = partitions_of(twin.knowledge.plan, twin.knowledge.resolution)
+    for model, x, rows in _observed(twin, samples, of_units):
+        facts = samples.table.iloc[rows[:, 0]]
+        found = diagnosis(model, partitions, x).assign(below=_below(model, partitions, x, facts))
+        parts += [found.set_index(each) for each in rows.T]
+    return pd.concat(parts).sort_index()
+
+
+def _below(
+    model: PointModel, partitions: Mapping[str, Partition], x: Float[np.ndarray, "sample feature"], facts: pd.DataFrame
+) -> Float[np.ndarray, " sample"]:
+    """Posterior probability of a severity below the true one, given the true class; NaN for healthy ones."""
+    found = np.full(len(x), np.nan)
+    label, severity = facts["label"].astype(str).to_numpy(), facts["severity"].to_numpy()
+    for name, partition in partitions.items():
+        rows = np.flatnonzero(label == name)
+        if len(rows):
+            found[rows] = Severities.of(partition, model.places(x[rows], name)).below(severity[rows])
+    return found
