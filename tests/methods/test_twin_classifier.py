@@ -12,7 +12,7 @@ from omegaconf import OmegaConf
 from twin_fixtures import DRAWN, KNOWLEDGE, PLAN, POINTS, RESOLUTION, SMALL, recordings
 
 from learn.inputs.referenced import Referenced
-from learn.jobs import settings
+from learn.jobs import identity, settings
 from learn.methods.twin import TwinClassifier
 from swgsim.dataset.simulate_cases import record
 from swgsim.oracle.model import observations
@@ -105,3 +105,12 @@ def test_other_inputs_are_refused(classifier: TwinClassifier) -> None:
         classifier.fit(np.zeros((2, 40)), np.array(CLASSES[:2])).predict_proba(np.zeros((2, 40)))
     with pytest.raises(ValueError, match=r"class 'broken' is not among the classes of the believed grid"):
         classifier.fit(np.zeros((1, 40)), np.array(["broken"]))
+
+
+def test_the_key_of_a_job_covers_the_physics_of_a_twin_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    twin, forest = ({"classifier": {"name": name}} for name in ("twin", "rf"))
+    before = [identity.job_key(config, "digest") for config in (twin, forest)]
+    monkeypatch.setattr(identity, "version_of_rooms", lambda *_: "another")
+    after = [identity.job_key(config, "digest") for config in (twin, forest)]
+    assert before[0] != after[0]
+    assert before[1] == after[1]
