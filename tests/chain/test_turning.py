@@ -32,8 +32,8 @@ def test_what_is_remembered_is_what_would_be_computed():
 def test_only_what_is_new_is_computed(monkeypatch):
     one_turn([SOFT], 64)
     computed = []
-    drive = turning._drive
-    monkeypatch.setattr(turning, "_drive", lambda driven: computed.extend(driven) or drive(driven))
+    drive = turning.drive_of
+    monkeypatch.setattr(turning, "drive_of", lambda driven: computed.extend(driven) or drive(driven))
     one_turn([SOFT, STIFF], 64)
     one_turn([STIFF, SOFT], 64)
     one_turn([SOFT], 32)

@@ -370,7 +370,7 @@ def test_recordings_that_do_not_belong_together_are_refused(folders):
 def test_a_message_about_a_file_says_of_which_folder(folders, tmp_path):
     shutil.copytree(folders / "healthy", tmp_path / "spoiled")
     (tmp_path / "spoiled" / "recording_0001.csv").write_text("t_s\n")
-    of_folder = f"commissioning={tmp_path / 'spoiled'}: recording_0001.csv, row 2: found a header without rows"
+    of_folder = f"commissioning={tmp_path / 'spoiled'}: recording_0001.csv, row 2: found names without rows"
     for folder, message in (("spoiled", of_folder), ("lost", f"commissioning={tmp_path / 'lost'}: found nothing")):
         with pytest.raises(ValueError, match=message):
             job.run(choices(folders, "sick", commissioning=str(tmp_path / folder)))

@@ -70,11 +70,12 @@ def test_loop_names_the_effect_and_training_again_brings_back_what_it_cost(finis
     for each, method in ((grease, "random_forest_on_selection_1"), (skew, "extra_trees_on_harmonics")):
         assert verdicts.named(each) == "right"
         before, after, oracle = (row(each, method, COMMISSIONING, model) for model in MODELS)
-        assert before["false_alarms"] > 60
+        assert before["false_alarms"] > 50
         assert abs(after["accuracy"] - oracle["accuracy"]) < 20
-        # Warm grease passes for a fault where there is none, a skew for one and the same fault everywhere.
+        # Warm grease passes for a fault where there is none, a skew for one and the same fault everywhere. A recording is
+        # 4 % of the healthy ones, so that a forest on other digits of the same data differs by several times that.
         brought = before["false_alarms"] - after["false_alarms"], after["accuracy"] - before["accuracy"]
-        assert brought[0 if each is grease else 1] > 20
+        assert brought[0 if each is grease else 1] > (10 if each is grease else 20)
 
 
 def test_references_with_the_effect_take_it_out(finished):
