@@ -14,6 +14,7 @@ from swgsim.dataset.plan import Plan
 from swgsim.gear.gear import Gear, OperatingPoint
 from swgsim.oracle.cells import Cells
 from swgsim.oracle.model import ORDERS, Expectation, bench_of, observations
+from swgsim.oracle.moved import moved_with_recording
 from swgsim.oracle.point import PointModel
 from swgsim.storage.labelled_signals import CLASSES, SENSORS, LabelledSignals
 from swgsim.storage.orders import whole_revolutions
@@ -134,6 +135,9 @@ def joint_model(
         )
         for label in expected[0].faults
     }
+    if len(expected) == 1:
+        # Units would need two more directions for every operating point, which is too much for the memory.
+        faults = {label: moved_with_recording(cells, bench_of(plan)) for label, cells in faults.items()}
     return PointModel(np.concatenate(means), block_diag(*covariances) + shared @ shared.T, faults)
 
 

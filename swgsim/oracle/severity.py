@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.special import ndtr
 
-from swgsim.oracle.cells import UNIFORM, Partition
+from swgsim.oracle.cells import TURNING, UNIFORM, Partition
 from swgsim.oracle.point import Places
 
 # Halvings of the range in which a quantile is sought: to a ten thousandth of it.
@@ -73,7 +73,7 @@ def positions(
     """
     unit = UNIFORM * partition.widths[1]
     middle = partition.middles[:, 1]
-    turning = places.mean.shape[2] > 1
+    turning = partition.label in TURNING
     off = unit * places.mean[:, :, 1] if turning else 0.0
     spread = unit * (places.deviation[:, 1] if turning else 1.0)
     phasor = (places.weight * np.exp(1j * (middle + off) - spread**2 / 2)).sum(axis=1)

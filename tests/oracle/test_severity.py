@@ -6,9 +6,14 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
+from swgsim.bench.scatter import Bench
 from swgsim.oracle.cells import UNIFORM, Cells, Partition
+from swgsim.oracle.model import ORDERS
+from swgsim.oracle.moved import moved_with_recording
+from swgsim.oracle.oracle import FEATURES
 from swgsim.oracle.point import Places, PointModel
 from swgsim.oracle.severity import Severities, positions
+from swgsim.storage.labelled_signals import SENSORS
 
 PARTITION = Partition("tip_tooth_crack", 0.5, 1.0, severities=5, positions=4, nodes=2)
 
@@ -72,3 +77,19 @@ def test_positions_turn_around() -> None:
     assert np.cos(mean[0]) == pytest.approx(1)
     assert deviation[0] == pytest.approx(np.sqrt(np.log(2)))
     assert deviation[1] > 5
+
+
+def test_a_change_follows_load_and_trigger() -> None:
+    """A cosine of order 3 in s1 that is turned by an angle, against the same by trigonometry."""
+    means = len(SENSORS) * (ORDERS + 1)
+    cosine, sine = ORDERS + 1 + 3, means + ORDERS + 2
+    shift = np.zeros((1, FEATURES))
+    shift[0, cosine], shift[0, sine], shift[0, ORDERS + 1] = 2 * np.cos(0.5), 2 * np.sin(0.5), 7.0
+    cells = moved_with_recording(Cells(shift, np.zeros((1, 1, FEATURES))), Bench(load=0.01, index_angle=1e-4))
+    assert cells.spread.shape == (1, 3, FEATURES)
+    np.testing.assert_allclose(cells.spread[0, 1], 0.01 * shift[0])
+    turned = np.zeros(FEATURES)
+    turned[cosine], turned[sine] = 2 * np.cos(0.5 + 3e-4), 2 * np.sin(0.5 + 3e-4)
+    both = [cosine, sine]
+    np.testing.assert_allclose(cells.spread[0, 2, both], turned[both] - shift[0, both], rtol=1e-3)
+    assert np.count_nonzero(cells.spread[0, 2]) == 2
