@@ -14,6 +14,7 @@ from swgsim.joint.shaping import shaped
 from swgsim.joint.shared import OfFriction
 from swgsim.joint.sign_width import with_sign_width
 from swgsim.joint.term import Term
+from swgsim.joint.rest import trusted
 from swgsim.joint.textbook import fitted_textbook
 from swgsim.joint.waves import LOOKED_AT, Wave, waves
 
@@ -122,7 +123,7 @@ def climb(
     bar : bool
         Whether to show a progress bar of the candidates.
     """
-    now = start = fitted_textbook(table)
+    now = start = trusted(fitted_textbook(table))
     unit, ratio = SIGNALS[table.of].unit, table.recordings[0].gear_ratio
     progress(f"textbook model: error {now.error:.4g} {unit} on the {len(table.recordings)} fitted recordings")
     steps: list[Trial] = []

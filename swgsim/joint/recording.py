@@ -127,6 +127,13 @@ class JointRecording:
         speed, _ = self._direct
         return sense(np.interp(self.time - lag, self.time, speed) if lag else speed, width)
 
+    def rest(self, width: float, lag: float = 0.0) -> Float[np.ndarray, " time"]:
+        """How far the direction of the motion is unknown, from 0 to 1: the variance of a sign whose mean is
+        :meth:`sense`. It is 1 where the joint stands, also one that never reverses.
+        """
+        speed, _ = self._direct
+        return 1 - sense(np.interp(self.time - lag, self.time, speed), max(width, self.speed_doubt)) ** 2
+
     @cached_property
     def held(self) -> Float[np.ndarray, " time"]:
         """Direction of the motion before a standstill, while the joint stands after it; 0 while it moves."""

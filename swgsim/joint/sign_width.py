@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from swgsim.joint.regression import Fit, fit
+from swgsim.joint.regression import Fit, fit, rms
 from swgsim.joint.shared import OfSign
 
 # Widest change of the sign [rad/s]. Above begins Stribeck friction, which is friction that depends on the speed.
@@ -32,12 +32,15 @@ def with_sign_width(now: Fit) -> Fit:
     # A sign that changes within its least width has no shape of which more could be told.
     ends = np.log(least), np.log(max(WIDEST, least * (1 + 1e-9)))
 
+    def error(**sign: Any) -> float:
+        return rms(at(**sign).residual)
+
     def at(**sign: Any) -> Fit:
         return fit(now.table, [replace(term, **sign) if isinstance(term, OfSign) else term for term in now.terms])
 
-    width = _lowest(lambda x: at(sign_width=float(np.exp(x))).error, *ends)
-    lag = _lowest(lambda x: at(sign_width=float(np.exp(width)), lag=x).error, -LONGEST, LONGEST)
-    width = _lowest(lambda x: at(sign_width=float(np.exp(x)), lag=lag).error, *ends)
+    width = _lowest(lambda x: error(sign_width=float(np.exp(x))), *ends)
+    lag = _lowest(lambda x: error(sign_width=float(np.exp(width)), lag=x), -LONGEST, LONGEST)
+    width = _lowest(lambda x: error(sign_width=float(np.exp(x)), lag=lag), *ends)
     return at(sign_width=float(np.exp(width)), lag=lag)
 
 

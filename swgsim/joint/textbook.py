@@ -128,7 +128,7 @@ def fitted_textbook(table: Table) -> Fit:
 
 def _errors(found: Fit) -> Float[np.ndarray, " error"]:
     """Cross-validated error over all, and without the mean of each run."""
-    return np.array([rms(found.unseen), rms(found.unseen - found.table.means_of_runs(found.unseen))])
+    return np.array([rms(found.unseen), rms(found.unseen - found.table.means_of_runs(found.unseen[:, None])[:, 0])])
 
 
 def wrong_signs(textbook: Fit, unit: str) -> Iterator[str]:
