@@ -1,28 +1,43 @@
-"""How far a friction model may be trusted at rest: Coulomb friction of a joint that stands has any size."""
+"""How far the textbook model itself is certain, row by row, and the fit that takes account of it."""
 
 from dataclasses import replace
 
 import numpy as np
+from jaxtyping import Float
+from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
+from swgsim.joint.recording import JointRecording
 from swgsim.joint.regression import Fit, fit
-from swgsim.joint.textbook import Friction
+from swgsim.joint.textbook import Friction, RigidBody
+
+# Median of the square of a standard normal number.
+MEDIAN_OF_SQUARE = 0.4549
 
 
 def trusted(textbook: Fit) -> Fit:
-    """The textbook model, fitted by generalised least squares.
+    """The textbook model, fitted by generalised least squares: rows count by the inverse of their variance.
 
-    Coulomb friction is set-valued. Whatever holds a joint at rest lies within plus and minus Coulomb friction Fc, and
-    no function of the motion says where. So its variance at rest is that of a uniform distribution, Fc^2 / 3, besides
-    that of the noise; where the joint moves it is that of the noise. One standstill is one such number, however many
-    samples it has: n samples of it say no more of the mean than one, so each has n times the variance.
+    Two torques of the textbook lie in an interval, and no function of the recorded motion says where. Their variance is
+    that of a uniform distribution, a twelfth of the square of the interval, besides that of the noise.
+
+    - Coulomb friction of a joint at rest has any value within plus and minus its size. One standstill is one such
+      number, however many samples it has: n samples say no more of the mean than one, so each has n times the variance.
+    - The load where it jumps: speed and signal pass filters, so that its time is known to the lag between both only.
     """
     table = textbook.table
     friction = next((term for term in textbook.terms if isinstance(term, Friction)), None)
-    if friction is None:
-        return textbook
-    width, lag = (friction.sign_width, friction.lag) if any(each.reverses for each in table.recordings) else (0.0, 0.0)
-    rest = np.concatenate([each.rest(width, lag) for each in table.recordings])
-    noise = np.average(textbook.residual**2, weights=1 - rest)
-    shared = np.bincount(table.stretch, rest)[table.stretch]
-    trust = np.sqrt(noise / (noise + shared * rest * friction.weights[0] ** 2 / 3))
-    return fit(replace(table, trust=trust), textbook.terms)
+    width = friction.sign_width if friction and any(each.reverses for each in table.recordings) else 0.0
+    rigid = next(term for term in textbook.terms if isinstance(term, RigidBody))
+    rest = np.concatenate([each.rest(width, rigid.lag) for each in table.recordings])
+    noise = float(np.median(textbook.residual[rest < 0.5] ** 2)) / MEDIAN_OF_SQUARE
+    variance = np.concatenate([_of_load(rigid, each) for each in table.recordings])
+    if friction:
+        variance += np.bincount(table.stretch, rest)[table.stretch] * rest * friction.weights[0] ** 2 / 3
+    return fit(replace(table, trust=np.sqrt(noise / (noise + variance))), textbook.terms)
+
+
+def _of_load(rigid: RigidBody, recording: JointRecording) -> Float[np.ndarray, " time"]:
+    """Variance of the load from what it changes within the time that is not resolved."""
+    load = rigid.signal(recording)
+    size = 2 * int(np.ceil(abs(rigid.lag) * recording.rate) + 1) + 1
+    return (maximum_filter1d(load, size) - minimum_filter1d(load, size)) ** 2 / 12
