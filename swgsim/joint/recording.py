@@ -131,12 +131,12 @@ class JointRecording:
         speed, _ = self._direct
         return sense(self.later(speed, lag), width)
 
-    def rest(self, width: float, lag: float = 0.0) -> Float[np.ndarray, " time"]:
-        """How far the direction of the motion is unknown, from 0 to 1: the variance of a sign whose mean is
-        :meth:`sense`. It is 1 where the joint stands, also one that never reverses.
+    @cached_property
+    def rest(self) -> Float[np.ndarray, " time"]:
+        """How far the direction of the motion is unknown, from 0 to 1: the variance of its sign, whose mean changes
+        within the doubt of the speed. It is 1 where the joint stands, also one that never reverses.
         """
-        speed, _ = self._direct
-        return 1 - sense(self.later(speed, lag), max(width, self.speed_doubt)) ** 2
+        return 1 - sense(self._direct[0], self.speed_doubt) ** 2
 
     @cached_property
     def held(self) -> Float[np.ndarray, " time"]:

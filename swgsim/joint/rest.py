@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
 from swgsim.joint.recording import JointRecording
@@ -26,18 +26,29 @@ def trusted(textbook: Fit) -> Fit:
     """
     table = textbook.table
     friction = next((term for term in textbook.terms if isinstance(term, Friction)), None)
-    width = friction.sign_width if friction and any(each.reverses for each in table.recordings) else 0.0
     rigid = next(term for term in textbook.terms if isinstance(term, RigidBody))
-    rest = np.concatenate([each.rest(width, rigid.lag) for each in table.recordings])
-    noise = float(np.median(textbook.residual[rest < 0.5] ** 2)) / MEDIAN_OF_SQUARE
-    variance = np.concatenate([_of_load(rigid, each) for each in table.recordings])
-    if friction:
-        variance += np.bincount(table.stretch, rest)[table.stretch] * rest * friction.weights[0] ** 2 / 3
+    rest, interval = (np.concatenate(each) for each in zip(*(_unknown(rigid, r) for r in table.recordings), strict=True))
+    square, moves = textbook.residual**2, rest < 0.5
+    noise = float(np.median(square[moves])) / MEDIAN_OF_SQUARE
+    variance = interval**2 / 12
+    if friction and not moves.all():
+        size = min((2 * friction.weights[0]) ** 2 / 12, float(square[~moves].mean() - square[moves].mean()))
+        variance += _alike(textbook, moves) * rest * max(size, 0.0)
     return fit(replace(table, trust=np.sqrt(noise / (noise + variance))), textbook.terms)
 
 
-def _of_load(rigid: RigidBody, recording: JointRecording) -> Float[np.ndarray, " time"]:
-    """Variance of the load from what it changes within the time that is not resolved."""
-    load = rigid.signal(recording)
+def _unknown(
+    rigid: RigidBody, recording: JointRecording
+) -> tuple[Float[np.ndarray, " time"], Float[np.ndarray, " time"]]:
+    """How far the joint rests, from 0 to 1, and the interval of its load, within the time that is not resolved."""
     size = 2 * int(np.ceil(abs(rigid.lag) * recording.rate) + 1) + 1
-    return (maximum_filter1d(load, size) - minimum_filter1d(load, size)) ** 2 / 12
+    load = rigid.signal(recording)
+    return maximum_filter1d(recording.rest, size), maximum_filter1d(load, size) - minimum_filter1d(load, size)
+
+
+def _alike(textbook: Fit, moves: Bool[np.ndarray, " row"]) -> float:
+    """Independent errors in a stretch of a moving joint: the mean square of the errors over that of their means."""
+    stretch, residual = textbook.table.stretch[moves], textbook.residual[moves]
+    rows = np.bincount(stretch)
+    sums = np.bincount(stretch, residual)[rows > 0]
+    return float((residual**2).mean() / (sums**2 / rows[rows > 0]).sum() * len(residual))
