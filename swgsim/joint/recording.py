@@ -131,12 +131,11 @@ class JointRecording:
         speed, _ = self._direct
         return sense(self.later(speed, lag), width)
 
-    @cached_property
-    def rest(self) -> Float[np.ndarray, " time"]:
-        """How far the direction of the motion is unknown, from 0 to 1: the variance of its sign, whose mean changes
-        within the doubt of the speed. It is 1 where the joint stands, also one that never reverses.
+    def rest(self, width: float, lag: float = 0.0) -> Float[np.ndarray, " time"]:
+        """How far the direction of the motion is unknown, from 0 to 1: the variance of a sign whose mean changes within
+        a speed ``width`` [rad/s]. It is 1 where the joint stands, also one that never reverses.
         """
-        return 1 - sense(self._direct[0], self.speed_doubt) ** 2
+        return 1 - sense(self.later(self._direct[0], lag), max(width, self.speed_doubt)) ** 2
 
     @cached_property
     def held(self) -> Float[np.ndarray, " time"]:
