@@ -31,18 +31,16 @@ def trusted(textbook: Fit) -> Fit:
     width = friction.sign_width if friction and any(each.reverses for each in table.recordings) else 0.0
     rest = np.concatenate([each.rest(width, rigid.lag) for each in table.recordings])
     stands = rest > 0.5
-    noise, at_rest = (_variance(textbook.residual[rows]) for rows in (~stands, stands))
+    square = textbook.residual**2
+    # Few errors of the motion are large: those of a load that jumps.
+    noise = float(np.median(square[~stands])) / MEDIAN_OF_SQUARE
     variance = np.concatenate([_of_load(rigid, each) for each in table.recordings])
     if friction and stands.any():
         held = (2 * friction.weights[0]) ** 2 / 12
-        if _surprise(at_rest, noise + held) < _surprise(at_rest, noise):
+        at_rest, moving = float(square[stands].mean()), float(square[~stands].mean())
+        if _surprise(at_rest, moving + held) < _surprise(at_rest, moving):
             variance += np.bincount(table.stretch, rest)[table.stretch] * rest * held
     return fit(replace(table, trust=np.sqrt(noise / (noise + variance))), textbook.terms)
-
-
-def _variance(residual: Float[np.ndarray, " row"]) -> float:
-    """Variance of errors, of which few may be large: those of a load that jumps, or of a joint that just stops."""
-    return float(np.median(residual**2)) / MEDIAN_OF_SQUARE
 
 
 def _surprise(found: float, variance: float) -> float:

@@ -14,8 +14,9 @@ from swgsim.joint.textbook import Friction, RigidBody, fitted_textbook
 RATE, NOISE, INERTIA, MOVE = 100.0, 0.03, 0.4, 100
 
 
-def strokes(seed: object, held: float, lag: float = 0.0) -> Table:
+def strokes(seed: object, held: float | None, lag: float = 0.0) -> Table:
     """Strokes with constant acceleration and pauses; at rest, friction of any size up to ``held`` times Coulomb's.
+    None: friction is elastic, and grows with the speed from rest.
 
     The speed is late by a lag [s].
     """
@@ -27,9 +28,10 @@ def strokes(seed: object, held: float, lag: float = 0.0) -> Table:
         acceleration = size * np.select([place < 20, place < 40, place < 60], [1.0, 0.0, -1.0], 0.0)
         omega = np.cumsum(acceleration) / RATE
         still = place >= 60
-        rest = still * np.repeat(rng.uniform(-held, held, 24), MOVE)
+        rest = still * np.repeat(rng.uniform(-1, 1, 24), MOVE) * (held or 0.0)
+        sign = np.tanh(omega / 0.01) if held is None else np.sign(omega) * ~still + rest
         time = np.arange(len(size)) / RATE
-        current = INERTIA * acceleration + COULOMB * (np.sign(omega) * ~still + rest) + VISCOUS * omega
+        current = INERTIA * acceleration + COULOMB * sign + VISCOUS * omega
         signals = {
             "q": np.cumsum(omega) / RATE, "omega": np.interp(time - lag, time, omega) + 1e-3 * rng.normal(size=len(time)),
             "current": current + NOISE * rng.normal(size=len(time)),
@@ -51,7 +53,7 @@ def test_a_standstill_counts_as_one_sample_with_the_variance_of_coulomb_friction
 
 
 def test_a_joint_that_is_predicted_at_rest_is_trusted_there() -> None:
-    assert trust_at_rest(trusted(fitted_textbook(strokes("known", 0.0)))) > 0.7
+    assert trust_at_rest(trusted(fitted_textbook(strokes("known", None)))) > 0.7
 
 
 def test_what_holds_a_joint_does_not_change_the_friction_of_its_motion() -> None:
