@@ -10,11 +10,11 @@ from tqdm import tqdm
 from swgsim.joint.naming import in_words
 from swgsim.joint.recording import SIGNALS
 from swgsim.joint.regression import WORTH, Fit, Table, fit, rms
+from swgsim.joint.rest import trusted
 from swgsim.joint.shaping import shaped
 from swgsim.joint.shared import OfFriction
 from swgsim.joint.sign_width import with_sign_width
 from swgsim.joint.term import Term
-from swgsim.joint.rest import trusted
 from swgsim.joint.textbook import fitted_textbook
 from swgsim.joint.waves import LOOKED_AT, Wave, waves
 

@@ -21,9 +21,11 @@ def trusted(textbook: Fit) -> Fit:
     that of a uniform distribution, a twelfth of the square of the interval, besides that of the noise.
 
     - Coulomb friction of a joint at rest has any value within plus and minus its size. A standstill is one such number,
-      however many samples it has: n samples say no more of the mean than one, so each has n times the variance. A joint
-      with elastic friction is predicted at rest as in motion; the more likely of the two is taken.
+      however many samples it has: n samples say no more of the mean than one, so each has n times the variance.
     - The load where it jumps: speed and signal pass filters, so that its time is known to the lag between both only.
+
+    Each is taken if it makes the errors more likely than equal ones: friction that is elastic predicts a joint at rest
+    as in motion, and a smooth load does not jump.
     """
     table = textbook.table
     friction = next((term for term in textbook.terms if isinstance(term, Friction)), None)
@@ -34,18 +36,20 @@ def trusted(textbook: Fit) -> Fit:
     square = textbook.residual**2
     # Few errors of the motion are large: those of a load that jumps.
     noise = float(np.median(square[~stands])) / MEDIAN_OF_SQUARE
-    variance = np.concatenate([_of_load(rigid, each) for each in table.recordings])
+    at_rest, moving = square[stands], square[~stands]
+    load = np.concatenate([_of_load(rigid, each) for each in table.recordings])
+    jumps = _surprise(moving, noise + load[~stands]) < _surprise(moving, moving.mean())
+    variance = load if jumps else np.zeros(len(load))
     if friction and stands.any():
         held = (2 * friction.weights[0]) ** 2 / 12
-        at_rest, moving = float(square[stands].mean()), float(square[~stands].mean())
-        if _surprise(at_rest, moving + held) < _surprise(at_rest, moving):
-            variance += np.bincount(table.stretch, rest)[table.stretch] * rest * held
+        if _surprise(at_rest, moving.mean() + held) < _surprise(at_rest, moving.mean()):
+            variance = variance + np.bincount(table.stretch, rest)[table.stretch] * rest * held
     return fit(replace(table, trust=np.sqrt(noise / (noise + variance))), textbook.terms)
 
 
-def _surprise(found: float, variance: float) -> float:
-    """Twice the negative logarithm of the likelihood of normal errors with a variance, but for a constant."""
-    return found / variance + float(np.log(variance))
+def _surprise(square: Float[np.ndarray, " row"], variance: Float[np.ndarray, " row"] | float) -> float:
+    """Mean of twice the negative logarithm of the likelihood of normal errors, but for a constant."""
+    return float(np.mean(square / variance + np.log(variance)))
 
 
 def _of_load(rigid: RigidBody, recording: JointRecording) -> Float[np.ndarray, " time"]:

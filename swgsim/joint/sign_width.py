@@ -1,4 +1,4 @@
-"""The speed within which the sign of Coulomb friction changes, and its lag, fitted with the model."""
+"""The speed within which the sign of Coulomb friction changes, and the lag of the motion, fitted with the model."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import fields, replace
