@@ -22,7 +22,7 @@ def smooth(omega: Float[np.ndarray, " time"], rate: float, derivative: int) -> F
 def least_doubt(
     omega: Float[np.ndarray, " time"], rate: float, derivative: int = 0
 ) -> tuple[Float[np.ndarray, " time"], float]:
-    """A speed, or its derivative, smoothed over the window that leaves the least error, and this error [rad/s, rad/s^2].
+    """A speed or its derivative, smoothed over the window that leaves the least error, and the error [rad/s, rad/s^2].
 
     A longer window averages more noise, but rounds a motion that changes within it. The estimate of the error is that
     of Stein (1981, Ann. Stat. 9, 1135): a smoothing with the coefficients c leaves c^2 s^2 of white noise with variance

@@ -22,10 +22,11 @@ def trusted(textbook: Fit) -> Fit:
 
     - Coulomb friction of a joint at rest has any value within plus and minus its size. A standstill is one such number,
       however many samples it has: n samples say no more of the mean than one, so each has n times the variance.
-    - The load where it jumps: speed and signal pass filters, so that its time is known to the lag between both only.
+    - The torque of inertia where the acceleration jumps, which is computed from the speed: speed and signal pass
+      filters, so that the time of the jump is known to the lag between both only.
 
     Each is taken if it makes the errors more likely than equal ones: friction that is elastic predicts a joint at rest
-    as in motion, and a smooth load does not jump.
+    as in motion, and a smooth motion does not jump.
     """
     table = textbook.table
     friction = next((term for term in textbook.terms if isinstance(term, Friction)), None)
@@ -53,7 +54,8 @@ def _surprise(square: Float[np.ndarray, " row"], variance: Float[np.ndarray, " r
 
 
 def _of_load(rigid: RigidBody, recording: JointRecording) -> Float[np.ndarray, " time"]:
-    """Variance of the load from what it changes within the time that is not resolved."""
-    load = rigid.signal(recording)
+    """Variance of the torque of inertia from what it changes within the time that is not resolved."""
+    inertia = sum(weight for name, weight in zip(rigid.names(), rigid.weights, strict=True) if "inertia" in name)
     size = 2 * int(np.ceil(abs(rigid.lag) * recording.rate) + 1) + 1
-    return (maximum_filter1d(load, size) - minimum_filter1d(load, size)) ** 2 / 12
+    acceleration = recording.acceleration
+    return (inertia * (maximum_filter1d(acceleration, size) - minimum_filter1d(acceleration, size))) ** 2 / 12

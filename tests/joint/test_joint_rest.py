@@ -33,7 +33,8 @@ def strokes(seed: object, held: float | None, lag: float = 0.0) -> Table:
         time = np.arange(len(size)) / RATE
         current = INERTIA * acceleration + COULOMB * sign + VISCOUS * omega
         signals = {
-            "q": np.cumsum(omega) / RATE, "omega": np.interp(time - lag, time, omega) + 1e-3 * rng.normal(size=len(time)),
+            "q": np.cumsum(omega) / RATE,
+            "omega": np.interp(time - lag, time, omega) + 1e-3 * rng.normal(size=len(time)),
             "current": current + NOISE * rng.normal(size=len(time)),
         }  # fmt: skip
         recordings.append(JointRecording(f"run{number}", "robot", "joint", f"day{number % 2}", time, signals))
@@ -70,4 +71,5 @@ def test_the_acceleration_is_smoothed_no_longer_than_the_noise_asks_for() -> Non
     for noise, most in ((1e-4, 0.05), (1e-2, 1.0)):
         found, doubt = least_doubt(omega + noise * rng.normal(size=len(time)), RATE, 1)
         error = float(np.sqrt(np.mean((found - 12 * np.cos(12 * time))[20:-20] ** 2)))
-        assert error < most and doubt == pytest.approx(error, rel=0.5)
+        assert error < most
+        assert doubt == pytest.approx(error, rel=0.5)
