@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import fields, replace
+from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize_scalar
@@ -46,7 +47,7 @@ def with_sign_width(now: Fit) -> Fit:
     return at(sign_width=float(np.exp(width)), lag=lag)
 
 
-def _with(term: Term, motion: Mapping[str, float]) -> Term:
+def _with(term: Term, motion: Mapping[str, Any]) -> Term:
     """A term with those of some parameters that it has."""
     return replace(term, **{name: value for name, value in motion.items() if _has(term, name)})
 
