@@ -1,6 +1,6 @@
 """Errors of the models of a ladder on held-out recordings."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
@@ -60,8 +60,8 @@ class Judged:
 
     @property
     def table(self) -> Table:
-        """Fitted recordings."""
-        return self.ladder.top.table
+        """Fitted recordings, all rows alike."""
+        return replace(self.ladder.top.table, trust=None)
 
     @cached_property
     def rungs(self) -> tuple[Rung, ...]:

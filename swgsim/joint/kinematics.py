@@ -19,20 +19,29 @@ def smooth(omega: Float[np.ndarray, " time"], rate: float, derivative: int) -> F
     return savgol_filter(omega, window(len(omega), rate), 2, deriv=derivative, delta=1 / rate)
 
 
-def least_doubt(omega: Float[np.ndarray, " time"], rate: float) -> tuple[Float[np.ndarray, " time"], float]:
-    """A speed, smoothed over the window that leaves the least error, and this error [rad/s].
+def least_doubt(
+    omega: Float[np.ndarray, " time"], rate: float, derivative: int = 0
+) -> tuple[Float[np.ndarray, " time"], float]:
+    """A speed or its derivative, smoothed over the window that leaves the least error, and the error [rad/s, rad/s^2].
 
     A longer window averages more noise, but rounds a motion that changes within it. The estimate of the error is that
-    of Stein (1981, Ann. Stat. 9, 1135): a smoothing with the central coefficient c leaves c s^2 of white noise with
-    variance s^2, and the mean square of what it takes away, minus (1 - c) s^2, is what it takes from the motion. Third
-    differences show the noise.
+    of Stein (1981, Ann. Stat. 9, 1135): a smoothing with the coefficients c leaves c^2 s^2 of white noise with variance
+    s^2. From the shortest one, which takes nothing from the motion, it differs by (c - shortest)^2 s^2 for the noise;
+    the rest of the mean square of the difference is what it takes from the motion. Third differences show the noise.
     """
     s2 = float(np.mean(np.diff(omega, 3) ** 2)) / 20
-    best, least = omega, s2
+    shortest = 1 if derivative == 0 else 3
+    if derivative == 0:
+        first, best = np.ones(1), omega
+    else:
+        first, best = np.array([0.5, 0.0, -0.5]) * rate, np.gradient(omega, edge_order=2) * rate
+    start, least = best, float(first @ first) * s2
     for length in range(5, window(len(omega), rate) + 1, 2):
-        c = float(savgol_coeffs(length, 2)[length // 2])
-        smoothed = savgol_filter(omega, length, 2)
-        error = max(float(np.mean((omega - smoothed) ** 2)) - (1 - c) * s2, 0.0) + c * s2
+        c = savgol_coeffs(length, 2, deriv=derivative, delta=1 / rate)
+        smoothed = savgol_filter(omega, length, 2, deriv=derivative, delta=1 / rate)
+        off = c - np.pad(first, (length - shortest) // 2)
+        rounded = float(np.mean((start - smoothed) ** 2)) - float(off @ off) * s2
+        error = max(rounded, 0.0) + float(c @ c) * s2
         if error < least:
             best, least = smoothed, error
     return best, float(np.sqrt(least))

@@ -10,6 +10,7 @@ from tqdm import tqdm
 from swgsim.joint.naming import in_words
 from swgsim.joint.recording import SIGNALS
 from swgsim.joint.regression import WORTH, Fit, Table, fit, rms
+from swgsim.joint.rest import trusted
 from swgsim.joint.shaping import shaped
 from swgsim.joint.shared import OfFriction
 from swgsim.joint.sign_width import with_sign_width
@@ -122,7 +123,7 @@ def climb(
     bar : bool
         Whether to show a progress bar of the candidates.
     """
-    now = start = fitted_textbook(table)
+    now = start = trusted(fitted_textbook(table))
     unit, ratio = SIGNALS[table.of].unit, table.recordings[0].gear_ratio
     progress(f"textbook model: error {now.error:.4g} {unit} on the {len(table.recordings)} fitted recordings")
     steps: list[Trial] = []

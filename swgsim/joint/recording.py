@@ -95,8 +95,12 @@ class JointRecording:
 
     @cached_property
     def acceleration(self) -> Float[np.ndarray, " time"]:
-        """Acceleration of the joint [rad/s^2]."""
-        return smooth(self.signals["omega"], self.rate, 1)
+        """Acceleration of the joint [rad/s^2], smoothed to the least error."""
+        return least_doubt(self.signals["omega"], self.rate, 1)[0]
+
+    def later(self, values: Float[np.ndarray, " time"], lag: float) -> Float[np.ndarray, " time"]:
+        """Values of the motion, as a signal shows them a time ``lag`` [s] later."""
+        return np.interp(self.time - lag, self.time, values) if lag else values
 
     @cached_property
     def reverses(self) -> bool:
@@ -125,7 +129,13 @@ class JointRecording:
         if not self.reverses:
             return np.full(len(self), float(np.sign(self.speed.sum())))
         speed, _ = self._direct
-        return sense(np.interp(self.time - lag, self.time, speed) if lag else speed, width)
+        return sense(self.later(speed, lag), width)
+
+    def rest(self, width: float, lag: float = 0.0) -> Float[np.ndarray, " time"]:
+        """How far the direction of the motion is unknown, from 0 to 1: the variance of a sign whose mean changes within
+        a speed ``width`` [rad/s]. It is 1 where the joint stands, also one that never reverses.
+        """
+        return 1 - sense(self.later(self._direct[0], lag), max(width, self.speed_doubt)) ** 2
 
     @cached_property
     def held(self) -> Float[np.ndarray, " time"]:

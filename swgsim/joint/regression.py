@@ -33,10 +33,14 @@ class Table:
     recordings : tuple of JointRecording
     of : str
         Name of the signal to explain.
+    trust : array (row,) or None
+        Factors of the rows in least squares: standard deviation of the noise over that of the row's error. None: all
+        rows have the same.
     """
 
     recordings: tuple[JointRecording, ...]
     of: str
+    trust: Float[np.ndarray, " row"] | None = None
 
     def __post_init__(self) -> None:
         lacking = [each.name for each in self.recordings if self.of not in each.signals]
@@ -48,7 +52,7 @@ class Table:
 
     @cached_property
     def signal(self) -> Float[np.ndarray, " row"]:
-        """The signal to explain; of a torque sensor without the zero of each run."""
+        """The signal to explain, times ``trust``; of a torque sensor without the zero of each run."""
         return self.rows([each.signals[self.of][:, None] for each in self.recordings])[:, 0]
 
     def columns(self, term: Term) -> Float[np.ndarray, "row column"]:
@@ -63,8 +67,9 @@ class Table:
         return self.rows([np.vstack([term.columns(part) for part in parts])])
 
     def rows(self, each: Sequence[Float[np.ndarray, "_ column"]]) -> Float[np.ndarray, "row column"]:
-        """Columns of all recordings; for a torque sensor the mean of each run is removed."""
-        return np.vstack([part - part.mean(axis=0) for part in each] if self.of == "T_sensor" else list(each))
+        """Columns of all recordings, times ``trust``; for a torque sensor the mean of each run is removed."""
+        whole = np.vstack(list(each)) if self.trust is None else self.trust[:, None] * np.vstack(list(each))
+        return whole - self.means_of_runs(whole) if self.of == "T_sensor" else whole
 
     @cached_property
     def run(self) -> Int[np.ndarray, " row"]:
@@ -82,9 +87,11 @@ class Table:
         """Number of the group of every row for cross-validation: a run, or a part of a single run."""
         return self.run if len(self.recordings) > 1 else np.arange(len(self.run)) * PARTS // len(self.run)
 
-    def means_of_runs(self, values: Float[np.ndarray, " row"]) -> Float[np.ndarray, " row"]:
-        """Mean of each run, in all its rows."""
-        return (np.bincount(self.run, values) / np.bincount(self.run))[self.run]
+    def means_of_runs(self, values: Float[np.ndarray, "row column"]) -> Float[np.ndarray, "row column"]:
+        """Mean of each run, in all its rows; of values that have the factor ``trust``, as the result has."""
+        by = np.ones(len(values)) if self.trust is None else self.trust
+        sums = np.stack([np.bincount(self.run, by * column) for column in values.T], axis=1)
+        return (sums / np.bincount(self.run, by**2)[:, None])[self.run] * by[:, None]
 
     @cached_property
     def parts(self) -> list[slice]:
@@ -137,7 +144,7 @@ class Fit:
 
     @cached_property
     def residual(self) -> Float[np.ndarray, " row"]:
-        """Measured minus predicted."""
+        """Measured minus predicted, times the trust in each row."""
         return self.table.signal - self.X @ self.weights
 
     @cached_property
@@ -149,8 +156,8 @@ class Fit:
 
     @property
     def error(self) -> float:
-        """Root mean square of the residual, in the unit of the signal."""
-        return rms(self.residual)
+        """Root mean square of measured minus predicted, in the unit of the signal."""
+        return rms(self.residual if self.table.trust is None else self.residual / self.table.trust)
 
     @cached_property
     def unseen(self) -> Float[np.ndarray, " row"]:
@@ -160,9 +167,8 @@ class Fit:
     @cached_property
     def unseen_but_zeros(self) -> Float[np.ndarray, " row"]:
         """The same if the signal of each run had a zero of its own, which is known."""
-        X = self._by_group
-        means = np.stack([self.table.means_of_runs(column) for column in X.T], axis=1)
-        return self._unseen(X - means, self.table.signal - self.table.means_of_runs(self.table.signal))
+        X, y = self._by_group, self.table.signal
+        return self._unseen(X - self.table.means_of_runs(X), y - self.table.means_of_runs(y[:, None])[:, 0])
 
     @cached_property
     def _by_group(self) -> Float[np.ndarray, "row column"]:

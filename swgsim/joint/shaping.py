@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from swgsim.effects.quantity import Quantity, Role, quantities
-from swgsim.joint.regression import Fit
+from swgsim.joint.regression import Fit, rms
 from swgsim.joint.term import Term
 
 T = TypeVar("T", bound=Term)
@@ -70,7 +70,7 @@ def _downhill(now: Fit, begin: T, searched: dict[str, Quantity]) -> T:
 
     options = {
         "initial_simplex": np.vstack([x, x + np.diag(inwards)]), "maxfev": ROUNDS * len(x),
-        "xatol": 1e-3, "fatol": 1e-6 * now.error**2,
+        "xatol": 1e-3, "fatol": 1e-6 * rms(now.residual) ** 2,
     }  # fmt: skip
     found = minimize(lambda x: -gain(now, moved(x)), x, method="Nelder-Mead", bounds=ends, options=options)
     return max((begin, moved(found.x)), key=lambda each: gain(now, each))

@@ -32,7 +32,25 @@ class OfFriction(Term):
 
 
 @dataclass(frozen=True, kw_only=True)
-class OfSign(OfFriction):
+class OfMotion(Term):
+    """A term whose change with the motion is so fast that the filters of signals shift it.
+
+    Attributes
+    ----------
+    lag : float
+        Time by which the signal follows the motion [s]: current and speed pass different filters. It is fitted with
+        the textbook model, and all terms of a model have the same.
+    """
+
+    lag: float = shape(0.0, unit="s", low=-1.0, high=1.0)
+
+    def beside(self, terms: Sequence[Term]) -> Any:
+        """With the lag of the model."""
+        return replace(super().beside(terms), lag=_of_model(OfMotion, terms, self).lag)
+
+
+@dataclass(frozen=True, kw_only=True)
+class OfSign(OfMotion, OfFriction):
     """Friction with the sign of the motion.
 
     Attributes
@@ -40,13 +58,9 @@ class OfSign(OfFriction):
     sign_width : float
         Speed within which the sign changes [rad/s]. It is fitted with Coulomb friction of the textbook, and all terms
         of a model have the same.
-    lag : float
-        Time by which the signal follows the change of the sign [s]: current and speed pass different filters. Fitted
-        and shared likewise.
     """
 
     sign_width: float = shape(0.01, unit="rad/s", low=1e-9, high=1e3)
-    lag: float = shape(0.0, unit="s", low=-1.0, high=1.0)
 
     def sense(self, recording: JointRecording) -> Float[np.ndarray, " time"]:
         """The sign of the friction in the signal."""
@@ -54,8 +68,7 @@ class OfSign(OfFriction):
 
     def beside(self, terms: Sequence[Term]) -> Any:
         """With the sign of the model."""
-        known = _of_model(OfSign, terms, self)
-        return replace(super().beside(terms), sign_width=known.sign_width, lag=known.lag)
+        return replace(super().beside(terms), sign_width=_of_model(OfSign, terms, self).sign_width)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,14 +1,15 @@
-"""The speed within which the sign of Coulomb friction changes, and its lag, fitted with the model."""
+"""The speed within which the sign of Coulomb friction changes, and the lag of the motion, fitted with the model."""
 
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Mapping
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from swgsim.joint.regression import Fit, fit
+from swgsim.joint.regression import Fit, fit, rms
 from swgsim.joint.shared import OfSign
+from swgsim.joint.term import Term
 
 # Widest change of the sign [rad/s]. Above begins Stribeck friction, which is friction that depends on the speed.
 WIDEST = 0.02
@@ -19,26 +20,40 @@ POINTS = 7
 
 
 def with_sign_width(now: Fit) -> Fit:
-    """The model at the most likely width and lag of the sign.
+    """The model at the most likely width of the sign, and lag of sign and acceleration.
 
     Friction changes its sign at a reversal at once, but for elastic seals and grease. A measured speed with noise, or
     sampled coarsely, shows the reversal only up to a speed, below which the direction is uncertain. This is the least
     width.
     """
+
+    def at(**motion: float) -> Fit:
+        return fit(now.table, [_with(term, motion) for term in now.terms])
+
+    def error(**motion: float) -> float:
+        return rms(at(**motion).residual)
+
     doubts = [each.speed_doubt for each in now.table.recordings if each.reverses]
     if not doubts or not any(isinstance(term, OfSign) for term in now.terms):
-        return now
+        if not any(_has(term, "lag") for term in now.terms):
+            return now
+        return at(lag=_lowest(lambda x: error(lag=x), -LONGEST, LONGEST))
     least = max(float(np.sqrt(np.mean(np.square(doubts)))), 1e-3 * WIDEST)
     # A sign that changes within its least width has no shape of which more could be told.
     ends = np.log(least), np.log(max(WIDEST, least * (1 + 1e-9)))
-
-    def at(**sign: Any) -> Fit:
-        return fit(now.table, [replace(term, **sign) if isinstance(term, OfSign) else term for term in now.terms])
-
-    width = _lowest(lambda x: at(sign_width=float(np.exp(x))).error, *ends)
-    lag = _lowest(lambda x: at(sign_width=float(np.exp(width)), lag=x).error, -LONGEST, LONGEST)
-    width = _lowest(lambda x: at(sign_width=float(np.exp(x)), lag=lag).error, *ends)
+    width = _lowest(lambda x: error(sign_width=float(np.exp(x))), *ends)
+    lag = _lowest(lambda x: error(sign_width=float(np.exp(width)), lag=x), -LONGEST, LONGEST)
+    width = _lowest(lambda x: error(sign_width=float(np.exp(x)), lag=lag), *ends)
     return at(sign_width=float(np.exp(width)), lag=lag)
+
+
+def _with(term: Term, motion: Mapping[str, Any]) -> Term:
+    """A term with those of some parameters that it has."""
+    return replace(term, **{name: value for name, value in motion.items() if _has(term, name)})
+
+
+def _has(term: Term, name: str) -> bool:
+    return name in {each.name for each in fields(term)}
 
 
 def _lowest(error: Callable[[float], float], low: float, high: float) -> float:

@@ -8,13 +8,13 @@ from jaxtyping import Float
 
 from swgsim.joint.recording import PREDICTED, JointRecording, turns_back
 from swgsim.joint.regression import WORTH, Fit, Table, fit, rms
-from swgsim.joint.shared import OfLoad, OfSign
+from swgsim.joint.shared import OfLoad, OfMotion, OfSign
 from swgsim.joint.sign_width import with_sign_width
 from swgsim.joint.term import Term
 
 
 @dataclass(frozen=True)
-class RigidBody(OfLoad):
+class RigidBody(OfLoad, OfMotion):
     """Torque that moves the links: that of the torque sensor, or of the controller's rigid-body model, or without both
     the inertia and gravity of a single link, J domega/dt + c cos q + s sin q.
 
@@ -26,12 +26,13 @@ class RigidBody(OfLoad):
 
     def columns(self, recording: JointRecording) -> Float[np.ndarray, "time column"]:
         """The load, with the inertia of the motor if it is measured; or three columns of a single link."""
-        if self.measured:
-            return np.stack([self.load(recording), recording.acceleration], axis=1)
-        if self.modelled:
+        if self.modelled and not self.measured:
             return self.load(recording)[:, None]
-        q = recording.signals["q"]
-        return np.stack([recording.acceleration, np.cos(q), np.sin(q)], axis=1)
+        acceleration = recording.later(recording.acceleration, self.lag)
+        if self.measured:
+            return np.stack([self.load(recording), acceleration], axis=1)
+        angles, own = recording.links
+        return np.stack([acceleration, np.cos(angles[own]), np.sin(angles[own])], axis=1)
 
     def least(self, columns: int) -> Float[np.ndarray, " column"]:
         """Inertia is not negative. The factor of a load may be: it may be counted as the torque of the links."""
@@ -128,7 +129,7 @@ def fitted_textbook(table: Table) -> Fit:
 
 def _errors(found: Fit) -> Float[np.ndarray, " error"]:
     """Cross-validated error over all, and without the mean of each run."""
-    return np.array([rms(found.unseen), rms(found.unseen - found.table.means_of_runs(found.unseen))])
+    return np.array([rms(found.unseen), rms(found.unseen - found.table.means_of_runs(found.unseen[:, None])[:, 0])])
 
 
 def wrong_signs(textbook: Fit, unit: str) -> Iterator[str]:

@@ -7,7 +7,7 @@ from jaxtyping import Float
 
 from swgsim.joint.recording import PREDICTED, JointRecording
 from swgsim.joint.regression import solved
-from swgsim.joint.shared import OfLoad
+from swgsim.joint.shared import OfLoad, OfMotion
 from swgsim.joint.term import Term
 
 
@@ -37,7 +37,7 @@ class GravityError(Term):
 
 
 @dataclass(frozen=True)
-class InertiaError(Term):
+class InertiaError(OfMotion):
     """Inertia that the rigid-body model does not contain, J domega/dt: the motor's, seen through the gear, or that of a
     payload (eq. (1)).
     """
@@ -48,7 +48,7 @@ class InertiaError(Term):
 
     def columns(self, recording: JointRecording) -> Float[np.ndarray, "time column"]:
         """The acceleration."""
-        return recording.acceleration[:, None]
+        return recording.later(recording.acceleration, self.lag)[:, None]
 
 
 @dataclass(frozen=True)
