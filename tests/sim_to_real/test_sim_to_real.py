@@ -72,7 +72,7 @@ def test_loop_names_the_effect_and_training_again_brings_back_what_it_cost(finis
         before, after, oracle = (row(each, method, COMMISSIONING, model) for model in MODELS)
         assert before["false_alarms"] > 50
         assert abs(after["accuracy"] - oracle["accuracy"]) < 20
-        # Warm grease passes for a fault where there is none, a skew for one and the same fault everywhere. A recording is
+        # Warm grease passes for a fault where there is none, a skew for the same fault everywhere. A recording is
         # 4 % of the healthy ones, so that a forest on other digits of the same data differs by several times that.
         brought = before["false_alarms"] - after["false_alarms"], after["accuracy"] - before["accuracy"]
         assert brought[0 if each is grease else 1] > (10 if each is grease else 20)
