@@ -95,8 +95,13 @@ class JointRecording:
 
     @cached_property
     def acceleration(self) -> Float[np.ndarray, " time"]:
-        """Acceleration of the joint [rad/s^2], smoothed to the least error."""
-        return least_doubt(self.signals["omega"], self.rate, 1)[0]
+        """Acceleration of the joint [rad/s^2], smoothed to the least error.
+
+        In one direction it is that of the speed control. What is faster there is the ripple of the gear, which inertia
+        would explain in the fitted runs only.
+        """
+        omega = self.signals["omega"]
+        return least_doubt(omega, self.rate, 1)[0] if self.reverses else smooth(omega, self.rate, 1)
 
     def later(self, values: Float[np.ndarray, " time"], lag: float) -> Float[np.ndarray, " time"]:
         """Values of the motion, as a signal shows them a time ``lag`` [s] later."""

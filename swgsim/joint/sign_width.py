@@ -34,7 +34,9 @@ def with_sign_width(now: Fit) -> Fit:
         return rms(at(**motion).residual)
 
     doubts = [each.speed_doubt for each in now.table.recordings if each.reverses]
-    if not doubts or not any(isinstance(term, OfSign) for term in now.terms):
+    if not doubts:
+        return now
+    if not any(isinstance(term, OfSign) for term in now.terms):
         if not any(_has(term, "lag") for term in now.terms):
             return now
         return at(lag=_lowest(lambda x: error(lag=x), -LONGEST, LONGEST))
