@@ -44,6 +44,8 @@ def adapt_and_judge(
         return source_model(np.asarray(given.features[rows]), y[rows], gears[rows])
 
     def wrong(model: Any, given: LearningSet, rows: np.ndarray) -> np.ndarray:
+        if not len(rows):  # no variants were kept out
+            return np.zeros(0, bool)
         return np.asarray(model.predict(given.features[rows]) != y[rows])
 
     def adapted(episode: Episode) -> Iterator[Adapted]:

@@ -39,6 +39,8 @@ def results(
 
         def chosen(episode: Episode) -> Choice:
             development = [zero_shot_split(each) for each in protocol.development_episodes(data.table, episode)]
+            if not development:
+                return CONFIGURED
             return choose(trials, lambda tried: evaluated(development, itertools.repeat(tried)).mean_test_score)
 
         choices = [chosen(episode) for episode in protocol.episodes(data.table)]

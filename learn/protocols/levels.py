@@ -148,11 +148,14 @@ class NewGears:
         """Episodes whose targets are the development gears, to choose the options of an episode.
 
         Their sources are the other source gears of the episode, about as many as the options are used with. The gears
-        that it judges have no say. If it has development gears only, they are left out in turn.
+        that it judges have no say. If it has development gears only, they are left out in turn. One source gear leaves
+        nothing to choose from.
         """
         known = np.unique(table["gear"].to_numpy()[episode.source])
         every = np.unique(table["gear"])
         development = np.intersect1d(known, every[len(every) - self.development :])
+        if len(known) < 2:
+            return []
         alone = len(development) == len(known)
         return list(self._leaving_out(table, development, known, min(DEVELOPMENT_FOLDS, len(known)) if alone else 1))
 

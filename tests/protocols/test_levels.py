@@ -241,3 +241,9 @@ def test_choosing_needs_two_source_gears():
 def test_numbers_out_of_their_limits_are_refused(name, value, low):
     with pytest.raises(ValueError, match=f"{name} of the protocol is {value}, must be an integer from {low}"):
         NewGears(**{name: value})
+
+
+def test_one_source_gear_leaves_no_options_to_choose():
+    table = table_of(gears=3)
+    protocol = NewGears(folds=2, development=2, labelled=0, unlabelled=0, kept_out=0, sources=1)
+    assert [protocol.development_episodes(table, each) for each in protocol.episodes(table)] == [[]]
