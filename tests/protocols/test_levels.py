@@ -224,12 +224,6 @@ def test_a_grid_that_is_too_small_is_refused(change, message):
         list(protocol.episodes(table_of()))
 
 
-def test_choosing_needs_two_source_gears():
-    protocol, table = NewGears(development=1, labelled=2, unlabelled=1, sources=1), table_of()
-    with pytest.raises(ValueError, match="1 gears to judge of 1 in all, with 1 for development"):
-        protocol.development_episodes(table, next(iter(protocol.episodes(table))))
-
-
 @pytest.mark.parametrize(
     ("name", "value", "low"),
     [
