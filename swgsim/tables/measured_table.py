@@ -166,10 +166,11 @@ def _read(
     if clock and clock.file == signal:
         times += clock.columns
         rows += [column for column, _ in clock.rows]
-    stamps = [*rows, *(times if clock and clock.stamps else ())]
     wanted = list(dict.fromkeys([*(each.place for each in own), *times, *rows]))
     if clock and clock.file != signal:
-        wanted += _also(path, name, clock, wanted, layout)
+        also = _also(path, name, clock, wanted, layout)
+        wanted, times = [*wanted, *also], [*times, *also]
+    stamps = [*rows, *(times if clock and clock.stamps else ())]
     if binary.is_binary(path):
         return binary.read_columns(path, name, wanted, reader)
     if is_spreadsheet(path):
@@ -179,7 +180,7 @@ def _read(
 
 def _also(path: Path, name: str, clock: Clock, wanted: Sequence[str | int], layout: Layout) -> list[str | int]:
     """Columns of another text file of a run that have the names of the time: they must say the same."""
-    if binary.is_binary(path) or is_spreadsheet(path) or not layout.named or clock.stamps:
+    if binary.is_binary(path) or is_spreadsheet(path) or not layout.named:
         return []
     names = start_of(path, name, layout).names
     return [column for column in clock.columns if names.count(str(column)) == 1 and column not in wanted]

@@ -217,3 +217,17 @@ def test_recordings_within_a_file_are_named(tmp_path: Path) -> None:
         file["data/one/t"] = TIME
     with pytest.raises(FileDefect, match=r"found the parts 'data', 'data/one', expected some that match 'each'"):
         joints(tmp_path, **config, each="trial.*")
+
+
+def test_time_stamps_of_the_files_of_a_run_must_agree(tmp_path: Path) -> None:
+    config = yaml.safe_load(OF_LOG)
+    config["time"] = {"file": "a", "column": "t", "unit": "iso"}
+    for name, entry in config["joints"]["elbow"]["signals"].items():
+        entry["file"] = "b" if name == "current" else "a"
+    stamps = [(pd.Timestamp("2026-03-12") + pd.Timedelta(seconds=time)).isoformat() for time in TIME]
+    late = [*stamps[1:], "2026-03-12T00:00:09"]
+    of_both = [table("r1_a.csv", {"t": stamps, "q": LOG["q"], "qd": LOG["qd"]})]
+    path = r"(?P<run>r1)_(?P<signal>[ab])\.csv"
+    assert joints(tmp_path, *of_both, table("r1_b.csv", {"t": stamps, "i": LOG["i"]}), path=path, **config).recordings
+    with pytest.raises(FileDefect, match=r"r1_b\.csv, column t: found other times, expected the times of r1_a\.csv"):
+        joints(tmp_path, table("r1_b.csv", {"t": late, "i": LOG["i"]}), path=path, **config)
