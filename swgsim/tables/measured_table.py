@@ -16,7 +16,7 @@ from swgsim.tables.layout import LEAVE_OUT, Layout
 from swgsim.tables.limits import require_readable
 from swgsim.tables.measured_column import MeasuredColumn
 from swgsim.tables.own_times import chosen, chosen_table, interpolated, own_time, require_same_clock
-from swgsim.tables.spreadsheet_table import first_row_of, read_spreadsheet
+from swgsim.tables.spreadsheet_table import read_spreadsheet
 from swgsim.tables.text import Columns, read_text, start_of
 from swgsim.tables.text_defects import row_of
 
@@ -75,7 +75,9 @@ def read_measured(
     FileDefect
         If a file is missing or cannot be read, the lengths differ, or more readings are lost than may be left out.
     """
-    read = {signal: _read(folder, files, signal, columns, clock, layout, reader) for signal in _signals(columns, clock)}
+    tables = {each: _read(folder, files, each, columns, clock, layout, reader) for each in _signals(columns, clock)}
+    read = {signal: table for signal, (table, _) in tables.items()}
+    first_row = next(iter(tables.values()))[1]
     name = next(iter(files.values()))
     numbers = [chosen(read[each.file], each.rows, each.own(read[each.file][each.place])) for each in columns]
     numbers = [each.astype(float) for each in numbers]
@@ -96,7 +98,6 @@ def read_measured(
         raise FileDefect(name, f"columns of different lengths {lengths}", expected)
     if rate_hz is not None and lengths:
         time = np.arange(next(iter(lengths.values()))) / rate_hz
-    first_row = _first_row(folder / name, name, layout, reader)
     together = [values for values, alone in zip(numbers, own, strict=True) if not alone]
     lost = _lost([*together, *([time] if time is not None else [])])
     if layout.lost_rows and len(lost):
@@ -153,8 +154,8 @@ def _signals(columns: Iterable[MeasuredColumn], clock: Clock | None) -> list[str
 def _read(
     folder: Path, files: Mapping[str, str], signal: str, columns: Sequence[MeasuredColumn], clock: Clock | None,
     layout: Layout, reader: LimitedReader | None,
-) -> Columns:  # fmt: skip
-    """The wanted columns of one file of a run."""
+) -> tuple[Columns, int]:  # fmt: skip
+    """The wanted columns of one file of a run, and the row of its first sample."""
     if signal not in files:
         found = f"the files {', '.join(files.values())}"
         raise FileDefect(str(folder), found, f"one with the signal {shown(signal)}, by 'path' and 'file' of the map")
@@ -172,10 +173,10 @@ def _read(
         wanted, times = [*wanted, *also], [*times, *also]
     stamps = [*rows, *(times if clock and clock.stamps else ())]
     if binary.is_binary(path):
-        return binary.read_columns(path, name, wanted, reader)
+        return binary.read_columns(path, name, wanted, reader), 1
     if is_spreadsheet(path):
         return read_spreadsheet(path, name, wanted, layout, stamps, reader)
-    return read_text(path, name, wanted, layout, stamps)
+    return read_text(path, name, wanted, layout, stamps), start_of(path, name, layout).row
 
 
 def _also(path: Path, name: str, clock: Clock, wanted: Sequence[str | int], layout: Layout) -> list[str | int]:
@@ -184,15 +185,6 @@ def _also(path: Path, name: str, clock: Clock, wanted: Sequence[str | int], layo
         return []
     names = start_of(path, name, layout).names
     return [column for column in clock.columns if names.count(str(column)) == 1 and column not in wanted]
-
-
-def _first_row(path: Path, name: str, layout: Layout, reader: LimitedReader | None) -> int:
-    """Row of the first sample."""
-    if binary.is_binary(path):
-        return 1
-    if is_spreadsheet(path):
-        return first_row_of(path, name, layout, reader)
-    return start_of(path, name, layout).row
 
 
 def _lost(columns: Sequence[Float[np.ndarray, " time"]]) -> Int[np.ndarray, " lost"]:

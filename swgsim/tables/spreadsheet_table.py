@@ -25,8 +25,10 @@ def read_spreadsheet(
     layout: Layout,
     texts: Sequence[str | int] = (),
     reader: LimitedReader | None = None,
-) -> Columns:
-    """Columns of a sheet; parameters, result and errors as for :func:`swgsim.tables.text.read_text`."""
+) -> tuple[Columns, int]:
+    """Columns of a sheet, and the row of the first sample; parameters and errors as for
+    :func:`swgsim.tables.text.read_text`.
+    """
     rows = cells(path, name, layout.sheet or None, reader)
     start = _start(rows, name, layout)
     numbered = [(row, line) for row, line in enumerate(rows, 1) if row >= start.row and not _is_comment(line, layout)]
@@ -40,7 +42,7 @@ def read_spreadsheet(
             found[column] = np.array([str(value) for _, value in values], dtype=object)
         else:
             found[column] = _numbers(values, start.names[place], name, layout, start.row)
-    return found
+    return found, start.row
 
 
 def _filled(line: Sequence[Cell]) -> bool:
@@ -52,11 +54,6 @@ def _is_comment(line: Sequence[Cell], layout: Layout) -> bool:
     """Whether the first cell that is not empty begins with the sign of comments."""
     first = next((cell for cell in line if cell not in (None, "")), None)
     return isinstance(first, str) and is_comment(first, layout)
-
-
-def first_row_of(path: Path, name: str, layout: Layout, reader: LimitedReader | None = None) -> int:
-    """Row of the first sample of a sheet."""
-    return _start(cells(path, name, layout.sheet or None, reader), name, layout).row
 
 
 def _start(rows: Sequence[Sequence[Cell]], name: str, layout: Layout) -> Start:
