@@ -1,4 +1,4 @@
-"""Columns of numbers of binary files, whose ending says the format."""
+"""Columns of numbers of binary files and of JSON, whose ending says the format."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
@@ -9,14 +9,14 @@ import h5py
 import numpy as np
 
 from swgsim.tables.file_defect import FileDefect, shown
-from swgsim.tables.formats import hdf5, parquet
+from swgsim.tables.formats import hdf5, json_lines, parquet
 from swgsim.tables.formats.contents import Contents, Listed
 from swgsim.tables.formats.limited import LimitedReader
 from swgsim.tables.limits import require_expansion, require_readable, require_rows
 from swgsim.tables.references import Reference, column, referred
 
 # Ending to the module of its reader. Those of the first line are safe in this process.
-HERE = {".h5": hdf5, ".hdf5": hdf5, ".parquet": parquet}
+HERE = {".h5": hdf5, ".hdf5": hdf5, ".parquet": parquet, ".jsonl": json_lines, ".ndjson": json_lines}
 IN_CHILD = {
     ".mat": "matlab5", ".tdms": "tdms", ".mf4": "mdf", ".mf3": "mdf", ".mdf": "mdf",
     ".uff": "uff", ".unv": "uff", ".uf58": "uff",

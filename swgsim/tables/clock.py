@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 from jaxtyping import Float, Shaped
 
-from swgsim.common.checks import require_known
+from swgsim.common.checks import require_integer, require_known
 from swgsim.tables.file_defect import FileDefect, shown
 from swgsim.tables.layout import LOST_READINGS
 from swgsim.tables.measured_column import chosen_rows, column_name, filled, text
@@ -18,7 +18,8 @@ from swgsim.tables.units import FACTORS, known_unit
 
 # The unit of a time stamp by ISO 8601; another form is given by its format, as strftime has it.
 STAMP = "iso"
-KEYS = ("column", "unit", "columns", "units", "file", "rows")
+KEYS = ("column", "unit", "columns", "units", "file", "rows", "bits")
+MOST_BITS = 48
 
 
 @dataclass(frozen=True)
@@ -34,12 +35,15 @@ class Clock:
         Which file of a run has them, by the group ``signal`` of the path.
     rows : tuple of (str or int, str)
         Columns of text, and what they say in the rows of this time.
+    bits : int
+        Of a counter that begins at 0 again when it is full; 0 for one that does not.
     """
 
     columns: tuple[str | int, ...]
     units: tuple[str, ...]
     file: str = ""
     rows: tuple[tuple[str | int, str], ...] = ()
+    bits: int = 0
 
     def of(self, each: str) -> "Clock":
         """The clock of one of the recordings of a file."""
@@ -65,7 +69,7 @@ class Clock:
         FileDefect
             If a text is no time stamp of the format.
         """
-        return tuple(_origin(_times(read[column], unit, file, str(column))) for column, unit in self._pairs)
+        return tuple(_origin(self._times(read[column], unit, file, str(column))) for column, unit in self._pairs)
 
     def seconds(
         self, read: Mapping[str | int, Shaped[np.ndarray, " time"]], file: str, origin: tuple[Any, ...] | None = None
@@ -78,7 +82,7 @@ class Clock:
         origin = self.origin(read, file) if origin is None else origin
         parts = []
         for (column, unit), zero in zip(self._pairs, origin, strict=True):
-            since = _times(read[column], unit, file, str(column)) - zero
+            since = self._times(read[column], unit, file, str(column)) - zero
             stamps = unit not in FACTORS["s"]
             parts.append(since.dt.total_seconds() if stamps else since.astype(float) * FACTORS["s"][unit])
         return np.sum(parts, axis=0)
@@ -87,11 +91,25 @@ class Clock:
     def _pairs(self) -> list[tuple[str | int, str]]:
         return list(zip(self.columns, self.units, strict=True))
 
+    def _times(self, values: Shaped[np.ndarray, " time"], unit: str, file: str, column: str) -> pd.Series:
+        """Numbers, or time stamps from their texts; a counter that is full and a clock at midnight go on."""
+        if unit in FACTORS["s"]:
+            counts = pd.Series(values)
+            if counts.dtype.kind == "u":
+                counts = counts.astype("int64")  # differences have a sign
+            return _onward(counts, 2**self.bits) if self.bits else counts
+        stamps = _stamps(values, unit, file, column)
+        dated = any(each == STAMP or re.search("%[cdDFjsx]", each) for each in self.units)
+        return stamps if dated else _onward(stamps, pd.Timedelta(days=1))
 
-def _times(values: Shaped[np.ndarray, " time"], unit: str, file: str, column: str) -> pd.Series:
-    """Numbers as they are; time stamps from their texts."""
-    if unit in FACTORS["s"]:
-        return pd.Series(values)
+
+def _onward(times: pd.Series, period: Any) -> pd.Series:
+    """Times that begin anew after each period, without the jumps back: those by more than half of it."""
+    return times + (times.ffill().diff() < -period / 2).cumsum() * period
+
+
+def _stamps(values: Shaped[np.ndarray, " time"], unit: str, file: str, column: str) -> pd.Series:
+    """Time stamps from their texts."""
     texts = pd.Series(values).astype(str)
     stamps = pd.to_datetime(texts, format="ISO8601" if unit == STAMP else unit, errors="coerce", utc=True)
     bad = np.flatnonzero(stamps.isna() & ~texts.isin(LOST_READINGS))
@@ -128,5 +146,7 @@ def read_clock(entry: Any) -> Clock:
         if not re.search("%", unit):
             require_known("the unit of time", [unit], [*FACTORS["s"], STAMP])
     file = text("file of time", entry["file"]) if "file" in entry else ""
+    bits = entry.get("bits", 0)
+    require_integer("time", "bits", bits, 0, MOST_BITS)
     names = tuple(column_name("time", column) for column in columns)
-    return Clock(names, found, file, chosen_rows("time", entry.get("rows", {})))
+    return Clock(names, found, file, chosen_rows("time", entry.get("rows", {})), bits)

@@ -7,6 +7,7 @@ from typing import Any
 
 from swgsim.common.checks import require_integer, require_known
 from swgsim.tables.file_defect import shown
+from swgsim.tables.measured_column import chosen_rows
 from swgsim.tables.plain_file import require_names
 
 # Names of separators that are hard to see in a YAML file.
@@ -40,11 +41,16 @@ class Layout:
     comment : str
         Character that begins a comment; none if empty.
     sheet : str
-        Sheet of a spreadsheet; the only one if empty.
+        Sheet of a spreadsheet; the only one if empty. Of a text file that repeats its row of names: the number of a
+        table, from 1.
+    rows : tuple of (str or int, str)
+        Columns of text, and what they say in the rows that are read; all rows if empty.
     lost_values : tuple of str
         Texts that stand for a lost reading, besides :data:`LOST_READINGS`.
     lost_rows : int or float
         How many rows with a lost reading may be left out: a number, or a share of all rows below 1.
+    lines : range, optional
+        Rows of a text file, from 0, that are read as if they were the file.
 
     Raises
     ------
@@ -60,8 +66,10 @@ class Layout:
     first_row: int | None = None
     comment: str = ""
     sheet: str = ""
+    rows: tuple[tuple[str | int, str], ...] = ()
     lost_values: tuple[str, ...] = ()
     lost_rows: float = 0
+    lines: range | None = None
 
     def __post_init__(self) -> None:
         require_known("decimal signs", [self.decimal], [".", ","])
@@ -98,6 +106,7 @@ KEYS = (
     "first_row",
     "comment",
     "sheet",
+    "rows",
     "lost",
 )
 
@@ -123,7 +132,8 @@ def read_layout(config: Mapping[str, Any]) -> Layout:
         given["header_row"] = 0
     if "separator" in given:
         given["separator"] = SEPARATORS.get(given["separator"], given["separator"])
-    return Layout(**given | _lost(given.pop("lost", {})))
+    rows = chosen_rows("the map", given.pop("rows", {}))
+    return Layout(**given | _lost(given.pop("lost", {})), rows=rows)
 
 
 def _lost(entry: Any) -> dict[str, Any]:

@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from swgsim.tables import binary
+from swgsim.tables.any_table import read_table
 from swgsim.tables.clock import Clock
 from swgsim.tables.file_defect import FileDefect, shown
 from swgsim.tables.formats.limited import LimitedReader
@@ -16,8 +17,7 @@ from swgsim.tables.layout import LEAVE_OUT, Layout
 from swgsim.tables.limits import require_readable
 from swgsim.tables.measured_column import MeasuredColumn
 from swgsim.tables.own_times import chosen, chosen_table, interpolated, own_time, require_same_clock
-from swgsim.tables.spreadsheet_table import read_spreadsheet
-from swgsim.tables.text import Columns, read_text, start_of
+from swgsim.tables.text import Columns, start_of
 from swgsim.tables.text_defects import row_of
 
 
@@ -163,7 +163,7 @@ def _read(
     require_readable(path)
     own = [each for each in columns if each.file == signal]
     times = [each.time for each in own if each.time is not None]
-    rows = [column for each in own for column, _ in each.rows]
+    rows = [column for column, _ in layout.rows] + [column for each in own for column, _ in each.rows]
     if clock and clock.file == signal:
         times += clock.columns
         rows += [column for column, _ in clock.rows]
@@ -172,11 +172,8 @@ def _read(
         also = _also(path, name, clock, wanted, layout)
         wanted, times = [*wanted, *also], [*times, *also]
     stamps = [*rows, *(times if clock and clock.stamps else ())]
-    if binary.is_binary(path):
-        return binary.read_columns(path, name, wanted, reader), 1
-    if is_spreadsheet(path):
-        return read_spreadsheet(path, name, wanted, layout, stamps, reader)
-    return read_text(path, name, wanted, layout, stamps), start_of(path, name, layout).row
+    table, first_row = read_table(path, name, wanted, stamps, layout, reader)
+    return chosen_table(table, layout.rows), first_row
 
 
 def _also(path: Path, name: str, clock: Clock, wanted: Sequence[str | int], layout: Layout) -> list[str | int]:

@@ -15,8 +15,8 @@ from swgsim.tables.text import Columns
 def chosen(
     read: Columns, rows: Sequence[tuple[str | int, str]], values: Shaped[np.ndarray, " _"]
 ) -> Shaped[np.ndarray, " _"]:
-    """The values in the rows in which columns of text say something."""
-    return values[np.all([read[column] == said for column, said in rows], axis=0)] if rows else values
+    """The values in the rows in which columns say something: texts, or whole numbers of a binary file."""
+    return values[np.all([read[column].astype(str) == said for column, said in rows], axis=0)] if rows else values
 
 
 def chosen_table(read: Columns, rows: Sequence[tuple[str | int, str]]) -> Columns:

@@ -1,20 +1,25 @@
-"""Several recordings in one file: groups, elements of a struct array, or sheets."""
+"""Several recordings in one file: groups, elements of a struct array, sheets, tables, or rows of one table."""
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 from swgsim.tables import binary
+from swgsim.tables.any_table import read_table
 from swgsim.tables.file_defect import FileDefect, shown
 from swgsim.tables.formats.limited import LimitedReader
 from swgsim.tables.formats.spreadsheet import is_spreadsheet, sheets
+from swgsim.tables.measured_column import EACH
 from swgsim.tables.path_pattern import path_groups
+from swgsim.tables.repeated_names import tables_of
+from swgsim.tables.table_map import TableMap
 
 # Names that a message lists.
 LISTED = 10
 
 
-def recordings_in(path: Path, name: str, pattern: str, reader: LimitedReader) -> list[tuple[str, dict[str, str]]]:
+def recordings_in(path: Path, name: str, table: TableMap, reader: LimitedReader) -> list[tuple[str, dict[str, str]]]:
     """Names of the recordings of a file, each with the groups of the pattern.
 
     Parameters
@@ -22,9 +27,9 @@ def recordings_in(path: Path, name: str, pattern: str, reader: LimitedReader) ->
     path : Path
     name : str
         Name of the file in messages.
-    pattern : str
-        Regular expression for the whole name of a group, of an element of a struct array such as ``trials[1]``, or of a
-        sheet.
+    table : TableMap
+        Its ``each`` is a pattern for the whole name of a group, of an element of a struct array such as ``trials[1]``,
+        of a sheet, for the number of a table of a text file, or for what a column says.
     reader : LimitedReader
 
     Raises
@@ -32,12 +37,21 @@ def recordings_in(path: Path, name: str, pattern: str, reader: LimitedReader) ->
     FileDefect
         If the file has no such parts, or none that matches.
     """
-    if is_spreadsheet(path):
+    layout, pattern = table.layout, table.each
+    by_rows = [column for column, said in layout.rows if EACH in said]
+    if by_rows:
+        every = replace(layout, rows=())
+        said, _ = read_table(path, name, by_rows, by_rows, every, reader)
+        parts = list(dict.fromkeys(said[by_rows[0]].astype(str)))
+    elif is_spreadsheet(path):
         parts = sheets(path, name, reader)
     elif binary.is_binary(path):
         parts = list(dict.fromkeys(part for each in binary.names(path, name, reader) for part in _containers(each)))
+    elif EACH in layout.sheet:
+        parts = [str(number) for number in range(1, 1 + len(tables_of(path, name, layout)))]
     else:
-        raise FileDefect(name, "a text file", "a file with groups, struct arrays or sheets, where a map has 'each'")
+        expected = f"a file with groups, struct arrays or sheets, or {EACH} in 'rows' or 'sheet' of the map"
+        raise FileDefect(name, "a text file", expected)
     found = [(part, groups) for part in parts if (groups := path_groups(pattern, part)) is not None]
     if not found:
         listed = ", ".join(map(shown, parts[:LISTED])) or "none"

@@ -45,7 +45,8 @@ class TableMap:
     path : str
         Regular expression of RE2 for the path of a file in its folder, with named groups.
     each : str
-        Regular expression for the groups, elements of struct arrays, or sheets of a file that are recordings.
+        Regular expression for the groups, elements of struct arrays, sheets, or contents of a column of a file that are
+        recordings.
     interleaved : int
         How many signals follow one another in the only column of a file.
     parts : tuple of Part
@@ -63,14 +64,15 @@ class TableMap:
 
     def of(self, each: str) -> "TableMap":
         """The map of one of the recordings of a file."""
-        return replace(self, layout=replace(self.layout, sheet=self.layout.sheet.replace(EACH, each)))
+        rows = tuple((column, said.replace(EACH, each)) for column, said in self.layout.rows)
+        return replace(self, layout=replace(self.layout, sheet=self.layout.sheet.replace(EACH, each), rows=rows))
 
 
 def require_each(table: TableMap, columns: Iterable[MeasuredColumn | Clock]) -> None:
     """Raise a ValueError if a map has ``each`` and no column or sheet that uses it, or the reverse."""
-    used = EACH in table.layout.sheet or any(each.of("") != each for each in columns)
+    used = table.of("") != table or any(each.of("") != each for each in columns)
     if bool(table.each) != used:
-        given = f"has 'each' and no column or sheet with {EACH}" if table.each else f"has {EACH} and no 'each'"
+        given = f"has 'each' and no column, sheet or rows with {EACH}" if table.each else f"has {EACH} and no 'each'"
         raise ValueError(f"the map {given}: write {EACH} where the name of a recording stands")
 
 

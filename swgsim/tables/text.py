@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 from jaxtyping import Shaped
 
+from swgsim.tables.cell_lists import elements, list_and_number
 from swgsim.tables.column_names import column_place
 from swgsim.tables.file_defect import FileDefect, shown
 from swgsim.tables.layout import LONGEST_PREAMBLE, LOST_READINGS, Layout
@@ -59,7 +60,8 @@ def read_text(
     name : str
         Name of the file in messages.
     wanted : sequence of str or int
-        Columns of numbers, as :func:`swgsim.tables.column_names.column_place` finds them.
+        Columns of numbers, as :func:`swgsim.tables.column_names.column_place` finds them, or ``position[3]`` for the
+        third number of the lists in a column.
     layout : Layout
     texts : sequence of str or int
         Those that are read as text, such as time stamps.
@@ -81,15 +83,19 @@ def read_text(
         with opened(path, layout) as stream:
             rows = TextStream(stream, name, most_expanded(path))
             start = _start(rows, name, layout)
-            places = {column: _place(column, path, name, layout, start) for column in dict.fromkeys(wanted)}
+            parts = {column: list_and_number(column, start.names) for column in wanted}
+            places = {column: _place(part, path, name, layout, start) for column, (part, _) in parts.items()}
             rows.put_back(start.line)
             table = _cells(rows, path, name, layout, start)
-        return {
-            column: table[place].astype(str).to_numpy(dtype=object)
-            if column in texts
-            else _numbers(table[place], path, name, layout, start)
-            for column, place in places.items()
-        }
+        found: Columns = {}
+        for column, place in places.items():
+            number = parts[column][1]
+            cells = table[place] if number is None else elements(table[place], number, name, str(column), start.row)
+            as_text = column in texts
+            found[column] = (
+                cells.astype(str).to_numpy(dtype=object) if as_text else _numbers(cells, path, name, layout, start)
+            )
+        return found
     except UnicodeError:
         raise not_text(path, name, layout) from None
     except (EOFError, gzip.BadGzipFile, zlib.error) as error:

@@ -4,7 +4,8 @@ import csv
 import gzip
 import re
 from collections.abc import Iterator
-from io import TextIOBase, TextIOWrapper
+from io import StringIO, TextIOBase, TextIOWrapper
+from itertools import islice
 from pathlib import Path
 from typing import cast
 
@@ -71,8 +72,15 @@ class TextStream(TextIOBase):
             raise FileDefect(self._name, "more text than its size allows", expected, self._row)
 
 
-def opened(path: Path, layout: Layout) -> TextIOWrapper:
-    """A text file, also compressed by gzip."""
+def opened(path: Path, layout: Layout) -> TextIOBase:
+    """A text file, also compressed by gzip, or the lines of it that the layout names."""
+    if layout.lines is None:
+        return _whole(path, layout)
+    with _whole(path, layout) as stream:
+        return StringIO("".join(islice(stream, layout.lines.start, layout.lines.stop)), newline="")
+
+
+def _whole(path: Path, layout: Layout) -> TextIOWrapper:
     if path.suffix.lower() == ".gz":
         return cast(TextIOWrapper, gzip.open(path, "rt", encoding=layout.encoding, newline=""))
     return path.open(encoding=layout.encoding, newline="")

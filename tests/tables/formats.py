@@ -4,6 +4,7 @@ Run ``python tests/tables/formats.py`` to write the page anew.
 """
 
 import gzip
+import json
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -99,6 +100,44 @@ def shown(cell: object) -> str:
     return f"{cell:.10g}" if isinstance(cell, float) else str(cell)
 
 
+def below(name: str, before: str, *tables: dict[str, np.ndarray]) -> Callable[[Path], None]:
+    """A writer of one text file with several tables below one another."""
+
+    def write(folder: Path) -> None:
+        text = ""
+        for columns in tables:
+            table(name, columns, before=text + before, separator="\t")(folder)
+            text = (folder / name).read_text(encoding="utf-8") + "\n"
+
+    return write
+
+
+def json_lines(path: Path) -> None:
+    """The messages of a robot, one in each line."""
+    rows = zip(SECONDS.tolist(), NANOSECONDS.tolist(), Q, OMEGA, JOINT["current"], strict=True)
+    path.write_text(
+        "\n".join(
+            json.dumps({"stamp": {"sec": sec, "nanosec": ns}, "position": [9.0, q], "velocity": [9.0, w], "i": i})
+            for sec, ns, q, w, i in rows
+        ),
+        encoding="utf-8",
+    )
+
+
+def lists(*columns: np.ndarray) -> list[str]:
+    """Cells of a CSV with one list for each row."""
+    return ['"[' + ", ".join(map(shown, row)) + ']"' for row in np.transpose(columns).tolist()]
+
+
+def saved(name: str, save: Callable[[Path], object]) -> Callable[[Path], None]:
+    """A writer of one binary file."""
+
+    def write(folder: Path) -> None:
+        save(folder / name)
+
+    return write
+
+
 def several(*writers: Callable[[Path], None]) -> Callable[[Path], None]:
     """A writer of several files."""
 
@@ -135,6 +174,7 @@ channels:
   s1: {column: bridge, unit: mV/V}
 """
 LOG = {"t": TIME, "q": Q, "qd": OMEGA, "i": JOINT["current"]}
+WEAKER = LOG | {"q": 0.9 * Q, "qd": 0.9 * OMEGA}
 OF_LOG = """
 time: {column: t, unit: s}
 joints:
@@ -224,6 +264,26 @@ TEXT = (
     Example("Time stamps of another form", JOINT,
             table("run1.csv", LOG | {"t": STAMPS.strftime("%d.%m.%Y %H:%M:%S.%f")}),
             OF_LOG.replace("unit: s}", "unit: '%d.%m.%Y %H:%M:%S.%f'}"), 1e-6),
+    Example("Time of day, also over midnight", JOINT,
+            table("run1.csv", LOG | {"t": (STAMPS + pd.Timedelta(hours=13.6247)).strftime("%H:%M:%S.%f")}),
+            OF_LOG.replace("unit: s}", "unit: '%H:%M:%S.%f'}"), 1e-6),
+    Example("A counter of microseconds that is full after 32 bit", JOINT,
+            table("run1.csv", LOG | {"t": (2**32 - 50_000 + np.round(1e6 * TIME).astype(int)) % 2**32}),
+            OF_LOG.replace("unit: s}", "unit: us, bits: 32}"), 1e-6),
+    Example("Lists in cells, as exports of ROS 2 have them", JOINT,
+            table("run1.csv", {"t": TIME, "position": lists(9 + 0 * Q, Q), "velocity": lists(0 * Q, OMEGA),
+                               "effort": lists(0 * Q, JOINT["current"])}),
+            OF_LOG.replace("column: qd", "column: 'velocity[2]'").replace("column: q,", "column: 'position[2]',")
+            .replace("column: i", "column: 'effort[2]'")),
+    Example("JSON lines: one message in each line", JOINT, saved("run1.jsonl", json_lines),
+            OF_LOG.replace("{column: t, unit: s}", "{columns: [stamp.sec, stamp.nanosec], units: [s, ns]}")
+            .replace("column: qd", "column: 'velocity[2]'").replace("column: q,", "column: 'position[2]',")),
+    Example("Several recordings in one file: a column that names them", JOINT,
+            table("day1.csv", {"run": np.repeat([1, 2], N), **{k: np.append(LOG[k], WEAKER[k]) for k in LOG}}),
+            "each: '[0-9]+'\nrows: {run: '{each}'}" + OF_LOG),
+    Example("Several recordings in one file: tables below one another, each with its row of names", JOINT,
+            below("day1.txt", "Trace of drive 3\n\n", LOG, WEAKER),
+            "each: '[0-9]+'\nsheet: '{each}'\nseparator: tab\nheader_row: 3" + OF_LOG),
     Example("Objects of a CiA 402 drive", JOINT,
             table("run1.csv", {"t": TIME, "6064h": np.round(Q * 1e8), "606Ch": np.round(OMEGA * 1e8),
                                "6077h": JOINT["current"] / 0.005}),
@@ -268,15 +328,6 @@ TEXT = (
 )  # fmt: skip
 
 OF_LOG_IN = OF_LOG.replace("column: t,", "column: time,")
-
-
-def saved(name: str, save: Callable[[Path], object]) -> Callable[[Path], None]:
-    """A writer of one binary file."""
-
-    def write(folder: Path) -> None:
-        save(folder / name)
-
-    return write
 
 
 def save_matlab_73(path: Path) -> None:

@@ -2,6 +2,7 @@
 
 import datetime
 import decimal
+import json
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -106,14 +107,42 @@ def test_a_parquet_has_numbers_of_all_kinds(tmp_path: Path) -> None:
     table["lost"] = pd.array([None, *range(1, ROWS)], "Int64")
     table["dec"] = [decimal.Decimal(1)] * ROWS
     table["when"] = [pd.NaT, *[pd.Timestamp(0)] * (ROWS - 1)]
+    table["list"] = list(np.stack([TORQUE, 2 * TORQUE], axis=1))
+    table["ragged"] = [[1.0, 2.0, 3.0], [1.0], *[[1.0, 2.0]] * (ROWS - 2)]
     table.to_parquet(path)
     found = read_columns(path, path.name, ["i", 2, "b", "lost"])
     assert [values.dtype.name for values in found.values()] == ["int32", "float32", "uint8", "float64"]
     assert found["i"].tolist() == COUNTS.tolist()
     assert np.flatnonzero(np.isnan(found["lost"])).tolist() == [0]
-    for name, message in {"dec": "decimal128", "when": "1 rows without a time", "x": "'x', as the map says"}.items():
+    assert read_columns(path, path.name, ["list[2]"])["list[2]"].tolist() == (2 * TORQUE).tolist()
+    refused = {"dec": "decimal128", "when": "1 rows without a time", "x": "'x', as the map says"}
+    for name, message in (refused | {"ragged[1]": "lists of different lengths"}).items():
         with pytest.raises(FileDefect, match=rf"a\.parquet.*{message}"):
             read_columns(path, path.name, [name])
+
+
+def test_json_lines_have_members_lists_and_stamps(tmp_path: Path) -> None:
+    path = tmp_path / "a.jsonl"
+    samples = [
+        {
+            "at": f"2026-03-12T10:22:{row:02d}Z",
+            "m": {"t": None if row == 3 else row / 2},
+            "q": [row, 2 * row],
+            "n": ["a"],
+        }
+        for row in range(16)
+    ]
+    path.write_text("\n".join(map(json.dumps, samples)), encoding="utf-8")
+    found = read_columns(path, path.name, ["at", "m.t", "q[2]"])
+    assert (found["at"] - found["at"][0]).tolist() == [row * 10**9 for row in range(16)]
+    np.testing.assert_array_equal(found["m.t"], [np.nan if row == 3 else row / 2 for row in range(16)])
+    assert found["q[2]"].tolist() == [2 * row for row in range(16)]
+    with pytest.raises(FileDefect, match=r"a\.jsonl, column n: found 'text' .* expected real numbers"):
+        read_columns(path, path.name, ["n"])
+    for text, message in (('{"a": 1}\n[1]', "row 2: found a list"), ('{"a": 1', "row 1: found no JSON")):
+        path.write_text(text, encoding="utf-8")
+        with pytest.raises(FileDefect, match=message):
+            read_columns(path, path.name, ["a"])
 
 
 def test_cells_of_a_spreadsheet_are_plain_values(tmp_path: Path, reader: LimitedReader) -> None:

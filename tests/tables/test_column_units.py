@@ -90,3 +90,16 @@ def test_stamps_lose_no_digits() -> None:
         read_clock({"column": "t", "unit": "s", "columns": ["a"], "units": ["s"]})
     with pytest.raises(ValueError, match="unknown choice 'fortnight' of the unit of time"):
         read_clock({"column": "t", "unit": "fortnight"})
+
+
+def test_a_clock_goes_on_after_midnight_and_a_counter_when_it_is_full() -> None:
+    of_day = {"t": np.array(["23:59:59.5", "NaN", "00:00:00.3", "00:00:00.2"], object)}
+    clock = read_clock({"column": "t", "unit": "%H:%M:%S.%f"})
+    np.testing.assert_allclose(clock.seconds(of_day, "log"), [0, np.nan, 0.8, 0.7])  # a step back stays one
+    dated = {"d": np.array(["1.3.2026", "2.3.2026"], object), "t": np.array(["23:59:59", "00:00:01"], object)}
+    clock = read_clock({"columns": ["d", "t"], "units": ["%d.%m.%Y", "%H:%M:%S"]})
+    np.testing.assert_allclose(clock.seconds(dated, "log"), [0, 2])
+    counter = {"t": np.array([2**16 - 2, 2**16 - 1, 1, 2], np.uint16)}
+    np.testing.assert_allclose(
+        read_clock({"column": "t", "unit": "ms", "bits": 16}).seconds(counter, "log"), [0, 0.001, 0.003, 0.004]
+    )

@@ -205,7 +205,7 @@ def test_one_row_for_each_signal_and_time(tmp_path: Path) -> None:
 
 def test_recordings_within_a_file_are_named(tmp_path: Path) -> None:
     config = yaml.safe_load(OF_LOG)
-    with pytest.raises(FileDefect, match=r"has 'each' and no column or sheet with \{each\}"):
+    with pytest.raises(FileDefect, match=r"has 'each' and no column, sheet or rows with \{each\}"):
         joints(tmp_path, table("run1.csv", LOG), **config, each="a.*")
     config["time"]["column"] = "{each}/t"
     with pytest.raises(FileDefect, match=r"has \{each\} and no 'each'"):

@@ -2,6 +2,7 @@
 
 import gzip
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from swgsim.tables import limits
+from swgsim.tables.any_table import read_table
 from swgsim.tables.file_defect import FileDefect
 from swgsim.tables.layout import Layout, read_layout
 from swgsim.tables.text import read_text
@@ -144,3 +146,31 @@ def test_what_is_compressed_is_bounded(tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.undo()
     with pytest.raises(FileDefect, match="a damaged file"):
         read_text(path, path.name, ["q"], Layout())
+
+
+def test_a_list_in_a_cell_has_numbers(tmp_path: Path) -> None:
+    """Of ROS 1 and 2; a column whose name has a number as it stands is no list; a short list is named by its row."""
+    text = 'q,v,w[2]\n"[0.5, 1]","array(\'d\', [2, 3])",7\n"(4; 5)",,8\n'
+    found = read(tmp_path, text, ["q[1]", "v[2]", "w[2]"])
+    np.testing.assert_array_equal(found["q[1]"], [0.5, 4])
+    np.testing.assert_array_equal(found["v[2]"], [3, np.nan])
+    np.testing.assert_array_equal(found["w[2]"], [7, 8])
+    with pytest.raises(FileDefect, match=r"row 2, column q\[3\]: found '\[0\.5, 1\]', a list of 2"):
+        read(tmp_path, text, ["q[3]"])
+    with pytest.raises(FileDefect, match=r"row 2, column .*: found 'a', expected a number"):
+        read(tmp_path, 'q\n"[a, b]"\n', ["q[1]"])
+
+
+def test_tables_below_one_another_are_told_apart(tmp_path: Path) -> None:
+    """Lines between them are of no table; a row of units follows the names of each; messages count rows of the file."""
+    text = "drive 3\nt;q\ns;rad\n0;1\n1;2\n\ndrive 4\nOperator;me\nt;q\ns;rad\n0;x\n"
+    path = tmp_path / "a.txt"
+    path.write_text(text, encoding="utf-8")
+    layout = Layout(separator=";", header_row=2, first_row=4, sheet="1")
+    table, row = read_table(path, "a.txt", ["q"], [], layout)
+    np.testing.assert_array_equal(table["q"], [1, 2])
+    assert row == 4
+    with pytest.raises(FileDefect, match=r"a\.txt, row 11, column q: found 'x'"):
+        read_table(path, "a.txt", ["q"], [], replace(layout, sheet="2"))
+    with pytest.raises(FileDefect, match=r"2 tables with the same row of names, expected a sheet from 1 to 2, not '3'"):
+        read_table(path, "a.txt", ["q"], [], replace(layout, sheet="3"))

@@ -139,7 +139,7 @@ def _read_each(folder: Path, files: RunFiles, source: JointSource, start: bool, 
     if not source.table.each:
         yield from read_runs(folder, files, source, start, reader)
         return
-    for each, groups in recordings_in(folder / files.name, files.name, source.table.each, reader):
+    for each, groups in recordings_in(folder / files.name, files.name, source.table, reader):
         one = files._replace(
             run=groups.get("run", f"{files.run} {each}"),
             session=groups.get("session", files.session),

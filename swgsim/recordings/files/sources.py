@@ -103,7 +103,7 @@ def _read_each(folder: Path, run: Run, mapping: SourceMap, reader: LimitedReader
         return
     name = next(iter(run.files.values()))
     stem = run.known.get("recording", name.partition(".")[0])
-    for each, groups in recordings_in(inside(folder, name, "the column map"), name, mapping.table.each, reader):
+    for each, groups in recordings_in(inside(folder, name, "the column map"), name, mapping.table, reader):
         known = {"recording": f"{stem} {each}", **{k: v for k, v in run.known.items() if k != "recording"}, **groups}
         yield _read_one(folder, Run(run.files, known), mapping.of(each), reader)
 
