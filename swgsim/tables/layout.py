@@ -17,6 +17,8 @@ LOST_READINGS = ("", "nan", "NaN", "NAN", "NA", "N/A", "#N/A", "null", "NULL", "
 LONGEST_PREAMBLE = 10_000
 MOST_LOST = 1_000_000
 LEAVE_OUT = "leave_out"
+# A bus loses single readings. More than a hundredth is no accident, and the gaps would bias the fits.
+FEW = 0.01
 
 
 @dataclass(frozen=True)
@@ -139,8 +141,7 @@ def read_layout(config: Mapping[str, Any]) -> Layout:
 def _lost(entry: Any) -> dict[str, Any]:
     """What a lost reading is, and how many rows with one are left out."""
     if entry == LEAVE_OUT:
-        # A bus loses single readings. More than a hundredth is no accident, and the gaps would bias the fits.
-        return {"lost_rows": 0.01}
+        return {"lost_rows": FEW}
     require_names("lost", entry, ("values", LEAVE_OUT))
     values, rows = entry.get("values", []), entry.get(LEAVE_OUT, 0)
     if not isinstance(values, list) or not all(isinstance(each, str | int | float) for each in values):

@@ -72,12 +72,19 @@ class MeasuredColumn:
 
     def values(self, numbers: Shaped[np.ndarray, " time"]) -> Float[np.ndarray, " time"]:
         """The quantity from the numbers in the file; jumps of a wrapped angle are removed."""
-        found = np.asarray(numbers, dtype=float)
         # Numbers that are not finite have a finding of their own.
         with np.errstate(over="ignore", invalid="ignore"):
-            if self.wraps and np.isfinite(found).all():
-                found = np.unwrap(found, period=self.revolution)
-            return found * self.gain + self.offset
+            return self.unwrapped(np.asarray(numbers, dtype=float)) * self.gain + self.offset
+
+    def unwrapped(self, numbers: Float[np.ndarray, " time"]) -> Float[np.ndarray, " time"]:
+        """The numbers, without the jumps of an angle that wraps."""
+        if not self.wraps or not np.isfinite(numbers).all():
+            return numbers
+        return np.unwrap(numbers, period=self.revolution)
+
+    def wrapped(self, numbers: Float[np.ndarray, " time"]) -> Float[np.ndarray, " time"]:
+        """The numbers, those of an angle that wraps within one revolution."""
+        return numbers % self.revolution if self.wraps else numbers
 
     @property
     def place(self) -> str | int:

@@ -13,7 +13,7 @@ from swgsim.tables.clock import Clock
 from swgsim.tables.file_defect import FileDefect, shown
 from swgsim.tables.formats.limited import LimitedReader
 from swgsim.tables.formats.spreadsheet import is_spreadsheet
-from swgsim.tables.layout import LEAVE_OUT, Layout
+from swgsim.tables.layout import FEW, LEAVE_OUT, Layout
 from swgsim.tables.limits import require_readable
 from swgsim.tables.measured_column import MeasuredColumn
 from swgsim.tables.own_times import chosen, chosen_table, interpolated, own_time, require_same_clock
@@ -83,7 +83,7 @@ def read_measured(
     numbers = [each.astype(float) for each in numbers]
     time: Float[np.ndarray, " time"] | None = None
     if clock:
-        times = chosen_table(read[clock.file], clock.rows)
+        times = chosen_table(read[clock.file], clock.rows, files[clock.file])
         origin = clock.origin(times, files[clock.file])
         time = clock.seconds(times, files[clock.file], origin)
         require_same_clock(read, files, clock, columns)
@@ -100,8 +100,11 @@ def read_measured(
         time = np.arange(next(iter(lengths.values()))) / rate_hz
     together = [values for values, alone in zip(numbers, own, strict=True) if not alone]
     lost = _lost([*together, *([time] if time is not None else [])])
+    left_out = 0
     if layout.lost_rows and len(lost):
-        _require_few(len(lost), len(time if time is not None else together[0]), layout, name, first_row + int(lost[0]))
+        left_out = len(lost)
+        rows = len(time if time is not None else together[0])
+        _require_few(left_out, rows, "with lost readings", layout, name, first_row + int(lost[0]))
         if time is None:
             expected = f"a time or a rate, without which no row can be left out by {LEAVE_OUT} of lost"
             raise FileDefect(name, "no time", expected, first_row + int(lost[0]))
@@ -112,16 +115,21 @@ def read_measured(
         if not clock or time is None:
             raise FileDefect(name, "signals with times of their own", "a time of all, to which they are interpolated")
         others = {each: own_time(each, clock, read, files, origin) for each in columns if each.time is not None}
-        numbers, time = interpolated(columns, numbers, time, others, name)
-    return MeasuredTable(tuple(numbers), time, len(lost) if layout.lost_rows else 0, first_row)
+        rows = len(time)
+        numbers, time, outside = interpolated(columns, numbers, time, others, name)
+        left_out += outside
+        if outside > FEW * rows:
+            names = ", ".join(dict.fromkeys(str(each.column) for each in others))
+            _require_few(left_out, rows, f"before or after the times of {names}", layout, name, first_row)
+    return MeasuredTable(tuple(numbers), time, left_out, first_row)
 
 
-def _require_few(lost: int, rows: int, layout: Layout, name: str, row: int) -> None:
-    """Raise a FileDefect if more readings are lost than may be left out."""
+def _require_few(lost: int, rows: int, why: str, layout: Layout, name: str, row: int) -> None:
+    """Raise a FileDefect if more rows would be left out than may be."""
     most = int(layout.lost_rows * (rows if layout.lost_rows < 1 else 1))
     if lost > most:
         expected = f"at most {most}, as lost in the map says; {LEAVE_OUT} of lost can be another number of rows"
-        raise FileDefect(name, f"{lost} of {rows} rows with lost readings", expected, row)
+        raise FileDefect(name, f"{lost} of {rows} rows {why}", expected, row)
 
 
 def first_lost(
@@ -173,7 +181,7 @@ def _read(
         wanted, times = [*wanted, *also], [*times, *also]
     stamps = [*rows, *(times if clock and clock.stamps else ())]
     table, first_row = read_table(path, name, wanted, stamps, layout, reader)
-    return chosen_table(table, layout.rows), first_row
+    return chosen_table(table, layout.rows, name), first_row
 
 
 def _also(path: Path, name: str, clock: Clock, wanted: Sequence[str | int], layout: Layout) -> list[str | int]:

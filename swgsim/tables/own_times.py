@@ -2,12 +2,14 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float, Shaped
 
 from swgsim.tables.clock import Clock
-from swgsim.tables.file_defect import FileDefect
+from swgsim.tables.column_names import LISTED
+from swgsim.tables.file_defect import FileDefect, shown
 from swgsim.tables.measured_column import MeasuredColumn
 from swgsim.tables.text import Columns
 
@@ -19,9 +21,14 @@ def chosen(
     return values[np.all([read[column].astype(str) == said for column, said in rows], axis=0)] if rows else values
 
 
-def chosen_table(read: Columns, rows: Sequence[tuple[str | int, str]]) -> Columns:
-    """All columns in the chosen rows."""
-    return {column: chosen(read, rows, values) for column, values in read.items()}
+def chosen_table(read: Columns, rows: Sequence[tuple[str | int, str]], name: str) -> Columns:
+    """All columns in the chosen rows of a file; a FileDefect if there are none."""
+    found = {column: chosen(read, rows, values) for column, values in read.items()}
+    if rows and not len(next(iter(found.values()))):
+        asked = " and ".join(f"{column} = {shown(said)}" for column, said in rows)
+        said = ", ".join(map(shown, list(dict.fromkeys(read[rows[0][0]].astype(str).tolist()))[:LISTED]))
+        raise FileDefect(name, f"no row with {asked}", f"one of {said}", column=str(rows[0][0]))
+    return found
 
 
 def require_same_clock(
@@ -44,8 +51,16 @@ def own_time(
     assert column.time is not None
     if len(clock.columns) > 1:
         raise FileDefect(files[column.file], "a time of several columns", "one column, where a signal has its own time")
-    table = chosen_table(read[column.file], column.rows)
+    table = chosen_table(read[column.file], column.rows, files[column.file])
     return replace(clock, columns=(column.time,)).seconds(table, files[column.file], origin)
+
+
+class Together(NamedTuple):
+    """Signals at the times that they share, and how many rows of the others lie outside of these."""
+
+    numbers: list[Float[np.ndarray, " kept"]]
+    time: Float[np.ndarray, " kept"]
+    outside: int
 
 
 def interpolated(
@@ -54,19 +69,29 @@ def interpolated(
     time: Float[np.ndarray, " time"],
     others: Mapping[MeasuredColumn, Float[np.ndarray, " _"]],
     name: str,
-) -> tuple[list[Float[np.ndarray, " kept"]], Float[np.ndarray, " kept"]]:
-    """All signals at the times that they share; those with times of their own are interpolated linearly."""
+) -> Together:
+    """All signals at the times that they share; those with times of their own are interpolated linearly.
+
+    A wrapped angle is continuous before it is interpolated: between 359 and 1 degree it does not pass 180. A row within
+    one step of the first or the last time of all is not counted as outside.
+    """
     known = {}
     for each, values in zip(columns, numbers, strict=True):
         if each in others:
             there = np.isfinite(values) & np.isfinite(others[each])
-            known[each] = others[each][there], values[there]
+            known[each] = others[each][there], each.unwrapped(values[there])
             if there.sum() < 2 or not (np.diff(known[each][0]) > 0).all():
                 raise FileDefect(name, "a time that does not increase", "later times", column=str(each.time))
     first, last = max(times[0] for times, _ in known.values()), min(times[-1] for times, _ in known.values())
     kept = (time >= first) & (time <= last)
+    if not kept.any():
+        spans = "; ".join(f"{each.time}: {times[0]:.6g} to {times[-1]:.6g} s" for each, (times, _) in known.items())
+        times_found = f"times of the others from {time[0]:.6g} to {time[-1]:.6g} s, and {spans}"
+        raise FileDefect(name, times_found, "clocks that count from the same moment: correct one of them by its offset")
+    step = max(np.median(np.diff(times)) for times, _ in known.values())
+    outside = int(np.sum((time < first - step) | (time > last + step)))
     found = [
-        np.interp(time[kept], *known[each]) if each in known else values[kept]
+        each.wrapped(np.interp(time[kept], *known[each])) if each in known else values[kept]
         for each, values in zip(columns, numbers, strict=True)
     ]
-    return found, time[kept]
+    return Together(found, time[kept], outside)

@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from swgsim.tables import binary
 from swgsim.tables.any_table import read_table
@@ -19,7 +20,7 @@ from swgsim.tables.table_map import TableMap
 LISTED = 10
 
 
-def recordings_in(path: Path, name: str, table: TableMap, reader: LimitedReader) -> list[tuple[str, dict[str, str]]]:
+def recordings_in(path: Path, name: str, table: TableMap, reader: LimitedReader) -> list[tuple[str, dict[str, Any]]]:
     """Names of the recordings of a file, each with the groups of the pattern.
 
     Parameters
@@ -29,7 +30,7 @@ def recordings_in(path: Path, name: str, table: TableMap, reader: LimitedReader)
         Name of the file in messages.
     table : TableMap
         Its ``each`` is a pattern for the whole name of a group, of an element of a struct array such as ``trials[1]``,
-        of a sheet, for the number of a table of a text file, or for what a column says.
+        of a sheet, for the number of a table of a text file, or for what a column says; ``of_each`` has facts by name.
     reader : LimitedReader
 
     Raises
@@ -42,7 +43,7 @@ def recordings_in(path: Path, name: str, table: TableMap, reader: LimitedReader)
     if by_rows:
         every = replace(layout, rows=())
         said, _ = read_table(path, name, by_rows, by_rows, every, reader)
-        parts = list(dict.fromkeys(said[by_rows[0]].astype(str)))
+        parts = list(dict.fromkeys(said[by_rows[0]].astype(str).tolist()))
     elif is_spreadsheet(path):
         parts = sheets(path, name, reader)
     elif binary.is_binary(path):
@@ -52,7 +53,14 @@ def recordings_in(path: Path, name: str, table: TableMap, reader: LimitedReader)
     else:
         expected = f"a file with groups, struct arrays or sheets, or {EACH} in 'rows' or 'sheet' of the map"
         raise FileDefect(name, "a text file", expected)
-    found = [(part, groups) for part in parts if (groups := path_groups(pattern, part)) is not None]
+    found = [
+        (part, {**groups, **table.of_each.get(part, {})})
+        for part in parts
+        if (groups := path_groups(pattern, part)) is not None
+    ]
+    absent = [part for part in table.of_each if part not in parts]
+    if absent:
+        raise FileDefect(name, f"no part {shown(absent[0])} of 'each'", f"one of {', '.join(parts[:LISTED])}")
     if not found:
         listed = ", ".join(map(shown, parts[:LISTED])) or "none"
         raise FileDefect(name, f"the parts {listed}", f"some that match 'each' of the map, {pattern}")

@@ -1,7 +1,9 @@
 """What the maps of gauges and of joints share: layout, names of files, parts of a recording, and accepted findings."""
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -23,11 +25,12 @@ NEVER_ACCEPTED = ("not_finite", "clock_backwards", "too_short", "too_few_samples
 
 
 class Part(NamedTuple):
-    """A part of each recording, from and to a time after its start [s]."""
+    """A part of each recording, from and to a time after its start [s], with facts of its own."""
 
     name: str
     start: float
     stop: float
+    facts: Mapping[str, Any] = MappingProxyType({})
 
     def of(self, time: Float[np.ndarray, " time"]) -> slice:
         """Its samples."""
@@ -47,6 +50,8 @@ class TableMap:
     each : str
         Regular expression for the groups, elements of struct arrays, sheets, or contents of a column of a file that are
         recordings.
+    of_each : mapping
+        Names of the recordings of a file, where ``each`` lists them, with facts of each.
     interleaved : int
         How many signals follow one another in the only column of a file.
     parts : tuple of Part
@@ -58,6 +63,7 @@ class TableMap:
     layout: Layout = field(default_factory=Layout)
     path: str = ""
     each: str = ""
+    of_each: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     interleaved: int = 1
     parts: tuple[Part, ...] = ()
     accepted: tuple[str, ...] = ()
@@ -72,7 +78,11 @@ def require_each(table: TableMap, columns: Iterable[MeasuredColumn | Clock]) -> 
     """Raise a ValueError if a map has ``each`` and no column or sheet that uses it, or the reverse."""
     used = table.of("") != table or any(each.of("") != each for each in columns)
     if bool(table.each) != used:
-        given = f"has 'each' and no column, sheet or rows with {EACH}" if table.each else f"has {EACH} and no 'each'"
+        given = (
+            f"has 'each' and {EACH} in no column or sheet, nor in its own rows"
+            if table.each
+            else f"has {EACH} and no 'each'"
+        )
         raise ValueError(f"the map {given}: write {EACH} where the name of a recording stands")
 
 
@@ -91,21 +101,34 @@ def read_table_map(config: Mapping[str, Any]) -> TableMap:
     return TableMap(
         read_layout(config),
         text("path", config["path"]) if "path" in config else "",
-        text("each", config["each"]) if "each" in config else "",
+        *_each(config.get("each", "")),
         interleaved,
         tuple(_part(name, limits) for name, limits in parts.items()),
         _kinds(config.get("accept", [])),
     )
 
 
-def _part(name: str, limits: Any) -> Part:
+def _each(entry: Any) -> tuple[str, Mapping[str, Mapping[str, Any]]]:
+    """A pattern for names of recordings; or their names with facts, as a pattern and these."""
+    if not isinstance(entry, dict):
+        return (text("each", entry) if entry != "" else ""), {}
+    facts = {str(name): given or {} for name, given in entry.items()}
+    for name, given in facts.items():
+        require_names(f"{name} of each", given)
+    return "|".join(map(re.escape, facts)), facts
+
+
+def _part(name: str, entry: Any) -> Part:
+    """A part from ``[from, to]``, or from ``{from: ..., to: ..., FACT: ...}``."""
+    facts = dict(entry) if isinstance(entry, dict) else {}
+    limits = [facts.pop("from", None), facts.pop("to", None)] if facts else entry
     if not isinstance(limits, list) or len(limits) != 2:
         raise ValueError(f"part {name} is {shown(limits)}, must be [from, to] in seconds after the start")
     for edge, value in zip(("start", "end"), limits, strict=True):
         require(f"part {name}", edge, value, low=0, high=LATEST)
     if not limits[0] < limits[1]:
         raise ValueError(f"part {name} ends at {limits[1]} s, must end after its start at {limits[0]} s")
-    return Part(text("name of a part", name), float(limits[0]), float(limits[1]))
+    return Part(text("name of a part", name), float(limits[0]), float(limits[1]), facts)
 
 
 def _kinds(value: Any) -> tuple[str, ...]:

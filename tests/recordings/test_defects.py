@@ -194,6 +194,18 @@ def half_wrong(each: Recording) -> Recording:
     return replace(each, point=OperatingPoint(each.point.n_in_rpm, each.point.T_out + 5))
 
 
+def three_loads(each: Recording) -> Recording:
+    loads = np.repeat([0.2, 1.0, 1.8], len(each.time) // 3 + 1)[: len(each.time)]
+    return with_channel(each, "T_out", each.channels["T_out"] * loads)
+
+
+def two_speeds(each: Recording) -> Recording:
+    """Slower by a fifth, then faster, with the set speed as the mean."""
+    rates = np.where(np.arange(len(each.time)) < len(each.time) / 2, 0.8, 1.2)
+    step = each.point.omega_in / each.rate
+    return with_channel(each, "phi_in", each.channels["phi_in"][0] + step * np.cumsum(rates))
+
+
 REFUSED: dict[str, tuple[Spoil, str, str]] = {
     "angle in degrees": (scaled("phi_in", 180 / np.pi), "angle_in_degrees", "phi_in"),
     "wrapped angle in degrees": (
@@ -224,6 +236,8 @@ REFUSED: dict[str, tuple[Spoil, str, str]] = {
     "output torque in pound-feet": (at_once(one_load, scaled("T_out", 0.73756)), "torque_unit", "T_out"),
     "output torque of the other sign": (scaled("T_out", -1), "torque_sign", "T_out"),
     "output torque with a zero offset": (of_all(half_wrong), "torque_against_set_load", "T_out"),
+    "three loads, of which one is the mean": (at_once(one_load, of_all(three_loads)), "unsteady_load", "T_out"),
+    "two speeds about the set speed": (of_first(two_speeds), "unsteady_speed", "phi_in"),
     "input torque in mN m": (scaled("T_in", 1e3), "torque_unit", "T_in"),
     "input torque of the other sign": (scaled("T_in", -1), "torque_unit", "T_in"),
     "gauge in V/V": (scaled("s2", 1e-3), "gauge_in_v_v", "s2"),

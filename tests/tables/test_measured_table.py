@@ -177,6 +177,51 @@ def test_a_signal_with_its_own_time_is_interpolated(tmp_path: Path) -> None:
     np.testing.assert_allclose(found.signals["current"], np.cos(20 * TIME[inside]), atol=1e-3)
 
 
+def test_an_angle_is_continuous_before_it_is_interpolated(tmp_path: Path) -> None:
+    """Between 359 and 1 degree a second clock does not pass 180."""
+    own = np.arange(len(TIME)) / 1000 + 0.0004
+
+    def angle(time: np.ndarray) -> np.ndarray:
+        return 20 * time + 0.5 * np.sin(10 * time)
+
+    config = yaml.safe_load(OF_LOG)
+    config["joints"]["elbow"]["signals"]["q"] |= {"time": "t2", "unit": "deg", "wraps": True}
+    signals = {"qd": 20 + 5 * np.cos(10 * TIME), "i": LOG["i"], "t2": own, "q": np.degrees(angle(own) + 6) % 360}
+    (found,) = joints(tmp_path, table("run1.csv", {"t": TIME} | signals), **config).recordings
+    error = found.signals["q"] - angle(TIME)[1:] - 6
+    np.testing.assert_allclose(error, np.full(len(error), error[0]), atol=1e-5)  # whole turns are unknown
+
+
+def test_a_clock_that_ends_early_is_named(tmp_path: Path) -> None:
+    half = {"t2": [*TIME[:110], *[""] * 10], "i": [*LOG["i"][:110], *[""] * 10]}
+    config = yaml.safe_load(OF_LOG)
+    config["joints"]["elbow"]["signals"]["current"]["time"] = "t2"
+    with pytest.raises(FileDefect, match="9 of 120 rows before or after the times of i, expected at most 0"):
+        joints(tmp_path, table("run1.csv", LOG | half), **config)
+    read = joints(tmp_path, **config, lost={"leave_out": 9})
+    assert len(read.recordings[0]) == 110
+    assert "readings_left_out" in {each.kind for each in read.defects}
+    late = {"t2": TIME + 100}
+    with pytest.raises(FileDefect, match=r"times of the others from 0 to 0\.119 s, and t2: 100 to 100\.119 s"):
+        joints(tmp_path, table("run1.csv", LOG | late), **config)
+
+
+def test_recordings_that_follow_one_another_have_facts_of_their_own(tmp_path: Path) -> None:
+    parts = {"low": {"from": 0, "to": 0.06, "T_out_nm": 7, "repeat": 3}, "rise": [0.06, 9]}
+    low, rise = sorted(gauges(tmp_path, PLAIN, parts=parts), key=lambda each: each.name)
+    assert (low.name, low.point.T_out, low.repeat) == ("run1 low", 7, 3)
+    assert (rise.name, rise.point.T_out, rise.repeat) == ("run1 rise", 39.5, 2)
+    twice = {"run": np.repeat([1, 2], len(TIME))} | {name: np.tile(values, 2) for name, values in PLAIN.items()}
+    each = {1: {"T_out_nm": 7}, 2: {"repeat": 2}}
+    first, second = sorted(gauges(tmp_path, twice, each=each, rows={"run": "{each}"}), key=lambda each: each.name)
+    assert (first.name, first.point.T_out, first.repeat) == ("run1 1", 7, 1)
+    assert (second.name, second.point.T_out, second.repeat) == ("run1 2", 39.5, 2)
+    with pytest.raises(FileDefect, match=r"found no part '3' of 'each', expected one of 1, 2"):
+        gauges(tmp_path, twice, each=each | {3: {}}, rows={"run": "{each}"})
+    with pytest.raises(FileDefect, match=r"column run: found no row with run = '5', expected one of '1', '2'"):
+        gauges(tmp_path, twice, rows={"run": 5})
+
+
 def test_one_row_for_each_joint_and_time(tmp_path: Path) -> None:
     two = {
         name: np.repeat(values, 2) * (1 if name == "t" else np.tile([1.0, 3.0], len(TIME)))
@@ -205,7 +250,7 @@ def test_one_row_for_each_signal_and_time(tmp_path: Path) -> None:
 
 def test_recordings_within_a_file_are_named(tmp_path: Path) -> None:
     config = yaml.safe_load(OF_LOG)
-    with pytest.raises(FileDefect, match=r"has 'each' and no column, sheet or rows with \{each\}"):
+    with pytest.raises(FileDefect, match=r"has 'each' and \{each\} in no column or sheet"):
         joints(tmp_path, table("run1.csv", LOG), **config, each="a.*")
     config["time"]["column"] = "{each}/t"
     with pytest.raises(FileDefect, match=r"has \{each\} and no 'each'"):

@@ -114,6 +114,8 @@ class JointSource:
         require("start_up", "seconds", self.start_seconds, low=0, high=LONGEST_START)
         if self.rate_from_motion and self.start_seconds:
             raise ValueError("start_up is in seconds, but the rate comes from the motion after it: give it in samples")
+        if any(part.facts for part in self.table.parts):
+            raise ValueError("a part of a joint log has facts: it is a run and a session of its own, leave them out")
         if self.rate_from_motion and (self.table.parts or any(joint.smoothed for joint in self.joints)):
             raise ValueError("parts and a velocity from the angle need a time: give 'time' or 'rate_hz', and no 'rate'")
         for column in self.columns:

@@ -9,6 +9,7 @@ from swgsim.recordings.checks.clock import clock_defects
 from swgsim.recordings.checks.defect import Defect
 from swgsim.recordings.checks.gauge import gauge_defects
 from swgsim.recordings.checks.speed import speed_defects
+from swgsim.recordings.checks.steadiness import steadiness_defects
 from swgsim.recordings.checks.torque import torque_defects
 from swgsim.recordings.checks.wiring import wiring_defects
 from swgsim.recordings.files.assembly import no_numbers, standing
@@ -16,7 +17,15 @@ from swgsim.recordings.recording import Recording
 from swgsim.tables.file_defect import FIRST_ROW
 from swgsim.tables.limits import FEWEST_ROWS, LARGEST_NUMBER
 
-OF_ONE = (clock_defects, angle_defects, speed_defects, torque_defects, channel_defects, gauge_defects)
+OF_ONE = (
+    clock_defects,
+    angle_defects,
+    speed_defects,
+    torque_defects,
+    steadiness_defects,
+    channel_defects,
+    gauge_defects,
+)
 
 
 def inspect(recordings: Sequence[Recording]) -> tuple[Defect, ...]:

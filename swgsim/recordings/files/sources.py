@@ -56,8 +56,7 @@ def read_mapped(path: Path, mapping: SourceMap) -> Mapped:
     runs = list(_by_path(path, names, mapping) if mapping.table.path else _by_name(path, names, mapping))
     require_file_count(path, len(runs))
     with LimitedReader() as reader:
-        whole = [each for run in runs for each in _read_each(folder, run, mapping, reader)]
-    recordings = tuple(part for recording in whole for part in _parts(recording, mapping))
+        recordings = tuple(each for run in runs for each in _read_each(folder, run, mapping, reader))
     require_alike(recordings)
     read = {file for run in runs for file in run.files.values()}
     return Mapped(recordings, tuple(name for name in names if is_data(name) and name not in read))
@@ -99,22 +98,22 @@ def _by_path(path: Path, names: list[str], mapping: SourceMap) -> Iterator[Run]:
 def _read_each(folder: Path, run: Run, mapping: SourceMap, reader: LimitedReader) -> Iterator[Recording]:
     """The recordings of one file, or the one of several."""
     if not mapping.table.each:
-        yield _read_one(folder, run, mapping, reader)
+        yield from _read_one(folder, run, mapping, reader)
         return
     name = next(iter(run.files.values()))
     stem = run.known.get("recording", name.partition(".")[0])
     for each, groups in recordings_in(inside(folder, name, "the column map"), name, mapping.table, reader):
         known = {"recording": f"{stem} {each}", **{k: v for k, v in run.known.items() if k != "recording"}, **groups}
-        yield _read_one(folder, Run(run.files, known), mapping.of(each), reader)
+        yield from _read_one(folder, Run(run.files, known), mapping.of(each), reader)
 
 
-def _read_one(folder: Path, run: Run, mapping: SourceMap, reader: LimitedReader) -> Recording:
-    """One recording; its name is that of its file unless path or map give one."""
+def _read_one(folder: Path, run: Run, mapping: SourceMap, reader: LimitedReader) -> Iterator[Recording]:
+    """One recording, or its parts; its name is that of its file unless path or map give one."""
     name = next(iter(run.files.values()))
     for file in run.files.values():
         inside(folder, file, "the column map")
     stem = name.partition(".")[0] if len(run.files) == 1 else " ".join(map(str, run.known.values()))
-    known = facts.parse({"recording": stem, **mapping.facts, **run.known}, name)
+    known = {"recording": stem, **mapping.facts, **run.known}
     table = read_measured(
         folder, run.files, mapping.channels, mapping.clock, mapping.sampling_rate_hz, mapping.table.layout, reader
     )
@@ -122,28 +121,24 @@ def _read_one(folder: Path, run: Run, mapping: SourceMap, reader: LimitedReader)
     if lost:
         raise lost
     pairs = zip(mapping.channels, table.numbers, strict=True)
-    channels = {column.quantity: column.values(numbers) for column, numbers in pairs}
     assert table.time is not None  # a map has a clock or a rate
-    made = assemble(name, known, {"t": table.time, **channels}, mapping.columns, table.first_row)
-    return replace(made, lost=table.lost)
-
-
-def _parts(recording: Recording, mapping: SourceMap) -> Iterator[Recording]:
-    """A recording, or its parts that the map names; they are repeats that follow one another."""
+    columns = {"t": table.time} | {column.quantity: column.values(numbers) for column, numbers in pairs}
     parts = mapping.table.parts
     if not parts:
-        yield recording
+        made = assemble(name, facts.parse(known, name), columns, mapping.columns, table.first_row)
+        yield replace(made, lost=table.lost)
     for number, part in enumerate(parts, 1):
-        chosen = part.of(recording.time)
-        if not len(recording.time[chosen]):
-            length = recording.time[-1] - recording.time[0]
+        rows = part.of(table.time)
+        if not len(table.time[rows]):
+            length = table.time[-1] - table.time[0]
             expected = f"a length beyond {part.start:g} s, where part {shown(part.name)} begins"
-            raise FileDefect(recording.name, f"{length:.4g} s", expected)
-        yield replace(
-            recording,
-            name=f"{recording.name} {part.name}",
-            repeat=(recording.repeat - 1) * len(parts) + number,
-            time=recording.time[chosen],
-            channels={name: values[chosen] for name, values in recording.channels.items()},
-            conditions=replace(recording.conditions, elapsed=recording.conditions.elapsed + part.start),
-        )
+            raise FileDefect(name, f"{length:.4g} s", expected)
+        given = facts.parse({"repeat": 1, **known, **part.facts}, name)
+        follows = {  # parts of one operating point are repeats that follow one another
+            "recording": f"{given['recording']} {part.name}",
+            "repeat": given["repeat"] if part.facts else (int(str(given["repeat"])) - 1) * len(parts) + number,
+            "elapsed_s": float(str(given["elapsed_s"])) + part.start,
+        }
+        own = {channel: values[rows] for channel, values in columns.items()}
+        made = assemble(name, given | follows, own, mapping.columns, table.first_row + rows.start)
+        yield replace(made, lost=table.lost)

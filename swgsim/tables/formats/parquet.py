@@ -54,7 +54,7 @@ def opened(path: Path, file: str, wanted: Sequence[str | int] | None) -> Iterato
                 lengths = compute.list_value_length(values)
                 width = listed[place].shape[-1]
                 if lengths.null_count or not compute.all(compute.equal(lengths, width)).as_py():
-                    raise FileDefect(file, "lists of different lengths", f"{width} numbers in each row", column=name)
+                    raise FileDefect(file, "lists of different lengths", "as many numbers in each row", column=name)
                 return compute.list_flatten(values).to_numpy().reshape(-1, width)
             if shown == "timestamp":
                 if values.null_count:
