@@ -97,7 +97,7 @@ def test_every_experiment_runs_on_a_small_grid(experiment, data, runs):
 
 
 def train(*arguments):
-    command = [sys.executable, str(ROOT / "scripts" / "train.py"), *arguments]
+    command = [sys.executable, "-m", "swgsim", "train", *arguments]
     return subprocess.run(command, capture_output=True, text=True, cwd=ROOT, check=False)
 
 
