@@ -213,8 +213,5 @@ def test_novelty_separates_gears_of_another_population(tmp_path):
         assert verdict in confidence.novelty_text((usual.assign(error=order), None), "any method")
 
 
-@pytest.mark.parametrize(
-    ("errors", "verdict"), [((1, 2, 3, 4, 5, 6), " correlates"), ((2, 1, 4, 3, 1, 2), "not clearly")]
-)
 def is_png(png):
     return png[:8] == b"\x89PNG\r\n\x1a\n" and len(png) > 10_000
