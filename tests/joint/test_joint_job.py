@@ -31,7 +31,7 @@ SOURCE = {
 }
 HIDDEN = Hidden(load=0.01)
 SEARCHED = ["load_dependent_friction", "stribeck_friction"]
-KEYS = {"verdict", "noise_floor", "calibrated", "effects", "rejected", "error", "unknown", "next_experiment"}
+KEYS = {"verdict", "noise_floor", "calibrated", "effects", "rungs", "error", "unknown", "next_experiment"}
 
 
 @pytest.fixture(scope="module")
