@@ -106,7 +106,7 @@ def test_facts_must_fit(recordings: LabelledSignals) -> None:
     with pytest.raises(ValueError, match="one row each"):
         LabelledSignals(recordings.signals[:3], recordings.table, recordings.rate)
     rows = {name: [0] for name in COLUMNS} | {"label": ["rusty"]}
-    with pytest.raises(ValueError, match="unknown class 'rusty'; choose from healthy"):
+    with pytest.raises(ValueError, match="unknown choice 'rusty' of label; choose from healthy"):
         facts(rows)
     del rows["seed"]
     with pytest.raises(ValueError, match="columns"):
