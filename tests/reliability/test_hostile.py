@@ -22,7 +22,6 @@ from swgsim.recordings.files.sources import read_mapped
 from swgsim.storage import storage
 from swgsim.storage.storage import SEAL_SIZE, SEAL_START
 from swgsim.tables import limits
-from swgsim.tables.endings import ENDINGS
 from swgsim.tables.file_defect import FileDefect, shown
 from swgsim.tables.layout import Layout
 from swgsim.tables.measured_column import MeasuredColumn
@@ -147,8 +146,8 @@ FOREIGN: dict[str, tuple[str, Callable[[Path], object], str]] = {
     "one number for all rows": ("parquet", parquet_with(0.0, 400_000), "numbers in"),
     "long text": ("parquet", parquet_with("x" * 100_000), "string' of shape .*expected real numbers"),
     "lists": ("parquet", parquet_with([[1.0]] * 24), "expected real numbers"),
-    **{f"pickle as {ending}": (ending[1:], lambda path: path.write_bytes(pickle.dumps(columns())), "found")
-       for ending in ENDINGS},
+    **{f"pickle as {ending}": (ending, lambda path: path.write_bytes(pickle.dumps(columns())), "found")
+       for ending in ("mat", "h5", "parquet", "tdms", "mf4", "uff", "xlsx", "csv", "csv.gz")},  # one of each reader
 }  # fmt: skip
 
 
