@@ -1,8 +1,8 @@
 """docs/architecture.md names files, rooms and functions of the code as they are."""
 
-import importlib
+import ast
 import re
-from operator import attrgetter
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -19,6 +19,14 @@ def place(path: str) -> str:
     return path if path.split("/")[0] in ("swgsim", "learn") else f"swgsim/identification/{path}"
 
 
+def defined(path: Path) -> Iterator[str]:
+    """Functions, classes and methods of a file."""
+    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.FunctionDef | ast.ClassDef):
+            yield node.name
+            yield from (f"{node.name}.{each.name}" for each in node.body if isinstance(each, ast.FunctionDef))
+
+
 @pytest.mark.parametrize("path", sorted(name for name in QUOTED if name.endswith(".py")))
 def test_files_exist(path: str) -> None:
     assert (ROOT / place(path)).is_file()
@@ -31,7 +39,7 @@ def test_folders_exist(path: str) -> None:
 
 @pytest.mark.parametrize(("name", "path"), PLACED)
 def test_names_are_in_their_files(name: str, path: str) -> None:
-    attrgetter(name)(importlib.import_module(place(path).replace("/", ".")))
+    assert name in set(defined(ROOT / f"{place(path)}.py"))
 
 
 def test_all_names_with_a_dot_have_a_file() -> None:
@@ -43,7 +51,5 @@ def test_all_names_with_a_dot_have_a_file() -> None:
 @pytest.mark.parametrize("package", ["swgsim", "learn"])
 def test_the_tables_list_every_room(package: str) -> None:
     table = PAGE.split(f"| `{package}`, from top to bottom | |")[1].split("\n\n")[0]
-    first_cells = " ".join(row.split("|")[1] for row in table.splitlines() if row)
-    assert set(re.findall(r"`(\w+)`", first_cells)) == {
-        each.parent.name for each in (ROOT / package).glob("*/__init__.py")
-    }
+    listed = re.findall(r"`(\w+)`", " ".join(row.split("|")[1] for row in table.splitlines() if row))
+    assert set(listed) == {each.parent.name for each in (ROOT / package).glob("*/__init__.py")}
