@@ -164,6 +164,11 @@ def test_report_names_the_hidden_effect_with_its_size_and_evidence(folders, sick
     assert said["made"]["commissioning"] == str(folders / "healthy")
 
 
+def test_every_field_of_the_report_is_explained(sick):
+    page = (Path(__file__).parents[2] / "docs" / "report_fields.md").read_text(encoding="utf-8")
+    assert [name for name in sick.report if f"`{name}`" not in page] == []
+
+
 def test_error_falls_to_the_noise_floor(sick):
     error = sick.report["error"]
     assert error["after"]["fit"] < 0.5 * error["before"]["fit"]
