@@ -185,7 +185,12 @@ def test_page_opens_with_the_sentence_and_folds_the_details(folders, sick):
     assert summary.count("data:image/png;base64,") == 2  # the residual, and the probabilities
     assert page.count("data:image/png;base64,") == len(sick.figures) >= 5
     assert not re.search(r'(src|href)="(?!data:|#)', page)
-    for fact in ("Effect that was hidden", "Check the gear: wave generator", str(folders / "sick"), "eccentric wave"):
+    for fact in (
+        "Effect that was hidden",
+        "Check the wave generator: measure run-out",
+        str(folders / "sick"),
+        "eccentric wave",
+    ):
         assert fact in summary
     assert details.count("<details") == details.count("</details>") > 7
     assert not re.search(r"\d(\.\d+)?e-0\d m\b", summary)
