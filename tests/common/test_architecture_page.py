@@ -44,7 +44,7 @@ def test_names_are_in_their_files(name: str, path: str) -> None:
 
 def test_all_names_with_a_dot_have_a_file() -> None:
     placed = {name for name, _ in PLACED}
-    dotted = {name for name in QUOTED if re.fullmatch(r"[A-Z]\w*\.\w+", name)}
+    dotted = {name for name in QUOTED if re.fullmatch(r"[A-Z][a-z]\w*\.\w+", name)}
     assert dotted <= placed
 
 
