@@ -3,6 +3,16 @@
 # Does nothing where they are installed; asks for root's rights by sudo where it is not root.
 set -eu
 
+if [ "$#" -gt 0 ]; then
+    cat <<'END'
+usage: sudo sh scripts/install_arm.sh
+
+Installs Debian's compiler, C library and emulator for Cortex-M (gcc-arm-none-eabi, libnewlib-arm-none-eabi,
+qemu-system-arm), which the tests and figures of exported classifiers need. It does nothing if they are installed.
+END
+    case "$1" in -h | --help) exit 0 ;; *) exit 2 ;; esac
+fi
+
 packages="gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm"
 
 missing=""

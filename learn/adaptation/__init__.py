@@ -1,7 +1,4 @@
-"""Transfer to a target gear: alignment, fine-tuning, prototypes, adapted forests, adversarial networks.
-
-Imports ``inputs``, ``methods`` and ``protocols``.
-"""
+"""Transfer to a target gear: alignment, fine-tuning, prototypes, adapted forests, adversarial networks."""
 
 import lazy_loader
 

@@ -1,4 +1,4 @@
 """Commands that need more than one room: ``train``, ``close-loop``, ``ui``, ``server``, ``upload``, ``benchmark``.
 
-Imports every room of ``learn`` and the jobs of ``swgsim``.
+Each is one module with a function ``run``; pyproject.toml lists them. The room exports nothing.
 """

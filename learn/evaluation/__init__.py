@@ -1,7 +1,4 @@
-"""Scores with intervals: confusion, calibration, probability of detection, abstention, bootstrap over gears.
-
-Imports ``inputs``, ``methods`` and ``protocols``.
-"""
+"""Scores with intervals: confusion, calibration, probability of detection, abstention, bootstrap over gears."""
 
 import lazy_loader
 

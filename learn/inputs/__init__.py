@@ -1,7 +1,4 @@
-"""Inputs of classifiers: features of Table III, harmonics, residual lines, and signals.
-
-Imports ``swgsim.common`` and ``swgsim.storage``.
-"""
+"""Inputs of classifiers: features of Table III, harmonics, residual lines, and signals."""
 
 import lazy_loader
 

@@ -1,4 +1,5 @@
 """Configuration meets code: one job trains and judges one choice; a sweep keeps every job as a run.
 
-Imports all rooms of ``learn`` but the reports and ``embedded``.
+``settings`` makes the objects of a configuration; ``train_job`` is one job, ``identity`` what distinguishes it from
+others. The room exports nothing.
 """

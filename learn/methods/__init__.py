@@ -1,7 +1,4 @@
-"""Classifiers with the contract of scikit-learn: classical methods, forests, networks; training; own classifiers.
-
-Imports ``inputs``.
-"""
+"""Classifiers with the contract of scikit-learn: classical methods, forests, networks; training; own classifiers."""
 
 import lazy_loader
 

@@ -1,7 +1,4 @@
-"""The paper's Tables VII to X and its claims compared with our results: report/index.html.
-
-Imports ``jobs`` and rooms below it, and ``swgsim.studies``.
-"""
+"""The paper's Tables VII to X and its claims compared with our results: report/index.html."""
 
 import lazy_loader
 

@@ -1,7 +1,4 @@
-"""Splits into training and test by gear, operating point or fault size, and levels of target information.
-
-Imports ``inputs``.
-"""
+"""Splits into training and test by gear, operating point or fault size, and levels of target information."""
 
 import lazy_loader
 

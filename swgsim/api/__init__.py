@@ -1,7 +1,4 @@
-"""The front door: the verbs of ``import swgsim as swg``, for one gear or one folder at a time.
-
-Imports every room but ``commands``.
-"""
+"""The front door: the verbs of ``import swgsim as swg``, for one gear or one folder at a time."""
 
 from swgsim.api.data_set import generate, record
 from swgsim.api.identify import identify

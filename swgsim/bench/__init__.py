@@ -1,7 +1,4 @@
-"""A virtual test bench: scatter of units and sessions, instruments, disturbance (eq. 10), and a sealed truth.
-
-Imports ``chain`` and rooms below it.
-"""
+"""A virtual test bench: scatter of units and sessions, instruments, disturbance (eq. 10), and a sealed truth."""
 
 from swgsim.bench.disturbance import Disturbance
 from swgsim.bench.scatter import Bench, Session, Shaft

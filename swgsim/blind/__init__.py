@@ -1,4 +1,4 @@
 """The blind test of the loop: a sealed set from the virtual bench, the loop's answers, the truth, and the score.
 
-Imports ``identification``, ``jobs`` and rooms below these.
+The command ``swg blind`` is ``blind_study``; the room exports nothing.
 """

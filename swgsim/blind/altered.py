@@ -1,4 +1,4 @@
-"""Library effects as nature has them: never quite of the library's form."""
+"""Library effects with another form than in the library, as real ones have."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

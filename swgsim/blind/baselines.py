@@ -1,4 +1,4 @@
-"""What simpler methods would name: on the same fit and the same signatures as the loop."""
+"""Simpler methods, on the same fit and the same signatures as the loop."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple

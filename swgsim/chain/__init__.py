@@ -1,7 +1,4 @@
-"""The simulation chain (Fig. 2): equations of motion (eq. 1 to 7), influence maps of the structure, gauge signals.
-
-Imports ``effects``, ``gear``, ``recordings`` and rooms below these.
-"""
+"""The simulation chain (Fig. 2): equations of motion (eq. 1 to 7), influence maps of the structure, gauge signals."""
 
 from swgsim.chain.chain import SECTORS, Run, Simulation, channels_of, simulate_turns
 from swgsim.chain.chain import simulate as simulate_runs

@@ -1,4 +1,4 @@
-"""The motion that a gear settles at. What one method does not find is left to the next one.
+"""The steady motion of a gear, by four methods in turn: each takes the runs that the one before could not solve.
 
 ====  ==================  ================================================  ================================
 try   method              finds                                             where

@@ -12,6 +12,7 @@ from hydra.types import RunMode
 from omegaconf import DictConfig
 
 from swgsim.commands.mistakes import FULL, MENDABLE, answered, explain
+from swgsim.commands.usage import usage
 from swgsim.common.configured import conf_folder, plain
 
 GROUP = "swg.commands"
@@ -69,6 +70,9 @@ def command(name: str, arguments: list[str] | None = None) -> None:
             raise SystemExit(1) from error
 
     words = sys.argv[1:] if arguments is None else arguments
+    if {"-h", "--help"} & set(words):
+        print(usage(name, config_name(name)))
+        return
     for entry in entry_points(group=SPELLINGS, name=name):
         words = entry.load()(words)
     # Hydra reads the process's arguments, and names the command in its help by the first of them.

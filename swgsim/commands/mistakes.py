@@ -1,19 +1,21 @@
-"""Mistakes in a command end with a sentence instead of a traceback; a misspelt choice, with the choices.
-
-Hydra lists choices for files of a group only.
-"""
+"""Mistakes in a command end with a sentence instead of a traceback; a misspelt choice, with the nearest one and all."""
 
 import difflib
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 
 from hydra import compose, initialize_config_dir
 from hydra.core.global_hydra import GlobalHydra
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override
-from hydra.errors import CompactHydraException, ConfigCompositionException, OverrideParseException
+from hydra.errors import (
+    CompactHydraException,
+    ConfigCompositionException,
+    MissingConfigException,
+    OverrideParseException,
+)
 from omegaconf import DictConfig
 from omegaconf.errors import OmegaConfBaseException
 
@@ -33,17 +35,12 @@ def answered(main: Callable[[], object], config_name: str) -> None:
     """
     interrupts.kept()
     try:
-        with _explained():
+        with _explained(config_name):
             main()
     except KeyboardInterrupt as stop:
         kept = "interrupted; what is finished is kept, and the same command goes on from there"
         print(f"\n{str(stop) or kept}", file=sys.stderr)
         sys.exit(130)  # as a shell says it
-    except SystemExit as stop:
-        if stop.code:
-            for answer in unknown(config_name, [word for word in sys.argv[1:] if not word.startswith("-")]):
-                print(answer, file=sys.stderr)
-        raise
 
 
 def explain(error: BaseException) -> None:
@@ -55,7 +52,7 @@ def explain(error: BaseException) -> None:
 
 
 @contextmanager
-def _explained() -> Iterator[None]:
+def _explained(config_name: str) -> Iterator[None]:
     """Explain the errors that Hydra raises itself, and those of a sweep, which it raises when all jobs are done."""
     if os.environ.get(FULL) == "1":
         yield
@@ -65,6 +62,20 @@ def _explained() -> Iterator[None]:
         yield
     except OverrideParseException as error:
         print(_unread(error), file=sys.stderr)
+        raise SystemExit(1) from error
+    except MissingConfigException as error:  # a file of a group
+        group, _, name = (error.missing_cfg_file or "").rpartition("/")
+        if error.options is None:
+            explain(error)
+        else:
+            print(f"unknown {group} {_nearest(name, error.options)}", file=sys.stderr)
+        raise SystemExit(1) from error
+    except ConfigCompositionException as error:
+        answers = list(unknown(config_name, [word for word in sys.argv[1:] if not word.startswith("-")]))
+        if answers:
+            print("\n".join(answers), file=sys.stderr)
+        else:
+            explain(error)
         raise SystemExit(1) from error
     except MENDABLE as error:
         explain(error)
@@ -81,6 +92,14 @@ def _unread(error: OverrideParseException) -> str:
         f"cannot read {error.override!r}: a value with such characters needs quotes of its own, such as "
         """'recordings="folder (1)"'"""
     )
+
+
+def _nearest(name: str, choices: Iterable[str]) -> str:
+    """A misspelt name with the nearest choice and all others."""
+    known = sorted(choices)
+    near = difflib.get_close_matches(name, known, n=1)
+    guess = f"; did you mean {near[0]!r}?" if near else ";"
+    return f"{name!r}{guess} choose from {', '.join(known)}"
 
 
 def _is_group(override: Override) -> bool:
@@ -103,7 +122,7 @@ def unknown(config_name: str, words: list[str]) -> Iterator[str]:
         with initialize_config_dir(str(conf_folder()), version_base="1.3"):
             config = compose(config_name, [_first(override) for override in overrides if _is_group(override)])
     except ConfigCompositionException:
-        return  # a file of a group that does not exist: Hydra has listed the files
+        return  # a file of a group that does not exist is answered already
     for override in overrides:
         key = override.key_or_group
         if override.is_add() or override.is_delete() or key.startswith("hydra") or _is_group(override):
@@ -113,9 +132,6 @@ def unknown(config_name: str, words: list[str]) -> Iterator[str]:
             if not isinstance(node, DictConfig):
                 break  # below a value: Hydra has refused it
             if part not in node:
-                choices = sorted(map(str, node))
-                near = difflib.get_close_matches(part, choices, n=1)
-                guess = f"; did you mean {near[0]!r}?" if near else ";"
-                yield f"unknown choice {part!r}{guess} choose from {', '.join(choices)}"
+                yield f"unknown choice {_nearest(part, map(str, node))}"
                 break
             node = node[part]

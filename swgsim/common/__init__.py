@@ -1,7 +1,4 @@
-"""What every room uses: checked input, whole files, seeds, number formats, page style, engines for many tasks.
-
-Imports no other room.
-"""
+"""What every room uses: checked input, whole files, seeds, number formats, page style, engines for many tasks."""
 
 import lazy_loader
 

@@ -1,7 +1,4 @@
-"""Labelled data sets: the fault variants (Table V), the grid of cases, and the file that they become.
-
-Imports ``bench``, ``chain`` and rooms below these.
-"""
+"""Labelled data sets: the fault variants (Table V), the grid of cases, and the file that they become."""
 
 from swgsim.dataset.dataset import disturb, generate, usage
 from swgsim.dataset.faults import FAULTS, Variant, Variants

@@ -1,6 +1,6 @@
 """Physical effects that change the chain at a known place, one file each; the five faults of Table I are among them.
 
-Imports ``gear`` and rooms below it. :data:`LIBRARY` lists them by their names in files, such as ``root_tooth_crack``.
+:data:`LIBRARY` lists them by their names in files, such as ``root_tooth_crack``.
 """
 
 from swgsim.effects.base import Crack, Effect

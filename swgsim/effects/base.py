@@ -143,7 +143,7 @@ class Effect:
     @classmethod
     def title(cls) -> str:
         """The name in words."""
-        return cls.name().replace("_", " ")
+        return cls.name().replace("_", " ").replace("stribeck", "Stribeck")
 
     @property
     def structural(self) -> bool:

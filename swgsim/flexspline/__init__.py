@@ -1,7 +1,4 @@
-"""The structure: lattice and truss of the flex spline, its cyclic symmetry, and the strain gauges bonded to it.
-
-Imports ``common`` and ``storage``.
-"""
+"""The structure: lattice and truss of the flex spline, its cyclic symmetry, and the strain gauges bonded to it."""
 
 from swgsim.flexspline.flexspline import FlexSpline, gauge_response, solve_flex_spline
 from swgsim.flexspline.gauges import GaugeSet, bridges, strain_rows, waves

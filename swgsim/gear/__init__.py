@@ -1,7 +1,4 @@
-"""What is known of a gear and of how it runs: parameters (Table II), operating point, conditions, sampling window.
-
-Imports ``common`` and ``flexspline``.
-"""
+"""A gear and how it runs: parameters (Table II), operating point, conditions, sampling window."""
 
 from swgsim.gear.acquisition import Window
 from swgsim.gear.conditions import REFERENCE_TEMPERATURE, Conditions

@@ -1,4 +1,4 @@
-"""What a recording is made under, beyond speed and load."""
+"""Conditions of a recording besides speed and load: temperature, time since the session began."""
 
 from dataclasses import dataclass
 

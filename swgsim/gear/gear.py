@@ -131,6 +131,12 @@ class Gear:
         Number of the gear, from 1.
     factors : StructureFactors
         By which its structure differs from the truss of the chain.
+
+    Examples
+    --------
+    >>> Gear()  # doctest: +NORMALIZE_WHITESPACE
+    Gear 1: ratio 100, teeth 200, radius 21.2 mm, w0 215.9 µm, k1 4733 N m/rad, b1 0.52 N m s/rad,
+        J_out 1 kg m², structure as the truss
     """
 
     number: int = 1
@@ -147,6 +153,28 @@ class Gear:
             raise ValueError(
                 f"{teeth} teeth do not fit the ratio N = {N}: with two lobes a flex spline has 2 N = {2 * N}"
             )
+
+    def __repr__(self) -> str:
+        return f"Gear {self.number}: {', '.join(f'{name} {text}' for name, text in self._facts().items())}"
+
+    def _repr_html_(self) -> str:
+        """HTML of a notebook: a table of what the gear is."""
+        rows = "".join(f"<tr><th>{name}</th><td>{text}</td></tr>" for name, text in self._facts().items())
+        return f"<table><caption>Gear {self.number}</caption>{rows}</table>"
+
+    def _facts(self) -> dict[str, str]:
+        """The main parameters with their symbols, in engineering units."""
+        t = self.transmission
+        return {
+            "ratio": f"{t.N}",
+            "teeth": f"{self.flex_spline.teeth}",
+            "radius": f"{1e3 * self.flex_spline.radius:.4g} mm",
+            "w0": f"{1e6 * self.wave_generator.w0:.4g} µm",
+            "k1": f"{t.k1:.4g} N m/rad",
+            "b1": f"{t.b1:.3g} N m s/rad",
+            "J_out": f"{t.J_out:.3g} kg m²",
+            "structure": "as the truss" if self.factors == EXACT_STRUCTURE else "with factors on the truss",
+        }
 
     @classmethod
     def load(cls, path: str | Path) -> "Gear":

@@ -1,9 +1,8 @@
 """Identification (closing the loop): the physical effects that explain the residual between model and measurement.
 
 ``data`` prepares measurements, ``covariance`` and ``fit`` hold the statistics, ``commissioning`` learns the healthy
-gear, ``search`` proposes effects, ``decide`` accepts them, ``interharmonics`` treats interharmonic lines, ``report``
-writes; ``calls`` has the two functions for users.
-Imports ``bench``, ``chain``, ``recordings`` and rooms below these; robot joints (``joint``) do not need it.
+gear, ``interharmonics`` treats interharmonic lines, ``search`` ranks candidates, ``decide`` weighs them by evidence,
+``report`` writes; ``calls`` has the two functions for users.
 """
 
 from swgsim.identification.calls import commission, identify

@@ -1,4 +1,5 @@
 """From configuration (``conf/``) to objects, data sets and virtual recordings.
 
-Imports ``dataset`` and rooms below it.
+``settings`` makes the objects; the commands ``swg generate`` and ``swg record`` are ``generate_data_set`` and
+``record_on_bench``. The room exports nothing.
 """

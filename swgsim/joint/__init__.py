@@ -1,6 +1,6 @@
 """Robot joints with a strain wave gear: recordings, textbook model, and the effects that this model lacks.
 
-Imports ``effects``, ``recordings`` and rooms below these; gauges and their identification are not needed.
+Gauges and their identification (``identification``) are not needed.
 """
 
 from swgsim.joint.identify import JointAnswer, identify_joint, recordings_of

@@ -1,4 +1,4 @@
-"""What the errors of load and trigger make of the change by a fault."""
+"""Scatter of a fault's signature by the errors of load and trigger."""
 
 import numpy as np
 from jaxtyping import Float

@@ -1,7 +1,4 @@
-"""Measured recordings: readers of folders and files, maps of foreign columns, and checks for defects of a bench.
-
-Imports ``gear`` and rooms below it.
-"""
+"""Measured recordings: readers of folders and files, maps of foreign columns, and checks for defects of a bench."""
 
 from swgsim.recordings.checks.defect import Defect, Severity
 from swgsim.recordings.files.folder import write_folder

@@ -1,7 +1,4 @@
-"""Labelled gauge signals in memory and on disk: arrays with a table, sealed HDF5 files, order lines.
-
-Imports ``common`` only.
-"""
+"""Labelled gauge signals in memory and on disk: arrays with a table, sealed HDF5 files, order lines."""
 
 from swgsim.storage.attributes import attribute
 from swgsim.storage.hdf5_writer import created

@@ -8,15 +8,18 @@ from textwrap import wrap
 
 import numpy as np
 from jaxtyping import Float
+from matplotlib import colormaps
 from matplotlib.colors import LogNorm
 
 from swgsim.common import style
 from swgsim.common.files import write_text
-from swgsim.effects.base import PLACES
+from swgsim.common.numbers import significant
+from swgsim.effects.base import PLACES, Effect
 from swgsim.effects.library import SEARCHED
 from swgsim.effects.quantity import quantities, size_of
 from swgsim.gear.gear import Gear
 from swgsim.identification.interharmonics.named_interharmonics import has_sidelines, is_random
+from swgsim.identification.report.engineering_units import parameter_words, value_text
 from swgsim.studies.effect_signature import (
     ELSEWHERE,
     LEAST,
@@ -52,7 +55,10 @@ def picture(found: Sequence[Signature]) -> bytes:
     axes = drawing.subplots(rows, columns, squeeze=False, sharex=alike, sharey=alike)
     for axis in axes.flat[count:]:
         axis.set_axis_off()
-    colours = {"norm": LogNorm(LEAST, 1), "aspect": "auto", "interpolation": "nearest"}
+    # Changes that are rounding are white.
+    white_below = colormaps["YlGnBu"].with_extremes(under="white")
+    norm = LogNorm(LEAST * (1 + 1e-9), 1)
+    colours = {"norm": norm, "cmap": white_below, "aspect": "auto", "interpolation": "nearest"}
     for axis, number in zip(axes.flat, np.flatnonzero(~means), strict=False):
         extent = (-0.25, ORDERS + 0.25, len(channels) - 0.5, -0.5)
         image = axis.imshow(shares[number], extent=extent, **colours)
@@ -89,21 +95,35 @@ def half_orders(share: Float[np.ndarray, "*batch line"]) -> Float[np.ndarray, "*
 
 
 def row(signature: Signature) -> str:
-    """A row of the table: sizes, largest change, growth with load and speed, and pattern over the gauges."""
+    """A row of the table: effect, size, largest change, growth with load and speed, and pattern over the gauges."""
     kind = signature.kind
-    declared = quantities(kind)
-    name = size_of(kind)
-    size = declared[name]
-    inner = ", ".join(other for other in declared if other != name) or "-"
     channel, line = signature.where
     # A bar as in |T| would end the cell.
     physics = (inspect.getdoc(kind) or "").split("\n\n")[0].replace("\n", " ").replace("|", "\\|")
-    cells = (
-        f"`{kind.name()}`", physics, f"{name} {size.low:g} to {size.high:g} {size.unit}, typically {size.typical:.2g}",
-        inner, f"{SHOWN[channel]}, order {line / REVOLUTIONS:.3g}", f"{signature.top[0]:.1e}", *signature.growth,
-        signature.over_gauges,
-    )  # fmt: skip
+    largest = f"{SHOWN[channel]}, order {line / REVOLUTIONS:.3g}: {significant(100 * signature.top[0])} %"
+    cells = f"`{kind.name()}`: {physics}", sizes(kind), largest, " / ".join(signature.growth), signature.over_gauges
     return f"| {' | '.join(cells)} |"
+
+
+def sizes(kind: type[Effect]) -> str:
+    """Bounds and typical size in engineering units, and the names of the other parameters.
+
+    >>> from swgsim.effects import EccentricWaveGenerator
+    >>> sizes(EccentricWaveGenerator)
+    'eccentricity (r): 0 to 150 µm, typically 50 µm; theta; unequal'
+    """
+    declared = quantities(kind)
+    name = size_of(kind)
+    size = declared[name]
+    low, high, typical = (
+        value_text(kind.name(), name, {"value": value, "unit": size.unit})
+        for value in (size.low, size.high, size.typical)
+    )
+    unit = high.partition(" ")[2]
+    text = (
+        f"{parameter_words(kind.name(), name)} ({name}): {low.removesuffix(f' {unit}')} to {high}, typically {typical}"
+    )
+    return "; ".join([text, *(other for other in declared if other != name)])
 
 
 def page(folder: Path) -> None:
@@ -124,26 +144,24 @@ UNTESTED = [kind.name() for kind in SEARCHED if is_random(kind) and not has_side
 HEAD = f"""# The library of effects
 
 Made by `make docs` from the code: {len(SEARCHED)} effects, by the place of the chain at which they act. The
-identification searches all of them except {", ".join(UNTESTED)}, whose phase differs in every recording and
-which makes no interharmonic line. The pictures show what an effect of typical size changes at
-{USUAL} (the gear at 35 degC, an hour into the session), by channel and order, as a share of the channel's largest
-line other than the mean. Choices such as an order are at their default or first value; a gauge is s1, or all of
-them where that is the default. The unit "-" is that of a pure number. Effects that change nothing there are shown at
-other points:
+identification searches all of them except {", ".join(UNTESTED)}: its phase differs in every recording, and it makes no
+interharmonic line.
+
+The pictures show the change by an effect of typical size, by channel and order, as a share of the channel's largest
+line other than the mean. White is no change. The operating point is {USUAL}, with the gear at 35 °C, an hour into the
+session. Choices such as an order are at their default or first value; a gauge is s1, or all of them where that is the
+default. Effects that change nothing there are shown at other points:
 
 {chr(10).join(f"- `{kind.name()}` at {each}: {each.reason}." for kind, each in ELSEWHERE.items())}
 
-The factors, in table and panels, are those by which the largest change grows, in the unit of its channel, from a tenth
-of the load to the load shown and from the speed shown to twice that: "-" where a tenth of the load leaves no change,
-0 where twice the speed leaves none (a hum of the mains is at another order then). The last column names the pattern
-over the gauges of the line that changes most, by sign and phase, in the words of the regularities
-(`swgsim/effects/regularity.py`); "several patterns" where no single one has {OWN:.0%} of its power. The full
-physics, signature and source of every effect are in its docstring in `swgsim/effects/`; rows such as SE20 are those of
+In the tables, *size* has bounds and typical size, and then the other parameters. *Growth* has two factors by which the
+largest change grows: from a tenth of the load to the load shown, and from the speed shown to twice that. "-" means
+no change at a tenth of the load, 0 no change at that order at twice the speed. *Over gauges* is the pattern of the
+gauge line that changes most, by sign and phase. It is "several patterns" if no single one has {OWN:.0%} of its power.
+
+The docstrings in `swgsim/effects/` have the full physics and the source of every effect. Rows such as SE20 are those of
 [physics.md](physics.md)."""
-HEADER = (
-    "| effect | physics | size | inner parameters | largest change | share | 10 x load | 2 x speed | over gauges |\n"
-    "|---|---|---|---|---|---|---|---|---|"
-)
+HEADER = "| effect | size | largest change | growth: load / speed | over gauges |\n|---|---|---|---|---|"
 
 if __name__ == "__main__":
     page(Path(sys.argv[1]))

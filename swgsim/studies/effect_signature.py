@@ -54,7 +54,7 @@ class Setting:
         return self.point, OperatingPoint(n, T / 10), OperatingPoint(2 * n, T)
 
     def __str__(self) -> str:
-        beside = "".join(f", beside {in_words(effect)}" for effect in self.beside)
+        beside = "".join(f", with {in_words(effect)}" for effect in self.beside)
         return f"{self.point.n_in_rpm:g} rpm, {self.point.T_out:g} N m{beside}"
 
 

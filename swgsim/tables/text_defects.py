@@ -1,4 +1,4 @@
-"""Where and why a text file is no table of the layout that a map gives, with the entry of the map that would help."""
+"""Defects of a text file that does not have the layout of its map, with the entry of the map that would help."""
 
 import gzip
 import re

@@ -20,7 +20,7 @@ NUMBER = re.compile(r"\s*[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\s*", re.ASCII)
 
 
 def number_of(cell: str, layout: Layout) -> float | None:
-    """The number that a cell is by the signs of its layout; None if it is none.
+    """The number in a cell, read with the decimal sign and separators of a layout; None if it holds no number.
 
     >>> number_of("1.024,5", Layout(decimal=",", thousands=".")), number_of("1.024", Layout(decimal=","))
     (1024.5, None)

@@ -2,7 +2,6 @@
 
 It needs no other gear, no label and no recorded fault. Bayes' rule is that of ``oracle``, which knows the true gear;
 the fit is that of ``identification``.
-Imports ``identification``, ``oracle`` and rooms below these.
 """
 
 from swgsim.twin.fitted_gear import FittedGear, fit_gear

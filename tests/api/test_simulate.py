@@ -44,6 +44,13 @@ def test_a_result_shows_itself(cracked: swg.SimulatedRun) -> None:
     assert len(cracked.plot(compare=cracked).axes) == 5
 
 
+def test_a_gear_shows_what_it_is_in_one_line_and_in_a_notebook() -> None:
+    gear = swg.Gear.load("gear2")
+    assert len(repr(gear)) < 200
+    assert "k1 5680 N m/rad" in repr(gear)
+    assert "<th>w0</th><td>215.9 µm</td>" in gear._repr_html_()
+
+
 def test_a_saved_table_is_read_again(cracked: swg.SimulatedRun, tmp_path: Path) -> None:
     cracked.save(tmp_path / "run.csv")
     pd.testing.assert_frame_equal(pd.read_csv(tmp_path / "run.csv"), cracked.table())

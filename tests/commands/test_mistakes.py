@@ -76,6 +76,20 @@ def test_a_word_that_is_no_choice_is_answered(word: str, said: str) -> None:
 
 
 @pytest.mark.parametrize(
+    ("word", "said"),
+    [
+        ("gear=gaer1", "unknown gear 'gaer1'; did you mean 'gear1'? choose from gear1, gear2, gear3"),
+        ("recording=a", "unknown choice 'recording'; did you mean 'recordings'? choose from commissioning, "),
+    ],
+)
+def test_a_misspelt_choice_is_answered_with_the_nearest_alone(word: str, said: str) -> None:
+    answer = given(word)
+    assert answer.returncode == 1
+    (line,) = answer.stderr.splitlines()
+    assert line.startswith(said)
+
+
+@pytest.mark.parametrize(
     ("words", "said"),
     [
         (["holdout=S3"], "holdout= is for robot joints: give source= as well"),

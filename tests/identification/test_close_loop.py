@@ -164,6 +164,11 @@ def test_report_names_the_hidden_effect_with_its_size_and_evidence(folders, sick
     assert said["made"]["commissioning"] == str(folders / "healthy")
 
 
+def test_every_field_of_the_report_is_explained(sick):
+    page = (Path(__file__).parents[2] / "docs" / "report_fields.md").read_text(encoding="utf-8")
+    assert [name for name in sick.report if f"`{name}`" not in page] == []
+
+
 def test_error_falls_to_the_noise_floor(sick):
     error = sick.report["error"]
     assert error["after"]["fit"] < 0.5 * error["before"]["fit"]
@@ -180,7 +185,12 @@ def test_page_opens_with_the_sentence_and_folds_the_details(folders, sick):
     assert summary.count("data:image/png;base64,") == 2  # the residual, and the probabilities
     assert page.count("data:image/png;base64,") == len(sick.figures) >= 5
     assert not re.search(r'(src|href)="(?!data:|#)', page)
-    for fact in ("Effect that was hidden", "Check the gear: wave generator", str(folders / "sick"), "eccentric wave"):
+    for fact in (
+        "Effect that was hidden",
+        "Check the wave generator: measure run-out",
+        str(folders / "sick"),
+        "eccentric wave",
+    ):
         assert fact in summary
     assert details.count("<details") == details.count("</details>") > 7
     assert not re.search(r"\d(\.\d+)?e-0\d m\b", summary)

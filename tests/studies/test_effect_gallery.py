@@ -40,14 +40,14 @@ def test_an_effect_is_shown_elsewhere_only_where_the_usual_setting_hides_it(kind
 def test_lost_motion_shows_in_many_orders_and_the_panel_says_where(found):
     signature = found[LostMotion]
     assert (signature.share[0, 2, 12::12] > 1e-3).sum() >= 5
-    assert title(signature).startswith("lost motion\nat 750 rpm, 0.7 N m, beside kinematic")
-    assert "`lost_motion` at 750 rpm, 0.7 N m, beside kinematic error order" in effect_gallery.HEAD
+    assert title(signature).startswith("lost motion\nat 750 rpm, 0.7 N m, with kinematic")
+    assert "`lost_motion` at 750 rpm, 0.7 N m, with kinematic error order" in effect_gallery.HEAD
 
 
 def test_stribeck_friction_shows_in_the_mean_of_the_input_torque_at_every_load(found):
     signature = found[StribeckFriction]
     assert signature.where == (1, 0)
-    assert title(signature).startswith("stribeck friction\nat 200 rpm, 70 N m\n")
+    assert title(signature).startswith("Stribeck friction\nat 200 rpm, 70 N m\n")
     load, speed = map(float, signature.growth)
     assert load == pytest.approx(1, rel=0.02)
     assert speed < 1

@@ -1,4 +1,4 @@
-"""What the model misses of a healthy gear: what is none of this gear, and what counts as uncertain from then on."""
+"""Lack of fit to a healthy gear: recordings of another gear are refused, and badly fitted lines become less certain."""
 
 import numpy as np
 from jaxtyping import Bool, Float

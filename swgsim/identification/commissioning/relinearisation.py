@@ -1,4 +1,4 @@
-"""A fit to a healthy gear, linearised about the lines that it finds where the model has them quite different."""
+"""A fit to a healthy gear, linearised again about the fitted lines where these lie far from the model."""
 
 from collections.abc import Mapping
 from dataclasses import replace

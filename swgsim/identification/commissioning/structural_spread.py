@@ -1,4 +1,4 @@
-"""How far the structure of a healthy gear lies off the truss, and its gauges off those of a series.
+"""Structural spread: the probable deviation of a healthy gear's structure from the truss, and of its gauges.
 
 Both are standard deviations of priors, and the recordings of the healthy gear tell which are the most probable: with a
 smaller spread they are unlikely, and with a larger one they would be likelier to look different.

@@ -1,4 +1,4 @@
-"""Whether the recorded angle is zero where the model has it: the major axis of the wave generator at gauge s1.
+"""Zero of the recorded angle: in the model, the major axis of the wave generator is at gauge s1 there.
 
 The zero of an encoder depends on its mounting. It is estimated from the healthy gear and subtracted from all
 recordings. A zero that moved since then is refused, because it would look like an effect.

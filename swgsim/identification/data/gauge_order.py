@@ -1,4 +1,4 @@
-"""Whether gauges that sit opposite one another are exchanged against the commissioning.
+"""Check whether opposite gauges were exchanged since the commissioning.
 
 The two lobes pass opposite gauges at the same time, so a model cannot distinguish them. The gauges of a unit differ a
 little in gain and position. With exchanged cables, this difference changes its sign.

@@ -1,4 +1,4 @@
-"""Lines of a gear where the chain has them elsewhere, as recordings of its healthy state show them."""
+"""Order lines of a unit that differ from those of the chain, as its healthy recordings show them."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

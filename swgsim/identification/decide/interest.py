@@ -1,4 +1,4 @@
-"""Whether a change is large enough to matter: compared with what distinguishes two healthy units of a series."""
+"""Whether a change is large enough to matter, compared with the spread of healthy units of a series."""
 
 import numpy as np
 

@@ -143,10 +143,10 @@ def _turn(fixed: _Fixed, begin: Mapping[str, float], assumed: Scatter | None) ->
 
 
 def unbent(now: Fitted) -> Fitted:
-    """A fit, for the search of effects: at the declared values of the unit if it was bent beyond belief without them.
+    """A fit as the start of a search: at the declared parameters if a bad fit moved them improbably far.
 
-    Beside a bent model, an effect that is far from linear, such as clipping, looks quite unlike what it is. The errors
-    of single recordings stay as they were estimated with it.
+    With such parameters the signature of a nonlinear effect, such as clipping, would be wrong. The errors of single
+    recordings stay as estimated.
     """
     bent = max((abs(by) for by in now.position_of_unit.values()), default=0.0) > BENT
     if not bent or max(now.misfit.values()) < MISFIT:

@@ -1,4 +1,4 @@
-"""By what an effect may differ from the form that the library gives it."""
+"""Form error: how much the lines of an effect may differ from those in the library."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""Fit of the parameters that a model declares, as likely as their spread allows."""
+"""Maximum a posteriori fit of the declared parameters, with Gaussian priors."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What a model declares that it does not know exactly: parameters of the unit, and those of the effects it has."""
+"""Declared parameters with their priors: those of the unit, and those of the effects in the model."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace

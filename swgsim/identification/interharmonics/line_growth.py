@@ -1,4 +1,4 @@
-"""Whether a line between the orders is larger than it was in the healthy gear.
+"""Test whether an interharmonic line is larger than in the healthy gear.
 
 Its phase is another one in every recording, so powers are compared. At the same operating point they differ by noise,
 by the scatter of the amplitude from recording to recording, which repeats tell, and by its spread from day to day.

@@ -1,6 +1,7 @@
-"""What lies between the orders: effects with a name and lines without one, the strongest first, and recordings without
-them. A strong line leaks into the orders, and there would pass for something else in every recording. A line that the
-healthy gear shows as well is no news: it is taken out, too, but not reported.
+"""Search for interharmonic lines, the strongest first, and recordings from which they are subtracted.
+
+A strong line leaks into the orders and would pass for another effect there. A line that the healthy gear shows as well
+is subtracted too, but not reported.
 """
 
 from collections.abc import Iterable, Sequence

@@ -1,4 +1,4 @@
-"""What may be in the signals of a recording over time: the orders, and the shapes of an effect with random phases."""
+"""Shapes over time in the signals of a recording: the orders, and those of an effect with random phases."""
 
 from dataclasses import replace
 

@@ -19,6 +19,7 @@ from swgsim.identification.data.measured import Measured
 from swgsim.identification.fit.errors import repeat_noise
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.report.answer import Answer
+from swgsim.identification.report.effect_words import plain_title
 from swgsim.identification.report.prediction_errors import WHAT
 from swgsim.identification.search.shortlist import ALPHA
 from swgsim.recordings.recording import CHANNELS
@@ -229,7 +230,7 @@ def scores(report: Mapping[str, Any]) -> Figure:
     for place, score in enumerate(found, len(absorbed)):
         colour = BEFORE if score["chance"] <= ALPHA else "#56B4E9"
         axes.barh(place, max(score["score"], shortest) - shortest, left=shortest, color=colour, height=0.75)
-    axes.set_yticks(range(len(names)), [style.words(name) for name in names], fontsize=7.5)
+    axes.set_yticks(range(len(names)), [plain_title(name) for name in names], fontsize=7.5)
     for place, tick in enumerate(axes.get_yticklabels()):
         tick.set_color(GREY if place < len(absorbed) else "#000000")
     axes.set_xscale("log")

@@ -12,11 +12,21 @@ from swgsim.common.numbers import significant
 from swgsim.common.outcome import FOUND
 from swgsim.effects.library import named
 from swgsim.identification.report import engineering_units
-from swgsim.identification.report.effect_words import effect_text
+from swgsim.identification.report.effect_words import effect_text, plain_title
 from swgsim.identification.report.found import probability_text
 from swgsim.identification.report.next_experiment import HELPLESS, separation_text
 
 TEMPLATE = "identification/report/answer_page.html.jinja"
+# How to check a gear, by the place of an effect.
+CHECKS = {
+    "wave generator": "measure run-out and tilt on the shaft with a dial gauge, and inspect the bearing",
+    "mesh": "inspect the teeth of flex spline and circular spline under magnification",
+    "structure": "inspect the flex spline for cracks, such as with dye penetrant",
+    "gear": "measure temperature, torque and zeros without load, and compare gauges and grease with their data",
+    "drive": "inspect motor, brake, couplings and seals; measure the torque without load at low and high speed",
+    "gauge": "check bonds, clamping bolts and external moments; record zeros without load, cold and warm",
+    "acquisition": "feed a calibration signal into the amplifiers; check encoder and torque flanges at standstill",
+}
 
 
 def page(report: Mapping[str, Any], pictures: Mapping[str, style.Picture]) -> str:
@@ -30,7 +40,7 @@ def page(report: Mapping[str, Any], pictures: Mapping[str, style.Picture]) -> st
         Pictures by name; ``residual`` and ``posterior`` are part of the summary.
     """
     templates = environment("swgsim")
-    templates.filters["words"] = style.words
+    templates.filters["words"] = plain_title
     templates.filters["significant"] = significant
     texts = ("parameter_words", "value_text", "interval_text")
     return templates.get_template(TEMPLATE).render(
@@ -57,7 +67,9 @@ def next_steps(report: Mapping[str, Any]) -> list[str]:
     steps = []
     if report["verdict"] == FOUND:
         places = dict.fromkeys(effect["place"] for effect in report["effects"])
-        steps.append(f"Check the gear: {', '.join(places)}.")
+        steps += [
+            f"Check the {place}: {CHECKS[place]}." if place in CHECKS else f"Check the {place}." for place in places
+        ]
         steps.append("To simulate the gear with the effects that were found, declare them with effects=effects.yaml.")
     if experiment := report["next_experiment"]:
         steps += [_sentence(words) for words in experiment["words"].split("; ") if not words.startswith(HELPLESS)]

@@ -3,8 +3,9 @@
 from collections.abc import Mapping, Sequence
 
 from swgsim.common.numbers import significant
+from swgsim.common.style import words
 from swgsim.effects.base import Effect
-from swgsim.effects.library import named
+from swgsim.effects.library import LIBRARY, named
 from swgsim.effects.quantity import Role, quantities, size_of
 from swgsim.effects.text import path_of
 from swgsim.identification.report.engineering_units import Estimate, interval_text, parameter_words, value_text
@@ -54,6 +55,15 @@ def titled(name: str) -> str:
     if name in TITLES or title.split()[-1] in UNCOUNTABLE:
         return title
     return f"{'an' if title[0] in 'aeiou' else 'a'} {title}"
+
+
+def plain_title(name: str) -> str:
+    """The title of an effect without article; of an effect from outside the library, its name in words.
+
+    >>> plain_title("stribeck_friction"), plain_title("my_effect")
+    ('Stribeck friction', 'my effect')
+    """
+    return LIBRARY[name].title() if name in LIBRARY else words(name)
 
 
 def effect_name(name: str, parameters: Mapping[str, Estimate]) -> str:

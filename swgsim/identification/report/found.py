@@ -1,6 +1,7 @@
 """The effects that were found with their probabilities, and the options that were compared."""
 
 from collections.abc import Mapping
+from math import exp, log
 from typing import Any
 
 from swgsim.common.numbers import estimate, number, probability
@@ -58,12 +59,12 @@ def _evidence(answer: Answer, effect: Effect, known: float) -> str:
 
 
 def _factor(log_ratio: float) -> str:
-    """A ratio of probabilities in words.
+    """A ratio of probabilities in words; report.json has its logarithm.
 
-    >>> _factor(3.0), _factor(230.3)
-    ('20', '1e100')
+    >>> _factor(3.0), _factor(3201.0)
+    ('20', 'more than a million')
     """
-    return f"{2.718281828459045**log_ratio:.0f}" if log_ratio < 7 else f"1e{log_ratio / 2.302585092994046:.0f}"
+    return f"{exp(log_ratio):,.0f}" if log_ratio < log(1e6) else "more than a million"
 
 
 def probability_text(value: float) -> str:

@@ -28,7 +28,7 @@ class Identification:
     answer : Answer
         The fitted models, the effects and all tests.
     report : mapping
-        The content of ``report.json`` in SI units; the fields are explained in docs/loop.md.
+        The content of ``report.json`` in SI units; docs/report_fields.md explains the fields.
     """
 
     answer: Answer

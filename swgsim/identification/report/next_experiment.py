@@ -67,19 +67,20 @@ class Experiment:
         if self.recordings is None:
             return (
                 f"{HELPLESS} can {aim}: even {RECORDINGS[-1]} recordings {where} "
-                f"give a separation of {separation_text(self.separation)}, {SEPARATED:g} are needed"
+                f"make a difference of {separation_text(self.separation)} standard deviations only, "
+                f"{SEPARATED**0.5:g} are needed"
             )
         count = f"{self.recordings} recording{'s' if self.recordings > 1 else ''}"
-        return f"to {aim}, make {count} {where} (separation {self.separation:.0f})"
+        return f"to {aim}, make {count} {where} (difference {separation_text(self.separation)} standard deviations)"
 
 
 def separation_text(separation: float) -> str:
-    """A separation for a text; far below one standard deviation, its value has no meaning.
+    """A separation in standard deviations; far below one, its value has no meaning.
 
-    >>> separation_text(40.24), separation_text(1e-7)
-    ('40', 'less than 0.1')
+    >>> separation_text(39.2), separation_text(1e-7)
+    ('6.3', 'less than 0.3')
     """
-    return "less than 0.1" if separation < 0.1 else significant(separation, 2)
+    return "less than 0.3" if separation < 0.1 else significant(separation**0.5, 2)
 
 
 def next_experiments(answer: Answer) -> tuple[Experiment, ...]:

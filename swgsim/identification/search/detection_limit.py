@@ -1,4 +1,4 @@
-"""The smallest size of an effect that would have been seen, where what can be seen of it goes with its size."""
+"""Detection limit: the smallest size of an effect that is significant, also if its signature depends on the size."""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -1,5 +1,6 @@
-"""What the library offers as explanations: every effect at typical size with its inner parameters tried out, and at
-further sizes where these look different.
+"""The hypotheses of the library: every effect at typical size, for several values of its inner parameters.
+
+Effects whose signature depends on their size have hypotheses at further sizes.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
