@@ -213,20 +213,6 @@ def test_what_was_found_is_gone_from_the_spectra():
     assert sum(float(each.left @ each.left) for each in found.left) == pytest.approx(noise, rel=0.1)
 
 
-def test_a_line_without_a_name_is_described():
-    recordings = measured((Whistle(1e-3),), 7)
-    found = search(gauge_spectra(recordings), KINDS, 0.005)
-    (line,) = found.unnamed
-    assert found.named == ()
-    assert line.kind == "order"
-    assert line.at == pytest.approx(5.37, abs=0.03)
-    (part,) = line.parts
-    assert (part.effect.pattern, part.effect.law) == ("the same in all gauges", "constant")
-    assert part.effect.amplitude == pytest.approx(1e-3, rel=0.1)
-    assert line.chance < 1e-6
-    assert "order 5.3" in str(line) or "order 5.4" in str(line)
-
-
 def test_a_line_explains_as_much_between_two_lines_of_the_spectrum_as_on_one():
     revolutions = gauge_spectra(measured((), 7))[0].revolutions
     found = [

@@ -56,10 +56,6 @@ class Layout:
         """Whether each feature is of a gauge."""
         return np.isin(self.channel, SENSORS)
 
-    def of(self, recordings: Sequence[Recording]) -> Float[np.ndarray, "recording feature"]:
-        """The feature vectors of recordings of equal length; raises like :func:`features`."""
-        return features_alike(recordings, self)
-
     def lines(self, features: Float[np.ndarray, "*batch feature"]) -> Complex[np.ndarray, "*batch channel order"]:
         """Complex order lines of feature vectors; signal = Re(sum of lines[k] exp(i k phi))."""
         parts = features.reshape(*features.shape[:-1], len(self.channels), 2 * ORDERS + 1)
