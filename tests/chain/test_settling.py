@@ -10,6 +10,7 @@ from scipy.interpolate import CubicSpline
 
 from swgsim.chain import settling, unsteady
 from swgsim.chain.dynamics import OMEGA_IN, PHI_IN, PHI_OUT, Drive, State
+from swgsim.chain.equilibrium import resonance, uniform_rotation
 from swgsim.chain.motion import Motion, NoSteadyState, run, shooting
 from swgsim.chain.newton import TIMES, stable_revolution
 from swgsim.chain.settling import steady_revolution, steady_state
@@ -57,7 +58,7 @@ def drawn(rng: np.random.Generator, count: int, resonant: bool, slowest: float =
         )
         point = OperatingPoint(between(500, 5000), float(rng.uniform(0, 40 if resonant else 70)))
         if resonant:
-            speed = 60 * Drive([gear], [point]).resonance[0] / rng.choice([1, 2, 4]) * between(0.9, 1.1)
+            speed = 60 * resonance(Drive([gear], [point]))[0] / rng.choice([1, 2, 4]) * between(0.9, 1.1)
             if not 500 <= speed <= 5000:
                 continue
             point = replace(point, n_in_rpm=float(speed))
@@ -116,7 +117,7 @@ def test_where_teeth_lift_the_motion_is_that_of_solve_ivp(case: Case) -> None:
 @pytest.mark.parametrize("case", LIFTING)
 def test_from_uniform_rotation_solve_ivp_settles_at_the_motion_that_was_found(case: Case) -> None:
     drive = Drive([case[0]], [case[1]])
-    expected, _ = integrated(case, drive.at_rest_in_rotating_frame(), 150)
+    expected, _ = integrated(case, uniform_rotation(drive), 150)
     found = lines(steady_revolution(drive, np.zeros(1), 256))
     np.testing.assert_allclose(found, expected, atol=5e-3 * np.abs(expected[1:]).max())
 
@@ -126,7 +127,7 @@ def test_the_mean_revolution_of_a_hunting_gear_is_that_of_solve_ivp() -> None:
     """Its revolutions differ by a fifth of the ripple, so two means over many agree to some per cent of it."""
     drive = Drive([HUNTING[0]], [HUNTING[1]])
     assert stable_revolution(drive, 0.0, POINTS) is None
-    expected, _ = integrated(HUNTING, drive.at_rest_in_rotating_frame(), 240, averaged=160)
+    expected, _ = integrated(HUNTING, uniform_rotation(drive), 240, averaged=160)
     found = lines(steady_revolution(drive, np.zeros(1), POINTS))
     np.testing.assert_allclose(found, expected, atol=0.05 * np.abs(expected[1:]).max())
 
