@@ -34,7 +34,7 @@ pytestmark = [pytest.mark.end_to_end, pytest.mark.slow]
 SPECIMEN = "first"
 RATIO = 101
 SEARCHED = [LIBRARY[name] for name in ("eccentric_wave_generator", "reduced_damping", "tilting_moment", "gauge_gain")]
-DRAWN = Drawn(theta=2.0, phase=1.0, channel=3, multiples=(0.5, 0.8, 1.0, 1.2, 1.5))
+DRAWN = Drawn(theta=2.0, phase=1.0, channel=3)
 
 
 @pytest.fixture(scope="module")
