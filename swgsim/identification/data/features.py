@@ -56,6 +56,11 @@ class Layout:
         """Whether each feature is of a gauge."""
         return np.isin(self.channel, SENSORS)
 
+    @property
+    def of_drive(self) -> Bool[np.ndarray, " feature"]:
+        """Whether each feature is of speed or torque."""
+        return ~self.of_gauges
+
     def lines(self, features: Float[np.ndarray, "*batch feature"]) -> Complex[np.ndarray, "*batch channel order"]:
         """Complex order lines of feature vectors; signal = Re(sum of lines[k] exp(i k phi))."""
         parts = features.reshape(*features.shape[:-1], len(self.channels), 2 * ORDERS + 1)

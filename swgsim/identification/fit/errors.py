@@ -66,11 +66,7 @@ def repeat_noise(measured: Measured) -> Float[np.ndarray, "recording feature"] |
     """
     if not measured.spare:
         return None
-    deviations = np.zeros(measured.values.shape)
-    for group in dict.fromkeys(measured.repeats):
-        rows = [i for i, each in enumerate(measured.repeats) if each == group]
-        deviations[rows] = measured.values[rows] - measured.values[rows].mean(axis=0)
-    return deviations * np.sqrt(len(measured) / measured.spare)
+    return measured.about_repeats(measured.values) * np.sqrt(len(measured) / measured.spare)
 
 
 def noise_floor(measured: Measured) -> Float[np.ndarray, " channel"]:

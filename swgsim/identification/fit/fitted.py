@@ -101,7 +101,12 @@ class Fitted:
     @property
     def added(self) -> tuple[Effect, ...]:
         """The effects that the model has beyond the unit's."""
-        return self.model.effects[len(self.unit.model.effects) :]
+        return tuple(self.model.effects[number] for number in self.numbers_added)
+
+    @property
+    def numbers_added(self) -> range:
+        """Their numbers among the effects of the model."""
+        return range(len(self.unit.model.effects), len(self.model.effects))
 
     @property
     def declared(self) -> dict[str, Declared]:
