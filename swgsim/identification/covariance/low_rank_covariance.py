@@ -142,7 +142,9 @@ class Covariance:
         # One column for each block, since a product with many columns takes little more time than with one.
         expected = np.repeat(r[:, None], len(blocks), axis=1)
         for number, block in enumerate(blocks):
-            expected[block, number] -= cho_solve((cholesky(self.precision(block), lower=True), True), weighed[block])
+            L = cholesky(self.precision(block), lower=True)
+            white = solve_triangular(L, weighed[block], lower=True)
+            expected[block, number] -= solve_triangular(L, white, lower=True, trans=1)
         return list(self.common_mean(expected).T)
 
 
