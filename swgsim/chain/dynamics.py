@@ -215,8 +215,8 @@ class Drive:
 
         Notes
         -----
-        :meth:`at_rest_in_rotating_frame` has the same formula solved for a given load, without effects. A change of
-        eq. (5) belongs in both.
+        :func:`swgsim.chain.equilibrium.uniform_rotation` has the same formula solved for a given load, without effects.
+        A change of eq. (5) belongs in both.
         """
         p, sign = self.p, sense(sliding)
         friction = (p["b1"] + p["b2"] * sliding * sliding) * sliding
@@ -281,31 +281,6 @@ class Drive:
         end = state + dt * k3
         k4 = self.derivative(end, self.torques(end))
         return state + dt / 6 * (k1 + 2 * (k2 + k3) + k4)
-
-    @property
-    def resonance(self) -> Float[np.ndarray, " run"]:
-        """Natural frequency of the two inertias on the gear's stiffness at the load [Hz]."""
-        _, _, phi_out, _, _ = self.at_rest_in_rotating_frame()
-        twist = -phi_out / self.tan_t + self.phi_err(np.zeros_like(phi_out))[0]
-        stiffness = (self.p["k1"] + 3 * self.p["k2"] * twist**2) / self.tan_t**2
-        reflected = (self.p["N"] + 1) ** 2 * self.p["J_in"]
-        return np.sqrt(stiffness * (1 / reflected + 1 / self.p["J_out"])) / (2 * np.pi)
-
-    def at_rest_in_rotating_frame(self) -> State:
-        """State of uniform rotation in equilibrium with the load at phi_in = 0; the steady-state search starts here."""
-        p, speed = self.p, self.omega / (self.p["N"] + 1)
-        sliding = speed / self.sin_t
-        # Eq. (5) again, as in friction_torque: at phi_out = 0, for a positive sliding speed, without effects. A change
-        # in one belongs in the other too. There T_stiff is known. Here the load is known: in equilibrium with it
-        # F_n = T_load / cos(alpha_tooth) + T_fric tan(alpha_tooth). Then eq. (5) is solved for T_fric.
-        friction = (p["b1"] + p["b2"] * sliding**2) * sliding + p["b0"] + p["b3"] * np.sin(p["theta_b"])
-        T_fric = (friction + p["mu"] * self.T_load / self.cos_t) / (1 - p["mu"] * self.tan_t)
-        T_stiff = self.tan_t * (self.T_load + T_fric / self.sin_t)
-        twist = T_stiff / p["k1"]
-        for _ in range(8):
-            twist -= ((p["k1"] + p["k2"] * twist**2) * twist - T_stiff) / (p["k1"] + 3 * p["k2"] * twist**2)
-        phi_out = self.tan_t * (self.phi_err(np.zeros_like(twist))[0] - twist)
-        return np.stack([0 * twist, self.omega, phi_out, speed, self.tan_in * T_stiff / self.gain_i])
 
 
 def _power(known: dict[int, np.ndarray], order: int) -> np.ndarray:

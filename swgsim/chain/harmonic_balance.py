@@ -11,6 +11,7 @@ import numpy as np
 from jaxtyping import Bool, Complex, Float
 
 from swgsim.chain.dynamics import OMEGA_IN, OMEGA_OUT, PHI_IN, PHI_OUT, SPEED_ERROR, Drive, State
+from swgsim.chain.equilibrium import uniform_rotation
 from swgsim.chain.motion import Motion, kept_of
 
 # Least number of times at which the equations hold: eight per wave of the highest order that is compared.
@@ -43,7 +44,7 @@ def one_revolution(
     each = -(-least // points)
     each += each * points % 2  # an even number of times
     turn = 2 * np.pi * np.arange(points * each)[:, None] / (points * each)
-    _, speed_in, phi_out, speed_out, speed_error = drive.at_rest_in_rotating_frame()
+    _, speed_in, phi_out, speed_out, speed_error = uniform_rotation(drive)
     # A factor i k omega on a line is its derivative with respect to time.
     i_k_omega = 1j * np.arange(len(turn) // 2 + 1)[:, None] * drive.omega
     i_k_omega[-1] = 0  # the derivative of the last line is 0 at all times
@@ -81,8 +82,7 @@ def motion_of(drive: Drive, state: State, each: int) -> Motion:
     points = kept.shape[1]
     kept = np.concatenate([kept, kept[:, :1]], axis=1)
     kept[0, -1] += 2 * np.pi
-    phi_in, omega_in, omega_out, T_in, T_out, T_flange = np.ascontiguousarray(kept.swapaxes(1, 2))
-    return Motion(phi_in, omega_in, omega_out, T_in, T_out, T_flange, drive.period / points)
+    return Motion.of(np.ascontiguousarray(kept.swapaxes(1, 2)), drive.period / points)
 
 
 def accelerations(drive: Drive, state: State) -> Float[np.ndarray, "2 time run"]:

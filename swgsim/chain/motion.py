@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from swgsim.chain.dynamics import OMEGA_IN, OMEGA_OUT, PHI_IN, PHI_OUT, SPEED_ERROR, Drive, State, Torques
+from swgsim.chain.equilibrium import resonance, uniform_rotation
 
 # Least numbers of integration steps: 24 per cycle of order 4 of the kinematic error, and 40 per cycle of the resonance.
 STEPS_PER_REVOLUTION = 96
@@ -87,11 +88,12 @@ def steps_per_revolution(drive: Drive) -> int:
     NoSteadyState
         If a run is so slow or stiff that it needs more than MOST_STEPS.
     """
-    needed = np.ceil(STEPS_PER_OSCILLATION * drive.resonance * drive.period)
+    frequency = resonance(drive)
+    needed = np.ceil(STEPS_PER_OSCILLATION * frequency * drive.period)
     i = int(needed.argmax())
     if needed[i] > MOST_STEPS:
         raise NoSteadyState(
-            f"{drive.points[i].n_in_rpm} rpm with a resonance of {drive.resonance[i]:.3g} Hz needs {needed[i]:.0f} "
+            f"{drive.points[i].n_in_rpm} rpm with a resonance of {frequency[i]:.3g} Hz needs {needed[i]:.0f} "
             f"steps per revolution, limit {MOST_STEPS}: raise speed or inertia, or lower the stiffness"
         )
     return max(STEPS_PER_REVOLUTION, int(needed[i]))
@@ -128,8 +130,7 @@ def _integrate(drive: Drive, state: State, dt: float | Float[np.ndarray, " run"]
             state = drive.step(state, torques, step)
             for _ in range(substeps - 1):
                 state = drive.step(state, drive.torques(state), step)
-    phi_in, omega_in, omega_out, T_in, T_out, T_flange = np.ascontiguousarray(np.swapaxes(kept, 1, 2))
-    return Motion(phi_in, omega_in, omega_out, T_in, T_out, T_flange, dt)
+    return Motion.of(np.ascontiguousarray(np.swapaxes(kept, 1, 2)), dt)
 
 
 def kept_of(state: State, torques: Torques) -> tuple[np.ndarray, ...]:
@@ -149,7 +150,7 @@ def shooting(drive: Drive, tolerance: float = 1e-8) -> tuple[State, Bool[np.ndar
     slow = drive.omega / (drive.p["N"] + 1)
     scale = np.stack([drive.omega, 0 * slow + 2 * np.pi / (drive.p["N"] + 1), slow, drive.T_load / drive.gain_i + 1e-3])
     goal = np.stack([2 * np.pi + 0 * slow, 0 * slow, 2 * np.pi / (drive.p["N"] + 1), 0 * slow])
-    state = drive.at_rest_in_rotating_frame()
+    state = uniform_rotation(drive)
 
     # The return map is nearly linear: its Jacobian at the start, by differences, serves all iterations.
     nudged = np.repeat(state, size + 1, axis=1)

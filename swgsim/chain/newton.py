@@ -14,6 +14,7 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.chain.dynamics import OMEGA_IN, OMEGA_OUT, PHI_IN, PHI_OUT, SPEED_ERROR, Drive, State
+from swgsim.chain.equilibrium import uniform_rotation
 from swgsim.chain.harmonic_balance import TOLERANCE, accelerations, motion_of, nudged
 from swgsim.chain.motion import Motion
 
@@ -70,7 +71,7 @@ class _Equations:
     def __init__(self, drive: Drive, start_angle: float, times: int) -> None:
         self.drive, self.times, self.omega = drive, times, float(drive.omega[0])
         self.turn = 2 * np.pi * np.arange(times)[:, None] / times
-        self.uniform_state = drive.at_rest_in_rotating_frame()
+        self.uniform_state = uniform_rotation(drive)
         self.uniform_state[PHI_IN] = start_angle
         orders, lines = np.arange(times // 2 + 1)[:, None], np.fft.rfft(np.eye(times), axis=0)
         i_k_omega = 1j * orders * self.omega

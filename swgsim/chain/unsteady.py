@@ -15,6 +15,7 @@ from jaxtyping import Float
 from scipy.interpolate import CubicSpline
 
 from swgsim.chain.dynamics import OMEGA_IN, PHI_IN, PHI_OUT, Drive, State
+from swgsim.chain.equilibrium import resonance, uniform_rotation
 from swgsim.chain.motion import Motion, NoSteadyState, steps_per_revolution
 
 # Periods of the speed control until the start is forgotten, and over which revolutions are averaged.
@@ -56,7 +57,7 @@ def mean_revolution(drive: Drive, start_angle: Float[np.ndarray, " run"], points
         If a gear does not keep turning at about the set speed.
     """
     steps = points * -(-steps_per_revolution(drive) // points)
-    state = drive.at_rest_in_rotating_frame()
+    state = uniform_rotation(drive)
     state[PHI_IN] = start_angle
     state[PHI_OUT] += start_angle / (drive.p["N"] + 1)
     periods = drive.p["control_frequency"] * drive.period  # of the speed control, in a revolution
@@ -111,7 +112,7 @@ def _require_speed(drive: Drive, state: State, mean: Float[np.ndarray, "5 step r
         f"the gear at {set_speed:g} rpm and {load:g} N m {found}: its speed control of "
         f"{drive.p['control_frequency'][i]:.3g} Hz does not hold the speed within {100 * HELD:g} %; look at the "
         f"friction (b1 {drive.p['b1'][i]:.3g} N m s/rad, b2 {drive.p['b2'][i]:.3g} N m s^3/rad^3), at the resonance "
-        f"of {drive.resonance[i]:.3g} Hz, and at effects on the drive"
+        f"of {resonance(drive)[i]:.3g} Hz, and at effects on the drive"
     )
 
 

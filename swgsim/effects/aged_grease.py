@@ -1,6 +1,4 @@
-"""Effect: aged grease."""
-
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import size
@@ -28,5 +26,4 @@ class AgedGrease(Effect):
     def gear(self, gear: Gear) -> Gear:
         """The gear with aged grease."""
         t = gear.transmission
-        aged = replace(t, mu=t.mu * (1 + self.share), b1=t.b1 * (1 - self.share / 2))
-        return replace(gear, transmission=aged)
+        return gear.with_transmission(mu=t.mu * (1 + self.share), b1=t.b1 * (1 - self.share / 2))

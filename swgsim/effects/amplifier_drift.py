@@ -1,5 +1,3 @@
-"""Imperfection: amplifier and excitation drift."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Channels, Effect, Scene

@@ -1,5 +1,3 @@
-"""Disturbance: axial thrust of the wave generator."""
-
 from dataclasses import dataclass
 
 import numpy as np

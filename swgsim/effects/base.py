@@ -145,11 +145,6 @@ class Effect:
         """The name in words."""
         return cls.name().replace("_", " ").replace("stribeck", "Stribeck")
 
-    @property
-    def structural(self) -> bool:
-        """Whether it acts on the load or the stiffness of the truss, so that influence maps make its signature."""
-        return self.place in ("wave generator", "mesh", "structure")
-
     def at(self, point: OperatingPoint, conditions: Conditions) -> "Effect":
         """The effect at an operating point and under the conditions of a recording."""
         return self

@@ -1,5 +1,3 @@
-"""Imperfection: cage order of the wave generator's bearing."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.bearing_order import BearingOrder

@@ -1,5 +1,3 @@
-"""Effect: friction of the wave generator's bearing that grows with the load."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Effect

@@ -1,5 +1,3 @@
-"""Imperfection: a line of the wave generator's bearing at a non-integer order."""
-
 from dataclasses import dataclass
 
 import numpy as np

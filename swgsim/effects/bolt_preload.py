@@ -1,5 +1,3 @@
-"""Imperfection: preload of the collar's bolts."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Effect, Scene, Signals

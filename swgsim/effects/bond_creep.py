@@ -1,5 +1,3 @@
-"""Imperfection: creep of the gauges' bond."""
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,3 @@
-"""Imperfection: bridges and amplifiers that are not linear."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Effect, Scene, Signals

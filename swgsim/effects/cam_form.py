@@ -1,5 +1,3 @@
-"""Imperfection: form error of the wave generator's cam."""
-
 from dataclasses import dataclass
 
 import numpy as np

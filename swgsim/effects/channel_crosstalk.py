@@ -1,5 +1,3 @@
-"""Imperfection: crosstalk between neighbouring channels."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Channels, Effect, Scene

@@ -1,5 +1,3 @@
-"""Imperfection: channels that are sampled one after another."""
-
 from dataclasses import dataclass
 
 import numpy as np

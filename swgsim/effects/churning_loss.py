@@ -1,5 +1,3 @@
-"""Effect: churning of grease."""
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,3 @@
-"""Imperfection: runout or ovality of the circular spline."""
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,3 @@
-"""Imperfection: amplifiers that saturate."""
-
 from dataclasses import dataclass
 
 import numpy as np

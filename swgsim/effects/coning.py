@@ -1,5 +1,3 @@
-"""Effect: coning of the sleeve under load."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Effect

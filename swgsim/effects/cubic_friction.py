@@ -1,5 +1,3 @@
-"""Effect: viscous friction that does not grow in proportion to speed."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Effect

@@ -1,5 +1,3 @@
-"""Imperfection: a gauge that comes off."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Effect, Scene, Signals

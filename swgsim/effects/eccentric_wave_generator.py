@@ -1,5 +1,3 @@
-"""Fault: eccentric wave generator."""
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,3 @@
-"""Effect: elastic hysteresis of the flex spline."""
-
 from dataclasses import dataclass
 
 import numpy as np

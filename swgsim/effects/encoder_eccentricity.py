@@ -1,5 +1,3 @@
-"""Imperfection: an encoder disc off centre."""
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,3 @@
-"""Imperfection: filters that are not alike."""
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,3 @@
-"""Imperfection: gain of a torque flange."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Channels, Effect, Scene

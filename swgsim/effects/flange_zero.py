@@ -1,5 +1,3 @@
-"""Imperfection: zero of the input's torque flange."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Channels, Effect, Scene

@@ -1,5 +1,3 @@
-"""Effect: friction coefficient of the flanks."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Effect

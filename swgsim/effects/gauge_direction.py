@@ -1,5 +1,3 @@
-"""Imperfection: a gauge is bonded at the wrong direction."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Effect

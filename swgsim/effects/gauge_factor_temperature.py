@@ -1,5 +1,3 @@
-"""Imperfection: gauge factor with temperature."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Effect, Scene, Signals

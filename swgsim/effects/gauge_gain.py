@@ -1,5 +1,3 @@
-"""Imperfection or damage: a gauge, or all of them, shows too much or too little."""
-
 from dataclasses import dataclass, replace
 
 from swgsim.effects.base import Effect

@@ -1,5 +1,3 @@
-"""Imperfection: a gauge sits at the wrong angle."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Effect

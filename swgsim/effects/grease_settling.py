@@ -1,5 +1,3 @@
-"""Effect: grease that is pushed aside after a rest."""
-
 from dataclasses import dataclass
 from math import exp, log1p
 

@@ -1,5 +1,3 @@
-"""Effect: how fast grease thins with temperature."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Effect

@@ -1,5 +1,3 @@
-"""Effect: friction at the input that depends on the angle of the wave generator."""
-
 from dataclasses import dataclass
 
 import numpy as np

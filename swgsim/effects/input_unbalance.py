@@ -1,5 +1,3 @@
-"""Effect: unbalance of the input."""
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,3 @@
-"""Effect: another order of the kinematic error."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Effect

@@ -1,5 +1,3 @@
-"""Effect: friction coefficient that changes with the load."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Effect

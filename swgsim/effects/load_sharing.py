@@ -1,5 +1,3 @@
-"""Effect: more teeth share a higher load."""
-
 from dataclasses import dataclass
 from math import exp
 

@@ -1,5 +1,3 @@
-"""Effect: the lobes turn with load."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Effect

@@ -1,5 +1,3 @@
-"""Effect: lost motion between the flanks."""
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,3 @@
-"""Disturbance: mains hum."""
-
 from dataclasses import dataclass, replace
 
 import numpy as np

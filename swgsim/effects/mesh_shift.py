@@ -1,5 +1,3 @@
-"""Imperfection: shifted mesh."""
-
 from dataclasses import dataclass
 
 import numpy as np

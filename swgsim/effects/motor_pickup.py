@@ -1,5 +1,3 @@
-"""Disturbance: pick-up from the motor."""
-
 from dataclasses import dataclass
 
 import numpy as np

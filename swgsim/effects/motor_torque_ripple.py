@@ -1,5 +1,3 @@
-"""Effect: torque ripple of the motor."""
-
 from dataclasses import dataclass
 
 import numpy as np

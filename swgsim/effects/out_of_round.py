@@ -1,5 +1,3 @@
-"""Imperfection: out-of-round flex spline."""
-
 from dataclasses import dataclass
 
 import numpy as np

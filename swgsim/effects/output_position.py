@@ -1,5 +1,3 @@
-"""Effect: where the output stands when the recording begins."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Effect

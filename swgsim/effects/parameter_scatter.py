@@ -1,5 +1,3 @@
-"""Effect: scatter of the gear's parameters from one recording to the next."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Effect

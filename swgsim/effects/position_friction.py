@@ -1,5 +1,3 @@
-"""Effect: friction that depends on the angle of the wave generator."""
-
 from dataclasses import dataclass
 
 import numpy as np

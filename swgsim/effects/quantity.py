@@ -103,19 +103,19 @@ def size(
     return _parameter(Quantity(Role.SIZE, unit, low, high, typical, nothing, further=further, scale=scale))
 
 
-def phase(default: float = 0.0) -> Any:
+def phase() -> Any:
     """Declare the phase [rad] of a wave whose amplitude is the size."""
-    return _parameter(Quantity(Role.PHASE, "rad", 0, 2 * np.pi, default), default)
+    return _parameter(Quantity(Role.PHASE, "rad", 0, 2 * np.pi, 0.0), 0.0)
 
 
-def random_phase(default: float = 0.0) -> Any:
+def random_phase() -> Any:
     """Declare a phase [rad] that differs from recording to recording."""
-    return _parameter(Quantity(Role.RANDOM, "rad", 0, 2 * np.pi, default), default)
+    return _parameter(Quantity(Role.RANDOM, "rad", 0, 2 * np.pi, 0.0), 0.0)
 
 
-def angle(default: Any = MISSING, *, points: int = 24) -> Any:
+def angle(*, points: int = 24) -> Any:
     """Declare a position around the circumference, from gauge s1 [rad]."""
-    return _parameter(Quantity(Role.ANGLE, "rad", 0, 2 * np.pi, 0.0, points=points), default)
+    return _parameter(Quantity(Role.ANGLE, "rad", 0, 2 * np.pi, 0.0, points=points))
 
 
 def shape(default: float, *, unit: str, low: float, high: float, points: int = 1, of_structure: bool = False) -> Any:

@@ -1,5 +1,3 @@
-"""Fault: reduced damping."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Effect

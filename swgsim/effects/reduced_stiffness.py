@@ -1,5 +1,3 @@
-"""Fault: reduced stiffness."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Effect

@@ -1,5 +1,3 @@
-"""Fault: root tooth crack."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Crack, Effect

@@ -1,5 +1,3 @@
-"""Imperfection: eccentricity that turns with the wave generator."""
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,3 @@
-"""Effect: run-in of a new gear."""
-
 from dataclasses import dataclass
 from math import exp
 

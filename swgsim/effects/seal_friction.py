@@ -1,5 +1,3 @@
-"""Effect: friction of seals at the input."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Effect, Extra, Instant

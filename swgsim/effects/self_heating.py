@@ -1,5 +1,3 @@
-"""Imperfection: bridges that warm themselves up."""
-
 from dataclasses import dataclass
 
 import numpy as np

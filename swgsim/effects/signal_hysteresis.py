@@ -1,5 +1,3 @@
-"""Imperfection: hysteresis of strain and bond."""
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,3 @@
-"""Effect: deformation by speed."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Effect

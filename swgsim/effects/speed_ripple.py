@@ -1,5 +1,3 @@
-"""Effect: speed ripple of the drive."""
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,3 @@
-"""Effect: how much the gear stiffens under load."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Effect

@@ -1,5 +1,3 @@
-"""Effect: friction that rises at low speed."""
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,3 @@
-"""Disturbance: sub-harmonics of the input speed."""
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,3 @@
-"""Effect: thermal growth of the wave generator."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Effect

@@ -1,5 +1,3 @@
-"""Imperfection: apparent strain of one gauge, or of all, with temperature."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Effect, Scene, Signals

@@ -1,5 +1,3 @@
-"""Imperfection: tilted wave generator."""
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,3 @@
-"""Disturbance: a moment from outside tilts the gear."""
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,3 @@
-"""Fault: tip tooth crack."""
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,3 @@
-"""Imperfection: strain that is not in proportion to torque."""
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,5 +1,3 @@
-"""Imperfection: uneven wall of the sleeve."""
-
 from dataclasses import dataclass
 
 import numpy as np

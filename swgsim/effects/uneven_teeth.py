@@ -1,5 +1,3 @@
-"""Imperfection: uneven teeth of the flex spline."""
-
 from dataclasses import dataclass
 
 import numpy as np

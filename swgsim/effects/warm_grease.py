@@ -1,5 +1,3 @@
-"""Effect: temperature of the grease."""
-
 from dataclasses import dataclass
 from math import exp
 

@@ -1,5 +1,3 @@
-"""Ageing: worn wave generator."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Effect, Field, Psi, Theta

@@ -1,5 +1,3 @@
-"""Imperfection: zero of a bridge."""
-
 from dataclasses import dataclass
 
 from swgsim.effects.base import Effect

@@ -9,6 +9,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from swgsim.chain.dynamics import OMEGA_IN, OMEGA_OUT, PHI_IN, PHI_OUT, SPEED_ERROR, Drive
+from swgsim.chain.equilibrium import uniform_rotation
 from swgsim.chain.motion import advance, run, shooting, steps_per_revolution
 from swgsim.chain.settling import steady_state
 from swgsim.effects.input_unbalance import InputUnbalance
@@ -107,7 +108,7 @@ def test_steady_state_is_where_a_long_transient_ends() -> None:
     # b3 varies over an output revolution: there is a strictly periodic state only without it.
     drive = Drive([replace(NOMINAL, b3=0.0)], [point])
     state = steady_state(drive)
-    start = drive.at_rest_in_rotating_frame()[:, 0]
+    start = uniform_rotation(drive)[:, 0]
 
     def rate(_: float, y: np.ndarray) -> np.ndarray:
         return drive.derivative(y[:, None], drive.torques(y[:, None]))[:, 0]

@@ -14,6 +14,7 @@ from swgsim.chain.steady_window import over_window
 from swgsim.effects import EccentricWaveGenerator, InputUnbalance, RootToothCrack, TipToothCrack
 from swgsim.gear.gear import OperatingPoint
 
+pytestmark = pytest.mark.end_to_end
 POINTS = [OperatingPoint(2000, 7), OperatingPoint(4000, 70)]
 DT, SAMPLES = 1e-4, 600
 START = np.zeros(2)  # elsewhere the integration begins near the angle only

@@ -18,6 +18,7 @@ from swgsim.identification.data.gauge_order import order_defects
 from swgsim.recordings.recording import Recording
 from swgsim.studies.examples import EXAMPLES
 
+pytestmark = pytest.mark.end_to_end
 OF_UNIT = (GaugeGain(1, 0.01), GaugePosition(3, 0.005), GaugeGain(4, -0.01))
 POINTS = (OperatingPoint(2000.0, 10.0), OperatingPoint(4000.0, 70.0))
 
@@ -39,7 +40,6 @@ def exchanged(recordings: tuple[Recording, ...], *pairs: tuple[str, str]) -> tup
     return recordings
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("pair", [("s1", "s3"), ("s2", "s4")])
 def test_a_pair_that_is_exchanged_is_refused(pair):
     (defect,) = order_defects(exchanged(recorded(seed=2), pair), recorded())

@@ -12,6 +12,7 @@ from swgsim.identification.interharmonics.interharmonic_spectrum import GaugeSpe
 from swgsim.identification.interharmonics.line_growth import chance_of_growth
 from swgsim.identification.interharmonics.line_search import search
 
+pytestmark = pytest.mark.end_to_end
 LEVEL = 0.005
 TWICE = 2 * list(POINTS[4:])
 

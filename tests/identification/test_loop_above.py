@@ -12,6 +12,7 @@ from swgsim.identification.data.model import Model
 from swgsim.identification.search.high_orders import above
 from swgsim.storage.labelled_signals import SENSORS
 
+pytestmark = pytest.mark.end_to_end
 MODEL, NOISE, LEVEL, RATE = Model(GEAR), 1e-3, 0.005, 10_000.0
 
 

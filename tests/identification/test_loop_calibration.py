@@ -11,7 +11,6 @@ from scipy.optimize import nnls
 from swgsim.chain import NoSteadyState
 from swgsim.common.seeds import generator
 from swgsim.effects.clipping import Clipping
-from swgsim.flexspline.gauges import LIMITS
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import W0_LIMITS, KinematicError
 from swgsim.identification.covariance.low_rank_covariance import Covariance
@@ -84,11 +83,6 @@ def test_a_fit_comes_to_rest_where_every_full_step_goes_almost_twice_as_far_as_i
     assert found.settled
     least = min(np.linspace(-1, 1, 20001), key=lambda x: (x - 0.3) ** 2 + (0.45 * x**2 + 1) ** 2)
     assert found.model.effects[0].height == pytest.approx(least, abs=3e-3)  # slopes are differences
-
-
-def test_a_gauge_stays_within_what_may_be_said_of_it():
-    position = of_unit(GEAR)["position of s1"]
-    assert position.value(position.at(Model(GEAR), 5.0)) == LIMITS["position"][1]
 
 
 def test_known_parameters_are_recovered(monkeypatch, A):
@@ -234,12 +228,6 @@ def test_bounds_are_respected(monkeypatch, A):
     assert [e.height for e in found.model.effects] == [1.0, -0.2]
     # At a bound the derivative is taken inwards, it is not zero.
     np.testing.assert_allclose(found.J, A, rtol=1e-6)
-
-
-def test_position_at_a_bound_is_that_of_the_model(monkeypatch, A):
-    predicting(monkeypatch, lambda x, y: A @ [x, y])
-    found = fitted({"x": height(0, sd=2.0, high=1.0)}, A @ [3.0, 0.0])
-    assert found.position["x"] == pytest.approx(found.model.effects[0].height / 2)
 
 
 def test_beside_a_bound_the_others_are_at_their_best(monkeypatch, A):

@@ -220,7 +220,7 @@ def test_two_effects_at_once_are_found_with_what_one_of_them_may_be_as_well(unit
     ]
     assert decision.probability_of(ECCENTRIC) > CREDIBLE
     assert 0.05 < decision.probability_of(WARM) < CREDIBLE
-    assert np.sum(decision.after.predictive - decision.before.predictive) > 6
+    assert decision.after.log_likelihood - decision.before.log_likelihood > 6
 
 
 def _shown(measured: Measured, T_out: Callable[[Recording], np.ndarray]) -> Measured:

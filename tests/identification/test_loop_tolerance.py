@@ -80,7 +80,7 @@ def test_what_is_open_of_the_unit_is_the_same_whatever_effects_leave_open(fitted
         assert each.log_likelihood == pytest.approx(anew.log_likelihood(fitted.from_start))
         block, _ = each.by_others[0]
         told = anew.left_out(fitted.from_start, [block])[0]
-        np.testing.assert_allclose(each.nuisance[block], (anew.columns[:, :-2] @ told.common[:-2])[block])
+        np.testing.assert_allclose(each.nuisance[block], (anew.columns[:, :-2] @ told[:-2])[block])
 
 
 def test_other_errors_of_single_recordings_are_those_it_would_have_been_given(fitted):

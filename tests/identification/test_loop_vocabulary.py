@@ -117,9 +117,9 @@ def test_what_an_atom_explains_is_a_fit_to_all_rows(fitted):
 def test_noise_is_drawn_as_it_is_declared(fitted):
     """Weighed by the inverse of its covariance it has that inverse as its covariance."""
     rows = np.arange(len(fitted.residual)) < 30
-    drawn_ = next(fitted.null(20_000, np.random.default_rng(8)))[rows]
+    drawn_ = next(fitted.null(8_000, np.random.default_rng(8)))[rows]
     expected = fitted.whole.precision(rows)
     scale = np.sqrt(np.diag(expected))
     np.testing.assert_allclose(
-        drawn_ @ drawn_.T / 20_000 / np.outer(scale, scale), expected / np.outer(scale, scale), atol=0.05
+        drawn_ @ drawn_.T / 8_000 / np.outer(scale, scale), expected / np.outer(scale, scale), atol=0.05
     )

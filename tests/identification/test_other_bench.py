@@ -6,17 +6,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 from chain_fixtures import GEAR
-from other_bench.bench import COLUMNS, record
-from other_bench.circle import ORDERS, POINTS, STEP, both_signs, circulant, coefficients
-from other_bench.effects import EFFECTS, Drawn, Effect
+from other_bench.bench import record
+from other_bench.circle import STEP
+from other_bench.effects import Drawn, Effect
 from other_bench.engagement import TORQUES, tooth_forces, wave_generator
-from other_bench.flex_spline import strains
 from other_bench.frustum import places
 from other_bench.gauges import maps_of
 from other_bench.hat import Hat
 from other_bench.motion import RATE, Drive, moved
 from other_bench.schedule import Run, session
-from other_bench.shell import ACROSS_GRID, ANSWERS, solved
+from other_bench.shell import ACROSS_GRID, solved
 from other_bench.specimen import Crack, Specimen, draw
 
 from swgsim.effects.base import Effect as Found
@@ -30,13 +29,12 @@ from swgsim.identification.fit.unit import STRUCTURE, Unit
 from swgsim.identification.interharmonics.interharmonic_spectrum import gauge_spectra
 from swgsim.identification.interharmonics.line_search import search
 from swgsim.recordings.read import read_recordings
-from swgsim.recordings.recording import CHANNELS
 
 pytestmark = [pytest.mark.end_to_end, pytest.mark.slow]
 SPECIMEN = "first"
 RATIO = 101
 SEARCHED = [LIBRARY[name] for name in ("eccentric_wave_generator", "reduced_damping", "tilting_moment", "gauge_gain")]
-DRAWN = Drawn(theta=2.0, phase=1.0, channel=3, multiples=(0.5, 0.8, 1.0, 1.2, 1.5))
+DRAWN = Drawn(theta=2.0, phase=1.0, channel=3)
 
 
 @pytest.fixture(scope="module")
@@ -54,8 +52,8 @@ def unit(healthy: Path) -> Unit:
 
 
 def measured(folder: Path) -> Measured:
-    """Two recordings of each set point as the loop sees them; the third is left out to save time."""
-    return Measured.of([each for each in read_recordings(folder) if each.repeat < 3])
+    """Two recordings of each set point as the loop sees them, without the middle load, to save time."""
+    return Measured.of([each for each in read_recordings(folder) if each.repeat < 3 and each.point.T_out != 39])
 
 
 def found(folder: Path, unit: Unit) -> list[Found]:
@@ -84,7 +82,8 @@ def test_a_healthy_gear_of_other_code_is_commissioned_as_accurately_as_it_can_be
 
 def test_what_single_recordings_of_other_code_hold_between_the_orders_is_no_line(healthy):
     """A channel is quieter between its lines than its converter rounds: no noise, and nothing stands out of it."""
-    found = search(gauge_spectra(read_recordings(healthy / "recordings").recordings), LIBRARY.values(), 0.005)
+    once = [each for each in read_recordings(healthy / "recordings") if each.repeat == 1]
+    found = search(gauge_spectra(once), LIBRARY.values(), 0.005)
     assert found.named == found.unnamed == ()
 
 
@@ -95,29 +94,6 @@ def test_an_eccentric_wave_generator_of_other_code_is_found_alone(unit, tmp_path
     assert eccentric.theta == pytest.approx(DRAWN.theta, abs=0.1)
     # Its size only roughly: a truss and a shell give way differently.
     assert eccentric.r == pytest.approx(15e-6, rel=0.5)
-
-
-def test_the_bench_writes_the_folder_form(healthy):
-    assert list(COLUMNS) == ["t_s", *(channel.column for channel in CHANNELS.values())]
-    recordings = read_recordings(healthy / "recordings").recordings
-    assert len(recordings) == 18
-    assert {r.gear for r in recordings} == {f"unit {SPECIMEN}"}
-    assert {len(set(r.channels) & set(CHANNELS)) for r in recordings} == {len(CHANNELS)}
-    started = np.array([r.channels["phi_in"][0] for r in recordings])
-    assert ((started > -0.1) & (started < 2 * np.pi + 0.1)).all()
-
-
-def test_a_folder_that_is_there_already_is_refused(healthy):
-    with pytest.raises(ValueError, match="commissioning is there already: remove it"):
-        record(healthy, 1, Effect("none", 0.0, DRAWN), SPECIMEN)
-
-
-@pytest.mark.parametrize("name", [name for name in EFFECTS if name != "none"])
-def test_every_effect_makes_another_unit(name):
-    healthy = draw(SPECIMEN)
-    changed = Effect(name, EFFECTS[name].size, DRAWN).on(healthy)
-    differ = [key for key, value in vars(changed).items() if not np.array_equal(value, vars(healthy)[key])]
-    assert len(differ) == 1
 
 
 def test_rigid_motions_strain_no_frustum():
@@ -141,13 +117,6 @@ def test_the_collar_carries_a_torque_as_statics_say():
     shear = solved(hat).C["shear", "tangential"][0]
     # Of 1 N/rad around the circumference.
     assert shear == pytest.approx(-hat.R / (G * hat.collar) * np.mean(1 / radii**2), rel=5e-3)
-
-
-def test_an_edge_that_is_moved_as_a_whole_takes_the_hat_along():
-    """Moved along the axis, nothing is strained; warped twice around, everything is."""
-    C = solved(Hat()).C
-    strained = [abs(C[answer, "warp"]) for answer in ANSWERS]
-    assert all(moved[0] < 1e-6 * moved[2] for moved in strained)
 
 
 def test_teeth_carry_the_whole_torque_cracked_or_not():
@@ -178,16 +147,6 @@ def test_a_crack_a_quarter_further_on_shows_in_the_next_gauge(kind):
     assert abs(here[1] - here[3]).max() > 1e-5
 
 
-def test_a_root_that_is_all_but_cracked_through_opens_no_further():
-    intact, deep, through = (strains(ideal(root=Crack(share, 0.4))).shear for share in (0.0, 0.9999, 0.99999))
-    assert abs(through - deep).max() < 0.05 * abs(deep - intact).max()
-
-
-def test_a_circulant_multiplies_every_order():
-    c, load = both_signs(1j * np.arange(ORDERS + 1.0)), np.random.default_rng(1).standard_normal(POINTS)
-    assert coefficients(circulant(c) @ load) == pytest.approx(c * coefficients(load), abs=1e-9)
-
-
 def test_a_gear_without_friction_is_a_spring():
     """Both torques are slopes of one elastic energy: T_wg changes with c as -T_out does with phi."""
     drive = Drive(runs_of(b0=0.0, b1=0.0, b3=0.0, mu=0.0))
@@ -200,13 +159,6 @@ def test_a_gear_without_friction_is_a_spring():
         return (drive.torques(y + moved)[torque] - drive.torques(y - moved)[torque]) / (2 * step)
 
     assert slopes(2, 1) == pytest.approx(-slopes(0, 2), rel=1e-6)
-
-
-def test_a_steady_start_is_steady_without_kinematic_error():
-    drive = Drive(runs_of(kinematic=np.zeros(3, complex), b3=0.0))
-    load = np.linspace(5, 70, 6)
-    y = drive.start(np.zeros(6), load)
-    assert drive.rates(y, load) == pytest.approx(np.array([y[1], 0 * load, y[3], 0 * load, 0 * load]), abs=1e-8)
 
 
 def test_without_friction_no_work_is_lost():

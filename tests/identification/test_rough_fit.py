@@ -14,6 +14,7 @@ from swgsim.identification.fit.fitting import fit
 from swgsim.identification.fit.unit import Unit
 from swgsim.storage.labelled_signals import SENSORS
 
+pytestmark = pytest.mark.end_to_end
 UNIT = Unit(Model(GEAR), seen_healthy=True)
 
 

@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
-from scipy.interpolate import CubicSpline
 from scipy.signal import lfilter
 
 from other_bench.circle import X
@@ -93,11 +92,9 @@ def _bridges(
     """Signals with the errors of gauges and amplifiers, but for noise."""
     unit, warmer = run.unit, run.temperature - REFERENCE
     t = np.arange(s.shape[1]) / RATE
-    for late in np.flatnonzero(unit.late):
-        s[late] = CubicSpline(t, s[late])(t - unit.late[late])
     s = s * (unit.gain * (1 + GAIN_PER_KELVIN * warmer))[:, None]
     zeros = unit.offset + errors.zeros + errors.drift * run.elapsed / DRIFT_TIME
-    zeros += ZERO_OF_RUN * rng.standard_normal(5) + unit.thermal * warmer
+    zeros += ZERO_OF_RUN * rng.standard_normal(5)
     s += zeros[:, None]
     if unit.hum.any():
         s += unit.hum[:, None] * np.sin(2 * np.pi * MAINS * t + rng.uniform(0, 2 * np.pi))

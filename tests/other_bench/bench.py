@@ -35,15 +35,8 @@ def record(out: Path, seed: int, effect: Effect, unit: str) -> None:
         In the second of them.
     unit : str
         Name of the specimen.
-
-    Raises
-    ------
-    ValueError
-        If the folder has recordings already.
     """
     folders = [out / "commissioning", out / "recordings"]
-    if there := [folder for folder in folders if folder.exists()]:
-        raise ValueError(f"{there[0]} is there already: remove it or choose another folder than {out}")
     rng = np.random.default_rng([seed, 2024])
     healthy = draw(unit)
     units = [healthy, effect.on(healthy)]

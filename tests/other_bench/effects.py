@@ -19,20 +19,17 @@ class Drawn:
         Direction or place, and phase [rad].
     channel : int
         Of s1 to s4.
-    multiples : tuple of float
-        One per gauge, around 1.
     """
 
     theta: float
     phase: float
     channel: int
-    multiples: tuple[float, ...]
 
     @classmethod
     def of(cls, rng: np.random.Generator) -> "Drawn":
         """Drawn evenly."""
         theta, phase = (float(rng.uniform(0, 2 * np.pi)) for _ in range(2))
-        return cls(theta, phase, int(rng.integers(1, 5)), tuple(map(float, rng.uniform(0.4, 1.6, 5))))
+        return cls(theta, phase, int(rng.integers(1, 5)))
 
     @property
     def own(self) -> Float[np.ndarray, " gauge"]:
@@ -93,18 +90,6 @@ EFFECTS: Mapping[str, Kind] = {
         15e-6, "m", "static offset of the wave generator",
         lambda unit, x, drawn: replace(unit, eccentricity=_turned(x, drawn.theta)), ("theta",),
     ),
-    "rotating_eccentricity": Kind(
-        15e-6, "m", "offset of the cam that turns with it",
-        lambda unit, x, drawn: replace(unit, runout=_turned(x, drawn.phase)), ("phase",),
-    ),
-    "cam_form": Kind(
-        3e-6, "m", "three lobes on the cam",
-        lambda unit, x, drawn: replace(unit, three_lobes=_turned(x, drawn.phase)), ("phase",),
-    ),
-    "warm_grease": Kind(
-        0.03, "1/K", "b0 and b1 fall by exp(-size (temperature - 25))",
-        lambda unit, x, drawn: replace(unit, per_kelvin=x),
-    ),
     "reduced_damping": Kind(
         0.2, "-", "share of b1 lost", lambda unit, x, drawn: replace(unit, b1=unit.b1 * (1 - x))
     ),
@@ -125,9 +110,6 @@ EFFECTS: Mapping[str, Kind] = {
     "gauge_position": Kind(
         0.01, "rad", "of s3", lambda unit, x, drawn: replace(unit, position=unit.position + x * np.eye(4)[2])
     ),
-    "channel_skew": Kind(
-        40e-6, "s", "one of s1 to s4 late", lambda unit, x, drawn: replace(unit, late=x * drawn.own), ("channel",)
-    ),
     "mains_hum": Kind(
         3e-4, "mV/V", "50 Hz on one of s1 to s4", lambda unit, x, drawn: replace(unit, hum=x * drawn.own), ("channel",)
     ),
@@ -146,10 +128,6 @@ EFFECTS: Mapping[str, Kind] = {
     "zero_offset": Kind(
         0.01, "mV/V", "one of s1 to s4",
         lambda unit, x, drawn: replace(unit, offset=unit.offset + x * drawn.own), ("channel",),
-    ),
-    "thermal_output": Kind(
-        3e-4, "mV/V/K", "every gauge its own multiple of it",
-        lambda unit, x, drawn: replace(unit, thermal=x * np.array(drawn.multiples)), ("multiples",),
     ),
     "sticky_bearing": Kind(
         0.05, "N m", "friction torque size |sin(phi_in / 3)| at the input",

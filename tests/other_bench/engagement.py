@@ -20,8 +20,7 @@ TIP_WIDTH = np.radians(7.2)
 
 def wave_generator(unit: Specimen) -> Float[np.ndarray, "psi x"]:
     """Radial displacement that cam and eccentricity impose [m]."""
-    turning = unit.runout * np.exp(-1j * X) + unit.three_lobes * np.exp(-3j * X)
-    return cam(unit.w0, unit.hat.R) + (unit.eccentricity * np.exp(-1j * THETA) + turning).real
+    return cam(unit.w0, unit.hat.R) + (unit.eccentricity * np.exp(-1j * THETA)).real
 
 
 def cam(w0: float, R: float) -> Float[np.ndarray, " x"]:

@@ -24,7 +24,6 @@ class Run:
     Attributes
     ----------
     unit : Specimen
-        As it is at that temperature.
     session : str
     n, T : float
         Set points [rpm], [N m].
@@ -68,7 +67,7 @@ def session(unit: Specimen, name: str, rng: np.random.Generator) -> list[Run]:
             temperature = course + THERMOMETER * rng.standard_normal()
             runs.append(
                 Run(
-                    unit.at(temperature), name, n, T, repeat, temperature, elapsed,
+                    unit, name, n, T, repeat, temperature, elapsed,
                     speed=n * (1 + SPEED * rng.standard_normal()),
                     load=T * (1 + LOAD * rng.standard_normal()),
                     c0=rng.uniform(0, 2 * np.pi),

@@ -1,7 +1,7 @@
 """A unit of the gear with its gauges and what it is mounted to, as drawn; a healthy one, or with something wrong."""
 
 import zlib
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from jaxtyping import Complex, Float
@@ -10,12 +10,8 @@ from other_bench.hat import Hat
 
 # Kinematic error at the output: amplitude [rad] and phase of each order; estimates within catalogue accuracy.
 KINEMATIC = {1: (0.4e-4, 0.3), 2: (0.7e-4, 1.1), 4: (0.3e-4, 2.0)}
-# Temperature of the nominal friction [°C].
+# At which gains and zeros are the unit's own [°C].
 REFERENCE = 25.0
-
-
-def _none() -> Float[np.ndarray, " gauge"]:
-    return np.zeros(5)
 
 
 @dataclass(frozen=True)
@@ -47,18 +43,14 @@ class Specimen:
     hat : Hat
     eccentricity : complex
         Static offset of the wave generator, size times exp(i direction) [m].
-    runout, three_lobes : complex
-        Waves that turn with the wave generator, one and three around the circumference, size times exp(i phase) [m].
     root, tip : Crack
         Hoop stiffness lost over three tooth pitches, tooth force lost over four teeth.
     moment : complex
         Tilting moment that turns with the output, size times exp(i direction at the start) [N m].
     sticky : float
         Friction of the input's bearing [N m].
-    per_kelvin : float
-        Fall of b0 and b1 with the temperature [1/K].
-    late, hum, thermal : array (gauge,)
-        Delay [s], 50 Hz [mV/V], zero with the temperature [mV/V/K].
+    hum : array (gauge,)
+        50 Hz [mV/V].
     breathing : complex
         Order 4 in s1, and inverted in s3, at 70 N m, amplitude times exp(i phase) [mV/V].
     """
@@ -84,22 +76,12 @@ class Specimen:
     J_out: float = 1.0
     hat: Hat = field(default_factory=Hat)
     eccentricity: complex = 0j
-    runout: complex = 0j
-    three_lobes: complex = 0j
     root: Crack = Crack()
     tip: Crack = Crack()
     moment: complex = 0j
     sticky: float = 0.0
-    per_kelvin: float = 0.0
-    late: Float[np.ndarray, " gauge"] = field(default_factory=_none)
-    hum: Float[np.ndarray, " gauge"] = field(default_factory=_none)
-    thermal: Float[np.ndarray, " gauge"] = field(default_factory=_none)
+    hum: Float[np.ndarray, " gauge"] = field(default_factory=lambda: np.zeros(5))
     breathing: complex = 0j
-
-    def at(self, temperature: float) -> "Specimen":
-        """The unit at a temperature [°C]."""
-        thinner = np.exp(-self.per_kelvin * (temperature - REFERENCE))
-        return replace(self, b0=self.b0 * thinner, b1=self.b1 * thinner)
 
 
 def draw(name: str) -> Specimen:

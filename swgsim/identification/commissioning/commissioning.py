@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Float
 
 from swgsim.chain.steady_state_cache import forget
 from swgsim.identification.commissioning.lack_of_fit import beyond_noise, foreign_ripple, require_own, unexplained
@@ -72,7 +72,9 @@ def _with_usable_ripple(measured: Measured, unit: Unit) -> Fitted:
     while True:
         drive, foreign = _drive_alone(measured, unit), np.zeros(len(measured.layout), bool)
         if drive is not None:
-            foreign[_of_drive(measured)] = foreign_ripple(_with_inflated_variance(drive), drive.missed, FOREIGN_SHARE)
+            foreign[measured.layout.of_drive] = foreign_ripple(
+                _with_inflated_variance(drive), drive.missed, FOREIGN_SHARE
+            )
         if not foreign.any():
             fitted = _with_learned_lines(measured, unit, drive)
             foreign = foreign_ripple(_with_inflated_variance(fitted), fitted.missed)
@@ -100,15 +102,15 @@ def _with_learned_lines(measured: Measured, unit: Unit, drive: Fitted | None) ->
     of_drive = np.zeros(len(measured.layout))
     if drive is not None:
         inflation = unit.inflated(np.ones(len(measured.layout)))
-        inflation[_of_drive(measured)] = drive.unit.inflated(np.ones(len(drive.measured.layout)))
+        inflation[measured.layout.of_drive] = drive.unit.inflated(np.ones(len(drive.measured.layout)))
         unit = replace(unit, inflation=inflation)
         position, held = drive.calibrated.position, _well_determined(drive)
         if drive.unit.learned is not None:
-            of_drive[_of_drive(measured)] = drive.unit.learned
+            of_drive[measured.layout.of_drive] = drive.unit.learned
     fitted = with_probable_spreads(measured, _given(unit, of_drive), position, held)
     unit = fitted.unit
     for _ in range(TIMES):
-        learned = np.where(_of_drive(measured), of_drive, _lie_off(fitted))
+        learned = np.where(measured.layout.of_drive, of_drive, _lie_off(fitted))
         position = {**position, **fitted.calibrated.position}
         fitted = fit(measured, _given(unit, learned), position=position)
         if not learned.any():
@@ -134,7 +136,7 @@ def _drive_alone(measured: Measured, unit: Unit) -> Fitted | None:
     Gauges on another flex spline would bias the drive, and other equations of motion would bias the gauges. Ripple is
     learned first: as lack of fit it would bias the friction, which the means determine.
     """
-    drive_features = _of_drive(measured)
+    drive_features = measured.layout.of_drive
     if not drive_features.any():
         return None
     drive = tuple(name for name in measured.layout.channels if name not in SENSORS)
@@ -153,11 +155,6 @@ def _drive_alone(measured: Measured, unit: Unit) -> Fitted | None:
         learned = _lie_off(fitted) * sought
         fitted = again(fitted, learned=learned) if learned.any() else fitted
     return fitted
-
-
-def _of_drive(measured: Measured) -> Bool[np.ndarray, " feature"]:
-    """The features of speed and torques."""
-    return ~np.isin(measured.layout.channel, SENSORS)
 
 
 def _lie_off(fitted: Fitted) -> Float[np.ndarray, " feature"]:

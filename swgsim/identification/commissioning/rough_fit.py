@@ -61,12 +61,8 @@ def _between_repeats(
     """Variance between repeats of every line of a channel, for each of its features; what is known where chance alone
     could make it so large.
     """
-    measured, missed = fitted.measured, fitted.missed
-    square = np.zeros(missed.shape[1])
-    for point in set(measured.repeats):
-        group = [i for i, each in enumerate(measured.repeats) if each == point]
-        square += ((missed[group] - missed[group].mean(axis=0)) ** 2).sum(axis=0)
-    layout = measured.layout
+    measured, layout = fitted.measured, fitted.measured.layout
+    square = (measured.about_repeats(fitted.missed) ** 2).sum(axis=0)
     of_line = (layout.channel[:, None] == layout.channel) & (layout.order[:, None] == layout.order)
     freedom = measured.spare * of_line.sum(axis=1)
     shown = inflation * (of_line @ square)

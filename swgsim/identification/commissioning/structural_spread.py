@@ -15,7 +15,6 @@ from swgsim.identification.data.measured import Measured
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import fit
 from swgsim.identification.fit.unit import Unit
-from swgsim.storage.labelled_signals import SENSORS
 
 # Spreads of the factors that are tried: 0.01 is the mesh of the truss, and 0.5 the truss of another author.
 SPREADS = (0.01, 0.03, 0.1, 0.3, 0.5)
@@ -41,7 +40,7 @@ def with_probable_spreads(
         Parameters that stay there.
     """
     widest = replace(unit, structure=WIDEST, of_gauges=OF_GAUGES[-1])
-    ripple = np.isin(measured.layout.channel, SENSORS) & (measured.layout.order > 0)
+    ripple = measured.layout.of_gauges & (measured.layout.order > 0)
     wide = roughly_fitted(measured, widest, ripple, position, held)
     found = most_probable(wide)
     ratios = _ratios(wide, found)

@@ -13,7 +13,6 @@ by Sigma^-1 itself: a product of a vector with a weighed residual is the same we
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -132,32 +131,21 @@ class Covariance:
         """Posterior mean of the errors in G alone, in standard deviations. The errors of A are unknown too."""
         return cho_solve((self._L, True), self._weighed.T @ X)
 
-    def features(self, chosen: Bool[np.ndarray, " feature"]) -> "Covariance":
-        """The covariance of some of the features."""
-        rows = np.tile(chosen, len(self.alone.variance))
-        return Covariance(self.base.features(chosen), self.G[rows])
+    def left_out(
+        self, r: Float[np.ndarray, " row"], blocks: Sequence[Bool[np.ndarray, " row"]]
+    ) -> list[Float[np.ndarray, " column"]]:
+        """The common errors, in standard deviations, that the rows outside of each block tell.
 
-    def left_out(self, r: Float[np.ndarray, " row"], blocks: Sequence[Bool[np.ndarray, " row"]]) -> list["Expected"]:
-        """The rows of each block as all the other rows predict them.
-
-        With the precision P of all rows these miss r by (P_bb)^-1 (P r)_b, with the covariance (P_bb)^-1.
+        With the precision P of all rows, the others expect the rows b of a block (P_bb)^-1 (P r)_b away from r.
         """
         weighed = self.weigh(r)
-        found = [self._missed(weighed[block], block) for block in blocks]
         # One column for each block, since a product with many columns takes little more time than with one.
         expected = np.repeat(r[:, None], len(blocks), axis=1)
-        for number, (block, (missed, _)) in enumerate(zip(blocks, found, strict=True)):
-            expected[block, number] -= missed
-        return [Expected(*each, mean) for each, mean in zip(found, self.common_mean(expected).T, strict=True)]
-
-    def _missed(
-        self, weighed: Float[np.ndarray, " block"], block: Bool[np.ndarray, " row"]
-    ) -> tuple[Float[np.ndarray, " block"], float]:
-        """How a block is missed by what the other rows expect of it, and the log-likelihood of that."""
-        L = cholesky(self.precision(block), lower=True)
-        white = solve_triangular(L, weighed, lower=True)
-        missed = solve_triangular(L, white, lower=True, trans=1)
-        return missed, float(np.log(np.diag(L)).sum() - 0.5 * white @ white)
+        for number, block in enumerate(blocks):
+            L = cholesky(self.precision(block), lower=True)
+            white = solve_triangular(L, weighed[block], lower=True)
+            expected[block, number] -= solve_triangular(L, white, lower=True, trans=1)
+        return list(self.common_mean(expected).T)
 
 
 def as_squares(log_likelihood: float) -> float:
@@ -181,13 +169,3 @@ def without_what_noise_hides(
     share, V = np.linalg.eigh(scaled.T @ scaled)
     kept = share > HIDDEN
     return columns if kept.all() else columns @ V[:, kept]
-
-
-class Expected(NamedTuple):
-    """How rows were missed by what the others expected of them, the log-likelihood of that, and the common errors that
-    the others tell, in standard deviations.
-    """
-
-    missed: Float[np.ndarray, " block"]
-    log_likelihood: float
-    common: Float[np.ndarray, " column"]

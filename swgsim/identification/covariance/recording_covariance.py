@@ -90,10 +90,6 @@ class RecordingCovariance:
         recordings, _, kinds = self.C.shape
         return self.made(np.eye(recordings * kinds))
 
-    def features(self, chosen: Bool[np.ndarray, " feature"]) -> "RecordingCovariance":
-        """Of some of the features."""
-        return RecordingCovariance(self.variance[:, chosen], self.C[:, chosen])
-
     def _split(self, X: np.ndarray) -> np.ndarray:
         """Rows by recording (recording, feature, column)."""
         return X.reshape(*self.variance.shape, -1)

@@ -56,9 +56,10 @@ class Layout:
         """Whether each feature is of a gauge."""
         return np.isin(self.channel, SENSORS)
 
-    def of(self, recordings: Sequence[Recording]) -> Float[np.ndarray, "recording feature"]:
-        """The feature vectors of recordings of equal length; raises like :func:`features`."""
-        return features_alike(recordings, self)
+    @property
+    def of_drive(self) -> Bool[np.ndarray, " feature"]:
+        """Whether each feature is of speed or torque."""
+        return ~self.of_gauges
 
     def lines(self, features: Float[np.ndarray, "*batch feature"]) -> Complex[np.ndarray, "*batch channel order"]:
         """Complex order lines of feature vectors; signal = Re(sum of lines[k] exp(i k phi))."""

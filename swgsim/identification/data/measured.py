@@ -113,6 +113,12 @@ class Measured:
         """Degrees of freedom of the repeats, which give the noise; 0 without repeats."""
         return len(self) - len(set(self.repeats))
 
+    def about_repeats(self, values: Float[np.ndarray, "recording feature"]) -> Float[np.ndarray, "recording feature"]:
+        """Values less their mean over the repeats of each recording."""
+        groups = [self.repeats.index(each) for each in self.repeats]
+        means = {group: values[np.equal(groups, group)].mean(axis=0) for group in groups}
+        return values - np.array([means[group] for group in groups])
+
     def rows(self, of_situation: Float[np.ndarray, "situation feature *column"]) -> np.ndarray:
         """Values of situations as rows (recording, feature), one below the other."""
         whole = of_situation[self.of_recording]

@@ -21,7 +21,7 @@ def shares_of_spread(fitted: Fitted) -> list[float]:
     is infinite.
     """
     measured, unit = fitted.measured, fitted.unit
-    numbers = range(len(unit.model.effects), len(fitted.model.effects))
+    numbers = fitted.numbers_added
     if not numbers:
         return []
     series = of_unit(unit.nominal or unit.model.gear)

@@ -11,7 +11,6 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.identification.covariance.low_rank_covariance import Expected
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.fit.fitted import Fitted
 
@@ -52,17 +51,11 @@ class Errors:
         return per_recording(self.fitted.measured, missed - nuisance)
 
 
-def of_points_left_out(fitted: Fitted) -> Float[np.ndarray, " point"]:
-    """Root mean square error of every operating point, by the model fitted to the others, in units of the noise."""
-    weighed = _left_out(fitted, fitted.by_others) ** 2 / fitted.errors.variance
-    return np.array([np.sqrt(weighed[block].mean()) for block in fitted.measured.point_rows()])
-
-
-def _left_out(fitted: Fitted, expectations: Sequence[tuple[np.ndarray, Expected]]) -> Float[np.ndarray, " row"]:
+def _left_out(fitted: Fitted, told: Sequence[tuple[np.ndarray, np.ndarray]]) -> Float[np.ndarray, " row"]:
     """Errors of every block of rows by the model fitted to all others; NaN in no block."""
     missed = np.full(len(fitted.residual), np.nan)
-    for block, expected in expectations:
-        parameters = expected.common[len(expected.common) - len(fitted.parameters) :]
+    for block, directions in told:
+        parameters = directions[len(directions) - len(fitted.parameters) :]
         missed[block] = fitted.from_start[block] - fitted.J[block] @ parameters
     return missed
 
@@ -73,11 +66,7 @@ def repeat_noise(measured: Measured) -> Float[np.ndarray, "recording feature"] |
     """
     if not measured.spare:
         return None
-    deviations = np.zeros(measured.values.shape)
-    for group in dict.fromkeys(measured.repeats):
-        rows = [i for i, each in enumerate(measured.repeats) if each == group]
-        deviations[rows] = measured.values[rows] - measured.values[rows].mean(axis=0)
-    return deviations * np.sqrt(len(measured) / measured.spare)
+    return measured.about_repeats(measured.values) * np.sqrt(len(measured) / measured.spare)
 
 
 def noise_floor(measured: Measured) -> Float[np.ndarray, " channel"]:

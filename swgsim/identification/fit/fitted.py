@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.effects.base import Effect
-from swgsim.identification.covariance.low_rank_covariance import Covariance, Expected, without_what_noise_hides
+from swgsim.identification.covariance.low_rank_covariance import Covariance, without_what_noise_hides
 from swgsim.identification.covariance.scatter import Scatter
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model
@@ -101,7 +101,12 @@ class Fitted:
     @property
     def added(self) -> tuple[Effect, ...]:
         """The effects that the model has beyond the unit's."""
-        return self.model.effects[len(self.unit.model.effects) :]
+        return tuple(self.model.effects[number] for number in self.numbers_added)
+
+    @property
+    def numbers_added(self) -> range:
+        """Their numbers among the effects of the model."""
+        return range(len(self.unit.model.effects), len(self.model.effects))
 
     @property
     def declared(self) -> dict[str, Declared]:
@@ -206,17 +211,19 @@ class Fitted:
         return self.residual + self.J @ np.array(list(self.calibrated.position.values()))
 
     @cached_property
-    def by_others(self) -> list[tuple[np.ndarray, Expected]]:
-        """The rows of every operating point (a mask) and what all the others say of them; none if there is one only."""
+    def by_others(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """The rows of every operating point (a mask), and the directions of :attr:`whole` as all other rows tell them;
+        none if there is one point only.
+        """
         blocks = self.measured.point_rows()
         return self._told(blocks) if len(blocks) > 1 else []
 
     @cached_property
-    def by_other_recordings(self) -> list[tuple[np.ndarray, Expected]]:
+    def by_other_recordings(self) -> list[tuple[np.ndarray, np.ndarray]]:
         """The same of every recording that has repeats."""
         return self._told(self.measured.repeat_rows())
 
-    def _told(self, blocks: Sequence[np.ndarray]) -> list[tuple[np.ndarray, Expected]]:
+    def _told(self, blocks: Sequence[np.ndarray]) -> list[tuple[np.ndarray, np.ndarray]]:
         return list(zip(blocks, self.whole.left_out(self.from_start, blocks), strict=True))
 
     @cached_property
@@ -226,11 +233,11 @@ class Fitted:
         """
         return self.nuisance_by(self.by_others)
 
-    def nuisance_by(self, expectations: Sequence[tuple[np.ndarray, Expected]]) -> Float[np.ndarray, " row"]:
+    def nuisance_by(self, told: Sequence[tuple[np.ndarray, np.ndarray]]) -> Float[np.ndarray, " row"]:
         """The same for other blocks of rows, estimated from all rows outside each block; zero outside the blocks."""
         made, columns = np.zeros(len(self.residual)), self.of_nuisances.columns
-        for block, expected in expectations:
-            made[block] = columns[block] @ expected.common[: columns.shape[1]]
+        for block, directions in told:
+            made[block] = columns[block] @ directions[: columns.shape[1]]
         return made
 
     @property
@@ -277,9 +284,3 @@ class Fitted:
     def log_likelihood(self) -> float:
         """Of all recordings together, everything that is not known exactly being open within its spread."""
         return self.whole.log_likelihood(self.from_start)
-
-    @cached_property
-    def predictive(self) -> Float[np.ndarray, " point"]:
-        """Log-likelihood of every operating point as predicted from all the others; of all if there is one only."""
-        expected = [expected.log_likelihood for _, expected in self.by_others]
-        return np.array(expected or [self.log_likelihood])

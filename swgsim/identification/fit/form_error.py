@@ -29,9 +29,7 @@ def signature(fitted: Fitted, number: int) -> Float[np.ndarray, " row"]:
 
 def all_show(fitted: Fitted) -> bool:
     """Whether every added effect changes the recordings; clipping above all signals changes nothing."""
-    count = len(fitted.model.effects)
-    added = range(count - len(fitted.added), count)
-    columns = (signature(fitted, number)[:, None] for number in added)
+    columns = (signature(fitted, number)[:, None] for number in fitted.numbers_added)
     return all(without_what_noise_hides(each, fitted.errors.variance).shape[1] for each in columns)
 
 

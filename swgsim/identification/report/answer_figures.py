@@ -153,7 +153,7 @@ def over_angle(answer: Answer, *, largest_only: bool = False) -> Figure:
 def worst(fitted: Fitted, after: Fitted) -> list[int]:
     """The recordings of the operating point with the largest residual, in units of the noise."""
     measured, white = fitted.measured, _white(fitted, after)
-    gauges = np.isin(measured.layout.channel, SENSORS)
+    gauges = measured.layout.of_gauges
     size = (white[:, gauges if gauges.any() else slice(None)] ** 2).sum(axis=1)
     points = [recording.point for recording in measured.recordings]
     groups = [[i for i, each in enumerate(points) if each == point] for point in dict.fromkeys(points)]

@@ -6,7 +6,7 @@ from typing import Any
 
 from swgsim.common.numbers import estimate, number, probability
 from swgsim.effects.base import Effect
-from swgsim.effects.quantity import Role, quantities
+from swgsim.effects.quantity import Role, quantities, size_of
 from swgsim.effects.text import path_of
 from swgsim.identification.decide.option import Option
 from swgsim.identification.fit.priors import name_of
@@ -81,17 +81,11 @@ def probability_text(value: float) -> str:
 def of_line(line: Sideline) -> dict[str, Any]:
     """An effect that makes interharmonic lines, with a random phase in every recording."""
     effect = line.effect
-    parameters = {}
-    for name, q in quantities(type(effect)).items():
-        value = getattr(effect, name)
-        if q.role is Role.SIZE:
-            parameters[name] = estimate(value, line.deviation, q.unit, q.low, q.high)
-        elif q.role is not Role.RANDOM:
-            parameters[name] = {"value": number(value), "ci95": None, "unit": q.unit}
+    size = name_of(effect, 0, size_of(type(effect)))
     return {
         "name": path_of(type(effect)),
         "place": effect.place,
-        "parameters": parameters,
+        "parameters": _parameters(effect, {size: line.deviation}, 0),
         "evidence": {
             "words": (
                 f"its interharmonic lines are significant (p-value {probability(line.chance)}); its law over load and "
@@ -153,9 +147,13 @@ def _at_fit(effect: Effect) -> dict[str, Any]:
 
 
 def _parameters(effect: Effect, deviation: Mapping[str, float], number_: int) -> dict[str, dict[str, Any]]:
-    """Parameters of the effect with that number in its model; chosen or fixed parameters have no interval."""
+    """Parameters of the effect with that number in its model; chosen or fixed parameters have no interval, and random
+    ones are left out.
+    """
     found = {}
     for name, q in quantities(type(effect)).items():
+        if q.role is Role.RANDOM:
+            continue
         value = getattr(effect, name)
         spread = deviation.get(name_of(effect, number_, name))
         if spread is None:

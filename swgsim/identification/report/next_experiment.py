@@ -158,7 +158,7 @@ class _PlannedRecordings:
         differences = np.moveaxis(predict(truths, situations, measured.layout) - predicted, 0, -1)
         # Differences within the form tolerance, or absorbed by free regularities, gave no information so far.
         errors = fitted.errors.with_columns(fitted.allowed.free)
-        for number in _added(fitted):
+        for number in fitted.numbers_added:
             errors = errors.with_columns(without_what_noise_hides(allowance(fitted, number), errors.variance))
         # The nuisance parameters of the model are fitted to the whitened difference d in the existing recordings. C are
         # their whitened directions. (L L')^-1 is their posterior covariance, and (L L')^-1 C' d their posterior mean.
@@ -197,17 +197,12 @@ def _directions(
     return unsure.predicted, np.concatenate([unsure.columns, unsure.J], axis=-1)
 
 
-def _added(fitted: Fitted) -> range:
-    """Numbers of the effects that were added to the unit's."""
-    return range(len(fitted.unit.model.effects), len(fitted.model.effects))
-
-
 def _tolerance(
     fitted: Fitted, candidates: Sequence[Situation], predicted: Float[np.ndarray, "candidate feature"]
 ) -> Float[np.ndarray, "candidate feature column"]:
     """Errors of the form of fitted effects at a new operating point: by channel and by order."""
     layout = fitted.measured.layout
-    effects = _added(fitted)
+    effects = fitted.numbers_added
     if not effects:
         return np.zeros((*predicted.shape, 0))
     without = predict([fitted.model.without(number) for number in effects], candidates, layout)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from itertools import groupby, product
 
 import numpy as np
-from jaxtyping import Bool, Complex, Float
+from jaxtyping import Complex, Float
 
 from swgsim.common.chi2_logsf import surprise
 from swgsim.effects.quantity import quantities
@@ -115,59 +115,25 @@ def columns(atom: Atom, fitted: Fitted) -> Float[np.ndarray, "row column"]:
 
 
 def describe(fitted: Fitted) -> list[Described]:
-    """Regularities by significance, the most significant first."""
-    return _Projected.of(fitted).ranked
+    """Regularities by significance, the most significant first; nuisance parameters are projected out."""
+    measured, found = fitted.measured, []
+    for order, group in groupby(atoms(measured.layout), key=lambda atom: atom.order):
+        rows = np.tile(measured.layout.order == order, len(measured))
+        whole, alone = (errors.precision(rows) for errors in (fitted.whole, fitted.errors))
+        for atom in group:
+            C = columns(atom, fitted)[rows]
+            s2, V = np.linalg.eigh(C.T @ whole @ C)
+            kept = s2 > VISIBLE * max(float((C * (alone @ C)).sum(axis=0).max()), 1e-300)
+            # Along each of these directions a weighed residual has a standard deviation of 1.
+            weights = V[:, kept] / np.sqrt(s2[kept])
+            found.append(_described(atom, weights, (C @ weights).T @ fitted.weighed[rows]))
+    return sorted(found, key=lambda each: -each.rank)
 
 
 def other_laws(best: Described, others: Sequence[Described]) -> tuple[str, ...]:
     """By which others explain the same order and pattern as well."""
     same = [other for other in others if replace(other.atom, law=best.atom.law) == best.atom]
     return tuple(o.atom.law for o in same if o.atom != best.atom and best.gain - o.gain < as_squares(LEAST_GAIN))
-
-
-@dataclass(frozen=True, eq=False)
-class _Projected:
-    """All regularities, with nuisance parameters projected out.
-
-    Attributes
-    ----------
-    described : tuple of Described
-        In the order of their directions, an order of the revolution after the other.
-    blocks : tuple of (array (row,), array (row of the order, direction))
-        Of every order: its rows (a mask), and directions, along each of which a weighed residual has a standard
-        deviation of 1.
-    """
-
-    described: tuple[Described, ...]
-    blocks: tuple[tuple[Bool[np.ndarray, " row"], Float[np.ndarray, "_ _"]], ...]
-
-    @classmethod
-    def of(cls, fitted: Fitted) -> "_Projected":
-        """As a fit leaves them."""
-        measured = fitted.measured
-        described, blocks = [], []
-        for order, group in groupby(atoms(measured.layout), key=lambda atom: atom.order):
-            rows = np.tile(measured.layout.order == order, len(measured))
-            whole, alone = (errors.precision(rows) for errors in (fitted.whole, fitted.errors))
-            directions = []
-            for atom in group:
-                C = columns(atom, fitted)[rows]
-                s2, V = np.linalg.eigh(C.T @ whole @ C)
-                kept = s2 > VISIBLE * max(float((C * (alone @ C)).sum(axis=0).max()), 1e-300)
-                weights = V[:, kept] / np.sqrt(s2[kept])
-                directions.append(C @ weights)
-                described.append(_described(atom, weights, directions[-1].T @ fitted.weighed[rows]))
-            blocks.append((rows, np.hstack(directions)))
-        return cls(tuple(described), tuple(blocks))
-
-    @property
-    def ranked(self) -> list[Described]:
-        """The most significant first, each with the other laws that fit as well."""
-        return sorted(self.described, key=lambda each: -each.rank)
-
-    def along(self, weighed: np.ndarray) -> np.ndarray:
-        """What a weighed residual (row,) has along all directions, or each of several."""
-        return np.concatenate([directions.T @ weighed[rows] for rows, directions in self.blocks])
 
 
 def _described(
