@@ -33,6 +33,7 @@ from swgsim.identification.fit.unit_file import is_unit_file
 from swgsim.identification.report.effect_words import effect_in_words, effect_text
 from swgsim.identification.report.engineering_units import value_text
 from swgsim.jobs import settings
+from swgsim.recordings.files.manifest import NAME as MANIFEST
 from swgsim.recordings.read import read_recordings
 from swgsim.recordings.recording import Recording
 from swgsim.recordings.recording_set import RecordingSet
@@ -76,7 +77,9 @@ def _run(config: Mapping[str, Any]) -> Outcome:
         unit = _kept(config)
     else:
         _progress(f"reading {healthy_source}")
-        healthy = _read(healthy_source, "commissioning", config["commissioning_mapping"] or config["mapping"])
+        own_format = (Path(healthy_source) / MANIFEST).is_file()
+        mapping = config["commissioning_mapping"] or (None if own_format else config["mapping"])
+        healthy = _read(healthy_source, "commissioning", mapping)
         recordings = replace(recordings, defects=(*recordings.defects, *healthy.defects))
         unit = commission(_comparable(recordings, healthy), gear, declared=declared, progress=_progress)
     found = identify(

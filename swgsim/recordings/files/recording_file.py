@@ -20,7 +20,7 @@ from swgsim.tables.limits import require_file_count, require_readable, require_r
 TITLE = "recordings of strain wave gears"
 
 
-def write_file(path: Path, recordings: Sequence[Recording]) -> None:
+def write_file(path: str | Path, recordings: Sequence[Recording]) -> None:
     """Write recordings as one file, which is complete or absent; reading gives back every number exactly.
 
     Raises
@@ -28,6 +28,7 @@ def write_file(path: Path, recordings: Sequence[Recording]) -> None:
     ValueError
         If a recording could not be read back.
     """
+    path = Path(path)
     require_file_count(path, len(recordings))
     require_alike(recordings)
     with replacing(path) as aside:
