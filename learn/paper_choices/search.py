@@ -1,0 +1,140 @@
+"""Trials of the study: draws of all choices from their priors, then an optimiser that sees Tables VII and IX alone.
+
+Trials are kept in a file, so an interrupted study goes on. The optimiser is Optuna's Gaussian process.
+"""
+
+import hashlib
+import json
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import joblib
+import numpy as np
+import optuna
+from optuna.exceptions import ExperimentalWarning
+from optuna.samplers import BaseSampler, GPSampler, PartialFixedSampler
+from optuna.storages import JournalStorage
+from optuna.storages.journal import JournalFileBackend
+from optuna.study import MaxTrialsCallback
+from optuna.trial import FrozenTrial, TrialState
+from scipy.stats import qmc
+
+from learn.paper_choices.choice import Choice
+from learn.paper_choices.evaluation import COSTLY, FITTED, SAMPLED, SEARCHED, Tables, claims, recordings, tables
+from learn.paper_choices.preset import Config, Values
+
+# What a trial depends on.
+PRIOR = ("usual", "low", "high", "scale")
+DECISIVE = ("grid", "window", "mesh", "gears", "selections", "classifiers", "prior_weight", "seed")
+ENDED = (TrialState.COMPLETE, TrialState.FAIL)
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One finished trial.
+
+    Attributes
+    ----------
+    sampled : bool
+        Whether its values were drawn from the priors.
+    values : mapping
+    objective : float
+        [points].
+    scores : mapping
+        Table to scores in the order of its cells; None where nothing was computed.
+    claims : mapping
+        C1 to C18 to whether they hold; empty for trials of the optimiser.
+    """
+
+    sampled: bool
+    values: Values
+    objective: float
+    scores: Mapping[str, Sequence[float | None]]
+    claims: Mapping[str, bool]
+
+
+def objective(scored: Tables, choices: Sequence[Choice], values: Values, prior_weight: float) -> float:
+    """What the fit minimises [points]: mean of the errors of VII and IX, and what the values cost by their priors.
+
+    The perceptron's cells do not count.
+    """
+    errors = [_error(scored[table].figures) for table in FITTED]
+    return float(np.mean(errors)) + prior_weight * sum(each.cost(values[each.name]) for each in choices)
+
+
+def _error(cells: Any) -> float:
+    seen = cells[cells["classifier"] != COSTLY]
+    return float((seen["ours"] - seen["paper"]).abs().mean())
+
+
+def trials(config: Config, choices: Sequence[Choice]) -> list[Trial]:
+    """Do the trials that are missing, and return all, as a resolved conf/paper_choices.yaml says."""
+    sampled, fitted, workers = config["sampled"], config["fitted"], config["workers"] or joblib.cpu_count()
+    study = _study(config)
+    for left in study.get_trials(states=(TrialState.RUNNING, TrialState.WAITING)):
+        study.tell(left.number, state=TrialState.PRUNED)  # of a killed run
+    drawn = {t.user_attrs["sample"] for t in study.get_trials(states=ENDED) if "sample" in t.user_attrs}
+    shares = qmc.Sobol(len(choices), rng=config["seed"]).random(sampled)
+    for number in sorted(set(range(sampled)) - drawn):
+        place = dict(zip([each.name for each in choices], shares[number].tolist(), strict=True))
+        study.enqueue_trial(place, user_attrs={"sample": number})
+    pool = joblib.Parallel(workers)
+    pool(joblib.delayed(_work)(config, choices, number, sampled + fitted) for number in range(workers))
+    return [_trial(each, choices) for each in study.get_trials(states=(TrialState.COMPLETE,))]
+
+
+def _work(config: Config, choices: Sequence[Choice], worker: int, count: int) -> None:
+    """One process: trials until ``count`` have ended."""
+
+    def one(trial: optuna.Trial) -> float:
+        values = {each.name: each.value(trial.suggest_float(each.name, 0, 1)) for each in choices}
+        sampled = "sample" in trial.user_attrs
+        made = recordings(config, values)
+        scored = tables(made, config["classifiers"], SAMPLED if sampled else SEARCHED)
+        scores = {name: _plain(table.cells["ours"]) for name, table in scored.items()}
+        trial.set_user_attr("scores", scores)
+        if sampled:
+            trial.set_user_attr("claims", claims(made, scored, values["disturbance"]))
+        return objective(scored, choices, values, config["prior_weight"])
+
+    study = _study(config, _sampler(choices, config["seed"] + worker))
+    if len(study.get_trials(states=ENDED, deepcopy=False)) < count:
+        # Values under which the chain has no steady motion end as failed trials.
+        study.optimize(one, callbacks=[MaxTrialsCallback(count, ENDED)], catch=(ValueError,))
+
+
+def _sampler(choices: Sequence[Choice], seed: int) -> BaseSampler:
+    """Gaussian process; the disturbance, of which VII and IX know nothing, stays as in grid=paper."""
+    usual = {each.name: each.share(each.usual) for each in choices if each.name == "disturbance"}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ExperimentalWarning)
+        return PartialFixedSampler(usual, GPSampler(seed=seed, n_startup_trials=1))
+
+
+def _study(config: Config, sampler: BaseSampler | None = None) -> optuna.Study:
+    """The study of a configuration; other choices, data or seeds make another one, more trials do not."""
+    priors = {name: {key: each.get(key) for key in PRIOR} for name, each in config["choices"].items()}
+    decisive = [priors, *(config[key] for key in DECISIVE)]
+    name = hashlib.sha256(json.dumps(decisive, sort_keys=True).encode()).hexdigest()[:12]
+    folder = Path(config["study"])
+    folder.mkdir(parents=True, exist_ok=True)
+    optuna.logging.set_verbosity(optuna.logging.ERROR)
+    storage = JournalStorage(JournalFileBackend(str(folder / f"{name}.journal")))
+    return optuna.create_study(storage=storage, sampler=sampler, study_name=name, load_if_exists=True)
+
+
+def _plain(scores: Any) -> list[float | None]:
+    return [None if np.isnan(score) else round(float(score), 3) for score in scores]
+
+
+def _trial(found: FrozenTrial, choices: Sequence[Choice]) -> Trial:
+    return Trial(
+        "sample" in found.user_attrs,
+        {each.name: each.value(found.params[each.name]) for each in choices},
+        float(found.value or 0.0),
+        found.user_attrs["scores"],
+        found.user_attrs.get("claims", {}),
+    )
