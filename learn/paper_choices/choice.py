@@ -27,6 +27,10 @@ class Choice:
     low, high : float
         Ends of the plausible range.
     scale : {"log", "linear", "yes_no"}
+    integer : bool
+        Whether the value is a number of something.
+    fitted : bool
+        Whether Tables VII and IX depend on it. If not, the optimiser keeps the usual value.
 
     Raises
     ------
@@ -42,6 +46,8 @@ class Choice:
     meaning: str
     source: str
     scale: str = "log"
+    integer: bool = False
+    fitted: bool = True
 
     def __post_init__(self) -> None:
         require_known("the scales of choices", [self.scale], SCALES)
@@ -58,7 +64,8 @@ class Choice:
         """
         if self.scale == "yes_no":
             return float(share < 0.5)
-        return float(self._back(self._prior.ppf(share)))
+        value = float(self._back(self._prior.ppf(share)))
+        return float(round(value)) if self.integer else value
 
     def share(self, value: float) -> float:
         """The share of the prior below a value."""

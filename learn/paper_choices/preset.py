@@ -31,7 +31,7 @@ def changes(values: Values, base: Config) -> dict[str, Any]:
         "window": {"samples": round(1e-3 * values["window"] * base["window"]["rate"])},
         "gears": {name: _gear(values, gear) for name, gear in base["gears"].items()},
         "features": {
-            "orders": round(values["components"]),
+            "orders": int(values["components"]),
             "floor": _short(values["floor"]),
             "whole_revolutions": bool(values["whole_revolutions"]),
         },
@@ -68,10 +68,11 @@ def _gear(values: Values, gear: Config) -> dict[str, Any]:
     factor = values[f"gauge_errors_{number}"]
     errors = {name: _rounded(gauges[name], times=factor) for name in ("offset", "position", "grid_angle")}
     gain = [_short(1 + factor * (each - 1)) for each in gauges["gain"]]
+    kinematic_error = _errors(values, transmission, number)
     return {
-        "transmission": {"J_out": _short(values["load_inertia"]), "kinematic_error": _errors(values, transmission, number)},
+        "transmission": {"J_out": _short(values["load_inertia"]), "kinematic_error": kinematic_error},
         "gauges": {"gain": gain, **errors},
-    }  # fmt: skip
+    }
 
 
 def _errors(values: Values, transmission: Config, number: int) -> list[dict[str, float]]:

@@ -22,6 +22,7 @@ from optuna.study import MaxTrialsCallback
 from optuna.trial import FrozenTrial, TrialState
 from scipy.stats import qmc
 
+from learn.paper.published_tables import Comparison, paper_table
 from learn.paper_choices.choice import Choice
 from learn.paper_choices.evaluation import COSTLY, FITTED, SAMPLED, SEARCHED, Tables, claims, recordings, tables
 from learn.paper_choices.preset import Config, Values
@@ -29,7 +30,8 @@ from learn.paper_choices.preset import Config, Values
 # What a trial depends on.
 PRIOR = ("usual", "low", "high", "scale")
 DECISIVE = ("grid", "window", "mesh", "gears", "selections", "classifiers", "prior_weight", "seed")
-ENDED = (TrialState.COMPLETE, TrialState.FAIL)
+# A trial whose values allow no steady motion is pruned; one that was interrupted has failed and is done again.
+ENDED = (TrialState.COMPLETE, TrialState.PRUNED)
 
 
 @dataclass(frozen=True)
@@ -42,7 +44,7 @@ class Trial:
         Whether its values were drawn from the priors.
     values : mapping
     objective : float
-        [points].
+        As of :func:`objective` [points].
     scores : mapping
         Table to scores in the order of its cells; None where nothing was computed.
     claims : mapping
@@ -57,17 +59,18 @@ class Trial:
 
 
 def objective(scored: Tables, choices: Sequence[Choice], values: Values, prior_weight: float) -> float:
-    """What the fit minimises [points]: mean of the errors of VII and IX, and what the values cost by their priors.
-
-    The perceptron's cells do not count.
-    """
-    errors = [_error(scored[table].figures) for table in FITTED]
-    return float(np.mean(errors)) + prior_weight * sum(each.cost(values[each.name]) for each in choices)
+    """What the fit minimises [points]: :func:`fitted_error`, and what the values cost by their priors."""
+    return fitted_error(scored) + prior_weight * sum(each.cost(values[each.name]) for each in choices if each.fitted)
 
 
-def _error(cells: Any) -> float:
-    seen = cells[cells["classifier"] != COSTLY]
-    return float((seen["ours"] - seen["paper"]).abs().mean())
+def fitted_error(scored: Tables) -> float:
+    """Mean of the errors of Tables VII and IX without the perceptron's cells [points]."""
+    errors = []
+    for table in FITTED:
+        cells = scored[table].cells
+        differences = (cells["ours"] - cells["paper"]).abs()
+        errors.append(differences[cells["classifier"] != COSTLY].mean())
+    return float(np.mean(errors))
 
 
 def trials(config: Config, choices: Sequence[Choice]) -> list[Trial]:
@@ -75,7 +78,7 @@ def trials(config: Config, choices: Sequence[Choice]) -> list[Trial]:
     sampled, fitted, workers = config["sampled"], config["fitted"], config["workers"] or joblib.cpu_count()
     study = _study(config)
     for left in study.get_trials(states=(TrialState.RUNNING, TrialState.WAITING)):
-        study.tell(left.number, state=TrialState.PRUNED)  # of a killed run
+        study.tell(left.number, state=TrialState.FAIL)  # of a killed run
     drawn = {t.user_attrs["sample"] for t in study.get_trials(states=ENDED) if "sample" in t.user_attrs}
     shares = qmc.Sobol(len(choices), rng=config["seed"]).random(sampled)
     for number in sorted(set(range(sampled)) - drawn):
@@ -83,7 +86,7 @@ def trials(config: Config, choices: Sequence[Choice]) -> list[Trial]:
         study.enqueue_trial(place, user_attrs={"sample": number})
     pool = joblib.Parallel(workers)
     pool(joblib.delayed(_work)(config, choices, number, sampled + fitted) for number in range(workers))
-    return [_trial(each, choices) for each in study.get_trials(states=(TrialState.COMPLETE,))]
+    return [_trial(each, choices, config["prior_weight"]) for each in study.get_trials(states=(TrialState.COMPLETE,))]
 
 
 def _work(config: Config, choices: Sequence[Choice], worker: int, count: int) -> None:
@@ -92,8 +95,11 @@ def _work(config: Config, choices: Sequence[Choice], worker: int, count: int) ->
     def one(trial: optuna.Trial) -> float:
         values = {each.name: each.value(trial.suggest_float(each.name, 0, 1)) for each in choices}
         sampled = "sample" in trial.user_attrs
-        made = recordings(config, values)
-        scored = tables(made, config["classifiers"], SAMPLED if sampled else SEARCHED)
+        try:
+            made = recordings(config, values)
+            scored = tables(made, config["classifiers"], SAMPLED if sampled else SEARCHED)
+        except ValueError as error:
+            raise optuna.TrialPruned(str(error)) from error
         scores = {name: _plain(table.cells["ours"]) for name, table in scored.items()}
         trial.set_user_attr("scores", scores)
         if sampled:
@@ -102,13 +108,11 @@ def _work(config: Config, choices: Sequence[Choice], worker: int, count: int) ->
 
     study = _study(config, _sampler(choices, config["seed"] + worker))
     if len(study.get_trials(states=ENDED, deepcopy=False)) < count:
-        # Values under which the chain has no steady motion end as failed trials.
-        study.optimize(one, callbacks=[MaxTrialsCallback(count, ENDED)], catch=(ValueError,))
+        study.optimize(one, callbacks=[MaxTrialsCallback(count, ENDED)])
 
 
 def _sampler(choices: Sequence[Choice], seed: int) -> BaseSampler:
-    """Gaussian process; the disturbance, of which VII and IX know nothing, stays as in grid=paper."""
-    usual = {each.name: each.share(each.usual) for each in choices if each.name == "disturbance"}
+    usual = {each.name: each.share(each.usual) for each in choices if not each.fitted}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ExperimentalWarning)
         return PartialFixedSampler(usual, GPSampler(seed=seed, n_startup_trials=1))
@@ -130,11 +134,8 @@ def _plain(scores: Any) -> list[float | None]:
     return [None if np.isnan(score) else round(float(score), 3) for score in scores]
 
 
-def _trial(found: FrozenTrial, choices: Sequence[Choice]) -> Trial:
-    return Trial(
-        "sample" in found.user_attrs,
-        {each.name: each.value(found.params[each.name]) for each in choices},
-        float(found.value or 0.0),
-        found.user_attrs["scores"],
-        found.user_attrs.get("claims", {}),
-    )
+def _trial(found: FrozenTrial, choices: Sequence[Choice], prior_weight: float) -> Trial:
+    values = {each.name: each.value(found.params[each.name]) for each in choices}
+    scores, holds = found.user_attrs["scores"], found.user_attrs.get("claims", {})
+    scored = {name: Comparison(paper_table(name).assign(ours=np.array(ours, float))) for name, ours in scores.items()}
+    return Trial("sample" in found.user_attrs, values, objective(scored, choices, values, prior_weight), scores, holds)

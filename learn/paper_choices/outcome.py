@@ -1,0 +1,140 @@
+"""The outcome of the study, and what it says in the words of the loop."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from learn.paper.paper_page import ROMAN
+from learn.paper.published_tables import row_label
+from learn.paper_choices.analysis import Fit, Held
+from learn.paper_choices.choice import Choice
+from learn.paper_choices.evaluation import Tables
+from learn.paper_choices.search import Trial
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What the study found.
+
+    Attributes
+    ----------
+    choices : sequence of Choice
+    trials : sequence of Trial
+    fit : Fit
+    before, after : mapping
+        The tables under the values of grid=paper and under those that were found, all cells.
+    claims_before, claims_after : mapping
+        C1 to C18 to whether they hold.
+    held : mapping
+        The same over the drawn choices.
+    effects : DataFrame
+        As of :func:`learn.paper_choices.analysis.effects`.
+    """
+
+    choices: Sequence[Choice]
+    trials: Sequence[Trial]
+    fit: Fit
+    before: Tables
+    after: Tables
+    claims_before: Mapping[str, bool]
+    claims_after: Mapping[str, bool]
+    held: Mapping[str, Held]
+    effects: pd.DataFrame
+
+    def fields(self) -> dict[str, Any]:
+        """``paper_choices.json``."""
+        return {
+            "before": errors(self.before),
+            "after": errors(self.after),
+            "rank_correlation": round(rank_correlation(self.after), 3),
+            "choices": {
+                each.name: {"value": self.fit.best.values[each.name], "interval": list(self.fit.intervals[each.name])}
+                for each in self.choices
+            },
+            "claims": {
+                key: {"share": round(held.share, 3), "depends_on": list(held.depends_on)}
+                for key, held in self.held.items()
+            },
+        }
+
+    @property
+    def found(self) -> list[Choice]:
+        """Choices whose usual value is not among those that fit as well, the most unusual first."""
+        other = [each for each in self.choices if each.fitted and self._is_other(each)]
+        return sorted(other, key=lambda each: -abs(each.deviation(self.fit.best.values[each.name])))
+
+    def _is_other(self, choice: Choice) -> bool:
+        low, high = self.fit.intervals[choice.name]
+        return not low <= choice.usual <= high
+
+    @property
+    def answer(self) -> str:
+        """What the paper's chain has that ours lacks, in a sentence."""
+        if not self.found:
+            return "No choice that the paper leaves open is known to differ from ours: our values fit as well."
+        return "The paper's chain has what ours lacks: " + "; ".join(self.text(each) for each in self.found) + "."
+
+    def text(self, choice: Choice) -> str:
+        """A choice with the value that was found and its interval."""
+        value, (low, high) = self.fit.best.values[choice.name], self.fit.intervals[choice.name]
+        if choice.scale == "yes_no":
+            return f"{choice.meaning}: {'yes' if value else 'no'}, ours {'yes' if choice.usual else 'no'}"
+        unit = "" if choice.unit == "-" else f" {choice.unit}"
+        return f"{choice.meaning} {value:.3g}{unit} ({low:.3g} to {high:.3g}), ours {choice.usual:.3g}{unit}"
+
+    @property
+    def remaining(self) -> list[tuple[str, float]]:
+        """The mean difference to the paper [points] of each classifier on each selection and table, largest first."""
+        rows = []
+        for table, comparison in self.after.items():
+            cells = comparison.figures.assign(difference=comparison.figures["ours"] - comparison.figures["paper"])
+            for (features, name), group in cells.groupby(["features", "classifier"]):
+                label = f"{str(name).upper()} on {str(features).replace('_', ' ')}, Table {ROMAN[table]}"
+                rows.append((label, float(group["difference"].mean())))
+        return sorted(rows, key=lambda row: -abs(row[1]))
+
+
+def errors(tables: Tables) -> dict[str, float]:
+    """Mean absolute difference of each table to the paper's [points]."""
+    return {name: round(table.mean_absolute_difference, 2) for name, table in tables.items()}
+
+
+def rank_correlation(tables: Tables) -> float:
+    """Mean over all rows of all tables of Spearman's rank correlation of the classifiers."""
+    return float(np.nanmean([rho for table in tables.values() for rho in table.rank_correlation.values()]))
+
+
+def reading(held: Mapping[str, Held]) -> str:
+    """Which conclusions of the paper hold on any plausible choice, which on some, and which on none."""
+    groups: dict[str, list[str]] = {"always": [], "mostly": [], "seldom": [], "never": []}
+    depending = []
+    for key, each in held.items():
+        if each.words in groups:
+            groups[each.words].append(key)
+        else:
+            depending.append(f"{key} ({each.depends_on[0].replace('_', ' ')})")
+    parts = {
+        "Hold on every plausible choice": groups["always"],
+        "depend on a choice that the paper does not state": depending,
+        "hold on most, by no single choice": groups["mostly"],
+        "hold on few, by no single choice": groups["seldom"],
+        "do not come out at all": groups["never"],
+    }
+    return "; ".join(f"{words}: {', '.join(keys)}" for words, keys in parts.items() if keys) + "."
+
+
+def cells(before: Tables, after: Tables) -> list[dict[str, Any]]:
+    """All cells of the tables: paper, before and after."""
+    rows = []
+    for table, comparison in after.items():
+        ours_before = before[table].cells["ours"]
+        for cell, earlier in zip(comparison.cells.to_dict("records"), ours_before, strict=True):
+            row = row_label(cell["features"], cell["row"])
+            rows.append({
+                "table": table, "row": row, "classifier": cell["classifier"], "relation": cell["relation"],
+                "paper": cell["paper"], "before": round(earlier, 2), "after": round(cell["ours"], 2),
+            })  # fmt: skip
+    return rows

@@ -1,0 +1,58 @@
+"""The study of ``swg paper-choices``: trials, the best of them judged on all tables, and the report."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import joblib
+
+from learn.paper_choices.analysis import best_of, effects, fit, held
+from learn.paper_choices.choice import Choice
+from learn.paper_choices.evaluation import JUDGED, SEARCHED, Tables, claims, recordings, tables
+from learn.paper_choices.outcome import Outcome
+from learn.paper_choices.page import write
+from learn.paper_choices.preset import Values, merged
+from learn.paper_choices.search import objective, trials
+
+
+def run(config: Mapping[str, Any]) -> dict[str, float]:
+    """Do the study as a resolved ``conf/paper_choices.yaml`` says, and write its report.
+
+    Returns
+    -------
+    dict
+        Mean absolute difference to each table of the paper after the fit [points].
+
+    Raises
+    ------
+    ValueError
+        If a choice has no valid range or prior.
+    """
+    choices = [Choice(name=name, **options) for name, options in config["choices"].items()]
+    done = trials(config, choices)
+    best = best_of(done, choices)
+    usual = {each.name: each.usual for each in choices}
+    judged = merged(config, config["judged"])
+    pool = joblib.Parallel(config["workers"] or joblib.cpu_count())
+    again = [joblib.delayed(_objective)(config, choices, best.values, seed) for seed in range(1, config["repeats"] + 1)]
+    whole = [joblib.delayed(_judged)(judged, values) for values in (usual, best.values)]
+    *repeats, (before, claims_before), (after, claims_after) = pool([*again, *whole])
+    outcome = Outcome(
+        choices, done, fit(best, done, repeats), before, after, claims_before, claims_after, held(done, choices),
+        effects(done, choices),
+    )  # fmt: skip
+    write(outcome, config, Path(config["out"]))
+    return {name: table.mean_absolute_difference for name, table in after.items()}
+
+
+def _objective(config: Mapping[str, Any], choices: list[Choice], values: Values, seed: int) -> float:
+    """The objective of some values with another fold and other forests."""
+    scored = tables(recordings(config, values), config["classifiers"], SEARCHED, seed)
+    return objective(scored, choices, values, config["prior_weight"])
+
+
+def _judged(config: Mapping[str, Any], values: Values) -> tuple[Tables, Mapping[str, bool]]:
+    """All cells and claims under some values."""
+    made = recordings(config, values)
+    scored = tables(made, config["classifiers"], JUDGED)
+    return scored, claims(made, scored, values["disturbance"])
