@@ -64,7 +64,7 @@ class Choice:
         """
         if self.scale == "yes_no":
             return float(share < 0.5)
-        value = float(self._back(self._prior.ppf(share)))
+        value = float(np.clip(self._back(self._prior.ppf(share)), self.low, self.high))
         return float(round(value)) if self.integer else value
 
     def share(self, value: float) -> float:

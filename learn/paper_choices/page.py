@@ -55,7 +55,7 @@ def preset(outcome: Outcome, config: Mapping[str, Any]) -> str:
     text = yaml.safe_dump({"defaults": ["paper@grid", "_self_"], **found}, sort_keys=False, width=120)
     return (
         "# @package _global_\n"
-        f"# Written by '{COMMAND}': choices that the paper leaves open, FITTED to the scores of its Tables VII and IX.\n"
+        f"# Made by '{COMMAND}': choices that the paper leaves open, FITTED to the scores of its Tables VII and IX.\n"
         "# grid=paper has physics alone. Intervals and sources: report/paper_choices.html.\n" + text
     )
 

@@ -79,11 +79,15 @@ def trials(config: Config, choices: Sequence[Choice]) -> list[Trial]:
     study = _study(config)
     for left in study.get_trials(states=(TrialState.RUNNING, TrialState.WAITING)):
         study.tell(left.number, state=TrialState.FAIL)  # of a killed run
-    drawn = {t.user_attrs["sample"] for t in study.get_trials(states=ENDED) if "sample" in t.user_attrs}
+    ended = [t.user_attrs for t in study.get_trials(states=ENDED)]
     shares = qmc.Sobol(len(choices), rng=config["seed"]).random(sampled)
-    for number in sorted(set(range(sampled)) - drawn):
+    for number in sorted(set(range(sampled)) - {each.get("sample") for each in ended}):
         place = dict(zip([each.name for each in choices], shares[number].tolist(), strict=True))
         study.enqueue_trial(place, user_attrs={"sample": number})
+    for number in sorted(set(range(len(config["starts"]))) - {each.get("start") for each in ended}):
+        start = config["starts"][number]
+        place = {each.name: each.share(start.get(each.name, each.usual)) for each in choices}
+        study.enqueue_trial(place, user_attrs={"start": number})
     pool = joblib.Parallel(workers)
     pool(joblib.delayed(_work)(config, choices, number, sampled + fitted) for number in range(workers))
     return [_trial(each, choices, config["prior_weight"]) for each in study.get_trials(states=(TrialState.COMPLETE,))]
