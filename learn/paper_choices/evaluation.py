@@ -117,7 +117,7 @@ def tables(made: Recordings, classifiers: Mapping[str, Config], effort: Effort, 
             options = dict(classifiers[str(name)])
             options |= {"seed": seed} if "seed" in options else {}
             scores = _scores(data[CONDITIONS[table], str(features)], table, options, effort, seed)
-            ours[group.index] = [_score(scores, row) for row in group["row"]]
+            ours.loc[group.index] = np.array([_score(scores, row) for row in group["row"]])
         result[table] = Comparison(cells.assign(ours=ours))
     return result
 

@@ -1,6 +1,6 @@
 """Trials of the study: draws of all choices from their priors, then an optimiser that sees Tables VII and IX alone.
 
-Trials are kept in a file, so an interrupted study goes on. The optimiser is Optuna's Gaussian process.
+Trials are kept in a file, so an interrupted study goes on. The optimiser is Optuna's tree-structured Parzen estimator.
 """
 
 import hashlib
@@ -15,7 +15,7 @@ import joblib
 import numpy as np
 import optuna
 from optuna.exceptions import ExperimentalWarning
-from optuna.samplers import BaseSampler, GPSampler, PartialFixedSampler
+from optuna.samplers import BaseSampler, PartialFixedSampler, TPESampler
 from optuna.storages import JournalStorage
 from optuna.storages.journal import JournalFileBackend
 from optuna.study import MaxTrialsCallback
@@ -119,7 +119,9 @@ def _sampler(choices: Sequence[Choice], seed: int) -> BaseSampler:
     usual = {each.name: each.share(each.usual) for each in choices if not each.fitted}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ExperimentalWarning)
-        return PartialFixedSampler(usual, GPSampler(seed=seed, n_startup_trials=1))
+        return PartialFixedSampler(
+            usual, TPESampler(multivariate=True, constant_liar=True, n_startup_trials=1, seed=seed)
+        )
 
 
 def _study(config: Config, sampler: BaseSampler | None = None) -> optuna.Study:

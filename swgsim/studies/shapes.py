@@ -1,4 +1,4 @@
-"""Which physics gives the shapes of the paper's Fig. 6: C3 and C4 with effects of the library as part of the fault.
+"""Which physics gives the shapes of the paper's Fig. 6 (C2 to C4), with effects of the library as part of the fault.
 
 ``python -m swgsim.studies.shapes`` prints the table of docs/paper_choices.md.
 """
@@ -12,8 +12,8 @@ from swgsim.chain.chain import SECTORS, Run, simulate
 from swgsim.effects import CamForm, Effect, LoadSharing, RootToothCrack, RotatingEccentricity
 from swgsim.gear.acquisition import Window
 from swgsim.gear.gear import Gear
-from swgsim.studies.claims import POSITIONS, amplitude, offsets_and_shape
-from swgsim.studies.examples import EXAMPLES, FIGURE_POINT
+from swgsim.studies.claims import POSITIONS, amplitude, offsets_and_shape, reduced_stiffness
+from swgsim.studies.examples import EXAMPLES, FIGURE_POINT, Subject
 
 ECCENTRIC = EXAMPLES["eccentric_wave_generator"]
 # What the healthy gear has, and what the faulty one has in addition.
@@ -26,6 +26,8 @@ C3_CASES: Mapping[str, tuple[tuple[Effect, ...], tuple[Effect, ...]]] = {
 }
 # Cracked sectors of the rim, two teeth each.
 C4_LENGTHS = (1, 3, 7)
+# From a robot link to the brake of a test bench [kg m^2].
+C2_INERTIAS = (1.0, 0.1, 0.02)
 
 
 def signals(effects: Sequence[tuple[Effect, ...]], sectors: int = SECTORS) -> Float[np.ndarray, "run 5 time"]:
@@ -55,7 +57,10 @@ def cracked(length: int, sectors: int = SECTORS) -> tuple[float, int]:
 
 
 def main() -> None:
-    """Print both tables."""
+    """Print the figures of each claim."""
+    for inertia in C2_INERTIAS:
+        subject = Subject((Gear().with_transmission(J_out=inertia),))
+        print(f"C2, load inertia {inertia:g} kg m²: {reduced_stiffness(subject).figure}")
     for case in C3_CASES:
         (s1, s3), shape = eccentric(case)
         print(f"C3, {case}: offsets s1 {100 * s1:+.0f} %, s3 {100 * s3:+.0f} %, shape {100 * shape:.2g} %")
