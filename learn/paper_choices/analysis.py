@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 from jaxtyping import Float
 
+from learn.paper.claims import parts
 from learn.paper.published_tables import CELL, paper_table
 from learn.paper_choices.choice import Choice
 from learn.paper_choices.search import Trial
@@ -124,6 +125,15 @@ def held(trials: Sequence[Trial], choices: Sequence[Choice]) -> dict[str, Held]:
             }
         result[key] = Held(float(holds.mean()), tuple(sorted(decisive, key=lambda name: decisive[name])))
     return result
+
+
+def parts_held(trials: Sequence[Trial]) -> dict[str, dict[str, float]]:
+    """The share of the drawn trials in which each part of C11 to C18 holds."""
+    judged = [parts(trial.tables) for trial in trials if trial.sampled]
+    return {
+        key: {part.name: float(np.mean([each[key][i].holds for each in judged])) for i, part in enumerate(of_claim)}
+        for key, of_claim in judged[0].items()
+    }
 
 
 def _deviations(trials: Sequence[Trial], choices: Sequence[Choice]) -> Float[np.ndarray, "trial choice"]:

@@ -32,6 +32,8 @@ class Outcome:
         The same over the drawn choices.
     effects : DataFrame
         As of :func:`learn.paper_choices.analysis.effects`.
+    parts : mapping
+        As of :func:`learn.paper_choices.analysis.parts_held`.
     """
 
     choices: Sequence[Choice]
@@ -43,6 +45,7 @@ class Outcome:
     claims_after: Mapping[str, bool]
     held: Mapping[str, Held]
     effects: pd.DataFrame
+    parts: Mapping[str, Mapping[str, float]]
 
     def fields(self) -> dict[str, Any]:
         """``paper_choices.json``."""
@@ -107,23 +110,28 @@ def rank_correlation(tables: Tables) -> float:
     return float(np.nanmean([rho for table in tables.values() for rho in table.rank_correlation.values()]))
 
 
-def reading(held: Mapping[str, Held]) -> str:
-    """Which conclusions of the paper hold on any plausible choice, which on some, and which on none."""
+def reading(held: Mapping[str, Held], parts: Mapping[str, Mapping[str, float]]) -> str:
+    """Which conclusions of the paper hold on any plausible choice, which on some, and which on none.
+
+    Of a claim that does not hold as a whole, the parts that hold on most draws are counted.
+    """
     groups: dict[str, list[str]] = {"always": [], "mostly": [], "seldom": [], "never": []}
     depending = []
     for key, each in held.items():
-        if each.words in groups:
-            groups[each.words].append(key)
-        else:
+        shares = list(parts.get(key, {}).values())
+        some = f" ({sum(share > 0.5 for share in shares)} of {len(shares)} parts on most)" if len(shares) > 1 else ""
+        if each.words not in groups:
             depending.append(f"{key} ({each.depends_on[0].replace('_', ' ')})")
-    parts = {
+        else:
+            groups[each.words].append(key + (some if each.share <= 0.5 else ""))
+    texts = {
         "Hold on every plausible choice": groups["always"],
         "depend on a choice that the paper does not state": depending,
         "hold on most, by no single choice": groups["mostly"],
         "hold on few, by no single choice": groups["seldom"],
-        "do not come out at all": groups["never"],
+        "do not come out on any": groups["never"],
     }
-    return "; ".join(f"{words}: {', '.join(keys)}" for words, keys in parts.items() if keys) + "."
+    return "; ".join(f"{words}: {', '.join(keys)}" for words, keys in texts.items() if keys) + "."
 
 
 def cells(before: Tables, after: Tables) -> list[dict[str, Any]]:

@@ -42,7 +42,7 @@ def kept(outcome: Outcome) -> dict[str, Any]:
         "command": COMMAND,
         **outcome.fields(),
         "answer": outcome.answer,
-        "reading": reading(outcome.held),
+        "reading": reading(outcome.held, outcome.parts),
         "samples": sum(trial.sampled for trial in outcome.trials),
         "cells": cells(outcome.before, outcome.after),
     }
@@ -83,7 +83,7 @@ def page(outcome: Outcome) -> str:
         before=errors(outcome.before),
         after=errors(outcome.after),
         ranks=[rank_correlation(tables) for tables in (outcome.before, outcome.after)],
-        reading=reading(outcome.held),
+        reading=reading(outcome.held, outcome.parts),
         roman=ROMAN,
         pictures=pictures,
         samples=sum(trial.sampled for trial in outcome.trials),

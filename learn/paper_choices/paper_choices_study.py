@@ -6,7 +6,7 @@ from typing import Any
 
 import joblib
 
-from learn.paper_choices.analysis import best_of, effects, fit, held
+from learn.paper_choices.analysis import best_of, effects, fit, held, parts_held
 from learn.paper_choices.choice import Choice
 from learn.paper_choices.evaluation import JUDGED, SEARCHED, Tables, claims, recordings, tables
 from learn.paper_choices.outcome import Outcome
@@ -39,7 +39,7 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
     *repeats, (before, claims_before), (after, claims_after) = pool([*again, *whole])
     outcome = Outcome(
         choices, done, fit(best, done, repeats), before, after, claims_before, claims_after, held(done, choices),
-        effects(done, choices),
+        effects(done, choices), parts_held(done),
     )  # fmt: skip
     write(outcome, config, Path(config["out"]))
     return {name: table.mean_absolute_difference for name, table in after.items()}

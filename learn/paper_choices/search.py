@@ -57,6 +57,11 @@ class Trial:
     scores: Mapping[str, Sequence[float | None]]
     claims: Mapping[str, bool]
 
+    @property
+    def tables(self) -> Tables:
+        """The scores beside the paper's."""
+        return tables_of(self.scores)
+
 
 def objective(scored: Tables, choices: Sequence[Choice], values: Values, prior_weight: float) -> float:
     """What the fit minimises [points]: :func:`fitted_error`, and what the values cost by their priors."""
@@ -140,8 +145,14 @@ def _plain(scores: Any) -> list[float | None]:
     return [None if np.isnan(score) else round(float(score), 3) for score in scores]
 
 
+def tables_of(scores: Mapping[str, Sequence[float | None]]) -> dict[str, Comparison]:
+    """Tables from their scores."""
+    return {name: Comparison(paper_table(name).assign(ours=np.array(ours, float))) for name, ours in scores.items()}
+
+
 def _trial(found: FrozenTrial, choices: Sequence[Choice], prior_weight: float) -> Trial:
     values = {each.name: each.value(found.params[each.name]) for each in choices}
     scores, holds = found.user_attrs["scores"], found.user_attrs.get("claims", {})
-    scored = {name: Comparison(paper_table(name).assign(ours=np.array(ours, float))) for name, ours in scores.items()}
-    return Trial("sample" in found.user_attrs, values, objective(scored, choices, values, prior_weight), scores, holds)
+    return Trial(
+        "sample" in found.user_attrs, values, objective(tables_of(scores), choices, values, prior_weight), scores, holds
+    )

@@ -31,7 +31,16 @@ def outcome(**values):
     slopes = pd.DataFrame(1.0, index=index, columns=[each.name for each in CHOICES])
     drawn = Trial(True, USUAL, 9.0, {}, CLAIMS)
     return Outcome(
-        CHOICES, [drawn, best], Fit(best, (5.1, 0.1), intervals, 3), tables(10), tables(4), CLAIMS, CLAIMS, held, slopes
+        CHOICES,
+        [drawn, best],
+        Fit(best, (5.1, 0.1), intervals, 3),
+        tables(10),
+        tables(4),
+        CLAIMS,
+        CLAIMS,
+        held,
+        slopes,
+        {"C11": {"best S1": 0.9}},
     )
 
 
@@ -56,10 +65,10 @@ def test_the_answer_names_what_is_not_as_usual_and_nothing_else():
 
 
 def test_claims_are_read_by_how_they_hold():
-    text = reading(outcome().held)
+    text = reading(outcome().held, {"C3": {"one": 0.9, "two": 0.2}})
     assert text.startswith("Hold on every plausible choice: C1, C4")
     assert "depend on a choice that the paper does not state: C2 (window)" in text
-    assert text.endswith("do not come out at all: C3.")
+    assert text.endswith("do not come out on any: C3 (1 of 2 parts on most).")
 
 
 def test_the_page_opens_with_the_answer_and_says_what_was_reached():
