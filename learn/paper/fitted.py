@@ -18,6 +18,8 @@ class Fitted:
         That made the result.
     answer : str
         What the paper's chain has that ours lacks.
+    judgement : str
+        Whether the tables that the fit never saw support it.
     reading : str
         Which conclusions of the paper hold on which choices.
     samples : int
@@ -30,6 +32,7 @@ class Fitted:
 
     command: str
     answer: str
+    judgement: str
     reading: str
     samples: int
     errors: Mapping[str, float]
@@ -40,5 +43,5 @@ def fitted() -> Fitted:
     """The kept result."""
     kept = json.loads((files("learn.paper") / "tables" / "paper_choices.json").read_text(encoding="utf-8"))
     scores = {(cell["table"], cell["row"], cell["classifier"]): cell["after"] for cell in kept["cells"]}
-    texts = {name: kept[name] for name in ("command", "answer", "reading", "samples")}
+    texts = {name: kept[name] for name in ("command", "answer", "judgement", "reading", "samples")}
     return Fitted(**texts, errors=kept["after"], scores=scores)

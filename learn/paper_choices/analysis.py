@@ -10,6 +10,7 @@ from jaxtyping import Float
 from learn.paper.claims import parts
 from learn.paper.published_tables import CELL, paper_table
 from learn.paper_choices.choice import Choice
+from learn.paper_choices.preset import Values
 from learn.paper_choices.search import Trial
 
 # Chance that a choice without influence is named for a claim, all choices together.
@@ -23,8 +24,11 @@ class Fit:
     Attributes
     ----------
     best : Trial
+    values : mapping
+        Those of the best trial for choices whose interval leaves out the usual value; the usual value of all others.
     scatter : (mean, standard deviation)
-        Of the objective under the best values, over other folds, draws and forests [points].
+        Of the objective under the best values [points]. The deviation is that over other folds and forests, and the
+        difference between the few variants of a trial and all of them.
     intervals : mapping
         Choice to the least and the largest value among the trials that fit as well.
     as_well : int
@@ -32,6 +36,7 @@ class Fit:
     """
 
     best: Trial
+    values: Values
     scatter: tuple[float, float]
     intervals: Mapping[str, tuple[float, float]]
     as_well: int
@@ -58,21 +63,36 @@ class Held:
         return "mostly" if self.share > 0.5 else "seldom"
 
 
-def fit(best: Trial, trials: Sequence[Trial], repeats: Sequence[float]) -> Fit:
+def fit(
+    best: Trial, choices: Sequence[Choice], trials: Sequence[Trial], repeats: Sequence[float], judged: float
+) -> Fit:
     """The best trial and all that fit as well: within two standard deviations of its own mean.
+
+    A trial sees few variants, so the difference of its objective to that on all variants is an uncertainty of it. A
+    choice of which the usual value fits as well is put back to it: few numbers explain the scores.
 
     Parameters
     ----------
     best : Trial
+    choices : sequence of Choice
     trials : sequence of Trial
     repeats : sequence of float
         Objective of the best trial's values with other seeds [points].
+    judged : float
+        The same with all variants [points].
     """
-    mean, deviation = float(np.mean(repeats)), float(np.std(repeats, ddof=1))
+    mean = float(np.mean(repeats))
+    deviation = float(np.hypot(np.std(repeats, ddof=1), judged - mean))
     limit = max(mean + 2 * deviation, best.objective)
     near = [trial for trial in trials if trial.objective <= limit]
     columns = {name: [trial.values[name] for trial in near] for name in best.values}
-    return Fit(best, (mean, deviation), {name: (min(v), max(v)) for name, v in columns.items()}, len(near))
+    intervals = {name: (min(column), max(column)) for name, column in columns.items()}
+    values = dict(best.values)
+    for each in choices:
+        low, high = intervals[each.name]
+        if low <= each.usual <= high:
+            values[each.name] = each.usual
+    return Fit(best, values, (mean, deviation), intervals, len(near))
 
 
 def best_of(trials: Sequence[Trial], choices: Sequence[Choice]) -> Trial:

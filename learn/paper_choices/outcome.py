@@ -11,7 +11,7 @@ from learn.paper.paper_page import ROMAN
 from learn.paper.published_tables import row_label
 from learn.paper_choices.analysis import Fit, Held
 from learn.paper_choices.choice import Choice
-from learn.paper_choices.evaluation import Tables
+from learn.paper_choices.evaluation import FITTED, Tables
 from learn.paper_choices.search import Trial
 
 
@@ -54,7 +54,7 @@ class Outcome:
             "after": errors(self.after),
             "rank_correlation": round(rank_correlation(self.after), 3),
             "choices": {
-                each.name: {"value": self.fit.best.values[each.name], "interval": list(self.fit.intervals[each.name])}
+                each.name: {"value": self.fit.values[each.name], "interval": list(self.fit.intervals[each.name])}
                 for each in self.choices
             },
             "claims": {
@@ -66,12 +66,8 @@ class Outcome:
     @property
     def found(self) -> list[Choice]:
         """Choices whose usual value is not among those that fit as well, the most unusual first."""
-        other = [each for each in self.choices if each.fitted and self._is_other(each)]
-        return sorted(other, key=lambda each: -abs(each.deviation(self.fit.best.values[each.name])))
-
-    def _is_other(self, choice: Choice) -> bool:
-        low, high = self.fit.intervals[choice.name]
-        return not low <= choice.usual <= high
+        other = [each for each in self.choices if self.fit.values[each.name] != each.usual]
+        return sorted(other, key=lambda each: -abs(each.deviation(self.fit.values[each.name])))
 
     @property
     def answer(self) -> str:
@@ -82,11 +78,23 @@ class Outcome:
 
     def text(self, choice: Choice) -> str:
         """A choice with the value that was found and its interval."""
-        value, (low, high) = self.fit.best.values[choice.name], self.fit.intervals[choice.name]
+        value, (low, high) = self.fit.values[choice.name], self.fit.intervals[choice.name]
         if choice.scale == "yes_no":
             return f"{choice.meaning}: {'yes' if value else 'no'}, ours {'yes' if choice.usual else 'no'}"
         unit = "" if choice.unit == "-" else f" {choice.unit}"
         return f"{choice.meaning} {value:.3g}{unit} ({low:.3g} to {high:.3g}), ours {choice.usual:.3g}{unit}"
+
+    @property
+    def judgement(self) -> str:
+        """Whether the tables that the fit never saw come nearer as well."""
+        worse = [name for name in self.after if name not in FITTED and self._change(name) > 0]
+        if not worse:
+            return "Tables VIII and X come nearer, too: they support the fit."
+        names = " and ".join(f"Table {ROMAN[name]} ({self._change(name):+.1f} points)" for name in worse)
+        return f"{names} moves away: it contradicts the fit, so part of what was found is not what the paper did."
+
+    def _change(self, name: str) -> float:
+        return self.after[name].mean_absolute_difference - self.before[name].mean_absolute_difference
 
     @property
     def remaining(self) -> list[tuple[str, float]]:

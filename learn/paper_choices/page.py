@@ -42,6 +42,7 @@ def kept(outcome: Outcome) -> dict[str, Any]:
         "command": COMMAND,
         **outcome.fields(),
         "answer": outcome.answer,
+        "judgement": outcome.judgement,
         "reading": reading(outcome.held, outcome.parts),
         "samples": sum(trial.sampled for trial in outcome.trials),
         "cells": cells(outcome.before, outcome.after),
@@ -50,7 +51,7 @@ def kept(outcome: Outcome) -> dict[str, Any]:
 
 def preset(outcome: Outcome, config: Mapping[str, Any]) -> str:
     """The file ``conf/grid/paper_fitted.yaml``."""
-    found = changes(outcome.fit.best.values, config)
+    found = changes(outcome.fit.values, config)
     found["grid"] = {"name": "paper_fitted", **found["grid"]}
     text = yaml.safe_dump({"defaults": ["paper@grid", "_self_"], **found}, sort_keys=False, width=120)
     return (

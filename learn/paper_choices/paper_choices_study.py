@@ -12,7 +12,7 @@ from learn.paper_choices.evaluation import JUDGED, SEARCHED, Tables, claims, rec
 from learn.paper_choices.outcome import Outcome
 from learn.paper_choices.page import write
 from learn.paper_choices.preset import Values, merged
-from learn.paper_choices.search import objective, trials
+from learn.paper_choices.search import Trial, objective, trials
 
 
 def run(config: Mapping[str, Any]) -> dict[str, float]:
@@ -34,19 +34,25 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
     usual = {each.name: each.usual for each in choices}
     judged = merged(config, config["judged"])
     pool = joblib.Parallel(config["workers"] or joblib.cpu_count())
-    again = [joblib.delayed(_objective)(config, choices, best.values, seed) for seed in range(1, config["repeats"] + 1)]
-    whole = [joblib.delayed(_judged)(judged, values) for values in (usual, best.values)]
-    *repeats, (before, claims_before), (after, claims_after) = pool([*again, *whole])
+    put_back = [best.values | {each.name: each.usual} for each in choices if best.values[each.name] != each.usual]
+    again = [(config, best.values, seed) for seed in range(1, config["repeats"] + 1)]
+    again += [(config, values, 0) for values in put_back] + [(judged, best.values, 0)]
+    *objectives, on_all_variants = pool(joblib.delayed(_objective)(choices, *each) for each in again)
+    repeats, without = objectives[: config["repeats"]], objectives[config["repeats"] :]
+    near = [Trial(False, values, each, {}, {}) for values, each in zip(put_back, without, strict=True)]
+    found = fit(best, choices, [*done, *near], repeats, on_all_variants)
+    whole = pool(joblib.delayed(_judged)(judged, values) for values in (usual, found.values))
+    (before, claims_before), (after, claims_after) = whole
     outcome = Outcome(
-        choices, done, fit(best, done, repeats), before, after, claims_before, claims_after, held(done, choices),
-        effects(done, choices), parts_held(done),
+        choices, done, found, before, after, claims_before, claims_after, held(done, choices), effects(done, choices),
+        parts_held(done),
     )  # fmt: skip
     write(outcome, config, Path(config["out"]))
     return {name: table.mean_absolute_difference for name, table in after.items()}
 
 
-def _objective(config: Mapping[str, Any], choices: list[Choice], values: Values, seed: int) -> float:
-    """The objective of some values with another fold and other forests."""
+def _objective(choices: list[Choice], config: Mapping[str, Any], values: Values, seed: int) -> float:
+    """The objective of some values, with a fold and forests of a seed."""
     scored = tables(recordings(config, values), config["classifiers"], SEARCHED, seed)
     return objective(scored, choices, values, config["prior_weight"])
 

@@ -50,8 +50,8 @@ def test_a_claim_that_holds_by_chance_depends_on_nothing_but_rarely():
 def test_what_fits_as_well_is_within_the_scatter_of_the_best():
     made = trials()
     best = best_of(made, CHOICES)
-    near = fit(best, made, [best.objective, best.objective + 0.2])
-    wide = fit(best, made, [best.objective, best.objective + 1.0])
+    near = fit(best, CHOICES, made, [best.objective, best.objective + 0.2], best.objective + 0.1)
+    wide = fit(best, CHOICES, made, [best.objective, best.objective + 0.2], best.objective + 0.5)
     low, high = near.intervals["cause"]
     assert low <= best.values["cause"] <= high
     assert near.as_well < wide.as_well

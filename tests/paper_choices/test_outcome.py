@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 
 import pandas as pd
 import pytest
@@ -33,7 +34,7 @@ def outcome(**values):
     return Outcome(
         CHOICES,
         [drawn, best],
-        Fit(best, (5.1, 0.1), intervals, 3),
+        Fit(best, best.values, (5.1, 0.1), intervals, 3),
         tables(10),
         tables(4),
         CLAIMS,
@@ -62,6 +63,13 @@ def test_the_answer_names_what_is_not_as_usual_and_nothing_else():
     assert found.answer.startswith("The paper's chain has what ours lacks: inertia of output and load J_out 0.02 kg m²")
     assert found.answer.count("ours") == 2
     assert "our values fit as well" in outcome().answer
+
+
+def test_a_table_that_the_fit_never_saw_may_contradict_it():
+    found = outcome(load_inertia=0.02)
+    assert found.judgement.endswith("they support the fit.")
+    worse = replace(found, after={**tables(4), "table10": tables(13.5)["table10"]})
+    assert worse.judgement.startswith("Table X (+3.5 points) moves away: it contradicts the fit")
 
 
 def test_claims_are_read_by_how_they_hold():
