@@ -57,6 +57,16 @@ def test_what_fits_as_well_is_within_the_scatter_of_the_best():
     assert near.as_well < wide.as_well
     assert wide.intervals["cause"][0] <= low
     assert low > 1  # the scores want more of the cause than is usual
+    assert near.values["cause"] == best.values["cause"]
+
+
+def test_a_choice_whose_usual_value_fits_as_well_is_put_back():
+    made = trials()
+    best = best_of(made, CHOICES)
+    usual = Trial(False, best.values | {"other": 1.0}, best.objective, {}, {})
+    found = fit(best, CHOICES, [*made, usual], [best.objective, best.objective + 0.1], best.objective)
+    assert best.values["other"] != 1.0
+    assert found.values == best.values | {"other": 1.0}
 
 
 def test_what_the_fit_does_not_see_keeps_its_usual_value():
