@@ -34,7 +34,7 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
     usual = {each.name: each.usual for each in choices}
     judged = merged(config, config["judged"])
     pool = joblib.Parallel(config["workers"] or joblib.cpu_count())
-    put_back = [best.values | {each.name: each.usual} for each in choices if best.values[each.name] != each.usual]
+    put_back = [{**best.values, each.name: each.usual} for each in choices if best.values[each.name] != each.usual]
     again = [(config, best.values, seed) for seed in range(1, config["repeats"] + 1)]
     again += [(config, values, 0) for values in put_back] + [(judged, best.values, 0)]
     *objectives, on_all_variants = pool(joblib.delayed(_objective)(choices, *each) for each in again)
