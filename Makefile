@@ -22,6 +22,9 @@ QUICK := $(if $(SMALL),shots=[1$(comma)2] draws=1 protocol.folds=2 protocol.deve
 FEW_EFFECTS := reduced_damping,warm_grease,flank_friction,input_unbalance,eccentric_wave_generator,cam_form,load_sharing,$(strip \
                )root_tooth_crack,tilting_moment,gauge_gain,channel_skew,mains_hum
 LEFT_OUT := tilting_moment strong_tilting_moment channel_skew coning load_sharing stiffening_spring axial_thrust bridge_nonlinearity
+# A few trials of the open choices on a small grid.
+FEW_TRIALS := sampled=4 fitted=1 'starts=[]' repeats=2 grid.variants=6 grid.positions=2 judged.grid.variants=6 judged.grid.positions=2 \
+              classifiers.mlp.iterations=20 classifiers.rf.trees=20 judged.classifiers.rf.trees=20 out=report/small
 # Methods on microcontrollers that the small form leaves out.
 LARGER := paper_forest paper_forest_selection_3 forest_20 extra_trees_10 extra_trees_30 paper_mlp mlp_32 mlp_128 cnn_16
 # Recordings of real joints, where they are; no file of theirs may be in the project.
@@ -34,18 +37,18 @@ JOBS := $(shell echo $$(( ($(CORES) + 3) / 4 )))
 export MLFLOW_DISABLE_TELEMETRY := true
 
 .DEFAULT_GOAL := help
-.PHONY: help install install-dev site data experiments report paper transfer loop blind other-benches robots sim-to-real joints embedded test lint scale benchmark convergence docs ui clean $(TABLES)
+.PHONY: help install install-dev site data experiments report paper paper-choices transfer loop blind other-benches robots sim-to-real joints embedded test lint scale benchmark convergence docs ui clean $(TABLES)
 
 help:  ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-12s %s\n", $$1, $$2}'
 
 $(READY): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[data,rocket]'
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[data,rocket,choices]'
 	touch $@
 
 $(DEV): $(READY)
-	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[data,rocket,formats,dask,slurm,postgresql,embedded,dev,site]'
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[data,rocket,choices,formats,dask,slurm,postgresql,embedded,dev,site]'
 	touch $@
 
 install: $(READY)  ## virtual environment with what the commands need
@@ -68,6 +71,9 @@ paper: $(READY)  ## data sets, runs and report of the paper's tables (SMALL=1: a
 	@started=$$(date +%s) && $(MAKE) --no-print-directory experiments && \
 	    $(SWG) report grid=$(GRID) started=$$started
 	@echo "open report/$(if $(SMALL),small/)index.html; 'make ui' shows the runs"
+
+paper-choices: $(READY)  ## the choices that the paper leaves open, fitted to its tables, report/paper_choices.html (SMALL=1: half a minute)
+	OMP_NUM_THREADS=1 $(SWG) paper-choices $(if $(SMALL),$(FEW_TRIALS))
 
 transfer: data  ## beyond the paper: networks, transfer to gears never seen, report/transfer.html (SMALL=1: a few minutes)
 	@set -e; \

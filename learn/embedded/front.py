@@ -85,6 +85,10 @@ def operating_points(references: LabelledSignals) -> pd.DataFrame:
 
 
 def _selection(selection: Selection) -> Front:
+    if not selection.whole_revolutions:
+        raise ValueError(
+            f"features={selection.name} over broken revolutions have no front end in C: take whole_revolutions=true"
+        )
     orders = selection.orders if selection.spectrum != "none" else 0
     sizes: Macros = {
         "ORDERS": orders,

@@ -26,7 +26,7 @@ from learn.inputs.inputs import Layout, LearningSet
 from learn.inputs.references import healthy_reference
 from swgsim.common.checks import require_integer, require_known, require_positive
 from swgsim.storage.labelled_signals import SENSORS, LabelledSignals
-from swgsim.storage.orders import order_lines, whole_revolutions
+from swgsim.storage.orders import fft_bins, order_lines, whole_revolutions
 
 SPECTRA = {"none": (), "gauges": SENSORS, "differences": ("ds13", "ds24"), "both": (*SENSORS, "ds13", "ds24")}
 EFFICIENCIES = {"none": (), "eta_rel": ("eta_rel",), "eta2_rel": ("eta2_rel",), "both": ("eta_rel", "eta2_rel")}
@@ -55,6 +55,10 @@ class Selection:
         values: an amplifier noise of 5e-4 mV/V leaves 3e-5 in a window of 600 samples.
     operating_point : bool
         Whether speed, load and temperature are features too; the paper's selections have none of them.
+    whole_revolutions : bool
+        Whether features are taken over the largest whole number of revolutions, with order lines as components. If
+        not, over the whole window, with the first bins of its FFT as components; a window that holds a broken number
+        of revolutions then leaks into all of them. The paper does not say which.
 
     Raises
     ------
@@ -69,6 +73,7 @@ class Selection:
     orders: int = 6
     floor: float = 1e-6
     operating_point: bool = False
+    whole_revolutions: bool = True
 
     def __post_init__(self) -> None:
         require_known("spectrum", [self.spectrum], SPECTRA)
@@ -132,21 +137,24 @@ class Selection:
 
 
 def signal_quantities(recordings: LabelledSignals, selection: Selection) -> Float[np.ndarray, "sample quantity"]:
-    """Means [mV/V], variances [its square] and DFT magnitudes [mV/V] of a selection, before eq. (7).
-
-    They are taken over the largest whole number of revolutions at the desired speed.
-    """
+    """Means [mV/V], variances [its square] and DFT magnitudes [mV/V] of a selection, before eq. (7)."""
     result = np.empty((len(recordings), len(selection.floors)))
     speeds = recordings.table["n_in_rpm"].to_numpy()
     for speed in np.unique(speeds):
         rows = speeds == speed
-        length = whole_revolutions(float(speed), recordings.rate, recordings.signals.shape[-1])
+        length = recordings.signals.shape[-1]
+        if selection.whole_revolutions:
+            length = whole_revolutions(float(speed), recordings.rate, length)
         s = recordings.signals[rows, :, :length].astype(np.float64)
         quantities = [s.mean(axis=-1), s.var(axis=-1)] if selection.statistics else []
         if selection.spectrum != "none":
             differences = s[:, 1:3] - s[:, 3:5]  # eq. 8: s1 - s3, s2 - s4
             channels = {"gauges": s, "differences": differences, "both": np.concatenate([s, differences], axis=1)}
-            lines = order_lines(channels[selection.spectrum], float(speed), recordings.rate, selection.orders)
+            signals = channels[selection.spectrum]
+            if selection.whole_revolutions:
+                lines = order_lines(signals, float(speed), recordings.rate, selection.orders)
+            else:
+                lines = fft_bins(signals, selection.orders)
             quantities.append(np.abs(lines[:, :, 1:]).reshape(len(s), -1))
         result[rows] = np.concatenate([np.empty((len(s), 0)), *quantities], axis=1)
     return result

@@ -18,11 +18,11 @@ def multi_layer_perceptron(
     return MLPClassifier((neurons,) * hidden_layers, activation="relu", max_iter=iterations, random_state=seed)
 
 
-def support_vector_machine(kernel: str = "rbf") -> Classifier:
-    """Support vector machine (SVM) with a kernel of scikit-learn."""
+def support_vector_machine(kernel: str = "rbf", C: float = 1.0) -> Classifier:
+    """Support vector machine (SVM) with a kernel of scikit-learn; `C` is the weight of a row of training."""
     from sklearn.svm import SVC
 
-    return SVC(kernel=kernel)
+    return SVC(C=C, kernel=kernel)
 
 
 def random_forest(trees: int = 100, depth: int = 7, seed: int = 0) -> Classifier:

@@ -45,15 +45,15 @@ class Features:
     healthy_odd: float
 
 
-def features_of(blocks: Sequence[LabelledSignals]) -> Features:
-    """The features of a clean data set."""
-    learning = SPECTRUM.learning_set(blocks)
+def features_of(blocks: Sequence[LabelledSignals], spectrum: Selection = SPECTRUM) -> Features:
+    """The features of a clean data set, by a DFT of the differences of opposite gauges."""
+    learning = spectrum.learning_set(blocks)
     relative = np.asarray(learning.features)
-    lines = np.concatenate([signal_quantities(block, SPECTRUM) for block in blocks])
+    lines = np.concatenate([signal_quantities(block, spectrum) for block in blocks])
     facts = pd.concat([block.table for block in blocks], ignore_index=True)
     reference = facts["reference"].to_numpy()
     healthy = healthy_reference(lines[reference], facts[reference], learning.table)
-    odd = np.tile(np.arange(1, SPECTRUM.orders + 1) % 2 == 1, 2)
+    odd = np.tile(np.arange(1, spectrum.orders + 1) % 2 == 1, 2)
     return Features(
         learning.table,
         np.abs(lines[~reference] - healthy).max(axis=1),

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from learn.paper.fitted import Fitted
 from learn.paper.published_tables import PROTOCOLS, Comparison, row_label
 from learn.tracking import Store, finished_runs
 from swgsim.common.html import environment
@@ -53,6 +54,8 @@ class Report:
     findings : sequence of Finding
         C1 to C18.
     choices : sequence of (topic, text)
+    fitted : Fitted or None
+        Result with the choices that were fitted to Tables VII and IX; None for another grid than the paper's.
     statistics : sequence of mapping
         Of the clean data set, one row per operating point; column to text.
     pictures : sequence of Picture
@@ -69,6 +72,7 @@ class Report:
     folds: Mapping[str, pd.DataFrame]
     findings: Sequence[Finding]
     choices: Sequence[tuple[str, str]]
+    fitted: Fitted | None
     statistics: Sequence[Mapping[str, str]]
     pictures: Sequence[Picture]
     seconds: float
@@ -104,7 +108,7 @@ class Report:
             beyond=beyond,
             held=[f for f in self.findings if f.holds],
             failed=[f for f in self.findings if not f.holds],
-            tables=[_table(name, comparison) for name, comparison in self.tables.items()],
+            tables=[_table(name, comparison, self.fitted) for name, comparison in self.tables.items()],
             folds=[{"title": ROMAN[name], "rows": _folds(frame)} for name, frame in self.folds.items()],
             classifiers=[name.upper() for name in CLASSIFIERS],
             rest=round(self.seconds - sum(self.steps.values())),
@@ -231,13 +235,15 @@ def shade(difference: float) -> str:
     return f"rgba({colour},{0.6 * strength:.2f})"
 
 
-def _table(name: str, comparison: Comparison) -> dict[str, Any]:
+def _table(name: str, comparison: Comparison, fitted: Fitted | None) -> dict[str, Any]:
     """A table as rows of cells for the template."""
     rows: dict[str, dict[str, dict[str, str]]] = {}
     for cell in comparison.cells.to_dict("records"):
         difference, relation = cell["ours"] - cell["paper"], cell["relation"]
         agrees = (relation == "above" and difference > 0) or (relation == "at most" and difference <= 0)
-        rows.setdefault(row_label(cell["features"], cell["row"]), {})[cell["classifier"].upper()] = {
+        row = row_label(cell["features"], cell["row"])
+        rows.setdefault(row, {})[cell["classifier"].upper()] = {
+            "fitted": f"{fitted.scores[name, row, cell['classifier']]:.1f}" if fitted else "",
             "ours": f"{cell['ours']:.1f}",
             "paper": f"{RELATIONS[relation]}{cell['paper']:.1f}",
             "shade": shade(0 if agrees else difference),
@@ -247,6 +253,7 @@ def _table(name: str, comparison: Comparison) -> dict[str, Any]:
         "title": f"Table {ROMAN[name]}: {TITLES[name]}",
         "rows": [(label, cells, f"{rank[label]:.2f}" if label in rank else "-") for label, cells in rows.items()],
         "difference": comparison.mean_absolute_difference,
+        "fitted": fitted.errors[name] if fitted else None,
         "compared": len(comparison.figures),
     }
 

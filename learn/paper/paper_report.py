@@ -15,6 +15,7 @@ from learn.paper import paper_page as report
 from learn.paper.choices import choices
 from learn.paper.claims import table_claims
 from learn.paper.feature_claims import SPECTRUM, feature_claims, features_of
+from learn.paper.fitted import fitted
 from learn.paper.published_tables import PROTOCOLS, compare, random_and_grouped
 from swgsim.common.files import write_text
 from swgsim.jobs import settings as chain_settings
@@ -125,6 +126,7 @@ def report_of(config: Mapping[str, Any], began: float) -> report.Report:
         folds={name: random_and_grouped(name, runs) for name in ("table7", "table8")},
         findings=findings,
         choices=choices(configuration, sets.disturbance, catalogue, SPECTRUM.orders, SPECTRUM.floor),
+        fitted=fitted() if grid == "paper" else None,
         statistics=report.statistics(blocks),
         pictures=pictures,
         seconds=time.time() - started if started else sum(steps.values()),

@@ -73,6 +73,7 @@ def _repeated(
     periodic[:, 0] -= even
     lines = np.fft.rfft(periodic, norm="forward")[..., :-1]
     lines[..., 1:] *= 2
+    lines[~balanced] = 0  # they may have diverged, and must not decide which orders of the others are kept
     size = np.abs(lines).max(axis=0)
     orders = np.flatnonzero((size > NEGLIGIBLE * size.max(axis=1, keepdims=True)).any(axis=0))
     lines = lines[..., orders]

@@ -10,7 +10,7 @@ import shutil
 import socket
 from collections.abc import Callable, Generator, Iterator
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -120,20 +120,23 @@ def disturb(source: Path, path: Path, disturbance: Disturbance, configuration: s
     progress : callable
         Called with the number of recordings that were finished since the last call.
     """
-    rows, sensors, samples = storage.shape(source)
+    rows, _, samples = storage.shape(source)
 
-    def disturbed() -> Iterator[LabelledSignals]:
+    def made() -> Iterator[LabelledSignals]:
         for block in storage.blocks(source, block_size(samples)):
-            time = np.arange(samples) / block.rate
-            added = np.stack([
-                disturbance.draw(generator("disturbance", seed), sensors, n_in_rpm, time)
-                for seed, n_in_rpm in zip(block.table["seed"], block.table["n_in_rpm"], strict=True)
-            ])  # fmt: skip
-            signals = (block.signals + added).astype("f4")
-            yield LabelledSignals(signals, block.table, block.rate, provenance(configuration))
+            yield replace(disturbed(block, disturbance), attributes=provenance(configuration))
             progress(len(block))
 
-    storage.write(path, disturbed(), rows)
+    storage.write(path, made(), rows)
+
+
+def disturbed(recordings: LabelledSignals, disturbance: Disturbance) -> LabelledSignals:
+    """Recordings plus the disturbance of eq. (10), drawn for each from its seed."""
+    _, sensors, samples = recordings.signals.shape
+    time = np.arange(samples) / recordings.rate
+    facts = zip(recordings.table["seed"], recordings.table["n_in_rpm"], strict=True)
+    added = [disturbance.draw(generator("disturbance", seed), sensors, n_in_rpm, time) for seed, n_in_rpm in facts]
+    return replace(recordings, signals=(recordings.signals + np.stack(added)).astype("f4"))
 
 
 def _part(plan: Plan, cases: list[Case], file: Path) -> Part:

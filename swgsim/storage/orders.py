@@ -54,6 +54,28 @@ def order_lines(
     return np.concatenate([mean, zero_mean @ waves.real + 1j * (zero_mean @ waves.imag)], axis=-1)
 
 
+def fft_bins(signals: Float[np.ndarray, "sample channel time"], bins: int) -> Complex[np.ndarray, "sample channel bin"]:
+    """Complex amplitude of signals in the bins 0 to ``bins`` of the FFT of the whole window [unit of the signals].
+
+    A cosine of amplitude a that is periodic in the window gives a in its bin. One that is not leaks into all bins.
+
+    >>> turns = np.arange(100) / 100
+    >>> np.abs(fft_bins(np.cos(2 * np.pi * 3 * turns)[None, None], 4)).round(6)
+    array([[[0., 0., 0., 1., 0.]]])
+
+    Raises
+    ------
+    ValueError
+        If the highest bin is not below half the sampling rate.
+    """
+    length = signals.shape[-1]
+    if not 2 * bins < length:
+        raise ValueError(f"{bins} bins of a window of {length} samples: fewer than {(length + 1) // 2} are possible")
+    lines = np.fft.rfft(signals, norm="forward")[..., : bins + 1]
+    lines[..., 1:] *= 2
+    return lines
+
+
 def lines_of(recordings: LabelledSignals, orders: int) -> Complex[np.ndarray, "sample sensor order"]:
     """Order lines 0 to ``orders`` of recordings [mV/V], over whole revolutions at the desired speed of each."""
     speeds = recordings.table["n_in_rpm"].to_numpy()

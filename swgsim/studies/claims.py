@@ -5,6 +5,7 @@ from jaxtyping import Float
 
 from swgsim.chain.chain import Run, simulate
 from swgsim.effects import ReducedDamping, RootToothCrack, RunIn
+from swgsim.gear.acquisition import Window
 from swgsim.gear.stiffness import RATED_TORQUE, torsional_stiffness
 from swgsim.storage.labelled_signals import SENSORS
 from swgsim.studies.examples import EXAMPLES, FIGURE_POINT, SEVEREST, Subject
@@ -78,14 +79,9 @@ def reduced_stiffness(subject: Subject) -> Finding:
 
 def eccentric_wave_generator(subject: Subject) -> Finding:
     """C3; an offset of a tenth of the amplitude is seen at a glance, a line's width of distortion is just seen."""
-    healthy, faulty = subject.examples["healthy"], subject.examples["eccentric_wave_generator"]
-    change = (faulty - healthy) / amplitude(healthy)[:, None]
-    s1, s3 = change.mean(axis=1)[[1, 3]]
-    turn = 2 * np.pi * FIGURE_POINT.n_in_rpm / 60 * subject.window.time
-    sinusoid = np.stack([np.ones_like(turn), np.cos(2 * turn), np.sin(2 * turn)], axis=1)
-    fit = np.linalg.lstsq(sinusoid, change[[1, 3]].T)[0]
-    shape = (change[[1, 3]].T - sinusoid @ fit).std(axis=0).min()
-    order_2 = np.hypot(*fit[1:]).max()
+    (s1, s3), order_2, shape = offsets_and_shape(
+        subject.examples["healthy"], subject.examples["eccentric_wave_generator"], subject.window
+    )
     opposite = s1 * s3 < 0 and abs(s1 + s3) <= 0.2 * abs(s1 - s3) / 2
     holds = bool(opposite and min(abs(s1), abs(s3)) >= 0.1 and shape >= 0.01)
     return Finding(
@@ -101,6 +97,21 @@ def eccentric_wave_generator(subject: Subject) -> Finding:
         f"only: the load moves between the lobes, which changes order 2 by {percent(order_2)} of the amplitude and the "
         f"rest by {percent(shape)}" + ("." if holds else "; the sinusoid is shifted and scaled rather than distorted."),
     )
+
+
+def offsets_and_shape(
+    healthy: Float[np.ndarray, "5 time"], faulty: Float[np.ndarray, "5 time"], window: Window
+) -> tuple[Float[np.ndarray, "2"], float, float]:
+    """Offsets of s1 and s3, and the change of their order 2 and of all that is left (rms), as shares of the amplitude.
+
+    The signals [mV/V] are those at the operating point of the figures.
+    """
+    change = ((faulty - healthy) / amplitude(healthy)[:, None])[[1, 3]]
+    turn = 2 * np.pi * FIGURE_POINT.n_in_rpm / 60 * window.time
+    sinusoid = np.stack([np.ones_like(turn), np.cos(2 * turn), np.sin(2 * turn)], axis=1)
+    fit = np.linalg.lstsq(sinusoid, change.T)[0]
+    shape = (change.T - sinusoid @ fit).std(axis=0).min()
+    return change.mean(axis=1), float(np.hypot(*fit[1:]).max()), float(shape)
 
 
 def root_tooth_crack(subject: Subject) -> Finding:

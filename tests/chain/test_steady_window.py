@@ -12,7 +12,7 @@ from swgsim.chain.motion import Motion, run
 from swgsim.chain.settling import steady_state
 from swgsim.chain.steady_window import over_window
 from swgsim.effects import EccentricWaveGenerator, InputUnbalance, RootToothCrack, TipToothCrack
-from swgsim.gear.gear import OperatingPoint
+from swgsim.gear.gear import KinematicError, OperatingPoint
 
 pytestmark = pytest.mark.end_to_end
 POINTS = [OperatingPoint(2000, 7), OperatingPoint(4000, 70)]
@@ -32,6 +32,18 @@ def test_a_repeated_revolution_is_the_integrated_motion() -> None:
         if field.name != "dt":
             ours, theirs = (getattr(motion, field.name) for motion in (repeated, integrated))
             np.testing.assert_allclose(ours, theirs, rtol=0, atol=2e-6 * np.abs(theirs).max(), err_msg=field.name)
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # of the motion that diverges
+def test_a_motion_that_diverges_in_harmonic_balance_leaves_the_others_alone() -> None:
+    calm = GEAR.transmission
+    resonant = GEAR.with_transmission(J_out=0.08, kinematic_error=(KinematicError(2, 1.5e-4),)).transmission
+    point = OperatingPoint(2000, 7)  # its order 2 meets the resonance at 70 Hz
+    alone = over_window(Drive([calm], [point]), START[:1], DT, SAMPLES)
+    beside = over_window(Drive([calm, resonant], [point] * 2), START, DT, SAMPLES)
+    assert np.isfinite(beside.T_in).all()
+    np.testing.assert_allclose(beside.T_out[0], alone.T_out[0], rtol=1e-6)
+    assert beside.T_out[1].std() > 10 * beside.T_out[0].std()
 
 
 def test_the_window_begins_at_the_angle_of_the_trigger() -> None:

@@ -16,6 +16,7 @@ from learn import tracking
 from learn.paper import paper_page as report
 from learn.paper import paper_report
 from learn.paper.choices import choices
+from learn.paper.fitted import fitted
 from learn.paper.published_tables import PROTOCOLS, compare
 from swgsim.common.style import Picture
 from swgsim.jobs.generate_data_set import run as generate
@@ -42,6 +43,7 @@ def written(grid="paper", shift=-2.5):
         folds={"table7": pd.DataFrame(fold).set_index(["features", "classifier"])},
         findings=[finding(n) for n in range(1, 19)],
         choices=[("Window", "600 samples")],
+        fitted=fitted() if grid == "paper" else None,
         statistics=report.statistics([recordings(variants=1)]),
         pictures=[Picture("Fig. 6", "Look here.", b"\x89PNG one")],
         seconds=100.0,
@@ -77,9 +79,16 @@ def test_first_lines_say_what_holds_and_what_does_not():
     lead = written().html().split("<nav>")[0]
     assert "17 of 18 claims" in lead
     assert re.search(r"Not reproduced:</b> C3\.", lead)
-    assert re.search(r"Table\sVII 2\.5 points\s+\(30 cells\)", lead)
+    assert re.search(r"Table\sVII 2\.5 points\s+\(30 cells; fitted choices: [\d.]+\)", lead)
     assert "small grid" not in lead
+    assert lead.index("plausible sets of choices") < lead.index("17 of 18 claims")
     assert "This is the small grid" in written("small").html()
+
+
+def test_every_cell_stands_beside_its_score_with_the_fitted_choices():
+    page = written().html()
+    assert page.count("<i>") == 1 + sum(len(compare(name, runs_like_the_paper(name)).cells) for name in PROTOCOLS)
+    assert "<i>" not in written("small").html().replace("<i>1,2-&gt;3</i>", "")
 
 
 def test_cell_is_white_when_both_agree_and_full_at_the_limit():

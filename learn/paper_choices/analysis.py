@@ -1,0 +1,160 @@
+"""What the trials say: which choice moves which cell, what else fits as well, and on what each claim depends."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+from jaxtyping import Float
+
+from learn.paper.claims import parts
+from learn.paper.published_tables import CELL, paper_table
+from learn.paper_choices.choice import Choice
+from learn.paper_choices.preset import Values
+from learn.paper_choices.search import Trial
+
+# Chance that a choice without influence is named for a claim, all choices together.
+FALSE_ALARM = 0.05
+
+
+@dataclass(frozen=True)
+class Fit:
+    """The values that were found.
+
+    Attributes
+    ----------
+    best : Trial
+    values : mapping
+        Those of the best trial for choices whose interval leaves out the usual value; the usual value of all others.
+    scatter : (mean, standard deviation)
+        Of the objective under the best values [points]. The deviation is that over other folds and forests, and the
+        difference between the few variants of a trial and all of them.
+    intervals : mapping
+        Choice to the least and the largest value among the trials that fit as well.
+    as_well : int
+        Number of those trials.
+    """
+
+    best: Trial
+    values: Values
+    scatter: tuple[float, float]
+    intervals: Mapping[str, tuple[float, float]]
+    as_well: int
+
+
+@dataclass(frozen=True)
+class Held:
+    """How often a claim holds over the drawn choices, and the choices that decide it."""
+
+    share: float
+    depends_on: tuple[str, ...]
+
+    @property
+    def words(self) -> str:
+        """The reading of a claim.
+
+        >>> Held(1.0, ()).words, Held(0.4, ("window",)).words, Held(0.4, ()).words
+        ('always', 'depends on window', 'seldom')
+        """
+        if self.share in (0.0, 1.0):
+            return "always" if self.share else "never"
+        if self.depends_on:
+            return f"depends on {', '.join(self.depends_on)}"
+        return "mostly" if self.share > 0.5 else "seldom"
+
+
+def fit(
+    best: Trial, choices: Sequence[Choice], trials: Sequence[Trial], repeats: Sequence[float], judged: float
+) -> Fit:
+    """The best trial and all that fit as well: within two standard deviations of its own mean.
+
+    A trial sees few variants, so the difference of its objective to that on all variants is an uncertainty of it. A
+    choice of which the usual value fits as well is put back to it: few numbers explain the scores.
+
+    Parameters
+    ----------
+    best : Trial
+    choices : sequence of Choice
+    trials : sequence of Trial
+    repeats : sequence of float
+        Objective of the best trial's values with other seeds [points].
+    judged : float
+        The same with all variants [points].
+    """
+    mean = float(np.mean(repeats))
+    deviation = float(np.hypot(np.std(repeats, ddof=1), judged - mean))
+    limit = max(mean + 2 * deviation, best.objective)
+    near = [trial for trial in trials if trial.objective <= limit]
+    columns = {name: [trial.values[name] for trial in near] for name in best.values}
+    intervals = {name: (min(column), max(column)) for name, column in columns.items()}
+    values = dict(best.values)
+    for each in choices:
+        low, high = intervals[each.name]
+        if low <= each.usual <= high:
+            values[each.name] = each.usual
+    return Fit(best, values, (mean, deviation), intervals, len(near))
+
+
+def best_of(trials: Sequence[Trial], choices: Sequence[Choice]) -> Trial:
+    """The trial with the least objective; what the fit does not see has its usual value."""
+    best = min(trials, key=lambda trial: trial.objective)
+    usual = {each.name: each.usual for each in choices if not each.fitted}
+    return replace(best, values={**best.values, **usual})
+
+
+def effects(trials: Sequence[Trial], choices: Sequence[Choice]) -> pd.DataFrame:
+    """Change of each cell for one standard deviation of each choice's prior [points], over the drawn trials.
+
+    Returns
+    -------
+    DataFrame
+        Indexed by table, features, row and classifier; one column per choice.
+    """
+    drawn = [trial for trial in trials if trial.sampled]
+    x = _deviations(drawn, choices)
+    x = x - x.mean(axis=0)
+    parts = {}
+    for table in drawn[0].scores:
+        y = np.array([trial.scores[table] for trial in drawn], dtype=float)
+        slopes = x.T @ (y - y.mean(axis=0)) / (x**2).sum(axis=0)[:, None]
+        cells = pd.MultiIndex.from_frame(paper_table(table)[CELL])
+        parts[table] = pd.DataFrame(slopes.T, index=cells, columns=[each.name for each in choices])
+    return pd.concat(parts, names=["table"])
+
+
+def held(trials: Sequence[Trial], choices: Sequence[Choice]) -> dict[str, Held]:
+    """How often each claim holds over the drawn trials.
+
+    A claim depends on a choice if the values differ between trials in which it holds and those in which it does not
+    (Mann-Whitney test, Bonferroni's correction for the number of choices). The most decisive choice is first.
+    """
+    from scipy.stats import mannwhitneyu
+
+    drawn = [trial for trial in trials if trial.sampled]
+    x = _deviations(drawn, choices)
+    result = {}
+    for key in drawn[0].claims:
+        holds = np.array([trial.claims[key] for trial in drawn])
+        decisive: dict[str, float] = {}
+        if 0 < holds.sum() < len(holds):
+            chances = mannwhitneyu(x[holds], x[~holds], axis=0).pvalue
+            decisive = {
+                each.name: chance
+                for each, chance in zip(choices, chances, strict=True)
+                if chance < FALSE_ALARM / len(choices)
+            }
+        result[key] = Held(float(holds.mean()), tuple(sorted(decisive, key=lambda name: decisive[name])))
+    return result
+
+
+def parts_held(trials: Sequence[Trial]) -> dict[str, dict[str, float]]:
+    """The share of the drawn trials in which each part of C11 to C18 holds."""
+    judged = [parts(trial.tables) for trial in trials if trial.sampled]
+    return {
+        key: {part.name: float(np.mean([each[key][i].holds for each in judged])) for i, part in enumerate(of_claim)}
+        for key, of_claim in judged[0].items()
+    }
+
+
+def _deviations(trials: Sequence[Trial], choices: Sequence[Choice]) -> Float[np.ndarray, "trial choice"]:
+    return np.array([[each.deviation(trial.values[each.name]) for each in choices] for trial in trials])

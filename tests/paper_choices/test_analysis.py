@@ -1,0 +1,73 @@
+"""Statistics of the study on trials whose causes are known."""
+
+import numpy as np
+import pytest
+
+from learn.paper.published_tables import paper_table
+from learn.paper_choices.analysis import best_of, effects, fit, held
+from learn.paper_choices.choice import Choice
+from learn.paper_choices.search import Trial
+
+CHOICES = [
+    Choice(name, usual=1.0, low=0.1, high=10.0, unit="-", meaning=name, source="", fitted=name != "unseen")
+    for name in ("cause", "other", "unseen")
+]
+
+
+def trials(count=40, seed=0, holds=lambda x: {"C1": True, "C2": x[0] > 0, "C3": False}):
+    """Scores of Table X that rise by 5 points for a standard deviation of the first choice."""
+    rng = np.random.default_rng(seed)
+    cells = len(paper_table("table10"))
+    made = []
+    for x in rng.normal(size=(count, 3)).clip(-2, 2):
+        scores = (70 + 5 * x[0] + rng.normal(scale=0.5, size=cells)).tolist()
+        values = {each.name: each.value(each.share(10 ** (x[i] / 2))) for i, each in enumerate(CHOICES)}
+        made.append(Trial(True, values, float(3 + abs(x[0] - 1)), {"table10": scores}, holds(x)))
+    return made
+
+
+def test_the_effect_of_a_choice_on_a_cell_is_recovered():
+    found = effects(trials(400), CHOICES)
+    assert found["cause"].mean() == pytest.approx(5, abs=0.2)
+    assert abs(found["other"].mean()) < 0.7
+
+
+def test_a_claim_depends_on_the_choice_that_decides_it():
+    found = held(trials(), CHOICES)
+    assert (found["C1"].words, found["C3"].words) == ("always", "never")
+    assert found["C2"].depends_on == ("cause",)
+
+
+def test_a_claim_that_holds_by_chance_depends_on_nothing_but_rarely():
+    rng = np.random.default_rng(1)
+    named = sum(
+        bool(held(trials(seed=seed, holds=lambda _: {"C1": bool(rng.random() < 0.5)}), CHOICES)["C1"].depends_on)
+        for seed in range(60)
+    )
+    assert named <= 8  # 3 expected, more than 8 once in two hundred such tests
+
+
+def test_what_fits_as_well_is_within_the_scatter_of_the_best():
+    made = trials()
+    best = best_of(made, CHOICES)
+    near = fit(best, CHOICES, made, [best.objective, best.objective + 0.2], best.objective + 0.1)
+    wide = fit(best, CHOICES, made, [best.objective, best.objective + 0.2], best.objective + 0.5)
+    low, high = near.intervals["cause"]
+    assert low <= best.values["cause"] <= high
+    assert near.as_well < wide.as_well
+    assert wide.intervals["cause"][0] <= low
+    assert low > 1  # the scores want more of the cause than is usual
+    assert near.values["cause"] == best.values["cause"]
+
+
+def test_a_choice_whose_usual_value_fits_as_well_is_put_back():
+    made = trials()
+    best = best_of(made, CHOICES)
+    usual = Trial(False, best.values | {"other": 1.0}, best.objective, {}, {})
+    found = fit(best, CHOICES, [*made, usual], [best.objective, best.objective + 0.1], best.objective)
+    assert best.values["other"] != 1.0
+    assert found.values == best.values | {"other": 1.0}
+
+
+def test_what_the_fit_does_not_see_keeps_its_usual_value():
+    assert best_of(trials(), CHOICES).values["unseen"] == 1.0

@@ -1,0 +1,98 @@
+"""The report of the study: its fields, its answer, and its page."""
+
+import json
+import re
+from dataclasses import replace
+
+import pandas as pd
+import pytest
+from paper_choices.study_configuration import CHOICES, CONFIG, USUAL
+
+from learn.paper.published_tables import PROTOCOLS, Comparison, paper_table
+from learn.paper_choices import page
+from learn.paper_choices.analysis import Fit, Held
+from learn.paper_choices.outcome import Outcome, reading
+from learn.paper_choices.search import Trial
+
+CLAIMS = {f"C{n}": n != 3 for n in range(1, 19)}
+
+
+def tables(points):
+    return {name: Comparison(paper_table(name).assign(ours=lambda c: c["paper"] - points)) for name in PROTOCOLS}
+
+
+def outcome(**values):
+    best = Trial(False, USUAL | values, 5.0, {}, {})
+    intervals = {name: (0.9 * value, 1.1 * value) for name, value in best.values.items()}
+    held = {key: Held(float(holds), ()) for key, holds in CLAIMS.items()} | {"C2": Held(0.4, ("window", "floor"))}
+    index = pd.MultiIndex.from_tuples(
+        [("table7", "selection_1", "test", "rf"), ("table9", "selection_3", "1,2->3", "nb")],
+        names=["table", "features", "row", "classifier"],
+    )
+    slopes = pd.DataFrame(1.0, index=index, columns=[each.name for each in CHOICES])
+    drawn = Trial(True, USUAL, 9.0, {}, CLAIMS)
+    return Outcome(
+        CHOICES,
+        [drawn, best],
+        Fit(best, best.values, (5.1, 0.1), intervals, 3),
+        tables(10),
+        tables(4),
+        CLAIMS,
+        CLAIMS,
+        held,
+        slopes,
+        {"C11": {"best S1": 0.9}},
+    )
+
+
+def test_the_file_has_the_fields_that_are_asked_for():
+    fields = outcome(load_inertia=0.02).fields()
+    assert list(fields) == ["before", "after", "rank_correlation", "choices", "claims"]
+    assert fields["before"] == dict.fromkeys(PROTOCOLS, 10.0)
+    assert fields["after"] == dict.fromkeys(PROTOCOLS, 4.0)
+    assert fields["rank_correlation"] == 1
+    assert fields["choices"]["load_inertia"] == {
+        "value": 0.02,
+        "interval": [pytest.approx(0.018), pytest.approx(0.022)],
+    }
+    assert fields["claims"]["C2"] == {"share": 0.4, "depends_on": ["window", "floor"]}
+
+
+def test_the_answer_names_what_is_not_as_usual_and_nothing_else():
+    found = outcome(load_inertia=0.02)
+    assert found.answer.startswith("The paper's chain has what ours lacks: inertia of output and load J_out 0.02 kg m²")
+    assert found.answer.count("ours") == 2  # lacks, and one value
+    assert "our values fit as well" in outcome().answer
+
+
+def test_a_table_that_the_fit_never_saw_may_contradict_it():
+    found = outcome(load_inertia=0.02)
+    assert found.judgement.endswith("they support the fit.")
+    worse = replace(found, after={**tables(4), "table10": tables(13.5)["table10"]})
+    assert worse.judgement.startswith("Table X (+3.5 points) moves away: it contradicts the fit")
+
+
+def test_claims_are_read_by_how_they_hold():
+    text = reading(outcome().held, {"C3": {"one": 0.9, "two": 0.2}})
+    assert text.startswith("Hold on every plausible choice: C1, C4")
+    assert "depend on a choice that the paper does not state: C2 (window)" in text
+    assert text.endswith("do not come out on any: C3 (1 of 2 parts on most).")
+
+
+def test_the_page_opens_with_the_answer_and_says_what_was_reached():
+    found = outcome(load_inertia=0.02)
+    text = page.page(found)
+    lead = text.split("<nav>")[0]
+    assert lead.index("The paper's chain has what ours lacks".replace("'", "&#39;")) < lead.index("never seen")
+    assert text.count("reached</span>") == 5
+    assert re.findall(r'(?:src|href)="(?!data:image/png;base64,|#)', text) == []
+
+
+def test_all_files_are_written_and_what_is_kept_has_every_cell(tmp_path, capsys):
+    found = outcome(load_inertia=0.02)
+    page.write(found, CONFIG, tmp_path)
+    assert json.loads((tmp_path / "paper_choices.json").read_text()) == found.fields()
+    kept = json.loads((tmp_path / "paper_choices" / "paper_choices.json").read_text())
+    assert len(kept["cells"]) == sum(len(paper_table(name)) for name in PROTOCOLS)
+    assert "J_out: 0.02" in (tmp_path / "paper_choices" / "paper_fitted.yaml").read_text()
+    assert "error before: VII 10.0, VIII 10.0, IX 10.0, X 10.0 points; after: VII 4.0" in capsys.readouterr().out
