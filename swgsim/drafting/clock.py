@@ -50,18 +50,18 @@ def drafted_clock(columns: Sequence[SeenColumn], meanings: Sequence[Meaning]) ->
     """The time among some columns; None if none of them is one."""
     named = [each for each, meaning in zip(columns, meanings, strict=True) if meaning.quantity == "time"]
     numbers = [each for each in named if not each.is_text and _forward(each)]
-    others = [each for each in columns if each not in named and not each.is_text and _even(each) < EVEN]
+    others = [each for each in columns if each not in named and not each.is_text and evenness(each) < EVEN]
     pair = _pair(columns, meanings)
     if pair:
         return _draft(pair, ["s", "ns"], "names: seconds and nanoseconds")
     if numbers:
-        return _of_numbers(min(numbers, key=_even), "name, increases")
+        return _of_numbers(min(numbers, key=evenness), "name, increases")
     if stamps := _stamps(columns):
         forms = [form for _, form in stamps]
         kind = "time stamps by ISO 8601" if forms == [STAMP] else f"time stamps {' '.join(forms)}"
         return _draft([column for column, _ in stamps], forms, kind)
     if others:
-        return _of_numbers(min(others, key=_even), "increases in even steps")
+        return _of_numbers(min(others, key=evenness), "increases in even steps")
     return None
 
 
@@ -122,7 +122,7 @@ def _forward(column: SeenColumn) -> bool:
     return len(steps) > 1 and bool(np.mean(steps > 0) >= FORWARD)
 
 
-def _even(column: SeenColumn) -> float:
+def evenness(column: SeenColumn) -> float:
     """Scatter of the steps of an increasing column, as a share of a step; infinite for others."""
     if not _forward(column):
         return np.inf

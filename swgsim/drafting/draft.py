@@ -18,6 +18,7 @@ from swgsim.drafting.joint_text import joint_text
 from swgsim.drafting.map_draft import MapDraft
 from swgsim.drafting.motion import unwrapped
 from swgsim.drafting.order_2 import has_order_2
+from swgsim.drafting.own_times import own_times
 from swgsim.drafting.seen import Seen
 from swgsim.drafting.taken import Taken
 from swgsim.drafting.words import meaning_of
@@ -127,17 +128,11 @@ def _understood(seen: Seen, kind: str, known: Mapping[str, Any]) -> tuple[ClockD
     meanings = [meaning_of(each) for each in seen.columns]
     clock = drafted_clock(seen.columns, meanings)
     time = clock.time if clock else None
-    pairs = [pair for pair in zip(seen.columns, meanings, strict=True) if clock is None or pair[0] not in clock.columns]
-    columns, own = [pair[0] for pair in pairs], [pair[1] for pair in pairs]
+    columns, others = own_times(seen.columns, clock) if clock else (seen.columns, [])
     channels = gauge_channels if kind == GAUGES else joint_signals
-    taken = channels(columns, own, time, known)
-    if clock is None:
-        return None, taken
-    return clock, [*_of_clock(clock), *taken]
-
-
-def _of_clock(clock: ClockDraft) -> list[Taken]:
-    return [Taken(each, "t", clock.entry, clock.why, clock.question) for each in clock.columns]
+    taken = channels(columns, [meaning_of(each) for each in columns], time, known)
+    of_clock = [Taken(each, "t", clock.entry, clock.why, clock.question) for each in clock.columns] if clock else []
+    return clock, [*of_clock, *(Taken(each, "t", why="of the columns after it", active=False) for each in others), *taken]
 
 
 def _most_moving(looked: LookedAt, taken: Sequence[Taken]) -> Seen:

@@ -13,8 +13,9 @@ from swgsim.drafting.folder import LookedAt
 from swgsim.drafting.seen import Seen
 from swgsim.drafting.taken import Taken
 from swgsim.drafting.yaml_text import ASK, clock_lines, layout_lines, left_lines, line
+from swgsim.joint.recording import PREDICTED
 
-ORDER = ("q", "omega", "T_sensor", "current", "T_rigid")
+ORDER = ("q", "omega", "T_sensor", "T_motor", "current", "T_rigid")
 # A joint stands if it moves by less than this share of its travel in the file that was drafted.
 STANDS = 1e-3
 
@@ -62,10 +63,14 @@ def _lines(
     yield ""
     yield "joints:" if any(each.joint for each in taken) else "joints: {}"
     asked: set[tuple[str, str]] = set()
-    for joint in dict.fromkeys(each.joint for each in taken if each.joint):
+    joints = dict.fromkeys(each.joint for each in taken if each.joint)
+    for joint in joints:
         own = [_once(each, asked) for each in taken if each.joint == joint]
         yield from _joint(joint, own, known)
         asked |= {(each.quantity, each.question) for each in own}
+    loaded = {each.joint for each in taken if each.active and each.quantity in PREDICTED}
+    if missing := [joint for joint in joints if joint not in loaded]:
+        yield f"{ASK} nothing to explain in {', '.join(missing)}: map current, T_motor or T_sensor"
     yield from left_lines(taken, seen, looked.others)
 
 

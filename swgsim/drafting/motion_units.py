@@ -1,7 +1,7 @@
 """Units of an angle and of its velocity, from what the columns say and from the factor between slope and velocity."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import product
 from math import log2, pi
 from typing import Any
@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.drafting.motion import ANGLE_UNITS, RATIOS, SPEED_UNITS, expected, near, slope_of, wrap_of
+from swgsim.drafting.motion import ANGLE_UNITS, RATIOS, SPEED_UNITS, Slope, expected, near, slope_of, wrap_of
 from swgsim.drafting.seen_column import SeenColumn
-from swgsim.tables.units import FACTORS
+from swgsim.tables.units import FACTORS, SHARES
 
 # An angle in whole numbers with a larger range counts; 720 degrees may be written without decimals.
 COUNTED = 1000.0
@@ -61,6 +61,9 @@ def motion_units(
     likely : sequence of str
         Units of an angle that says none, the most likely first.
     """
+    if speed is not None and speed.unit in SHARES:
+        slope = slope_of(angle.values, speed.values, time)
+        return _of_rated(motion_units(angle, None, time, likely), speed.unit, slope, time is not None)
     wrap = wrap_of(angle.values)
     wraps = {"wraps": True} if wrap else {}
     said = angle.unit if angle.unit in (*FACTORS["rad"], "counts") else ""
@@ -104,6 +107,15 @@ def motion_units(
         return MotionUnits({"unit": unit, **wraps}, {"unit": rate, **turned}, ratio, why, doubt or asked, of_speed)
     contradiction = f"as {rate} it is {1 / ratio:.4g} times too small for the slope of the angle in {unit}"
     return MotionUnits({"unit": unit, **wraps}, {"unit": rate, **turned}, 1.0, share, doubt or asked, contradiction)
+
+
+def _of_rated(angle: MotionUnits, unit: str, slope: Slope, timed: bool) -> MotionUnits:
+    """A velocity in shares of a rated one, which the slope of the angle tells."""
+    fits = timed and slope.share > FITS and angle.angle["unit"] != "counts"
+    rated = f"{abs(slope.factor) / SHARES[unit]:.4g} {angle.angle['unit']}/s" if fits else "1 rad/s"
+    speed = {"unit": unit, "rated": rated} | ({"inverted": True} if slope.factor < 0 else {})
+    of_speed = f"its rated value: {rated} by the slope of the angle" if fits else "its rated value"
+    return replace(angle, speed=speed, why=f"slope explains {slope.share:.1%}", of_speed=of_speed, fits=fits)
 
 
 def _likely(angle: SeenColumn) -> list[str]:

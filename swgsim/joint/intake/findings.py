@@ -47,7 +47,7 @@ def unusable(run: Run) -> Iterator[Defect]:
             yield Defect(
                 "not_finite", "refuse", run.label, name,
                 f"{len(bad)} of {len(run)} samples that are no finite number, the first {np.asarray(values)[bad[0]]}",
-                f"finite numbers within {LARGEST_NUMBER:g}", f"{remedy(len(bad))}; or leave the signal out",
+                f"finite numbers within {LARGEST_NUMBER:g}", f"{remedy(bad, len(run))}; or leave the signal out",
                 int(bad[0]) + run.first_row,
             )  # fmt: skip
     back = standing(run.time) if run.time is not None else np.empty(0, int)
