@@ -9,8 +9,10 @@ from jaxtyping import Float
 
 from swgsim.drafting.seen_column import SeenColumn
 from swgsim.drafting.stamps import form_of
+from swgsim.drafting.taken import joined
 from swgsim.drafting.words import Meaning
 from swgsim.tables.clock import STAMP, read_clock
+from swgsim.tables.clock_jump import bits_of
 from swgsim.tables.units import FACTORS
 
 # Stamps that are looked at; all must have one form.
@@ -66,9 +68,12 @@ def drafted_clock(columns: Sequence[SeenColumn], meanings: Sequence[Meaning]) ->
 
 
 def _draft(columns: Sequence[SeenColumn], units: Sequence[str], why: str, question: str = "") -> ClockDraft:
+    bits = _bits(columns[0]) if len(columns) == 1 and not columns[0].is_text else 0
+    why = joined(why, f"begins anew after {bits} bit" if bits else "")
     file = {"file": columns[0].file} if columns[0].file else {}
     if len(columns) == 1:
-        entry: dict[str, Any] = {"column": columns[0].column, "unit": units[0], **file}
+        counter = {"bits": bits} if bits else {}
+        entry: dict[str, Any] = {"column": columns[0].column, "unit": units[0], **counter, **file}
     else:
         entry = {"columns": [each.column for each in columns], "units": list(units), **file}
     time = read_clock(entry).seconds({each.column: each.values for each in columns}, "the file")
@@ -114,6 +119,12 @@ def _stamps(columns: Sequence[SeenColumn]) -> list[tuple[SeenColumn, str]]:
     if whole:
         return whole[:1]
     return [*days[:1], *clocks[:1]] if clocks else []
+
+
+def _bits(column: SeenColumn) -> int:
+    """Bits of a counter that is full within the file; 0 for a clock that goes on."""
+    back = {bits_of(-step) for step in np.diff(column.values.astype(float)) if step < 0}
+    return back.pop() if len(back) == 1 else 0
 
 
 def _forward(column: SeenColumn) -> bool:

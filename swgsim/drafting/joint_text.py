@@ -41,12 +41,12 @@ def _lines(
             for name in looked.names
         }
     )
-    one = looked.names[0] if len(looked.names) == 1 else ""
-    yield line("files", [one] if one else [f"*{ending}" for ending in endings])
+    named = looked.named or len(looked.names) == 1
+    yield line("files", list(looked.names) if named else [f"*{ending}" for ending in endings])
     standing = [name for name, run in looked.runs.items() if _stands(run, seen, taken)]
     if standing:
         yield line("rest", standing, "the angles stand")
-    if looked.others and not one:
+    if looked.others and not named:
         yield line("leave_out", list(looked.others), "see below")
     if names.path:
         yield line(

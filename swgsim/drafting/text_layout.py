@@ -30,6 +30,7 @@ MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codec
 # In the order in which they win if they fit equally well: a blank splits also what a tab separates.
 SEPARATORS = ("\t", ";", ",", "|", " ")
 COMMENTS = "#%"
+ELSE = "docs/formats.md has the formats that are read, maps written by hand, and how other files are converted"
 DIGIT = re.compile(r"\d")
 
 
@@ -102,7 +103,7 @@ def layout_of(lines: Sequence[str], choices: Sequence[tuple[str, str]], encoding
     (separator, decimal), fit = max(fits.items(), key=lambda item: item[1].rank)
     if fit.samples < FEWEST_ROWS:
         found = f"{fit.samples} rows of numbers in the first {len(lines)} rows"
-        raise FileDefect(name, found, "a table of numbers; if it has one, write the map by hand (docs/formats.md)")
+        raise FileDefect(name, found, f"a table of numbers; {ELSE}")
     rows, width, first = [*map(_unlabelled, fit.rows[: fit.first])], fit.width, fit.first
     names_at, units_at = _header(rows, width)
     comment = next((line.lstrip()[0] for line in lines if line.lstrip()[:1] and line.lstrip()[0] in COMMENTS), "")
