@@ -9,13 +9,16 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.drafting.joint_forces import Named, force, forces
-from swgsim.drafting.motion import EXPLAINED, RATIOS, slope_of, wrap_of
-from swgsim.drafting.motion_units import motion_units
+from swgsim.drafting.motion import EXPLAINED, RATIOS, slope_of, turns_of, wrap_of
+from swgsim.drafting.motion_units import MOST_TURNED, motion_units
 from swgsim.drafting.seen_column import SeenColumn
 from swgsim.drafting.taken import Taken, joined, place
 from swgsim.drafting.vocabulary import MODEL
 from swgsim.drafting.words import Meaning
 from swgsim.tables.units import FACTORS, SHARES
+
+# Turns from end to end beyond which an angle is that of a motor.
+MOST_TURNS = MOST_TURNED / np.pi
 
 
 def joint_signals(
@@ -121,7 +124,8 @@ def _moving(
 ) -> Iterator[Taken]:  # fmt: skip
     """Angle and velocity of one joint."""
     units = motion_units(angle.column, speed.column if speed else None, time)
-    drive = angle.at_motor or units.ratio < 1 / RATIOS[0]
+    turns = turns_of(angle.column.values, units.angle)
+    drive = angle.at_motor or units.ratio < 1 / RATIOS[0] or turns > MOST_TURNS
     # The rated value of a share is that of the shaft of the angle, from which it follows.
     named = speed is not None and speed.at_motor and speed.column.unit not in SHARES
     of_motor = named or units.ratio > RATIOS[0]
@@ -135,7 +139,8 @@ def _moving(
         found = ratio_of_angles(motor.column, angle.column)
         ratio = round(found) if RATIOS[0] <= found <= RATIOS[1] else None
     if (drive or of_motor) and ratio is None:
-        ratio, ask = 1, "gear ratio: the angle is that of the motor"
+        far = f", as it turns {turns:.3g} times; if it is not, remove each 'at: motor'" if turns > MOST_TURNS else ""
+        ratio, ask = 1, f"gear ratio: the angle is that of the motor{far}"
     side = {"at": "motor"}
     yield Taken(
         angle.column, "q", place(angle.column) | units.angle | (side if drive else {}),

@@ -52,6 +52,8 @@ def _lines(
         yield line(
             "path", names.path, "", "" if looked.by_signal else "the session: between sessions something was dismounted"
         )
+    elif len(looked.names) > 1:
+        yield f"{ASK} each file is a session of its own; 'path' says by a group which were recorded without dismounting"
     yield from clock_lines("time", clock)
     if clock is None:
         if any(each.quantity == "omega" and each.active for each in taken):
