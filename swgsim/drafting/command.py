@@ -38,7 +38,9 @@ def spelled(words: Sequence[str]) -> list[str]:
     (['files="my logs"', 'kind=joints'], ['files=["a.csv","b.csv"]'])
     """
     # The word after an option of Hydra is the value of this option.
-    alone = ["=" not in word and "-" not in (word[:1], last[:1]) for last, word in zip(["", *words], words, strict=False)]
+    alone = [
+        "=" not in word and "-" not in (word[:1], last[:1]) for last, word in zip(["", *words], words, strict=False)
+    ]
     files = ",".join(f'"{word}"' for word, is_file in zip(words, alone, strict=True) if is_file)
     others = [word for word, is_file in zip(words, alone, strict=True) if not is_file]
     return [f"files=[{files}]" if sum(alone) > 1 else f"files={files}", *others] if files else others

@@ -140,7 +140,11 @@ def _understood(seen: Seen, kind: str, known: Mapping[str, Any]) -> tuple[ClockD
     channels = gauge_channels if kind == GAUGES else joint_signals
     taken = channels(columns, [meaning_of(each) for each in columns], time, known)
     of_clock = [Taken(each, "t", clock.entry, clock.why, clock.question) for each in clock.columns] if clock else []
-    return clock, [*of_clock, *(Taken(each, "t", why="of the columns after it", active=False) for each in others), *taken]
+    return clock, [
+        *of_clock,
+        *(Taken(each, "t", why="of the columns after it", active=False) for each in others),
+        *taken,
+    ]
 
 
 def _most_moving(looked: LookedAt, taken: Sequence[Taken]) -> Seen:

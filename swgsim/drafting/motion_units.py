@@ -62,8 +62,8 @@ def motion_units(
         Units of an angle that says none, the most likely first.
     """
     if speed is not None and speed.unit in SHARES:
-        slope = slope_of(angle.values, speed.values, time)
-        return _of_rated(motion_units(angle, None, time, likely), speed.unit, slope, time is not None)
+        alone = motion_units(angle, None, time, likely)
+        return _of_rated(alone, speed.unit, slope_of(angle.values, speed.values, time), time is not None)
     wrap = wrap_of(angle.values)
     wraps = {"wraps": True} if wrap else {}
     said = angle.unit if angle.unit in (*FACTORS["rad"], "counts") else ""
@@ -133,11 +133,10 @@ def _counts(angle: SeenColumn) -> bool:
 def _counted(factor: float, rates: Sequence[str], revolution: float, wraps: dict[str, Any]) -> MotionUnits:
     """An angle in counts of an encoder, whose counts of one revolution follow from a velocity in other units."""
     found = abs(factor)
-    if near(found, 1.0):
-        speed: dict[str, Any] = {"unit": "counts/s"}
-    else:
-        speed = {"unit": next((rate for rate in rates if rate != "counts/s"), "rpm")}
-    per = revolution or (2 * pi * found / FACTORS["rad/s"][speed["unit"]] if speed["unit"] != "counts/s" else 0.0)
+    turns = {rate: 2 * pi * found / FACTORS["rad/s"][rate] for rate in rates if rate != "counts/s"} or {"rpm": 0.0}
+    whole = [rate for rate, per in turns.items() if per > 1 and near(per, revolution or 2 ** round(log2(per)))]
+    speed: dict[str, Any] = {"unit": "counts/s" if near(found, 1.0) else [*whole, *turns][0]}
+    per = revolution or turns.get(speed["unit"], 0.0)
     lines = 2 ** round(log2(per)) if per > 1 else 0
     sure = per > 1 and near(per, lines)
     counts = lines if sure else float(f"{per:.4g}") if per > 1 else 4096

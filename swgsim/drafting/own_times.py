@@ -12,9 +12,7 @@ from swgsim.drafting.seen_column import SeenColumn
 APART = 0.01
 
 
-def own_times(
-    columns: Sequence[SeenColumn], clock: ClockDraft
-) -> tuple[list[SeenColumn], list[SeenColumn]]:
+def own_times(columns: Sequence[SeenColumn], clock: ClockDraft) -> tuple[list[SeenColumn], list[SeenColumn]]:
     """Signals with their own times, and the columns of these times.
 
     Parameters

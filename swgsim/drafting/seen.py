@@ -59,7 +59,11 @@ def see(path: Path, name: str) -> Seen:
     """
     seen = _see(path, name)
     columns, by = first_of_rows(seen.columns)
-    return seen if by is None else replace(seen, columns=columns, layout=replace(seen.layout or Layout(), rows=((by, EACH),)))
+    return (
+        seen
+        if by is None
+        else replace(seen, columns=columns, layout=replace(seen.layout or Layout(), rows=((by, EACH),)))
+    )
 
 
 def _see(path: Path, name: str) -> Seen:
@@ -155,8 +159,8 @@ def _text_columns(table: pd.DataFrame, found: TextLayout) -> Iterator[SeenColumn
         column = name if name and found.names.count(name) == 1 else place + 1
         unit = unit or unit_in(found.units[place])
         signals = _of_lists(values) if column == name else []
-        for number, numbers in enumerate(signals, 1):
-            yield SeenColumn(f"{name}[{number}]", f"{bare}[{number}]", unit, numbers, "", int(np.isnan(numbers).sum()))
+        for number, signal in enumerate(signals, 1):
+            yield SeenColumn(f"{name}[{number}]", f"{bare}[{number}]", unit, signal, "", int(np.isnan(signal).sum()))
         if not signals:
             readings = within(values.to_numpy())
             yield SeenColumn(column, bare, unit, readings, "", int(pd.isna(readings).sum()))

@@ -30,5 +30,7 @@ def jump_remedy(back: float) -> str:
     if abs(back / DAY - 1) < SAME:
         return "the time passes midnight: give its stamps with the date, or as a format such as '%H:%M:%S.%f'"
     if back > 0:
-        return "use a clock that always increases; for several recordings in one file, see each and rows (docs/formats.md)"
+        return (
+            "use a clock that always increases; for several recordings in one file, see each and rows (docs/formats.md)"
+        )
     return "use a clock that always increases, or write the time with more digits"

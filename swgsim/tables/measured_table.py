@@ -152,8 +152,10 @@ def first_lost(
 def remedy(lost: Int[np.ndarray, " lost"], rows: int) -> str:
     """What the map can say about lost readings; a column that ends early or has few has another time than the rest."""
     at_end = lost[-1] + 1 == rows and lost[-1] - lost[0] + 1 == len(lost) > FEW * rows
-    if at_end or 2 * len(lost) > rows:
-        return "a signal that was sampled more slowly, or that ends earlier, needs its own time in a map, such as time: t"
+    if at_end or 2 * len(lost) >= rows:
+        return (
+            "a signal that was sampled more slowly, or that ends earlier, needs its own time in a map, such as time: t"
+        )
     return f"if readings were lost, set lost: {{{LEAVE_OUT}: {len(lost)}}} in a map, which leaves their rows out"
 
 
