@@ -34,7 +34,7 @@ JOBS := $(shell echo $$(( ($(CORES) + 3) / 4 )))
 export MLFLOW_DISABLE_TELEMETRY := true
 
 .DEFAULT_GOAL := help
-.PHONY: help install install-dev site data experiments report paper transfer loop blind other-benches robots sim-to-real joints embedded test lint fuzz chaos scale benchmark convergence docs ui clean $(TABLES)
+.PHONY: help install install-dev site data experiments report paper transfer loop blind other-benches robots sim-to-real joints embedded test lint scale benchmark convergence docs ui clean $(TABLES)
 
 help:  ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "make %-12s %s\n", $$1, $$2}'
@@ -118,12 +118,6 @@ lint: $(DEV)  ## style and types
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-
-fuzz: $(DEV)  ## every reader on damaged files, SECONDS=300 in all (docs/reliability.md)
-	OMP_NUM_THREADS=1 ARROW_DEFAULT_MEMORY_POOL=system $(BIN)/python scripts/fuzz.py --seconds $(or $(SECONDS),300)
-
-chaos: $(DEV)  ## data sets and sweeps killed at random moments, KILLS=200 (docs/reliability.md)
-	OMP_NUM_THREADS=1 $(BIN)/python scripts/chaos.py --kills $(or $(KILLS),200)
 
 scale: $(DEV)  ## data sets larger than the memory: 15 minutes, 12 GiB (docs/scale.md)
 	$(BIN)/python scripts/large.py

@@ -56,7 +56,7 @@ def measured(recordings: int, folder: Path) -> dict[str, Any]:
     if folder.exists():
         for left in folder.glob("sampled-bench.*"):
             left.unlink()  # so that it is made and timed again
-    started(["scripts/generate.py", *words, f"data={folder}"])
+    started(["-m", "swgsim", "generate", *words, f"data={folder}"])
     path = folder / "sampled-bench.h5"
     summary = json.loads(path.with_suffix(".json").read_text())
     learning = json.loads(started(["scripts/large.py", "--learn", str(path)]).splitlines()[-1])

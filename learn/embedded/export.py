@@ -11,6 +11,7 @@ from learn.embedded.commissioning import gear_source
 from learn.embedded.front import front
 from learn.embedded.source import Macros, macros
 from learn.inputs.inputs import Representation
+from swgsim.common.checks import require_known
 from swgsim.common.files import remedied
 from swgsim.storage.labelled_signals import LabelledSignals
 
@@ -50,8 +51,7 @@ def export_c(
     ValueError
         If the method cannot be exported, the references do not fit, or the folder holds other files.
     """
-    if numbers not in NUMBERS:
-        raise ValueError(f"unknown numbers {numbers!r}; choose from {', '.join(NUMBERS)}")
+    require_known("numbers", [numbers], NUMBERS)
     folder = free(folder)
     parts = front(representation)
     gear = gear_source(references, parts, saturation)

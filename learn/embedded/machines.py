@@ -11,7 +11,7 @@ LANGUAGE = ("-std=c11", "-Wall", "-Wextra", "-Wdouble-promotion", "-Werror")
 PACKAGES = {"gcc": "gcc", "arm-none-eabi-gcc": "gcc-arm-none-eabi", "qemu-system-arm": "qemu-system-arm"}
 NEWLIB = "libnewlib-arm-none-eabi"
 SANITIZERS = ("-fsanitize=address,undefined,float-cast-overflow", "-fno-sanitize-recover=all", "-g")
-TIMEOUT = 600.0  # for a compiler [s]
+TIMEOUT = 600.0  # for a compiler, or for all recordings of a program [s]
 
 
 @dataclass(frozen=True)
@@ -109,13 +109,13 @@ def require_tools(machine: Machine) -> None:
         raise ValueError(f"{machine.name} needs the Debian package {', '.join(packages)}: run {remedy}")
 
 
-def call(command: list[str], folder: Path, timeout: float = TIMEOUT) -> None:
+def call(command: list[str], folder: Path) -> None:
     """Run a command in a folder; raise a RuntimeError with the end of its output if it fails."""
     quiet: dict[str, Any] = {"stdin": subprocess.DEVNULL, "capture_output": True, "text": True}
     try:
-        done = subprocess.run(command, cwd=folder, timeout=timeout, check=False, **quiet)
+        done = subprocess.run(command, cwd=folder, timeout=TIMEOUT, check=False, **quiet)
     except subprocess.TimeoutExpired as error:
-        raise RuntimeError(f"{command[0]} was stopped after {timeout:g} s in {folder}") from error
+        raise RuntimeError(f"{command[0]} was stopped after {TIMEOUT:g} s in {folder}") from error
     if done.returncode:
         output = (done.stderr + done.stdout)[-3000:]
         raise RuntimeError(f"{command[0]} failed with status {done.returncode} in {folder}:\n{output}")

@@ -14,7 +14,6 @@ MAGIC = 0x53574752
 HEADER = np.dtype([("magic", "<u4"), ("recordings", "<u4"), ("samples", "<u4"), ("counted", "<u4")])
 OPERATION = ("n_in", "T_out", "efficiency", "temperature")
 PARTS = ("window", "push", "decide", "features", "classify")
-TIMEOUT = 600.0  # for all recordings [s]
 
 # One instruction takes 2^7 ns of the emulated time, in which the board's timers tick every 40 ns (bench/meter.h).
 COUNTED = ("-icount", "shift=7")
@@ -50,7 +49,6 @@ def decide(
     operations: Float[np.ndarray, "recording quantity"],
     *,
     counted: bool = False,
-    timeout: float = TIMEOUT,
 ) -> Decisions:
     """Let a program decide on recordings, one after the other.
 
@@ -66,8 +64,6 @@ def decide(
         Speed [rpm], load [N m], efficiency and temperature [degC] of each.
     counted : bool
         Count instructions and stack, which takes the emulator several times as long.
-    timeout : float
-        [s]
 
     Raises
     ------
@@ -83,7 +79,7 @@ def decide(
     command += ["-kernel"] if machine.emulator else []
     with TemporaryDirectory(prefix="swg-") as folder:
         _write(Path(folder) / "recordings.bin", recordings, operations, counted)
-        call([*command, str(program.resolve())], Path(folder), timeout)
+        call([*command, str(program.resolve())], Path(folder))
         raw = (Path(folder) / "decisions.bin").read_bytes()
     return _decisions(raw, counted)
 

@@ -1,8 +1,5 @@
 """Probability of detection, false alarms, and the operating point and class with the lowest recall."""
 
-from collections.abc import Sequence
-from typing import cast
-
 import numpy as np
 import pandas as pd
 from jaxtyping import Bool
@@ -20,37 +17,23 @@ def detected(predictions: pd.DataFrame) -> Bool[np.ndarray, " row"]:
     return decisions(predictions) != "healthy"
 
 
-def identified(predictions: pd.DataFrame) -> Bool[np.ndarray, " row"]:
-    """Whether the decision is correct."""
-    return decisions(predictions) == truth(predictions)
-
-
-def detection_table(
-    predictions: pd.DataFrame, hits: Bool[np.ndarray, " row"], by: Sequence[str] = OPERATING_POINT
-) -> pd.DataFrame:
-    """Detectable sizes by fault class and operating point, or over all operating points with ``by=()``.
-
-    Parameters
-    ----------
-    predictions : DataFrame
-    hits : array (row,) of bool
-        :func:`detected` or :func:`identified` of these predictions.
-    by : sequence of str
-        Columns whose values have separate rows.
+def detection_table(predictions: pd.DataFrame) -> pd.DataFrame:
+    """Detectable sizes by fault class, over all operating points.
 
     Returns
     -------
     DataFrame
-        ``label``, the columns of `by`, ``hits`` [%], ``a50``, ``a90``, ``a90_95`` and ``reason``.
+        One row per fault in the predictions: ``label``, ``hits`` [%] of :func:`detected`, ``a90``, ``a90_95`` and
+        ``reason``.
     """
-    faulty = predictions.assign(hit=hits, label=truth(predictions))[truth(predictions) != "healthy"]
+    faulty = predictions.assign(hit=detected(predictions), label=truth(predictions))[truth(predictions) != "healthy"]
     rows = []
-    for keys, part in faulty.groupby(["label", *by], sort=True):
-        sizes = size(str(keys[0]), part["severity"].to_numpy(dtype=float))
-        hit = part["hit"].to_numpy(dtype=bool)
-        fitted = detection(sizes, hit, part["gear"].to_numpy(), UNITS.get(str(keys[0]), ""))
-        facts = {"hits": 100 * part["hit"].mean(), "a50": fitted.a50, "a90": fitted.a90, "a90_95": fitted.a90_95}
-        rows.append({**dict(zip(["label", *by], keys, strict=True)), **facts, "reason": fitted.reason})
+    for key, part in faulty.groupby("label"):
+        label, hits = str(key), part["hit"].to_numpy(dtype=bool)
+        sizes = size(label, part["severity"].to_numpy(dtype=float))
+        fitted = detection(sizes, hits, part["gear"].to_numpy(), UNITS.get(label, ""))
+        facts = {"label": label, "hits": 100 * hits.mean(), "a90": fitted.a90, "a90_95": fitted.a90_95}
+        rows.append({**facts, "reason": fitted.reason})
     return pd.DataFrame(rows)
 
 
@@ -83,20 +66,13 @@ def false_alarm_rate(predictions: pd.DataFrame) -> dict[str, float]:
     return {**shares, "gears": float(count), "alarming_gears": float((by_gear > 0).sum())}
 
 
-def recall_by_cell(predictions: pd.DataFrame) -> pd.DataFrame:
-    """Recall [%] of every class (column) at every operating point (row)."""
-    rows = predictions[list(OPERATING_POINT)].assign(label=truth(predictions), right=identified(predictions))
-    shares = 100 * rows.groupby([*OPERATING_POINT, "label"])["right"].mean().unstack("label")
-    return shares[[label for label in CLASSES if label in shares]]
-
-
 def worst_cell(predictions: pd.DataFrame) -> pd.Series:
     """Operating point and class with the lowest recall; ``recall`` [%], ``recordings``.
 
     As the minimum of many estimates, it is lower than the recall of that cell on new recordings.
     """
-    recall = recall_by_cell(predictions).stack()
-    speed, load, label = cast(tuple[float, float, str], recall.idxmin())
-    inside = (predictions["n_in_rpm"] == speed) & (predictions["T_out_nm"] == load) & (truth(predictions) == label)
-    facts = {"n_in_rpm": speed, "T_out_nm": load, "label": label}
-    return pd.Series({**facts, "recall": recall.min(), "recordings": int(inside.sum())})
+    rows = predictions[list(OPERATING_POINT)].assign(label=pd.Categorical(truth(predictions), CLASSES))
+    rows["right"] = decisions(predictions) == truth(predictions)
+    cells = rows.groupby([*OPERATING_POINT, "label"], observed=True)["right"].agg(recall="mean", recordings="size")
+    cells["recall"] *= 100
+    return cells.reset_index().iloc[int(cells["recall"].argmin())]

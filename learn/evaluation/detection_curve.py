@@ -10,7 +10,7 @@ from learn.evaluation.bootstrap import FEWEST_GEARS
 
 SIDE = 0.95
 FOUND = 0.9
-NAMES = ("a50", "a90", "a90_95")
+NAMES = ("a90", "a90_95")
 
 
 @dataclass(frozen=True)
@@ -32,16 +32,8 @@ class DetectionCurve:
     covariance: Float[np.ndarray, "2 2"]
     quantile: float
 
-    def log_odds(self, sizes: Float[np.ndarray, " size"], side: int = 0) -> Float[np.ndarray, " size"]:
-        """Log-odds of detection, or their one-sided 95 % bound: lower with side -1, upper with side 1."""
-        terms = np.column_stack([np.ones(len(sizes)), np.log(sizes)])
-        middle = terms @ [self.intercept, self.slope]
-        if side == 0:
-            return middle
-        return middle + side * self.quantile * np.sqrt(np.einsum("si,ij,sj->s", terms, self.covariance, terms))
-
     def size_at(self, share: float) -> float:
-        """Size that is detected with a probability of `share`: a50, a90."""
+        """Size that is detected with a probability of `share`."""
         return _from_log((np.log(share / (1 - share)) - self.intercept) / self.slope)
 
     def sure_size_at(self, share: float) -> float:
@@ -64,16 +56,15 @@ class Detection:
 
     Attributes
     ----------
-    a50, a90, a90_95 : float
-        Sizes that are detected in 50 % and 90 % of recordings, and in 90 % with 95 % confidence. NaN outside the tested
-        sizes, where the curve does not apply.
+    a90, a90_95 : float
+        Size that is detected in 90 % of recordings, and that size with 95 % confidence. NaN outside the tested sizes,
+        where the curve does not apply.
     reasons : mapping
         From the name of each size that is NaN to the reason.
     curve : DetectionCurve or None
         None if no curve can be fitted.
     """
 
-    a50: float
     a90: float
     a90_95: float
     reasons: Mapping[str, str]
@@ -102,12 +93,12 @@ def detection(
     """
     reason = _no_curve(sizes, hits, unit)
     if reason:
-        return Detection(np.nan, np.nan, np.nan, dict.fromkeys(NAMES, reason), None)
+        return Detection(np.nan, np.nan, dict.fromkeys(NAMES, reason), None)
     curve = _fit(sizes, hits, gears)
     if curve.slope <= 0:
         falls = dict.fromkeys(NAMES, "not reached: detection does not grow with size")
-        return Detection(np.nan, np.nan, np.nan, falls, curve)
-    found = dict(zip(NAMES, (curve.size_at(0.5), curve.size_at(FOUND), curve.sure_size_at(FOUND)), strict=True))
+        return Detection(np.nan, np.nan, falls, curve)
+    found = dict(zip(NAMES, (curve.size_at(FOUND), curve.sure_size_at(FOUND)), strict=True))
     reasons = {name: why for name, value in found.items() if (why := _outside(value, sizes, unit))}
     given = {name: np.nan if name in reasons else value for name, value in found.items()}
     return Detection(**given, reasons=reasons, curve=curve)

@@ -24,6 +24,7 @@ from jaxtyping import Float
 from learn.inputs.auxiliary_inputs import operating_point
 from learn.inputs.inputs import Layout, LearningSet
 from learn.inputs.references import healthy_reference
+from swgsim.common.checks import require_integer, require_known, require_positive
 from swgsim.storage.labelled_signals import SENSORS, LabelledSignals
 from swgsim.storage.orders import order_lines, whole_revolutions
 
@@ -70,14 +71,10 @@ class Selection:
     operating_point: bool = False
 
     def __post_init__(self) -> None:
-        if self.spectrum not in SPECTRA:
-            raise ValueError(f"unknown spectrum {self.spectrum!r}; choose from {', '.join(SPECTRA)}")
-        if self.efficiency not in EFFICIENCIES:
-            raise ValueError(f"unknown efficiency {self.efficiency!r}; choose from {', '.join(EFFICIENCIES)}")
-        if self.orders < 1:
-            raise ValueError(f"{self.orders} DFT orders, at least 1 is needed; take spectrum=none to do without")
-        if not self.floor > 0:
-            raise ValueError(f"floor {self.floor} mV/V must be above 0, else eq. 7 may divide by zero; 1e-6 is usual")
+        require_known("spectrum", [self.spectrum], SPECTRA)
+        require_known("efficiency", [self.efficiency], EFFICIENCIES)
+        require_integer(self.name, "orders", self.orders, low=1, high=10_000)
+        require_positive(self.name, floor=self.floor)  # else eq. 7 may divide by zero
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ import numpy as np
 from learn.inputs.auxiliary_inputs import AuxiliaryInputs
 from learn.inputs.inputs import Layout, LearningSet
 from learn.inputs.residuals import ERRORS, healthy_lines, require_acquisitions, residual
-from swgsim.common.checks import require_integer
+from swgsim.common.checks import require_integer, require_known
 from swgsim.storage.labelled_signals import SENSORS, LabelledSignals
 from swgsim.storage.orders import revolution
 
@@ -48,8 +48,7 @@ class Signals:
     acquisitions: int | None = None
 
     def __post_init__(self) -> None:
-        if self.name not in CHANNELS:
-            raise ValueError(f"unknown signal {self.name!r}; choose from {', '.join(CHANNELS)}")
+        require_known("the signals", [self.name], CHANNELS)
         if self.name == "residual" and not self.reference:
             raise ValueError("features=residual is relative to a healthy reference: reference=true, or features=raw")
         require_integer(self.name, "points", self.points, low=8, high=4096)

@@ -10,6 +10,7 @@ from jaxtyping import Int
 
 from learn.inputs.inputs import SPECIMEN
 from learn.inputs.rows import Inputs
+from swgsim.common.checks import require_integer
 
 
 class Split(NamedTuple):
@@ -46,13 +47,13 @@ class RandomFolds:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        _at_least_two(self.folds)
+        require_integer("the protocol", "folds", self.folds, low=2, high=10_000)
 
     def split(self, features: Inputs, table: pd.DataFrame) -> Iterator[Split]:
         """One split per fold; every row is tested once."""
         from sklearn.model_selection import StratifiedKFold
 
-        _enough(table["label"].value_counts(), self.folds, "rows")
+        _enough(table["label"].value_counts(), self.folds)
         folds = StratifiedKFold(self.folds, shuffle=True, random_state=self.seed)
         for number, (train, test) in enumerate(folds.split(features, table["label"]), start=1):
             yield Split(f"fold {number}", train, test)
@@ -75,7 +76,7 @@ class GroupedFolds:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        _at_least_two(self.folds)
+        require_integer("the protocol", "folds", self.folds, low=2, high=10_000)
 
     def split(self, features: Inputs, table: pd.DataFrame) -> Iterator[Split]:
         """One split per fold; every testable row is tested once."""
@@ -90,7 +91,7 @@ class GroupedFolds:
                 f"{len(np.unique(group[rows]))} independent groups of variants are fewer than {self.folds} folds: "
                 "take fewer folds or more variants"
             )
-        _enough(pd.Series(label[rows]).value_counts(), self.folds, "rows")
+        _enough(pd.Series(label[rows]).value_counts(), self.folds)
         folds = StratifiedGroupKFold(self.folds, shuffle=True, random_state=self.seed)
         for number, (_, test) in enumerate(folds.split(rows, label[rows], group[rows]), start=1):
             yield Split(f"fold {number}", np.setdiff1d(np.arange(len(label)), rows[test]), rows[test])
@@ -131,7 +132,7 @@ class LeaveOneGearOut:
     folds: int = 5
 
     def __post_init__(self) -> None:
-        _at_least_two(self.folds)
+        require_integer("the protocol", "folds", self.folds, low=2, high=10_000)
 
     def split(self, features: Inputs, table: pd.DataFrame) -> Iterator[Split]:
         """One split per gear or per fold of gears."""
@@ -151,15 +152,10 @@ def _listed(gears: np.ndarray) -> str:
     return ",".join(str(g) for g in gears)
 
 
-def _at_least_two(folds: int) -> None:
-    if folds < 2:
-        raise ValueError(f"{folds} folds given, at least 2 are needed to train and to test; the paper takes 4")
-
-
-def _enough(counts: pd.Series, folds: int, what: str) -> None:
+def _enough(counts: pd.Series, folds: int) -> None:
     counts = counts[counts > 0]
     if counts.min() < folds:
         raise ValueError(
-            f"class {counts.idxmin()} has {counts.min()} {what}, fewer than {folds} folds: "
+            f"class {counts.idxmin()} has {counts.min()} rows, fewer than {folds} folds: "
             "take fewer folds or more variants"
         )

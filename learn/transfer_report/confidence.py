@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from learn.evaluation.decisions import class_numbers, probabilities
-from learn.evaluation.detection import detected, detection_table, false_alarm_rate, worst_cell
+from learn.evaluation.detection import detection_table, false_alarm_rate, worst_cell
 from learn.evaluation.probability_calibration import (
     expected_calibration_error,
     negative_log_likelihood,
@@ -41,7 +41,7 @@ FEWEST_GEARS = 4  # one left out of three
 
 def detection_text(predictions: pd.DataFrame) -> pd.DataFrame:
     """Share of every fault that is taken for any fault, and the sizes found in 90 % of recordings."""
-    table = detection_table(predictions, detected(predictions), by=())
+    table = detection_table(predictions)
     units = [UNITS.get(label, "") for label in table["label"]]
     sizes = {
         name.replace("_", "/"): [
@@ -49,10 +49,7 @@ def detection_text(predictions: pd.DataFrame) -> pd.DataFrame:
         ]
         for name in ("a90", "a90_95")
     }
-    reasons = [
-        "; ".join(reason.replace("_", "/") for reason in text.split("; ") if not reason.startswith("a50"))
-        for text in table["reason"].astype(str)
-    ]
+    reasons = [text.replace("a90_95", "a90/95") for text in table["reason"]]
     columns = {"detected [%]": [number(hits) for hits in table["hits"]], **sizes, "reason without a size": reasons}
     return pd.DataFrame(columns, index=pd.Index([words(label) for label in table["label"]], name="fault"))
 
@@ -105,16 +102,16 @@ def calibration_text(predictions: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
     return pd.DataFrame(rows).T.rename_axis("method")
 
 
-def conformal(predictions: pd.DataFrame, nominal: float = NOMINAL) -> pd.DataFrame:
+def conformal(predictions: pd.DataFrame) -> pd.DataFrame:
     """Coverage and size of the prediction sets of every gear, with the threshold of all the other gears.
 
-    Models of other folds may have been trained on the gear, so `nominal` is a target without guarantee.
+    Models of other folds may have been trained on the gear, so :data:`NOMINAL` is a target without guarantee.
     """
     p, y, gears = probabilities(predictions), class_numbers(predictions), predictions["gear"].to_numpy()
     parts = []
     for gear in np.unique(gears):
         here = gears == gear
-        threshold = conformal_threshold(p[~here], y[~here], gears[~here], nominal)
+        threshold = conformal_threshold(p[~here], y[~here], gears[~here], NOMINAL)
         parts.append(set_figures(prediction_sets(p[here], threshold), y[here], gears[here]))
     return pd.concat(parts)
 

@@ -7,7 +7,6 @@ import pandas as pd
 from learn.transfer_report.studies import DISTURBED_FOREST, PUBLISHED, best_disturbed
 from learn.transfer_report.tables import (
     FOREST,
-    FROM_SCRATCH,
     ORACLE,
     ORACLE_OF_SESSION,
     REZERO,
@@ -15,7 +14,6 @@ from learn.transfer_report.tables import (
     best_of,
     best_rezeroed,
     highest,
-    least,
     number,
     row_of,
 )
@@ -33,9 +31,9 @@ def listed(names: Iterable[str]) -> str:
     return f"{', '.join(first)} and {last}" if first else last
 
 
-def of_row(row: Mapping[str, float] | pd.Series, unit: str = " %") -> str:
+def of_row(row: Mapping[str, float] | pd.Series) -> str:
     """Value and interval of a row of a table."""
-    return number(row["value"], row["low"], row["high"], unit=unit)
+    return number(row["value"], row["low"], row["high"], unit=" %")
 
 
 def headline(zero: pd.DataFrame, gears: int) -> str:
@@ -48,28 +46,22 @@ def headline(zero: pd.DataFrame, gears: int) -> str:
     )
 
 
-def lead(
-    zero: pd.DataFrame,
-    few: pd.DataFrame,
-    development: pd.Series,
-    forgotten: pd.DataFrame,
-    cases: pd.DataFrame,
-) -> list[str]:
-    """Sentences after the headline: choice of the method, shots, forgetting, disturbed data.
+def lead(zero: pd.DataFrame, few: pd.DataFrame, development: pd.Series, cases: pd.DataFrame) -> list[str]:
+    """Sentences after the headline: choice of the method, shots, disturbed data.
 
     Parameters
     ----------
     zero : DataFrame
         Result of :func:`.tables.zero_shot`.
-    few, forgotten : DataFrame
-        Results of :func:`.tables.few_shot` and :func:`.tables.forgetting`.
+    few : DataFrame
+        Result of :func:`.tables.few_shot`.
     development : Series
         Score of each adapted method on development gears [%].
     cases : DataFrame
         Result of :func:`.studies.disturbed_cases`.
     """
-    parts = [choice(zero), rezeroed(few), *with_shots(zero, few, development), *lost(few, forgotten)]
-    return [*(part for part in parts if part), disturbed(cases)]
+    parts = (choice(zero), rezeroed(few), with_shots(zero, few, development), disturbed(cases))
+    return [part for part in parts if part]
 
 
 def choice(zero: pd.DataFrame) -> str:
@@ -97,11 +89,11 @@ def rezeroed(few: pd.DataFrame) -> str:
     )
 
 
-def with_shots(zero: pd.DataFrame, few: pd.DataFrame, development: pd.Series) -> list[str]:
-    """Best transfer with five shots against no label at all, its choice, and training on the new gear only."""
+def with_shots(zero: pd.DataFrame, few: pd.DataFrame, development: pd.Series) -> str:
+    """Best transfer with five shots against no label at all, and its choice; empty if it was not run."""
     best = best_adapted(few, SHOTS)
     if best is None:
-        return []
+        return ""
     plain, here = best_of(zero), few[few["shots"] == SHOTS].set_index("method")
     below = "below" if best["value"] < row_of(zero, plain)["value"] else "not below"
     text = (
@@ -112,31 +104,7 @@ def with_shots(zero: pd.DataFrame, few: pd.DataFrame, development: pd.Series) ->
     chosen = highest(development[development.index.isin(here.index)])
     if chosen:
         text += f" The development gears select {chosen}: {of_row(row_of(here, chosen))}."
-    sentences = [text]
-    scratch = few[few["method"].str.endswith(FROM_SCRATCH) & (few["shots"] > 0)]
-    for shots, rows in scratch.groupby("shots"):
-        transfer, bare = best_adapted(few, int(str(shots))), least(rows)
-        if transfer is not None and bare["value"] <= transfer["value"]:
-            sentences.append(
-                f"From {shots} labelled variants of each class on, {bare['method']} ({bare['value']:.1f} %) is as "
-                f"good as the best transfer ({transfer['value']:.1f} %) without any source gear."
-            )
-            break
-    return sentences
-
-
-def lost(few: pd.DataFrame, forgotten: pd.DataFrame) -> list[str]:
-    """Accuracy on the source gears that the best method with five shots loses; empty if it was not measured."""
-    best = best_adapted(few, SHOTS)
-    if best is None:
-        return []
-    of_best = forgotten[(forgotten["method"] == best["method"]) & (forgotten["shots"] > 0)]["forgotten"].dropna()
-    if of_best.empty:
-        return []
-    return [
-        f"Adapted to a new gear, {best['method']} loses at most {of_best.max():.1f} points of accuracy on the source "
-        "gears (mean over gears, any number of labels)."
-    ]
+    return text
 
 
 def disturbed(cases: pd.DataFrame) -> str:

@@ -227,23 +227,24 @@ def shots_text(
     return wide.rename(columns=names).rename_axis(None, axis="columns")
 
 
-def forgetting(gears: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
-    """Accuracy on the source gears lost by adapting [points]: ``method``, ``shots``, ``forgotten``, ``worst`` gear."""
-    rows = [
-        (name, int(str(shots)), float(part.mean()), float(part.max()))
-        for name, table in gears.items()
-        if not name.endswith(FROM_SCRATCH)  # it uses no source gear
-        for shots, part in table.groupby("shots")["forgotten"]
-    ]
-    return pd.DataFrame(rows, columns=["method", "shots", "forgotten", "worst"])
+def forgetting_text(gears: Mapping[str, pd.DataFrame]) -> pd.DataFrame | None:
+    """Accuracy on the source gears lost by adapting [points] by number of shots, and of the worst gear.
 
+    Parameters
+    ----------
+    gears : mapping
+        Method to its table of gears, with ``shots`` and ``forgotten``; a method from scratch uses no source gear.
 
-def forgetting_text(forgotten: pd.DataFrame) -> pd.DataFrame | None:
-    """Result of :func:`forgetting` with a column per number of shots; None if it was not measured."""
-    kept = forgotten.dropna(subset=["forgotten"])
-    if kept.empty:
+    Returns
+    -------
+    DataFrame or None
+        None if it was not measured.
+    """
+    rows = pd.concat(gears, names=["method"]).reset_index("method")
+    rows = rows[~rows["method"].str.endswith(FROM_SCRATCH)].dropna(subset=["forgotten"])
+    if rows.empty:
         return None
-    wide = kept.pivot(index="method", columns="shots", values="forgotten")
-    wide.columns = pd.Index(["Z2" if k == 0 else f"K = {k}" for k in wide])
-    wide["worst gear"] = kept.groupby("method")["worst"].max()
-    return wide.map(lambda value: "-" if np.isnan(value) else f"{value:+.1f}")
+    means = rows.groupby(["method", "shots"])["forgotten"].mean().unstack("shots")
+    means.columns = pd.Index(["Z2" if k == 0 else f"K = {k}" for k in means])
+    means["worst gear"] = rows.groupby("method")["forgotten"].max()
+    return means.map(lambda value: "-" if np.isnan(value) else f"{value:+.1f}")

@@ -74,7 +74,6 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
     zero = tables.zero_shot(errors, development_scores(methods), methods["fit_seconds"].astype(float))
     zero = zero.join(methods[["seeds", "spread"]])
     few = tables.few_shot(errors, runs.tables(adapting, "specimens"))
-    forgotten = tables.forgetting(runs.tables(adapting, "gears"))
     inputs, cases = runs.required("inputs"), studies.disturbed_cases(runs.required("zero_shot_disturbed"))
     input_errors = runs.errors(inputs)
     of_inputs = studies.inputs(inputs, input_errors)
@@ -93,7 +92,7 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
     page = {
         "grid": runs.grids["bench"],
         "headline": sentences.headline(zero, gears),
-        "lead": sentences.lead(zero, few, development_scores(adapting), forgotten, cases),
+        "lead": sentences.lead(zero, few, development_scores(adapting), cases),
         "best": best,
         "errors": figures.errors(zero),
         "representations": tables.representations_text(zero),
@@ -103,7 +102,7 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
         "few": tables.shots_text(few, "", labelled, marks, adapting),
         "gains": tables.shots_text(few, "gain", labelled, marks),
         "draws": adapting["draws"].iloc[0],
-        "forgotten": tables.forgetting_text(forgotten),
+        "forgotten": tables.forgetting_text(runs.tables(adapting, "gears")),
         **practice(runs, methods, {**predictions, **oracles}, errors, best),
         "disturbed": cases.map("{:.1f}".format),
         "studies": studies_of(runs, inputs, input_errors),

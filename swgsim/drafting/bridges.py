@@ -8,42 +8,41 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.drafting.motion import filled
+from swgsim.drafting.named import Named
 from swgsim.drafting.order_2 import order_2
 from swgsim.drafting.seen_column import SeenColumn
 from swgsim.drafting.taken import Taken, joined, place
-from swgsim.drafting.words import Meaning
 from swgsim.recordings.checks.thresholds import GAUGE_LARGEST, GAUGE_SMALLEST
 from swgsim.tables.units import FACTORS, OUTPUTS, STRAIN
 
-Pair = tuple[SeenColumn, Meaning]
-
 
 def bridges(
-    gauges: Sequence[Pair], angle: Float[np.ndarray, " time"] | None, known: Mapping[str, Any]
+    gauges: Sequence[Named], angle: Float[np.ndarray, " time"] | None, known: Mapping[str, Any]
 ) -> Iterator[Taken]:
     """Bridges s0 to s4."""
     names, why, ask = _numbered(gauges, angle)
-    for name, (column, meaning) in zip(names, gauges, strict=False):
+    for name, each in zip(names, gauges, strict=False):
+        column = each.column
         unit, more, need, doubt = _bridge_unit(column, known)
         share = (
             f"order 2 has {min(abs(order_2(column, angle)), 1.0):.0%} of its range"
             if angle is not None and np.ptp(angle) > 2 * pi
             else ""
         )
-        reason = joined(meaning.why, why, share)
+        reason = joined(each.meaning.why, why, share)
         yield Taken(column, name, place(column) | {"unit": unit} | more, reason, joined(ask, need, doubt), "", not need)
 
 
-def _numbered(gauges: Sequence[Pair], angle: Float[np.ndarray, " time"] | None) -> tuple[list[str], str, str]:
+def _numbered(gauges: Sequence[Named], angle: Float[np.ndarray, " time"] | None) -> tuple[list[str], str, str]:
     """Names of the bridges in the order of the columns, the reason, and what the user must decide."""
-    numbers = [meaning.index for _, meaning in gauges]
+    numbers = [each.index for each in gauges]
     if len(set(numbers)) == len(numbers) and None not in numbers and set(numbers) <= set(range(5)):
-        lobes = [_amplitude(column, angle) for column, _ in gauges] if angle is not None else []
+        lobes = [_amplitude(each.column, angle) for each in gauges] if angle is not None else []
         alike = lobes and 0 in numbers and lobes[numbers.index(0)] > 0.5 * float(np.median(lobes))
         if not (alike and len(numbers) == 4):
             return [f"s{number}" for number in numbers], "numbers in the names", ""
     if len(gauges) == 5 and angle is not None:
-        weakest = int(np.argmin([_amplitude(column, angle) for column, _ in gauges]))
+        weakest = int(np.argmin([_amplitude(each.column, angle) for each in gauges]))
         rest = iter(range(1, 5))
         names = ["s0" if place == weakest else f"s{next(rest)}" for place in range(5)]
         return names, "", "order as in the file; s0 is the one with the weakest order 2"

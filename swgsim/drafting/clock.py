@@ -7,10 +7,9 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
+from swgsim.drafting.named import Named
 from swgsim.drafting.seen_column import SeenColumn
 from swgsim.drafting.stamps import form_of
-from swgsim.drafting.taken import joined
-from swgsim.drafting.words import Meaning
 from swgsim.tables.clock import STAMP, read_clock
 from swgsim.tables.clock_jump import bits_of
 from swgsim.tables.units import FACTORS
@@ -48,12 +47,13 @@ class ClockDraft:
     question: str = ""
 
 
-def drafted_clock(columns: Sequence[SeenColumn], meanings: Sequence[Meaning]) -> ClockDraft | None:
+def drafted_clock(named: Sequence[Named]) -> ClockDraft | None:
     """The time among some columns; None if none of them is one."""
-    named = [each for each, meaning in zip(columns, meanings, strict=True) if meaning.quantity == "time"]
-    numbers = [each for each in named if not each.is_text and _forward(each)]
-    others = [each for each in columns if each not in named and not each.is_text and evenness(each) < EVEN]
-    pair = _pair(columns, meanings)
+    columns = [each.column for each in named]
+    of_time = [each.column for each in named if each.meaning.quantity == "time"]
+    numbers = [each for each in of_time if not each.is_text and _forward(each)]
+    others = [each for each in columns if each not in of_time and not each.is_text and evenness(each) < EVEN]
+    pair = _pair(named)
     if pair:
         return _draft(pair, ["s", "ns"], "names: seconds and nanoseconds")
     if numbers:
@@ -69,7 +69,7 @@ def drafted_clock(columns: Sequence[SeenColumn], meanings: Sequence[Meaning]) ->
 
 def _draft(columns: Sequence[SeenColumn], units: Sequence[str], why: str, question: str = "") -> ClockDraft:
     bits = _bits(columns[0]) if len(columns) == 1 and not columns[0].is_text else 0
-    why = joined(why, f"begins anew after {bits} bit" if bits else "")
+    why += f"; begins anew after {bits} bit" if bits else ""
     file = {"file": columns[0].file} if columns[0].file else {}
     if len(columns) == 1:
         counter = {"bits": bits} if bits else {}
@@ -80,19 +80,13 @@ def _draft(columns: Sequence[SeenColumn], units: Sequence[str], why: str, questi
     return ClockDraft(tuple(columns), entry, time, why, question)
 
 
-def _pair(columns: Sequence[SeenColumn], meanings: Sequence[Meaning]) -> list[SeenColumn]:
+def _pair(named: Sequence[Named]) -> list[SeenColumn]:
     """Seconds and nanoseconds in two columns, as ROS writes them."""
     found = []
     for words in ({"sec", "secs"}, {"nsec", "nsecs", "nanosec", "nanosecs"}):
-        same = (
-            each for each, meaning in zip(columns, meanings, strict=True) if not each.is_text and _last(meaning, words)
-        )
+        same = (each.column for each in named if not each.column.is_text and words & set(each.meaning.words[-1:]))
         found.append(next(same, None))
     return [each for each in found if each] if all(found) else []
-
-
-def _last(meaning: Meaning, words: set[str]) -> bool:
-    return bool(meaning.words) and meaning.words[-1] in words
 
 
 def _of_numbers(column: SeenColumn, why: str) -> ClockDraft:

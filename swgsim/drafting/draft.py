@@ -12,19 +12,21 @@ from swgsim.drafting.clock import ClockDraft, drafted_clock
 from swgsim.drafting.file_names import FileNames, fact_names, run_names, signals_path
 from swgsim.drafting.folder import LookedAt, look_at
 from swgsim.drafting.gauge_channels import gauge_channels
-from swgsim.drafting.gauge_text import facts_of, gauge_text
+from swgsim.drafting.gauge_text import gauge_lines
 from swgsim.drafting.joint_signals import joint_signals
-from swgsim.drafting.joint_text import joint_text
+from swgsim.drafting.joint_text import joint_lines
 from swgsim.drafting.map_draft import MapDraft
 from swgsim.drafting.motion import unwrapped
+from swgsim.drafting.named import Named
 from swgsim.drafting.order_2 import has_order_2
 from swgsim.drafting.own_times import own_times
 from swgsim.drafting.seen import Seen
-from swgsim.drafting.taken import Taken
+from swgsim.drafting.taken import Taken, travels
 from swgsim.drafting.words import meaning_of
 from swgsim.joint.intake.read import read_joints
 from swgsim.recordings.checks.defect import summary
 from swgsim.recordings.read import inspect_recordings
+from swgsim.tables.path_pattern import path_groups
 from swgsim.tables.units import FACTORS
 
 GAUGES, JOINTS = "gauges", "joints"
@@ -77,8 +79,8 @@ def draft_map(
     if moving is not seen:
         seen = moving
         clock, taken = _understood(seen, kind, given | _facts(names, looked, seen))
-    write = gauge_text if kind == GAUGES else joint_text
-    text = write(looked, seen, clock, taken, names, given)
+    lines = gauge_lines if kind == GAUGES else joint_lines
+    text = "\n".join(lines(looked, seen, clock, taken, names, given)) + "\n"
     own = looked.folder if kind == JOINTS or len(paths) > 1 else paths[0]
     findings, readable = read_back(text, own, kind)
     return MapDraft(kind, own, text, tuple(taken), clock, findings, readable)
@@ -128,31 +130,22 @@ def _names(looked: LookedAt, kind: str) -> FileNames:
 def _facts(names: FileNames, looked: LookedAt, seen: Seen) -> dict[str, str]:
     """Facts that the name of the drafted file says."""
     file = next(name for name, run in looked.runs.items() if run is seen)
-    return facts_of(names, file)
+    return (path_groups(names.path, file) or {}) if names.path else {}
 
 
 def _understood(seen: Seen, kind: str, known: Mapping[str, Any]) -> tuple[ClockDraft | None, list[Taken]]:
     """The time, and what each other column is taken for."""
-    meanings = [meaning_of(each) for each in seen.columns]
-    clock = drafted_clock(seen.columns, meanings)
-    time = clock.time if clock else None
+    clock = drafted_clock([Named(each, meaning_of(each)) for each in seen.columns])
     columns, others = own_times(seen.columns, clock) if clock else (seen.columns, [])
+    named = [Named(each, meaning_of(each)) for each in columns]
     channels = gauge_channels if kind == GAUGES else joint_signals
-    taken = channels(columns, [meaning_of(each) for each in columns], time, known)
-    of_clock = [Taken(each, "t", clock.entry, clock.why, clock.question) for each in clock.columns] if clock else []
-    return clock, [
-        *of_clock,
-        *(Taken(each, "t", why="of the columns after it", active=False) for each in others),
-        *taken,
-    ]
+    if clock is None:
+        return None, channels(named, None, known)
+    of_time = [Taken(each, "t", clock.entry, clock.why, clock.question) for each in clock.columns]
+    of_time += [Taken(each, "t", why="of the columns after it", active=False) for each in others]
+    return clock, [*of_time, *channels(named, clock.time, known)]
 
 
 def _most_moving(looked: LookedAt, taken: Sequence[Taken]) -> Seen:
     """The run in which the angles move most, in which units and velocities show best."""
-    angles = [(each.column.column, each.column.file) for each in taken if each.quantity in ("q", "phi_in")]
-
-    def travel(run: Seen) -> float:
-        moved = [each.values for each in run.columns if (each.column, each.file) in angles]
-        return sum(float(np.nanmax(values) - np.nanmin(values)) for values in moved)
-
-    return max(looked.runs.values(), key=travel)
+    return max(looked.runs.values(), key=lambda run: sum(travels(run, taken)))

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 
 from swgsim.drafting.clock import drafted_clock
+from swgsim.drafting.named import Named
 from swgsim.drafting.seen_column import SeenColumn
 from swgsim.drafting.words import meaning_of
 from swgsim.tables.layout import Layout
@@ -26,7 +27,7 @@ def first_table(table: pd.DataFrame, names: Sequence[str], layout: Layout) -> in
 
 def first_of_rows(columns: Sequence[SeenColumn]) -> tuple[tuple[SeenColumn, ...], str | int | None]:
     """The rows of the first recording, and the column that says another word wherever the clock runs back."""
-    clock = drafted_clock(columns, [meaning_of(each) for each in columns])
+    clock = drafted_clock([Named(each, meaning_of(each)) for each in columns])
     back = np.flatnonzero(np.diff(clock.time) < 0) + 1 if clock else np.empty(0, int)
     for column in columns if len(back) else ():
         said = column.values.astype(str)

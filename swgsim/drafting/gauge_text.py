@@ -13,7 +13,6 @@ from swgsim.drafting.seen import Seen
 from swgsim.drafting.taken import Taken
 from swgsim.drafting.yaml_text import ASK, clock_lines, flow, layout_lines, left_lines, line
 from swgsim.recordings.files.facts import KNOWN
-from swgsim.tables.path_pattern import path_groups
 from swgsim.tables.units import FACTORS
 
 ORDER = ("phi_in", "n_in", "T_in", "T_out", "s0", "s1", "s2", "s3", "s4")
@@ -23,11 +22,11 @@ MEANT = 0.005
 UNKNOWN = {"n_in_rpm": 1000, "T_out_nm": 0}
 
 
-def gauge_text(
+def gauge_lines(
     looked: LookedAt, seen: Seen, clock: ClockDraft | None, taken: Sequence[Taken], names: FileNames,
     known: Mapping[str, Any],
-) -> str:  # fmt: skip
-    """The map as YAML.
+) -> Iterator[str]:  # fmt: skip
+    """The lines of the map in YAML.
 
     Parameters
     ----------
@@ -41,13 +40,6 @@ def gauge_text(
     known : mapping
         Facts of the user.
     """
-    return "\n".join(_lines(looked, seen, clock, taken, names, known)) + "\n"
-
-
-def _lines(
-    looked: LookedAt, seen: Seen, clock: ClockDraft | None, taken: Sequence[Taken], names: FileNames,
-    known: Mapping[str, Any],
-) -> Iterator[str]:  # fmt: skip
     yield f"# A first column map, drafted from {next(iter(looked.runs))}. Decide the lines with {ASK[2:]}, then read."
     yield from layout_lines(seen, taken)
     if names.path:
@@ -129,8 +121,3 @@ def _round(mean: float, digits: int) -> float:
     """The round number near a mean, as people ask for one; else the mean."""
     near = round(mean / digits) * digits
     return near if mean and abs(near / mean - 1) < MEANT else float(f"{mean:.3g}")
-
-
-def facts_of(names: FileNames, file: str) -> dict[str, str]:
-    """The facts that the name of a file says."""
-    return (path_groups(names.path, file) or {}) if names.path else {}

@@ -1,49 +1,17 @@
-"""Current and torques of a joint, and the columns of a robot's log with what their names say."""
+"""Current and torques of a joint."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
-from swgsim.drafting.seen_column import SeenColumn
+from swgsim.drafting.named import Named
 from swgsim.drafting.taken import Taken, place
-from swgsim.drafting.vocabulary import COMMON, MODEL, MOTOR, OUTPUT, WORDS
-from swgsim.drafting.words import Meaning
+from swgsim.drafting.vocabulary import MODEL, OUTPUT
 from swgsim.tables.units import FACTORS, SHARES
 
-# Objects of drives (CiA 402) that are in per mille of a rated value, and those of the drive's own encoder.
+# Objects of drives (CiA 402) that are in per mille of a rated value.
 OF_RATED = frozenset({"6077h", "6078h"})
-OF_DRIVE = frozenset({"6064h", "606ch"})
 # In ROS the torque by the motor's current, or by the controller.
 EFFORT = frozenset({"effort", "efforts"})
-
-
-@dataclass(frozen=True, eq=False)
-class Named:
-    """A column with what its name says."""
-
-    column: SeenColumn
-    meaning: Meaning
-
-    @property
-    def index(self) -> int | None:
-        """The number in the name."""
-        return self.meaning.index
-
-    @property
-    def words(self) -> tuple[str, ...]:
-        """The words that tell its joint from others, such as shoulder."""
-        known = (COMMON, MOTOR, OUTPUT, *WORDS.values())
-        return tuple(word for word in self.meaning.words if not any(word in words for words in known))
-
-    @property
-    def joint(self) -> int | tuple[str, ...]:
-        """What its name says of its joint: a number, else words."""
-        return self.words if self.index is None else self.index
-
-    @property
-    def at_motor(self) -> bool:
-        """Whether it is on the motor's side of the gear by its name."""
-        return self.meaning.says(MOTOR) or self.meaning.says(OF_DRIVE)
 
 
 def forces(

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.drafting.joint_forces import Named, force, forces
+from swgsim.drafting.joint_forces import force, forces
 from swgsim.drafting.motion import EXPLAINED, RATIOS, slope_of, turns_of, wrap_of
 from swgsim.drafting.motion_units import MOST_TURNED, motion_units
+from swgsim.drafting.named import Named
 from swgsim.drafting.seen_column import SeenColumn
 from swgsim.drafting.taken import Taken, joined, place
 from swgsim.drafting.vocabulary import MODEL
@@ -22,8 +23,7 @@ MOST_TURNS = MOST_TURNED / np.pi
 
 
 def joint_signals(
-    columns: Sequence[SeenColumn],
-    meanings: Sequence[Meaning],
+    named: Sequence[Named],
     time: Float[np.ndarray, " time"] | None,
     known: Mapping[str, Any],
 ) -> list[Taken]:
@@ -31,15 +31,13 @@ def joint_signals(
 
     Parameters
     ----------
-    columns : sequence of SeenColumn
-        Those that are no time.
-    meanings : sequence of Meaning
+    named : sequence of Named
+        The columns that are no time.
     time : array (time,), optional
         [s]; None if no time was found.
     known : mapping
         Facts of the user, such as ``gear_ratio``.
     """
-    named = [Named(each, meaning) for each, meaning in zip(columns, meanings, strict=True)]
     usable = [each for each in named if not each.column.is_text and not _is_set_point(each.meaning)]
     kinds = {kind: [each for each in usable if each.meaning.quantity == kind] for kind in ("angle", "speed", "current")}
     torques = [each for each in usable if each.meaning.quantity == "torque"]

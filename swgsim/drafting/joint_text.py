@@ -5,13 +5,11 @@ from dataclasses import replace
 from pathlib import PurePosixPath
 from typing import Any
 
-import numpy as np
-
 from swgsim.drafting.clock import ClockDraft
 from swgsim.drafting.file_names import FileNames
 from swgsim.drafting.folder import LookedAt
 from swgsim.drafting.seen import Seen
-from swgsim.drafting.taken import Taken
+from swgsim.drafting.taken import Taken, travels
 from swgsim.drafting.yaml_text import ASK, clock_lines, layout_lines, left_lines, line
 from swgsim.joint.recording import PREDICTED
 
@@ -20,18 +18,11 @@ ORDER = ("q", "omega", "T_sensor", "T_motor", "current", "T_rigid")
 STANDS = 1e-3
 
 
-def joint_text(
-    looked: LookedAt, seen: Seen, clock: ClockDraft | None, taken: Sequence[Taken], names: FileNames,
-    known: Mapping[str, Any],
-) -> str:  # fmt: skip
-    """The source as YAML; parameters as for :func:`swgsim.drafting.gauge_text.gauge_text`."""
-    return "\n".join(_lines(looked, seen, clock, taken, names, known)) + "\n"
-
-
-def _lines(
+def joint_lines(
     looked: LookedAt, seen: Seen, clock: ClockDraft | None, taken: Sequence[Taken], names: FileNames,
     known: Mapping[str, Any],
 ) -> Iterator[str]:  # fmt: skip
+    """The lines of the source in YAML; parameters as for :func:`swgsim.drafting.gauge_text.gauge_lines`."""
     yield f"# A first source, drafted from {next(iter(looked.runs))}. Decide the lines with {ASK[2:]}, then read."
     yield line("robot", known.get("robot", "my robot"), "", "" if "robot" in known else "its name")
     yield from layout_lines(seen, taken)
@@ -104,14 +95,5 @@ def _joint(joint: str, own: Sequence[Taken], known: Mapping[str, Any]) -> Iterat
 
 def _stands(run: Seen, seen: Seen, taken: Sequence[Taken]) -> bool:
     """Whether all angles of a run stand."""
-    angles = [(each.column.column, each.column.file) for each in taken if each.quantity == "q"]
-
-    def travel(one: Seen) -> dict:
-        return {
-            (each.column, each.file): float(np.nanmax(each.values) - np.nanmin(each.values))
-            for each in one.columns
-            if (each.column, each.file) in angles
-        }
-
-    usual, found = travel(seen), travel(run)
-    return bool(angles) and all(found[angle] < STANDS * max(usual.values()) for angle in angles)
+    usual, found = travels(seen, taken), travels(run, taken)
+    return bool(found) and all(each < STANDS * max(usual) for each in found)

@@ -76,19 +76,16 @@ def motion_units(
     if "counts" in units:
         return _counted(slope.factor if slope else 0.0, rates, wrap.revolution if wrap else 0.0, wraps)
     asked = "" if said or wrap else f"no unit is said: {units[0]} is assumed"
+    draft = MotionUnits({"unit": units[0], **wraps}, of_angle=doubt or asked)
     if slope is None:
-        return MotionUnits({"unit": units[0], **wraps}, of_angle=doubt or asked)
+        return draft
     if slope.share < FITS:
         of_speed = f"{max(slope.share, 0):.0%} of {angle.column} is its integral, so omega is the slope of the angle"
-        return MotionUnits(
-            {"unit": units[0], **wraps}, {"unit": rates[0]}, of_angle=doubt or asked, of_speed=of_speed, fits=False
-        )
+        return replace(draft, speed={"unit": rates[0]}, of_speed=of_speed, fits=False)
     turned = {"inverted": True} if slope.factor < 0 else {}
+    draft = replace(draft, speed={"unit": rates[0], **turned})
     if time is None:
-        of_time = "no time, by which its unit could be checked"
-        return MotionUnits(
-            {"unit": units[0], **wraps}, {"unit": rates[0], **turned}, of_angle=doubt or asked, of_speed=of_time
-        )
+        return replace(draft, of_speed="no time, by which its unit could be checked")
     of_speed = "its sign is against the slope of the angle" if turned else ""
     found = abs(slope.factor)
     share = f"slope explains {slope.share:.1%}"
@@ -100,13 +97,12 @@ def motion_units(
         return MotionUnits(
             {"unit": unit, **wraps}, {"unit": rate, **turned}, 1.0, why, doubt or asked * (not sure), of_speed
         )
-    unit, rate = units[0], rates[0]
-    ratio = expected(unit, rate) / found
+    ratio = expected(units[0], rates[0]) / found
     if RATIOS[0] <= max(ratio, 1 / ratio) <= RATIOS[1]:
         why = f"{share}, {max(ratio, 1 / ratio):.4g} turns for one"
-        return MotionUnits({"unit": unit, **wraps}, {"unit": rate, **turned}, ratio, why, doubt or asked, of_speed)
-    contradiction = f"as {rate} it is {1 / ratio:.4g} times too small for the slope of the angle in {unit}"
-    return MotionUnits({"unit": unit, **wraps}, {"unit": rate, **turned}, 1.0, share, doubt or asked, contradiction)
+        return replace(draft, ratio=ratio, why=why, of_speed=of_speed)
+    contradiction = f"as {rates[0]} it is {1 / ratio:.4g} times too small for the slope of the angle in {units[0]}"
+    return replace(draft, why=share, of_speed=contradiction)
 
 
 def _of_rated(angle: MotionUnits, unit: str, slope: Slope, timed: bool) -> MotionUnits:

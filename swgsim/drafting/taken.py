@@ -1,9 +1,12 @@
 """What a column is taken for, and why."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
+from swgsim.drafting.seen import Seen
 from swgsim.drafting.seen_column import SeenColumn
 
 
@@ -46,3 +49,10 @@ def place(column: SeenColumn) -> dict[str, Any]:
     """Where a map finds a column."""
     time = {"time": column.time} if column.time is not None else {}
     return {"column": column.column} | ({"file": column.file} if column.file else {}) | time
+
+
+def travels(run: Seen, taken: Sequence[Taken]) -> list[float]:
+    """How far each angle moves in a run, in the unit of its column."""
+    angles = [(each.column.column, each.column.file) for each in taken if each.quantity in ("q", "phi_in")]
+    moved = [each.values for each in run.columns if (each.column, each.file) in angles]
+    return [float(np.nanmax(values) - np.nanmin(values)) for values in moved]

@@ -1,6 +1,6 @@
 """Terms in words, and orders as multiples of the revolutions of the parts of a gear."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from swgsim.joint.effects.friction import PositionFriction
 from swgsim.joint.effects.ripple import Ripple
@@ -48,9 +48,15 @@ def listed(terms: Iterable[Term], gear_ratio: float | None) -> str:
     for what, numbers in waves.items():
         kind, _, of = what.partition(" per ")
         numbers = [f"{number:g}" for number in sorted({float(number) for number in numbers})]
-        named.append(f"{kind} of {_and(numbers)} per {of}" if of else what)
-    return _and(named)
+        named.append(f"{kind} of {enumerated(numbers)} per {of}" if of else what)
+    return enumerated(named)
 
 
-def _and(words: list[str]) -> str:
-    return ", ".join(words[:-1]) + (" and " if words[1:] else "") + words[-1] if words else ""
+def enumerated(words: Sequence[str]) -> str:
+    """Words in one line.
+
+    >>> enumerated(["a", "b", "c"])
+    'a, b and c'
+    """
+    *first, last = words or [""]
+    return f"{', '.join(first)} and {last}" if first else last

@@ -56,17 +56,10 @@ def report(
                 "name": step.term.name(),
                 "title": in_words(step.term, ratio),
                 "meaning": " ".join((getdoc(type(step.term)) or "").partition("\n\n")[0].split()),
-                "place": "joint",
                 "parameters": _shape(top.terms[number]) | _weights(top, number, number + 1, unit),
                 "evidence": {"gain": step.gain, "worst_session": step.worst, "chance": step.chance},
-                "indistinguishable_from": [],
             }
             for number, step in enumerate(steps, base)
-        ],
-        "rejected": [
-            {"name": r.trial.term.name(), "title": in_words(r.trial.term, ratio), "heldout_error": r.heldout,
-             "why": r.trial.why}
-            for r in judged.rungs if r.trial and not r.kept
         ],
         "rungs": _rungs(judged, ratio),
         "error": {

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from swgsim.common.numbers import significant
 from swgsim.common.outcome import FOUND, NOTHING, UNKNOWN
 from swgsim.joint.judged import Judged
-from swgsim.joint.naming import listed
+from swgsim.joint.naming import enumerated, listed
 from swgsim.joint.recording import SIGNALS
 from swgsim.joint.term import Term
 
@@ -113,6 +113,4 @@ def _named(judged: Judged, terms: Iterable[Term]) -> str:
 def _sessions(judged: Judged) -> str:
     """Sessions of the fitted recordings."""
     sessions = list(dict.fromkeys(each.session for each in judged.table.recordings))
-    if len(sessions) > NAMED:
-        return f"{len(sessions)} sessions"
-    return ", ".join(sessions[:-1]) + (" and " if sessions[1:] else "") + sessions[-1]
+    return f"{len(sessions)} sessions" if len(sessions) > NAMED else enumerated(sessions)

@@ -7,6 +7,8 @@ import numpy as np
 import pandas as pd
 from jaxtyping import Float
 
+from swgsim.common.checks import require_known
+
 CLASSES = (
     "healthy",
     "reduced_damping",
@@ -122,9 +124,7 @@ def facts(rows: Mapping[str, object]) -> pd.DataFrame:
     table = pd.DataFrame(rows)
     if set(table.columns) != set(COLUMNS):
         raise ValueError(f"columns {sorted(table.columns)} found, expected {sorted(COLUMNS)}")
-    unknown = sorted(set(table["label"]) - set(CLASSES))
-    if unknown:
-        raise ValueError(f"unknown class {unknown[0]!r}; choose from {', '.join(CLASSES)}")
+    require_known("label", table["label"].unique(), CLASSES)
     table = table[list(COLUMNS)].astype({n: c.dtype for n, c in COLUMNS.items() if n != "label"})
     table["label"] = pd.Categorical(table["label"], categories=list(CLASSES))
     table["reference"] = table["reference"].astype(bool)

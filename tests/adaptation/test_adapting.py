@@ -13,7 +13,6 @@ from omegaconf import OmegaConf
 from sklearn.base import clone
 from sklearn.ensemble import RandomForestClassifier
 
-from learn.adaptation.adaptations import ADAPTATIONS
 from learn.adaptation.adapting import adapt_and_judge
 from learn.adaptation.fine_tuning import FineTuning
 from learn.adaptation.retraining import FromScratch
@@ -178,14 +177,6 @@ def test_every_adaptation_of_the_configuration_is_built_with_each_of_its_trials(
     assert all(isinstance(each, Adaptation | Rezero) for each in made)
     assert len(set(map(repr, made))) == len(trials)
     assert len(trials) in (1, 4)  # the same number for every method that has something to choose
-
-
-def test_unknown_adaptations_and_options_are_answered_with_the_choices():
-    assert {path.stem for path in FILES} == set(ADAPTATIONS)
-    with pytest.raises(ValueError, match="unknown adaptation 'magic'; choose from added_trees, batch_norm"):
-        settings.adaptation({"name": "magic"})
-    with pytest.raises(ValueError, match="unknown option 'speed' of adaptation fine_tuning; choose from steps"):
-        settings.adaptation({"name": "fine_tuning", "speed": 1})
 
 
 def composed(models, *overrides):

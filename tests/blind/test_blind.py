@@ -621,7 +621,8 @@ def test_a_loop_that_breaks_down_is_counted(tmp_path: Path, monkeypatch: pytest.
 def test_one_case_from_sealing_to_score(tmp_path: Path) -> None:
     """As a user starts it, and so without the type checks, which are slow in an integrator."""
     words = [word for word in _words(tmp_path) if word != "cases=3"] + ["cases=1"]
-    run = subprocess.run([sys.executable, "scripts/blind.py", *words], cwd=CONF.parent, capture_output=True, text=True)
+    command = [sys.executable, "-m", "swgsim", "blind", *words]
+    run = subprocess.run(command, cwd=CONF.parent, capture_output=True, text=True)
     assert run.returncode == 0, run.stderr
     assert "right effect first" in run.stdout
     report = json.loads((tmp_path / "report" / "blind.json").read_text())

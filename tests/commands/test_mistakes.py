@@ -17,14 +17,14 @@ ROOT = Path(__file__).parents[2]
 
 
 def given(*words: str, **environment: str) -> subprocess.CompletedProcess:
-    """The end of close_loop.py."""
+    """The end of close-loop."""
     around = {name: value for name, value in os.environ.items() if name != FULL} | environment
-    command = [sys.executable, "scripts/close_loop.py", *words]
+    command = [sys.executable, "-m", "swgsim", "close-loop", *words]
     return subprocess.run(command, cwd=ROOT, env=around, capture_output=True, text=True, check=False)
 
 
 def chosen(*words: str) -> dict:
-    """The choices of close_loop.py."""
+    """The choices of close-loop."""
     with initialize_config_dir(str(ROOT / "conf"), version_base="1.3"):
         return plain(compose("close_loop", list(words)))
 

@@ -194,7 +194,7 @@ def test_a_sweep_elsewhere_loses_no_run(engine: str, two_workers: str, tmp_path:
     storage.write(tmp_path / "small-clean.h5", [made], len(made))
     where = ["grid=small", f"data={tmp_path}", f"tracking.folder={prepared(tmp_path)}", f"hydra.sweep.dir={tmp_path}"]
     words = ["compute=dask", f"scheduler={two_workers}"] if engine == "dask" else ["hydra/launcher=submitit_local"]
-    command = [sys.executable, "scripts/train.py", "-m", "classifier=nb,knn", *where, *words]
+    command = [sys.executable, "-m", "swgsim", "train", "-m", "classifier=nb,knn", *where, *words]
     answer = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert answer.returncode == 0, answer.stderr
     store = tracking.local_store(str(tmp_path))

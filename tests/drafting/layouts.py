@@ -1,6 +1,6 @@
 """Twenty logs in as many layouts, each with its truth in SI units. Made here; none is of a real bench."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from pathlib import Path
@@ -325,11 +325,3 @@ ALL = (
     microstrain,
 )  # fmt: skip
 LAYOUTS: Mapping[str, Callable[[Path, np.random.Generator], Case]] = {each.__name__: each for each in ALL}
-
-
-def made(folder: Path) -> Iterator[tuple[str, Path, Case]]:
-    """All layouts below a folder."""
-    for number, (name, make) in enumerate(LAYOUTS.items()):
-        own = folder / name
-        own.mkdir()
-        yield name, own, make(own, np.random.default_rng(number))

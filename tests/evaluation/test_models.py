@@ -1,14 +1,11 @@
 """Trained models come back from their files unchanged, and harmful files are refused before any of it runs."""
 
-import pickle
 import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
-import skops.io
 from sklearn.ensemble import ExtraTreesClassifier, RandomForestClassifier
 
 from learn.evaluation import models
@@ -52,60 +49,6 @@ def test_a_model_without_probabilities_comes_back_too(tmp_path):
     model = support_vector_machine().fit(X, Y)
     models.save(model, tmp_path / "svm.skops")
     assert np.array_equal(models.load(tmp_path / "svm.skops").predict(X), model.predict(X))
-
-
-class Harmful:
-    """Leaves a trace when it is read."""
-
-    def __init__(self, trace: Path) -> None:
-        self.trace = trace
-
-    def __reduce__(self):
-        return Path.touch, (self.trace,)
-
-
-class HarmfulState:
-    """Leaves a trace when its state is set, as skops does for types that it trusts."""
-
-    def __init__(self, trace: str) -> None:
-        self.trace = trace
-
-    def __getstate__(self):
-        return {"trace": self.trace}
-
-    def __setstate__(self, state):
-        Path(state["trace"]).touch()
-
-
-def test_a_pickle_that_would_run_code_is_refused_and_does_not_run(tmp_path):
-    path, trace = tmp_path / "model.skops", tmp_path / "trace"
-    path.write_bytes(pickle.dumps(Harmful(trace)))
-    with pytest.raises(ValueError, match=r"model\.skops"):
-        models.load(path)
-    assert not trace.exists()
-    pickle.loads(path.read_bytes())
-    assert trace.exists()  # the file is harmful
-
-
-def test_a_type_that_is_none_of_a_classifiers_is_refused_and_does_not_run(tmp_path):
-    path, trace = tmp_path / "model.skops", tmp_path / "trace"
-    skops.io.dump(HarmfulState(str(trace)), path)
-    with pytest.raises(ValueError, match=r"model\.skops: not a model of this project.*HarmfulState.*remove it"):
-        models.load(path)
-    assert not trace.exists()
-    skops.io.load(path, trusted=skops.io.get_untrusted_types(file=path))
-    assert trace.exists()  # the file is harmful
-
-
-@pytest.mark.parametrize("model", [FOREST, NETWORKS["perceptron"]], ids=["forest", "network"])
-def test_a_truncated_file_is_refused(model, tmp_path):
-    models.trained(tmp_path, "identity", model, X, Y)
-    (path,) = tmp_path.iterdir()
-    content = path.read_bytes()
-    for share in (0.0, 0.5, 0.99):
-        path.write_bytes(content[: int(share * len(content))])
-        with pytest.raises(ValueError, match=path.name):
-            models.trained(tmp_path, "identity", model, X, Y)
 
 
 def test_a_model_is_trained_once_for_the_same_rows_and_identity(tmp_path, monkeypatch):

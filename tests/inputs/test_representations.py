@@ -47,13 +47,17 @@ def test_missing_references_and_impossible_efficiencies_are_named(representation
 @pytest.mark.parametrize(
     ("representation", "change", "message"),
     [
-        (SELECTION, {"spectrum": "sums"}, "unknown spectrum 'sums'; choose from none, gauges, differences"),
-        (SELECTION, {"efficiency": "eta"}, "unknown efficiency 'eta'; choose from none, eta_rel, eta2_rel, both"),
-        (SELECTION, {"orders": 0}, "0 DFT orders, at least 1"),
-        (SELECTION, {"floor": 0.0}, "floor 0.0 mV/V must be above 0"),
+        (SELECTION, {"spectrum": "sums"}, "unknown choice 'sums' of spectrum; choose from none, gauges, differences"),
+        (
+            SELECTION,
+            {"efficiency": "eta"},
+            "unknown choice 'eta' of efficiency; choose from none, eta_rel, eta2_rel, both",
+        ),
+        (SELECTION, {"orders": 0}, "orders of selection.* is 0, must be an integer from 1"),
+        (SELECTION, {"floor": 0.0}, "floor of selection.* is 0.0, must be a finite number above 0"),
         (HARMONICS, {"orders": 3}, "orders of harmonics is 3, must be an integer from 4"),
         (LINES, {"orders": 0}, "orders of lines is 0, must be an integer from 1"),
-        (SIGNALS, {"name": "sum"}, "unknown signal 'sum'; choose from raw, differenced, residual"),
+        (SIGNALS, {"name": "sum"}, "unknown choice 'sum' of the signals; choose from raw, differenced, residual"),
         (SIGNALS, {"reference": False}, "is relative to a healthy reference: reference=true, or features=raw"),
         (SIGNALS, {"points": 7}, "points of residual is 7, must be an integer from 8 to 4096"),
         (SIGNALS, {"points": 5000}, "points of residual is 5000, must be an integer from 8 to 4096"),

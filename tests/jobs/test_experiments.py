@@ -54,10 +54,9 @@ FEW = [
 SMALLER = {"trees": 5, "count": 5, "epochs": 1, "iterations": 10, "steps": 5, "neurons": 8, "width": 8, "folds": 2}
 
 
-def jobs(experiment):
-    """As many jobs as it takes to use every value that the experiment sweeps once."""
-    config = composed(f"experiment={experiment}", return_hydra_config=True)
-    sweep = {key: values.split(",") for key, values in config.hydra.sweeper.params.items()}
+def jobs(params):
+    """As many jobs as it takes to use every value of a sweep once."""
+    sweep = {key: values.split(",") for key, values in params.items()}
     for number in range(max(map(len, sweep.values()))):
         yield {key: values[number % len(values)] for key, values in sweep.items()}
 
@@ -74,9 +73,8 @@ def smaller(config, swept):
     return config
 
 
-def run_ids(folder, experiment):
-    """The finished runs of the experiment's study, to which other experiments may add."""
-    study = composed(f"experiment={experiment}").study
+def run_ids(folder, study):
+    """The finished runs of a study, to which other experiments may add."""
     found = tracking.finished_runs(tracking.local_store(str(folder)), study=study)
     return set(found["run_id"]) if len(found) else set()
 
@@ -84,20 +82,21 @@ def run_ids(folder, experiment):
 @pytest.mark.parametrize("experiment", EXPERIMENTS)
 def test_every_experiment_runs_on_a_small_grid(experiment, data, runs):
     where = ["grid=small", f"data={data}", f"tracking.folder={runs}", f"models={runs / 'models'}"]
-    protocol = composed(f"experiment={experiment}").protocol
-    few = FEW if protocol.name == "new_gears" else []
-    few = [*few, "protocol.judged=3"] if protocol.get("judged") else few
-    before = run_ids(runs, experiment)
-    for swept in jobs(experiment):
+    whole = composed(f"experiment={experiment}", return_hydra_config=True)
+    few = FEW if whole.protocol.name == "new_gears" else []
+    few = [*few, "protocol.judged=3"] if whole.protocol.get("judged") else few
+    before = run_ids(runs, whole.study)
+    sweep = list(jobs(whole.hydra.sweeper.params))
+    for swept in sweep:
         overrides = [f"{key}={value}" for key, value in swept.items()]
         config = composed(f"experiment={experiment}", *few, *overrides, *where)
         metrics = job.run(smaller(OmegaConf.to_container(config, resolve=True), swept))
         assert 0 <= metrics["test_score"] <= 100
-    assert len(run_ids(runs, experiment) - before) == len(list(jobs(experiment)))
+    assert len(run_ids(runs, whole.study) - before) == len(sweep)
 
 
 def train(*arguments):
-    command = [sys.executable, str(ROOT / "scripts" / "train.py"), *arguments]
+    command = [sys.executable, "-m", "swgsim", "train", *arguments]
     return subprocess.run(command, capture_output=True, text=True, cwd=ROOT, check=False)
 
 

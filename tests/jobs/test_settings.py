@@ -58,6 +58,7 @@ def test_defaults_are_what_the_configuration_says(group):
             "unknown option 'tress' of classifier rf; choose from trees, depth",
         ),
         (settings.classifier, {"name": "nb", "trees": 3}, "unknown option 'trees' of classifier nb; choose from none"),
+        (settings.adaptation, {"name": "magic"}, "unknown adaptation 'magic'; choose from added_trees, batch_norm"),
         (
             settings.protocol,
             {"name": "folds"},

@@ -1,6 +1,5 @@
 """Reading of joint recordings: both shipped sources, and every kind of bad source and file."""
 
-import gzip
 import os
 from collections.abc import Callable
 from pathlib import Path
@@ -23,14 +22,11 @@ from fabricated_joints import (
     write_file,
     write_kinova,
 )
-from hypothesis import HealthCheck, example, given, settings
-from hypothesis import strategies as st
 from scipy.io import savemat
 
 from swgsim.joint.intake.read import read_joints
 from swgsim.joint.intake.source_file import read_source
 from swgsim.joint.split import select
-from swgsim.tables import limits
 from swgsim.tables.file_defect import FileDefect
 
 CONFIG = yaml.safe_load(KINOVA.read_text())
@@ -256,48 +252,25 @@ def test_a_regular_expression_does_not_hang(tmp_path: Path) -> None:
 
 GOOD_ROWS = csv_text("", np.column_stack([np.linspace(1, 2, 700), np.full((700, 3), 0.5)])).decode()
 HEADER = "position_rad,velocity_rad_s,torque_sensor_Nm,current_A\n"
-BAD_FILES: dict[str, tuple[bytes, str]] = {
-    "empty": (b"", "found an empty file"),
-    "header only": (HEADER.encode(), "names without rows"),
-    "semicolons": ((HEADER + GOOD_ROWS).replace(",", ";").encode(), "set separator: ';' in a map"),
-    "no such column": (
-        (HEADER + GOOD_ROWS).replace("current_A", "amps").encode(),
-        "expected 'current_A', as the map says",
-    ),
+BAD_FILES: dict[str, tuple[str, str]] = {
+    "semicolons": ((HEADER + GOOD_ROWS).replace(",", ";"), "set separator: ';' in a map"),
+    "no such column": ((HEADER + GOOD_ROWS).replace("current_A", "amps"), "expected 'current_A', as the map says"),
     "a column twice": (
-        (HEADER + GOOD_ROWS).replace("current_A", "position_rad").encode(),
+        (HEADER + GOOD_ROWS).replace("current_A", "position_rad"),
         "2 columns 'position_rad', 'position_rad'",
     ),
-    "text": ((HEADER + "1,2,3,x\n" + GOOD_ROWS).encode(), "row 2, column current_A: found 'x', expected a number"),
-    "a cell too many": ((HEADER + GOOD_ROWS + "1,2,3,4,5\n").encode(), "found 5 cells, expected 4"),
-    "no text": (HEADER.encode() + b"\xff\xff\xff\n", "bytes that are not text"),
-    "an endless line": (HEADER.encode() + b"1" * 100_001, "a line of more than 100000 characters"),
+    "text": (HEADER + "1,2,3,x\n" + GOOD_ROWS, "row 2, column current_A: found 'x', expected a number"),
 }
 
 
 @pytest.mark.parametrize("name", list(BAD_FILES))
 def test_a_bad_file_is_named(tmp_path: Path, name: str) -> None:
     content, message = BAD_FILES[name]
-    write_file(tmp_path / "S1_v1.csv", content)
+    write_file(tmp_path / "S1_v1.csv", content.encode())
     with pytest.raises(FileDefect) as error:
         read_joints(tmp_path, KINOVA)
     assert str(error.value).startswith("S1_v1.csv")
     assert message in str(error.value)
-
-
-def test_a_damaged_compressed_file_is_named(tmp_path: Path) -> None:
-    content = gzip.compress((HEADER + GOOD_ROWS).encode())
-    for damaged in (content[:-20], b"no gzip", content[:40] + b"\x00" * 20 + content[60:]):
-        (tmp_path / "S1_v1.csv.gz").write_bytes(damaged)
-        with pytest.raises(FileDefect, match=r"S1_v1\.csv\.gz: found a damaged file|not text|cells|'"):
-            read_joints(tmp_path, KINOVA)
-
-
-def test_what_is_compressed_is_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    write_file(tmp_path / "S1_v1.csv.gz", (HEADER + "1,1,1,1\n" * 100_000).encode())
-    monkeypatch.setattr(limits, "ALWAYS_EXPANDED", 10_000)
-    with pytest.raises(FileDefect, match=r"more text than its size allows.*: write it less compressed"):
-        read_joints(tmp_path, KINOVA)
 
 
 def test_no_file_outside_the_folder_is_read(tmp_path: Path) -> None:
@@ -345,58 +318,11 @@ def test_runs_that_never_move_need_a_declared_rate(tmp_path: Path) -> None:
     assert [(each.kind, each.severity) for each in files.defects] == [("no_rate", "refuse")]
 
 
-PLAIN = st.recursive(
-    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8),
-    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=8), inner, max_size=3),
-    max_leaves=8,
-)
-FUZZ = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-
-
-@pytest.mark.slow
-@FUZZ
-@given(
-    st.dictionaries(st.sampled_from([*CONFIG, "posture", "time", "header"]), PLAIN, min_size=1, max_size=3)
-    | st.fixed_dictionaries({"joints": st.fixed_dictionaries({"joint_7": st.fixed_dictionaries({"signals": PLAIN})})})
-    | st.fixed_dictionaries({"path": st.text("()?P<run>session|*+.[]a\\", max_size=40)})
-)
-def test_any_source_is_read_or_named(tmp_path: Path, changes: dict) -> None:
-    path = write_source(tmp_path / "source.yaml", {**CONFIG, **changes})
-    try:
-        source = read_source(path)
-    except FileDefect:
-        return
-    assert source.columns
-
-
-RAMP = np.arange(750.0)
-COURSES = {
-    "zero": 0 * RAMP,
-    "one": 0 * RAMP + 1,
-    "ramp": 1e-3 * RAMP,
-    "back": 6 - 1e-2 * RAMP,
-    "wrap": np.mod(0.1 * RAMP, 2 * np.pi),
-    "swing": np.sin(RAMP / 20),
-    "step": np.where(RAMP < 600, 0.0, 1.0),
-    "two levels": RAMP % 2,
-    "tiny": 1e-300 * RAMP,
-    "huge": 1e14 * np.sin(RAMP),
-    "too large": 1e300 * RAMP,
-    "noise": np.random.default_rng(1).normal(size=750),
-    "late nan": np.where(RAMP < 740, RAMP, np.nan),
-}
-
-
-@FUZZ
-@given(st.lists(st.lists(st.sampled_from(list(COURSES)), min_size=4, max_size=4), min_size=1, max_size=3))
-@example([["zero", "huge", "zero", "zero"], ["back", "tiny", "zero", "zero"]])
-@example([["zero", "huge", "zero", "zero"], ["ramp", "tiny", "zero", "zero"]])
-def test_any_course_of_the_signals_is_judged(tmp_path: Path, runs: list[list[str]]) -> None:
-    for path in tmp_path.iterdir():
-        path.unlink()
-    for number, names in enumerate(runs):
-        rows = np.column_stack([COURSES[name] for name in names])
-        write_file(tmp_path / f"S1_v{number}.csv", csv_text(HEADER.strip(), rows))
+@pytest.mark.parametrize("angle", [6 - 1e-2 * np.arange(750), 1e-3 * np.arange(750)], ids=["back", "forth"])
+def test_the_largest_and_the_smallest_numbers_are_judged(tmp_path: Path, angle: np.ndarray) -> None:
+    ramp, zero = np.arange(750.0), np.zeros(750)
+    for number, columns in enumerate(((zero, 1e14 * np.sin(ramp), zero, zero), (angle, 1e-300 * ramp, zero, zero))):
+        write_file(tmp_path / f"S1_v{number}.csv", csv_text(HEADER.strip(), np.column_stack(columns)))
     files = read_joints(tmp_path, KINOVA)
     refused = {each.recording for each in files.defects if each.severity == "refuse"}
-    assert len(files.recordings) + len(refused) == len(runs)
+    assert len(files.recordings) + len(refused) == 2

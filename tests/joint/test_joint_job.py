@@ -31,7 +31,7 @@ SOURCE = {
 }
 HIDDEN = Hidden(load=0.01)
 SEARCHED = ["load_dependent_friction", "stribeck_friction"]
-KEYS = {"verdict", "noise_floor", "calibrated", "effects", "rejected", "error", "unknown", "next_experiment"}
+KEYS = {"verdict", "noise_floor", "calibrated", "effects", "rungs", "error", "unknown", "next_experiment"}
 
 
 @pytest.fixture(scope="module")
@@ -243,7 +243,7 @@ def test_configurations_are_refused_before_anything_is_computed(files, tmp_path)
 
 @pytest.mark.slow
 def test_the_command_keeps_the_answer_as_a_run(files, tmp_path):
-    command = [sys.executable, str(Path(job.__file__).parents[2] / "scripts" / "close_loop.py")]
+    command = [sys.executable, "-m", "swgsim", "close-loop"]
     choices = [f"recordings={files / 'logs'}", f"source={files / 'source.yaml'}", "holdout=day4"]
     choices += [
         "searched=[stribeck_friction]",

@@ -1,11 +1,7 @@
 """Neural classifiers learn a pattern, score chance on noise, and come back from their files."""
 
-import pickle
-from pathlib import Path
-
 import numpy as np
 import pytest
-import torch
 
 from learn.methods import neural
 from learn.methods.contract import Classifier
@@ -85,46 +81,6 @@ def test_a_seed_gives_the_same_file_and_another_seed_another(kind, tmp_path):
     one, two, other = ((tmp_path / name).read_bytes() for name in ("one", "two", "other"))
     assert one == two
     assert one != other
-
-
-class Harmful:
-    """Leaves a trace when it is unpickled."""
-
-    def __init__(self, trace: Path) -> None:
-        self.trace = trace
-
-    def __reduce__(self):
-        return Path.touch, (self.trace,)
-
-
-def test_files_that_would_run_code_or_hold_something_else_are_refused(tmp_path):
-    path, trace = tmp_path / "other.pt", tmp_path / "trace"
-    for content in ({"state": Harmful(trace)}, {"weights": torch.zeros(2)}, torch.zeros(3)):
-        torch.save(content, path)
-        with pytest.raises(ValueError, match=r"other\.pt is no neural classifier: give a file of"):
-            neural.load(path)
-        assert not trace.exists()
-    path.write_bytes(pickle.dumps(Harmful(trace)))
-    with pytest.raises(ValueError, match=r"other\.pt is no neural classifier"):
-        neural.load(path)
-    assert not trace.exists()
-    pickle.loads(path.read_bytes())
-    assert trace.exists()  # the file is harmful
-
-
-def test_changed_weights_and_those_of_another_network_are_refused(tmp_path):
-    X, y = task(30)
-    path = tmp_path / "model.pt"
-    model = classifier("convolutional", epochs=1).fit(X, y)
-    neural.save(model, path)
-    content, weights = path.read_bytes(), model.network_.head.weight.detach().numpy().tobytes()
-    assert content.count(weights) == 1
-    path.write_bytes(content.replace(weights, weights[::-1]))
-    with pytest.raises(ValueError, match=r"model\.pt is no neural classifier"):
-        neural.load(path)
-    neural.save(model.with_network(convolutional(CHANNELS, POINTS, COLUMNS, classes=5, width=8)), path)
-    with pytest.raises(ValueError, match=r"model\.pt is no neural classifier"):
-        neural.load(path)
 
 
 def test_a_copy_with_another_network_and_smaller_chunks_leave_the_first_as_it_is(monkeypatch):

@@ -91,7 +91,7 @@ def test_same_seed_same_folds_and_another_seed_others():
 
 @pytest.mark.parametrize("protocol", [RandomFolds, GroupedFolds, LeaveOneGearOut])
 def test_a_single_fold_is_refused(protocol):
-    with pytest.raises(ValueError, match="1 folds given, at least 2 are needed"):
+    with pytest.raises(ValueError, match="folds of the protocol is 1, must be an integer from 2"):
         protocol(folds=1)
 
 

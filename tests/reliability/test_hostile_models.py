@@ -1,7 +1,6 @@
 """Hostile models, lists of effects and truths: each is refused with its name (docs/reliability.md)."""
 
 import io
-import json
 import pickle
 import sys
 import zipfile
@@ -11,10 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 import recording_fixtures as sound
+import skops.io
 import torch
 
 from learn.evaluation import models
-from learn.methods import neural
 from swgsim.bench import truth
 from swgsim.effects import text
 from swgsim.recordings.files.source_map import read_map
@@ -48,13 +47,6 @@ def large_array(path: Path) -> None:
     rezipped(path, **{name: head.getvalue()})
 
 
-def foreign_type(path: Path) -> None:
-    with zipfile.ZipFile(path) as archive:
-        schema = json.loads(archive.read("schema.json"))
-    schema |= {"__class__": "system", "__module__": "os", "__loader__": "FunctionNode", "content": "os.system"}
-    rezipped(path, **{"schema.json": json.dumps(schema).encode()})
-
-
 def changed_network(change: Callable[[dict], object]) -> Callable[[Path], None]:
     def spoil(path: Path) -> None:
         content = torch.load(path, weights_only=True)
@@ -64,21 +56,29 @@ def changed_network(change: Callable[[dict], object]) -> Callable[[Path], None]:
     return spoil
 
 
+def reversed_weights(path: Path) -> None:
+    weights = torch.load(path, weights_only=True)["state"]["head.weight"].numpy().tobytes()
+    path.write_bytes(path.read_bytes().replace(weights, weights[::-1]))
+
+
 SPOILED_MODELS: dict[str, tuple[str, Callable[[Path], object]]] = {
     **{
         f"{kind}, {name}": (file, spoil)
         for kind, file in (("forest", "model.skops"), ("network", "model.pt"))
         for name, spoil in {
             "compressed": lambda path: rezipped(path, zipfile.ZIP_DEFLATED, bomb=bytes(10**7)),
-            "pickle": lambda path: path.write_bytes(pickle.dumps(print)),
             "truncated": lambda path: path.write_bytes(path.read_bytes()[:-30]),
         }.items()
     },
     "array larger than its part": ("model.skops", large_array),
-    "type of no classifier": ("model.skops", foreign_type),
     "network of 3.6 GB": (
         "model.pt", changed_network(lambda c: c["architecture"]["options"].update(neurons=10_000, layers=10)),
     ),
+    "no network": ("model.pt", lambda path: torch.save(torch.zeros(3), path)),
+    "weights of another network": (
+        "model.pt", changed_network(lambda c: c["state"].__setitem__("head.weight", torch.zeros(5, 2))),
+    ),
+    "weights in another order": ("model.pt", reversed_weights),
     "weight NaN": ("model.pt", changed_network(lambda c: c["state"]["head.weight"].__setitem__((0, 0), torch.nan))),
 }  # fmt: skip
 
@@ -100,8 +100,53 @@ def test_a_spoiled_model_is_refused(tmp_path: Path, sound_models: Path, name: st
     path.write_bytes((sound_models / file).read_bytes())
     spoil(path)
     refused(lambda: models.load(path, "cpu"), file.replace(".", r"\."))
-    if file == "model.pt":
-        refused(lambda: neural.load(path, "cpu"), r"model\.pt")
+
+
+class Harmful:
+    """Leaves a trace when it is read, from a pickle or, of a type that skops trusts, from its state."""
+
+    def __init__(self, trace: str) -> None:
+        self.trace = trace
+
+    def __reduce__(self) -> tuple:
+        return Path.touch, (Path(self.trace),)
+
+    def __getstate__(self) -> dict:
+        return {"trace": self.trace}
+
+    def __setstate__(self, state: dict) -> None:
+        Path(state["trace"]).touch()
+
+
+# How a harmful file is written, and how a careless program would read it.
+HARMFUL: dict[str, tuple[str, Callable[[Harmful, Path], object], Callable[[Path], object]]] = {
+    "pickle as forest": (
+        "model.skops",
+        lambda harm, path: path.write_bytes(pickle.dumps(harm)),
+        lambda path: pickle.loads(path.read_bytes()),
+    ),
+    "pickle as network": (
+        "model.pt",
+        lambda harm, path: torch.save({"state": harm}, path),
+        lambda path: torch.load(path, weights_only=False),
+    ),
+    "type of no classifier": (
+        "model.skops",
+        skops.io.dump,
+        lambda path: skops.io.load(path, trusted=skops.io.get_untrusted_types(file=path)),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", list(HARMFUL))
+def test_a_model_that_would_run_code_is_refused_and_does_not_run(tmp_path: Path, name: str) -> None:
+    file, save, believe = HARMFUL[name]
+    trace = tmp_path / "trace"
+    save(Harmful(str(trace)), tmp_path / file)
+    refused(lambda: models.load(tmp_path / file, "cpu"), file.replace(".", r"\."))
+    assert not trace.exists()
+    believe(tmp_path / file)
+    assert trace.exists()  # the file is harmful
 
 
 # Text.

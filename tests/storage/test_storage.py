@@ -7,8 +7,6 @@ import numpy as np
 import pytest
 import xarray
 from chain_fixtures import small_plan
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 
 from swgsim.dataset.simulate_cases import record
 from swgsim.storage import storage
@@ -54,27 +52,15 @@ def test_xarray_opens_it_with_units(path: Path) -> None:
         assert data.where(data.label_name == "healthy", drop=True).sizes["sample"] == 6
 
 
-def spoiled(path: Path, damaged: Path, where: int, bits: int) -> Path:
-    """A copy in which some bits of one byte are turned."""
-    content = bytearray(path.read_bytes())
-    content[where] ^= bits
-    damaged.write_bytes(content)
-    return damaged
-
-
-@given(position=st.floats(0, 1, exclude_max=True), bits=st.integers(1, 255))
-@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-def test_any_spoiled_byte_is_noticed(path: Path, tmp_path: Path, position: float, bits: int) -> None:
-    damaged = spoiled(path, tmp_path / "damaged.h5", int(position * path.stat().st_size), bits)
-    with pytest.raises(ValueError, match=r"damaged\.h5"):
-        storage.read(damaged)
-
-
-def test_every_byte_of_the_seal_counts(path: Path, tmp_path: Path) -> None:
-    for where in (*range(512), *range(512, 2048, 16)):
-        damaged = spoiled(path, tmp_path / "damaged.h5", where, 1 << where % 8)
+def test_any_changed_byte_is_noticed(path: Path, tmp_path: Path) -> None:
+    """Those of the seal, and some of the rest."""
+    content, damaged = path.read_bytes(), tmp_path / "damaged.h5"
+    for where in (*range(storage.SEAL_SIZE), *range(storage.SEAL_SIZE, len(content), len(content) // 100)):
+        changed = bytearray(content)
+        changed[where] ^= 1 << where % 8
+        damaged.write_bytes(changed)
         with pytest.raises(ValueError, match=r"damaged\.h5"):
-            storage.verify(damaged)
+            storage.read(damaged)
 
 
 @pytest.mark.parametrize("size", [0, 100, 512, 5000])
@@ -120,7 +106,7 @@ def test_facts_must_fit(recordings: LabelledSignals) -> None:
     with pytest.raises(ValueError, match="one row each"):
         LabelledSignals(recordings.signals[:3], recordings.table, recordings.rate)
     rows = {name: [0] for name in COLUMNS} | {"label": ["rusty"]}
-    with pytest.raises(ValueError, match="unknown class 'rusty'; choose from healthy"):
+    with pytest.raises(ValueError, match="unknown choice 'rusty' of label; choose from healthy"):
         facts(rows)
     del rows["seed"]
     with pytest.raises(ValueError, match="columns"):

@@ -28,7 +28,7 @@ pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[2]
 SECONDS_TO_START = 600  # on a machine that does much else; it takes ten on an idle one
-JOBS = 12
+JOBS = 8
 # A server that does not import everything anew for each of the jobs.
 PROCESSES = multiprocessing.get_context("forkserver")
 PROCESSES.set_forkserver_preload(["learn.tracking", "mlflow", "mlflow.store.artifact.mlflow_artifacts_repo", "pyarrow"])

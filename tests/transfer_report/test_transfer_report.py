@@ -8,6 +8,7 @@ import pytest
 import yaml
 from fabricated import recordings
 from fabricated_transfer import POOLS, ROOT, Keeper, configured, keep_required, predictions, write_data
+from prepared_store import prepared
 
 from learn.inputs.residuals import ERRORS
 from learn.jobs import settings
@@ -27,8 +28,8 @@ def data(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def store(tmp_path_factory):
-    """Folder of runs; a new store takes seconds."""
-    return tmp_path_factory.mktemp("runs")
+    """Folder of runs."""
+    return prepared(tmp_path_factory.mktemp("runs"))
 
 
 @pytest.mark.slow
@@ -98,7 +99,7 @@ def test_runs_of_the_present_code_replace_older_ones_of_their_study(store):
 
 
 def test_a_sweep_over_seeds_is_one_method_with_means_and_their_spread(tmp_path):
-    keep = Keeper(tmp_path, {"gears-bench": "a"})
+    keep = Keeper(prepared(tmp_path), {"gears-bench": "a"})
     facts = {"gear": 1, "label": "healthy", "variant": [0, 1]}
     for seed, error in ((0, 10.0), (1, 13.0), (2, 16.0)):
         table = pd.DataFrame({**facts, "shots": 5, "error": [error, error + 2], "unadapted": 20.0})

@@ -62,20 +62,21 @@ def made(folder: Path) -> bytes:
     return (folder / "small-clean.h5").read_bytes()
 
 
-@pytest.mark.parametrize(
-    ("command", "last"),
-    [
-        (["chaos.py", "--kills", "4"], "nothing lost, nothing differs"),
-        (["fuzz.py", "--seconds", "0", "--only", "one file"], "no harm"),
-    ],
-    ids=["chaos", "fuzz"],
-)
-def test_short_campaigns_find_nothing(command: list[str], last: str) -> None:
-    """In processes of their own, as they fork."""
-    command = [sys.executable, f"scripts/{command[0]}", *command[1:]]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=1200, check=False)
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert done.stdout.splitlines()[-1] == last
+# Kills.
+
+
+@pytest.mark.parametrize("finished", [0, 1, PARTS - 1])
+def test_a_killed_data_set_is_continued_to_the_same_bytes(finished: int, tmp_path: Path, undisturbed: bytes) -> None:
+    making = multiprocessing.get_context("fork").Process(target=generation.run, args=[tiny(tmp_path)])
+    making.start()
+    while len(list(tmp_path.glob(".small-clean.h5.parts/*.h5"))) < finished:
+        assert making.is_alive()
+        time.sleep(0.002)
+    making.kill()
+    making.join()
+    assert making.exitcode == -signal.SIGKILL
+    generation.run(tiny(tmp_path))
+    assert made(tmp_path) == undisturbed
 
 
 # Full disks and read-only folders.
@@ -202,8 +203,9 @@ def interrupt(command: list[str], sign: Path, pattern: str) -> None:
     """Interrupt a program with all its processes once such a file exists; it reports that in few lines."""
     # A shell ignores Ctrl-C in its background processes, such as these tests, and so would the program.
     with subprocess.Popen(
-        [sys.executable, *command], cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
-        start_new_session=True, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+        [sys.executable, "-m", "swgsim", *command],
+        cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     ) as running:  # fmt: skip
         while not list(sign.glob(pattern)):
             assert running.poll() is None, running.communicate()
@@ -217,7 +219,7 @@ def interrupt(command: list[str], sign: Path, pattern: str) -> None:
 
 def test_ctrl_c_of_generate_leaves_finished_parts_only(tmp_path: Path, undisturbed: bytes) -> None:
     words = ["grid=small", "mesh.sectors=60", f"data={tmp_path}", "workers=2"]
-    interrupt(["scripts/generate.py", *words], tmp_path, ".small-clean.h5.parts/*.h5")
+    interrupt(["generate", *words], tmp_path, ".small-clean.h5.parts/*.h5")
     (parts,) = tmp_path.iterdir()
     # A worker that was killed leaves its lock, which blocks nobody.
     left = {part for part in parts.iterdir() if part.suffix != ".lock"}
@@ -231,7 +233,7 @@ def test_ctrl_c_of_train_leaves_no_incomplete_result(tmp_path: Path) -> None:
     storage.write(tmp_path / "small-clean.h5", [data], len(data))
     words = ["-m", "grid=small", "classifier=rf", "features=selection_1,selection_3", f"data={tmp_path}",
              f"tracking.folder={prepared(tmp_path / 'runs')}", f"hydra.sweep.dir={tmp_path / 'outputs'}"]  # fmt: skip
-    interrupt(["scripts/train.py", *words, "workers=2"], tmp_path, "runs/artifacts/*/artifacts/*")
+    interrupt(["train", *words, "workers=2"], tmp_path, "runs/artifacts/*/artifacts/*")
     store = tracking.local_store(str(tmp_path / "runs"))
     jobs = store.client.search_runs([store.experiment_id], "tags.kind = 'job'")
     assert jobs
