@@ -11,6 +11,7 @@ from swgsim.drafting.named import Named
 from swgsim.drafting.seen_column import SeenColumn
 from swgsim.drafting.stamps import form_of
 from swgsim.tables.clock import STAMP, read_clock
+from swgsim.tables.clock_jump import bits_of
 from swgsim.tables.units import FACTORS
 
 # Stamps that are looked at; all must have one form.
@@ -51,25 +52,28 @@ def drafted_clock(named: Sequence[Named]) -> ClockDraft | None:
     columns = [each.column for each in named]
     of_time = [each.column for each in named if each.meaning.quantity == "time"]
     numbers = [each for each in of_time if not each.is_text and _forward(each)]
-    others = [each for each in columns if each not in of_time and not each.is_text and _even(each) < EVEN]
+    others = [each for each in columns if each not in of_time and not each.is_text and evenness(each) < EVEN]
     pair = _pair(named)
     if pair:
         return _draft(pair, ["s", "ns"], "names: seconds and nanoseconds")
     if numbers:
-        return _of_numbers(min(numbers, key=_even), "name, increases")
+        return _of_numbers(min(numbers, key=evenness), "name, increases")
     if stamps := _stamps(columns):
         forms = [form for _, form in stamps]
         kind = "time stamps by ISO 8601" if forms == [STAMP] else f"time stamps {' '.join(forms)}"
         return _draft([column for column, _ in stamps], forms, kind)
     if others:
-        return _of_numbers(min(others, key=_even), "increases in even steps")
+        return _of_numbers(min(others, key=evenness), "increases in even steps")
     return None
 
 
 def _draft(columns: Sequence[SeenColumn], units: Sequence[str], why: str, question: str = "") -> ClockDraft:
+    bits = _bits(columns[0]) if len(columns) == 1 and not columns[0].is_text else 0
+    why += f"; begins anew after {bits} bit" if bits else ""
     file = {"file": columns[0].file} if columns[0].file else {}
     if len(columns) == 1:
-        entry: dict[str, Any] = {"column": columns[0].column, "unit": units[0], **file}
+        counter = {"bits": bits} if bits else {}
+        entry: dict[str, Any] = {"column": columns[0].column, "unit": units[0], **counter, **file}
     else:
         entry = {"columns": [each.column for each in columns], "units": list(units), **file}
     time = read_clock(entry).seconds({each.column: each.values for each in columns}, "the file")
@@ -111,13 +115,19 @@ def _stamps(columns: Sequence[SeenColumn]) -> list[tuple[SeenColumn, str]]:
     return [*days[:1], *clocks[:1]] if clocks else []
 
 
+def _bits(column: SeenColumn) -> int:
+    """Bits of a counter that is full within the file; 0 for a clock that goes on."""
+    back = {bits_of(-step) for step in np.diff(column.values.astype(float)) if step < 0}
+    return back.pop() if len(back) == 1 else 0
+
+
 def _forward(column: SeenColumn) -> bool:
     """Whether a column increases."""
     steps = np.diff(column.values[np.isfinite(column.values.astype(float))])
     return len(steps) > 1 and bool(np.mean(steps > 0) >= FORWARD)
 
 
-def _even(column: SeenColumn) -> float:
+def evenness(column: SeenColumn) -> float:
     """Scatter of the steps of an increasing column, as a share of a step; infinite for others."""
     if not _forward(column):
         return np.inf

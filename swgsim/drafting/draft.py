@@ -19,6 +19,7 @@ from swgsim.drafting.map_draft import MapDraft
 from swgsim.drafting.motion import unwrapped
 from swgsim.drafting.named import Named
 from swgsim.drafting.order_2 import has_order_2
+from swgsim.drafting.own_times import own_times
 from swgsim.drafting.seen import Seen
 from swgsim.drafting.taken import Taken, travels
 from swgsim.drafting.words import meaning_of
@@ -39,13 +40,15 @@ TURNED = 6 * np.pi
 OF_JOINTS = ("robot", "gear_ratio", "torque_constant", "rated")
 
 
-def draft_map(path: str | Path, kind: str | None = None, known: Mapping[str, Any] | None = None) -> MapDraft:
+def draft_map(
+    path: str | Path | Sequence[str | Path], kind: str | None = None, known: Mapping[str, Any] | None = None
+) -> MapDraft:
     """Draft a column map or a source by looking at files.
 
     Parameters
     ----------
-    path : str or Path
-        A file, or a folder.
+    path : str, Path or sequence of them
+        A folder, a file, or several files.
     kind : {"gauges", "joints"}, optional
         Recordings of a test bench with strain gauges, or logs of a robot; by default it is guessed.
     known : mapping, optional
@@ -66,7 +69,8 @@ def draft_map(path: str | Path, kind: str | None = None, known: Mapping[str, Any
     require_known("known", given, [*OF_GAUGES, *OF_JOINTS])
     if kind is not None:
         require_known("the kind", [kind], [GAUGES, JOINTS])
-    looked = look_at(Path(path))
+    paths = [Path(each) for each in ([path] if isinstance(path, str | Path) else path)]
+    looked = look_at(paths)
     kind = kind or _kind(next(iter(looked.runs.values())), given)
     names = _names(looked, kind)
     seen = next(iter(looked.runs.values()))
@@ -77,23 +81,25 @@ def draft_map(path: str | Path, kind: str | None = None, known: Mapping[str, Any
         clock, taken = _understood(seen, kind, given | _facts(names, looked, seen))
     lines = gauge_lines if kind == GAUGES else joint_lines
     text = "\n".join(lines(looked, seen, clock, taken, names, given)) + "\n"
-    findings = read_back(text, Path(path), kind)
-    return MapDraft(kind, Path(path), text, tuple(taken), clock, findings)
+    own = looked.folder if kind == JOINTS or len(paths) > 1 else paths[0]
+    findings, readable = read_back(text, own, kind)
+    return MapDraft(kind, own, text, tuple(taken), clock, findings, readable)
 
 
-def read_back(text: str, path: Path, kind: str) -> str:
-    """What the reading says of a draft: its findings, or why it refuses."""
+def read_back(text: str, path: Path, kind: str) -> tuple[str, bool]:
+    """What the reading says of a draft, its findings or why it refuses, and whether it read a usable recording."""
     with TemporaryDirectory() as folder:
         file = Path(folder) / "draft.yaml"
         file.write_text(text, encoding="utf-8")
         try:
             if kind == GAUGES:
                 found = inspect_recordings(path, file)
-                return "\n".join([f"{len(found)} recordings are read", summary(found.defects)]).strip()
-            read = read_joints(path.parent if path.is_file() else path, file)
-            return "\n".join([repr(read), read.findings()]).strip()
+                text = f"{len(found) or 'no'} recordings are read"
+                return "\n".join([text, summary(found.defects)]).strip(), len(found) > 0
+            read = read_joints(path, file)
+            return "\n".join([repr(read), read.findings()]).strip(), len(read.recordings) > 0
         except ValueError as error:
-            return str(error).replace(f"{file}: ", "").replace(str(file), "the draft")
+            return str(error).replace(f"{file}: ", "").replace(str(file), "the draft"), False
 
 
 def _kind(seen: Seen, known: Mapping[str, Any]) -> str:
@@ -115,7 +121,10 @@ def _kind(seen: Seen, known: Mapping[str, Any]) -> str:
 def _names(looked: LookedAt, kind: str) -> FileNames:
     if looked.by_signal:
         return signals_path(looked.names, kind)
-    return fact_names(looked.names) if kind == GAUGES else run_names(looked.names)
+    if kind == JOINTS:
+        return run_names(looked.names)
+    # A path would also mean other files of the folder.
+    return FileNames("", ()) if looked.named and len(looked.names) > 1 else fact_names(looked.names)
 
 
 def _facts(names: FileNames, looked: LookedAt, seen: Seen) -> dict[str, str]:
@@ -126,14 +135,15 @@ def _facts(names: FileNames, looked: LookedAt, seen: Seen) -> dict[str, str]:
 
 def _understood(seen: Seen, kind: str, known: Mapping[str, Any]) -> tuple[ClockDraft | None, list[Taken]]:
     """The time, and what each other column is taken for."""
-    named = [Named(each, meaning_of(each)) for each in seen.columns]
-    clock = drafted_clock(named)
+    clock = drafted_clock([Named(each, meaning_of(each)) for each in seen.columns])
+    columns, others = own_times(seen.columns, clock) if clock else (seen.columns, [])
+    named = [Named(each, meaning_of(each)) for each in columns]
     channels = gauge_channels if kind == GAUGES else joint_signals
     if clock is None:
         return None, channels(named, None, known)
     of_time = [Taken(each, "t", clock.entry, clock.why, clock.question) for each in clock.columns]
-    rest = [each for each in named if each.column not in clock.columns]
-    return clock, [*of_time, *channels(rest, clock.time, known)]
+    of_time += [Taken(each, "t", why="of the columns after it", active=False) for each in others]
+    return clock, [*of_time, *channels(named, clock.time, known)]
 
 
 def _most_moving(looked: LookedAt, taken: Sequence[Taken]) -> Seen:

@@ -1,5 +1,6 @@
 """The files of a folder that one map reads together, by what they show."""
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -7,8 +8,9 @@ from pathlib import Path
 from swgsim.drafting.file_names import signals_of
 from swgsim.drafting.name_patterns import by_pattern
 from swgsim.drafting.seen import Seen, joined, see
+from swgsim.drafting.text_layout import ELSE
 from swgsim.recordings.files.manifest import NAME
-from swgsim.tables.endings import files_of, is_data
+from swgsim.tables.endings import ENDINGS, files_of, is_data
 from swgsim.tables.file_defect import FileDefect
 
 # Files that are looked at; further ones are taken to be like these.
@@ -28,6 +30,8 @@ class LookedAt:
         First file of a run to what it shows; all have the same columns.
     names : tuple of str
         All files that are read, also those that were not looked at.
+    named : bool
+        Whether the user named the files; else they are all files of the folder.
     by_signal : bool
         Whether each signal has a file of its own.
     others : mapping of str to str
@@ -37,28 +41,29 @@ class LookedAt:
     folder: Path
     runs: Mapping[str, Seen]
     names: tuple[str, ...]
+    named: bool
     by_signal: bool
     others: Mapping[str, str]
 
 
-def look_at(path: Path) -> LookedAt:
-    """Look at a file, or at the files of a folder.
+def look_at(paths: Sequence[Path]) -> LookedAt:
+    """Look at some files, or at the files of a folder.
 
     Raises
     ------
     FileDefect
         If there is no table of numbers, or a manifest, which needs no map.
     """
-    folder = path.parent if path.is_file() else path
-    if not folder.is_dir():
-        raise FileDefect(str(path), "nothing", "a file or a folder with recordings")
-    names = [path.name] if path.is_file() else files_of(folder)
+    path, named = paths[0], len(paths) > 1 or not paths[0].is_dir()
+    folder, names = _named(paths) if named else (path, files_of(path))
     if NAME in names:
         raise FileDefect(str(path), NAME, "files of others: recordings with a manifest need no map")
-    chosen = [name for name in names if is_data(name) or path.is_file()]
+    chosen = [name for name in names if is_data(name) or named]
     chosen = chosen or [name for name in names if name.lower().endswith(NOTES)]
     if not chosen:
-        raise FileDefect(str(path), f"the files {', '.join(names[:10]) or 'none'}", "files with tables of numbers")
+        endings = ", ".join(each for each in ENDINGS if not each.endswith(".gz"))
+        found = f"the files {', '.join(names[:10]) or 'none'}"
+        raise FileDefect(str(path), found, f"files that end in {endings}, .txt or .log; {ELSE}")
     by_signal = signals_of(chosen)
     seen: dict[str, Seen] = {}
     others: dict[str, str] = {}
@@ -75,7 +80,17 @@ def look_at(path: Path) -> LookedAt:
     alike = _alike(seen)
     others |= {name: "other columns" for name in seen if name not in alike}
     kept = tuple(name for files in runs for _, name in files if files[0][1] not in others)
-    return LookedAt(folder, {name: seen[name] for name in alike}, kept, bool(by_signal), others)
+    return LookedAt(folder, {name: seen[name] for name in alike}, kept, named, bool(by_signal), others)
+
+
+def _named(paths: Sequence[Path]) -> tuple[Path, list[str]]:
+    """The folder that some files have in common, and their paths in it."""
+    for each in paths:
+        if not each.is_file():
+            found = "a folder among several names" if each.is_dir() else "nothing"
+            raise FileDefect(str(each), found, "files, or one folder with recordings")
+    folder = Path(os.path.commonpath([each.parent for each in paths]))
+    return folder, [each.relative_to(folder).as_posix() for each in paths]
 
 
 def _alike(seen: Mapping[str, Seen]) -> Sequence[str]:

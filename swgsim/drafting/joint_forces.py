@@ -10,6 +10,8 @@ from swgsim.tables.units import FACTORS, SHARES
 
 # Objects of drives (CiA 402) that are in per mille of a rated value.
 OF_RATED = frozenset({"6077h", "6078h"})
+# In ROS the torque by the motor's current, or by the controller.
+EFFORT = frozenset({"effort", "efforts"})
 
 
 def forces(
@@ -23,7 +25,9 @@ def forces(
 
     yield from (("current", each) for each in own(currents)[:1])
     measured = [each for each in own(torques) if not each.meaning.says(MODEL) and not each.at_motor]
-    yield from (("T_sensor", each) for each in sorted(measured, key=lambda each: not each.meaning.says(OUTPUT))[:1])
+    sensed = [each for each in measured if not each.meaning.says(EFFORT)]
+    yield from (("T_sensor", each) for each in sorted(sensed, key=lambda each: not each.meaning.says(OUTPUT))[:1])
+    yield from (("T_motor", each) for each in [each for each in measured if each.meaning.says(EFFORT)][:1])
     yield from (("T_rigid", each) for each in [each for each in own(torques) if each.meaning.says(MODEL)][:1])
 
 
@@ -39,6 +43,6 @@ def force(signal: str, each: Named, known: Mapping[str, Any]) -> Taken:
     elif unit not in FACTORS[target]:
         ask = "" if not unit else f"the file says {unit}"
         unit, ask = target, ask or f"no unit is said: {target} is assumed"
-    if signal == "T_sensor" and each.meaning.says({"effort", "efforts"}):
-        ask = "effort: a measured torque, or one by the current? then it is no T_sensor"
+    if signal == "T_motor":
+        ask = ask if unit in SHARES else "effort: torque of the motor, with friction; T_sensor if a sensor measured it"
     return Taken(column, signal, place(column) | {"unit": unit} | more, each.meaning.why, ask, "", active)

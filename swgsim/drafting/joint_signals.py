@@ -9,14 +9,17 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.drafting.joint_forces import force, forces
-from swgsim.drafting.motion import EXPLAINED, RATIOS, slope_of, wrap_of
-from swgsim.drafting.motion_units import motion_units
+from swgsim.drafting.motion import EXPLAINED, RATIOS, slope_of, turns_of, wrap_of
+from swgsim.drafting.motion_units import MOST_TURNED, motion_units
 from swgsim.drafting.named import Named
 from swgsim.drafting.seen_column import SeenColumn
 from swgsim.drafting.taken import Taken, joined, place
 from swgsim.drafting.vocabulary import MODEL
 from swgsim.drafting.words import Meaning
-from swgsim.tables.units import FACTORS
+from swgsim.tables.units import FACTORS, SHARES
+
+# Turns from end to end beyond which an angle is that of a motor.
+MOST_TURNS = MOST_TURNED / np.pi
 
 
 def joint_signals(
@@ -59,9 +62,8 @@ def joint_signals(
         taken += _moving(name, angle, speed, motor, time, known)
         for signal in forces(angle, kinds["current"], torques, alone):
             taken.append(replace(force(*signal, known), joint=name))
-    if unnamed and pairs:
-        left = [each for each in unnamed if each.column not in [one.column for one in taken]]
-        taken += _suggested(left, list(joints))
+    left = [each for each in unnamed if each.column not in [one.column for one in taken]]
+    taken += _suggested([each for each in left if pairs or each.column.unit in SHARES], list(joints), known)
     used = {id(each.column) for each in taken}
     return taken + [Taken(each.column, "", why=_why_not(each)) for each in named if id(each.column) not in used]
 
@@ -120,8 +122,11 @@ def _moving(
 ) -> Iterator[Taken]:  # fmt: skip
     """Angle and velocity of one joint."""
     units = motion_units(angle.column, speed.column if speed else None, time)
-    drive = angle.at_motor or units.ratio < 1 / RATIOS[0]
-    of_motor = speed is not None and (speed.at_motor or units.ratio > RATIOS[0])
+    turns = turns_of(angle.column.values, units.angle)
+    drive = angle.at_motor or units.ratio < 1 / RATIOS[0] or turns > MOST_TURNS
+    # The rated value of a share is that of the shaft of the angle, from which it follows.
+    named = speed is not None and speed.at_motor and speed.column.unit not in SHARES
+    of_motor = named or units.ratio > RATIOS[0]
     if abs(units.ratio - 1) < 0.5 and speed is not None:
         # One turn of the angle is one of the velocity: both are on one side.
         of_motor = drive = drive or of_motor
@@ -132,7 +137,8 @@ def _moving(
         found = ratio_of_angles(motor.column, angle.column)
         ratio = round(found) if RATIOS[0] <= found <= RATIOS[1] else None
     if (drive or of_motor) and ratio is None:
-        ratio, ask = 1, "gear ratio: the angle is that of the motor"
+        far = f", as it turns {turns:.3g} times; if it is not, remove each 'at: motor'" if turns > MOST_TURNS else ""
+        ratio, ask = 1, f"gear ratio: the angle is that of the motor{far}"
     side = {"at": "motor"}
     yield Taken(
         angle.column, "q", place(angle.column) | units.angle | (side if drive else {}),
@@ -157,11 +163,13 @@ def ratio_of_angles(motor: SeenColumn, output: SeenColumn) -> float:
     return float(abs(np.polyfit(slow, fast, 1)[0])) if np.ptp(slow) > 0 else 0.0
 
 
-def _suggested(columns: Sequence[Named], joints: Sequence[str]) -> Iterator[Taken]:
+def _suggested(columns: Sequence[Named], joints: Sequence[str], known: Mapping[str, Any]) -> Iterator[Taken]:
     """Lines for columns without names that come one for each joint, which the user may turn into signals."""
-    for number, joint in enumerate(joints if len(columns) >= len(joints) else []):
-        column = columns[number].column
-        yield Taken(column, "current", place(column) | {"unit": "A"}, "", "current, T_sensor or T_rigid?", joint, False)
+    for each, joint in zip(columns, joints if len(columns) >= len(joints) else [], strict=False):
+        found = force("current", each, known)
+        rated = "its rated value" if found.entry["unit"] in SHARES else ""
+        ask = joined("current, T_motor, T_sensor or T_rigid?", rated)
+        yield replace(found, question=ask, joint=joint, active=False)
 
 
 def _why_not(each: Named) -> str:

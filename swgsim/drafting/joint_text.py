@@ -11,8 +11,9 @@ from swgsim.drafting.folder import LookedAt
 from swgsim.drafting.seen import Seen
 from swgsim.drafting.taken import Taken, travels
 from swgsim.drafting.yaml_text import ASK, clock_lines, layout_lines, left_lines, line
+from swgsim.joint.recording import PREDICTED
 
-ORDER = ("q", "omega", "T_sensor", "current", "T_rigid")
+ORDER = ("q", "omega", "T_sensor", "T_motor", "current", "T_rigid")
 # A joint stands if it moves by less than this share of its travel in the file that was drafted.
 STANDS = 1e-3
 
@@ -31,17 +32,19 @@ def joint_lines(
             for name in looked.names
         }
     )
-    one = looked.names[0] if len(looked.names) == 1 else ""
-    yield line("files", [one] if one else [f"*{ending}" for ending in endings])
+    named = looked.named or len(looked.names) == 1
+    yield line("files", list(looked.names) if named else [f"*{ending}" for ending in endings])
     standing = [name for name, run in looked.runs.items() if _stands(run, seen, taken)]
     if standing:
         yield line("rest", standing, "the angles stand")
-    if looked.others and not one:
+    if looked.others and not named:
         yield line("leave_out", list(looked.others), "see below")
     if names.path:
         yield line(
             "path", names.path, "", "" if looked.by_signal else "the session: between sessions something was dismounted"
         )
+    elif len(looked.names) > 1:
+        yield f"{ASK} each file is a session of its own; 'path' says by a group which were recorded without dismounting"
     yield from clock_lines("time", clock)
     if clock is None:
         if any(each.quantity == "omega" and each.active for each in taken):
@@ -53,10 +56,14 @@ def joint_lines(
     yield ""
     yield "joints:" if any(each.joint for each in taken) else "joints: {}"
     asked: set[tuple[str, str]] = set()
-    for joint in dict.fromkeys(each.joint for each in taken if each.joint):
+    joints = dict.fromkeys(each.joint for each in taken if each.joint)
+    for joint in joints:
         own = [_once(each, asked) for each in taken if each.joint == joint]
         yield from _joint(joint, own, known)
         asked |= {(each.quantity, each.question) for each in own}
+    loaded = {each.joint for each in taken if each.active and each.quantity in PREDICTED}
+    if missing := [joint for joint in joints if joint not in loaded]:
+        yield f"{ASK} nothing to explain in {', '.join(missing)}: map current, T_motor or T_sensor"
     yield from left_lines(taken, seen, looked.others)
 
 

@@ -32,6 +32,8 @@ class MapDraft:
     clock : ClockDraft or None
     findings : str
         What the reading says of the draft.
+    readable : bool
+        Whether the draft reads a usable recording as it is.
     """
 
     kind: str
@@ -40,6 +42,7 @@ class MapDraft:
     taken: tuple[Taken, ...]
     clock: ClockDraft | None
     findings: str
+    readable: bool
 
     @property
     def questions(self) -> tuple[str, ...]:

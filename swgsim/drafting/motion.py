@@ -1,6 +1,7 @@
 """Angles and velocities by their numbers: jumps of a wrapped angle, and its slope, which is the velocity."""
 
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 from jaxtyping import Float, Shaped
@@ -68,6 +69,12 @@ def unwrapped(values: Shaped[np.ndarray, " time"]) -> Float[np.ndarray, " time"]
     """An angle without jumps, lost readings filled in."""
     angle, wrap = filled(values), wrap_of(values)
     return np.unwrap(angle, period=wrap.revolution) if wrap else angle
+
+
+def turns_of(values: Shaped[np.ndarray, " time"], entry: Mapping[str, Any]) -> float:
+    """Turns of an angle from end to end, by its unit in a map."""
+    per_turn = entry.get("per_revolution") or 2 * np.pi / FACTORS["rad"][entry["unit"]]
+    return float(np.ptp(unwrapped(values))) / per_turn
 
 
 def filled(values: Shaped[np.ndarray, " time"]) -> Float[np.ndarray, " time"]:

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.drafting.motion import ANGLE_UNITS, RATIOS, SPEED_UNITS, expected, near, slope_of, wrap_of
+from swgsim.drafting.motion import ANGLE_UNITS, RATIOS, SPEED_UNITS, Slope, expected, near, slope_of, wrap_of
 from swgsim.drafting.seen_column import SeenColumn
-from swgsim.tables.units import FACTORS
+from swgsim.tables.units import FACTORS, SHARES
 
 # An angle in whole numbers with a larger range counts; 720 degrees may be written without decimals.
 COUNTED = 1000.0
@@ -61,6 +61,9 @@ def motion_units(
     likely : sequence of str
         Units of an angle that says none, the most likely first.
     """
+    if speed is not None and speed.unit in SHARES:
+        alone = motion_units(angle, None, time, likely)
+        return _of_rated(alone, speed.unit, slope_of(angle.values, speed.values, time), time is not None)
     wrap = wrap_of(angle.values)
     wraps = {"wraps": True} if wrap else {}
     said = angle.unit if angle.unit in (*FACTORS["rad"], "counts") else ""
@@ -102,6 +105,15 @@ def motion_units(
     return replace(draft, why=share, of_speed=contradiction)
 
 
+def _of_rated(angle: MotionUnits, unit: str, slope: Slope, timed: bool) -> MotionUnits:
+    """A velocity in shares of a rated one, which the slope of the angle tells."""
+    fits = timed and slope.share > FITS and angle.angle["unit"] != "counts"
+    rated = f"{abs(slope.factor) / SHARES[unit]:.4g} {angle.angle['unit']}/s" if fits else "1 rad/s"
+    speed = {"unit": unit, "rated": rated} | ({"inverted": True} if slope.factor < 0 else {})
+    of_speed = f"its rated value: {rated} by the slope of the angle" if fits else "its rated value"
+    return replace(angle, speed=speed, why=f"slope explains {slope.share:.1%}", of_speed=of_speed, fits=fits)
+
+
 def _likely(angle: SeenColumn) -> list[str]:
     """Units of an angle that says none, by its range."""
     units = list(ANGLE_UNITS)
@@ -117,11 +129,10 @@ def _counts(angle: SeenColumn) -> bool:
 def _counted(factor: float, rates: Sequence[str], revolution: float, wraps: dict[str, Any]) -> MotionUnits:
     """An angle in counts of an encoder, whose counts of one revolution follow from a velocity in other units."""
     found = abs(factor)
-    if near(found, 1.0):
-        speed: dict[str, Any] = {"unit": "counts/s"}
-    else:
-        speed = {"unit": next((rate for rate in rates if rate != "counts/s"), "rpm")}
-    per = revolution or (2 * pi * found / FACTORS["rad/s"][speed["unit"]] if speed["unit"] != "counts/s" else 0.0)
+    turns = {rate: 2 * pi * found / FACTORS["rad/s"][rate] for rate in rates if rate != "counts/s"} or {"rpm": 0.0}
+    whole = [rate for rate, per in turns.items() if per > 1 and near(per, revolution or 2 ** round(log2(per)))]
+    speed: dict[str, Any] = {"unit": "counts/s" if near(found, 1.0) else [*whole, *turns][0]}
+    per = revolution or turns.get(speed["unit"], 0.0)
     lines = 2 ** round(log2(per)) if per > 1 else 0
     sure = per > 1 and near(per, lines)
     counts = lines if sure else float(f"{per:.4g}") if per > 1 else 4096

@@ -8,15 +8,18 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from swgsim.drafting.binary_columns import SHEET, binary_columns, sheet_lines
+from swgsim.drafting.binary_columns import MOST_SIGNALS, SHEET, binary_columns, sheet_lines
+from swgsim.drafting.first_recording import first_of_rows, first_table
 from swgsim.drafting.interleaved import interleaved_in
 from swgsim.drafting.seen_column import MOST_ROWS, SeenColumn, within
 from swgsim.drafting.text_layout import TextLayout, layout_of, text_layout
 from swgsim.drafting.units import split_unit, unit_in
 from swgsim.tables import binary
+from swgsim.tables.cell_lists import lists_of
 from swgsim.tables.file_defect import FileDefect
 from swgsim.tables.formats.spreadsheet import is_spreadsheet
 from swgsim.tables.layout import LOST_READINGS, Layout
+from swgsim.tables.measured_column import EACH
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,13 +50,24 @@ class Seen:
 
 
 def see(path: Path, name: str) -> Seen:
-    """Look at a file.
+    """Look at a file, of several recordings at the first.
 
     Raises
     ------
     FileDefect
         If it holds no table of numbers.
     """
+    seen = _see(path, name)
+    columns, by = first_of_rows(seen.columns)
+    return (
+        seen
+        if by is None
+        else replace(seen, columns=columns, layout=replace(seen.layout or Layout(), rows=((by, EACH),)))
+    )
+
+
+def _see(path: Path, name: str) -> Seen:
+    """All rows of a file."""
     if binary.is_binary(path):
         columns, others = binary_columns(path, name)
         return Seen(columns, others)
@@ -67,7 +81,10 @@ def see(path: Path, name: str) -> Seen:
 
 def _text(found: TextLayout, source: Path | StringIO, layout: Layout) -> Seen:
     """The columns of a table of text."""
-    columns = tuple(_text_columns(source, found))
+    table = _table(source, found)
+    if end := first_table(table, found.names, found.layout):
+        table, layout = table[:end], replace(layout, sheet=EACH)
+    columns = tuple(_text_columns(table, found))
     numbers = tuple(each for each in columns if not each.is_empty)
     others = {str(each.column): "empty" for each in columns if each.is_empty}
     return Seen(numbers, others, layout)
@@ -105,7 +122,8 @@ def _in_turn(column: SeenColumn, turns: int) -> Iterator[SeenColumn]:
         )
 
 
-def _text_columns(source: Path | StringIO, found: TextLayout) -> Iterator[SeenColumn]:
+def _table(source: Path | StringIO, found: TextLayout) -> pd.DataFrame:
+    """The cells of a table of text."""
     layout = found.layout
     table = pd.read_csv(
         source,
@@ -124,16 +142,34 @@ def _text_columns(source: Path | StringIO, found: TextLayout) -> Iterator[SeenCo
         low_memory=False,
     )
     # Empty rows at the end are none.
-    table = table[: int(np.flatnonzero(table.notna().any(axis=1)).max(initial=-1)) + 1]
+    return table[: int(np.flatnonzero(table.notna().any(axis=1)).max(initial=-1)) + 1]
+
+
+def _text_columns(table: pd.DataFrame, found: TextLayout) -> Iterator[SeenColumn]:
+    """The columns of a table, and those of the lists in its cells."""
     for place in range(found.width):
         name = found.names[place] if place < len(found.names) else ""
         bare, unit = split_unit(name)
         values = table[place]
         if values.dtype.kind not in "iuf":
-            numbers = pd.to_numeric(values.astype(str).str.replace(layout.decimal, ".", regex=False), errors="coerce")
+            decimal = found.layout.decimal
+            numbers = pd.to_numeric(values.astype(str).str.replace(decimal, ".", regex=False), errors="coerce")
             # A column is one of numbers if most of its cells are.
             values = numbers if 2 * numbers.notna().sum() > values.notna().sum() else values.astype(str)
-        readings = within(values.to_numpy())
-        lost = int(pd.isna(readings).sum())
         column = name if name and found.names.count(name) == 1 else place + 1
-        yield SeenColumn(column, bare, unit or unit_in(found.units[place]), readings, "", lost)
+        unit = unit or unit_in(found.units[place])
+        signals = _of_lists(values) if column == name else []
+        for number, signal in enumerate(signals, 1):
+            yield SeenColumn(f"{name}[{number}]", f"{bare}[{number}]", unit, signal, "", int(np.isnan(signal).sum()))
+        if not signals:
+            readings = within(values.to_numpy())
+            yield SeenColumn(column, bare, unit, readings, "", int(pd.isna(readings).sum()))
+
+
+def _of_lists(cells: pd.Series) -> list[np.ndarray]:
+    """The numbers at each place of the lists in some cells; none if the cells are no lists of numbers."""
+    lists = lists_of(cells) if cells.dtype.kind not in "iuf" else pd.Series(dtype=object)
+    if lists.isna().mean() > 0.5 or not len(lists) or not 0 < (width := int(lists.str.len().min())) <= MOST_SIGNALS:
+        return []
+    numbers = [pd.to_numeric(lists.str[place], errors="coerce").to_numpy(dtype=float) for place in range(width)]
+    return [] if all(np.isnan(values).all() for values in numbers) else numbers

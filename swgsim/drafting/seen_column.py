@@ -32,6 +32,8 @@ class SeenColumn:
         Its signal where each signal has a file of its own.
     lost : int
         Lost readings.
+    time : str, int or None
+        Column with times of its own; then the values are those at the times of all.
     """
 
     column: str | int
@@ -40,6 +42,7 @@ class SeenColumn:
     values: Shaped[np.ndarray, " time"]
     file: str = ""
     lost: int = 0
+    time: str | int | None = None
 
     @property
     def is_text(self) -> bool:

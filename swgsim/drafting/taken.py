@@ -47,7 +47,8 @@ def joined(*reasons: str) -> str:
 
 def place(column: SeenColumn) -> dict[str, Any]:
     """Where a map finds a column."""
-    return {"column": column.column} | ({"file": column.file} if column.file else {})
+    time = {"time": column.time} if column.time is not None else {}
+    return {"column": column.column} | ({"file": column.file} if column.file else {}) | time
 
 
 def travels(run: Seen, taken: Sequence[Taken]) -> list[float]:

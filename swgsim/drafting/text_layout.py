@@ -16,6 +16,8 @@ from typing import NamedTuple
 
 from swgsim.drafting.stamps import is_stamp
 from swgsim.drafting.units import is_unit
+from swgsim.drafting.vocabulary import WORDS
+from swgsim.drafting.words import words_of
 from swgsim.tables.file_defect import FileDefect
 from swgsim.tables.layout import LOST_READINGS, Layout
 from swgsim.tables.limits import FEWEST_ROWS
@@ -28,6 +30,7 @@ MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codec
 # In the order in which they win if they fit equally well: a blank splits also what a tab separates.
 SEPARATORS = ("\t", ";", ",", "|", " ")
 COMMENTS = "#%"
+ELSE = "docs/formats.md has the formats that are read, maps written by hand, and how other files are converted"
 DIGIT = re.compile(r"\d")
 
 
@@ -100,9 +103,9 @@ def layout_of(lines: Sequence[str], choices: Sequence[tuple[str, str]], encoding
     (separator, decimal), fit = max(fits.items(), key=lambda item: item[1].rank)
     if fit.samples < FEWEST_ROWS:
         found = f"{fit.samples} rows of numbers in the first {len(lines)} rows"
-        raise FileDefect(name, found, "a table of numbers; if it has one, write the map by hand (docs/formats.md)")
-    rows, width, first = fit.rows, fit.width, fit.first
-    names_at, units_at = _header(rows[:first], width)
+        raise FileDefect(name, found, f"a table of numbers; {ELSE}")
+    rows, width, first = [*map(_unlabelled, fit.rows[: fit.first])], fit.width, fit.first
+    names_at, units_at = _header(rows, width)
     comment = next((line.lstrip()[0] for line in lines if line.lstrip()[:1] and line.lstrip()[0] in COMMENTS), "")
     names = tuple(rows[names_at][:width]) if names_at is not None else ()
     plain = _plain_header(lines, comment)
@@ -183,7 +186,20 @@ def _header(above: Sequence[Sequence[str]], width: int) -> tuple[int | None, int
     ]
     if units is not None and not any(place < units for place in names):
         units = None
-    return (max(names, key=lambda place: (len(set(above[place])), place)) if names else None), units
+    # The last row names most; of rows with labels, the first has the names that people gave.
+    order = {place: (len(set(above[place])), place if above[place][0] else -place) for place in names}
+    return (max(names, key=order.__getitem__) if names else None), units
+
+
+def _unlabelled(row: list[str]) -> list[str]:
+    """A row that says what it is before each of its cells, as scopes write it, without these labels.
+
+    >>> _unlabelled(["Unit", "rad", "Unit", "A"])
+    ['', 'rad', '', 'A']
+    """
+    label = row[0] if len(row) > 2 and len(row) % 2 == 0 and len(set(row[::2])) == 1 else ""
+    says_time = set(words_of(label)[0]) & WORDS["time"]
+    return row if not label or is_unit(label) or says_time else [c * (n % 2) for n, c in enumerate(row)]
 
 
 def _filled(row: Sequence[str]) -> int:

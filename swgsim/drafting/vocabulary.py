@@ -22,7 +22,7 @@ WORDS: Mapping[str, frozenset[str]] = {
         "istgeschwindigkeit winkelgeschwindigkeit n nist rpm thetadot phidot thetad 606ch"
     ),
     "torque": _words("torque torques trq tau drehmoment moment momente effort efforts m md mom nm"),
-    "current": _words("current currents strom motorstrom i im iq i_q amps ampere cur 6077h 6078h"),
+    "current": _words("current currents curr strom motorstrom i im iq i_q amps ampere cur 6077h 6078h"),
     "gauge": _words("strain dehnung dms dehnungsmessstreifen bridge brucke bruecke gauge sg"),
     "temperature": _words("temp temperature temperatur motortemperatur"),
     "acceleration": _words("acc accel acceleration beschleunigung qdd ddq qddot"),

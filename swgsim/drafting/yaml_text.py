@@ -49,6 +49,12 @@ def layout_lines(seen: Seen, taken: Sequence[Taken]) -> Iterable[str]:
         for key in ("decimal", "encoding", "comment"):
             if getattr(layout, key) != getattr(usual, key):
                 yield line(key, getattr(layout, key))
+        if layout.sheet or layout.rows:
+            yield line("each", ".+", "several recordings in one file: what tells them apart")
+        if layout.sheet:
+            yield line("sheet", layout.sheet, "the row of names comes again: so many tables below one another")
+        if layout.rows:
+            yield line("rows", dict(layout.rows), "it changes where the time begins again")
         if layout.header_row == 0:
             yield line("header", False)
         elif layout.header_row is not None:

@@ -45,7 +45,8 @@ def run(config: Mapping[str, Any]) -> None:
     ValueError
         If no case matches the pattern, with a list of all; or if no case has an answer, with the reasons.
     """
-    chosen = {name: case for name, case in config["cases"].items() if fnmatchcase(name, config["only"])}
+    patterns = [config["only"]] if isinstance(config["only"], str) else config["only"]
+    chosen = {name: case for name, case in config["cases"].items() if any(fnmatchcase(name, each) for each in patterns)}
     if not chosen:
         raise ValueError(f"only={config['only']} matches no case: choose from {', '.join(config['cases'])}")
     folders = {name: Path(config["folder"]) / case["recordings"] for name, case in chosen.items()}

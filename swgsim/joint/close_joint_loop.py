@@ -27,7 +27,7 @@ def run(config: Mapping[str, Any], report_line: Callable[[str], None] = print, *
     require_writable(Path(config["out"]))
     report_line(f"reading {config['recordings']}")
     files = _read("recordings", config)
-    by_folder = config["holdout"] is not None and Path(config["holdout"]).is_dir()
+    by_folder = isinstance(config["holdout"], str) and Path(config["holdout"]).is_dir()
     judging = _read("holdout", config) if by_folder else None
     for each in (files, judging):
         if each is not None and each.defects:

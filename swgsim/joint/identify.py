@@ -24,7 +24,7 @@ from swgsim.joint.ladder import climb
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.remaining import RemainingLine, remaining
 from swgsim.joint.report import report
-from swgsim.joint.split import select
+from swgsim.joint.split import Patterns, select
 from swgsim.joint.term import Term
 
 if TYPE_CHECKING:
@@ -142,8 +142,8 @@ def identify_joint(
     recordings: JointRecordings,
     joint: str | None = None,
     signal: str | None = None,
-    holdout: str | JointRecordings | None = None,
-    without: str | None = None,
+    holdout: Patterns | JointRecordings = None,
+    without: Patterns = None,
     *,
     searched: str | Sequence[str] | None = None,
     library: str | Sequence[str] | None = None,
@@ -158,9 +158,10 @@ def identify_joint(
         As :func:`recordings_of` reads them.
     joint, signal : str, optional
         Joint, and signal to explain (``T_sensor`` or ``current``); needed if the recordings have several.
-    holdout : str or JointRecordings
-        Held-out recordings: patterns of sessions or runs, separated by commas, or recordings of another folder.
-    without : str, optional
+    holdout : str, sequence of str or JointRecordings
+        Held-out recordings: patterns of sessions or runs, in a list or separated by commas, or recordings of another
+        folder.
+    without : str or sequence of str, optional
         Patterns of sessions or runs that are not used.
     searched, library : str or sequence of str, optional
         Names of effects to test (all by default), and import paths ``module:Class`` of further effects.

@@ -15,6 +15,8 @@ from swgsim.joint.regression import SLOW, Table
 # friction reverses. What motions below a revolution of the motor do not show is a caution of the answer.
 LEAST_WAY = 0.005
 
+Patterns = str | Sequence[str] | None
+
 
 @dataclass(frozen=True, eq=False)
 class Case:
@@ -41,7 +43,7 @@ class Case:
 
 def select(
     files: JointRecordings, judging: JointRecordings | None, joint: str | None, signal: str | None,
-    holdout: str | None, without: str | None,
+    holdout: Patterns, without: Patterns,
 ) -> Case:  # fmt: skip
     """Select recordings.
 
@@ -52,8 +54,8 @@ def select(
         Held-out recordings from a folder of their own; None if ``holdout`` names them.
     joint, signal : str or None
         Needed if there are several.
-    holdout, without : str or None
-        Patterns, separated by commas, of sessions or runs that are held out, or that are left out.
+    holdout, without : str, sequence of str or None
+        Patterns, in a list or separated by commas, of sessions or runs that are held out, or that are left out.
 
     Raises
     ------
@@ -101,7 +103,7 @@ def _floor(files: JointRecordings, joint: str, signal: str) -> tuple[float | Non
 
 
 def _require_met(
-    what: str, patterns: str | None, recordings: Sequence[JointRecording], refused: Sequence[tuple[str, str, str]]
+    what: str, patterns: Patterns, recordings: Sequence[JointRecording], refused: Sequence[tuple[str, str, str]]
 ) -> None:
     """Raise a ValueError for a pattern without a match: recordings to hold out would be fitted unnoticed."""
     for pattern in _patterns(patterns):
@@ -123,7 +125,7 @@ def _require_apart(fitted: Sequence[JointRecording], judging: Sequence[JointReco
             )
 
 
-def _unused(recording: JointRecording, signal: str, without: str | None) -> str:
+def _unused(recording: JointRecording, signal: str, without: Patterns) -> str:
     """Reason why a recording is not used; empty if it is used."""
     if _matches(recording, without):
         return "left out by without="
@@ -157,11 +159,12 @@ def _only(what: str, wanted: str | None, available: Sequence[str], refused: set[
     raise ValueError(f"{what}={wanted} {why}: choose {what}= from {choices}")
 
 
-def _patterns(patterns: str | None) -> list[str]:
-    return [each.strip() for each in (patterns or "").split(",") if each.strip()]
+def _patterns(patterns: Patterns) -> list[str]:
+    every = patterns.split(",") if isinstance(patterns, str) else map(str, patterns or ())
+    return [each.strip() for each in every if each.strip()]
 
 
-def _matches(recording: JointRecording, patterns: str | None) -> bool:
+def _matches(recording: JointRecording, patterns: Patterns) -> bool:
     """Whether the session or the run of a recording matches one of the patterns."""
     names = recording.session, recording.name
     return any(fnmatchcase(name, pattern) for pattern in _patterns(patterns) for name in names)

@@ -107,12 +107,13 @@ def _opened(
     require_readable(path)
     suffix = path.suffix.lower()
     try:
-        if suffix in HERE or (suffix == ".mat" and h5py.is_hdf5(path)):  # MATLAB 7.3
-            with HERE.get(suffix, hdf5).opened(path, name, wanted) as contents:
+        here = hdf5 if suffix == ".mat" and h5py.is_hdf5(path) else HERE.get(suffix)  # MATLAB 7.3
+        if here and not (here is hdf5 and wanted is None):
+            with here.opened(path, name, wanted) as contents:
                 yield contents
-        elif suffix in IN_CHILD or _is_mdf(path):
+        elif here or suffix in IN_CHILD or _is_mdf(path):
             with nullcontext(reader) if reader else LimitedReader() as child:
-                yield child.contents(path, name, IN_CHILD.get(suffix, "mdf"), wanted)
+                yield child.contents(path, name, "hdf5" if here else IN_CHILD.get(suffix, "mdf"), wanted)
         else:
             raise FileDefect(name, shown(path.suffix), f"a file that ends in {', '.join([*HERE, *IN_CHILD])}")
     except FileDefect:

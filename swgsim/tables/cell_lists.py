@@ -33,9 +33,19 @@ def elements(cells: pd.Series, number: int, name: str, column: str, first_row: i
     FileDefect
         If a list is too short.
     """
-    lists = cells.astype("string").str.extract(r"[\[(]\s*([^\[\]()]*?)\s*[\])]")[0].str.split(r"[,;\s]+", regex=True)
+    lists = lists_of(cells)
     short = np.flatnonzero((lists.str.len() < number).fillna(False))
     if len(short):
         found = f"{shown(str(cells.iloc[short[0]]))}, a list of {len(lists.iloc[short[0]])}"
         raise FileDefect(name, found, f"at least {number} numbers", first_row + int(short[0]), column)
     return lists.str[number - 1].where(lists.notna(), cells) if number else cells
+
+
+def lists_of(cells: pd.Series) -> pd.Series:
+    """The elements of the list in each cell, as texts; a missing value for a cell that is none.
+
+    >>> lists_of(pd.Series(["array('d', [2, 3])", "ok (1)"])).tolist()
+    [['2', '3'], <NA>]
+    """
+    found = cells.astype("string").str.extract(r"^\s*(?:array\(.*)?[\[(]\s*([^\[\]()]*?)\s*[\])]")[0]
+    return found.str.split(r"[,;\s]+", regex=True)

@@ -104,7 +104,7 @@ def read_measured(
     if layout.lost_rows and len(lost):
         left_out = len(lost)
         rows = len(time if time is not None else together[0])
-        _require_few(left_out, rows, "with lost readings", layout, name, first_row + int(lost[0]))
+        _require_few(left_out, rows, "with lost readings", remedy(lost, rows), layout, name, first_row + int(lost[0]))
         if time is None:
             expected = f"a time or a rate, without which no row can be left out by {LEAVE_OUT} of lost"
             raise FileDefect(name, "no time", expected, first_row + int(lost[0]))
@@ -120,16 +120,16 @@ def read_measured(
         left_out += outside
         if outside > FEW * rows:
             names = ", ".join(dict.fromkeys(str(each.column) for each in others))
-            _require_few(left_out, rows, f"before or after the times of {names}", layout, name, first_row)
+            more = f"{LEAVE_OUT} of lost can be another number of rows"
+            _require_few(left_out, rows, f"before or after the times of {names}", more, layout, name, first_row)
     return MeasuredTable(tuple(numbers), time, left_out, first_row)
 
 
-def _require_few(lost: int, rows: int, why: str, layout: Layout, name: str, row: int) -> None:
+def _require_few(lost: int, rows: int, why: str, more: str, layout: Layout, name: str, row: int) -> None:
     """Raise a FileDefect if more rows would be left out than may be."""
     most = int(layout.lost_rows * (rows if layout.lost_rows < 1 else 1))
     if lost > most:
-        expected = f"at most {most}, as lost in the map says; {LEAVE_OUT} of lost can be another number of rows"
-        raise FileDefect(name, f"{lost} of {rows} rows {why}", expected, row)
+        raise FileDefect(name, f"{lost} of {rows} rows {why}", f"at most {most}, as lost in the map says; {more}", row)
 
 
 def first_lost(
@@ -143,15 +143,20 @@ def first_lost(
             text = not binary.is_binary(folder / name) and not is_spreadsheet(folder / name)
             row = row_of(folder / name, layout, table.first_row, index) if text else index + table.first_row
             more = f" and {len(bad) - 1} more" if len(bad) > 1 else ""
-            expected = f"a finite number; {remedy(len(bad))}"
+            expected = f"a finite number; {remedy(bad, len(values))}"
             found = "no number" if np.isnan(values[index]) else str(values[index])
             return FileDefect(name, f"{found}{more}", expected, row, str(column.column))
     return None
 
 
-def remedy(count: int) -> str:
-    """What the map can say about lost readings."""
-    return f"if readings were lost, set lost: {{{LEAVE_OUT}: {count}}} in a map, which leaves their rows out"
+def remedy(lost: Int[np.ndarray, " lost"], rows: int) -> str:
+    """What the map can say about lost readings; a column that ends early or has few has another time than the rest."""
+    at_end = lost[-1] + 1 == rows and lost[-1] - lost[0] + 1 == len(lost) > FEW * rows
+    if at_end or 2 * len(lost) >= rows:
+        return (
+            "a signal that was sampled more slowly, or that ends earlier, needs its own time in a map, such as time: t"
+        )
+    return f"if readings were lost, set lost: {{{LEAVE_OUT}: {len(lost)}}} in a map, which leaves their rows out"
 
 
 def _signals(columns: Iterable[MeasuredColumn], clock: Clock | None) -> list[str]:

@@ -26,6 +26,7 @@ from swgsim.tables.text_defects import (
 from swgsim.tables.text_stream import TextStream, cells_of, is_comment, number_of, opened
 
 Columns = dict[str | int, Shaped[np.ndarray, " _"]]
+NAMES_AGAIN = "a number; the row of names again: several tables in one file, see each and sheet in docs/formats.md"
 
 
 class Start(NamedTuple):
@@ -184,6 +185,7 @@ def _numbers(values: pd.Series, path: Path, name: str, layout: Layout, start: St
         if number is None:
             cell, column = str(values.iloc[index]), start.names[int(str(values.name))]
             row = row_of(path, layout, start.row, int(index))
-            raise FileDefect(name, shown(cell), number_expected(cell, layout, row, start.row), row, column)
+            expected = NAMES_AGAIN if cell == column else number_expected(cell, layout, row, start.row)
+            raise FileDefect(name, shown(cell), expected, row, column)
         found[index] = number
     return found

@@ -110,6 +110,12 @@ def test_choices_for_one_kind_go_together(words: list[str]) -> None:
     require_one_kind(chosen(*words))
 
 
+def test_a_list_of_patterns_is_read_as_the_pages_show_it() -> None:
+    words = ["source=ur10e", "holdout=[*-20sec_10harm,*-50sec_12harm]", "without=*Load"]
+    assert all(f'holdout="{words[1][8:]}"' in (ROOT / page).read_text() for page in ("README.md", "docs/joints.md"))
+    assert chosen(*words)["holdout"] == ["*-20sec_10harm", "*-50sec_12harm"]
+
+
 def test_an_error_that_is_no_mistake_keeps_its_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
     def main() -> None:
         raise ZeroDivisionError

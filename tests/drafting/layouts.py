@@ -171,7 +171,8 @@ def ros(folder: Path, rng: np.random.Generator) -> Case:
                ["world"] * len(ns), ["shoulder"] * len(ns), ["elbow"] * len(ns),
                *(each[s] for s in ("q", "omega", "T_sensor") for each in joints)]  # fmt: skip
     rows(folder / "joint_states.csv", before, columns, ",")
-    return Case("joints", numbered(joints, "T_sensor"))
+    truth = numbered(joints, "T_sensor")
+    return Case("joints", {name: {"T_motor": own.pop("T_sensor"), **own} for name, own in truth.items()})
 
 
 def nanoseconds(folder: Path, rng: np.random.Generator) -> Case:

@@ -163,6 +163,10 @@ UR_CASES: dict[str, tuple[Callable[[np.ndarray], np.ndarray], str, str, str]] = 
     ),
     "rows cut out": (lambda table: np.delete(table, range(500, 520), axis=0), "time_jumps", "warn", "steps such as"),
     "time stands": (column(0, lambda t: put(t, 300, t[299])), "clock_backwards", "refuse", "row 301"),
+    "counter is full": (
+        column(0, lambda t: t - (2**32 / 1e6) * (t > t[300])), "clock_backwards", "refuse", "bits: 32",
+    ),
+    "midnight": (column(0, lambda t: t - 86400 * (t > t[300])), "clock_backwards", "refuse", "passes midnight"),
     "no rigid-body torque": (column(UR_RIGID, np.zeros_like), "all_zero", "warn", "T_rigid"),
     "posture not known": (column(4, lambda q: put(q, 9, np.inf)), "not_finite", "refuse", "posture 3, row 10"),
 }  # fmt: skip

@@ -117,6 +117,7 @@ def test_a_folder_may_be_held_out(files, answer, tmp_path):
         ({"signal": "T_sensor"}, "signal=T_sensor.*choose signal= from current"),
         ({"searched": ["coning"]}, "'coning' is no effect on a joint; choose from asymmetric_friction"),
         ({"holdout": "day4, dya3"}, "'dya3' of holdout= meets no session and no run: the usable sessions are day1"),
+        ({"holdout": ["day4", "dya3"]}, "'dya3' of holdout= meets no session and no run: the usable sessions are day1"),
         ({"without": "day5"}, "'day5' of without= meets"),
     ],
 )
@@ -212,7 +213,8 @@ def test_cases_are_answered_once_and_those_without_an_answer_are_named(files, tm
     assert "load dependent friction" in (tmp_path / "docs" / "ladders.md").read_text()
     assert (tmp_path / "docs" / "elbow_ladder.png").read_bytes().startswith(b"\x89PNG")
     monkeypatch.setattr(job, "run", lambda *_, **__: pytest.fail("computed again"))
-    cases.run(config | {"cases": {"elbow": config["cases"]["elbow"]}})
+    again = {"elbow": config["cases"]["elbow"], "other": {}}
+    cases.run(config | {"cases": again, "only": ["elbow", "e*"]})
     assert json.loads((tmp_path / "report" / "joints.json").read_text())["cases"] == said["cases"]
 
 

@@ -66,6 +66,16 @@ def test_lost_readings_of_joints_are_a_finding_or_left_out(tmp_path: Path) -> No
         read_joints(tmp_path / "files", tmp_path / "source.yaml")
 
 
+def test_a_column_that_ends_early_or_is_slow_has_lost_nothing(tmp_path: Path) -> None:
+    """To leave its other rows out would pair its values with times of others."""
+    for rows in (range(100, len(TIME)), range(1, len(TIME), 2)):
+        write = table("run1.csv", LOG | {"i": lost(LOG["i"], *rows)})
+        for entry in ({}, {"lost": "leave_out"}):
+            with pytest.raises((FileDefect, ValueError), match="needs its own time in a map, such as time: t") as found:
+                joints(tmp_path, write, **entry).require_usable()
+            assert f"leave_out: {len(rows)}" not in str(found.value)
+
+
 def test_a_recording_is_split_into_its_parts(tmp_path: Path) -> None:
     parts = {"early": [0, 0.03], "late": [0.06, 9]}
     read = gauges(tmp_path, PLAIN, parts=parts)

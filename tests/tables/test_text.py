@@ -172,5 +172,9 @@ def test_tables_below_one_another_are_told_apart(tmp_path: Path) -> None:
     assert row == 4
     with pytest.raises(FileDefect, match=r"a\.txt, row 11, column q: found 'x'"):
         read_table(path, "a.txt", ["q"], [], replace(layout, sheet="2"))
+    with pytest.raises(
+        FileDefect, match=r"row 3, column q: found 'q', expected a number; the row of names again.*each"
+    ):
+        read(tmp_path, "t,q\n0,1\nt,q\n0,1\n", ["q"])
     with pytest.raises(FileDefect, match=r"2 tables with the same row of names, expected a sheet from 1 to 2, not '3'"):
         read_table(path, "a.txt", ["q"], [], replace(layout, sheet="3"))

@@ -28,6 +28,7 @@ from swgsim.joint.intake.thresholds import (
 from swgsim.joint.recording import PREDICTED, JointRecording
 from swgsim.recordings.checks.defect import Defect, Severity
 from swgsim.recordings.files.assembly import no_numbers, standing
+from swgsim.tables.clock_jump import jump_remedy
 from swgsim.tables.limits import LARGEST_NUMBER
 from swgsim.tables.measured_table import remedy
 
@@ -47,7 +48,7 @@ def unusable(run: Run) -> Iterator[Defect]:
             yield Defect(
                 "not_finite", "refuse", run.label, name,
                 f"{len(bad)} of {len(run)} samples that are no finite number, the first {np.asarray(values)[bad[0]]}",
-                f"finite numbers within {LARGEST_NUMBER:g}", f"{remedy(len(bad))}; or leave the signal out",
+                f"finite numbers within {LARGEST_NUMBER:g}", f"{remedy(bad, len(run))}; or leave the signal out",
                 int(bad[0]) + run.first_row,
             )  # fmt: skip
     back = standing(run.time) if run.time is not None else np.empty(0, int)
@@ -55,7 +56,7 @@ def unusable(run: Run) -> Iterator[Defect]:
         yield Defect(
             "clock_backwards", "refuse", run.label, "t",
             f"{run.time[back[0]]} after {run.time[back[0] - 1]}", "later times",
-            "use a clock that always increases, or write the time with more digits", int(back[0]) + run.first_row,
+            jump_remedy(float(run.time[back[0] - 1] - run.time[back[0]])), int(back[0]) + run.first_row,
         )  # fmt: skip
 
 

@@ -53,8 +53,9 @@ class JointRecordings:
     folder: Path = Path()
 
     def __repr__(self) -> str:
-        robots = ", ".join(sorted({each.robot for each in self.recordings})) or "none usable"
-        lines = [f"{len(self.recordings)} joint recordings of {robots} in {self.folder}"]
+        robots = ", ".join(sorted({each.robot for each in self.recordings}))
+        count = f"{len(self.recordings)} joint recordings of {robots}" if robots else "no usable joint recordings"
+        lines = [f"{count} in {self.folder}"]
         for name in sorted({each.joint for each in self.recordings}):
             own = [each for each in self.recordings if each.joint == name]
             sessions = sorted({each.session for each in own})

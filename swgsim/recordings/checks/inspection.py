@@ -14,6 +14,7 @@ from swgsim.recordings.checks.torque import torque_defects
 from swgsim.recordings.checks.wiring import wiring_defects
 from swgsim.recordings.files.assembly import no_numbers, standing
 from swgsim.recordings.recording import Recording
+from swgsim.tables.clock_jump import jump_remedy
 from swgsim.tables.file_defect import FIRST_ROW
 from swgsim.tables.limits import FEWEST_ROWS, LARGEST_NUMBER
 
@@ -61,5 +62,5 @@ def _unusable(recording: Recording) -> Iterator[Defect]:
     if len(back):
         before, after = recording.time[back[0] - 1], recording.time[back[0]]
         row = int(back[0]) + FIRST_ROW
-        remedy = "sample by a clock that never runs back"
+        remedy = jump_remedy(float(before - after))
         yield Defect("clock_backwards", "refuse", name, "t", f"{after} after {before}", "later times", remedy, row)

@@ -99,7 +99,8 @@ class _Walk:
         else:
             shape = item.shape[::-1] if kind else item.shape
             shape = (0,) if "MATLAB_empty" in item.attrs else shape
-            unit = _attribute(item, "units") or _attribute(item, "unit")
+            whole = self.wanted is None  # in a process with a limit of time
+            unit = _attribute(item, "units", whole) or _attribute(item, "unit", whole)
             yield Listed(name, shape, kind or _kind(item.dtype), unit), partial(values, item, self.file, name)
 
     def meant(self, name: str) -> bool:
@@ -159,16 +160,17 @@ def _kind(dtype: np.dtype) -> str:
     return "references" if h5py.check_ref_dtype(dtype) else "text" if dtype.kind in "SUO" else dtype.name
 
 
-def _attribute(owner: h5py.HLObject, name: str) -> str:
-    """A short text or a number of fixed length; HDF5 reads forged texts of other lengths for ever."""
+def _attribute(owner: h5py.HLObject, name: str, limited: bool = False) -> str:
+    """A short text or a number; HDF5 reads forged texts without a fixed length for ever, unless its time is limited."""
     if name not in owner.attrs:
         return ""
     found = owner.attrs.get_id(name)
     text = h5py.check_string_dtype(found.dtype)
-    if found.shape != () or not (0 < (text.length or 0) <= LONGEST_TEXT if text else found.dtype.kind in "fiu"):
+    fixed = text is not None and 0 < (text.length or 0) <= LONGEST_TEXT
+    if found.shape != () or not (fixed or (limited if text else found.dtype.kind in "fiu")):
         return ""
     value = owner.attrs[name]
-    return str(value, "utf-8", "replace") if text else str(value)
+    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)[:LONGEST_TEXT]
 
 
 def _nothing() -> np.ndarray:
