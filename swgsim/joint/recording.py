@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.effects.sense import sense
-from swgsim.joint.kinematics import inertia, least_doubt, smooth, window
+from swgsim.joint.kinematics import displaced, inertia, least_doubt, smooth, window
 
 
 class Signal(NamedTuple):
@@ -144,16 +144,18 @@ class JointRecording:
 
     @cached_property
     def held(self) -> Float[np.ndarray, " time"]:
-        """Direction of the motion before a standstill, while the joint stands after it; 0 while it moves."""
+        """Direction of the last displacement before a standstill, while the joint stands after it; 0 while it moves.
+
+        The displacement is one of the angle. The speed has more noise, and its smoothing swings back after a stop.
+        """
         speed, _ = self._direct
         moving = np.abs(speed) > CERTAIN * self.speed_doubt
-        last = np.maximum.accumulate(np.where(moving, np.arange(len(self)), -1))
-        direction = np.where(last >= 0, np.sign(speed)[last], 0.0)
         # A reversal takes less than the window of the smoothing, or its speed is more than doubt.
-        number = np.cumsum(np.diff(moving, prepend=moving[0]))
+        change = np.diff(moving, prepend=moving[0])
+        number, starts = np.cumsum(change), np.append(0, np.flatnonzero(change))
         samples, squares = np.bincount(number), np.bincount(number, speed**2)
         still = (samples > window(len(self), self.rate)) & (squares < 2 * self.speed_doubt**2 * samples)
-        return np.where(~moving & still[number], direction, 0.0)
+        return np.where(~moving & still[number], displaced(self.signals["q"])[starts][number], 0.0)
 
     @cached_property
     def inertia(self) -> Float[np.ndarray, " time"] | None:
