@@ -67,7 +67,7 @@ def test_what_holds_a_joint_does_not_change_the_friction_of_its_motion() -> None
 
 @pytest.mark.parametrize("noise", [1e-3, 2e-3, 4e-3])
 def test_the_direction_at_rest_is_that_of_the_last_displacement_however_the_speed_scatters(noise: float) -> None:
-    """Long strokes let noise be smoothed over long windows, over which the smoothed speed of a short one swings back."""
+    """Long strokes allow long windows, over which the smoothed speed of a short stroke swings back."""
     rng, place, short = generator("held", noise), np.arange(24 * 600) % 600, np.repeat(np.arange(24) % 8 == 0, 600)
     way, length = np.repeat(rng.choice([-1, 1], 24), 600), np.where(short, 75, 450)
     share = np.minimum(place / length, 1)
