@@ -11,7 +11,7 @@ from swgsim.joint.judged import Judged
 from swgsim.joint.naming import listed
 from swgsim.joint.recording import OF_DRIVE, SIGNALS
 from swgsim.joint.shared import OfFriction
-from swgsim.joint.textbook import RigidBody, wrong_signs
+from swgsim.joint.textbook import RigidBody, unphysical, wrong_signs
 from swgsim.joint.verdict import fails
 
 # p-value below which sessions differ in friction.
@@ -47,7 +47,20 @@ def likely(judged: Judged) -> list[str]:
     """Causes that are likely where a model does not describe the recordings."""
     of = judged.table.of
     found = [f"the unit, the sign, or the side of the gear (motor or output) of q, omega or {of} in the source"]
-    load = _load(judged)
+    load, textbook = _load(judged), judged.ladder.textbook
+    if wrong := ", ".join(wrong_signs(textbook, SIGNALS[of].unit)):
+        found.insert(
+            0,
+            f"an opposite sign: {wrong} would be negative. Set inverted: true for {of}, or for q and omega, or remove "
+            "it; or the load is that of the other side of the gear",
+        )
+    added = unphysical(textbook).terms[len(textbook.terms) :]
+    if added and added[0].weights[0] > 0:
+        found.insert(
+            0,
+            f"{of} has the friction of the gear in it ({significant(added[0].weights[0])} N m turn with the motion): "
+            "then it is the torque of the motor, map it as T_motor; else map T_rigid",
+        )
     if not load.modelled:
         also = "" if of == "T_sensor" else " or T_sensor"
         found.append(f"a load that a single link does not have: map T_rigid{also}")

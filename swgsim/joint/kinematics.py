@@ -68,15 +68,20 @@ def play(values: Float[np.ndarray, " time"], width: float) -> Float[np.ndarray, 
     return np.array(found)
 
 
-def displaced(angle: Float[np.ndarray, " time"]) -> Float[np.ndarray, " time"]:
-    """Direction of the last displacement that is larger than the noise of an angle: -1, 1, or 0 before the first.
+def jitter(angle: Float[np.ndarray, " time"]) -> float:
+    """Range of an angle that does not change [rad]: that of its noise, and a step of the encoder.
 
     The largest of n samples of noise is sqrt(2 ln n) standard deviations above its mean (Donoho and Johnstone, 1994,
-    Biometrika 81, 425), and the smallest as far below. The jitter of an encoder by one step is noise too.
+    Biometrika 81, 425), and the smallest as far below. Third differences show the noise.
     """
     steps = np.abs(np.diff(angle))
     noise = float(np.sqrt(np.mean(np.diff(angle, 3) ** 2) / 20))
-    slip = play(angle, 2 * noise * np.sqrt(2 * np.log(len(angle))) + float(steps[steps > 0].min(initial=np.inf)))
+    return 2 * noise * float(np.sqrt(2 * np.log(len(angle)))) + float(steps[steps > 0].min(initial=np.inf))
+
+
+def displaced(angle: Float[np.ndarray, " time"]) -> Float[np.ndarray, " time"]:
+    """Direction of the last displacement that is larger than the jitter of an angle: -1, 1, or 0 before the first."""
+    slip = play(angle, jitter(angle))
     last = np.maximum.accumulate(np.where(np.abs(slip) == 1, np.arange(len(angle)), -1))
     return np.where(last >= 0, slip[last], 0.0)
 

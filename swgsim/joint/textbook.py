@@ -132,6 +132,17 @@ def _errors(found: Fit) -> Float[np.ndarray, " error"]:
     return np.array([rms(found.unseen), rms(found.unseen - found.table.means_of_runs(found.unseen[:, None])[:, 0])])
 
 
+def unphysical(found: Fit) -> Fit:
+    """A model with all signs free, and in a torque sensor the friction of the gear, which it cannot measure.
+
+    What this explains and the model does not is explained by no joint: the signals are not what they are taken for.
+    """
+    table = found.table
+    open_ = table.of == "T_sensor" and turns_back(table.recordings)
+    more = (Friction(),) if open_ and not any(isinstance(term, Friction) for term in found.terms) else ()
+    return fit(table, (*found.terms, *more), bounded=False)
+
+
 def wrong_signs(textbook: Fit, unit: str) -> Iterator[str]:
     """Weights of the textbook that would have a sign that physics forbids if they were free, in words."""
     free = fit(textbook.table, textbook.terms, bounded=False)
