@@ -80,8 +80,13 @@ def next_experiment(judged: Judged, days: Days | None) -> dict[str, Any] | None:
         wishes.append("check " + "; ".join(likely(judged)))
     if judged.ladder.steps and not judged.helps:
         wishes.append("fit more sessions, such as the held-out ones: they differ from the fitted ones")
-    if days and days.chance < DIFFERENT:
+    if differ(days):
         wishes.append("log the temperature of the joint, and record one session cold and warm on the same day")
+    if days and days.chance is None:
+        wishes.append(
+            "record three runs or more in each session, to decide whether their speed-dependent friction differs (by "
+            f"{100 * days.spread:.0f} % here)"
+        )
     if judged.floor is None:
         wishes.append("record the joint at rest, for the noise of its signals")
     undecided = [r.trial.term for r in judged.rungs if r.trial and not r.kept and r.trial.unsteady]
@@ -89,6 +94,11 @@ def next_experiment(judged: Judged, days: Days | None) -> dict[str, Any] | None:
         ratio = judged.table.recordings[0].gear_ratio
         wishes.append(f"record more sessions, to decide about {listed(undecided, ratio)}")
     return {"words": "; ".join(wishes)} if wishes else None
+
+
+def differ(days: Days | None) -> bool:
+    """Whether the friction of the sessions certainly differs."""
+    return days is not None and days.chance is not None and days.chance < DIFFERENT
 
 
 def _load(judged: Judged) -> RigidBody:
