@@ -33,6 +33,8 @@ def cautions(judged: Judged, left_out: Sequence[str]) -> list[str]:
             "there is no rigid-body torque (T_rigid), so the textbook model has the inertia and gravity of a single "
             "link; for a joint that carries several links, map T_rigid in the source"
         )
+    if judged.ladder.unsearched:
+        found.append(f"not searched, needs T_rigid: {listed(judged.ladder.unsearched, None)}")
     for each in wrong_signs(judged.ladder.textbook, unit):
         found.append(
             f"{each} of the textbook model would be negative, which is impossible, so it is zero: something else makes "

@@ -8,6 +8,7 @@ from swgsim.joint.judged import Judged
 from swgsim.joint.naming import listed
 from swgsim.joint.recording import SIGNALS
 from swgsim.joint.regression import Fit
+from swgsim.joint.shared import OfFriction
 from swgsim.joint.term import Term
 from swgsim.joint.textbook import unphysical
 
@@ -57,6 +58,8 @@ def sentence(judged: Judged, remaining: Sequence[str]) -> str:
     where = f"{first.robot}, {first.joint.replace('_', ' ')}, {of.meaning}"
     more = "one regularity of the residual remains" if len(remaining) == 1 else f"{len(remaining)} regularities remain"
     rest = f"; {more} unexplained" if remaining else ""
+    unsearched = [term for term in judged.ladder.unsearched if isinstance(term, OfFriction)]
+    rest += f"; not searched, needs T_rigid: {_named(judged, unsearched)}" if unsearched else ""
     found = [step.term for step in judged.ladder.steps]
     before, after = judged.before.heldout, judged.after.heldout
     if fails(judged):
