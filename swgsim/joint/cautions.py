@@ -11,6 +11,7 @@ from swgsim.joint.judged import Judged
 from swgsim.joint.naming import listed
 from swgsim.joint.recording import OF_DRIVE, SIGNALS
 from swgsim.joint.shared import OfFriction
+from swgsim.joint.sign_width import LONGEST, at_longest
 from swgsim.joint.textbook import RigidBody, unphysical, wrong_signs
 from swgsim.joint.verdict import fails
 
@@ -39,6 +40,13 @@ def cautions(judged: Judged, left_out: Sequence[str]) -> list[str]:
         found.append(
             f"{each} of the textbook model would be negative, which is impossible, so it is zero: something else makes "
             "that part of the signal; check the signs of speed, current and torque in the source"
+        )
+    # Samples farther apart do not show a lag.
+    if at_longest(_load(judged).lag) and judged.table.recordings[0].rate * LONGEST > 1:
+        found.append(
+            f"the lag between the motion and {judged.table.of} is at its bound of {1e3 * LONGEST:g} ms: friction that "
+            "builds up over a distance looks like a lag, and so do signals with different times; check the clock of "
+            "the signals"
         )
     found += _sides(judged)
     found += _small(judged)

@@ -31,8 +31,8 @@ def run(config: Mapping[str, Any], report_line: Callable[[str], None] = print, *
     by_folder = config["holdout"] is not None and Path(config["holdout"]).is_dir()
     judging = _read("holdout", config) if by_folder else None
     for each in (files, judging):
-        if each is not None and each.defects:
-            report_line(each.findings())
+        if each is not None and (said := each.findings(config["joint"])):
+            report_line(said)
     answer = identify_joint(
         files, config["joint"], config["signal"], judging or config["holdout"], config["without"],
         searched=config["searched"], library=config["library"], progress=report_line, bar=bar,

@@ -7,12 +7,13 @@ import pytest
 from joint_fixtures import COULOMB, PER_TORQUE, VISCOUS, Hidden, coloured, trajectories
 
 from swgsim.common.seeds import generator
+from swgsim.joint.cautions import cautions
 from swgsim.joint.effects import SEARCHED
 from swgsim.joint.effects.friction import StribeckFriction
 from swgsim.joint.effects.load import EncoderEccentricity, GravityError, LoadCurve
 from swgsim.joint.effects.slip import LoadDependentFriction, MaxwellSlip
 from swgsim.joint.judged import Judged
-from swgsim.joint.ladder import climb
+from swgsim.joint.ladder import Ladder, climb
 from swgsim.joint.low_speed import in_sum
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.regression import Table, fit, rms
@@ -65,10 +66,21 @@ def test_the_lag_of_the_current_is_fitted_and_is_no_effect() -> None:
         )
         for each in moved("late", 0.0, 4.0)
     )
-    ladder = climb(Table(late, "current"), SEARCHED)
+    table = Table(late, "current")
+    ladder = climb(table, SEARCHED)
     assert ladder.steps == ()
+    assert not any("at its bound" in each for each in cautions(Judged(ladder, table, None), []))
     (friction,) = (term for term in ladder.top.terms if isinstance(term, Friction))
     assert friction.lag == pytest.approx(0.012, abs=0.008)
+
+
+def test_a_lag_at_its_bound_is_a_caution() -> None:
+    table = Table(moved("bound", 0.01, 0.5), "current")
+    start = fitted_textbook(table)
+    for lag, said in ((0.02, True), (-0.02, True), (0.015, False)):
+        terms = tuple(replace(term, lag=lag) if hasattr(term, "lag") else term for term in start.terms)
+        judged = Judged(Ladder(fit(table, terms), (), ()), table, None)
+        assert any("at its bound of 20 ms" in each for each in cautions(judged, [])) == said
 
 
 def stopping(seed: object, part: float) -> tuple[JointRecording, ...]:
