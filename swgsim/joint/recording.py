@@ -150,14 +150,16 @@ class JointRecording:
         a stop, have no part in it.
         """
         q, size = self.signals["q"], window(len(self), self.rate)
-        way, noise = maximum_filter1d(q, size) - minimum_filter1d(q, size), jitter(q)
+        way, noise = maximum_filter1d(q, size) - minimum_filter1d(q, size), jitter(q, size)
         rests, near = (
             maximum_filter1d(way < least, size) for least in (noise, noise + self.speed_doubt * size / self.rate)
         )
+        if not rests.any():
+            return np.zeros(len(self))
         change = np.diff(near, prepend=near[0])
         number, starts = np.cumsum(change), np.append(0, np.flatnonzero(change))
         stands = near & (np.bincount(number, rests) > 0)[number]
-        return np.where(stands, displaced(q)[starts][number], 0.0)
+        return np.where(stands, displaced(q, float(np.median(noise[rests])))[starts][number], 0.0)
 
     @cached_property
     def inertia(self) -> Float[np.ndarray, " time"] | None:

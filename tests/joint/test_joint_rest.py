@@ -5,7 +5,7 @@ import pytest
 from joint_fixtures import COULOMB, VISCOUS
 
 from swgsim.common.seeds import generator
-from swgsim.joint.kinematics import displaced, least_doubt
+from swgsim.joint.kinematics import displaced, jitter, least_doubt
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.regression import Fit, Table
 from swgsim.joint.rest import trusted
@@ -82,11 +82,19 @@ def test_the_direction_at_rest_is_that_of_the_last_displacement_however_the_spee
 
 def test_noise_and_the_jitter_of_an_encoder_are_no_displacement() -> None:
     rng, step = generator("displaced"), 1e-4
-    still = 0.3 + step * np.round(rng.uniform(0, 1, 20000))
-    assert not displaced(still).any()
-    assert not displaced(0.3 + step * rng.normal(size=20000)).any()
-    moved = np.concatenate([still, still[-1] + step * np.round(np.linspace(0, 20, 100))])
-    assert displaced(moved)[-1] == 1
+    for still in (step * np.round(rng.uniform(0, 1, 20000)), step * rng.normal(size=20000)):
+        least = float(np.median(jitter(still, 75)))
+        assert not displaced(still, least).any()
+        moved = np.concatenate([still, still[-1] - 40 * step * np.linspace(0, 1, 100)])
+        assert displaced(moved, least)[-1] == -1
+
+
+def test_a_slow_reversal_is_no_standstill() -> None:
+    """Times that are uncertain by 1 ms make an angle uncertain where it moves fast."""
+    rng, time = generator("reversals"), np.arange(6000) / RATE
+    q = np.sin(0.5 * (time + 1e-3 * rng.normal(size=len(time))))
+    signals = {"q": q, "omega": 0.5 * np.cos(0.5 * time) + 1e-4 * rng.normal(size=len(q)), "current": q}
+    assert not JointRecording("run", "robot", "joint", "day", time, signals).held.any()
 
 
 def test_the_acceleration_is_smoothed_no_longer_than_the_noise_asks_for() -> None:
