@@ -11,7 +11,8 @@ from swgsim.joint.judged import Judged
 from swgsim.joint.naming import listed
 from swgsim.joint.recording import OF_DRIVE, SIGNALS
 from swgsim.joint.shared import OfFriction
-from swgsim.joint.textbook import RigidBody, wrong_signs
+from swgsim.joint.sign_width import LONGEST, at_longest
+from swgsim.joint.textbook import RigidBody, unphysical, wrong_signs
 from swgsim.joint.verdict import fails
 
 # p-value below which sessions differ in friction.
@@ -33,10 +34,19 @@ def cautions(judged: Judged, left_out: Sequence[str]) -> list[str]:
             "there is no rigid-body torque (T_rigid), so the textbook model has the inertia and gravity of a single "
             "link; for a joint that carries several links, map T_rigid in the source"
         )
+    if judged.ladder.unsearched:
+        found.append(f"not searched, needs T_rigid: {listed(judged.ladder.unsearched, None)}")
     for each in wrong_signs(judged.ladder.textbook, unit):
         found.append(
             f"{each} of the textbook model would be negative, which is impossible, so it is zero: something else makes "
             "that part of the signal; check the signs of speed, current and torque in the source"
+        )
+    # Samples farther apart do not show a lag.
+    if at_longest(_load(judged).lag) and judged.table.recordings[0].rate * LONGEST > 1:
+        found.append(
+            f"the lag between the motion and {judged.table.of} is at its bound of {1e3 * LONGEST:g} ms: friction that "
+            "builds up over a distance looks like a lag, and so do signals with different times; check the clock of "
+            "the signals"
         )
     found += _sides(judged)
     found += _small(judged)
@@ -47,7 +57,20 @@ def likely(judged: Judged) -> list[str]:
     """Causes that are likely where a model does not describe the recordings."""
     of = judged.table.of
     found = [f"the unit, the sign, or the side of the gear (motor or output) of q, omega or {of} in the source"]
-    load = _load(judged)
+    load, textbook = _load(judged), judged.ladder.textbook
+    if wrong := ", ".join(wrong_signs(textbook, SIGNALS[of].unit)):
+        found.insert(
+            0,
+            f"an opposite sign: {wrong} would be negative. Set inverted: true for {of}, or for q and omega, or remove "
+            "it; or the load is that of the other side of the gear",
+        )
+    added = unphysical(textbook).terms[len(textbook.terms) :]
+    if added and added[0].weights[0] > 0:
+        found.insert(
+            0,
+            f"{of} has the friction of the gear in it ({significant(added[0].weights[0])} N m turn with the motion): "
+            "then it is the torque of the motor, map it as T_motor; else map T_rigid",
+        )
     if not load.modelled:
         also = "" if of == "T_sensor" else " or T_sensor"
         found.append(f"a load that a single link does not have: map T_rigid{also}")
@@ -67,8 +90,13 @@ def next_experiment(judged: Judged, days: Days | None) -> dict[str, Any] | None:
         wishes.append("check " + "; ".join(likely(judged)))
     if judged.ladder.steps and not judged.helps:
         wishes.append("fit more sessions, such as the held-out ones: they differ from the fitted ones")
-    if days and days.chance < DIFFERENT:
+    if differ(days):
         wishes.append("log the temperature of the joint, and record one session cold and warm on the same day")
+    if days and days.chance is None:
+        wishes.append(
+            "record three runs or more in each session, to decide whether their speed-dependent friction differs (by "
+            f"{100 * days.spread:.0f} % here)"
+        )
     if judged.floor is None:
         wishes.append("record the joint at rest, for the noise of its signals")
     undecided = [r.trial.term for r in judged.rungs if r.trial and not r.kept and r.trial.unsteady]
@@ -76,6 +104,11 @@ def next_experiment(judged: Judged, days: Days | None) -> dict[str, Any] | None:
         ratio = judged.table.recordings[0].gear_ratio
         wishes.append(f"record more sessions, to decide about {listed(undecided, ratio)}")
     return {"words": "; ".join(wishes)} if wishes else None
+
+
+def differ(days: Days | None) -> bool:
+    """Whether the friction of the sessions certainly differs."""
+    return days is not None and days.chance is not None and days.chance < DIFFERENT
 
 
 def _load(judged: Judged) -> RigidBody:

@@ -6,7 +6,7 @@ from typing import Any
 
 from swgsim.common.files import require_writable
 from swgsim.common.outcome import Outcome
-from swgsim.joint.identify import effects_of, identify_joint, recordings_of
+from swgsim.joint.identify import effects_of, identify_joint, recordings_of, source_path
 from swgsim.joint.intake.read import JointRecordings
 from swgsim.tables.file_defect import read_for
 
@@ -24,14 +24,15 @@ def run(config: Mapping[str, Any], report_line: Callable[[str], None] = print, *
     if config["recordings"] is None:
         raise ValueError("no recordings: give recordings=FOLDER, the files that the source describes")
     effects_of(config["searched"], config["library"])
+    source_path(config["source"])
     require_writable(Path(config["out"]))
     report_line(f"reading {config['recordings']}")
     files = _read("recordings", config)
     by_folder = isinstance(config["holdout"], str) and Path(config["holdout"]).is_dir()
     judging = _read("holdout", config) if by_folder else None
     for each in (files, judging):
-        if each is not None and each.defects:
-            report_line(each.findings())
+        if each is not None and (said := each.findings(config["joint"])):
+            report_line(said)
     answer = identify_joint(
         files, config["joint"], config["signal"], judging or config["holdout"], config["without"],
         searched=config["searched"], library=config["library"], progress=report_line, bar=bar,

@@ -16,7 +16,7 @@ from swgsim.joint.textbook import Friction, Zero
 OF_SPEED = (Friction, SublinearFriction, QuadraticFriction, StribeckFriction)
 # A session with a nearly constant friction curve does not show the slope over speed; relative limit.
 FLAT = 0.1
-# Least number of runs of a session, for the scatter between runs.
+# Least number of runs whose scatter gives a deviation.
 LEAST_RUNS = 3
 
 
@@ -31,18 +31,18 @@ class Day:
     session : str
     share : float
         1 if the session has the common friction.
-    deviation : float
-        Its standard deviation.
+    deviation : float or None
+        Its standard deviation, from the scatter between runs; None for fewer than three runs.
     coulomb, zero : float
         Constant friction, and zero of the signal, in the unit of the signal. They cannot be separated for a joint that
         turned in one direction only.
     runs : int
-        Number of runs behind the deviation.
+        Number of runs.
     """
 
     session: str
     share: float
-    deviation: float
+    deviation: float | None
     coulomb: float
     zero: float
     runs: int
@@ -55,12 +55,12 @@ class Days:
     Attributes
     ----------
     days : tuple of Day
-    chance : float
-        p-value of the differences.
+    chance : float or None
+        p-value of the differences; None for fewer than two sessions with a deviation.
     """
 
     days: tuple[Day, ...]
-    chance: float
+    chance: float | None
 
     @property
     def spread(self) -> float:
@@ -70,9 +70,7 @@ class Days:
 
 
 def days(top: Fit, tables: Sequence[Table]) -> Days | None:
-    """Speed-dependent friction of every session in the current; None for fewer than two sessions.
-
-    A session needs three runs, because their scatter gives the deviation.
+    """Speed-dependent friction of every session in the current; None for fewer than two sessions that show it.
 
     Parameters
     ----------
@@ -90,16 +88,32 @@ def days(top: Fit, tables: Sequence[Table]) -> Days | None:
     known = tuple(day for day in found if day)
     if len(known) < 2:
         return None
-    share, weight = np.array([day.share for day in known]), np.array([day.deviation for day in known]) ** -2.0
+    return Days(known, _chance([(day.share, day.deviation, day.runs) for day in known if day.deviation is not None]))
+
+
+def no_days(tables: Sequence[Table]) -> str:
+    """Why no friction of sessions is given, in words."""
+    if tables[0].of not in OF_DRIVE:
+        return "a torque sensor behind the gear does not measure its friction"
+    sessions = {each.session for table in tables for each in table.recordings}
+    if len(sessions) < 2:
+        return f"all recordings are of one session ({sessions.pop()}): give others another session in the source"
+    return "fewer than two sessions move at several speeds, which the slope of the friction over speed needs"
+
+
+def _chance(known: Sequence[tuple[float, float, int]]) -> float | None:
+    """p-value of the differences of shares with their deviations and numbers of runs."""
+    if len(known) < 2:
+        return None
+    share, deviation, runs = np.array(known).T
+    weight = deviation**-2.0
     mean = (weight * share).sum() / weight.sum()
-    freedom = len(known) - 1, min(day.runs for day in known) - 2
-    return Days(known, float(f.sf((weight * (share - mean) ** 2).sum() / freedom[0], *freedom)))
+    freedom = len(known) - 1, runs.min() - 2
+    return float(f.sf((weight * (share - mean) ** 2).sum() / freedom[0], *freedom))
 
 
 def _day(session: str, table: Table, terms: Sequence[Term]) -> Day | None:
     """Share of one session, with free constant friction and zero; None if the session does not determine it."""
-    if len(table.recordings) < LEAST_RUNS:
-        return None
     curve = np.concatenate([rising(each, terms) for each in table.recordings])
     (friction,) = (term for term in terms if isinstance(term, Friction))
     sense = np.concatenate([friction.sense(each) for each in table.recordings])
@@ -112,10 +126,12 @@ def _day(session: str, table: Table, terms: Sequence[Term]) -> Day | None:
     share = float(free @ left / (free @ free))
     constant = solved(open_, left - share * curve)
     residual = left - share * curve - open_ @ constant
-    # Residuals are correlated within a run.
-    runs = len(table.recordings)
-    spread = np.sqrt((np.bincount(table.run, free * residual) ** 2).sum() * runs / (runs - 1)) / float(free @ free)
     coulomb, zero = constant.tolist()
+    runs = len(table.recordings)
+    if runs < LEAST_RUNS:
+        return Day(session, share, None, coulomb, zero, runs)
+    # Residuals are correlated within a run.
+    spread = np.sqrt((np.bincount(table.run, free * residual) ** 2).sum() * runs / (runs - 1)) / float(free @ free)
     return Day(session, share, float(spread), coulomb, zero, runs)
 
 

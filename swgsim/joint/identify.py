@@ -72,7 +72,8 @@ class JointAnswer:
             when: f"{significant(each['fit'])} {unit}, on recordings not seen {significant(each['heldout'])} {unit}"
             for when, each in ((when, error[when]) for when in ("before", "after"))
         }
-        floor = self.report["noise_floor"]
+        floor, by_day = self.report["noise_floor"], self.by_day.days if self.by_day else ()
+        sessions = ", ".join(f"{day.session} {significant(day.share)}" for day in by_day) or self.report["no_days"]
         return "\n".join(
             [
                 f"textbook model explains {self.report['explains']}",
@@ -81,6 +82,7 @@ class JointAnswer:
                 f"error after    {both['after']}",
                 f"noise at rest  {significant(floor)}" + (f" {unit}" if floor is not None else ""),
                 f"effects found  {self.report['lacks'] or 'none'}",
+                f"friction by session, relative to all: {sessions}",
                 *([f"contradicted   {self.report['contradicted']}"] if self.report["contradicted"] else []),
                 *(f"likely cause   {each}" for each in self.report["likely"]),
             ]

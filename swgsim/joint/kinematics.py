@@ -4,6 +4,7 @@ from itertools import combinations_with_replacement
 
 import numpy as np
 from jaxtyping import Float
+from scipy.ndimage import uniform_filter1d
 from scipy.signal import savgol_coeffs, savgol_filter
 
 # Window of the smoothing of speeds [s]; trajectories and speed controls are slower.
@@ -66,6 +67,27 @@ def play(values: Float[np.ndarray, " time"], width: float) -> Float[np.ndarray, 
             z = -1.0
         found.append(z)
     return np.array(found)
+
+
+def jitter(angle: Float[np.ndarray, " time"], size: int) -> Float[np.ndarray, " time"]:
+    """Range of an angle that stands, in windows of ``size`` samples [rad]: that of its noise, and an encoder's step.
+
+    The largest of n samples of noise is sqrt(2 ln n) standard deviations above its mean (Donoho and Johnstone, 1994,
+    Biometrika 81, 425), and the smallest as far below. Third differences show the noise. It is that of the window: an
+    angle whose times are uncertain has more in motion than at rest.
+    """
+    steps = np.abs(np.diff(angle))
+    square = uniform_filter1d(np.pad(np.diff(angle, 3) ** 2 / 20, (1, 2), mode="edge"), size)
+    # Sums of a filter that runs along may fall below 0 by rounding.
+    noise = np.sqrt(np.maximum(square, 0.0))
+    return 2 * noise * np.sqrt(2 * np.log(size)) + float(steps[steps > 0].min(initial=np.inf))
+
+
+def displaced(angle: Float[np.ndarray, " time"], least: float) -> Float[np.ndarray, " time"]:
+    """Direction of the last displacement by more than ``least`` [rad]: -1, 1, or 0 before the first."""
+    slip = play(angle, least)
+    last = np.maximum.accumulate(np.where(np.abs(slip) == 1, np.arange(len(angle)), -1))
+    return np.where(last >= 0, slip[last], 0.0)
 
 
 def inertia(

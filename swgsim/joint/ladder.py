@@ -12,10 +12,10 @@ from swgsim.joint.recording import SIGNALS
 from swgsim.joint.regression import WORTH, Fit, Table, fit, rms
 from swgsim.joint.rest import trusted
 from swgsim.joint.shaping import shaped
-from swgsim.joint.shared import OfFriction
+from swgsim.joint.shared import OfFriction, OfLoad
 from swgsim.joint.sign_width import with_sign_width
 from swgsim.joint.term import Term
-from swgsim.joint.textbook import fitted_textbook
+from swgsim.joint.textbook import fitted_textbook, with_link
 from swgsim.joint.waves import LOOKED_AT, Wave, waves
 
 # Significance level of an effect or wave in one round, and of an order that stands out of the spectrum.
@@ -95,11 +95,14 @@ class Ladder:
         Accepted terms, in order.
     refused : tuple of Trial
         Candidates of the last round.
+    unsearched : tuple of Term
+        Effects of the library whose load is not known.
     """
 
     textbook: Fit
     steps: tuple[Trial, ...]
     refused: tuple[Trial, ...]
+    unsearched: tuple[Term, ...] = ()
 
     @property
     def top(self) -> Fit:
@@ -123,13 +126,16 @@ def climb(
     bar : bool
         Whether to show a progress bar of the candidates.
     """
-    now = start = trusted(fitted_textbook(table))
+    now = start = with_link(trusted(fitted_textbook(table)))
     unit, ratio = SIGNALS[table.of].unit, table.recordings[0].gear_ratio
     progress(f"textbook model: error {now.error:.4g} {unit} on the {len(table.recordings)} fitted recordings")
     steps: list[Trial] = []
     known: dict[float, tuple[Wave, ...]] = {}
     library = [kind().beside(start.terms) for kind in kinds]
     possible = [term for term in library if _possible(term, start)]
+    # Errors of a rigid-body model have no meaning without it.
+    open_ = [term for term in library if isinstance(term, OfLoad) and table.of in term.explains and not term.of_model]
+    unsearched = tuple(term for term in open_ if not all(map(term.possible, table.recordings)))
     while True:
         sought = [term.beside(now.terms) for term in possible if type(term) not in {type(each) for each in now.terms}]
         candidates = _candidates(now, sought, known)
@@ -140,7 +146,7 @@ def climb(
         best = next((trial for trial in trials if trial.pays), None)
         if best is None or len(steps) == MOST:
             progress(f"step {len(steps) + 1}: none of {len(trials)} candidates is accepted")
-            return Ladder(start, tuple(steps), tuple(trials))
+            return Ladder(start, tuple(steps), tuple(trials), unsearched)
         now = with_sign_width(best.fit)
         steps.append(replace(best, term=now.terms[-1], fit=now))
         what = in_words(best.term, ratio)

@@ -7,9 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
+from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
 from swgsim.effects.sense import sense
-from swgsim.joint.kinematics import inertia, least_doubt, smooth, window
+from swgsim.joint.kinematics import displaced, inertia, jitter, least_doubt, smooth, window
 
 
 class Signal(NamedTuple):
@@ -30,8 +31,6 @@ SIGNALS: Mapping[str, Signal] = {
 # Least share of the way in each direction of a joint that reverses. A joint that creeps in one direction and sticks on
 # its way swings back by up to 0.024 of its way; one that is moved to and fro has 0.5.
 BACK = 0.05
-# A joint moves for certain above so many times the doubt of its speed.
-CERTAIN = 3.0
 # Accuracy [rad] with which a joint's angle must agree with an angle of the posture to be the same.
 SAME = 1e-6
 # Signals that the model predicts; the others are its inputs.
@@ -144,16 +143,23 @@ class JointRecording:
 
     @cached_property
     def held(self) -> Float[np.ndarray, " time"]:
-        """Direction of the motion before a standstill, while the joint stands after it; 0 while it moves."""
-        speed, _ = self._direct
-        moving = np.abs(speed) > CERTAIN * self.speed_doubt
-        last = np.maximum.accumulate(np.where(moving, np.arange(len(self)), -1))
-        direction = np.where(last >= 0, np.sign(speed)[last], 0.0)
-        # A reversal takes less than the window of the smoothing, or its speed is more than doubt.
-        number = np.cumsum(np.diff(moving, prepend=moving[0]))
-        samples, squares = np.bincount(number), np.bincount(number, speed**2)
-        still = (samples > window(len(self), self.rate)) & (squares < 2 * self.speed_doubt**2 * samples)
-        return np.where(~moving & still[number], direction, 0.0)
+        """Direction of the last displacement before a standstill, while the joint stands after it; 0 while it moves.
+
+        It stands where its angle stays within its own noise over the window of the smoothing, and around as long as it
+        moves no further than the doubt of the speed allows. Noise of the speed, and the swing of a smoothed speed after
+        a stop, have no part in it.
+        """
+        q, size = self.signals["q"], window(len(self), self.rate)
+        way, noise = maximum_filter1d(q, size) - minimum_filter1d(q, size), jitter(q, size)
+        rests, near = (
+            maximum_filter1d(way < least, size) for least in (noise, noise + self.speed_doubt * size / self.rate)
+        )
+        if not rests.any():
+            return np.zeros(len(self))
+        change = np.diff(near, prepend=near[0])
+        number, starts = np.cumsum(change), np.append(0, np.flatnonzero(change))
+        stands = near & (np.bincount(number, rests) > 0)[number]
+        return np.where(stands, displaced(q, float(np.median(noise[rests])))[starts][number], 0.0)
 
     @cached_property
     def inertia(self) -> Float[np.ndarray, " time"] | None:

@@ -191,12 +191,16 @@ class Fit:
     @cached_property
     def half_interval(self) -> Float[np.ndarray, " column"]:
         """Half of the 95 % interval of every weight, for errors that are correlated within a stretch only."""
+        return self.half_intervals(np.eye(self.X.shape[1]))
+
+    def half_intervals(self, sums: Float[np.ndarray, "sum column"]) -> Float[np.ndarray, " sum"]:
+        """The same of sums of weights, each given by the factors of the weights."""
         scale = _scale(self.X)
         inverse = np.linalg.pinv((self.X / scale).T @ (self.X / scale), hermitian=True)
         stretches = int(self.table.stretch.max()) + 1
         scores = np.zeros((stretches, self.X.shape[1]))
         np.add.at(scores, self.table.stretch, self.X / scale * self.residual[:, None])
-        spread = np.sqrt(np.diag(inverse @ (scores.T @ scores) @ inverse)) / scale
+        spread = np.linalg.norm(scores @ inverse @ (sums / scale).T, axis=0)
         return float(t.ppf(0.975, max(stretches - 1, 1))) * spread
 
     def missed(self, other: Table) -> Float[np.ndarray, " row"]:

@@ -8,12 +8,13 @@ import numpy as np
 
 from swgsim.common.outcome import FOUND
 from swgsim.effects.quantity import Role, quantities
-from swgsim.joint.cautions import DIFFERENT, SLOWEST, cautions, likely, next_experiment
-from swgsim.joint.days import Days
+from swgsim.joint.cautions import SLOWEST, cautions, differ, likely, next_experiment
+from swgsim.joint.days import Days, no_days
 from swgsim.joint.effects.friction import PositionFriction
 from swgsim.joint.effects.ripple import Ripple
 from swgsim.joint.extrapolation import by_speed
 from swgsim.joint.judged import Judged, Rung
+from swgsim.joint.low_speed import in_sum
 from swgsim.joint.naming import in_words, listed
 from swgsim.joint.recording import SIGNALS
 from swgsim.joint.regression import Fit, rms
@@ -29,7 +30,7 @@ def report(
     """The answer as plain numbers and text; unknown values are None. ``left_out`` names recordings with the reason."""
     first, top, unit = judged.table.recordings[0], judged.ladder.top, SIGNALS[judged.table.of].unit
     ratio, steps, base = first.gear_ratio, judged.ladder.steps, len(judged.ladder.textbook.terms)
-    words = [*map(str, lines), *([_friction_by_session(days)] if days and days.chance < DIFFERENT else [])]
+    words = [*map(str, lines), *([_friction_by_session(days)] if days and differ(days) else [])]
     share, word = judged.explained(judged.ladder.textbook), verdict(judged, words)
     return {
         "textbook_explains": share.value,
@@ -51,6 +52,7 @@ def report(
         "noise_floor": judged.floor,
         "gear_ratio": gear_ratio(judged),
         "calibrated": _weights(top, 0, base, unit),
+        "friction_in_sum": in_sum(top, unit),
         "effects": [
             {
                 "name": step.term.name(),
@@ -70,6 +72,7 @@ def report(
         "days": None if days is None else {
             "sessions": [vars(day) for day in days.days], "chance": days.chance, "spread": days.spread,
         },
+        "no_days": "" if days else no_days((judged.table, judged.heldout)),
         "unknown": {"words": words, "lines": [vars(line) for line in lines]} if words else None,
         "cautions": cautions(judged, left_out),
         "likely": likely(judged) if fails(judged) else [],

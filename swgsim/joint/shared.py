@@ -79,9 +79,13 @@ class OfLoad(Term):
     ----------
     measured : bool
         Whether the load is that of the torque sensor, or else that of the rigid-body model.
+    link : tuple of float
+        Without both: inertia, and gravity over cosine and sine of the angle, of the single link of the textbook, in the
+        unit of the signal. Empty if there is a torque.
     """
 
     measured: bool = False
+    link: tuple[float, ...] = ()
 
     @property
     def signal_of_load(self) -> str:
@@ -89,16 +93,28 @@ class OfLoad(Term):
         return "T_sensor" if self.measured else "T_rigid"
 
     def load(self, recording: JointRecording) -> Float[np.ndarray, " time"]:
-        """The load [N m]."""
-        return recording.signals[self.signal_of_load]
+        """The load [N m], or in the unit of the signal that of a link."""
+        return link(recording) @ np.array(self.link) if self.link else recording.signals[self.signal_of_load]
+
+    def units(self, of: str) -> tuple[str, ...]:
+        """Units of the weights; those of a load in the unit of the signal for a link."""
+        return tuple(unit.replace("(N m)", of).replace("N m", of) if self.link else unit for unit in super().units(of))
 
     def possible(self, recording: JointRecording) -> bool:
         """Whether a recording has the load, and all other signals."""
-        return all(name in recording.signals for name in (*self.needs, self.signal_of_load))
+        return super().possible(recording) and (bool(self.link) or self.signal_of_load in recording.signals)
 
     def beside(self, terms: Sequence[Term]) -> Any:
         """With the load of the model."""
-        return replace(super().beside(terms), measured=_of_model(OfLoad, terms, self).measured)
+        model = _of_model(OfLoad, terms, self)
+        return replace(super().beside(terms), measured=model.measured, link=model.link)
+
+
+def link(recording: JointRecording, lag: float = 0.0) -> Float[np.ndarray, "time 3"]:
+    """Acceleration, and cosine and sine of the angle, of a single link."""
+    angles, own = recording.links
+    acceleration = recording.later(recording.acceleration, lag)
+    return np.stack([acceleration, np.cos(angles[own]), np.sin(angles[own])], axis=1)
 
 
 def _of_model(kind: type, terms: Sequence[Term], own: Term) -> Any:

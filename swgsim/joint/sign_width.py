@@ -15,8 +15,8 @@ from swgsim.joint.term import Term
 WIDEST = 0.02
 # Longest lag between a signal and the motion, either way [s]: filters of drives and of their speeds.
 LONGEST = 0.02
-# Values of the first search of each.
-POINTS = 7
+# Values of the first search of each, and accuracy of the second in their steps.
+POINTS, FINE = 7, 0.05
 
 
 def with_sign_width(now: Fit) -> Fit:
@@ -49,6 +49,11 @@ def with_sign_width(now: Fit) -> Fit:
     return at(sign_width=float(np.exp(width)), lag=lag)
 
 
+def at_longest(lag: float) -> bool:
+    """Whether a lag [s] ran to its bound, as far as the search tells."""
+    return LONGEST - abs(lag) < 2 * FINE * 2 * LONGEST / (POINTS - 1)
+
+
 def _with(term: Term, motion: Mapping[str, Any]) -> Term:
     """A term with those of some parameters that it has."""
     return replace(term, **{name: value for name, value in motion.items() if _has(term, name)})
@@ -63,5 +68,5 @@ def _lowest(error: Callable[[float], float], low: float, high: float) -> float:
     grid = np.linspace(low, high, POINTS).tolist()
     best = int(np.argmin([error(x) for x in grid]))
     between = grid[max(best - 1, 0)], grid[min(best + 1, POINTS - 1)]
-    refined = minimize_scalar(error, bounds=between, options={"xatol": 0.05 * (grid[1] - grid[0])})
+    refined = minimize_scalar(error, bounds=between, options={"xatol": FINE * (grid[1] - grid[0])})
     return min((grid[best], float(refined.x)), key=error)

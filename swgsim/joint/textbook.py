@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from swgsim.joint.recording import PREDICTED, JointRecording, turns_back
 from swgsim.joint.regression import WORTH, Fit, Table, fit, rms
-from swgsim.joint.shared import OfLoad, OfMotion, OfSign
+from swgsim.joint.shared import OfLoad, OfMotion, OfSign, link
 from swgsim.joint.sign_width import with_sign_width
 from swgsim.joint.term import Term
 
@@ -28,11 +28,8 @@ class RigidBody(OfLoad, OfMotion):
         """The load, with the inertia of the motor if it is measured; or three columns of a single link."""
         if self.modelled and not self.measured:
             return self.load(recording)[:, None]
-        acceleration = recording.later(recording.acceleration, self.lag)
-        if self.measured:
-            return np.stack([self.load(recording), acceleration], axis=1)
-        angles, own = recording.links
-        return np.stack([acceleration, np.cos(angles[own]), np.sin(angles[own])], axis=1)
+        columns = link(recording, self.lag)
+        return np.stack([self.load(recording), columns[:, 0]], axis=1) if self.measured else columns
 
     def least(self, columns: int) -> Float[np.ndarray, " column"]:
         """Inertia is not negative. The factor of a load may be: it may be counted as the torque of the links."""
@@ -127,9 +124,33 @@ def fitted_textbook(table: Table) -> Fit:
     return measured if (_errors(measured) < (1 - WORTH) * _errors(plain)).all() else plain
 
 
+def with_link(found: Fit) -> Fit:
+    """The model whose single link is the load of the effects, if the recordings determine it: its torque is larger than
+    the intervals of its weights allow for. A joint that moves near one angle does not tell gravity from its zero.
+    """
+    rigid, *others = found.terms
+    if not isinstance(rigid, RigidBody) or rigid.modelled:
+        return found
+    columns, number = found.X, len(rigid.weights)
+    torque = float(np.mean((columns[:, :number] @ np.array(rigid.weights)) ** 2))
+    doubt = float((found.half_interval**2 * np.mean(columns**2, axis=0))[:number].sum())
+    return replace(found, terms=(replace(rigid, link=rigid.weights), *others)) if doubt < torque else found
+
+
 def _errors(found: Fit) -> Float[np.ndarray, " error"]:
     """Cross-validated error over all, and without the mean of each run."""
     return np.array([rms(found.unseen), rms(found.unseen - found.table.means_of_runs(found.unseen[:, None])[:, 0])])
+
+
+def unphysical(found: Fit) -> Fit:
+    """A model with all signs free, and in a torque sensor the friction of the gear, which it cannot measure.
+
+    What this explains and the model does not is explained by no joint: the signals are not what they are taken for.
+    """
+    table = found.table
+    open_ = table.of == "T_sensor" and turns_back(table.recordings)
+    more = (Friction(),) if open_ and not any(isinstance(term, Friction) for term in found.terms) else ()
+    return fit(table, (*found.terms, *more), bounded=False)
 
 
 def wrong_signs(textbook: Fit, unit: str) -> Iterator[str]:

@@ -7,7 +7,10 @@ from swgsim.common.outcome import FOUND, NOTHING, UNKNOWN
 from swgsim.joint.judged import Judged
 from swgsim.joint.naming import enumerated, listed
 from swgsim.joint.recording import SIGNALS
+from swgsim.joint.regression import Fit
+from swgsim.joint.shared import OfFriction
 from swgsim.joint.term import Term
+from swgsim.joint.textbook import unphysical
 
 # Verdicts for effects that do not lower the error on the held-out recordings, and for a model that does not describe
 # these.
@@ -29,12 +32,24 @@ def verdict(judged: Judged, remaining: Sequence[str]) -> str:
 
 
 def fails(judged: Judged) -> bool:
-    """Whether the model leaves more of the held-out signal than it explains, without and with effects; or is certainly
-    worse than a constant.
+    """Whether the model leaves more of the held-out signal than it explains, without and with effects; is certainly
+    worse than a constant; or is beaten by one that no joint can have.
     """
     fits = judged.ladder.textbook, judged.ladder.top
     slow, whole = [judged.explained(fit, slowly=True) for fit in fits], [judged.explained(fit) for fit in fits]
-    return all(share.value < LEAST_EXPLAINED for share in slow) or all(share.value + share.half < 0 for share in whole)
+    return (
+        all(share.value < LEAST_EXPLAINED for share in slow)
+        or all(share.value + share.half < 0 for share in whole)
+        or all(_impossible(judged, fit) for fit in fits)
+    )
+
+
+def _impossible(judged: Judged, fit: Fit) -> bool:
+    """Whether negative friction or inertia, or friction where none is, explains more of what a model leaves of the
+    held-out signal than it leaves itself.
+    """
+    left, then = (1 - judged.explained(each, slowly=True).value for each in (fit, unphysical(fit)))
+    return then < (1 - LEAST_EXPLAINED) * left
 
 
 def sentence(judged: Judged, remaining: Sequence[str]) -> str:
@@ -43,6 +58,8 @@ def sentence(judged: Judged, remaining: Sequence[str]) -> str:
     where = f"{first.robot}, {first.joint.replace('_', ' ')}, {of.meaning}"
     more = "one regularity of the residual remains" if len(remaining) == 1 else f"{len(remaining)} regularities remain"
     rest = f"; {more} unexplained" if remaining else ""
+    unsearched = [term for term in judged.ladder.unsearched if isinstance(term, OfFriction)]
+    rest += f"; not searched, needs T_rigid: {_named(judged, unsearched)}" if unsearched else ""
     found = [step.term for step in judged.ladder.steps]
     before, after = judged.before.heldout, judged.after.heldout
     if fails(judged):

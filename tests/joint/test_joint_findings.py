@@ -26,6 +26,7 @@ from fabricated_joints import (
 from swgsim.joint.intake.read import JointRecordings, read_joints
 from swgsim.joint.intake.scale import HALVES, MISTAKES, mistake, way
 from swgsim.joint.intake.source_file import read_source
+from swgsim.recordings.checks.defect import Defect
 
 
 def kinds(files: JointRecordings) -> set[tuple[str, str, str]]:
@@ -258,3 +259,16 @@ def test_every_finding_is_in_the_documentation() -> None:
     page = (root / "docs" / "joint_recordings.md").read_text()
     assert len(kinds) > 25
     assert {kind for kind in kinds if f"`{kind}`" not in page} == set()
+
+
+def test_findings_of_a_chosen_joint_leave_out_those_of_others() -> None:
+    found = tuple(
+        Defect("all_zero", "refuse", name, "current", "0 throughout", "a signal", "check the connection")
+        for name in ("run1 joint_1", "run1 joint_2", "run1")
+    )
+    files = JointRecordings((), (), found, refused=(("day", "run1", "joint_1"), ("day", "run1", "joint_2")))
+    said = files.findings("joint_2")
+    assert "run1 joint_2" in said
+    assert "joint_1" not in said
+    assert "also in 1 others: run1" in said
+    assert "joint_1" in files.findings()

@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from joint_fixtures import Hidden, sessions
+from joint_fixtures import VISCOUS, Hidden, sessions, trajectories
 from scipy.stats import binom
 
 from swgsim.common.seeds import generator
-from swgsim.joint.days import days
+from swgsim.joint.days import days, no_days
 from swgsim.joint.effects.ripple import Ripple
 from swgsim.joint.judged import Judged
 from swgsim.joint.ladder import Ladder, Trial
@@ -100,6 +100,26 @@ def test_days_differ_where_their_friction_does_and_not_where_runs_do():
         by_day(sessions(("days", draw), Hidden(scatter=0.05), names="AB", seconds=2.0)) for draw in range(DRAWS)
     ]
     assert (np.array(scattered) < 0.01).sum() <= 2
+
+
+def test_two_runs_give_the_friction_of_their_day_without_an_interval():
+    """The lubricant of day2 is thinner."""
+    recordings = []
+    for number, each in enumerate(trajectories("days", seconds=10.0)):
+        session, thin = ("day1", 0.0) if number < 2 else ("day2", 0.4 * VISCOUS)
+        current = each.signals["current"] - thin * each.signals["omega"]
+        recordings.append(replace(each, session=session, signals={**each.signals, "current": current}))
+    table = Table(tuple(recordings[:4]), "current")
+    found = days(fit(table, textbook(table.recordings, "current")), [table])
+    assert found is not None
+    assert found.chance is None
+    assert [(day.runs, day.deviation) for day in found.days] == [(2, None)] * 2
+    assert found.days[1].share / found.days[0].share == pytest.approx(0.6, abs=0.1)
+
+
+def test_sessions_that_show_no_friction_of_their_own_are_explained():
+    assert "torque sensor" in no_days([Table(RUNS, "T_sensor")])
+    assert "one session" in no_days([Table(RUNS[:1], "current")])
 
 
 def test_one_run_says_nothing_of_its_day():

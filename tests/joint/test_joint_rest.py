@@ -5,7 +5,7 @@ import pytest
 from joint_fixtures import COULOMB, VISCOUS
 
 from swgsim.common.seeds import generator
-from swgsim.joint.kinematics import least_doubt
+from swgsim.joint.kinematics import displaced, jitter, least_doubt
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.regression import Fit, Table
 from swgsim.joint.rest import trusted
@@ -63,6 +63,38 @@ def test_what_holds_a_joint_does_not_change_the_friction_of_its_motion() -> None
     coulomb, viscous = weights[Friction].weights
     assert (coulomb, viscous) == (pytest.approx(COULOMB, rel=0.03), pytest.approx(VISCOUS, rel=0.1))
     assert weights[RigidBody].weights[0] == pytest.approx(INERTIA, rel=0.05)
+
+
+@pytest.mark.parametrize("noise", [1e-3, 2e-3, 4e-3])
+def test_the_direction_at_rest_is_that_of_the_last_displacement_however_the_speed_scatters(noise: float) -> None:
+    """Long strokes allow long windows, over which the smoothed speed of a short stroke swings back."""
+    rng, place, short = generator("held", noise), np.arange(24 * 600) % 600, np.repeat(np.arange(24) % 8 == 0, 600)
+    way, length = np.repeat(rng.choice([-1, 1], 24), 600), np.where(short, 75, 450)
+    share = np.minimum(place / length, 1)
+    omega = way * np.where(short, 0.6, 0.5) * 16 * (share * (1 - share)) ** 2
+    q = np.cumsum(omega) / 500 + 5e-7 * rng.normal(size=len(omega))
+    signals = {"q": q, "omega": omega + noise * rng.normal(size=len(omega)), "current": omega}
+    held = JointRecording("run", "robot", "joint", "day", np.arange(len(q)) / 500, signals).held
+    rest = place > length + 10
+    assert (held[rest] == way[rest]).mean() > 0.99
+    assert not (held[rest] == -way[rest]).any()
+
+
+def test_noise_and_the_jitter_of_an_encoder_are_no_displacement() -> None:
+    rng, step = generator("displaced"), 1e-4
+    for still in (step * np.round(rng.uniform(0, 1, 20000)), step * rng.normal(size=20000)):
+        least = float(np.median(jitter(still, 75)))
+        assert not displaced(still, least).any()
+        moved = np.concatenate([still, still[-1] - 40 * step * np.linspace(0, 1, 100)])
+        assert displaced(moved, least)[-1] == -1
+
+
+def test_a_slow_reversal_is_no_standstill() -> None:
+    """Times that are uncertain by 1 ms make an angle uncertain where it moves fast."""
+    rng, time = generator("reversals"), np.arange(6000) / RATE
+    q = np.sin(0.5 * (time + 1e-3 * rng.normal(size=len(time))))
+    signals = {"q": q, "omega": 0.5 * np.cos(0.5 * time) + 1e-4 * rng.normal(size=len(q)), "current": q}
+    assert not JointRecording("run", "robot", "joint", "day", time, signals).held.any()
 
 
 def test_the_acceleration_is_smoothed_no_longer_than_the_noise_asks_for() -> None:

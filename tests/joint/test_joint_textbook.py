@@ -4,15 +4,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from joint_fixtures import COULOMB, PER_TORQUE, VISCOUS, coloured, trajectories
+from joint_fixtures import COULOMB, PER_TORQUE, VISCOUS, Hidden, coloured, trajectories
 
 from swgsim.common.seeds import generator
+from swgsim.joint.cautions import cautions
 from swgsim.joint.effects import SEARCHED
 from swgsim.joint.effects.friction import StribeckFriction
-from swgsim.joint.effects.load import EncoderEccentricity, GravityError
-from swgsim.joint.ladder import climb
+from swgsim.joint.effects.load import EncoderEccentricity, GravityError, LoadCurve
+from swgsim.joint.effects.slip import LoadDependentFriction, MaxwellSlip
+from swgsim.joint.judged import Judged
+from swgsim.joint.ladder import Ladder, climb
+from swgsim.joint.low_speed import in_sum
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.regression import Table, fit, rms
+from swgsim.joint.report import report
 from swgsim.joint.textbook import Friction, RigidBody, Stiction, fitted_textbook, textbook, wrong_signs
 
 NOISE = 0.03
@@ -61,10 +66,21 @@ def test_the_lag_of_the_current_is_fitted_and_is_no_effect() -> None:
         )
         for each in moved("late", 0.0, 4.0)
     )
-    ladder = climb(Table(late, "current"), SEARCHED)
+    table = Table(late, "current")
+    ladder = climb(table, SEARCHED)
     assert ladder.steps == ()
+    assert not any("at its bound" in each for each in cautions(Judged(ladder, table, None), []))
     (friction,) = (term for term in ladder.top.terms if isinstance(term, Friction))
     assert friction.lag == pytest.approx(0.012, abs=0.008)
+
+
+def test_a_lag_at_its_bound_is_a_caution() -> None:
+    table = Table(moved("bound", 0.01, 0.5), "current")
+    start = fitted_textbook(table)
+    for lag, said in ((0.02, True), (-0.02, True), (0.015, False)):
+        terms = tuple(replace(term, lag=lag) if hasattr(term, "lag") else term for term in start.terms)
+        judged = Judged(Ladder(fit(table, terms), (), ()), table, None)
+        assert any("at its bound of 20 ms" in each for each in cautions(judged, [])) == said
 
 
 def stopping(seed: object, part: float) -> tuple[JointRecording, ...]:
@@ -193,3 +209,46 @@ def test_a_motor_torque_is_explained_as_a_current_is() -> None:
     assert [type(term) for term in of_torque.terms] == [type(term) for term in of_current.terms]
     for one, other in zip(of_torque.terms, of_current.terms, strict=True):
         np.testing.assert_allclose(one.weights, 8.0 * np.array(other.weights), rtol=1e-6, atol=1e-6)
+
+
+def without_rigid(recordings: tuple[JointRecording, ...], moves: float = 1.0, about: float = 0.0) -> Table:
+    """The joint moves by a part of its way, about another angle, and has no model torque."""
+    found = []
+    for each in recordings:
+        kept = {name: values for name, values in each.signals.items() if name != "T_rigid"}
+        q, omega = each.signals["q"], each.signals["omega"]
+        near = moves * q + about
+        change = PER_TORQUE * 40 * (np.cos(near) - np.cos(q))
+        kept |= {"q": near, "omega": moves * omega, "current": each.signals["current"] + change}
+        found.append(replace(each, signals=kept))
+    return Table(tuple(found), "current")
+
+
+def test_the_load_of_the_textbooks_own_link_shows_load_dependent_friction() -> None:
+    table = without_rigid(trajectories("link", Hidden(load=0.02), rate=50.0))
+    ladder = climb(table, (LoadDependentFriction, LoadCurve))
+    (step,) = ladder.steps
+    assert isinstance(step.term, LoadDependentFriction)
+    assert step.term.weights[0] == pytest.approx(0.02 / PER_TORQUE, rel=0.1)
+    assert step.term.units("A") == ("A/A",)
+    assert [type(term) for term in ladder.unsearched] == [LoadCurve]
+
+
+def test_a_joint_that_moves_near_one_angle_does_not_give_its_load() -> None:
+    ladder = climb(without_rigid(trajectories("near", rate=50.0), 0.02, 0.8), (LoadDependentFriction,))
+    assert [type(term) for term in ladder.unsearched] == [LoadDependentFriction]
+    assert ladder.steps == ()
+    said = report(Judged(ladder, ladder.top.table, None), None, [])
+    assert "not searched, needs T_rigid: load dependent friction" in said["sentence"]
+
+
+def test_friction_in_sum_is_known_better_than_its_parts() -> None:
+    recordings = trajectories("sum", Hidden(presliding=(0.3, 2e-3)), rate=50.0)
+    start = fitted_textbook(Table(recordings, "current"))
+    top = fit(start.table, (*start.terms, MaxwellSlip(distance=1e-3)))
+    (total,) = in_sum(top, "A").values()
+    assert total["value"] == pytest.approx(COULOMB + 0.3, rel=0.03)
+    coulomb = next(i for i, term in enumerate(top.terms) if isinstance(term, Friction))
+    alone = float(top.half_interval[sum(len(term.weights) for term in top.terms[:coulomb])])
+    assert total["ci95"][1] - total["value"] < 0.5 * alone
+    assert in_sum(start, "A") == {}

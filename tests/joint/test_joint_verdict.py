@@ -1,12 +1,13 @@
 """Verdict and sentence of a joint follow its numbers, whatever they are."""
 
 import re
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from joint_fixtures import coloured, trajectory
+from joint_fixtures import PER_TORQUE, coloured, trajectory
 
 from swgsim.common.seeds import generator
 from swgsim.joint.effects.friction import AsymmetricFriction, QuadraticFriction, StribeckFriction
@@ -20,7 +21,7 @@ from swgsim.joint.regression import Fit, Table, fit
 from swgsim.joint.report import report
 from swgsim.joint.term import Term
 from swgsim.joint.textbook import textbook
-from swgsim.joint.verdict import percent
+from swgsim.joint.verdict import LEAST_EXPLAINED, percent
 
 EFFECTS = (StribeckFriction(), AsymmetricFriction(), QuadraticFriction(), LoadCurve(), Ripple(order=101.0))
 TABLES = [Table((trajectory(number, "verdict", rate=20.0),), "current") for number in range(2)]
@@ -111,6 +112,31 @@ def test_a_textbook_that_explains_nothing_is_told_with_likely_causes() -> None:
     assert "does not describe these recordings" in said["sentence"]
     assert any("side of the gear" in cause for cause in said["likely"])
     assert "check" in said["next_experiment"]["words"]
+
+
+def test_friction_that_would_have_to_drive_is_a_failure_of_the_textbook() -> None:
+    """The load explains most of the current, whose sign is the opposite one."""
+    recordings = (trajectory(number, "inverted", weight=80.0, rate=50.0) for number in range(3))
+    said = answer(
+        tuple(replace(each, signals={**each.signals, "current": -each.signals["current"]}) for each in recordings),
+        "current",
+    )
+    assert said["verdict"] == "textbook_fails"
+    assert said["textbook_explains"] > LEAST_EXPLAINED
+    assert "Coulomb friction" in said["likely"][0]
+    assert "inverted: true" in said["likely"][0]
+
+
+def test_the_torque_of_a_motor_that_is_mapped_as_a_torque_sensor_is_told() -> None:
+    recordings = []
+    for number in range(3):
+        here = trajectory(number, "motor", rate=50.0)
+        of_motor = here.signals["current"] / PER_TORQUE
+        signals = {"q": here.signals["q"], "omega": here.signals["omega"], "T_sensor": of_motor}
+        recordings.append(replace(here, signals=signals))
+    said = answer(tuple(recordings), "T_sensor")
+    assert said["verdict"] == "textbook_fails"
+    assert "map it as T_motor" in said["likely"][0]
 
 
 def test_a_signal_of_noise_alone_is_no_failure_of_the_textbook() -> None:

@@ -64,6 +64,10 @@ class LoadCurve(OfLoad):
     weight_names = ("quadratic coefficient", "cubic coefficient")
     per = ("/(N m)^2", "/(N m)^3")
 
+    def possible(self, recording: JointRecording) -> bool:
+        """Whether the load was recorded: its curve and that of a fitted one are the same."""
+        return self.signal_of_load in recording.signals
+
     def columns(self, recording: JointRecording) -> Float[np.ndarray, "time column"]:
         """Second and third power of the load."""
         load = self.load(recording)

@@ -29,7 +29,7 @@ def friction(judged: Judged, days: Days) -> Figure:
         at = _at(grid)
         curve = day.coulomb * sense(at) + day.zero + day.share * rising(at, judged.ladder.top.terms)
         over.plot(grid, curve, color=colour, linewidth=1.2)
-        below.errorbar(place, day.share, yerr=NORMAL * day.deviation, color=colour, marker=marker, capsize=4)
+        below.errorbar(place, day.share, yerr=NORMAL * (day.deviation or 0.0), color=colour, marker=marker, capsize=4)
     below.set_xticks(
         range(len(days.days)), short([day.session for day in days.days]), rotation=30, ha="right", fontsize=8
     )
@@ -39,7 +39,7 @@ def friction(judged: Judged, days: Days) -> Figure:
         below,
         "",
         "relative to all sessions",
-        f"speed-dependent friction, p-value {_chance(days.chance)}",
+        "speed-dependent friction" + ("" if days.chance is None else f", p-value {_chance(days.chance)}"),
     )
     session_key(picture, judged)
     return picture

@@ -64,9 +64,11 @@ class JointRecordings:
         lines.append(f"  at rest: {len(self.at_rest)}; refused: {len(self.refused)}; findings: {len(self.defects)}")
         return "\n".join(lines)
 
-    def findings(self) -> str:
-        """The findings as text, one line for each kind and channel."""
-        return summary(self.defects)
+    def findings(self, joint: str | None = None) -> str:
+        """The findings as text, one line for each kind and channel; without those of other joints if one is chosen."""
+        joints = {each.joint for each in self.recordings} | {each for _, _, each in self.refused}
+        others = tuple(f" {each}" for each in joints - {joint}) if joint in joints else ()
+        return summary([each for each in self.defects if not each.recording.endswith(others)])
 
     def require_usable(self) -> None:
         """Raise a ValueError if every recording was refused; it names the most frequent reason."""
