@@ -24,6 +24,8 @@ EVEN = 0.2
 EPOCH = (9.4e8, 4.1e9)
 # Slowest log [Hz]: where no unit is said, the time has the largest unit for which the log is not slower.
 SLOWEST = 5.0
+# Robots and amplifiers log faster [Hz]: at a slower rate another unit is as likely, and is asked for.
+USUAL = 50.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,14 +59,19 @@ def drafted_clock(named: Sequence[Named]) -> ClockDraft | None:
     if pair:
         return _draft(pair, ["s", "ns"], "names: seconds and nanoseconds")
     if numbers:
-        return _of_numbers(min(numbers, key=evenness), "name, increases")
+        return _of_numbers(_likeliest(numbers), "name, increases")
     if stamps := _stamps(columns):
         forms = [form for _, form in stamps]
         kind = "time stamps by ISO 8601" if forms == [STAMP] else f"time stamps {' '.join(forms)}"
         return _draft([column for column, _ in stamps], forms, kind)
     if others:
-        return _of_numbers(min(others, key=evenness), "increases in even steps")
+        return _of_numbers(_likeliest(others), "increases in even steps")
     return None
+
+
+def _likeliest(columns: Sequence[SeenColumn]) -> SeenColumn:
+    """The one with the fewest lost readings, and among these with the most even steps."""
+    return min(columns, key=lambda each: (each.lost, evenness(each)))
 
 
 def _draft(columns: Sequence[SeenColumn], units: Sequence[str], why: str, question: str = "") -> ClockDraft:
@@ -99,7 +106,9 @@ def _of_numbers(column: SeenColumn, why: str) -> ClockDraft:
     fits = [unit for unit in ("s", "ms", "us", "ns") if 1 / (step * FACTORS["s"][unit]) >= SLOWEST]
     unit = fits[0] if fits else "s"
     rate = 1 / (step * FACTORS["s"][unit])
-    return _draft([column], [unit], f"{why}; {rate:.4g} samples per second", "" if unit == "s" else "its unit")
+    return _draft(
+        [column], [unit], f"{why}; {rate:.4g} samples per second", "" if unit == "s" and rate >= USUAL else "its unit"
+    )
 
 
 def _stamps(columns: Sequence[SeenColumn]) -> list[tuple[SeenColumn, str]]:

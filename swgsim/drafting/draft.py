@@ -21,6 +21,7 @@ from swgsim.drafting.named import Named
 from swgsim.drafting.order_2 import has_order_2
 from swgsim.drafting.own_times import own_times
 from swgsim.drafting.seen import Seen
+from swgsim.drafting.seen_column import SeenColumn
 from swgsim.drafting.taken import Taken, travels
 from swgsim.drafting.words import meaning_of
 from swgsim.joint.intake.read import read_joints
@@ -137,13 +138,24 @@ def _understood(seen: Seen, kind: str, known: Mapping[str, Any]) -> tuple[ClockD
     """The time, and what each other column is taken for."""
     clock = drafted_clock([Named(each, meaning_of(each)) for each in seen.columns])
     columns, others = own_times(seen.columns, clock) if clock else (seen.columns, [])
+    columns, repeated = _first_of_their_name(columns)
+    again = [Taken(each, "", why="the name again: of another recording?") for each in repeated]
     named = [Named(each, meaning_of(each)) for each in columns]
     channels = gauge_channels if kind == GAUGES else joint_signals
     if clock is None:
-        return None, channels(named, None, known)
+        return None, [*channels(named, None, known), *again]
     of_time = [Taken(each, "t", clock.entry, clock.why, clock.question) for each in clock.columns]
     of_time += [Taken(each, "t", why="of the columns after it", active=False) for each in others]
-    return clock, [*of_time, *channels(named, clock.time, known)]
+    return clock, [*of_time, *channels(named, clock.time, known), *again]
+
+
+def _first_of_their_name(columns: Sequence[SeenColumn]) -> tuple[list[SeenColumn], list[SeenColumn]]:
+    """The columns, and those whose name an earlier one has: recordings may stand side by side."""
+    first: dict[tuple[str, str, str], SeenColumn] = {}
+    for place, each in enumerate(columns):
+        first.setdefault((each.name or str(place), each.unit, each.file), each)
+    kept = list(first.values())
+    return kept, [each for each in columns if each not in kept]
 
 
 def _most_moving(looked: LookedAt, taken: Sequence[Taken]) -> Seen:

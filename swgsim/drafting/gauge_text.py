@@ -13,6 +13,7 @@ from swgsim.drafting.seen import Seen
 from swgsim.drafting.taken import Taken
 from swgsim.drafting.yaml_text import ASK, clock_lines, flow, layout_lines, left_lines, line
 from swgsim.recordings.files.facts import KNOWN
+from swgsim.tables.endings import is_data
 from swgsim.tables.units import FACTORS
 
 ORDER = ("phi_in", "n_in", "T_in", "T_out", "s0", "s1", "s2", "s3", "s4")
@@ -82,6 +83,8 @@ def gauge_lines(
             yield line(fact, known[fact], "given", "", 2)
     if not alone:
         yield from _files(per_file, known)
+    elif not names.path and not is_data(name := next(iter(looked.runs))):
+        yield line("files", {name: {}}, "files of this ending are read only if they are named")
     yield from left_lines(taken, seen, looked.others)
 
 
@@ -112,8 +115,9 @@ def _measured(
         if fact not in found and own.get(channel) in FACTORS[target]:
             found[fact] = _round(abs(float(np.nanmean(values[channel]))) * FACTORS[target][own[channel]], digits)
     if "n_in_rpm" not in found and own.get("phi_in") in FACTORS["rad"] and clock is not None:
-        turned = np.ptp(unwrapped(values["phi_in"])) * FACTORS["rad"][own["phi_in"]]
-        found["n_in_rpm"] = _round(turned / float(np.ptp(clock.time)) * 30 / np.pi, 10)
+        there = np.isfinite(values["phi_in"]) & np.isfinite(clock.time)
+        turned = np.ptp(unwrapped(values["phi_in"][there])) * FACTORS["rad"][own["phi_in"]]
+        found["n_in_rpm"] = _round(turned / float(np.ptp(clock.time[there])) * 30 / np.pi, 10)
     return found
 
 

@@ -50,7 +50,7 @@ def layout_lines(seen: Seen, taken: Sequence[Taken]) -> Iterable[str]:
             if getattr(layout, key) != getattr(usual, key):
                 yield line(key, getattr(layout, key))
         if layout.sheet or layout.rows:
-            yield line("each", ".+", "several recordings in one file: what tells them apart")
+            yield line("each", ".+", "several recordings in one file; {NAME: {repeat: 2}, ...} has facts of each")
         if layout.sheet:
             yield line("sheet", layout.sheet, "the row of names comes again: so many tables below one another")
         if layout.rows:

@@ -1,12 +1,13 @@
 """Drafts of twenty layouts are read, and the numbers compared with the truth."""
 
 import re
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
 import pytest
 from judged import mistake
-from layouts import LAYOUTS
+from layouts import LAYOUTS, gauges
 
 import swgsim as swg
 from swgsim.drafting import command
@@ -106,3 +107,41 @@ def test_a_wrong_velocity_is_not_read(tmp_path: Path) -> None:
     draft = swg.draft_map(tmp_path)
     assert "omega: {from: q, smoothed_s: 0.05}" in draft.text
     assert any("vel_rad_s" in line and line.startswith("# ???") for line in draft.questions)
+
+
+def _cells(signals: dict, names: Iterable[str]) -> list[list[str]]:
+    """Columns of text, the time in ms."""
+    return [[f"{1000 * value if name == 't' else value:.6g}" for value in signals[name]] for name in names]
+
+
+def test_recordings_side_by_side_are_not_mixed(tmp_path: Path) -> None:
+    """The first one is drafted; the columns whose names come again are of another one, here shorter."""
+    first, second = (gauges(np.random.default_rng(1), load=load) for load in (39.0, 7.0))
+    names = {"t": "t [ms]", "phi_in": "angle [rad]", "T_out": "torque [Nm]", "s1": "bridge 1 [mV/V]"}
+    cells = _cells(first, names)
+    cells += [[*column[:2000], *[""] * 1000] for column in _cells(second, names)]
+    header = ",".join([*names.values(), *names.values()])
+    text = "\n".join([header, *(",".join(row) for row in zip(*cells, strict=True))])
+    (tmp_path / "two.csv").write_text(text + "\n", encoding="utf-8")
+    draft = swg.draft_map(tmp_path)
+    taken = draft.table().set_index("column")["taken for"]
+    assert taken[["1", "2", "3", "4"]].tolist() == ["t", "phi_in", "T_out?", "s1"]
+    assert "T_out_nm: 39" in draft.text
+    assert "n_in_rpm: 1200" in draft.text
+
+
+def test_a_slow_clock_without_a_unit_is_asked_for(tmp_path: Path) -> None:
+    """Steps of 0.1 are as well milliseconds."""
+    rows = "\n".join(f"{i / 10},{np.sin(i / 50)},{np.cos(i / 50)}" for i in range(600))
+    (tmp_path / "a.csv").write_text(f"time,pos_rad,current_A\n{rows}\n", encoding="utf-8")
+    assert any("its unit" in line for line in swg.draft_map(tmp_path).questions)
+
+
+def test_a_named_text_file_is_read_back(tmp_path: Path) -> None:
+    """Files of this ending are read only if the map names them."""
+    m = gauges(np.random.default_rng(1))
+    np.savetxt(tmp_path / "a.txt", np.column_stack([m[name] for name in ("t", "phi_in", "T_out", "s1")]),
+               delimiter="\t", header="t [s]\tangle [rad]\ttorque [Nm]\tbridge 1 [mV/V]", comments="")  # fmt: skip
+    draft = swg.draft_map(tmp_path)
+    assert "a.txt: {}" in draft.text
+    assert "1 recordings are read" in draft.findings
