@@ -137,6 +137,10 @@ class Covariance:
         rows = np.tile(chosen, len(self.alone.variance))
         return Covariance(self.base.features(chosen), self.G[rows])
 
+    def recordings(self, chosen: Bool[np.ndarray, " recording"]) -> "Covariance":
+        """The covariance of some of the recordings."""
+        return Covariance(self.base.recordings(chosen), self.G[np.repeat(chosen, self.alone.variance.shape[1])])
+
     def left_out(self, r: Float[np.ndarray, " row"], blocks: Sequence[Bool[np.ndarray, " row"]]) -> list["Expected"]:
         """The rows of each block as all the other rows predict them.
 

@@ -66,7 +66,9 @@ def next_steps(report: Mapping[str, Any]) -> list[str]:
     if report["error"]["noise_floor"] is None:
         steps.append("Record every operating point at least twice, so that the noise floor is known.")
     if not steps:
-        steps.append("No open question: nothing further needs to be recorded. Detection limits are listed below.")
+        steps.append(
+            "No open question: nothing further needs to be recorded. Detection limits are in the answer of the loop."
+        )
     return steps
 
 

@@ -1,0 +1,172 @@
+"""The diagnosis as ``diagnosis.json`` and as a page: verdict, probabilities, size, position, what no class explains."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from scipy.stats import chi2
+
+from swgsim.common.html import environment
+from swgsim.common.numbers import NORMAL, significant
+from swgsim.common.style import words
+from swgsim.dataset.faults import FAULTS
+from swgsim.effects.base import Effect
+from swgsim.effects.library import named
+from swgsim.effects.quantity import quantities, size_of
+from swgsim.identification.fit.fitted import Fitted
+from swgsim.identification.report import engineering_units
+from swgsim.identification.report.answer_page import next_steps
+from swgsim.identification.report.effect_words import effect_in_words, effect_text
+from swgsim.identification.report.found import probability_text
+from swgsim.identification.report.identification import Identification
+from swgsim.oracle.cells import Partition
+from swgsim.oracle.diagnosis import ENDS
+from swgsim.oracle.severity import Severities, positions
+from swgsim.storage.labelled_signals import CLASSES
+from swgsim.twin.fault_posterior import Seen, Suspected
+
+HEALTHY, FAULTY, SOMETHING_ELSE = "healthy", "faulty", "something_else"
+# Probability above which a sentence names another class.
+RIVAL = 0.05
+
+
+def report_of(
+    suspected: Suspected,
+    others: Sequence[Effect],
+    healthy: Fitted,
+    before: Identification | None,
+    loop: Identification,
+    false_alarms: float,
+    rng: np.random.Generator,
+) -> dict[str, Any]:
+    """The diagnosis as plain numbers and text.
+
+    Parameters
+    ----------
+    suspected : Suspected
+    others : sequence of Effect
+        Effects in its model that the loop found and that are no faults.
+    healthy : Fitted
+        The healthy recordings beside the model of the series.
+    before, loop : Identification
+        What the loop found in the healthy recordings, if it was asked, and in those in question.
+    false_alarms : float
+        Share of healthy gears that may be called faulty.
+    rng : Generator
+        Of simulated healthy gears.
+    """
+    measured = suspected.fitted.measured
+    whole = suspected.seen(np.ones(len(measured), bool))
+    probabilities = _by_class(whole)
+    fault = max(FAULTS, key=probabilities.__getitem__)
+    white = healthy.whole.whiten(healthy.from_start)
+    square = float(white @ white)
+    found: dict[str, Any] = {
+        "gear": measured.recordings[0].gear,
+        "probabilities": probabilities,
+        "fault": {"name": fault, "parameters": _parameters(suspected.partitions[fault], whole)},
+        "chance": float(whole.chance(rng)[0]),
+        "false_alarms": false_alarms,
+        "misfit": {"value": float(whole.misfit[0]), "chance": float(whole.chance_of_misfit[0])},
+        "misfit_of_healthy": {"value": square / len(white), "chance": float(chi2.sf(square, len(white)))},
+        "structure": loop.report["structure"],
+        "of_healthy": None if before is None else [effect_in_words(each) for each in before.answer.effects],
+        "something_else": _something_else(loop, others),
+        "recordings": [
+            {
+                "name": each.name,
+                "n_in_rpm": float(each.point.n_in_rpm),
+                "T_out_nm": float(each.point.T_out),
+                "probabilities": _by_class(suspected.seen(np.arange(len(measured)) == number)),
+            }
+            for number, each in enumerate(measured.recordings)
+        ],
+        "prior": dict(suspected.prior),
+        "made": loop.report["made"],
+    }
+    return {"verdict": _verdict(found), "sentence": _sentence(found), **found}
+
+
+def _by_class(seen: Seen) -> dict[str, float]:
+    return dict(zip(CLASSES, seen.posterior[0].tolist(), strict=True))
+
+
+def _parameters(partition: Partition, whole: Seen) -> dict[str, Any]:
+    """Size and position of a fault, as in ``report.json``."""
+    kind, places = named(partition.label), whole.model.places(whole.x, partition.label)
+    severities = Severities.of(partition, places)
+    size = size_of(kind)
+    low, middle, high = (float(severities.quantile(each)[0]) for each in (ENDS[0], 0.5, ENDS[1]))
+    found = {size: {"value": middle, "ci95": [low, high], "unit": quantities(kind)[size].unit}}
+    if partition.positions > 1:
+        angle, deviation = (float(each[0]) for each in positions(partition, places))
+        off = NORMAL * deviation
+        found["theta"] = {"value": angle, "ci95": [angle - off, angle + off] if off < np.pi else None, "unit": "rad"}
+    return found
+
+
+def _something_else(loop: Identification, others: Sequence[Effect]) -> str | None:
+    """What the loop found that is none of the faults and large enough to matter, in its own words."""
+    answer = loop.answer
+    in_orders = any(effect in answer.effects for effect in others) or (answer.unknown and not _faults_explain(loop))
+    return loop.sentence if in_orders or answer.lines or answer.unnamed else None
+
+
+def _faults_explain(loop: Identification) -> bool:
+    """Whether an answer of the loop's credible set has faults only, or nothing."""
+    return any(
+        not option.regularities and all(type(effect).name() in FAULTS for effect in option.effects)
+        for option, _ in loop.answer.decision.credible
+    )
+
+
+def _verdict(found: Mapping[str, Any]) -> str:
+    if found["misfit"]["chance"] < found["false_alarms"]:
+        return SOMETHING_ELSE
+    if found["chance"] <= found["false_alarms"]:
+        return FAULTY
+    return SOMETHING_ELSE if found["something_else"] else HEALTHY
+
+
+def _sentence(found: Mapping[str, Any]) -> str:
+    probabilities, fault = found["probabilities"], found["fault"]
+    if found["misfit"]["chance"] < found["false_alarms"]:
+        said = (
+            f"No class explains the recordings: the most probable one leaves {found['misfit']['value']:.3g} times the "
+            "squares that noise and tolerances make"
+        )
+    elif found["chance"] <= found["false_alarms"]:
+        p = probability_text(probabilities[fault["name"]])
+        said = f"Faulty: {effect_text(fault['name'], fault['parameters'])}; probability {p}"
+        said += _rivals(probabilities, fault["name"])
+    else:
+        p = probability_text(probabilities["healthy"])
+        said = f"No fault is seen: healthy with a probability of {p}{_rivals(probabilities, 'healthy')}"
+    if found["something_else"]:
+        said += f". Something else is: {found['something_else'].rstrip('.')}"
+    if found["misfit_of_healthy"]["chance"] < found["false_alarms"]:
+        said += (
+            f". I do not know this gear: its healthy recordings lie {found['misfit_of_healthy']['value']:.3g} times as "
+            "far off the model of the series, in squares, as they may"
+        )
+    return said + "."
+
+
+def _rivals(probabilities: Mapping[str, float], named_first: str) -> str:
+    rivals = [label for label in CLASSES if label != named_first and probabilities[label] > RIVAL]
+    listed = [f"{label.replace('_', ' ')} ({probability_text(probabilities[label])})" for label in rivals]
+    return f"; else {', '.join(listed)}" if listed else ""
+
+
+def page(report: Mapping[str, Any], of_loop: Mapping[str, Any]) -> str:
+    """The page of a diagnosis, with the report of the loop on the same recordings."""
+    templates = environment("swgsim")
+    templates.filters |= {"words": words, "significant": significant}
+    texts = ("parameter_words", "value_text", "interval_text")
+    return templates.get_template("twin/diagnosis_page.html.jinja").render(
+        report=report,
+        of_loop=of_loop,
+        next_steps=next_steps(of_loop),
+        probability_text=probability_text,
+        **{name: getattr(engineering_units, name) for name in texts},
+    )
