@@ -1,21 +1,17 @@
 """The diagnosis as ``diagnosis.json`` and as a page: verdict, probabilities, size, position, what no class explains."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from scipy.stats import chi2
 
-from swgsim.common.html import environment
 from swgsim.common.numbers import NORMAL, significant
-from swgsim.common.style import words
 from swgsim.dataset.faults import FAULTS
-from swgsim.effects.base import Effect
 from swgsim.effects.library import named
 from swgsim.effects.quantity import quantities, size_of
 from swgsim.identification.fit.fitted import Fitted
-from swgsim.identification.report import engineering_units
-from swgsim.identification.report.answer_page import next_steps
+from swgsim.identification.report.answer_page import next_steps, rendered
 from swgsim.identification.report.effect_words import effect_in_words, effect_text
 from swgsim.identification.report.found import probability_text
 from swgsim.identification.report.identification import Identification
@@ -32,7 +28,7 @@ RIVAL = 0.05
 
 def report_of(
     suspected: Suspected,
-    others: Sequence[Effect],
+    something_else: str | None,
     healthy: Fitted,
     before: Identification | None,
     loop: Identification,
@@ -44,8 +40,8 @@ def report_of(
     Parameters
     ----------
     suspected : Suspected
-    others : sequence of Effect
-        Effects in its model that the loop found and that are no faults.
+    something_else : str or None
+        What the loop found that is no fault.
     healthy : Fitted
         The healthy recordings beside the model of the series.
     before, loop : Identification
@@ -71,7 +67,7 @@ def report_of(
         "misfit_of_healthy": {"value": square / len(white), "chance": float(chi2.sf(square, len(white)))},
         "structure": loop.report["structure"],
         "of_healthy": None if before is None else [effect_in_words(each) for each in before.answer.effects],
-        "something_else": _something_else(loop, others),
+        "something_else": something_else,
         "recordings": [
             {
                 "name": each.name,
@@ -84,7 +80,8 @@ def report_of(
         "prior": dict(suspected.prior),
         "made": loop.report["made"],
     }
-    return {"verdict": _verdict(found), "sentence": _sentence(found), **found}
+    verdict, sentence = _verdict(found)
+    return {"verdict": verdict, "sentence": sentence, **found}
 
 
 def _by_class(seen: Seen) -> dict[str, float]:
@@ -105,51 +102,27 @@ def _parameters(partition: Partition, whole: Seen) -> dict[str, Any]:
     return found
 
 
-def _something_else(loop: Identification, others: Sequence[Effect]) -> str | None:
-    """What the loop found that is none of the faults and large enough to matter, in its own words."""
-    answer = loop.answer
-    in_orders = any(effect in answer.effects for effect in others) or (answer.unknown and not _faults_explain(loop))
-    return loop.sentence if in_orders or answer.lines or answer.unnamed else None
-
-
-def _faults_explain(loop: Identification) -> bool:
-    """Whether an answer of the loop's credible set has faults only, or nothing."""
-    return any(
-        not option.regularities and all(type(effect).name() in FAULTS for effect in option.effects)
-        for option, _ in loop.answer.decision.credible
-    )
-
-
-def _verdict(found: Mapping[str, Any]) -> str:
-    if found["misfit"]["chance"] < found["false_alarms"]:
-        return SOMETHING_ELSE
-    if found["chance"] <= found["false_alarms"]:
-        return FAULTY
-    return SOMETHING_ELSE if found["something_else"] else HEALTHY
-
-
-def _sentence(found: Mapping[str, Any]) -> str:
-    probabilities, fault = found["probabilities"], found["fault"]
-    if found["misfit"]["chance"] < found["false_alarms"]:
-        said = (
-            f"No class explains the recordings: the most probable one leaves {found['misfit']['value']:.3g} times the "
-            "squares that noise and tolerances make"
+def _verdict(found: Mapping[str, Any]) -> tuple[str, str]:
+    """The verdict, and the same in a sentence."""
+    probabilities, fault, limit = found["probabilities"], found["fault"], found["false_alarms"]
+    if found["misfit"]["chance"] < limit:
+        verdict, said = (
+            SOMETHING_ELSE,
+            f"No class explains the recordings (misfit {significant(found['misfit']['value'])})",
         )
-    elif found["chance"] <= found["false_alarms"]:
-        p = probability_text(probabilities[fault["name"]])
-        said = f"Faulty: {effect_text(fault['name'], fault['parameters'])}; probability {p}"
-        said += _rivals(probabilities, fault["name"])
+    elif found["chance"] <= limit:
+        p = probability_text(probabilities[fault["name"]]) + _rivals(probabilities, fault["name"])
+        verdict, said = FAULTY, f"Faulty: {effect_text(fault['name'], fault['parameters'])}; probability {p}"
     else:
-        p = probability_text(probabilities["healthy"])
-        said = f"No fault is seen: healthy with a probability of {p}{_rivals(probabilities, 'healthy')}"
+        p = probability_text(probabilities["healthy"]) + _rivals(probabilities, "healthy")
+        verdict = SOMETHING_ELSE if found["something_else"] else HEALTHY
+        said = f"No fault is seen: healthy with a probability of {p}"
     if found["something_else"]:
         said += f". Something else is: {found['something_else'].rstrip('.')}"
-    if found["misfit_of_healthy"]["chance"] < found["false_alarms"]:
-        said += (
-            f". I do not know this gear: its healthy recordings lie {found['misfit_of_healthy']['value']:.3g} times as "
-            "far off the model of the series, in squares, as they may"
-        )
-    return said + "."
+    if found["misfit_of_healthy"]["chance"] < limit:
+        misfit = significant(found["misfit_of_healthy"]["value"])
+        said += f". I do not know this gear (misfit of the healthy recordings {misfit}, 1 is expected)"
+    return verdict, f"{said}."
 
 
 def _rivals(probabilities: Mapping[str, float], named_first: str) -> str:
@@ -160,13 +133,4 @@ def _rivals(probabilities: Mapping[str, float], named_first: str) -> str:
 
 def page(report: Mapping[str, Any], of_loop: Mapping[str, Any]) -> str:
     """The page of a diagnosis, with the report of the loop on the same recordings."""
-    templates = environment("swgsim")
-    templates.filters |= {"words": words, "significant": significant}
-    texts = ("parameter_words", "value_text", "interval_text")
-    return templates.get_template("twin/diagnosis_page.html.jinja").render(
-        report=report,
-        of_loop=of_loop,
-        next_steps=next_steps(of_loop),
-        probability_text=probability_text,
-        **{name: getattr(engineering_units, name) for name in texts},
-    )
+    return rendered("twin/diagnosis_page.html.jinja", report=report, of_loop=of_loop, next_steps=next_steps(of_loop))

@@ -125,7 +125,6 @@ def diagnose(
     """
     chosen, kinds = _prior(prior or {}), None if effects is None else tuple(effects)
     require("the diagnosis", "false_alarms", false_alarms, low=0.001, high=0.5)
-    partitions = {label: Partition.of(label, ends, RESOLUTION, SECTORS) for label, ends in SIZES.items()}
     before = None
     if isinstance(healthy, Unit):
         unit = healthy
@@ -134,9 +133,14 @@ def diagnose(
         before = identify(healthy, nominal_unit(gear, declared), effects=kinds, seed=seed, progress=progress)
         unit = commission(healthy, gear, declared=(*declared, *before.answer.effects), progress=progress)
     loop = identify(recordings, unit, effects=kinds, seed=seed, progress=progress)
-    fitted, others = _without_faults(loop)
-    suspected, rng = Suspected.of(fitted, partitions, chosen), generator("diagnosis", seed)
-    return Diagnosis(report_of(suspected, others, _healthy(unit), before, loop, false_alarms, rng), loop)
+    fitted, something_else = _without_faults(loop)
+    suspected, rng = Suspected.of(fitted, partitions(), chosen), generator("diagnosis", seed)
+    return Diagnosis(report_of(suspected, something_else, _healthy(unit), before, loop, false_alarms, rng), loop)
+
+
+def partitions() -> dict[str, Partition]:
+    """The cells of every fault."""
+    return {label: Partition.of(label, ends, RESOLUTION, SECTORS) for label, ends in SIZES.items()}
 
 
 def _prior(changed: Mapping[str, float]) -> dict[str, float]:
@@ -148,16 +152,20 @@ def _prior(changed: Mapping[str, float]) -> dict[str, float]:
     return {label: weights[label] / sum(weights.values()) for label in CLASSES}
 
 
-def _without_faults(loop: Identification) -> tuple[Fitted, tuple[Effect, ...]]:
-    """The model without a fault, and the effects in it that the loop found and that are no faults.
+def _without_faults(loop: Identification) -> tuple[Fitted, str | None]:
+    """The model without a fault, and what the loop found that is none, in its words.
 
-    They are in it if no answer of the loop's credible set does without them.
+    Other effects are in the model if no answer of the loop's credible set does without them.
     """
-    decision = loop.answer.decision
-    if any(all(type(effect).name() in FAULTS for effect in option.effects) for option, _ in decision.credible):
-        return decision.before, ()
+    answer, decision = loop.answer, loop.answer.decision
     others = tuple(effect for effect in decision.effects if type(effect).name() not in FAULTS)
-    return extended(decision.before, others), others
+    explained = any(
+        not option.regularities and all(type(effect).name() in FAULTS for effect in option.effects)
+        for option, _ in decision.credible
+    )
+    found = answer.lines or answer.unnamed or (not explained and (answer.unknown or set(others) & set(answer.effects)))
+    fitted = decision.before if explained or not others else extended(decision.before, others)
+    return fitted, loop.sentence if found else None
 
 
 def _healthy(unit: Unit) -> Fitted:

@@ -119,6 +119,13 @@ class Covariance:
         white = self.whiten(r)
         return -0.5 * (float(white @ white) + self.log_determinant)
 
+    def drawn(self, rng: np.random.Generator, draws: int) -> Float[np.ndarray, "row draw"]:
+        """Residuals with this covariance."""
+        recordings, _, kinds = self.alone.C.shape
+        made = self.alone.made(rng.standard_normal((recordings * kinds, draws)))
+        made += self.columns @ rng.standard_normal((self.columns.shape[1], draws))
+        return made + np.sqrt(self.variance)[:, None] * rng.standard_normal(made.shape)
+
     def common_mean(self, X: np.ndarray) -> np.ndarray:
         """Posterior mean of the common errors (column,), in standard deviations, given a residual (row,) or several."""
         mean = self._mean(X)
