@@ -63,8 +63,8 @@ def report_of(
         "fault": {"name": fault, "parameters": _parameters(suspected.partitions[fault], whole)},
         "chance": float(whole.chance(rng)[0]),
         "false_alarms": false_alarms,
-        "misfit": {"value": float(whole.misfit[0]), "chance": float(whole.chance_of_misfit[0])},
-        "misfit_of_healthy": {"value": square / len(white), "chance": float(chi2.sf(square, len(white)))},
+        "lack_of_fit": {"value": float(whole.lack_of_fit[0]), "chance": float(whole.chance_of_lack[0])},
+        "lack_of_fit_healthy": {"value": square / len(white), "chance": float(chi2.sf(square, len(white)))},
         "structure": loop.report["structure"],
         "of_healthy": None if before is None else [effect_in_words(each) for each in before.answer.effects],
         "something_else": something_else,
@@ -105,11 +105,9 @@ def _parameters(partition: Partition, whole: Seen) -> dict[str, Any]:
 def _verdict(found: Mapping[str, Any]) -> tuple[str, str]:
     """The verdict, and the same in a sentence."""
     probabilities, fault, limit = found["probabilities"], found["fault"], found["false_alarms"]
-    if found["misfit"]["chance"] < limit:
-        verdict, said = (
-            SOMETHING_ELSE,
-            f"No class explains the recordings (misfit {significant(found['misfit']['value'])})",
-        )
+    if found["lack_of_fit"]["chance"] < limit:
+        lack = significant(found["lack_of_fit"]["value"])
+        verdict, said = SOMETHING_ELSE, f"No class explains the recordings (lack of fit {lack}; 1 is expected)"
     elif found["chance"] <= limit:
         p = probability_text(probabilities[fault["name"]]) + _rivals(probabilities, fault["name"])
         verdict, said = FAULTY, f"Faulty: {effect_text(fault['name'], fault['parameters'])}; probability {p}"
@@ -119,9 +117,9 @@ def _verdict(found: Mapping[str, Any]) -> tuple[str, str]:
         said = f"No fault is seen: healthy with a probability of {p}"
     if found["something_else"]:
         said += f". Something else is: {found['something_else'].rstrip('.')}"
-    if found["misfit_of_healthy"]["chance"] < limit:
-        misfit = significant(found["misfit_of_healthy"]["value"])
-        said += f". I do not know this gear (misfit of the healthy recordings {misfit}, 1 is expected)"
+    if found["lack_of_fit_healthy"]["chance"] < limit:
+        lack = significant(found["lack_of_fit_healthy"]["value"])
+        said += f". I do not know this gear (lack of fit of its healthy recordings {lack}; 1 is expected)"
     return verdict, f"{said}."
 
 

@@ -116,15 +116,15 @@ class Seen:
         return (1 + (drawn >= self._odds(self._likelihood)[:, None]).sum(axis=1)) / (1 + DRAWS)
 
     @cached_property
-    def misfit(self) -> Float[np.ndarray, " sample"]:
+    def lack_of_fit(self) -> Float[np.ndarray, " sample"]:
         """Sum of squares that the most probable class leaves, over its expectation: 1 where the model is right."""
         best = np.take_along_axis(self._likelihood, self.posterior.argmax(axis=1)[:, None], axis=1)[:, 0]
         return (self.square - 2 * (best - self._likelihood[:, HEALTHY])) / self.rows
 
     @property
-    def chance_of_misfit(self) -> Float[np.ndarray, " sample"]:
+    def chance_of_lack(self) -> Float[np.ndarray, " sample"]:
         """How often the right class would leave as much."""
-        return chi2.sf(self.misfit * self.rows, self.rows)
+        return chi2.sf(self.lack_of_fit * self.rows, self.rows)
 
     @cached_property
     def _likelihood(self) -> Float[np.ndarray, "sample class"]:

@@ -103,8 +103,8 @@ def test_a_sick_gear_is_named_with_size_and_position(sick) -> None:
     assert theta["ci95"][0] < 1.0 < theta["ci95"][1]
     assert theta["value"] == pytest.approx(1.0, abs=0.05)
     assert sick.report["chance"] < 0.002
-    assert sick.report["misfit"]["chance"] > 0.01
-    assert sick.report["misfit_of_healthy"]["chance"] > 0.01
+    assert sick.report["lack_of_fit"]["chance"] > 0.01
+    assert sick.report["lack_of_fit_healthy"]["chance"] > 0.01
     assert len(sick.report["recordings"]) == 2 * len(POINTS)
     assert sum(sick.report["recordings"][0]["probabilities"].values()) == pytest.approx(1)
 
