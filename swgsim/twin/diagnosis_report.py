@@ -1,13 +1,13 @@
 """The diagnosis as ``diagnosis.json`` and as a page: verdict, probabilities, size, position, what no class explains."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from scipy.stats import chi2
 
 from swgsim.common.numbers import NORMAL, significant
 from swgsim.dataset.faults import FAULTS
+from swgsim.effects.base import Effect
 from swgsim.effects.library import named
 from swgsim.effects.quantity import quantities, size_of
 from swgsim.identification.fit.fitted import Fitted
@@ -19,7 +19,7 @@ from swgsim.oracle.cells import Partition
 from swgsim.oracle.diagnosis import ENDS
 from swgsim.oracle.severity import Severities, positions
 from swgsim.storage.labelled_signals import CLASSES
-from swgsim.twin.fault_posterior import Seen, Suspected
+from swgsim.twin.fault_posterior import Seen, Suspected, lack_of_fit
 
 HEALTHY, FAULTY, SOMETHING_ELSE = "healthy", "faulty", "something_else"
 # Probability above which a sentence names another class.
@@ -30,7 +30,7 @@ def report_of(
     suspected: Suspected,
     something_else: str | None,
     healthy: Fitted,
-    before: Identification | None,
+    of_healthy: Sequence[Effect] | None,
     loop: Identification,
     false_alarms: float,
     rng: np.random.Generator,
@@ -44,8 +44,10 @@ def report_of(
         What the loop found that is no fault.
     healthy : Fitted
         The healthy recordings beside the model of the series.
-    before, loop : Identification
-        What the loop found in the healthy recordings, if it was asked, and in those in question.
+    of_healthy : sequence of Effect or None
+        What the loop found in the healthy gear, if it was asked.
+    loop : Identification
+        What it found in the recordings in question.
     false_alarms : float
         Share of healthy gears that may be called faulty.
     rng : Generator
@@ -55,8 +57,6 @@ def report_of(
     whole = suspected.seen(np.ones(len(measured), bool))
     probabilities = _by_class(whole)
     fault = max(FAULTS, key=probabilities.__getitem__)
-    white = healthy.whole.whiten(healthy.from_start)
-    square = float(white @ white)
     found: dict[str, Any] = {
         "gear": measured.recordings[0].gear,
         "probabilities": probabilities,
@@ -64,9 +64,9 @@ def report_of(
         "chance": float(whole.chance(rng)[0]),
         "false_alarms": false_alarms,
         "lack_of_fit": {"value": float(whole.lack_of_fit[0]), "chance": float(whole.chance_of_lack[0])},
-        "lack_of_fit_healthy": {"value": square / len(white), "chance": float(chi2.sf(square, len(white)))},
+        "lack_of_fit_healthy": dict(zip(("value", "chance"), lack_of_fit(healthy), strict=True)),
         "structure": loop.report["structure"],
-        "of_healthy": None if before is None else [effect_in_words(each) for each in before.answer.effects],
+        "of_healthy": None if of_healthy is None else [effect_in_words(each) for each in of_healthy],
         "something_else": something_else,
         "recordings": [
             {

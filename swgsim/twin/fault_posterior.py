@@ -139,3 +139,10 @@ class Seen:
 def _uncertain(cells: Cells) -> Cells:
     """Cells whose change the chain has right to a share only, that of the mesh of the truss."""
     return Cells(cells.shift, np.concatenate([cells.spread, EXACT * cells.shift[:, None]], axis=1))
+
+
+def lack_of_fit(fitted: Fitted) -> tuple[float, float]:
+    """Sum of squares of a residual over its expectation, and how often the right model would leave as much."""
+    white = fitted.whole.whiten(fitted.from_start)
+    square = float(white @ white)
+    return square / len(white), float(chi2.sf(square, len(white)))

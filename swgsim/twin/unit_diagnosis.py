@@ -25,7 +25,7 @@ from swgsim.oracle.cells import Partition, Resolution
 from swgsim.recordings.recording import Recording
 from swgsim.storage.labelled_signals import CLASSES
 from swgsim.twin.diagnosis_report import page, report_of
-from swgsim.twin.fault_posterior import Suspected
+from swgsim.twin.fault_posterior import Suspected, lack_of_fit
 
 # Least and largest size of each fault, between which all are equally probable: from what hardly matters to what breaks.
 SIZES: Mapping[str, tuple[float, float]] = {
@@ -94,8 +94,8 @@ def diagnose(
 ) -> Diagnosis:
     """Whether a gear is sick, of what, how large and where.
 
-    The loop looks for what the model lacks, in the healthy recordings and in the new ones. What it finds in the healthy
-    gear is declared, and the gear is commissioned with it: this is the twin, on which Bayes' rule judges.
+    The loop looks for what the model lacks, in the healthy recordings and in the new ones. What explains the
+    healthy gear is declared, and the gear is commissioned with it: this is the twin, on which Bayes' rule judges.
 
     Parameters
     ----------
@@ -125,17 +125,19 @@ def diagnose(
     """
     chosen, kinds = _prior(prior or {}), None if effects is None else tuple(effects)
     require("the diagnosis", "false_alarms", false_alarms, low=0.001, high=0.5)
-    before = None
+    found = None
     if isinstance(healthy, Unit):
         unit = healthy
     else:
         gear, healthy, declared = gear or Gear(), tuple(healthy), tuple(declared)
-        before = identify(healthy, nominal_unit(gear, declared), effects=kinds, seed=seed, progress=progress)
-        unit = commission(healthy, gear, declared=(*declared, *before.answer.effects), progress=progress)
+        before = identify(healthy, nominal_unit(gear, declared), effects=kinds, seed=seed, progress=progress).answer
+        # In a gear that even so is none of the series, effects would stand for what commissioning has to learn.
+        found = before.effects if lack_of_fit(before.decision.after)[1] >= false_alarms else ()
+        unit = commission(healthy, gear, declared=(*declared, *found), progress=progress)
     loop = identify(recordings, unit, effects=kinds, seed=seed, progress=progress)
     fitted, something_else = _without_faults(loop)
     suspected, rng = Suspected.of(fitted, partitions(), chosen), generator("diagnosis", seed)
-    return Diagnosis(report_of(suspected, something_else, _healthy(unit), before, loop, false_alarms, rng), loop)
+    return Diagnosis(report_of(suspected, something_else, _healthy(unit), found, loop, false_alarms, rng), loop)
 
 
 def partitions() -> dict[str, Partition]:
