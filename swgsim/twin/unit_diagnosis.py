@@ -38,7 +38,8 @@ SIZES: Mapping[str, tuple[float, float]] = {
 # Most gears that are examined are healthy; the faults share the rest.
 PRIOR = {"healthy": CAUSES[0], **dict.fromkeys(FAULTS, (1 - CAUSES[0]) / len(FAULTS))}
 FALSE_ALARMS = 0.01
-RESOLUTION = Resolution(nodes=5, severities=dict.fromkeys(FAULTS, 24), finer=4)
+# A root crack has more cells, as its change grows with the inverse of the size.
+RESOLUTION = Resolution(nodes=5, severities={**dict.fromkeys(FAULTS, 24), "root_tooth_crack": 72}, finer=4)
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +133,8 @@ def diagnose(
         gear, healthy, declared = gear or Gear(), tuple(healthy), tuple(declared)
         before = identify(healthy, nominal_unit(gear, declared), effects=kinds, seed=seed, progress=progress).answer
         # In a gear that even so is none of the series, effects would stand for what commissioning has to learn.
-        found = before.effects if lack_of_fit(before.decision.after)[1] >= false_alarms else ()
+        explained = not before.unknown and lack_of_fit(before.decision.after)[1] >= false_alarms
+        found = before.effects if explained else ()
         unit = commission(healthy, gear, declared=(*declared, *found), progress=progress)
     loop = identify(recordings, unit, effects=kinds, seed=seed, progress=progress)
     fitted, something_else = _without_faults(loop)

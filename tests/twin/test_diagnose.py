@@ -40,7 +40,7 @@ POINTS = tuple(OperatingPoint(n, T) for n in (2000.0, 4000.0) for T in (10.0, 70
 SEARCHED = ["eccentric_wave_generator", "gauge_gain", "reduced_damping"]
 COARSE = Resolution(
     nodes=5,
-    severities=dict.fromkeys(FAULTS, 12),
+    severities={**dict.fromkeys(FAULTS, 12), "root_tooth_crack": 72},
     positions={"eccentric_wave_generator": 12, "tip_tooth_crack": 24},
     finer=4,
 )
