@@ -25,7 +25,6 @@ from swgsim.identification.calls import commission
 from swgsim.identification.data.angle_zero import from_zero
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import predict
-from swgsim.identification.decide.decision import EXACT
 from swgsim.identification.fit.fitting import fit
 from swgsim.oracle.diagnosis import ENDS
 from swgsim.oracle.severity import Severities
@@ -55,7 +54,7 @@ def calibration(
     predicted = predict([fitted.model, *models], measured.situations, measured.layout)
     changes = measured.rows(np.moveaxis(predicted[1:] - predicted[0], 0, -1))[np.repeat(chosen, len(measured.layout))]
     errors = fitted.whole.recordings(chosen).drawn(rng, draws)
-    seen = suspected.seen(chosen, errors + changes * (1 + EXACT * rng.standard_normal(draws)))
+    seen = suspected.seen(chosen, errors + changes * (1 + fitted.unit.structure * rng.standard_normal(draws)))
     table = pd.DataFrame(seen.posterior, columns=list(CLASSES)).assign(label=labels, below=np.nan)
     for label, partition in of.items():
         rows = np.flatnonzero(labels == label)

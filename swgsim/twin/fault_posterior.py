@@ -15,7 +15,6 @@ from scipy.stats import chi2
 
 from swgsim.identification.covariance.low_rank_covariance import HIDDEN
 from swgsim.identification.data.model import predict
-from swgsim.identification.decide.decision import EXACT
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.oracle.cells import Cells, Partition
 from swgsim.oracle.point import PointModel
@@ -74,10 +73,15 @@ class Suspected:
         V, size = V[:, square > HIDDEN], np.sqrt(square[square > HIDDEN])
         ends = np.cumsum([len(each.variants()) for each in self.partitions.values()])
         pieces = zip(self.partitions.items(), np.split(V * size, ends[:-1]), strict=True)
-        faults = {label: _uncertain(each.cells(piece)) for (label, each), piece in pieces}
+        faults = {label: self._uncertain(each.cells(piece)) for (label, each), piece in pieces}
         model = PointModel(np.zeros(len(size)), np.eye(len(size)), faults)
         log_prior = np.log([self.prior[label] for label in CLASSES])
         return Seen(model, residual.T @ changes @ V / size, log_prior, (residual**2).sum(axis=0), len(residual))
+
+    def _uncertain(self, cells: Cells) -> Cells:
+        """Cells whose change is known to the spread of the structure only: 1 % by the mesh, more in foreign gears."""
+        scaled = self.fitted.unit.structure * cells.shift[:, None]
+        return Cells(cells.shift, np.concatenate([cells.spread, scaled], axis=1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,11 +138,6 @@ class Seen:
         """Logarithm of the odds of any fault."""
         log = likelihood + self.log_prior
         return logsumexp(np.delete(log, HEALTHY, axis=1), axis=1) - log[:, HEALTHY]
-
-
-def _uncertain(cells: Cells) -> Cells:
-    """Cells whose change the chain has right to a share only, that of the mesh of the truss."""
-    return Cells(cells.shift, np.concatenate([cells.spread, EXACT * cells.shift[:, None]], axis=1))
 
 
 def lack_of_fit(fitted: Fitted) -> tuple[float, float]:
