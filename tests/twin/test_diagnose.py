@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from diagnosis_calibration import calibration
 from scipy.stats import binom, kstest
 
 import swgsim as swg
@@ -30,7 +31,6 @@ from swgsim.recordings.files.folder import write_folder
 from swgsim.recordings.recording import Recording
 from swgsim.storage.labelled_signals import CLASSES
 from swgsim.twin import diagnose_job, unit_diagnosis
-from swgsim.twin.calibration import calibration
 from swgsim.twin.fault_posterior import Suspected
 
 GEAR = yaml.safe_load((Path(__file__).parents[2] / "conf" / "gear" / "gear1.yaml").read_text())
