@@ -134,9 +134,10 @@ benchmark: $(READY)  ## the chain against the obvious ways of doing the same
 convergence: $(READY)  ## gauge signals against the mesh of the flex spline
 	$(BIN)/python -m swgsim.studies.convergence
 
-docs: $(READY)  ## the picture of the README and the page of the effects
+docs: $(DEV)  ## the pictures of the README and of the calibration of diagnoses, and the page of the effects
 	$(BIN)/python -m swgsim.studies.flexspline_figures docs/flexspline.png
 	$(BIN)/python -m swgsim.studies.effect_gallery docs
+	$(BIN)/python tests/diagnosis_calibration.py docs/diagnosis_calibration.png
 
 site: $(DEV)  ## the documentation site, docs/_build/html/index.html, built strictly and offline
 	$(BIN)/sphinx-build -W --keep-going -q -b html $(if $(EXAMPLES),,-D plot_gallery=0) docs docs/_build/html

@@ -8,6 +8,7 @@
 - :func:`draft_map`: a first map of files of others, by looking at them; it is then corrected by hand.
 - :func:`commission`, :func:`identify`: what the healthy gear is like, and which physical effect a model of it lacks.
   ``unit.save("gear7.unit.h5")`` and ``Unit.load("gear7.unit.h5")`` keep what was learned.
+- :func:`diagnose`: whether a gear is sick, of what, how large and where, from recordings and healthy ones before.
 - :func:`record`, :func:`generate`: recordings of a virtual test bench, and labelled data sets for :mod:`learn`.
 - :class:`Run`, :func:`simulate_runs`: many runs at once, for studies of one's own.
 

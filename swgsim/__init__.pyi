@@ -6,9 +6,11 @@ from .gear import Conditions, Gear, KinematicError, OperatingPoint, Population, 
 from .identification import Identification, Unit, commission
 from .joint import JointAnswer, JointRecordings, recordings_of
 from .recordings import Recording, RecordingSet, read_recordings, write_folder
+from .twin import Diagnosis, diagnose
 
 __all__ = [
     "Conditions",
+    "Diagnosis",
     "Gear",
     "Identification",
     "JointAnswer",
@@ -27,6 +29,7 @@ __all__ = [
     "Window",
     "__version__",
     "commission",
+    "diagnose",
     "draft_map",
     "effects",
     "generate",

@@ -115,7 +115,4 @@ def holding(fitted: Fitted, residual: np.ndarray) -> Fitted:
 
 def drawn(covariance: Covariance, rng: np.random.Generator) -> np.ndarray:
     """A residual with this covariance."""
-    recordings, _, kinds = covariance.alone.C.shape
-    common = covariance.alone.made(rng.standard_normal(recordings * kinds))
-    common += covariance.columns @ rng.standard_normal(covariance.columns.shape[1])
-    return common + np.sqrt(covariance.variance) * rng.standard_normal(len(covariance.variance))
+    return covariance.drawn(rng, 1)[:, 0]

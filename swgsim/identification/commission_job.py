@@ -1,6 +1,5 @@
 """The command ``swg commission``: recordings of a healthy gear in, the unit out as a file."""
 
-import sys
 import time
 from collections.abc import Mapping
 from pathlib import Path
@@ -8,6 +7,7 @@ from typing import Any
 
 from swgsim.common.files import require_writable
 from swgsim.identification.calls import commission
+from swgsim.identification.report.given import say, source_of
 from swgsim.jobs import settings
 from swgsim.recordings.checks.defect import summary
 from swgsim.recordings.read import read_recordings
@@ -30,22 +30,16 @@ def run(config: Mapping[str, Any]) -> dict[str, Any]:
         If the file cannot be written.
     """
     start, out = time.perf_counter(), Path(config["out"])
-    source = config["recordings"]
-    if source is None:
-        raise ValueError("no recordings: give recordings=FOLDER, a folder with manifest.csv or a file of recordings")
+    source = source_of(config)
     require_writable(out.parent)
     gear, declared = settings.gear(config["gear"]), settings.effects(config["effects"])
-    _progress(f"reading {source}")
+    say(f"reading {source}")
     with read_for("recordings", source):
         recordings = read_recordings(source, config["mapping"] or None)
     if recordings.defects:
-        _progress(summary(recordings.defects))
-    unit = commission(recordings, gear, declared=declared, progress=_progress)
+        say(summary(recordings.defects))
+    unit = commission(recordings, gear, declared=declared, progress=say)
     unit.save(out)
     seconds = round(time.perf_counter() - start, 1)
     print(f"{out}: {unit!r}; {seconds:.1f} s")
     return {"path": str(out), "recordings": len(recordings), "seconds": seconds}
-
-
-def _progress(step: str) -> None:
-    print(step, file=sys.stderr, flush=True)

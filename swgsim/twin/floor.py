@@ -29,7 +29,7 @@ def floor_of(knowledge: Knowledge, true: Model, references: References, expected
         Of the true gear; what faults change hardly depends on the level of its friction.
     """
     gear: Gear = true.gear
-    start = Model(gear.with_transmission(b3=0.0), true.effects)
+    start = Model(gear.with_transmission(b3=0.0), (*true.effects, *knowledge.plan.effects))
     of_unit = parameters_of(gear, knowledge.bench, further=knowledge.further)
     friction = {name: of_unit[name] for name in ("b1", *knowledge.further)}
     fitted = fit_gear(knowledge, references, start, friction, turns=1)

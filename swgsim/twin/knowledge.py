@@ -53,10 +53,10 @@ class Knowledge:
         return [Situation(point, conditions) for point in self.plan.grid.points]
 
     def plan_of(self, effects: tuple[Effect, ...]) -> Plan:
-        """The plan for one unit whose imperfections are given: the bench draws none."""
+        """The plan for one unit, all effects of which are given: the bench draws no imperfections."""
         drawn = ("eccentricity", "cam_form", "gauge_position")
         bench = replace(self.bench, **dict.fromkeys(drawn, 0.0))
-        return replace(self.plan, bench=bench, effects=(*self.plan.effects, *effects))
+        return replace(self.plan, bench=bench, effects=effects)
 
     def scattered(self, model: Model) -> Scattered:
         """How healthy recordings of a gear scatter."""
@@ -64,8 +64,8 @@ class Knowledge:
 
     @cached_property
     def start(self) -> Model:
-        """The model from which a fit begins."""
-        return start_of(self.nominal)
+        """The model from which a fit begins, with the declared effects of the plan."""
+        return start_of(self.nominal).plus(*self.plan.effects)
 
     @cached_property
     def at_start(self) -> Scattered:

@@ -40,6 +40,7 @@ from swgsim.identification.interharmonics.line_pattern import Part
 from swgsim.identification.interharmonics.unattributed_lines import Unnamed
 from swgsim.identification.report import close_loop as job
 from swgsim.identification.report.answer import Answer
+from swgsim.identification.report.given import _comparable
 from swgsim.identification.report.identification import Identification
 from swgsim.identification.report.next_experiment import RECORDINGS, SEPARATED, next_experiments
 from swgsim.identification.report.open_questions import next_experiment
@@ -283,7 +284,7 @@ def test_an_interrupted_command_says_that_it_keeps_nothing(folders, monkeypatch)
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(job, "read_recordings", interrupted)
+    monkeypatch.setattr("swgsim.identification.report.given.read_recordings", interrupted)
     with pytest.raises(KeyboardInterrupt, match="nothing is kept"):
         job.run(choices(folders, "sick", out=str(folders / "interrupted")))
 
@@ -418,10 +419,10 @@ def test_a_recording_does_not_commission_itself():
 
 def test_channels_that_only_one_side_has_are_left_out():
     recordings, others = (recorded(seed=seed, points=POINTS[:1]) for seed in (1, 2))
-    healthy = job._comparable(RecordingSet(recordings), RecordingSet(tuple(_without(each, "s0") for each in others)))
+    healthy = _comparable(RecordingSet(recordings), RecordingSet(tuple(_without(each, "s0") for each in others)))
     assert "s0" not in healthy[0].channels
     assert list(
-        job._comparable(RecordingSet(tuple(_without(r, "s1") for r in recordings)), RecordingSet(others))[0].channels
+        _comparable(RecordingSet(tuple(_without(r, "s1") for r in recordings)), RecordingSet(others))[0].channels
     ) == [name for name in others[0].channels if name != "s1"]
 
 

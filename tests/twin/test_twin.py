@@ -10,6 +10,7 @@ from twin_fixtures import DRAWN, KNOWLEDGE, PLAN, POINTS, recordings
 
 from swgsim.common.seeds import generator
 from swgsim.dataset.simulate_cases import record
+from swgsim.effects import Coning
 from swgsim.oracle.model import observations
 from swgsim.storage.labelled_signals import CLASSES
 from swgsim.twin import FittedGear, References, Twin, fit_gear
@@ -105,6 +106,19 @@ def test_another_mesh_is_another_structure() -> None:
     assert exact.lack > 0
     assert np.abs(exact.offset).max() > 0
     assert fit_gear(KNOWLEDGE, references).misfit < 2
+
+
+def test_declared_effects_are_part_of_the_twin() -> None:
+    """A healthy gear with an effect beyond those of a series fits if the effect is declared, and only then."""
+    coned = replace(PLAN, effects=(Coning(0.1),))
+    references = References.of(record(coned, [case for case in PLAN.grid.cases(DRAWN) if case.reference]))
+    told = replace(KNOWLEDGE, plan=replace(KNOWLEDGE.plan, effects=coned.effects))
+    with_it, without = (
+        fit_gear(each, references, each.start, each.parameters(), turns=1) for each in (told, KNOWLEDGE)
+    )
+    assert with_it.model.effects[-1] == Coning(0.1)
+    assert with_it.misfit < 2
+    assert without.misfit > 2 * with_it.misfit
 
 
 def test_what_is_missing_is_named() -> None:

@@ -118,6 +118,13 @@ class Covariance:
         white = self.whiten(r)
         return -0.5 * (float(white @ white) + self.log_determinant)
 
+    def drawn(self, rng: np.random.Generator, draws: int) -> Float[np.ndarray, "row draw"]:
+        """Residuals with this covariance."""
+        recordings, _, kinds = self.alone.C.shape
+        made = self.alone.made(rng.standard_normal((recordings * kinds, draws)))
+        made += self.columns @ rng.standard_normal((self.columns.shape[1], draws))
+        return made + np.sqrt(self.variance)[:, None] * rng.standard_normal(made.shape)
+
     def common_mean(self, X: np.ndarray) -> np.ndarray:
         """Posterior mean of the common errors (column,), in standard deviations, given a residual (row,) or several."""
         mean = self._mean(X)
@@ -130,6 +137,10 @@ class Covariance:
     def _mean(self, X: np.ndarray) -> np.ndarray:
         """Posterior mean of the errors in G alone, in standard deviations. The errors of A are unknown too."""
         return cho_solve((self._L, True), self._weighed.T @ X)
+
+    def recordings(self, chosen: Bool[np.ndarray, " recording"]) -> "Covariance":
+        """The covariance of some of the recordings."""
+        return Covariance(self.base.recordings(chosen), self.G[np.repeat(chosen, self.alone.variance.shape[1])])
 
     def left_out(
         self, r: Float[np.ndarray, " row"], blocks: Sequence[Bool[np.ndarray, " row"]]

@@ -90,6 +90,10 @@ class RecordingCovariance:
         recordings, _, kinds = self.C.shape
         return self.made(np.eye(recordings * kinds))
 
+    def recordings(self, chosen: Bool[np.ndarray, " recording"]) -> "RecordingCovariance":
+        """Of some of the recordings."""
+        return RecordingCovariance(self.variance[chosen], self.C[chosen])
+
     def _split(self, X: np.ndarray) -> np.ndarray:
         """Rows by recording (recording, feature, column)."""
         return X.reshape(*self.variance.shape, -1)

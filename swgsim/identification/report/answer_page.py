@@ -39,21 +39,24 @@ def page(report: Mapping[str, Any], pictures: Mapping[str, style.Picture]) -> st
     pictures : mapping
         Pictures by name; ``residual`` and ``posterior`` are part of the summary.
     """
-    templates = environment("swgsim")
-    templates.filters["words"] = plain_title
-    templates.filters["significant"] = significant
-    texts = ("parameter_words", "value_text", "interval_text")
-    return templates.get_template(TEMPLATE).render(
+    return rendered(
+        TEMPLATE,
         report=report,
         pictures=pictures,
         next_steps=next_steps(report),
         about=about,
         degrees=lambda angle: significant(None if angle is None else float(np.rad2deg(angle))),
         separation_text=separation_text,
-        probability_text=probability_text,
         effect_text=effect_text,
-        **{name: getattr(engineering_units, name) for name in texts},
     )
+
+
+def rendered(template: str, **values: Any) -> str:
+    """A template of this package with values, and with the texts of parameters and probabilities."""
+    templates = environment("swgsim")
+    templates.filters |= {"words": plain_title, "significant": significant}
+    texts = {name: getattr(engineering_units, name) for name in ("parameter_words", "value_text", "interval_text")}
+    return templates.get_template(template).render(probability_text=probability_text, **texts, **values)
 
 
 def about(name: str) -> list[str]:
@@ -78,7 +81,9 @@ def next_steps(report: Mapping[str, Any]) -> list[str]:
     if report["error"]["noise_floor"] is None:
         steps.append("Record every operating point at least twice, so that the noise floor is known.")
     if not steps:
-        steps.append("No open question: nothing further needs to be recorded. Detection limits are listed below.")
+        steps.append(
+            "No open question: nothing further needs to be recorded. Detection limits are in the answer of the loop."
+        )
     return steps
 
 

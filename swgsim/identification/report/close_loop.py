@@ -1,7 +1,6 @@
 """The command ``swg close-loop``: recordings in, the answer out as a folder."""
 
 import hashlib
-import sys
 import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
@@ -19,25 +18,12 @@ from swgsim.effects.library import SEARCHED, listed, named
 from swgsim.effects.line_between import LineBetween
 from swgsim.effects.regularity import Regularity
 from swgsim.effects.text import from_entries
-from swgsim.identification.calls import (
-    commission,
-    identify,
-    nominal_unit,
-    require_comparable,
-    require_same_gear,
-    with_channels,
-)
-from swgsim.identification.data.features import COMPARED
+from swgsim.identification.calls import commission, identify, nominal_unit
 from swgsim.identification.fit.unit import Unit
-from swgsim.identification.fit.unit_file import is_unit_file
 from swgsim.identification.report.effect_words import effect_in_words, effect_text
 from swgsim.identification.report.engineering_units import value_text
-from swgsim.jobs import settings
-from swgsim.recordings.files.manifest import NAME as MANIFEST
-from swgsim.recordings.read import read_recordings
+from swgsim.identification.report.given import given, say, source_of
 from swgsim.recordings.recording import Recording
-from swgsim.recordings.recording_set import RecordingSet
-from swgsim.tables.file_defect import read_for
 
 
 def run(config: Mapping[str, Any]) -> Outcome:
@@ -62,60 +48,29 @@ def run(config: Mapping[str, Any]) -> Outcome:
 
 def _run(config: Mapping[str, Any]) -> Outcome:
     start = time.perf_counter()
-    source, healthy_source = config["recordings"], config["commissioning"]
-    if source is None:
-        raise ValueError("no recordings: give recordings=FOLDER, a folder with manifest.csv or a file of recordings")
+    source = source_of(config)
     kinds = library(config)
     require_writable(Path(config["out"]))
     hidden = None if config["truth"] is None else _hidden(Path(config["truth"]), source)
-    _progress(f"reading {source}")
-    recordings = _read(source, "recordings", config["mapping"])
-    gear, declared = settings.gear(config["gear"]), settings.effects(config["effects"])
-    if healthy_source is None:
+    recordings, gear, declared, healthy = given(config)
+    if healthy is None:
         unit = nominal_unit(gear, declared)
-    elif is_unit_file(Path(healthy_source)):
-        unit = _kept(config)
+    elif isinstance(healthy, Unit):
+        unit = healthy
     else:
-        _progress(f"reading {healthy_source}")
-        own_format = (Path(healthy_source) / MANIFEST).is_file()
-        mapping = config["commissioning_mapping"] or (None if own_format else config["mapping"])
-        healthy = _read(healthy_source, "commissioning", mapping)
-        recordings = replace(recordings, defects=(*recordings.defects, *healthy.defects))
-        unit = commission(_comparable(recordings, healthy), gear, declared=declared, progress=_progress)
-    found = identify(
-        recordings, unit, effects=kinds, interest=config["interest"], seed=config["seed"], progress=_progress
-    )
+        unit = commission(healthy, gear, declared=declared, progress=say)
+    found = identify(recordings, unit, effects=kinds, interest=config["interest"], seed=config["seed"], progress=say)
     report = {
         **found.report,
-        "made": {**found.report["made"], "commissioning": healthy_source},
+        "made": {**found.report["made"], "commissioning": config["commissioning"]},
         "seconds": round(time.perf_counter() - start, 1),
         **({} if hidden is None else {"hidden": hidden}),
     }
     found = replace(found, report=report)
-    _progress(f"writing {config['out']}")
+    say(f"writing {config['out']}")
     found.save(config["out"])
     print("\n".join(lines(report)))
     return Outcome(report, {name: each for name, (_, each) in found.pictures.items()}, digest(recordings))
-
-
-def _kept(config: Mapping[str, Any]) -> Unit:
-    """The unit of a file.
-
-    Raises
-    ------
-    ValueError
-        If it cannot be read, or a choice is given that the unit has already.
-    """
-    path = config["commissioning"]
-    for name in ("effects", "commissioning_mapping"):
-        if config[name]:
-            raise ValueError(f"{name}= is for recordings, commissioning={path} is a unit that has it: leave one out")
-    _progress(f"reading {path}")
-    return Unit.load(path)
-
-
-def _progress(step: str) -> None:
-    print(step, file=sys.stderr, flush=True)
 
 
 def library(config: Mapping[str, Any]) -> tuple[type[Effect], ...]:
@@ -183,33 +138,6 @@ def digest(recordings: Iterable[Recording]) -> str:
         digest_.update(f"{each.name} {each.session} {each.point} {each.conditions}".encode())
         digest_.update(each.numbers.encode())
     return digest_.hexdigest()[:16]
-
-
-def _read(path: str, what: str, mapping: str | None) -> RecordingSet:
-    """Recordings of one gear with the channels that an identification needs."""
-    with read_for(what, path):
-        recordings = read_recordings(path, mapping or None)
-    require_comparable(recordings.recordings, f"{what}={path}")
-    return recordings
-
-
-def _comparable(recordings: RecordingSet, healthy: RecordingSet) -> tuple[Recording, ...]:
-    """Recordings of the commissioning, with the channels that the recordings in question have too.
-
-    Raises
-    ------
-    ValueError
-        If they are of different gears, share no channel, or one recording is in both.
-    """
-    one, other = recordings[0].channels, healthy[0].channels
-    common = [name for name in one if name in other]
-    if not set(common) & set(COMPARED):
-        raise ValueError(
-            f"recordings ({', '.join(one)}) and commissioning ({', '.join(other)}) share no channel besides the angle: "
-            "record the same channels"
-        )
-    require_same_gear(recordings.recordings, healthy.recordings)
-    return with_channels(healthy.recordings, common)
 
 
 def _hidden(path: Path, recordings: str) -> str:
