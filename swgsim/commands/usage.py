@@ -71,14 +71,18 @@ def _groups(lines: Sequence[str]) -> Iterator[tuple[str, str]]:
 def _values(lines: Sequence[str]) -> Iterator[tuple[str, str]]:
     """Values with the keys that lead to them; what is deeper than keys with values is left to the file."""
     path: dict[int, str] = {}
+    unclosed = 0  # braces of a value of several lines, of which the first one is shown
     for line in lines:
+        inside, plain = unclosed > 0, line.split(" #")[0].rstrip()
+        unclosed += plain.count("{") - plain.count("}")
         if line.startswith("#"):
             yield line.removeprefix("#").strip(), ""
-        elif found := KEY.fullmatch(line.split(" #")[0].rstrip()):
+        elif not inside and (found := KEY.fullmatch(plain)):
             depth = len(found["indent"])
             path = {each: key for each, key in path.items() if each < depth} | {depth: found["key"]}
             if found["value"] or _comment(line):
-                yield ".".join(path.values()) + (f"={found['value']}" if found["value"] else ":"), _comment(line)
+                value = f"={found['value']}{' …}' * (unclosed > 0)}" if found["value"] else ":"
+                yield ".".join(path.values()) + value, _comment(line)
 
 
 def _comment(line: str) -> str:

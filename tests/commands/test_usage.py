@@ -17,7 +17,7 @@ def test_every_choice_of_a_command_is_in_its_help(name: str, file: str) -> None:
     groups = [key for each in config.pop("defaults") if isinstance(each, dict) for key in each]
     values = {key: value for key, value in config.items() if key != "hydra" and not isinstance(value, dict)}
     for wanted in [*(key for key in groups if not key.startswith("override")), *values]:
-        assert any(line.startswith(f"  {wanted}=") for line in lines), wanted
+        assert any(line.startswith((f"  {wanted}=", f"  {wanted}:")) for line in lines), wanted
 
 
 def test_help_has_the_comments_of_the_file_and_no_value_of_a_group() -> None:

@@ -116,7 +116,7 @@ def test_the_page_answers_the_questions_of_a_workshop(folder, sick) -> None:
     for question in ("Is it sick? yes : fewer than 0.2 % of healthy", "Of what, and how sure?", "How large?", "Where?"):
         assert question in text
     assert re.search(r"direction from gauge s1, counted with the rotation: 5\d° \(95 %: 5\d to \d\d\)", text)
-    assert "What would settle it Check the gear: wave generator." in text
+    assert "What would settle it Check the wave generator: measure run-out" in text
     assert "None" not in text
     assert (folder / "answer" / "loop" / "page.html").is_file()
     assert json.loads((folder / "answer" / "diagnosis.json").read_text())["sentence"] == sick.sentence

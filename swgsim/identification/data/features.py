@@ -61,6 +61,10 @@ class Layout:
         """Whether each feature is of speed or torque."""
         return ~self.of_gauges
 
+    def of(self, recordings: Sequence[Recording]) -> Float[np.ndarray, "recording feature"]:
+        """The feature vectors of recordings of equal length; other layouts observe something else."""
+        return features_alike(recordings, self)
+
     def lines(self, features: Float[np.ndarray, "*batch feature"]) -> Complex[np.ndarray, "*batch channel order"]:
         """Complex order lines of feature vectors; signal = Re(sum of lines[k] exp(i k phi))."""
         parts = features.reshape(*features.shape[:-1], len(self.channels), 2 * ORDERS + 1)

@@ -13,7 +13,7 @@ from swgsim.chain.motion import NoSteadyState
 from swgsim.effects.base import Effect, overrides
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import Gear, OperatingPoint
-from swgsim.identification.data.features import Layout, features_alike
+from swgsim.identification.data.features import Layout
 from swgsim.identification.data.unit_lines import Lines, OwnLines
 
 # Samples per revolution; the highest order that is fitted needs more than twice its number.
@@ -82,7 +82,7 @@ def predict(
     _, first = np.unique(row, return_index=True)
     recordings = simulate_turns([runs[i] for i in first], revolutions=1, points=POINTS, sectors=sectors, search=search)
     some = (recordings[i : i + AT_ONCE] for i in range(0, len(recordings), AT_ONCE))
-    found = np.concatenate([features_alike(each, layout) for each in some])
+    found = np.concatenate([layout.of(each) for each in some])
     return found[row].reshape(len(models), len(situations), len(layout))
 
 
