@@ -12,7 +12,7 @@ from swgsim.identification.data import model
 from swgsim.identification.decide import decision, option
 from swgsim.identification.fit import form_error, map_fit, shape_marginal
 from swgsim.identification.fit.fitted import Fitted
-from swgsim.identification.fit.fitting import unbent
+from swgsim.identification.fit.fitting import at_plausible_parameters
 from swgsim.identification.fit.map_fit import calibrate
 from swgsim.identification.fit.priors import of_effects
 from swgsim.identification.search.regularities import Atom, columns
@@ -72,4 +72,4 @@ def patch_chain(patch, null: Fitted, changes: Mapping[type[Effect], np.ndarray])
     for module in (option, decision):
         patch.setattr(module, "extended", extended)
     patch.setattr(decision, "fit", lambda measured, unit: replace(null, measured=measured))
-    assert unbent(null) is null  # nothing of the unit is fitted
+    assert at_plausible_parameters(null) is null  # nothing of the unit is fitted

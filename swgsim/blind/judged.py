@@ -124,7 +124,7 @@ class Judged:
         return self.first == "unknown"
 
     @property
-    def told_untestable(self) -> bool:
+    def reported_untestable(self) -> bool:
         """Whether the answer reports the hidden effects as absorbed or as below their detection limits."""
         return all(
             type(effect).name() in self.answer["absorbed"] or abs(beyond_nothing(effect)) < self._seen_from(effect)

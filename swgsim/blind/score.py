@@ -51,7 +51,7 @@ def score(cases: Sequence[Judged]) -> dict[str, Any]:
         "absorbed_named_as_such": rate(
             [set(case.case.names) <= set(case.answer["absorbed"]) for case in untestable if not case.failed]
         ),
-        "untestable_told": rate([case.told_untestable for case in untestable if not case.failed]),
+        "untestable_told": rate([case.reported_untestable for case in untestable if not case.failed]),
         "false_effect_on_untestable": rate([case.false for case in untestable if not case.failed]),
         "after_over_oracle_median": median([case.over("after", "oracle") for case in known if not case.failed]),
         "after_over_before_median": median([case.over("after", "before") for case in known if not case.failed]),
@@ -98,11 +98,11 @@ def calibration_error(cases: Sequence[Judged]) -> float | None:
 def worst(cases: Sequence[Judged]) -> list[Judged]:
     """The worst errors: failures, then nulls, then the strongest effects."""
 
-    def shame(case: Judged) -> tuple[bool, bool, float]:
+    def weight(case: Judged) -> tuple[bool, bool, float]:
         return case.failed, case.null, max(case.case.strengths, default=0.0)
 
     wrong = [case for case in cases if case.cause not in (RIGHT, "too weak", "unknown effect too weak")]
-    return sorted(wrong, key=shame, reverse=True)[:WORST]
+    return sorted(wrong, key=weight, reverse=True)[:WORST]
 
 
 def account(case: Judged) -> dict[str, Any]:

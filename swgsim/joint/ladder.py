@@ -131,13 +131,13 @@ def climb(
     progress(f"textbook model: error {now.error:.4g} {unit} on the {len(table.recordings)} fitted recordings")
     steps: list[Trial] = []
     known: dict[float, tuple[Wave, ...]] = {}
-    library = [kind().beside(start.terms) for kind in kinds]
+    library = [kind().added_to(start.terms) for kind in kinds]
     possible = [term for term in library if _possible(term, start)]
     # Errors of a rigid-body model have no meaning without it.
     open_ = [term for term in library if isinstance(term, OfLoad) and table.of in term.explains and not term.of_model]
     unsearched = tuple(term for term in open_ if not all(map(term.possible, table.recordings)))
     while True:
-        sought = [term.beside(now.terms) for term in possible if type(term) not in {type(each) for each in now.terms}]
+        sought = [term.added_to(now.terms) for term in possible if type(term) not in {type(each) for each in now.terms}]
         candidates = _candidates(now, sought, known)
         tested = tqdm(
             candidates, f"step {len(steps) + 1}", unit=" candidates", leave=False, disable=None if bar else True

@@ -26,9 +26,9 @@ class OfFriction(Term):
     explains = PREDICTED
     side: int = 1
 
-    def beside(self, terms: Sequence[Term]) -> Any:
+    def added_to(self, terms: Sequence[Term]) -> Any:
         """On the side of the model's friction."""
-        return replace(super().beside(terms), side=_of_model(OfFriction, terms, self).side)
+        return replace(super().added_to(terms), side=_of_model(OfFriction, terms, self).side)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,9 +44,9 @@ class OfMotion(Term):
 
     lag: float = shape(0.0, unit="s", low=-1.0, high=1.0)
 
-    def beside(self, terms: Sequence[Term]) -> Any:
+    def added_to(self, terms: Sequence[Term]) -> Any:
         """With the lag of the model."""
-        return replace(super().beside(terms), lag=_of_model(OfMotion, terms, self).lag)
+        return replace(super().added_to(terms), lag=_of_model(OfMotion, terms, self).lag)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,9 +66,9 @@ class OfSign(OfMotion, OfFriction):
         """The sign of the friction in the signal."""
         return self.side * recording.sense(self.sign_width, self.lag)
 
-    def beside(self, terms: Sequence[Term]) -> Any:
+    def added_to(self, terms: Sequence[Term]) -> Any:
         """With the sign of the model."""
-        return replace(super().beside(terms), sign_width=_of_model(OfSign, terms, self).sign_width)
+        return replace(super().added_to(terms), sign_width=_of_model(OfSign, terms, self).sign_width)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,10 +104,10 @@ class OfLoad(Term):
         """Whether a recording has the load, and all other signals."""
         return super().possible(recording) and (bool(self.link) or self.signal_of_load in recording.signals)
 
-    def beside(self, terms: Sequence[Term]) -> Any:
+    def added_to(self, terms: Sequence[Term]) -> Any:
         """With the load of the model."""
         model = _of_model(OfLoad, terms, self)
-        return replace(super().beside(terms), measured=model.measured, link=model.link)
+        return replace(super().added_to(terms), measured=model.measured, link=model.link)
 
 
 def link(recording: JointRecording, lag: float = 0.0) -> Float[np.ndarray, "time 3"]:

@@ -65,7 +65,7 @@ class Term(Effect, ABC):
         """Smallest possible weight of each column: 0 or minus infinity."""
         return np.full(columns, -np.inf)
 
-    def beside(self, terms: Sequence["Term"]) -> Any:
+    def added_to(self, terms: Sequence["Term"]) -> Any:
         """The effect with what it shares with the terms of a model, to which it is added."""
         return self
 

@@ -40,7 +40,7 @@ def waves(now: Fit, level: float, known: dict[float, tuple[Wave, ...]]) -> list[
     slow = sorted(map(Ripple, orders), key=lambda term: -gain(now, term))
     laws: list[Wave] = [Ripple(), Ripple(power=1)]
     if now.table.of in OF_DRIVE and turns_back(now.table.recordings):
-        laws.append(PositionFriction().beside(now.terms))
+        laws.append(PositionFriction().added_to(now.terms))
     if now.table.of in OF_DRIVE and all(map(InertiaRipple().possible, now.table.recordings)):
         laws.append(InertiaRipple())
     present = {_what(term) for term in now.terms}
@@ -99,4 +99,4 @@ def _shapes(now: Fit, wave: Wave) -> tuple[Wave, ...]:
         if max(gain(now, each) for each in found) <= OTHERWISE * max(gain(now, each) for each in whole):
             found = whole
             break
-    return tuple(dict.fromkeys((*found, type(wave)(order=found[0].order).beside(now.terms))))
+    return tuple(dict.fromkeys((*found, type(wave)(order=found[0].order).added_to(now.terms))))

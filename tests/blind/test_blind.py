@@ -524,7 +524,7 @@ def test_of_one_operating_point_there_is_no_error_held_out() -> None:
 def test_what_is_untestable_is_told_if_it_would_not_have_been_seen(said: dict[str, Any], told: bool) -> None:
     """A cam form of 2 um."""
     case = Judged(replace(HIDDEN, stratum=UNTESTABLE), {**SAID, **said})
-    assert case.told_untestable == told
+    assert case.reported_untestable == told
     assert score([case])["untestable_told"]["value"] == told
 
 

@@ -9,7 +9,7 @@ from scipy.special import log_ndtr
 from scipy.stats import multivariate_normal
 
 from swgsim.common.chi2_logsf import log_tail
-from swgsim.identification.covariance.low_rank_covariance import HIDDEN, Covariance, without_what_noise_hides
+from swgsim.identification.covariance.low_rank_covariance import HIDDEN, Covariance, significant_columns
 from swgsim.identification.covariance.recording_covariance import RecordingCovariance
 
 SHAPES = {
@@ -134,7 +134,7 @@ def test_what_noise_hides_is_hardly_any_variance(**shape):
     """Along every direction, in units of the noise."""
     covariance, _, _ = random_covariance(**shape)
     deviation = np.sqrt(covariance.variance)[:, None]
-    fewer = without_what_noise_hides(covariance.columns, covariance.variance)
+    fewer = significant_columns(covariance.columns, covariance.variance)
     dropped = (covariance.columns @ covariance.columns.T - fewer @ fewer.T) / deviation / deviation.T
     share = np.linalg.eigvalsh(dropped)
     rounding = 1e-12 * max(float(np.linalg.norm(covariance.columns / deviation) ** 2), 1.0)
@@ -145,7 +145,7 @@ def test_what_noise_hides_is_hardly_any_variance(**shape):
 
 def test_columns_that_say_the_same_become_one():
     column = np.linspace(1, 2, 6)[:, None]
-    fewer = without_what_noise_hides(np.hstack([3 * column, 4 * column, 1e-3 * np.eye(6)[:, :1]]), np.ones(6))
+    fewer = significant_columns(np.hstack([3 * column, 4 * column, 1e-3 * np.eye(6)[:, :1]]), np.ones(6))
     assert fewer.shape == (6, 1)
     np.testing.assert_allclose(fewer @ fewer.T, 25 * column @ column.T, rtol=1e-5)
 

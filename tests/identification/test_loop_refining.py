@@ -17,7 +17,15 @@ from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model
 from swgsim.identification.fit import fitting
 from swgsim.identification.fit.fitted import Fitted
-from swgsim.identification.fit.fitting import BENT, SAME_SCATTER, TURNS, UNREPEATED, extended, fit, unbent
+from swgsim.identification.fit.fitting import (
+    IMPROBABLE,
+    SAME_SCATTER,
+    TURNS,
+    UNREPEATED,
+    at_plausible_parameters,
+    extended,
+    fit,
+)
 from swgsim.identification.fit.unit import Unit
 from swgsim.identification.search import refining
 from swgsim.identification.search.hypotheses import hypotheses, signatures
@@ -65,19 +73,19 @@ def test_an_effect_whose_typical_size_does_nothing_here_is_seen():
 def test_effects_of_a_unit_that_was_bent_begin_at_what_is_declared_of_it():
     measured = Measured.of(good(effects=(Clipping(0.15),), repeats=1))
     now = fit(measured, Unit(Model(GEAR)))
-    assert max(map(abs, now.position_of_unit.values())) > BENT
-    start = unbent(now)
+    assert max(map(abs, now.position_of_unit.values())) > IMPROBABLE
+    start = at_plausible_parameters(now)
     assert set(start.calibrated.position.values()) == {0.0}
     assert start.model == now.unit.model
-    kept = replace(now, calibrated=replace(now.calibrated, position=dict.fromkeys(now.parameters, 0.9 * BENT)))
-    assert unbent(kept) is kept
+    kept = replace(now, calibrated=replace(now.calibrated, position=dict.fromkeys(now.parameters, 0.9 * IMPROBABLE)))
+    assert at_plausible_parameters(kept) is kept
 
 
 def test_a_unit_that_is_far_from_what_is_declared_and_fits_is_not_bent():
     unit = Unit(Model(replace(GEAR, gauges=replace(GEAR.gauges, offset=(0.0, 0.2, 0.0, 0.0, 0.0)))))
     now = fit(Measured.of(good(repeats=1)), unit)
     assert now.position_of_unit["zero of s1"] == pytest.approx(-10, rel=0.1)
-    assert unbent(now) is now
+    assert at_plausible_parameters(now) is now
 
 
 @pytest.fixture(scope="module")

@@ -114,7 +114,7 @@ def test_friction_that_holds_a_joint_at_rest_belongs_to_the_textbook() -> None:
 def test_effects_with_a_sign_have_the_width_of_the_textbook() -> None:
     start = fitted_textbook(Table(moved("shared", 0.0, 4.0), "current"))
     (friction,) = (term for term in start.terms if isinstance(term, Friction))
-    assert StribeckFriction().beside(start.terms).sign_width == friction.sign_width != StribeckFriction().sign_width
+    assert StribeckFriction().added_to(start.terms).sign_width == friction.sign_width != StribeckFriction().sign_width
 
 
 def test_a_textbook_that_cannot_be_is_bounded_and_its_wrong_sign_is_said() -> None:

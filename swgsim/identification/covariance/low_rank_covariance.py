@@ -164,7 +164,7 @@ def as_squares(log_likelihood: float) -> float:
     return 2 * log_likelihood
 
 
-def without_what_noise_hides(
+def significant_columns(
     columns: Float[np.ndarray, "row column"], variance: Float[np.ndarray, " row"]
 ) -> Float[np.ndarray, "row fewer"]:
     """As few common errors as have the same covariance, within a small share of the noise's.

@@ -86,7 +86,7 @@ def predict(
     return found[row].reshape(len(models), len(situations), len(layout))
 
 
-def predict_beside(
+def predict_with_others(
     model: Model, others: Sequence[Model], situations: Sequence[Situation], layout: Layout, sectors: int = SECTORS
 ) -> tuple[Float[np.ndarray, "situation feature"], Float[np.ndarray, "other situation feature"]]:
     """Features of every situation by a model, and by others that need not exist: nan where one has no steady state.

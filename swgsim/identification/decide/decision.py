@@ -15,7 +15,7 @@ from swgsim.identification.decide.interest import shares_of_spread
 from swgsim.identification.decide.option import Option, chosen
 from swgsim.identification.decide.search import Search
 from swgsim.identification.fit.fitted import Fitted
-from swgsim.identification.fit.fitting import extended, fit, unbent
+from swgsim.identification.fit.fitting import at_plausible_parameters, extended, fit
 from swgsim.identification.fit.form_error import moved_by_forms
 from swgsim.identification.fit.priors import name_of
 from swgsim.identification.fit.shape_marginal import over_shapes
@@ -151,7 +151,7 @@ def decide(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, see
     weights = np.array([each.log_posterior for each in options])
     best = options[0]
     before = first.with_zeros(best.zeros)
-    scores = at_sizes_seen(screened(first, kinds, generator("screen", seed, 0)), unbent(first))
+    scores = at_sizes_seen(screened(first, kinds, generator("screen", seed, 0)), at_plausible_parameters(first))
     return Decision(before, _with(best), tuple(options), tuple(np.exp(weights - logsumexp(weights)).tolist()), scores)
 
 

@@ -19,7 +19,7 @@ from swgsim.identification.decide.formless import formless, ill_fitting
 from swgsim.identification.decide.option import Option, causes_of, expected_gain, option
 from swgsim.identification.decide.prior import CAUSES, SCALES, log_prior
 from swgsim.identification.fit.fitted import Fitted
-from swgsim.identification.fit.fitting import unbent
+from swgsim.identification.fit.fitting import at_plausible_parameters
 from swgsim.identification.fit.form_error import all_show
 from swgsim.identification.search.hypotheses import Hypothesis, hypotheses, signatures
 from swgsim.identification.search.refining import zoom
@@ -115,7 +115,7 @@ class Search:
         zeros, form_error = base.likeliest
         for setting in dict.fromkeys(((zeros, form_error), (0, form_error), (zeros, 0))):
             opened, evidence = base.opened(*setting), float(base.evidences[setting])
-            start = unbent(opened)
+            start = at_plausible_parameters(opened)
             for gain, score in self._leading(start) if causes + 1 < len(CAUSES) else ():
                 if self._promises(base, evidence + gain, effects=1):
                     self._fit(start, (zoom(score, start),), base.regularities)
@@ -150,7 +150,7 @@ class Search:
     @cached_property
     def _library(self) -> tuple[list[Hypothesis], list[Float[np.ndarray, "row column"]]]:
         """All hypotheses with their signatures in the model of the unit; other effects hardly change them."""
-        start = unbent(self.null)
+        start = at_plausible_parameters(self.null)
         every = list(hypotheses(self.kinds, start.unit.of_another_structure))
         return every, signatures(every, start.model, start.measured)
 

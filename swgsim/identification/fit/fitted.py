@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.effects.base import Effect
-from swgsim.identification.covariance.low_rank_covariance import Covariance, without_what_noise_hides
+from swgsim.identification.covariance.low_rank_covariance import Covariance, significant_columns
 from swgsim.identification.covariance.scatter import Scatter
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model
@@ -151,7 +151,7 @@ class Fitted:
     def _with_more(
         self, known: Float[np.ndarray, "row known"], columns: Float[np.ndarray, "row column"]
     ) -> Float[np.ndarray, "row all"]:
-        return np.hstack([known, without_what_noise_hides(columns, self.errors.variance)])
+        return np.hstack([known, significant_columns(columns, self.errors.variance)])
 
     def _with_allowed(self, allowed: Allowed) -> "Fitted":
         if [columns.shape for columns in allowed] == [columns.shape for columns in self.allowed]:

@@ -21,7 +21,7 @@ from swgsim.identification.fit.unit import Unit
 
 # A parameter counts as biased by lack of fit if it lies this many prior standard deviations off, while the mean square
 # of a channel exceeds its declared value by this factor.
-BENT, MISFIT = 5.0, 10.0
+IMPROBABLE, MISFIT = 5.0, 10.0
 # Largest number of turns; and the Kullback-Leibler divergence between two estimates of the errors of single recordings
 # at which the turns end [nat per recording]: an error of one third in one standard deviation (estimates).
 TURNS, SAME_SCATTER = 4, 0.1
@@ -142,14 +142,14 @@ def _turn(fixed: _Fixed, begin: Mapping[str, float], assumed: Scatter | None) ->
     return fitted, assumed
 
 
-def unbent(now: Fitted) -> Fitted:
+def at_plausible_parameters(now: Fitted) -> Fitted:
     """A fit as the start of a search: at the declared parameters if a bad fit moved them improbably far.
 
     With such parameters the signature of a nonlinear effect, such as clipping, would be wrong. The errors of single
     recordings stay as estimated.
     """
-    bent = max((abs(by) for by in now.position_of_unit.values()), default=0.0) > BENT
-    if not bent or max(now.misfit.values()) < MISFIT:
+    improbable = max((abs(by) for by in now.position_of_unit.values()), default=0.0) > IMPROBABLE
+    if not improbable or max(now.misfit.values()) < MISFIT:
         return now
     start = now.unit.model.plus(*now.added)
     declared = linearised(start, now.parameters, now.measured.situations, now.measured.layout)

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.identification.covariance.low_rank_covariance import without_what_noise_hides
+from swgsim.identification.covariance.low_rank_covariance import significant_columns
 from swgsim.identification.data.model import predict
 from swgsim.identification.fit.fitted import Fitted
 
@@ -30,7 +30,7 @@ def signature(fitted: Fitted, number: int) -> Float[np.ndarray, " row"]:
 def all_show(fitted: Fitted) -> bool:
     """Whether every added effect changes the recordings; clipping above all signals changes nothing."""
     columns = (signature(fitted, number)[:, None] for number in fitted.numbers_added)
-    return all(without_what_noise_hides(each, fitted.errors.variance).shape[1] for each in columns)
+    return all(significant_columns(each, fitted.errors.variance).shape[1] for each in columns)
 
 
 def parts(fitted: Fitted, whole: Float[np.ndarray, " row"]) -> Float[np.ndarray, "row part"]:
@@ -91,7 +91,7 @@ def form_directions(fitted: Fitted, added: int) -> Float[np.ndarray, "row direct
     count = len(fitted.model.effects)
     columns = [np.zeros((len(fitted.residual), 0))]
     columns += [allowance(fitted, number) for number in range(count - added, count)]
-    return without_what_noise_hides(np.hstack(columns), fitted.errors.variance) / FORM_TOLERANCE
+    return significant_columns(np.hstack(columns), fitted.errors.variance) / FORM_TOLERANCE
 
 
 def moved_by_forms(fitted: Fitted, form_errors: Mapping[int, float]) -> dict[str, float]:

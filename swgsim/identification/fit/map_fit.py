@@ -10,7 +10,7 @@ from scipy.optimize import brentq, lsq_linear
 from swgsim.chain import SECTORS, NoSteadyState
 from swgsim.identification.covariance.low_rank_covariance import Covariance
 from swgsim.identification.data.features import Layout
-from swgsim.identification.data.model import Model, Situation, predict, predict_beside
+from swgsim.identification.data.model import Model, Situation, predict, predict_with_others
 from swgsim.identification.fit.priors import Declared, at
 
 # Gauss-Newton: fall of the cost below which it rests, and at most so many steps, each of at most so many spreads.
@@ -73,7 +73,7 @@ def linearised(
         value, by = parameter.value(model), DIFFERENCE * min(1.0, parameter.scale / parameter.sd)
         moved.append(by if value + by * parameter.sd <= parameter.high else -by)
         models.append(parameter.at(model, value + moved[-1] * parameter.sd))
-    predicted, beside = predict_beside(model, models, situations, layout, sectors=sectors)
+    predicted, beside = predict_with_others(model, models, situations, layout, sectors=sectors)
     changes = (beside - predicted) / np.array(moved)[:, None, None]
     return predicted, np.moveaxis(np.where(np.isnan(changes), 0.0, changes), 0, -1)
 

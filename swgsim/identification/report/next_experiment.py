@@ -15,7 +15,7 @@ from swgsim.common.numbers import significant
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import OperatingPoint
 from swgsim.identification.covariance import scatter
-from swgsim.identification.covariance.low_rank_covariance import without_what_noise_hides
+from swgsim.identification.covariance.low_rank_covariance import significant_columns
 from swgsim.identification.data.model import Model, Situation, predict
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.form_error import FORM_TOLERANCE, allowance
@@ -159,7 +159,7 @@ class _PlannedRecordings:
         # Differences within the form tolerance, or absorbed by free regularities, gave no information so far.
         errors = fitted.errors.with_columns(fitted.allowed.free)
         for number in fitted.numbers_added:
-            errors = errors.with_columns(without_what_noise_hides(allowance(fitted, number), errors.variance))
+            errors = errors.with_columns(significant_columns(allowance(fitted, number), errors.variance))
         # The nuisance parameters of the model are fitted to the whitened difference d in the existing recordings. C are
         # their whitened directions. (L L')^-1 is their posterior covariance, and (L L')^-1 C' d their posterior mean.
         C = errors.whiten(measured.rows(directions[:count]))

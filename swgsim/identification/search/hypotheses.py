@@ -13,7 +13,7 @@ from jaxtyping import Float
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities, size_of
 from swgsim.identification.data.measured import Measured
-from swgsim.identification.data.model import Model, predict_beside
+from swgsim.identification.data.model import Model, predict_with_others
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ def signatures(found: Sequence[Hypothesis], model: Model, measured: Measured) ->
         return []
     effects = [effect for hypothesis in found for effect in hypothesis.columns]
     with_effect = [model.plus(effect) for effect in effects]
-    predicted, beside = predict_beside(model, with_effect, measured.situations, measured.layout)
+    predicted, beside = predict_with_others(model, with_effect, measured.situations, measured.layout)
     changes = np.where(np.isnan(beside), 0.0, beside - predicted)
     ends = np.cumsum([len(hypothesis.columns) for hypothesis in found])[:-1]
     return [measured.rows(np.moveaxis(part, 0, -1)) for part in np.split(changes, ends)]

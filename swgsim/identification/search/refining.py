@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Quantity, Role, quantities, size_of
-from swgsim.identification.data.model import predict_beside
+from swgsim.identification.data.model import predict_with_others
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.search.hypotheses import Hypothesis, signatures
 from swgsim.identification.search.screening import Score, rank
@@ -101,7 +101,7 @@ def _left(fitted: Fitted, effects: Sequence[Effect]) -> Float[np.ndarray, " effe
 def changes(fitted: Fitted, effects: Sequence[Effect]) -> Float[np.ndarray, "row effect"]:
     """What each effect does to the features, by the chain; nan if the gear has no steady state with it."""
     models = [fitted.model.plus(effect) for effect in effects]
-    predicted, beside = predict_beside(fitted.model, models, fitted.measured.situations, fitted.measured.layout)
+    predicted, beside = predict_with_others(fitted.model, models, fitted.measured.situations, fitted.measured.layout)
     return fitted.measured.rows(np.moveaxis(beside - predicted, 0, -1))
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from swgsim.effects.base import Effect
 from swgsim.identification.fit.fitted import Fitted
-from swgsim.identification.fit.fitting import unbent
+from swgsim.identification.fit.fitting import at_plausible_parameters
 from swgsim.identification.search.hypotheses import hypotheses, signatures
 from swgsim.identification.search.screening import Score, best_of_kind, screen
 
@@ -23,5 +23,5 @@ def screened(fitted: Fitted, kinds: Sequence[type[Effect]], rng: np.random.Gener
     if not found:
         return ()
     STEPS.info("screening %d hypotheses, %d effects in the model", len(found), len(fitted.added))
-    fitted = unbent(fitted)
+    fitted = at_plausible_parameters(fitted)
     return tuple(best_of_kind(screen(found, signatures(found, fitted.model, fitted.measured), fitted, rng)))
