@@ -21,6 +21,7 @@ from swgsim.joint.effects import SEARCHED
 from swgsim.joint.intake.read import JointRecordings, read_joints
 from swgsim.joint.judged import Judged
 from swgsim.joint.ladder import climb
+from swgsim.joint.naming import sizes
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.remaining import RemainingLine, remaining
 from swgsim.joint.report import report
@@ -82,6 +83,7 @@ class JointAnswer:
                 f"error after    {both['after']}",
                 f"noise at rest  {significant(floor)}" + (f" {unit}" if floor is not None else ""),
                 f"effects found  {self.report['lacks'] or 'none'}",
+                *(f"  {each['title']}: {sizes(each)}" for each in self.report["effects"]),
                 f"friction by session, relative to all: {sessions}",
                 *([f"contradicted   {self.report['contradicted']}"] if self.report["contradicted"] else []),
                 *(f"likely cause   {each}" for each in self.report["likely"]),

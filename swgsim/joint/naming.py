@@ -1,7 +1,9 @@
 """Terms in words, and orders as multiples of the revolutions of the parts of a gear."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
+from swgsim.common.numbers import significant
 from swgsim.joint.effects.friction import PositionFriction
 from swgsim.joint.effects.ripple import Ripple
 from swgsim.joint.term import Term
@@ -50,6 +52,22 @@ def listed(terms: Iterable[Term], gear_ratio: float | None) -> str:
         numbers = [f"{number:g}" for number in sorted({float(number) for number in numbers})]
         named.append(f"{kind} of {enumerated(numbers)} per {of}" if of else what)
     return enumerated(named)
+
+
+def sizes(effect: Mapping[str, Any]) -> str:
+    """The weights of an effect of a report, with their intervals.
+
+    >>> weight = {"value": 0.05111, "ci95": [0.0506, 0.0516], "unit": "A/(N m)"}
+    >>> sizes({"parameters": {"load_dependent_friction": weight, "distance": {"value": 2e-4, "ci95": None}}})
+    '0.0511 A/(N m) (95 %: 0.0506 to 0.0516)'
+    """
+    weights = {name: each for name, each in effect["parameters"].items() if each["ci95"]}
+    texts = []
+    for name, each in weights.items():
+        low, high = map(significant, each["ci95"])
+        text = f"{significant(each['value'])} {each['unit']} (95 %: {low} to {high})"
+        texts.append(f"{name.replace('_', ' ')} {text}" if weights.keys() - {name} else text)
+    return ", ".join(texts)
 
 
 def enumerated(words: Sequence[str]) -> str:

@@ -7,6 +7,7 @@ from typing import Any
 from swgsim.common import style
 from swgsim.common.html import environment
 from swgsim.common.numbers import significant
+from swgsim.joint.naming import sizes
 
 
 def page(report: Mapping[str, Any], pictures: Mapping[str, style.Picture]) -> str:
@@ -21,7 +22,7 @@ def page(report: Mapping[str, Any], pictures: Mapping[str, style.Picture]) -> st
     """
     front = "ladder" if report["effects"] else "stretches"
     others = [picture for name, picture in pictures.items() if name != front]
-    return _rendered("joint_page", report=report, front=pictures.get(front), pictures=others)
+    return _rendered("joint_page", report=report, sizes=sizes, front=pictures.get(front), pictures=others)
 
 
 def page_of_cases(
