@@ -83,9 +83,9 @@ class JointAnswer:
                 f"error after    {both['after']}",
                 f"noise at rest  {significant(floor)}" + (f" {unit}" if floor is not None else ""),
                 f"effects found  {self.report['lacks'] or 'none'}",
-                *(f"  {each['title']}: {sizes(each)}" for each in self.report["effects"]),
                 f"friction by session, relative to all: {sessions}",
                 *([f"contradicted   {self.report['contradicted']}"] if self.report["contradicted"] else []),
+                *(f"fitted size    {each['title']}: {sizes(each)}" for each in self.report["effects"]),
                 *(f"likely cause   {each}" for each in self.report["likely"]),
             ]
         )
