@@ -1,6 +1,7 @@
 """Terms in words, and orders as multiples of the revolutions of the parts of a gear."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from math import pi
 from typing import Any
 
 from swgsim.common.numbers import significant
@@ -55,7 +56,7 @@ def listed(terms: Iterable[Term], gear_ratio: float | None) -> str:
 
 
 def sizes(effect: Mapping[str, Any]) -> str:
-    """The weights of an effect of a report, with their intervals.
+    """The weights of an effect of a report, with their intervals, and angles in degrees.
 
     >>> weight = {"value": 0.05111, "ci95": [0.0506, 0.0516], "unit": "A/(N m)"}
     >>> sizes({"parameters": {"load_dependent_friction": weight, "distance": {"value": 2e-4, "ci95": None}}})
@@ -64,8 +65,9 @@ def sizes(effect: Mapping[str, Any]) -> str:
     weights = {name: each for name, each in effect["parameters"].items() if each["ci95"]}
     texts = []
     for name, each in weights.items():
-        low, high = map(significant, each["ci95"])
-        text = f"{significant(each['value'])} {each['unit']} (95 %: {low} to {high})"
+        factor, unit = (180 / pi, "°") if each["unit"] == "rad" else (1.0, f" {each['unit']}")
+        value, low, high = (significant(factor * number) for number in (each["value"], *each["ci95"]))
+        text = f"{value}{unit} (95 %: {low} to {high})"
         texts.append(f"{name.replace('_', ' ')} {text}" if weights.keys() - {name} else text)
     return ", ".join(texts)
 
