@@ -37,7 +37,7 @@ def in_words(errors: Mapping[str, float]) -> str:
 
 
 def kept(outcome: Outcome) -> dict[str, Any]:
-    """The result that ``make paper`` shows beside its own."""
+    """The result that ``make paper`` shows next to its own."""
     return {
         "command": COMMAND,
         **outcome.fields(),

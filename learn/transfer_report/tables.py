@@ -212,8 +212,8 @@ def shots_text(
 ) -> pd.DataFrame:
     """A figure of :func:`few_shot`, ``gain`` or '' for the error, of every method (rows) and number of shots (columns).
 
-    `labelled` shots are all labels of the gear; `marks` are appended to names of methods; `runs`, by method, tell of
-    their seeds.
+    `labelled` shots are all labels of the gear; `marks` are appended to names of methods; `runs` has the
+    seeds of each method.
     """
     wide = few.assign(text=text_of(few, prefix)).pivot(index="method", columns="shots", values="text").fillna("-")
     wide = wide.loc[few.groupby("method")["value"].min().sort_values().index]

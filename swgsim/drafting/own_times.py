@@ -1,4 +1,4 @@
-"""Channels that each have a time beside them, as scopes write them: the time stands before the channel."""
+"""Channels that each have a time column of their own before them, as scopes write them."""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -31,14 +31,16 @@ def elements(cells: pd.Series, number: int, name: str, column: str, first_row: i
     Raises
     ------
     FileDefect
-        If a list is too short.
+        If a list is too short, or elements are counted from 0.
     """
+    if number < 1:
+        raise FileDefect(name, f"element {number}", "a number from 1", column=column)
     lists = lists_of(cells)
     short = np.flatnonzero((lists.str.len() < number).fillna(False))
     if len(short):
         found = f"{shown(str(cells.iloc[short[0]]))}, a list of {len(lists.iloc[short[0]])}"
         raise FileDefect(name, found, f"at least {number} numbers", first_row + int(short[0]), column)
-    return lists.str[number - 1].where(lists.notna(), cells) if number else cells
+    return lists.str[number - 1].where(lists.notna(), cells)
 
 
 def lists_of(cells: pd.Series) -> pd.Series:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from swgsim.tables.cell_lists import ELEMENT
 from swgsim.tables.column_names import LISTED, column_place
 from swgsim.tables.file_defect import FileDefect, shown
 from swgsim.tables.formats.contents import CONTAINERS, NUMBERS, OBJECTS, Contents, Listed
@@ -43,7 +44,7 @@ def referred(wanted: str | int, contents: Contents, file: str) -> Reference:
     if isinstance(wanted, int):
         return _numbered(wanted, contents, file)
     place, line = _place(wanted, contents, file), None
-    if place is None and (match := re.fullmatch(r"(.+)\[(\d{1,6})\]", wanted)):
+    if place is None and (match := ELEMENT.fullmatch(wanted)):
         place, line = _place(match[1], contents, file), int(match[2]) - 1
     if place is None:
         raise _missing(wanted, contents, file)

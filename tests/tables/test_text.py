@@ -157,6 +157,8 @@ def test_a_list_in_a_cell_has_numbers(tmp_path: Path) -> None:
     np.testing.assert_array_equal(found["w[2]"], [7, 8])
     with pytest.raises(FileDefect, match=r"row 2, column q\[3\]: found '\[0\.5, 1\]', a list of 2"):
         read(tmp_path, text, ["q[3]"])
+    with pytest.raises(FileDefect, match=r"column q\[0\]: found element 0, expected a number from 1"):
+        read(tmp_path, text, ["q[0]"])
     with pytest.raises(FileDefect, match=r"row 2, column .*: found 'a', expected a number"):
         read(tmp_path, 'q\n"[a, b]"\n', ["q[1]"])
 
