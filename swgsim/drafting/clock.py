@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.drafting.named import Named
-from swgsim.drafting.seen_column import SeenColumn
+from swgsim.drafting.file_column import FileColumn
+from swgsim.drafting.named_column import NamedColumn
 from swgsim.drafting.stamps import form_of
 from swgsim.tables.clock import STAMP, read_clock
 from swgsim.tables.clock_jump import bits_of
@@ -34,7 +34,7 @@ class ClockDraft:
 
     Attributes
     ----------
-    columns : tuple of SeenColumn
+    columns : tuple of FileColumn
     entry : dict
         What a map says of it.
     time : array (time,)
@@ -42,14 +42,14 @@ class ClockDraft:
     why, question : str
     """
 
-    columns: tuple[SeenColumn, ...]
+    columns: tuple[FileColumn, ...]
     entry: dict[str, Any]
     time: Float[np.ndarray, " time"]
     why: str
     question: str = ""
 
 
-def drafted_clock(named: Sequence[Named]) -> ClockDraft | None:
+def drafted_clock(named: Sequence[NamedColumn]) -> ClockDraft | None:
     """The time among some columns; None if none of them is one."""
     columns = [each.column for each in named]
     of_time = [each.column for each in named if each.meaning.quantity == "time"]
@@ -69,12 +69,12 @@ def drafted_clock(named: Sequence[Named]) -> ClockDraft | None:
     return None
 
 
-def _likeliest(columns: Sequence[SeenColumn]) -> SeenColumn:
+def _likeliest(columns: Sequence[FileColumn]) -> FileColumn:
     """The one with the fewest lost readings, and among these with the most even steps."""
     return min(columns, key=lambda each: (each.lost, evenness(each)))
 
 
-def _draft(columns: Sequence[SeenColumn], units: Sequence[str], why: str, question: str = "") -> ClockDraft:
+def _draft(columns: Sequence[FileColumn], units: Sequence[str], why: str, question: str = "") -> ClockDraft:
     bits = _bits(columns[0]) if len(columns) == 1 and not columns[0].is_text else 0
     why += f"; begins anew after {bits} bit" if bits else ""
     file = {"file": columns[0].file} if columns[0].file else {}
@@ -87,7 +87,7 @@ def _draft(columns: Sequence[SeenColumn], units: Sequence[str], why: str, questi
     return ClockDraft(tuple(columns), entry, time, why, question)
 
 
-def _pair(named: Sequence[Named]) -> list[SeenColumn]:
+def _pair(named: Sequence[NamedColumn]) -> list[FileColumn]:
     """Seconds and nanoseconds in two columns, as ROS writes them."""
     found = []
     for words in ({"sec", "secs"}, {"nsec", "nsecs", "nanosec", "nanosecs"}):
@@ -96,7 +96,7 @@ def _pair(named: Sequence[Named]) -> list[SeenColumn]:
     return [each for each in found if each] if all(found) else []
 
 
-def _of_numbers(column: SeenColumn, why: str) -> ClockDraft:
+def _of_numbers(column: FileColumn, why: str) -> ClockDraft:
     if column.unit in FACTORS["s"]:
         return _draft([column], [column.unit], why)
     step, start = float(np.nanmedian(np.diff(column.values.astype(float)))), float(np.nanmin(column.values))
@@ -111,7 +111,7 @@ def _of_numbers(column: SeenColumn, why: str) -> ClockDraft:
     )
 
 
-def _stamps(columns: Sequence[SeenColumn]) -> list[tuple[SeenColumn, str]]:
+def _stamps(columns: Sequence[FileColumn]) -> list[tuple[FileColumn, str]]:
     """A column with day and time of day, or one of each."""
     forms = [(each, form_of([str(cell) for cell in each.values[:LOOKED]])) for each in columns if each.is_text]
     known = [(each, form) for each, form in forms if form]
@@ -124,19 +124,19 @@ def _stamps(columns: Sequence[SeenColumn]) -> list[tuple[SeenColumn, str]]:
     return [*days[:1], *clocks[:1]] if clocks else []
 
 
-def _bits(column: SeenColumn) -> int:
+def _bits(column: FileColumn) -> int:
     """Bits of a counter that is full within the file; 0 for a clock that goes on."""
     back = {bits_of(-step) for step in np.diff(column.values.astype(float)) if step < 0}
     return back.pop() if len(back) == 1 else 0
 
 
-def _forward(column: SeenColumn) -> bool:
+def _forward(column: FileColumn) -> bool:
     """Whether a column increases."""
     steps = np.diff(column.values[np.isfinite(column.values.astype(float))])
     return len(steps) > 1 and bool(np.mean(steps > 0) >= FORWARD)
 
 
-def evenness(column: SeenColumn) -> float:
+def evenness(column: FileColumn) -> float:
     """Scatter of the steps of an increasing column, as a share of a step; infinite for others."""
     if not _forward(column):
         return np.inf

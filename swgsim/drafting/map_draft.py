@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from swgsim.common.files import replacing, write_text
 from swgsim.drafting.clock import ClockDraft
-from swgsim.drafting.taken import Taken
+from swgsim.drafting.draft_line import DraftLine
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,7 +27,7 @@ class MapDraft:
         The files that were looked at.
     text : str
         YAML of the map, with comments.
-    taken : tuple of Taken
+    drafted : tuple of DraftLine
         What each column was taken for.
     clock : ClockDraft or None
     findings : str
@@ -39,7 +39,7 @@ class MapDraft:
     kind: str
     path: Path
     text: str
-    taken: tuple[Taken, ...]
+    drafted: tuple[DraftLine, ...]
     clock: ClockDraft | None
     findings: str
     readable: bool
@@ -62,7 +62,7 @@ class MapDraft:
                 "unit": str(each.entry.get("unit", "")),
                 "why": "; ".join(filter(None, [each.why, each.question])),
             }
-            for each in self.taken
+            for each in self.drafted
             if each.quantity != "gear_ratio"
         ]
         return DataFrame(rows)
@@ -71,7 +71,7 @@ class MapDraft:
         """Each column of numbers against time."""
         from swgsim.drafting.picture import picture  # imports matplotlib, which takes a second
 
-        return picture(self.taken, self.clock)
+        return picture(self.drafted, self.clock)
 
     def save(self, path: str | Path) -> None:
         """Write the draft, and its picture beside it as PNG; both are complete or absent.

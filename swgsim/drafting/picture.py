@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from swgsim.common import style
 from swgsim.drafting.clock import ClockDraft
-from swgsim.drafting.taken import Taken
+from swgsim.drafting.draft_line import DraftLine
 
 # Panels beside one another, and samples that are drawn of each column.
 BESIDE = 3
@@ -16,9 +16,9 @@ DRAWN = 5000
 MOST = 60
 
 
-def picture(taken: Sequence[Taken], clock: ClockDraft | None) -> Figure:
+def picture(drafted: Sequence[DraftLine], clock: ClockDraft | None) -> Figure:
     """Draw all columns; those that are not read are grey."""
-    numbers = [each for each in taken if each.quantity not in ("t", "gear_ratio") and not each.column.is_text]
+    numbers = [each for each in drafted if each.quantity not in ("t", "gear_ratio") and not each.column.is_text]
     shown = numbers[:MOST]
     rows = max(-(-len(shown) // BESIDE), 1)
     figure = style.figure(4.2 * BESIDE, 1.9 * rows)

@@ -15,7 +15,7 @@ SHOWN = 3
 
 
 @dataclass(frozen=True, eq=False)
-class SeenColumn:
+class FileColumn:
     """One column.
 
     Attributes
