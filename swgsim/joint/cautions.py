@@ -45,8 +45,8 @@ def cautions(validation: Validation, left_out: Sequence[str]) -> list[str]:
     if at_longest(_load(validation).lag) and validation.table.recordings[0].rate * LONGEST > 1:
         found.append(
             f"the lag between the motion and {validation.table.of} is at its bound of {1e3 * LONGEST:g} ms: friction "
-            "that builds up over a distance looks like a lag, and so do signals with different times; check the clock of "
-            "the signals"
+            "that builds up over a distance looks like a lag, and so do signals with different times; check the clock "
+            "of the signals"
         )
     found += _sides(validation)
     found += _small(validation)
