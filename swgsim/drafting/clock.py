@@ -15,7 +15,7 @@ from swgsim.tables.clock_jump import bits_of
 from swgsim.tables.units import FACTORS
 
 # Stamps that are looked at; all must have one form.
-LOOKED = 200
+STAMPS_READ = 200
 # Share of the steps that must be forward: a clock may stand where two samples have one stamp.
 FORWARD = 0.99
 # Scatter of the steps, as a share of a step, of a column without a name for time. Computers jitter by a tenth.
@@ -23,9 +23,9 @@ EVEN = 0.2
 # Seconds since 1970 from 2000 to 2100.
 EPOCH = (9.4e8, 4.1e9)
 # Slowest log [Hz]: where no unit is said, the time has the largest unit for which the log is not slower.
-SLOWEST = 5.0
+SLOWEST_RATE = 5.0
 # Robots and amplifiers log faster [Hz]: at a slower rate another unit is as likely, and is asked for.
-USUAL = 50.0
+USUAL_RATE = 50.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,17 +103,20 @@ def _of_numbers(column: FileColumn, why: str) -> ClockDraft:
     for unit, factor in FACTORS["s"].items():
         if EPOCH[0] <= start * factor <= EPOCH[1]:
             return _draft([column], [unit], f"{why}; {unit} since 1970")
-    fits = [unit for unit in ("s", "ms", "us", "ns") if 1 / (step * FACTORS["s"][unit]) >= SLOWEST]
+    fits = [unit for unit in ("s", "ms", "us", "ns") if 1 / (step * FACTORS["s"][unit]) >= SLOWEST_RATE]
     unit = fits[0] if fits else "s"
     rate = 1 / (step * FACTORS["s"][unit])
     return _draft(
-        [column], [unit], f"{why}; {rate:.4g} samples per second", "" if unit == "s" and rate >= USUAL else "its unit"
+        [column],
+        [unit],
+        f"{why}; {rate:.4g} samples per second",
+        "" if unit == "s" and rate >= USUAL_RATE else "its unit",
     )
 
 
 def _stamps(columns: Sequence[FileColumn]) -> list[tuple[FileColumn, str]]:
     """A column with day and time of day, or one of each."""
-    forms = [(each, form_of([str(cell) for cell in each.values[:LOOKED]])) for each in columns if each.is_text]
+    forms = [(each, form_of([str(cell) for cell in each.values[:STAMPS_READ]])) for each in columns if each.is_text]
     known = [(each, form) for each, form in forms if form]
     whole = [(each, form) for each, form in known if form == STAMP and "T" in str(each.values[0]).upper()]
     whole += [(each, form) for each, form in known if (":" in str(each.values[0]) and " " in str(each.values[0]))]

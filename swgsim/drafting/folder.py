@@ -14,7 +14,7 @@ from swgsim.tables.endings import ENDINGS, files_of, is_data
 from swgsim.tables.file_defect import FileDefect
 
 # Files that are looked at; further ones are taken to be like these.
-LOOKED = 50
+FILES_READ = 50
 # Endings of text that may be notes.
 NOTES = (".txt", ".log", ".txt.gz", ".log.gz")
 
@@ -68,7 +68,7 @@ def folder_contents(paths: Sequence[Path]) -> FolderContents:
     contents: dict[str, FileContents] = {}
     others: dict[str, str] = {}
     runs = [list(files.items()) for files in by_signal.values()] or [[("", name)] for name in chosen]
-    for files in runs[:LOOKED]:
+    for files in runs[:FILES_READ]:
         try:
             tables = {signal: contents_of(folder / name, name) for signal, name in files}
             contents[files[0][1]] = joined(tables, files[0][1]) if by_signal else tables[""]

@@ -11,7 +11,7 @@ from jaxtyping import Float
 from swgsim.drafting.draft_line import DraftLine, joined, place
 from swgsim.drafting.file_column import FileColumn
 from swgsim.drafting.joint_forces import force, forces
-from swgsim.drafting.motion import EXPLAINED, RATIOS, slope_of, turns_of, wrap_of
+from swgsim.drafting.motion import LEAST_EXPLAINED, RATIOS, slope_of, turns_of, wrap_of
 from swgsim.drafting.motion_units import MOST_TURNED, motion_units
 from swgsim.drafting.named_column import NamedColumn
 from swgsim.drafting.vocabulary import MODEL
@@ -95,7 +95,11 @@ def _by_slope(
     found: dict[NamedColumn, NamedColumn] = {}
     for (angle, speed), share in sorted(shares.items(), key=lambda item: -item[1]):
         # A velocity is no angle itself, though its slope, the acceleration, may be among the columns.
-        if share > EXPLAINED and angle not in {*found, *found.values()} and speed not in {*found, *found.values()}:
+        if (
+            share > LEAST_EXPLAINED
+            and angle not in {*found, *found.values()}
+            and speed not in {*found, *found.values()}
+        ):
             found[angle] = speed
     return {angle: found[angle] for angle in columns if angle in found}
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from pandas import DataFrame
 
-WIDEST = 28
+WIDEST_COLUMN = 28
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -98,9 +98,9 @@ class MapDraft:
 
 
 def _aligned(table: "DataFrame") -> str:
-    """A table as text, each column as wide as its longest cell, but none wider than :data:`WIDEST`."""
+    """A table as text, each column as wide as its longest cell, but none wider than :data:`WIDEST_COLUMN`."""
     rows = [list(table.columns), *table.to_numpy().tolist()]
-    cells = [[cell if len(cell) <= WIDEST else cell[: WIDEST - 1] + "…" for cell in row] for row in rows]
+    cells = [[cell if len(cell) <= WIDEST_COLUMN else cell[: WIDEST_COLUMN - 1] + "…" for cell in row] for row in rows]
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
     return "\n".join(
         "  ".join(f"{cell:{width}}" for cell, width in zip(row, widths, strict=True)).rstrip() for row in cells

@@ -9,7 +9,7 @@ from swgsim.drafting.file_column import FileColumn
 from swgsim.drafting.motion import filled
 from swgsim.recordings.checks.thresholds import ORDER_2_SHARE
 
-ORDERS = 4
+FITTED_ORDERS = 4
 
 
 def order_2(column: FileColumn, angle: Float[np.ndarray, " time"]) -> Complex[np.ndarray, ""]:
@@ -21,7 +21,7 @@ def order_2(column: FileColumn, angle: Float[np.ndarray, " time"]) -> Complex[np
     angle : array (time,)
         Of the wave generator [rad].
     """
-    values, k = filled(column.values), np.arange(1, ORDERS + 1)[:, None]
+    values, k = filled(column.values), np.arange(1, FITTED_ORDERS + 1)[:, None]
     low, high = np.quantile(values, [0.005, 0.995])
     if high <= low or np.ptp(angle) < 2 * np.pi:
         return np.asarray(0j)
@@ -29,7 +29,7 @@ def order_2(column: FileColumn, angle: Float[np.ndarray, " time"]) -> Complex[np
     ramp = np.linspace(-1, 1, len(angle))
     waves = np.concatenate([np.ones((1, len(angle))), ramp[None], np.cos(k * angle), np.sin(k * angle)])
     weights = np.linalg.lstsq(waves.T, values, rcond=None)[0]
-    return np.asarray((weights[3] - 1j * weights[ORDERS + 3]) / ((high - low) / 2))
+    return np.asarray((weights[3] - 1j * weights[FITTED_ORDERS + 3]) / ((high - low) / 2))
 
 
 def has_order_2(column: FileColumn, angle: Float[np.ndarray, " time"]) -> bool:

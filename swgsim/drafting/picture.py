@@ -13,13 +13,13 @@ from swgsim.drafting.draft_line import DraftLine
 BESIDE = 3
 DRAWN = 5000
 # Most panels: those of six joints with all that a controller logs.
-MOST = 60
+MOST_PANELS = 60
 
 
 def picture(drafted: Sequence[DraftLine], clock: ClockDraft | None) -> Figure:
     """Draw all columns; those that are not read are grey."""
     numbers = [each for each in drafted if each.quantity not in ("t", "gear_ratio") and not each.column.is_text]
-    shown = numbers[:MOST]
+    shown = numbers[:MOST_PANELS]
     rows = max(-(-len(shown) // BESIDE), 1)
     figure = style.figure(4.2 * BESIDE, 1.9 * rows)
     panels = figure.subplots(rows, BESIDE, squeeze=False).ravel()

@@ -14,7 +14,7 @@ ASK = "# ???"
 NOT_UNDERSTOOD = "???"
 SEPARATORS = {"\t": "tab", " ": "blanks"}
 # Longest comment, so that a line is read at a glance.
-LONGEST = 110
+LONGEST_COMMENT = 110
 
 
 def flow(value: Any) -> str:
@@ -37,7 +37,7 @@ def line(key: str, value: Any, why: str = "", question: str = "", indent: int = 
 def short(text: str) -> str:
     """A comment of one line."""
     one = " ".join(text.split())
-    return one if len(one) <= LONGEST else one[: LONGEST - 1] + "…"
+    return one if len(one) <= LONGEST_COMMENT else one[: LONGEST_COMMENT - 1] + "…"
 
 
 def layout_lines(contents: FileContents, drafted: Sequence[DraftLine]) -> Iterable[str]:

@@ -10,7 +10,7 @@ from swgsim.joint.days import Days
 from swgsim.joint.naming import listed
 from swgsim.joint.recording import OF_DRIVE, SIGNALS
 from swgsim.joint.shared import OfFriction
-from swgsim.joint.sign_width import LONGEST, at_longest
+from swgsim.joint.sign_width import LONGEST_LAG, at_longest
 from swgsim.joint.textbook import RigidBody, unphysical, wrong_signs
 from swgsim.joint.validation import Validation
 from swgsim.joint.verdict import fails
@@ -18,9 +18,9 @@ from swgsim.joint.verdict import fails
 # p-value below which sessions differ in friction.
 DIFFERENT = 0.02
 # No strain wave gear has a smaller ratio.
-SLOWEST = 30
+LEAST_GEAR_RATIO = 30
 # Angles of held-out recordings beyond the fitted ones, as a share of their samples, that make gravity a guess.
-ELSEWHERE = 0.5
+EXTRAPOLATED_SHARE = 0.5
 
 
 def cautions(validation: Validation, left_out: Sequence[str]) -> list[str]:
@@ -42,11 +42,11 @@ def cautions(validation: Validation, left_out: Sequence[str]) -> list[str]:
             "that part of the signal; check the signs of speed, current and torque in the source"
         )
     # Samples farther apart do not show a lag.
-    if at_longest(_load(validation).lag) and validation.table.recordings[0].rate * LONGEST > 1:
+    if at_longest(_load(validation).lag) and validation.table.recordings[0].rate * LONGEST_LAG > 1:
         found.append(
-            f"the lag between the motion and {validation.table.of} is at its bound of {1e3 * LONGEST:g} ms: friction "
-            "that builds up over a distance looks like a lag, and so do signals with different times; check the clock "
-            "of the signals"
+            f"the lag between the motion and {validation.table.of} is at its bound of {1e3 * LONGEST_LAG:g} ms: "
+            "friction that builds up over a distance looks like a lag, and so do signals with different times; check "
+            "the clock of the signals"
         )
     found += _sides(validation)
     found += _small(validation)
@@ -76,7 +76,7 @@ def likely(validation: Validation) -> list[str]:
         found.append(f"a load that a single link does not have: map T_rigid{also}")
         if validation.table.recordings[0].posture is None:
             found.append("other joints that moved: their posture is not mapped")
-        if _elsewhere(validation) > ELSEWHERE:
+        if _elsewhere(validation) > EXTRAPOLATED_SHARE:
             found.append("gravity: the held-out recordings are at angles that the fitted ones did not reach")
     if list(_small(validation)):
         found.append("too small a motion to determine the load")
@@ -139,7 +139,7 @@ def _sides(validation: Validation) -> Iterator[str]:
 def _small(validation: Validation) -> Iterator[str]:
     """What recordings cannot tell that move by less than a revolution of the motor."""
     recordings = (*validation.table.recordings, *validation.heldout.recordings)
-    way = 2 * np.pi / (recordings[0].gear_ratio or SLOWEST)
+    way = 2 * np.pi / (recordings[0].gear_ratio or LEAST_GEAR_RATIO)
     spans = [float(np.ptp(each.signals["q"])) for each in recordings]
     small = [span for span in spans if span < way]
     if small:

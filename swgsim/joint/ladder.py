@@ -9,7 +9,7 @@ from tqdm import tqdm
 
 from swgsim.joint.naming import in_words
 from swgsim.joint.recording import SIGNALS
-from swgsim.joint.regression import WORTH, Fit, Table, fit, rms
+from swgsim.joint.regression import LEAST_GAIN, Fit, Table, fit, rms
 from swgsim.joint.row_variance import weighted_by_variance
 from swgsim.joint.shaping import shaped
 from swgsim.joint.shared import OfFriction, OfLoad
@@ -21,7 +21,7 @@ from swgsim.joint.waves import LOOKED_AT, Wave, waves
 # Significance level of an effect or wave in one round, and of an order that stands out of the spectrum.
 ALPHA, LINE_ALPHA = 0.05, 0.005
 # Largest number of added effects.
-MOST = 24
+MOST_STEPS = 24
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +60,7 @@ class Trial:
 
     @property
     def _helps(self) -> bool:
-        return not self._unphysical and self.gain > WORTH and self.worst > -self.gain
+        return not self._unphysical and self.gain > LEAST_GAIN and self.worst > -self.gain
 
     @property
     def _unphysical(self) -> Term | None:
@@ -77,7 +77,7 @@ class Trial:
             )
         if self.gain <= 0:
             return f"raises the cross-validated error by {-100 * self.gain:.2g} %"
-        if self.gain <= WORTH:
+        if self.gain <= LEAST_GAIN:
             return f"lowers the cross-validated error by only {100 * self.gain:.2g} %"
         if self.worst <= -self.gain:
             return f"lowers the error by {100 * self.gain:.2g} %, raises that of a session by {-100 * self.worst:.2g} %"
@@ -146,7 +146,7 @@ def forward_selection(
         )
         trials = sorted(tested, key=lambda trial: -trial.gain)
         best = next((trial for trial in trials if trial.accepted), None)
-        if best is None or len(steps) == MOST:
+        if best is None or len(steps) == MOST_STEPS:
             progress(f"step {len(steps) + 1}: none of {len(trials)} candidates is accepted")
             return Ladder(start, tuple(steps), tuple(trials), unsearched)
         now = with_sign_width(best.fit)

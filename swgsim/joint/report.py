@@ -8,7 +8,7 @@ import numpy as np
 
 from swgsim.common.outcome import FOUND
 from swgsim.effects.quantity import Role, quantities
-from swgsim.joint.cautions import SLOWEST, cautions, differ, likely, next_experiment
+from swgsim.joint.cautions import LEAST_GEAR_RATIO, cautions, differ, likely, next_experiment
 from swgsim.joint.days import Days, no_days
 from swgsim.joint.effects.friction import PositionFriction
 from swgsim.joint.effects.ripple import Ripple
@@ -111,7 +111,7 @@ def gear_ratio(validation: Validation) -> dict[str, Any] | None:
     if len(orders) < 2:
         return None
     doubt = np.pi / max(float(np.ptp(each.signals["q"])) for each in validation.table.recordings)
-    for ratio in (orders[0] / k for k in range(1, int(orders[0] / SLOWEST) + 1)):
+    for ratio in (orders[0] / k for k in range(1, int(orders[0] / LEAST_GEAR_RATIO) + 1)):
         if all(abs(order - round(order / ratio) * ratio) <= doubt for order in orders):
             half = doubt * ratio / orders[-1]
             return {

@@ -19,7 +19,7 @@ NOT_CONFIRMED, FAILS = "not_confirmed", "textbook_fails"
 # above the frequency SLOW are forgiven, as they are not the textbook's.
 LEAST_EXPLAINED = 0.5
 # Sessions that a sentence names.
-NAMED = 4
+NAMED_SESSIONS = 4
 
 
 def verdict(validation: Validation, remaining: Sequence[str]) -> str:
@@ -130,4 +130,4 @@ def _named(validation: Validation, terms: Iterable[Term]) -> str:
 def _sessions(validation: Validation) -> str:
     """Sessions of the fitted recordings."""
     sessions = list(dict.fromkeys(each.session for each in validation.table.recordings))
-    return f"{len(sessions)} sessions" if len(sessions) > NAMED else enumerated(sessions)
+    return f"{len(sessions)} sessions" if len(sessions) > NAMED_SESSIONS else enumerated(sessions)

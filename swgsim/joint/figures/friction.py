@@ -13,7 +13,7 @@ from swgsim.joint.textbook import Friction, Zero
 from swgsim.joint.validation import Validation
 
 # Smaller p-values are not shown as numbers.
-SMALL = 1e-6
+SMALLEST_P = 1e-6
 
 
 def friction(validation: Validation, days: Days) -> Figure:
@@ -51,7 +51,7 @@ def _at(speeds: np.ndarray) -> JointRecording:
 
 
 def _chance(value: float) -> str:
-    return f"{value:.1g}" if value >= SMALL else f"below {SMALL:g}"
+    return f"{value:.1g}" if value >= SMALLEST_P else f"below {SMALLEST_P:g}"
 
 
 def _points(validation: Validation, axes: Axes) -> dict[str, tuple[float, float]]:

@@ -25,7 +25,7 @@ SHORT = {"T_sensor": "torque", "current": "current", "T_motor": "motor torque"}
 # A motion is in one direction if it ends at least this share of its range away from its start.
 ONE_WAY = 0.9
 # Classes of speed in each direction of a joint that reverses, and least samples of a class.
-CLASSES, FEWEST = 5, 50
+CLASSES, FEWEST_SAMPLES = 5, 50
 # Letters that fit in a line of a legend.
 LINE = 62
 
@@ -57,7 +57,7 @@ def pieces(recording: JointRecording) -> Iterator[Bool[np.ndarray, " time"]]:
     for low, high in pairwise(edges[1:]):
         for side in (-1, 1):
             chosen = (side * speed > low) & (side * speed <= high)
-            if chosen.sum() >= FEWEST:
+            if chosen.sum() >= FEWEST_SAMPLES:
                 yield chosen
 
 

@@ -11,13 +11,13 @@ from swgsim.joint.figures.parts import AFTER, BEFORE, FLOOR, SHORT, WIDTH, one_w
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.validation import Validation
 
-SHOWN = 3
+SHOWN_STRETCHES = 3
 # Waves of the strongest fast ripple in a close-up, least fast order, and share of a recording without a fast ripple.
-CLOSE_WAVES, FAST, SHARE = 12, 40, 0.1
+CLOSE_WAVES, FAST, CLOSE_UP_SHARE = 12, 40, 0.1
 # Largest share of a recording in a close-up.
-LARGEST = 0.4
+LARGEST_CLOSE_UP = 0.4
 # Share in a close-up around a reversal.
-TURNING = 0.25
+REVERSAL_SHARE = 0.25
 # A step of the angle by this share of its range is a jump.
 JUMP = 0.02
 # Colours, names and widths of the measured signal and of both models.
@@ -28,7 +28,7 @@ def stretches(validation: Validation) -> Figure:
     """A slow, a middle and a fast held-out recording."""
     recordings = validation.heldout.recordings
     by_speed = sorted(range(len(recordings)), key=lambda number: float(np.abs(recordings[number].speed).mean()))
-    middle = np.linspace(0, len(by_speed) - 1, min(SHOWN, len(by_speed))).round().astype(int)
+    middle = np.linspace(0, len(by_speed) - 1, min(SHOWN_STRETCHES, len(by_speed))).round().astype(int)
     picture = style.figure(WIDTH, 4.2 * len(middle) + 0.4)
     panels = picture.subplots(2 * len(middle), 1).reshape(-1, 2)
     measured = validation.heldout.signal
@@ -75,13 +75,13 @@ def _close(validation: Validation, recording: JointRecording) -> slice:
     number = len(recording)
     fast = [step.term for step in validation.ladder.steps if isinstance(step.term, Ripple) and step.term.order > FAST]
     if not one_way(recording):
-        length = int(TURNING * number)
+        length = int(REVERSAL_SHARE * number)
         turns = np.flatnonzero(np.diff(np.sign(recording.speed)))
         centre = int(turns[np.argmin(np.abs(turns - number / 2))]) if len(turns) else number // 2
     else:
         wanted = CLOSE_WAVES * 2 * np.pi / fast[0].order if fast else 0.0
         span = float(np.ptp(recording.signals["q"]))
-        length = int(number * min(wanted / span or SHARE, LARGEST))
+        length = int(number * min(wanted / span or CLOSE_UP_SHARE, LARGEST_CLOSE_UP))
         centre = number // 2
     length = min(number, max(length, 10))
     begin = min(max(centre - length // 2, 0), number - length)
