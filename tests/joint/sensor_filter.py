@@ -98,8 +98,10 @@ def best(table: Table, kind: Filter, shared: bool) -> tuple[list[Parameters], Fi
     groups = [list(range(len(MOTOR)))] if shared else [[number] for number in range(len(MOTOR))] * 2
     options = {"maxfev": 40 * len(kind.start), "xatol": 1e-2, "fatol": 1e-7}
     for orders in groups if kind.start else []:
-        error: Callable[..., float] = lambda p, orders=orders: through(table, kind, moved(p, orders)).error  # noqa: E731
-        lowest = minimize(error, found[orders[0]], method="Nelder-Mead", bounds=kind.bounds, options=options)
+        lowest = minimize(
+            lambda p, orders=orders: through(table, kind, moved(p, orders)).error,
+            found[orders[0]], method="Nelder-Mead", bounds=kind.bounds, options=options,
+        )  # fmt: skip
         found = moved(lowest.x, orders)
     return found, through(table, kind, found)
 
