@@ -54,11 +54,11 @@ def calibration(
     predicted = predict([fitted.model, *models], measured.situations, measured.layout)
     changes = measured.rows(np.moveaxis(predicted[1:] - predicted[0], 0, -1))[np.repeat(chosen, len(measured.layout))]
     errors = fitted.whole.recordings(chosen).drawn(rng, draws)
-    seen = suspected.seen(chosen, errors + changes * (1 + fitted.unit.structure * rng.standard_normal(draws)))
-    table = pd.DataFrame(seen.posterior, columns=list(CLASSES)).assign(label=labels, below=np.nan)
+    found = suspected.posterior_of(chosen, errors + changes * (1 + fitted.unit.structure * rng.standard_normal(draws)))
+    table = pd.DataFrame(found.posterior, columns=list(CLASSES)).assign(label=labels, below=np.nan)
     for label, partition in of.items():
         rows = np.flatnonzero(labels == label)
-        severities = Severities.of(partition, seen.model.places(seen.x[rows], label))
+        severities = Severities.of(partition, found.model.places(found.x[rows], label))
         table.loc[rows, "below"] = severities.below(sizes[rows])
     return table
 

@@ -20,7 +20,7 @@ HEAD = """/* The healthy gear, written by its commissioning. */
 WAVE = 2**30  # unit of the waves by which samples are multiplied
 DEVIATION, SUM = 2**29, 2**38  # counts that a deviation, and the sum of all deviations, may have (window.c)
 QUARTERS = 4  # of a window, in each of which a gauge has to move (window.c)
-LONGEST = 2**16  # samples of a window; beyond, the rounding of the waves shows
+LONGEST_WINDOW = 2**16  # samples of a window; beyond, the rounding of the waves shows
 FULL_SCALE = 20.0  # mV/V, beyond which a count would be coarser than what single precision resolves
 
 
@@ -75,7 +75,7 @@ def _scale(saturation: float, samples: int) -> float:
 def _signal(references: LabelledSignals, speed: float, orders: int) -> str:
     """Entries of one operating point for the signals."""
     length = whole_revolutions(speed, references.rate, references.signals.shape[-1])
-    require("the window", "samples", length, low=QUARTERS, high=LONGEST)
+    require("the window", "samples", length, low=QUARTERS, high=LONGEST_WINDOW)
     turns = speed / 60 / references.rate  # revolutions from one sample to the next
     order = np.arange(1, max(orders, 1) + 1)
     turn = np.exp(-2j * np.pi * turns * order)  # of the angle between two samples

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 # Columns of a row before those of its references: operating point and observation.
 POINT = 2
 # Twins in memory, 30 MB each.
-KEPT = 8
+CACHED_TWINS = 8
 
 
 class TwinClassifier:
@@ -123,7 +123,7 @@ class TwinClassifier:
                 yield chosen, model, partitions, rows[chosen, POINT:before]
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=CACHED_TWINS)
 def _twin(believed: str, said: bytes) -> "Twin":
     """The twin of the gear whose references are given as they stand in a row, in double precision."""
     from swgsim.gear.gear import OperatingPoint

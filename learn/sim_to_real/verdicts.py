@@ -9,7 +9,7 @@ import pandas as pd
 from swgsim.common.style import words
 
 RECOVERED = 0.8  # share of the oracle's gain that counts as full recovery
-WORTH = 1.0  # gain of the oracle [points] from which on an effect counts as one that costs accuracy
+LEAST_ORACLE_GAIN = 1.0  # gain of the oracle [points] from which on an effect counts as one that costs accuracy
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,8 +98,8 @@ def _safe(after: pd.Series) -> tuple[str, str]:
 
 
 def worth(oracle: pd.Series) -> bool:
-    """Whether a model with the true effect is significantly more accurate, by at least :data:`WORTH`."""
-    return bool(oracle["gain_low"] > 0 and oracle["gain"] >= WORTH)
+    """Whether a model with the true effect is significantly more accurate, by at least :data:`LEAST_ORACLE_GAIN`."""
+    return bool(oracle["gain_low"] > 0 and oracle["gain"] >= LEAST_ORACLE_GAIN)
 
 
 def _unneeded(before: pd.Series, after: pd.Series, oracle: pd.Series) -> tuple[str, str]:

@@ -12,7 +12,7 @@ from swgsim.common.files import sole_maker
 if TYPE_CHECKING:
     from mlflow.entities import Run
 
-MOST = 50_000  # runs that MLflow lists at once
+MOST_RUNS = 50_000  # runs that MLflow lists at once
 FINISHED = "attributes.status = 'FINISHED'"
 PARENT = "mlflow.parentRunId"
 
@@ -111,7 +111,7 @@ class Upload:
 def _search(store: Store, tag: str, *more: str) -> "list[Run]":
     query = " and ".join([f"tags.{tag}", *more])
     order = ["attributes.start_time ASC"]
-    return list(store.client.search_runs([store.experiment_id], query, max_results=MOST, order_by=order))
+    return list(store.client.search_runs([store.experiment_id], query, max_results=MOST_RUNS, order_by=order))
 
 
 def _origin(run: "Run") -> str:

@@ -35,7 +35,7 @@ from swgsim.storage.orders import lines_of
 
 NOMINAL = 0.9  # coverage at which prediction sets aim
 BLOCK = 1024  # recordings in memory at a time
-ORDERS = 4  # orders of the kinematic error and of the ellipse's deflection, which differ between gears
+COMPARED_ORDERS = 4  # orders of the kinematic error and of the ellipse's deflection, which differ between gears
 FEWEST_GEARS = 4  # one left out of three
 
 
@@ -139,7 +139,7 @@ def healthy_means(path: Path) -> pd.DataFrame:
     for block in storage.blocks(path, BLOCK):
         references = block.where(block.table["reference"])
         if len(references):
-            lines.append(lines_of(references, ORDERS).reshape(len(references), -1))
+            lines.append(lines_of(references, COMPARED_ORDERS).reshape(len(references), -1))
             facts.append(references.table)
     table, every = pd.concat(facts, ignore_index=True), np.concatenate(lines)
     values = np.column_stack([every.real, every.imag, table["efficiency"]])

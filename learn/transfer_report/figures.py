@@ -79,7 +79,7 @@ def shots(few: pd.DataFrame, levels: Mapping[str, float]) -> bytes:
     return style.png(picture)
 
 
-def pays(table: pd.DataFrame) -> bytes:
+def benefit(table: pd.DataFrame) -> bytes:
     """Changes of :func:`.studies.transfer_map` with intervals, one panel per scenario."""
     colours = {"yes": BLUE, "harms": ORANGE, "-": GREY}
     coloured = table.assign(colour=[colours.get(text, "black") for text in verdicts(table)])

@@ -166,7 +166,7 @@ def studies_of(runs: Runs, inputs: pd.DataFrame, input_errors: Mapping[str, pd.D
         unadapted = studies.best_unadapted(plain, runs.errors(plain))
         table = studies.transfer_map(adapts, runs.tables(adapts, "specimens"), unadapted)
         found["transfer_map"] = {
-            "figure": figures.pays(table),
+            "figure": figures.benefit(table),
             "table": studies.map_text(table),
             "sentence": studies.map_sentence(table),
         }

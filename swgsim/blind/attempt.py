@@ -25,7 +25,7 @@ from swgsim.identification.fit.priors import name_of
 from swgsim.identification.fit.unit import Unit
 from swgsim.identification.interharmonics.named_interharmonics import is_random
 from swgsim.identification.report.answer import Answer, answer
-from swgsim.identification.report.found import found_effects
+from swgsim.identification.report.found_effects import found_effects
 from swgsim.identification.report.prediction_errors import heldout
 from swgsim.identification.report.sentence import sentence
 from swgsim.recordings.recording import Recording

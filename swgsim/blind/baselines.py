@@ -84,12 +84,12 @@ def sparse_regression(task: Task) -> list[str]:
     fitted = OrthogonalMatchingPursuitCV(max_iter=2 * (len(CAUSES) - 1), cv=5, fit_intercept=False).fit(X, r[order])
     largest = np.argsort(-np.abs(fitted.coef_))[: np.count_nonzero(fitted.coef_)]
     # The first step is always taken; alone and unable to pay on other rows, it names nothing.
-    if len(largest) == 1 and _pays(X, r[order], int(largest[0])) <= 0:
+    if len(largest) == 1 and _held_out_reduction(X, r[order], int(largest[0])) <= 0:
         return []
     return [task.found[owner[seen][i]].kind.name() for i in largest]
 
 
-def _pays(X: np.ndarray, r: np.ndarray, column: int) -> float:
+def _held_out_reduction(X: np.ndarray, r: np.ndarray, column: int) -> float:
     """What one column takes off the squares of the second half of the rows, fitted to the first half."""
     half = len(r) // 2
     x = X[:, column]

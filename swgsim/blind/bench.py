@@ -19,7 +19,7 @@ from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import Gear, OperatingPoint
 from swgsim.gear.population import Population
 from swgsim.identification.data.features import Layout, features
-from swgsim.identification.data.model import POINTS, Model, Situation
+from swgsim.identification.data.model import SAMPLES_PER_TURN, Model, Situation
 from swgsim.identification.fit.priors import of_unit
 from swgsim.recordings.recording import Recording
 
@@ -118,7 +118,7 @@ def unseen(case: Sealed, setting: Setting, layout: Layout) -> Float[np.ndarray, 
     gear = _run_in(unit_of(case, setting), case)
     positions = (OutputPosition(0.0), OutputPosition(np.pi))
     runs = [Run(gear, s.point, (*case.acting, p), conditions=s.conditions) for s in UNSEEN for p in positions]
-    recordings = simulate_turns(runs, 1, POINTS, case.sectors)
+    recordings = simulate_turns(runs, 1, SAMPLES_PER_TURN, case.sectors)
     found = np.array([features(recording, layout) for recording in recordings])
     # Of the session that in_question records; hard cases have the same flanges.
     biases, mean = biases_of(setting.bench, case.seed + 1, QUESTION), layout.order == 0

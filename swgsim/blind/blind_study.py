@@ -11,12 +11,12 @@ from threadpoolctl import threadpool_limits
 from tqdm import tqdm
 
 from swgsim.bench.scatter import Bench
-from swgsim.blind import judged
+from swgsim.blind import scored_case
 from swgsim.blind.attempt import attempt
 from swgsim.blind.bench import Setting
 from swgsim.blind.drawing import draw
-from swgsim.blind.judged import Judged
 from swgsim.blind.score import account, score
+from swgsim.blind.scored_case import ScoredCase
 from swgsim.blind.sealed import as_json, from_json
 from swgsim.blind.strata import DETECTABLE, plans
 from swgsim.blind.table import table
@@ -31,14 +31,14 @@ from swgsim.jobs import settings
 # The numbers that the decision has: its priors. All others are declared errors or numerical.
 PRIORS = {
     "causes": prior.CAUSES,
-    "unknown": prior.UNKNOWN,
+    "unknown": prior.OUTSIDE_LIBRARY,
     "another_regularity": prior.ANOTHER_REGULARITY,
     "balanced": [prior.BALANCED, *prior.TIMES_BALANCED],
     "form_errors": prior.FORM_ERRORS,
-    "scales": prior.SCALES,
+    "scales": prior.LOG_SIZE_RANGE,
     "detectable": DETECTABLE,
-    "look_alike": judged.LOOK_ALIKE,
-    "worse": judged.WORSE,
+    "look_alike": scored_case.LOOK_ALIKE,
+    "worse": scored_case.WORSE,
 }
 
 
@@ -61,7 +61,7 @@ def run(config: Mapping[str, Any]) -> dict[str, Any]:
         digest = _seal(folder, setting, config)
         key = {"truth": digest, "code": _code()}
         answers = _answer(folder, setting, key, Engine.of(config))
-        cases = [Judged(from_json(plain), answer_) for plain, answer_ in zip(_opened(folder), answers, strict=True)]
+        cases = [ScoredCase(from_json(plain), answer_) for plain, answer_ in zip(_opened(folder), answers, strict=True)]
     found = {
         "truth_sha256": digest,
         "code": key["code"],
@@ -169,7 +169,7 @@ def _digest(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def _draw_figure(report: Path, cases: Sequence[Judged], found: Mapping[str, Any]) -> None:
+def _draw_figure(report: Path, cases: Sequence[ScoredCase], found: Mapping[str, Any]) -> None:
     from swgsim.blind.figure import picture
 
     with replacing(report / "blind.png") as aside:

@@ -32,7 +32,7 @@ ABSORBED = (0.1, 1.0)
 # Running in takes up to this share of damping and stiffness.
 RUN_IN = 0.1
 # An effect that its bounds keep below this strength is nearly nothing in these recordings; another one is drawn.
-VISIBLE = 30.0
+LEAST_STRENGTH = 30.0
 
 
 def draw(plan: Plan, setting: Setting) -> Sealed:
@@ -69,7 +69,7 @@ def draw(plan: Plan, setting: Setting) -> Sealed:
     spares = [others[i] for i in rng.permutation(len(others))]
     for kind in plan.kinds:
         effect, strength = _sized(kind, plan, fitted, case, rng)
-        while strength < VISIBLE and plan.stratum != UNTESTABLE and spares:
+        while strength < LEAST_STRENGTH and plan.stratum != UNTESTABLE and spares:
             spare = spares.pop()
             if not searched(spare) or spare in (*plan.kinds, *map(type, drawn)):
                 continue

@@ -5,14 +5,14 @@ from typing import Any
 
 import numpy as np
 
-from swgsim.blind.judged import Judged
+from swgsim.blind.scored_case import ScoredCase
 from swgsim.blind.table import ROWS
 from swgsim.common.style import figure, label, png
 
 COLOURS = ("#000000", "#999999", "#0072B2", "#E69F00", "#009E73")
 
 
-def picture(cases: Sequence[Judged], found: Mapping[str, Any]) -> bytes:
+def picture(cases: Sequence[ScoredCase], found: Mapping[str, Any]) -> bytes:
     """PNG of the score."""
     drawn = figure(11, 4.5)
     left, right = drawn.subplots(1, 2)
@@ -44,7 +44,7 @@ def _rates(axes: Any, found: Mapping[str, Any]) -> None:
     label(axes, "share of cases, with 95 % interval", "", "Identification and simpler methods")
 
 
-def _errors(axes: Any, cases: Sequence[Judged]) -> None:
+def _errors(axes: Any, cases: Sequence[ScoredCase]) -> None:
     known = [case for case in cases if case.known and not case.failed]
     strength = [min(case.case.strengths) for case in known]
     for first, colour, text in (("before", "#999999", "before"), ("after", "#D55E00", "after")):

@@ -8,7 +8,7 @@ import numpy as np
 
 from swgsim.blind.baselines import BASELINES
 from swgsim.blind.intervals import median, rate
-from swgsim.blind.judged import RIGHT, Judged
+from swgsim.blind.scored_case import RIGHT, ScoredCase
 from swgsim.blind.strata import PAIR, SINGLE, UNTESTABLE
 from swgsim.common.numbers import NORMAL
 
@@ -17,7 +17,7 @@ WORST = 5
 SURE, BINS = 0.9, (0.0, 0.5, 0.7, 0.8, 0.9, 0.95, 0.99, 1.0)
 
 
-def score(cases: Sequence[Judged]) -> dict[str, Any]:
+def score(cases: Sequence[ScoredCase]) -> dict[str, Any]:
     """All figures of a set."""
     answered = [case for case in cases if not case.failed]
     nulls = [case for case in cases if case.null]
@@ -76,7 +76,7 @@ def score(cases: Sequence[Judged]) -> dict[str, Any]:
     }
 
 
-def reliability(cases: Sequence[Judged]) -> list[dict[str, Any]]:
+def reliability(cases: Sequence[ScoredCase]) -> list[dict[str, Any]]:
     """Mean probability and share of right answers, by bins of the probability."""
     stated = np.array([case.answer["probability"] for case in cases])
     right = np.array([case.right for case in cases])
@@ -87,7 +87,7 @@ def reliability(cases: Sequence[Judged]) -> list[dict[str, Any]]:
     ]
 
 
-def calibration_error(cases: Sequence[Judged]) -> float | None:
+def calibration_error(cases: Sequence[ScoredCase]) -> float | None:
     """Expected calibration error: mean distance of probability and share of right answers, over all answers."""
     bins = reliability(cases)
     count = sum(each["right"]["count"] for each in bins)
@@ -95,29 +95,29 @@ def calibration_error(cases: Sequence[Judged]) -> float | None:
     return off / count if count else None
 
 
-def worst(cases: Sequence[Judged]) -> list[Judged]:
+def worst(cases: Sequence[ScoredCase]) -> list[ScoredCase]:
     """The worst errors: failures, then nulls, then the strongest effects."""
 
-    def weight(case: Judged) -> tuple[bool, bool, float]:
+    def weight(case: ScoredCase) -> tuple[bool, bool, float]:
         return case.failed, case.null, max(case.case.strengths, default=0.0)
 
     wrong = [case for case in cases if case.cause not in (RIGHT, "too weak", "unknown effect too weak")]
     return sorted(wrong, key=weight, reverse=True)[:WORST]
 
 
-def account(case: Judged) -> dict[str, Any]:
+def account(case: ScoredCase) -> dict[str, Any]:
     """What went wrong in a case, if anything."""
     return {"number": case.case.number, "cause": case.cause, "why": case.why}
 
 
-def _described(cases: Sequence[Judged]) -> dict[str, Any]:
+def _described(cases: Sequence[ScoredCase]) -> dict[str, Any]:
     """Of effects that were written to be described: their order, pattern and law, and all three."""
     found = [case.described for case in cases if case.case.described]
     parts = {name: rate([each[i] for each in found]) for i, name in enumerate(("order", "pattern", "law"))}
     return {**parts, "all": rate([all(each) for each in found])}
 
 
-def _covered(cases: Sequence[Judged], kind: str = "intervals", turn: float = np.inf) -> list[bool]:
+def _covered(cases: Sequence[ScoredCase], kind: str = "intervals", turn: float = np.inf) -> list[bool]:
     """Whether true values lie within the reported intervals: of sizes, or of angles if a full turn is given.
 
     Intervals of a whole turn are left out.
@@ -128,7 +128,7 @@ def _covered(cases: Sequence[Judged], kind: str = "intervals", turn: float = np.
     return [by <= NORMAL * each["deviation"] for by, each in zip(nearer, found, strict=True)]
 
 
-def _baseline(name: str, cases: Sequence[Judged]) -> dict[str, Any]:
+def _baseline(name: str, cases: Sequence[ScoredCase]) -> dict[str, Any]:
     """The same figures for a simpler method."""
     known = [(case, case.answer["baselines"][name]) for case in cases if case.known]
     apart = [case for case in cases if case.outside and not case.look_alike]
@@ -145,7 +145,7 @@ def _baseline(name: str, cases: Sequence[Judged]) -> dict[str, Any]:
     )
 
 
-def _by_strength(cases: Sequence[Judged]) -> Mapping[str, Any]:
+def _by_strength(cases: Sequence[ScoredCase]) -> Mapping[str, Any]:
     """Share of correct first names, by the strength of the weaker hidden effect."""
     found = {}
     for low, high in ((30, 200), (200, 1200), (1200, 10000), (10000, np.inf)):
@@ -156,7 +156,7 @@ def _by_strength(cases: Sequence[Judged]) -> Mapping[str, Any]:
     return found
 
 
-def _confusion(cases: Sequence[Judged]) -> dict[str, dict[str, int]]:
+def _confusion(cases: Sequence[ScoredCase]) -> dict[str, dict[str, int]]:
     """The first named effect, by the hidden effect."""
     table: dict[str, Counter] = {}
     for case in cases:

@@ -13,7 +13,7 @@ from swgsim.gear.gear import OperatingPoint
 
 # A case that was planned as detectable counts as detectable above this share of the planned strength: a size stops at
 # its bounds, and is adjusted to a few per cent only.
-SHORT = 0.9
+STRENGTH_SHORTFALL = 0.9
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ class Sealed:
     @property
     def detectable(self) -> bool:
         """Whether all that is hidden is strong enough to be found."""
-        return bool(self.strengths) and min(self.strengths) >= SHORT * DETECTABLE
+        return bool(self.strengths) and min(self.strengths) >= STRENGTH_SHORTFALL * DETECTABLE
 
     @property
     def described(self) -> tuple[int, str, str] | None:

@@ -16,7 +16,7 @@ from swgsim.identification.interharmonics.named_interharmonics import is_random
 from swgsim.identification.search.hypotheses import hypotheses, signatures
 
 # Shares of the way from nothing to the bound at which the strength is tried, and how far at most.
-FARTHEST, COARSE, FINE = 0.9, 13, 5
+FARTHEST_SHARE, COARSE, FINE = 0.9, 13, 5
 # Largest deviation of the strength with fitted parameters from the planned one.
 STRENGTH_TOLERANCE = 0.03
 
@@ -102,18 +102,18 @@ def sized(
 
     share = _share(linear, target)
     found = strength(share)
-    if share < FARTHEST and found < (1 - STRENGTH_TOLERANCE) * target:
-        share, near, found = FARTHEST, share, strength(FARTHEST)
+    if share < FARTHEST_SHARE and found < (1 - STRENGTH_TOLERANCE) * target:
+        share, near, found = FARTHEST_SHARE, share, strength(FARTHEST_SHARE)
         if found > target:
             # Strength goes with the square of a small size.
-            share = np.exp(brentq(short_of, np.log(near), np.log(FARTHEST), xtol=STRENGTH_TOLERANCE / 2))
+            share = np.exp(brentq(short_of, np.log(near), np.log(FARTHEST_SHARE), xtol=STRENGTH_TOLERANCE / 2))
             found = strength(share)
     return at(share), found
 
 
 def _share(linear: Callable[[np.ndarray], np.ndarray], target: float) -> float:
     """The share of the way to the bound at which a strength that grows is as planned, or the nearest to it."""
-    shares = np.geomspace(1e-5, FARTHEST, COARSE)
+    shares = np.geomspace(1e-5, FARTHEST_SHARE, COARSE)
     above = np.flatnonzero(linear(shares) >= target)
     if not len(above) or above[0] == 0:
         return float(shares[0 if len(above) else -1])

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 from threadpoolctl import threadpool_limits
 
-from swgsim.chain.influence import FINE, InfluenceMap, harmonics
+from swgsim.chain.influence import FINE_ANGLES, InfluenceMap, harmonics
 from swgsim.chain.motion import Motion
 from swgsim.chain.signal_path import Ideal, all_as_seen, as_seen
 from swgsim.chain.steady_state_cache import Driven, drive_of, one_turn
@@ -27,7 +27,7 @@ SECTORS = 100
 Along = Callable[[Sequence[InfluenceMap], np.ndarray, np.ndarray], np.ndarray]
 
 # Orders of an influence map below this share of the largest one are omitted.
-NEGLIGIBLE = 1e-8
+NEGLIGIBLE_MAP_ORDER = 1e-8
 
 
 @dataclass(frozen=True)
@@ -234,14 +234,14 @@ def evaluate(
 def interpolate(
     maps: Sequence[InfluenceMap], psi: Float[np.ndarray, " time"], T_out: Float[np.ndarray, " time"]
 ) -> Float[np.ndarray, "map 5 time"]:
-    """The same as :func:`evaluate` for many times, by cubics through four of the FINE angles of a map.
+    """The same as :func:`evaluate` for many times, by cubics through four of the FINE_ANGLES angles of a map.
 
     A wave of order k errs by 0.023 (2 pi k / FINE)^4 of its amplitude at most: 3e-11 for order 2, 5e-6 for order 40.
     """
-    place = psi * (FINE / (2 * np.pi))
+    place = psi * (FINE_ANGLES / (2 * np.pi))
     low = np.floor(place)
     x = place - low
-    four = low.astype(int) % FINE + np.arange(4)[:, None]
+    four = low.astype(int) % FINE_ANGLES + np.arange(4)[:, None]
     weights = np.stack([-x * (x - 1) * (x - 2), 3 * (x * x - 1) * (x - 2), -3 * x * (x + 1) * (x - 2), x * (x * x - 1)])
     weights = weights.T[:, None] / 6
     signals = np.empty((len(maps), 5, len(psi)))
@@ -254,7 +254,7 @@ def interpolate(
 def _significant(maps: Sequence[InfluenceMap], T_out: float) -> np.ndarray:
     """Orders above NEGLIGIBLE relative to the largest one; sound gears have few, and only even ones."""
     size = (np.array([m.largest for m in maps]).max(axis=0) * [[1.0], [T_out]]).max(axis=0)
-    return np.flatnonzero(size > NEGLIGIBLE * size.max())
+    return np.flatnonzero(size > NEGLIGIBLE_MAP_ORDER * size.max())
 
 
 def distinct(keys: list) -> tuple[list, np.ndarray]:

@@ -6,7 +6,7 @@ from jaxtyping import Float
 from swgsim.chain.dynamics import Drive, State
 
 # Newton steps to the twist that carries the load; the cubic stiffness needs few.
-STEPS = 8
+NEWTON_STEPS = 8
 
 
 def uniform_rotation(drive: Drive) -> State:
@@ -24,7 +24,7 @@ def uniform_rotation(drive: Drive) -> State:
     T_fric = (friction + p["mu"] * drive.T_load / drive.cos_t) / (1 - p["mu"] * drive.tan_t)
     T_stiff = drive.tan_t * (drive.T_load + T_fric / drive.sin_t)
     twist = T_stiff / p["k1"]
-    for _ in range(STEPS):
+    for _ in range(NEWTON_STEPS):
         twist -= ((p["k1"] + p["k2"] * twist**2) * twist - T_stiff) / (p["k1"] + 3 * p["k2"] * twist**2)
     phi_out = drive.tan_t * (drive.phi_err(np.zeros_like(twist))[0] - twist)
     return np.stack([0 * twist, drive.omega, phi_out, speed, drive.tan_in * T_stiff / drive.gain_i])

@@ -15,9 +15,9 @@ from swgsim.chain.equilibrium import uniform_rotation
 from swgsim.chain.motion import Motion, kept_of
 
 # Least number of times at which the equations hold: eight per wave of the highest order that is compared.
-TIMES = 96
+LEAST_TIMES = 96
 # Largest relative size of the last correction, and largest number of corrections.
-TOLERANCE, CORRECTIONS = 1e-9, 40
+TOLERANCE, MOST_CORRECTIONS = 1e-9, 40
 # Relative step of the differences.
 STEP = 1e-6
 
@@ -26,7 +26,7 @@ Lines = Complex[np.ndarray, "2 order run"]
 
 
 def one_revolution(
-    drive: Drive, start_angle: Float[np.ndarray, " run"], points: int, least: int = TIMES
+    drive: Drive, start_angle: Float[np.ndarray, " run"], points: int, least: int = LEAST_TIMES
 ) -> tuple[Motion, Bool[np.ndarray, " run"]]:
     """One periodic revolution of the wave generator in ``points`` even steps of time, and which runs converged.
 
@@ -64,7 +64,7 @@ def one_revolution(
     linear = _Linear(drive, at_all_times(), i_k_omega)
     speed = np.stack([speed_in, speed_out])
     with np.errstate(over="ignore", invalid="ignore"):  # of runs that do not converge
-        for _ in range(CORRECTIONS):
+        for _ in range(MOST_CORRECTIONS):
             state = at_all_times()
             residual = i_k_omega**2 * lines - np.fft.rfft(accelerations(drive, state), axis=1, norm="forward")
             d_lines, d_error = linear.correction(residual)

@@ -25,11 +25,11 @@ from swgsim.flexspline.structure_factors import EXACT_STRUCTURE, StructureFactor
 from swgsim.gear.gear import WaveGenerator
 
 # Highest order per wave-generator revolution that the maps keep, and the angles at which they are sampled.
-ORDERS = 120
+MAP_ORDERS = 120
 ANGLES = 256
 PSI = 2 * np.pi / ANGLES * np.arange(ANGLES)
 # Angles of a map between which long recordings are interpolated; 17 to a wave of the highest order.
-FINE = 2048
+FINE_ANGLES = 2048
 
 # Points per sector at which the tooth forces are sampled; odd, so that one is at the node.
 SUBDIVISION = 5
@@ -52,7 +52,7 @@ class InfluenceMap:
         """A and B of all sensors at FINE even angles, after the last of them and before the first two."""
         lines = self.coefficients.reshape(-1, self.coefficients.shape[-1]).copy()
         lines[:, 1:] /= 2
-        values = np.fft.irfft(lines, FINE, norm="forward").T
+        values = np.fft.irfft(lines, FINE_ANGLES, norm="forward").T
         return np.concatenate([values[-1:], values, values[:2]])
 
     @cached_property
@@ -205,7 +205,7 @@ def influence_map(
         of_loads = of_loads + _cracked(flex, response, cracks)
     values = (amplitudes @ np.moveaxis(of_loads, 2, 0)).real
     values[0] += offsets(gauges)
-    coefficients = np.fft.rfft(values, axis=1)[:, : ORDERS + 1] / ANGLES
+    coefficients = np.fft.rfft(values, axis=1)[:, : MAP_ORDERS + 1] / ANGLES
     coefficients[:, 1:] *= 2
     return InfluenceMap(np.swapaxes(coefficients, 1, 2))
 

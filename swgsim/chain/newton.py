@@ -19,9 +19,9 @@ from swgsim.chain.harmonic_balance import TOLERANCE, accelerations, motion_of, n
 from swgsim.chain.motion import Motion
 
 # Least number of times at which the equations hold: a change of the flank has more orders than a smooth motion.
-TIMES = 192
+LEAST_TIMES = 192
 # Largest number of corrections, and least share of one that is tried.
-CORRECTIONS, LEAST_SHARE = 25, 1e-3
+MOST_CORRECTIONS, LEAST_SHARE = 25, 1e-3
 # Loads that are added, one after the other [N m]. The first one is above the largest ripple of such gears.
 ADDED_LOADS = (80.0, 70.0, 60.0, 50.0, 40.0, 30.0, 25.0, 20.0, 15.0, 10.0, 7.5, 5.0, 2.5, 0.0)
 
@@ -45,7 +45,7 @@ def stable_revolution(drive: Drive, start_angle: float, points: int) -> Periodic
     points : int
         Even steps of time.
     """
-    each = -(-TIMES // points)
+    each = -(-LEAST_TIMES // points)
     each += each * points % 2  # an even number of times
     with np.errstate(over="ignore", invalid="ignore"):  # of a search that fails
         for loads in ((0.0,), ADDED_LOADS):
@@ -122,7 +122,7 @@ class _Equations:
     def solved(self, unknown: Float[np.ndarray, " unknown"]) -> tuple[Float[np.ndarray, " unknown"], bool]:
         """Newton's method; a correction is halved until it lessens the residuals. Second, whether it converged."""
         residual = self.residual(unknown)
-        for _ in range(CORRECTIONS):
+        for _ in range(MOST_CORRECTIONS):
             correction = np.zeros_like(unknown)
             try:
                 correction[1:] = np.linalg.solve(self.jacobian(unknown)[:, 1:], -residual)

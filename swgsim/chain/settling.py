@@ -19,7 +19,7 @@ from jaxtyping import Float
 from swgsim.chain.dynamics import Drive, State
 from swgsim.chain.harmonic_balance import one_revolution
 from swgsim.chain.motion import Motion, NoSteadyState, advance, revolve, shooting
-from swgsim.chain.newton import TIMES, stable_revolution
+from swgsim.chain.newton import LEAST_TIMES, stable_revolution
 from swgsim.chain.unsteady import mean_revolution
 
 
@@ -44,7 +44,7 @@ def steady_state(drive: Drive, start_angle: Float[np.ndarray, " run"] | None = N
             state = advance(drive, state, start)
     left = np.flatnonzero(~converged).tolist()
     if left:
-        _, state[:, left] = _searched(drive.part(left), start[left], TIMES)
+        _, state[:, left] = _searched(drive.part(left), start[left], LEAST_TIMES)
     return state
 
 

@@ -12,7 +12,7 @@ from swgsim.effects.base import Effect
 from swgsim.gear.gear import OperatingPoint, Transmission
 
 # Largest number of cached motions, 3 kB each.
-MOST = 20_000
+MOST_MOTIONS = 20_000
 
 
 class Driven(NamedTuple):
@@ -46,7 +46,7 @@ def one_turn(driven: Sequence[Driven], points: int, search: bool = True) -> Moti
         As for :func:`~swgsim.chain.settling.steady_revolution`.
     """
     new = [each for each in driven if (each, points) not in _remembered]
-    if len(_remembered) + len(new) > MOST:
+    if len(_remembered) + len(new) > MOST_MOTIONS:
         forget()
         new = list(driven)
     if new:

@@ -19,9 +19,9 @@ from swgsim.chain.settling import steady_state
 # Points of a revolution per wave of the highest order of the kinematic error, as in harmonic balance.
 PER_WAVE, LEAST_POINTS = 8, 32
 # Orders of a motion below this share of the largest one are omitted.
-NEGLIGIBLE = 1e-8
+NEGLIGIBLE_MOTION_ORDER = 1e-8
 # Drift of the friction that no torque flange at the output resolves, whose readings repeat to 0.05 N m [N m].
-UNSEEN = 0.02
+UNRESOLVED_DRIFT = 0.02
 CHANNELS = [field.name for field in fields(Motion) if field.name != "dt"]
 
 
@@ -37,7 +37,7 @@ def over_window(drive: Drive, start_angle: Float[np.ndarray, " run"], dt: float,
     count : int
     """
     found = np.empty((6, len(drive), count + 1))
-    left = np.array([bool(effects) for effects in drive.effects]) | (_drift(drive, count * dt) > UNSEEN)
+    left = np.array([bool(effects) for effects in drive.effects]) | (_drift(drive, count * dt) > UNRESOLVED_DRIFT)
     if not left.all():
         repeating = np.flatnonzero(~left)
         calm = drive if len(repeating) == len(drive) else drive.part(repeating.tolist())
@@ -75,7 +75,7 @@ def _repeated(
     lines[..., 1:] *= 2
     lines[~balanced] = 0  # they may have diverged, and must not decide which orders of the others are kept
     size = np.abs(lines).max(axis=0)
-    orders = np.flatnonzero((size > NEGLIGIBLE * size.max(axis=1, keepdims=True)).any(axis=0))
+    orders = np.flatnonzero((size > NEGLIGIBLE_MOTION_ORDER * size.max(axis=1, keepdims=True)).any(axis=0))
     lines = lines[..., orders]
     weights = np.concatenate([lines.real, -lines.imag], axis=2)
     found, time = np.empty((6, len(drive), count + 1)), dt * np.arange(count + 1)

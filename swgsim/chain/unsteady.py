@@ -22,13 +22,13 @@ from swgsim.chain.motion import Motion, NoSteadyState, steps_per_revolution
 SETTLING, AVERAGED = 4.0, 8.0
 # Least number of revolutions for each of the two, and largest number. Two thirds of the largest suffice for a speed
 # control of 1 Hz at 2000 rpm.
-LEAST, MOST = 16, 400
+LEAST_TURNS, MOST_TURNS = 16, 400
 # A mean speed that is further from the set speed, as a share of it, belongs to no operating point. Recordings are
 # warned of at the same share.
-HELD = 0.02
+SPEED_TOLERANCE = 0.02
 
 # Over a revolution: time per angle, angle of the output per angle of the input, and three torques.
-KEPT = 5
+AVERAGED_QUANTITIES = 5
 
 
 class Averaged(NamedTuple):
@@ -61,14 +61,16 @@ def mean_revolution(drive: Drive, start_angle: Float[np.ndarray, " run"], points
     state[PHI_IN] = start_angle
     state[PHI_OUT] += start_angle / (drive.p["N"] + 1)
     periods = drive.p["control_frequency"] * drive.period  # of the speed control, in a revolution
-    settling, averaged = (int(np.clip(np.ceil(of / periods.min()), LEAST, MOST)) for of in (SETTLING, AVERAGED))
+    settling, averaged = (
+        int(np.clip(np.ceil(of / periods.min()), LEAST_TURNS, MOST_TURNS)) for of in (SETTLING, AVERAGED)
+    )
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # of runs that do not keep turning
         for _ in range(settling):
             state, _ = _revolution(drive, state, steps)
             if not np.isfinite(state).all():
                 break
         weights = np.hanning(averaged + 2)[1:-1]  # so that it matters little where the mean begins and ends
-        mean = np.zeros((KEPT, steps, len(drive)))
+        mean = np.zeros((AVERAGED_QUANTITIES, steps, len(drive)))
         for weight in weights / weights.sum():
             state, kept = _revolution(drive, state, steps)
             mean += weight * kept
@@ -80,7 +82,7 @@ def mean_revolution(drive: Drive, start_angle: Float[np.ndarray, " run"], points
 
 def _revolution(drive: Drive, state: State, steps: int) -> tuple[State, Float[np.ndarray, "5 step run"]]:
     """The state after one revolution in even steps of the angle, counted from its start again; and what is kept."""
-    kept, step = np.empty((KEPT, steps, len(drive))), 2 * np.pi / steps
+    kept, step = np.empty((AVERAGED_QUANTITIES, steps, len(drive))), 2 * np.pi / steps
 
     def rate(there: State) -> State:
         return drive.derivative(there, drive.torques(there)) / there[OMEGA_IN]
@@ -102,7 +104,7 @@ def _require_speed(drive: Drive, state: State, mean: Float[np.ndarray, "5 step r
     """Refuse runs that do not turn at about the set speed."""
     ratio = 1 / (mean[0].mean(axis=0) * drive.omega)
     turning = np.isfinite(state).all(axis=0) & np.isfinite(mean).all(axis=(0, 1)) & (mean[0] > 0).all(axis=0)
-    held = turning & (np.abs(ratio - 1) < HELD)
+    held = turning & (np.abs(ratio - 1) < SPEED_TOLERANCE)
     if held.all():
         return
     i = int(held.argmin())
@@ -110,9 +112,9 @@ def _require_speed(drive: Drive, state: State, mean: Float[np.ndarray, "5 step r
     found = f"turns at {ratio[i] * set_speed:.4g} rpm in the mean" if turning[i] else "does not keep turning"
     raise NoSteadyState(
         f"the gear at {set_speed:g} rpm and {load:g} N m {found}: its speed control of "
-        f"{drive.p['control_frequency'][i]:.3g} Hz does not hold the speed within {100 * HELD:g} %; look at the "
-        f"friction (b1 {drive.p['b1'][i]:.3g} N m s/rad, b2 {drive.p['b2'][i]:.3g} N m s^3/rad^3), at the resonance "
-        f"of {resonance(drive)[i]:.3g} Hz, and at effects on the drive"
+        f"{drive.p['control_frequency'][i]:.3g} Hz does not hold the speed within {100 * SPEED_TOLERANCE:g} %; look at "
+        f"the friction (b1 {drive.p['b1'][i]:.3g} N m s/rad, b2 {drive.p['b2'][i]:.3g} N m s^3/rad^3), at the "
+        f"resonance of {resonance(drive)[i]:.3g} Hz, and at effects on the drive"
     )
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from swgsim.drafting.seen_column import MOST_ROWS, SeenColumn, within
+from swgsim.drafting.file_column import MOST_ROWS, FileColumn, within
 from swgsim.drafting.units import split_unit, unit_in
 from swgsim.tables import binary
 from swgsim.tables.file_defect import FileDefect
@@ -18,7 +18,7 @@ MOST_SIGNALS = 64
 SHEET = ("\t", ".")
 
 
-def binary_columns(path: Path, name: str) -> tuple[tuple[SeenColumn, ...], Mapping[str, str]]:
+def binary_columns(path: Path, name: str) -> tuple[tuple[FileColumn, ...], Mapping[str, str]]:
     """The vectors and matrices of the length and the time base that most of them have, and what else there is.
 
     Raises
@@ -50,10 +50,10 @@ def binary_columns(path: Path, name: str) -> tuple[tuple[SeenColumn, ...], Mappi
     return tuple(each for each in columns if not each.is_empty), others
 
 
-def _column(column: str, unit: str, values: np.ndarray) -> SeenColumn:
+def _column(column: str, unit: str, values: np.ndarray) -> FileColumn:
     bare, own = split_unit(column)
     lost = 0 if values.dtype.kind in "iu" else int(np.isnan(values).sum())
-    return SeenColumn(column, bare, unit_in(unit) or own, values, "", lost)
+    return FileColumn(column, bare, unit_in(unit) or own, values, "", lost)
 
 
 def sheet_lines(path: Path, name: str) -> list[str]:

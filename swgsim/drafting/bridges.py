@@ -7,18 +7,18 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
+from swgsim.drafting.draft_line import DraftLine, joined, place
+from swgsim.drafting.file_column import FileColumn
 from swgsim.drafting.motion import filled
-from swgsim.drafting.named import Named
+from swgsim.drafting.named_column import NamedColumn
 from swgsim.drafting.order_2 import order_2
-from swgsim.drafting.seen_column import SeenColumn
-from swgsim.drafting.taken import Taken, joined, place
 from swgsim.recordings.checks.thresholds import GAUGE_LARGEST, GAUGE_SMALLEST
 from swgsim.tables.units import FACTORS, OUTPUTS, STRAIN
 
 
 def bridges(
-    gauges: Sequence[Named], angle: Float[np.ndarray, " time"] | None, known: Mapping[str, Any]
-) -> Iterator[Taken]:
+    gauges: Sequence[NamedColumn], angle: Float[np.ndarray, " time"] | None, known: Mapping[str, Any]
+) -> Iterator[DraftLine]:
     """Bridges s0 to s4."""
     names, why, ask = _numbered(gauges, angle)
     for name, each in zip(names, gauges, strict=False):
@@ -30,10 +30,12 @@ def bridges(
             else ""
         )
         reason = joined(each.meaning.why, why, share)
-        yield Taken(column, name, place(column) | {"unit": unit} | more, reason, joined(ask, need, doubt), "", not need)
+        yield DraftLine(
+            column, name, place(column) | {"unit": unit} | more, reason, joined(ask, need, doubt), "", not need
+        )
 
 
-def _numbered(gauges: Sequence[Named], angle: Float[np.ndarray, " time"] | None) -> tuple[list[str], str, str]:
+def _numbered(gauges: Sequence[NamedColumn], angle: Float[np.ndarray, " time"] | None) -> tuple[list[str], str, str]:
     """Names of the bridges in the order of the columns, the reason, and what the user must decide."""
     numbers = [each.index for each in gauges]
     if len(set(numbers)) == len(numbers) and None not in numbers and set(numbers) <= set(range(5)):
@@ -49,13 +51,13 @@ def _numbered(gauges: Sequence[Named], angle: Float[np.ndarray, " time"] | None)
     return [f"s{number}" for number in range(1, min(len(gauges), 4) + 1)], "", "order as in the file"
 
 
-def _amplitude(column: SeenColumn, angle: Float[np.ndarray, " time"]) -> float:
+def _amplitude(column: FileColumn, angle: Float[np.ndarray, " time"]) -> float:
     """Amplitude at two cycles per revolution, in the unit of the column."""
     low, high = np.quantile(filled(column.values), [0.005, 0.995])
     return float(abs(order_2(column, angle)) * (high - low) / 2)
 
 
-def _bridge_unit(column: SeenColumn, known: Mapping[str, Any]) -> tuple[str, dict[str, Any], str, str]:
+def _bridge_unit(column: FileColumn, known: Mapping[str, Any]) -> tuple[str, dict[str, Any], str, str]:
     """Unit of a bridge, what it needs, what of that is not known, and what is in doubt."""
     unit = column.unit
     if unit == STRAIN:

@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.drafting.named import Named
-from swgsim.drafting.seen_column import SeenColumn
+from swgsim.drafting.file_column import FileColumn
+from swgsim.drafting.named_column import NamedColumn
 from swgsim.drafting.stamps import form_of
 from swgsim.tables.clock import STAMP, read_clock
 from swgsim.tables.clock_jump import bits_of
 from swgsim.tables.units import FACTORS
 
 # Stamps that are looked at; all must have one form.
-LOOKED = 200
+STAMPS_READ = 200
 # Share of the steps that must be forward: a clock may stand where two samples have one stamp.
 FORWARD = 0.99
 # Scatter of the steps, as a share of a step, of a column without a name for time. Computers jitter by a tenth.
@@ -23,9 +23,9 @@ EVEN = 0.2
 # Seconds since 1970 from 2000 to 2100.
 EPOCH = (9.4e8, 4.1e9)
 # Slowest log [Hz]: where no unit is said, the time has the largest unit for which the log is not slower.
-SLOWEST = 5.0
+SLOWEST_RATE = 5.0
 # Robots and amplifiers log faster [Hz]: at a slower rate another unit is as likely, and is asked for.
-USUAL = 50.0
+USUAL_RATE = 50.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,7 @@ class ClockDraft:
 
     Attributes
     ----------
-    columns : tuple of SeenColumn
+    columns : tuple of FileColumn
     entry : dict
         What a map says of it.
     time : array (time,)
@@ -42,14 +42,14 @@ class ClockDraft:
     why, question : str
     """
 
-    columns: tuple[SeenColumn, ...]
+    columns: tuple[FileColumn, ...]
     entry: dict[str, Any]
     time: Float[np.ndarray, " time"]
     why: str
     question: str = ""
 
 
-def drafted_clock(named: Sequence[Named]) -> ClockDraft | None:
+def drafted_clock(named: Sequence[NamedColumn]) -> ClockDraft | None:
     """The time among some columns; None if none of them is one."""
     columns = [each.column for each in named]
     of_time = [each.column for each in named if each.meaning.quantity == "time"]
@@ -69,12 +69,12 @@ def drafted_clock(named: Sequence[Named]) -> ClockDraft | None:
     return None
 
 
-def _likeliest(columns: Sequence[SeenColumn]) -> SeenColumn:
+def _likeliest(columns: Sequence[FileColumn]) -> FileColumn:
     """The one with the fewest lost readings, and among these with the most even steps."""
     return min(columns, key=lambda each: (each.lost, evenness(each)))
 
 
-def _draft(columns: Sequence[SeenColumn], units: Sequence[str], why: str, question: str = "") -> ClockDraft:
+def _draft(columns: Sequence[FileColumn], units: Sequence[str], why: str, question: str = "") -> ClockDraft:
     bits = _bits(columns[0]) if len(columns) == 1 and not columns[0].is_text else 0
     why += f"; begins anew after {bits} bit" if bits else ""
     file = {"file": columns[0].file} if columns[0].file else {}
@@ -87,7 +87,7 @@ def _draft(columns: Sequence[SeenColumn], units: Sequence[str], why: str, questi
     return ClockDraft(tuple(columns), entry, time, why, question)
 
 
-def _pair(named: Sequence[Named]) -> list[SeenColumn]:
+def _pair(named: Sequence[NamedColumn]) -> list[FileColumn]:
     """Seconds and nanoseconds in two columns, as ROS writes them."""
     found = []
     for words in ({"sec", "secs"}, {"nsec", "nsecs", "nanosec", "nanosecs"}):
@@ -96,24 +96,27 @@ def _pair(named: Sequence[Named]) -> list[SeenColumn]:
     return [each for each in found if each] if all(found) else []
 
 
-def _of_numbers(column: SeenColumn, why: str) -> ClockDraft:
+def _of_numbers(column: FileColumn, why: str) -> ClockDraft:
     if column.unit in FACTORS["s"]:
         return _draft([column], [column.unit], why)
     step, start = float(np.nanmedian(np.diff(column.values.astype(float)))), float(np.nanmin(column.values))
     for unit, factor in FACTORS["s"].items():
         if EPOCH[0] <= start * factor <= EPOCH[1]:
             return _draft([column], [unit], f"{why}; {unit} since 1970")
-    fits = [unit for unit in ("s", "ms", "us", "ns") if 1 / (step * FACTORS["s"][unit]) >= SLOWEST]
+    fits = [unit for unit in ("s", "ms", "us", "ns") if 1 / (step * FACTORS["s"][unit]) >= SLOWEST_RATE]
     unit = fits[0] if fits else "s"
     rate = 1 / (step * FACTORS["s"][unit])
     return _draft(
-        [column], [unit], f"{why}; {rate:.4g} samples per second", "" if unit == "s" and rate >= USUAL else "its unit"
+        [column],
+        [unit],
+        f"{why}; {rate:.4g} samples per second",
+        "" if unit == "s" and rate >= USUAL_RATE else "its unit",
     )
 
 
-def _stamps(columns: Sequence[SeenColumn]) -> list[tuple[SeenColumn, str]]:
+def _stamps(columns: Sequence[FileColumn]) -> list[tuple[FileColumn, str]]:
     """A column with day and time of day, or one of each."""
-    forms = [(each, form_of([str(cell) for cell in each.values[:LOOKED]])) for each in columns if each.is_text]
+    forms = [(each, form_of([str(cell) for cell in each.values[:STAMPS_READ]])) for each in columns if each.is_text]
     known = [(each, form) for each, form in forms if form]
     whole = [(each, form) for each, form in known if form == STAMP and "T" in str(each.values[0]).upper()]
     whole += [(each, form) for each, form in known if (":" in str(each.values[0]) and " " in str(each.values[0]))]
@@ -124,19 +127,19 @@ def _stamps(columns: Sequence[SeenColumn]) -> list[tuple[SeenColumn, str]]:
     return [*days[:1], *clocks[:1]] if clocks else []
 
 
-def _bits(column: SeenColumn) -> int:
+def _bits(column: FileColumn) -> int:
     """Bits of a counter that is full within the file; 0 for a clock that goes on."""
     back = {bits_of(-step) for step in np.diff(column.values.astype(float)) if step < 0}
     return back.pop() if len(back) == 1 else 0
 
 
-def _forward(column: SeenColumn) -> bool:
+def _forward(column: FileColumn) -> bool:
     """Whether a column increases."""
     steps = np.diff(column.values[np.isfinite(column.values.astype(float))])
     return len(steps) > 1 and bool(np.mean(steps > 0) >= FORWARD)
 
 
-def evenness(column: SeenColumn) -> float:
+def evenness(column: FileColumn) -> float:
     """Scatter of the steps of an increasing column, as a share of a step; infinite for others."""
     if not _forward(column):
         return np.inf

@@ -9,20 +9,20 @@ import numpy as np
 
 from swgsim.common.checks import require_known
 from swgsim.drafting.clock import ClockDraft, drafted_clock
+from swgsim.drafting.draft_line import DraftLine, travels
+from swgsim.drafting.file_column import FileColumn
+from swgsim.drafting.file_contents import FileContents
 from swgsim.drafting.file_names import FileNames, fact_names, run_names, signals_path
-from swgsim.drafting.folder import LookedAt, look_at
+from swgsim.drafting.folder import FolderContents, folder_contents
 from swgsim.drafting.gauge_channels import gauge_channels
 from swgsim.drafting.gauge_text import gauge_lines
 from swgsim.drafting.joint_signals import joint_signals
 from swgsim.drafting.joint_text import joint_lines
 from swgsim.drafting.map_draft import MapDraft
 from swgsim.drafting.motion import unwrapped
-from swgsim.drafting.named import Named
+from swgsim.drafting.named_column import NamedColumn
 from swgsim.drafting.order_2 import has_order_2
 from swgsim.drafting.own_times import own_times
-from swgsim.drafting.seen import Seen
-from swgsim.drafting.seen_column import SeenColumn
-from swgsim.drafting.taken import Taken, travels
 from swgsim.drafting.words import meaning_of
 from swgsim.joint.intake.read import read_joints
 from swgsim.recordings.checks.defect import summary
@@ -71,20 +71,20 @@ def draft_map(
     if kind is not None:
         require_known("the kind", [kind], [GAUGES, JOINTS])
     paths = [Path(each) for each in ([path] if isinstance(path, str | Path) else path)]
-    looked = look_at(paths)
-    kind = kind or _kind(next(iter(looked.runs.values())), given)
-    names = _names(looked, kind)
-    seen = next(iter(looked.runs.values()))
-    clock, taken = _understood(seen, kind, given | _facts(names, looked, seen))
-    moving = _most_moving(looked, taken)
-    if moving is not seen:
-        seen = moving
-        clock, taken = _understood(seen, kind, given | _facts(names, looked, seen))
+    folder = folder_contents(paths)
+    kind = kind or _kind(next(iter(folder.runs.values())), given)
+    names = _names(folder, kind)
+    contents = next(iter(folder.runs.values()))
+    clock, drafted = _understood(contents, kind, given | _facts(names, folder, contents))
+    moving = _most_moving(folder, drafted)
+    if moving is not contents:
+        contents = moving
+        clock, drafted = _understood(contents, kind, given | _facts(names, folder, contents))
     lines = gauge_lines if kind == GAUGES else joint_lines
-    text = "\n".join(lines(looked, seen, clock, taken, names, given)) + "\n"
-    own = looked.folder if kind == JOINTS or len(paths) > 1 else paths[0]
+    text = "\n".join(lines(folder, contents, clock, drafted, names, given)) + "\n"
+    own = folder.folder if kind == JOINTS or len(paths) > 1 else paths[0]
     findings, readable = read_back(text, own, kind)
-    return MapDraft(kind, own, text, tuple(taken), clock, findings, readable)
+    return MapDraft(kind, own, text, tuple(drafted), clock, findings, readable)
 
 
 def read_back(text: str, path: Path, kind: str) -> tuple[str, bool]:
@@ -103,61 +103,63 @@ def read_back(text: str, path: Path, kind: str) -> tuple[str, bool]:
             return str(error).replace(f"{file}: ", "").replace(str(file), "the draft"), False
 
 
-def _kind(seen: Seen, known: Mapping[str, Any]) -> str:
+def _kind(contents: FileContents, known: Mapping[str, Any]) -> str:
     """Gauges if a column is one by its name, its unit or its numbers, or if what is known is of gauges; else joints."""
-    quantities = {meaning_of(each).quantity for each in seen.columns}
+    quantities = {meaning_of(each).quantity for each in contents.columns}
     if "gauge" in quantities or set(known) & set(OF_GAUGES):
         return GAUGES
     # Two lobes that pass a gauge in each of many revolutions are those of a wave generator.
-    _, taken = _understood(seen, JOINTS, known)
-    for each in taken:
+    _, drafted = _understood(contents, JOINTS, known)
+    for each in drafted:
         if each.quantity == "q" and each.entry["unit"] in FACTORS["rad"]:
             angle = unwrapped(each.column.values) * FACTORS["rad"][each.entry["unit"]]
-            others = [other.column for other in taken if not other.quantity and not other.column.is_text]
+            others = [other.column for other in drafted if not other.quantity and not other.column.is_text]
             if np.ptp(angle) > TURNED and any(has_order_2(other, angle) for other in others):
                 return GAUGES
     return JOINTS
 
 
-def _names(looked: LookedAt, kind: str) -> FileNames:
-    if looked.by_signal:
-        return signals_path(looked.names, kind)
+def _names(folder: FolderContents, kind: str) -> FileNames:
+    if folder.by_signal:
+        return signals_path(folder.names, kind)
     if kind == JOINTS:
-        return run_names(looked.names)
+        return run_names(folder.names)
     # A path would also mean other files of the folder.
-    return FileNames("", ()) if looked.named and len(looked.names) > 1 else fact_names(looked.names)
+    return FileNames("", ()) if folder.named and len(folder.names) > 1 else fact_names(folder.names)
 
 
-def _facts(names: FileNames, looked: LookedAt, seen: Seen) -> dict[str, str]:
+def _facts(names: FileNames, folder: FolderContents, contents: FileContents) -> dict[str, str]:
     """Facts that the name of the drafted file says."""
-    file = next(name for name, run in looked.runs.items() if run is seen)
+    file = next(name for name, run in folder.runs.items() if run is contents)
     return (path_groups(names.path, file) or {}) if names.path else {}
 
 
-def _understood(seen: Seen, kind: str, known: Mapping[str, Any]) -> tuple[ClockDraft | None, list[Taken]]:
+def _understood(
+    contents: FileContents, kind: str, known: Mapping[str, Any]
+) -> tuple[ClockDraft | None, list[DraftLine]]:
     """The time, and what each other column is taken for."""
-    clock = drafted_clock([Named(each, meaning_of(each)) for each in seen.columns])
-    columns, others = own_times(seen.columns, clock) if clock else (seen.columns, [])
+    clock = drafted_clock([NamedColumn(each, meaning_of(each)) for each in contents.columns])
+    columns, others = own_times(contents.columns, clock) if clock else (contents.columns, [])
     columns, repeated = _first_of_their_name(columns)
-    again = [Taken(each, "", why="the name again: of another recording?") for each in repeated]
-    named = [Named(each, meaning_of(each)) for each in columns]
+    again = [DraftLine(each, "", why="the name again: of another recording?") for each in repeated]
+    named = [NamedColumn(each, meaning_of(each)) for each in columns]
     channels = gauge_channels if kind == GAUGES else joint_signals
     if clock is None:
         return None, [*channels(named, None, known), *again]
-    of_time = [Taken(each, "t", clock.entry, clock.why, clock.question) for each in clock.columns]
-    of_time += [Taken(each, "t", why="of the columns after it", active=False) for each in others]
+    of_time = [DraftLine(each, "t", clock.entry, clock.why, clock.question) for each in clock.columns]
+    of_time += [DraftLine(each, "t", why="of the columns after it", active=False) for each in others]
     return clock, [*of_time, *channels(named, clock.time, known), *again]
 
 
-def _first_of_their_name(columns: Sequence[SeenColumn]) -> tuple[list[SeenColumn], list[SeenColumn]]:
+def _first_of_their_name(columns: Sequence[FileColumn]) -> tuple[list[FileColumn], list[FileColumn]]:
     """The columns, and those whose name an earlier one has: recordings may stand side by side."""
-    first: dict[tuple[str, str, str], SeenColumn] = {}
+    first: dict[tuple[str, str, str], FileColumn] = {}
     for place, each in enumerate(columns):
         first.setdefault((each.name or str(place), each.unit, each.file), each)
     kept = list(first.values())
     return kept, [each for each in columns if each not in kept]
 
 
-def _most_moving(looked: LookedAt, taken: Sequence[Taken]) -> Seen:
+def _most_moving(folder: FolderContents, drafted: Sequence[DraftLine]) -> FileContents:
     """The run in which the angles move most, in which units and velocities show best."""
-    return max(looked.runs.values(), key=lambda run: sum(travels(run, taken)))
+    return max(folder.runs.values(), key=lambda run: sum(travels(run, drafted)))

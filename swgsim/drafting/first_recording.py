@@ -7,8 +7,8 @@ import numpy as np
 import pandas as pd
 
 from swgsim.drafting.clock import drafted_clock
-from swgsim.drafting.named import Named
-from swgsim.drafting.seen_column import SeenColumn
+from swgsim.drafting.file_column import FileColumn
+from swgsim.drafting.named_column import NamedColumn
 from swgsim.drafting.words import meaning_of
 from swgsim.tables.layout import Layout
 from swgsim.tables.text_stream import number_of
@@ -25,9 +25,9 @@ def first_table(table: pd.DataFrame, names: Sequence[str], layout: Layout) -> in
     return end
 
 
-def first_of_rows(columns: Sequence[SeenColumn]) -> tuple[tuple[SeenColumn, ...], str | int | None]:
+def first_of_rows(columns: Sequence[FileColumn]) -> tuple[tuple[FileColumn, ...], str | int | None]:
     """The rows of the first recording, and the column that says another word wherever the clock runs back."""
-    clock = drafted_clock([Named(each, meaning_of(each)) for each in columns])
+    clock = drafted_clock([NamedColumn(each, meaning_of(each)) for each in columns])
     back = np.flatnonzero(np.diff(clock.time) < 0) + 1 if clock else np.empty(0, int)
     for column in columns if len(back) else ():
         said = column.values.astype(str)

@@ -5,28 +5,28 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from swgsim.drafting.file_contents import FileContents, contents_of, joined
 from swgsim.drafting.file_names import signals_of
 from swgsim.drafting.name_patterns import by_pattern
-from swgsim.drafting.seen import Seen, joined, see
 from swgsim.drafting.text_layout import ELSE
 from swgsim.recordings.files.manifest import NAME
 from swgsim.tables.endings import ENDINGS, files_of, is_data
 from swgsim.tables.file_defect import FileDefect
 
 # Files that are looked at; further ones are taken to be like these.
-LOOKED = 50
+FILES_READ = 50
 # Endings of text that may be notes.
 NOTES = (".txt", ".log", ".txt.gz", ".log.gz")
 
 
 @dataclass(frozen=True, eq=False)
-class LookedAt:
+class FolderContents:
     """Runs of a folder.
 
     Attributes
     ----------
     folder : Path
-    runs : mapping of str to Seen
+    runs : mapping of str to FileContents
         First file of a run to what it shows; all have the same columns.
     names : tuple of str
         All files that are read, also those that were not looked at.
@@ -39,14 +39,14 @@ class LookedAt:
     """
 
     folder: Path
-    runs: Mapping[str, Seen]
+    runs: Mapping[str, FileContents]
     names: tuple[str, ...]
     named: bool
     by_signal: bool
     others: Mapping[str, str]
 
 
-def look_at(paths: Sequence[Path]) -> LookedAt:
+def folder_contents(paths: Sequence[Path]) -> FolderContents:
     """Look at some files, or at the files of a folder.
 
     Raises
@@ -65,22 +65,22 @@ def look_at(paths: Sequence[Path]) -> LookedAt:
         found = f"the files {', '.join(names[:10]) or 'none'}"
         raise FileDefect(str(path), found, f"files that end in {endings}, .txt or .log; {ELSE}")
     by_signal = signals_of(chosen)
-    seen: dict[str, Seen] = {}
+    contents: dict[str, FileContents] = {}
     others: dict[str, str] = {}
     runs = [list(files.items()) for files in by_signal.values()] or [[("", name)] for name in chosen]
-    for files in runs[:LOOKED]:
+    for files in runs[:FILES_READ]:
         try:
-            tables = {signal: see(folder / name, name) for signal, name in files}
-            seen[files[0][1]] = joined(tables, files[0][1]) if by_signal else tables[""]
+            tables = {signal: contents_of(folder / name, name) for signal, name in files}
+            contents[files[0][1]] = joined(tables, files[0][1]) if by_signal else tables[""]
         except FileDefect as defect:
             others[files[0][1]] = str(defect)
-    if not seen:
+    if not contents:
         raise FileDefect(str(path), f"no table of numbers ({next(iter(others.values()))})", "recordings")
-    seen = by_pattern(seen)
-    alike = _alike(seen)
-    others |= {name: "other columns" for name in seen if name not in alike}
+    contents = by_pattern(contents)
+    alike = _alike(contents)
+    others |= {name: "other columns" for name in contents if name not in alike}
     kept = tuple(name for files in runs for _, name in files if files[0][1] not in others)
-    return LookedAt(folder, {name: seen[name] for name in alike}, kept, named, bool(by_signal), others)
+    return FolderContents(folder, {name: contents[name] for name in alike}, kept, named, bool(by_signal), others)
 
 
 def _named(paths: Sequence[Path]) -> tuple[Path, list[str]]:
@@ -93,9 +93,9 @@ def _named(paths: Sequence[Path]) -> tuple[Path, list[str]]:
     return folder, [each.relative_to(folder).as_posix() for each in paths]
 
 
-def _alike(seen: Mapping[str, Seen]) -> Sequence[str]:
+def _alike(contents: Mapping[str, FileContents]) -> Sequence[str]:
     """The largest group of files with the same columns and the same layout."""
     groups: dict[tuple, list[str]] = {}
-    for name, each in seen.items():
+    for name, each in contents.items():
         groups.setdefault((each.layout, each.interleaved, each.names), []).append(name)
     return max(groups.values(), key=len)

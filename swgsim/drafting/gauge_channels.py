@@ -8,26 +8,26 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.drafting.bridges import bridges
+from swgsim.drafting.draft_line import DraftLine, joined, place
+from swgsim.drafting.file_column import FileColumn
 from swgsim.drafting.motion import ANGLE_UNITS, slope_of, unwrapped
 from swgsim.drafting.motion_units import motion_units
-from swgsim.drafting.named import Named
+from swgsim.drafting.named_column import NamedColumn
 from swgsim.drafting.order_2 import clearest, has_order_2
-from swgsim.drafting.seen_column import SeenColumn
-from swgsim.drafting.taken import Taken, joined, place
 from swgsim.drafting.vocabulary import INPUT, OUTPUT
 from swgsim.tables.units import FACTORS, OUTPUTS
 
 
 def gauge_channels(
-    named: Sequence[Named],
+    named: Sequence[NamedColumn],
     time: Float[np.ndarray, " time"] | None,
     known: Mapping[str, Any],
-) -> list[Taken]:
+) -> list[DraftLine]:
     """What the columns of a test bench are taken for; those that are not understood come last.
 
     Parameters
     ----------
-    named : sequence of Named
+    named : sequence of NamedColumn
         The columns that are no time.
     time : array (time,), optional
         [s]; None if no time was found.
@@ -39,28 +39,28 @@ def gauge_channels(
         kind: [each for each in usable if each.meaning.quantity == kind]
         for kind in ("angle", "speed", "torque", "gauge")
     }
-    taken = list(_turning(kinds["angle"], kinds["speed"], kinds["gauge"], time, known))
-    angle = _angle(taken, time, known)
+    drafted = list(_turning(kinds["angle"], kinds["speed"], kinds["gauge"], time, known))
+    angle = _angle(drafted, time, known)
     gauges = kinds["gauge"]
     if not gauges and angle is not None:
         unnamed = [each for each in usable if each.meaning.quantity in ("", "voltage")]
         gauges = [each for each in unnamed if has_order_2(each.column, angle)]
-    taken += _torques(kinds["torque"])
-    taken += bridges(gauges, angle, known)
-    used = {id(each.column) for each in taken}
-    return taken + [_left(each) for each in named if id(each.column) not in used]
+    drafted += _torques(kinds["torque"])
+    drafted += bridges(gauges, angle, known)
+    used = {id(each.column) for each in drafted}
+    return drafted + [_left(each) for each in named if id(each.column) not in used]
 
 
-def _left(each: Named) -> Taken:
+def _left(each: NamedColumn) -> DraftLine:
     meaning = each.meaning
     why = "text" if each.column.is_text else "a set point" if meaning.is_set_point else meaning.quantity
-    return Taken(each.column, "", why=why and f"{why}, not needed")
+    return DraftLine(each.column, "", why=why and f"{why}, not needed")
 
 
 def _turning(
-    angles: Sequence[Named], speeds: Sequence[Named], gauges: Sequence[Named], time: Float[np.ndarray, " time"] | None,
-    known: Mapping[str, Any],
-) -> Iterator[Taken]:  # fmt: skip
+    angles: Sequence[NamedColumn], speeds: Sequence[NamedColumn], gauges: Sequence[NamedColumn],
+    time: Float[np.ndarray, " time"] | None, known: Mapping[str, Any],
+) -> Iterator[DraftLine]:  # fmt: skip
     """Angle and speed of the wave generator: the fastest where the names do not say the side."""
     angle = _of_input(angles, lambda column: float(np.ptp(unwrapped(column.values))))
     speed = _of_input(speeds, lambda column: float(np.nanmean(np.abs(column.values))))
@@ -71,27 +71,27 @@ def _turning(
         units = motion_units(angle.column, speed.column if speed else None, time, likely)
         ask = "" if likely else units.of_angle
         why = joined(angle.meaning.why, "two cycles per turn at the gauges" if likely else "", units.why)
-        yield Taken(angle.column, "phi_in", place(angle.column) | units.angle, why, ask)
+        yield DraftLine(angle.column, "phi_in", place(angle.column) | units.angle, why, ask)
         if speed:
             ask = units.of_speed or (
                 f"the slope of {angle.column.column} is {1 / units.ratio:.3g} of it" * (units.ratio != 1)
             )
             why = joined(speed.meaning.why, units.why)
-            yield Taken(speed.column, "n_in", place(speed.column) | units.speed, why, ask)
+            yield DraftLine(speed.column, "n_in", place(speed.column) | units.speed, why, ask)
     elif speed:
         said = speed.column.unit in FACTORS["rpm"]
         unit, ask = (speed.column.unit, "") if said else ("rpm", "no unit is said: rpm is assumed")
-        yield Taken(speed.column, "n_in", place(speed.column) | {"unit": unit}, speed.meaning.why, ask)
+        yield DraftLine(speed.column, "n_in", place(speed.column) | {"unit": unit}, speed.meaning.why, ask)
 
 
-def _of_input(named: Sequence[Named], size: Any) -> Named | None:
+def _of_input(named: Sequence[NamedColumn], size: Any) -> NamedColumn | None:
     """The channel of the input side: by its name, else the largest one that is not of the output."""
     of_input = [each for each in named if each.meaning.says(INPUT)]
     rest = [each for each in named if not each.meaning.says(OUTPUT)] or list(named) * (len(named) == 1)
     return max(of_input or rest, key=lambda each: size(each.column), default=None)
 
 
-def _units_by_speed(angle: SeenColumn, time: Float[np.ndarray, " time"] | None, known: Mapping[str, Any]) -> list[str]:
+def _units_by_speed(angle: FileColumn, time: Float[np.ndarray, " time"] | None, known: Mapping[str, Any]) -> list[str]:
     """Unit of an angle that turns at the set speed; none if the speed is not known."""
     if "n_in_rpm" not in known or time is None:
         return []
@@ -100,7 +100,7 @@ def _units_by_speed(angle: SeenColumn, time: Float[np.ndarray, " time"] | None, 
     return [unit for unit in ANGLE_UNITS if abs(turned * FACTORS["rad"][unit] / wanted - 1) < 0.1]
 
 
-def _units_by_lobes(angle: SeenColumn, gauges: Sequence[Named]) -> list[str]:
+def _units_by_lobes(angle: FileColumn, gauges: Sequence[NamedColumn]) -> list[str]:
     """Unit of an angle by which the gauges show two cycles per revolution."""
     if not gauges:
         return []
@@ -111,24 +111,24 @@ def _units_by_lobes(angle: SeenColumn, gauges: Sequence[Named]) -> list[str]:
 
 
 def _angle(
-    taken: Sequence[Taken], time: Float[np.ndarray, " time"] | None, known: Mapping[str, Any]
+    drafted: Sequence[DraftLine], time: Float[np.ndarray, " time"] | None, known: Mapping[str, Any]
 ) -> Float[np.ndarray, " time"] | None:
     """Angle of the wave generator [rad]; by the set speed if it was not recorded."""
-    for each in taken:
+    for each in drafted:
         if each.quantity == "phi_in" and each.entry["unit"] in FACTORS["rad"]:
             return unwrapped(each.column.values) * FACTORS["rad"][each.entry["unit"]]
         if each.quantity == "phi_in":
             return unwrapped(each.column.values) * 2 * pi / each.entry["per_revolution"]
     if time is None:
         return None
-    for each in taken:
+    for each in drafted:
         if each.quantity == "n_in" and each.entry["unit"] in FACTORS["rad/s"]:
             mean = float(np.nanmean(each.column.values)) * FACTORS["rad/s"][each.entry["unit"]]
             return mean * (time - time[0])
     return float(known["n_in_rpm"]) * pi / 30 * (time - time[0]) if "n_in_rpm" in known else None
 
 
-def _torques(torques: Sequence[Named]) -> Iterator[Taken]:
+def _torques(torques: Sequence[NamedColumn]) -> Iterator[DraftLine]:
     """Torques of the input and the output: by the names, else the larger one is that of the output."""
     ranked = sorted(torques, key=lambda each: -_newton_metres(each.column))
     of_output = next((each for each in ranked if each.meaning.says(OUTPUT)), None)
@@ -145,9 +145,9 @@ def _torques(torques: Sequence[Named]) -> Iterator[Taken]:
             column = each.column
             unit = column.unit if column.unit in (*FACTORS["N m"], *OUTPUTS) else "N m"
             said = "" if column.unit else "no unit is said: N m is assumed"
-            yield Taken(column, channel, place(column) | {"unit": unit}, each.meaning.why, question or said)
+            yield DraftLine(column, channel, place(column) | {"unit": unit}, each.meaning.why, question or said)
 
 
-def _newton_metres(column: SeenColumn) -> float:
+def _newton_metres(column: FileColumn) -> float:
     """Mean torque, by which two are compared."""
     return abs(float(np.nanmean(column.values))) * FACTORS["N m"].get(column.unit, 1.0)

@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 
 from swgsim.drafting.clock import ClockDraft
+from swgsim.drafting.draft_line import DraftLine
+from swgsim.drafting.file_contents import FileContents
 from swgsim.drafting.file_names import FileNames
-from swgsim.drafting.folder import LookedAt
+from swgsim.drafting.folder import FolderContents
 from swgsim.drafting.motion import unwrapped
-from swgsim.drafting.seen import Seen
-from swgsim.drafting.taken import Taken
 from swgsim.drafting.yaml_text import ASK, clock_lines, flow, layout_lines, left_lines, line
 from swgsim.recordings.files.facts import KNOWN
 from swgsim.tables.endings import is_data
@@ -24,33 +24,35 @@ UNKNOWN = {"n_in_rpm": 1000, "T_out_nm": 0}
 
 
 def gauge_lines(
-    looked: LookedAt, seen: Seen, clock: ClockDraft | None, taken: Sequence[Taken], names: FileNames,
-    known: Mapping[str, Any],
+    folder: FolderContents, contents: FileContents, clock: ClockDraft | None, drafted: Sequence[DraftLine],
+    names: FileNames, known: Mapping[str, Any],
 ) -> Iterator[str]:  # fmt: skip
     """The lines of the map in YAML.
 
     Parameters
     ----------
-    looked : LookedAt
-    seen : Seen
+    folder : FolderContents
+    contents : FileContents
         The file that was drafted.
     clock : ClockDraft, optional
-    taken : sequence of Taken
+    drafted : sequence of DraftLine
     names : FileNames
         What the names of the files say.
     known : mapping
         Facts of the user.
     """
-    yield f"# A first column map, drafted from {next(iter(looked.runs))}. Decide the lines with {ASK[2:]}, then read."
-    yield from layout_lines(seen, taken)
+    yield f"# A first column map, drafted from {next(iter(folder.runs))}. Decide the lines with {ASK[2:]}, then read."
+    yield from layout_lines(contents, drafted)
     if names.path:
         yield line("path", names.path)
     if clock is None:
         yield line("sampling_rate_hz", 10000, "", "no time was found: the sampling rate")
-    yield "channels:" if clock or any(each.active and each.quantity for each in taken) else "channels: {}"
+    yield "channels:" if clock or any(each.active and each.quantity for each in drafted) else "channels: {}"
     yield from clock_lines("t", clock, 2)
     asked: set[str] = set()
-    for each in sorted((each for each in taken if each.quantity in ORDER), key=lambda each: ORDER.index(each.quantity)):
+    for each in sorted(
+        (each for each in drafted if each.quantity in ORDER), key=lambda each: ORDER.index(each.quantity)
+    ):
         again = each.active and each.question in asked
         why = f"as above: {each.question}" if again and each.question else each.why
         yield line(each.quantity, each.entry, why, "" if again else each.question, 2, each.active)
@@ -58,9 +60,9 @@ def gauge_lines(
     yield ""
     yield "# Facts of all recordings; the set speed and load are those that were asked of the bench."
     yield "facts:"
-    per_file = {} if names.path else {name: _measured(run, clock, taken, known) for name, run in looked.runs.items()}
-    alone = len(looked.runs) == 1 or not per_file
-    measured = _measured(seen, clock, taken, known)
+    per_file = {} if names.path else {name: _measured(run, clock, drafted, known) for name, run in folder.runs.items()}
+    alone = len(folder.runs) == 1 or not per_file
+    measured = _measured(contents, clock, drafted, known)
     for fact in ("gear", "session"):
         if fact not in names.groups:
             yield line(
@@ -83,9 +85,9 @@ def gauge_lines(
             yield line(fact, known[fact], "given", "", 2)
     if not alone:
         yield from _files(per_file, known)
-    elif not names.path and not is_data(name := next(iter(looked.runs))):
+    elif not names.path and not is_data(name := next(iter(folder.runs))):
         yield line("files", {name: {}}, "files of this ending are read only if they are named")
-    yield from left_lines(taken, seen, looked.others)
+    yield from left_lines(drafted, contents, folder.others)
 
 
 def _files(per_file: Mapping[str, Mapping[str, float]], known: Mapping[str, Any]) -> Iterator[str]:
@@ -100,15 +102,15 @@ def _files(per_file: Mapping[str, Mapping[str, float]], known: Mapping[str, Any]
 
 
 def _measured(
-    seen: Seen, clock: ClockDraft | None, taken: Sequence[Taken], known: Mapping[str, Any]
+    contents: FileContents, clock: ClockDraft | None, drafted: Sequence[DraftLine], known: Mapping[str, Any]
 ) -> dict[str, float]:
     """Speed and load of a file: those of the user, else the means; the speed is also the slope of the angle."""
     found: dict[str, float] = {fact: known[fact] for fact in ("n_in_rpm", "T_out_nm") if fact in known}
-    own = {each.quantity: each.entry["unit"] for each in taken if each.active and "unit" in each.entry}
+    own = {each.quantity: each.entry["unit"] for each in drafted if each.active and "unit" in each.entry}
     values = {
         each.quantity: one.values
-        for each in taken
-        for one in seen.columns
+        for each in drafted
+        for one in contents.columns
         if (one.column, one.file) == (each.column.column, each.column.file)
     }
     for fact, channel, target, digits in (("n_in_rpm", "n_in", "rpm", 10), ("T_out_nm", "T_out", "N m", 1)):

@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Shaped
 
 # Robots have fewer axes.
-MOST = 16
+MOST_AXES = 16
 # Median change to the sample of the same signal against that to the next number. Samples of one smooth signal change
 # least from one to the next, whatever its rate: then the ratio is above 1.
 SMOOTHER = 0.2
@@ -17,8 +17,8 @@ def interleaved_in(values: Shaped[np.ndarray, " number"]) -> int:
     3
     """
     numbers = values.astype(float)
-    if len(numbers) < 4 * MOST:
+    if len(numbers) < 4 * MOST_AXES:
         return 1
-    change = [float(np.mean(np.abs(numbers[lag:] - numbers[:-lag]))) for lag in range(1, MOST + 1)]
+    change = [float(np.mean(np.abs(numbers[lag:] - numbers[:-lag]))) for lag in range(1, MOST_AXES + 1)]
     lag = int(np.argmin(change)) + 1
     return lag if change[lag - 1] < SMOOTHER * change[0] else 1

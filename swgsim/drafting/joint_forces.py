@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from swgsim.drafting.named import Named
-from swgsim.drafting.taken import Taken, place
+from swgsim.drafting.draft_line import DraftLine, place
+from swgsim.drafting.named_column import NamedColumn
 from swgsim.drafting.vocabulary import MODEL, OUTPUT
 from swgsim.tables.units import FACTORS, SHARES
 
@@ -15,11 +15,11 @@ EFFORT = frozenset({"effort", "efforts"})
 
 
 def forces(
-    angle: Named, currents: Sequence[Named], torques: Sequence[Named], alone: bool
-) -> Iterator[tuple[str, Named]]:
+    angle: NamedColumn, currents: Sequence[NamedColumn], torques: Sequence[NamedColumn], alone: bool
+) -> Iterator[tuple[str, NamedColumn]]:
     """Current and torques of a joint: for each signal the first column, measured ones before others."""
 
-    def own(columns: Sequence[Named]) -> list[Named]:
+    def own(columns: Sequence[NamedColumn]) -> list[NamedColumn]:
         found = [each for each in columns if each.joint == angle.joint]
         return found or (list(columns) if alone else [])
 
@@ -31,7 +31,7 @@ def forces(
     yield from (("T_rigid", each) for each in [each for each in own(torques) if each.meaning.says(MODEL)][:1])
 
 
-def force(signal: str, each: Named, known: Mapping[str, Any]) -> Taken:
+def force(signal: str, each: NamedColumn, known: Mapping[str, Any]) -> DraftLine:
     """One current or torque."""
     column, target = each.column, "A" if signal == "current" else "N m"
     unit, more, ask, active = column.unit, {}, "", True
@@ -45,4 +45,4 @@ def force(signal: str, each: Named, known: Mapping[str, Any]) -> Taken:
         unit, ask = target, ask or f"no unit is said: {target} is assumed"
     if signal == "T_motor":
         ask = ask if unit in SHARES else "effort: torque of the motor, with friction; T_sensor if a sensor measured it"
-    return Taken(column, signal, place(column) | {"unit": unit} | more, each.meaning.why, ask, "", active)
+    return DraftLine(column, signal, place(column) | {"unit": unit} | more, each.meaning.why, ask, "", active)

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
+from swgsim.drafting.draft_line import DraftLine, joined, place
+from swgsim.drafting.file_column import FileColumn
 from swgsim.drafting.joint_forces import force, forces
-from swgsim.drafting.motion import EXPLAINED, RATIOS, slope_of, turns_of, wrap_of
+from swgsim.drafting.motion import LEAST_EXPLAINED, RATIOS, slope_of, turns_of, wrap_of
 from swgsim.drafting.motion_units import MOST_TURNED, motion_units
-from swgsim.drafting.named import Named
-from swgsim.drafting.seen_column import SeenColumn
-from swgsim.drafting.taken import Taken, joined, place
+from swgsim.drafting.named_column import NamedColumn
 from swgsim.drafting.vocabulary import MODEL
 from swgsim.drafting.words import Meaning
 from swgsim.tables.units import FACTORS, SHARES
@@ -23,15 +23,15 @@ MOST_TURNS = MOST_TURNED / np.pi
 
 
 def joint_signals(
-    named: Sequence[Named],
+    named: Sequence[NamedColumn],
     time: Float[np.ndarray, " time"] | None,
     known: Mapping[str, Any],
-) -> list[Taken]:
+) -> list[DraftLine]:
     """What the columns of a robot's log are taken for; those that are not understood come last.
 
     Parameters
     ----------
-    named : sequence of Named
+    named : sequence of NamedColumn
         The columns that are no time.
     time : array (time,), optional
         [s]; None if no time was found.
@@ -47,11 +47,13 @@ def joint_signals(
     # A column that jumps by one turn is an angle, whatever its name.
     angles = angles or list(pairs) or [each for each in unnamed if wrap_of(each.column.values)]
     joints = _names(angles)
-    taken: list[Taken] = []
+    drafted: list[DraftLine] = []
     if not joints and usable:
         # A source needs an angle: the user must say which column it is.
-        taken.append(
-            Taken(usable[0].column, "q", place(usable[0].column) | {"unit": "rad"}, "", "no angle was found", "joint_1")
+        drafted.append(
+            DraftLine(
+                usable[0].column, "q", place(usable[0].column) | {"unit": "rad"}, "", "no angle was found", "joint_1"
+            )
         )
     for name, angle in joints.items():
         alone = len(joints) == 1
@@ -59,13 +61,13 @@ def joint_signals(
         motor = next(
             (each for each in kinds["angle"] if each is not angle and each.joint == angle.joint and each.at_motor), None
         )
-        taken += _moving(name, angle, speed, motor, time, known)
+        drafted += _moving(name, angle, speed, motor, time, known)
         for signal in forces(angle, kinds["current"], torques, alone):
-            taken.append(replace(force(*signal, known), joint=name))
-    left = [each for each in unnamed if each.column not in [one.column for one in taken]]
-    taken += _suggested([each for each in left if pairs or each.column.unit in SHARES], list(joints), known)
-    used = {id(each.column) for each in taken}
-    return taken + [Taken(each.column, "", why=_why_not(each)) for each in named if id(each.column) not in used]
+            drafted.append(replace(force(*signal, known), joint=name))
+    left = [each for each in unnamed if each.column not in [one.column for one in drafted]]
+    drafted += _suggested([each for each in left if pairs or each.column.unit in SHARES], list(joints), known)
+    used = {id(each.column) for each in drafted}
+    return drafted + [DraftLine(each.column, "", why=_why_not(each)) for each in named if id(each.column) not in used]
 
 
 def _is_set_point(meaning: Meaning) -> bool:
@@ -73,30 +75,36 @@ def _is_set_point(meaning: Meaning) -> bool:
     return meaning.is_set_point and not (meaning.quantity == "torque" and meaning.says(MODEL))
 
 
-def _one_for_each_joint(angles: Sequence[Named]) -> list[Named]:
+def _one_for_each_joint(angles: Sequence[NamedColumn]) -> list[NamedColumn]:
     """One angle for each joint: that of the output before that of the motor."""
-    chosen: dict[int | tuple[str, ...], Named] = {}
+    chosen: dict[int | tuple[str, ...], NamedColumn] = {}
     for each in sorted(angles, key=lambda each: each.at_motor):
         chosen.setdefault(each.joint, each)
     return [each for each in angles if each in chosen.values()]
 
 
-def _by_slope(columns: Sequence[Named], time: Float[np.ndarray, " time"] | None) -> dict[Named, Named]:
+def _by_slope(
+    columns: Sequence[NamedColumn], time: Float[np.ndarray, " time"] | None
+) -> dict[NamedColumn, NamedColumn]:
     """Angles and their velocities among columns without names: a velocity explains its angle best, and an angle too."""
     shares = {
         (angle, speed): slope_of(angle.column.values, speed.column.values, time).share
         for angle, speed in product(columns, columns)
         if angle is not speed
     }
-    found: dict[Named, Named] = {}
+    found: dict[NamedColumn, NamedColumn] = {}
     for (angle, speed), share in sorted(shares.items(), key=lambda item: -item[1]):
         # A velocity is no angle itself, though its slope, the acceleration, may be among the columns.
-        if share > EXPLAINED and angle not in {*found, *found.values()} and speed not in {*found, *found.values()}:
+        if (
+            share > LEAST_EXPLAINED
+            and angle not in {*found, *found.values()}
+            and speed not in {*found, *found.values()}
+        ):
             found[angle] = speed
     return {angle: found[angle] for angle in columns if angle in found}
 
 
-def _names(angles: Sequence[Named]) -> dict[str, Named]:
+def _names(angles: Sequence[NamedColumn]) -> dict[str, NamedColumn]:
     """Joints by their names: those of the columns, or joint_1 and so on by their numbers, else by their order."""
     words = ["_".join(each.words) for each in angles]
     if len(angles) > 1 and all(words) and len(set(words)) == len(words):
@@ -109,17 +117,17 @@ def _names(angles: Sequence[Named]) -> dict[str, Named]:
 
 
 def _velocity(
-    angle: Named, speeds: Sequence[Named], time: Float[np.ndarray, " time"] | None, alone: bool
-) -> Named | None:
+    angle: NamedColumn, speeds: Sequence[NamedColumn], time: Float[np.ndarray, " time"] | None, alone: bool
+) -> NamedColumn | None:
     """The velocity of an angle: that of the same joint which explains it best."""
     own = [each for each in speeds if each.joint == angle.joint] or (list(speeds) if alone else [])
     return max(own, key=lambda each: slope_of(angle.column.values, each.column.values, time).share, default=None)
 
 
 def _moving(
-    name: str, angle: Named, speed: Named | None, motor: Named | None, time: Float[np.ndarray, " time"] | None,
-    known: Mapping[str, Any],
-) -> Iterator[Taken]:  # fmt: skip
+    name: str, angle: NamedColumn, speed: NamedColumn | None, motor: NamedColumn | None,
+    time: Float[np.ndarray, " time"] | None, known: Mapping[str, Any],
+) -> Iterator[DraftLine]:  # fmt: skip
     """Angle and velocity of one joint."""
     units = motion_units(angle.column, speed.column if speed else None, time)
     turns = turns_of(angle.column.values, units.angle)
@@ -140,22 +148,22 @@ def _moving(
         far = f", as it turns {turns:.3g} times; if it is not, remove each 'at: motor'" if turns > MOST_TURNS else ""
         ratio, ask = 1, f"gear ratio: the angle is that of the motor{far}"
     side = {"at": "motor"}
-    yield Taken(
+    yield DraftLine(
         angle.column, "q", place(angle.column) | units.angle | (side if drive else {}),
         joined(angle.meaning.why, "" if speed else units.why, "jumps by one turn" if "wraps" in units.angle else ""),
         units.of_angle, name,
     )  # fmt: skip
     if ratio is not None:
         why = "" if ask else "given" if "gear_ratio" in known else units.why or "angles of motor and output"
-        yield Taken(angle.column, "gear_ratio", {"gear_ratio": ratio}, why, ask, name)
+        yield DraftLine(angle.column, "gear_ratio", {"gear_ratio": ratio}, why, ask, name)
     if speed is not None:
         entry = place(speed.column) | units.speed | (side if of_motor else {})
-        yield Taken(
+        yield DraftLine(
             speed.column, "omega", entry, joined(speed.meaning.why, units.why), units.of_speed, name, units.fits
         )
 
 
-def ratio_of_angles(motor: SeenColumn, output: SeenColumn) -> float:
+def ratio_of_angles(motor: FileColumn, output: FileColumn) -> float:
     """Turns of the motor per turn of the output, from two angles in known units; 0 if they do not say it."""
     if motor.unit not in FACTORS["rad"] or output.unit not in FACTORS["rad"]:
         return 0.0
@@ -163,7 +171,7 @@ def ratio_of_angles(motor: SeenColumn, output: SeenColumn) -> float:
     return float(abs(np.polyfit(slow, fast, 1)[0])) if np.ptp(slow) > 0 else 0.0
 
 
-def _suggested(columns: Sequence[Named], joints: Sequence[str], known: Mapping[str, Any]) -> Iterator[Taken]:
+def _suggested(columns: Sequence[NamedColumn], joints: Sequence[str], known: Mapping[str, Any]) -> Iterator[DraftLine]:
     """Lines for columns without names that come one for each joint, which the user may turn into signals."""
     for each, joint in zip(columns, joints if len(columns) >= len(joints) else [], strict=False):
         found = force("current", each, known)
@@ -172,7 +180,7 @@ def _suggested(columns: Sequence[Named], joints: Sequence[str], known: Mapping[s
         yield replace(found, question=ask, joint=joint, active=False)
 
 
-def _why_not(each: Named) -> str:
+def _why_not(each: NamedColumn) -> str:
     """Why a column is not taken."""
     if each.column.is_text:
         return "text"

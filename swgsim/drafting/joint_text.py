@@ -6,10 +6,10 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from swgsim.drafting.clock import ClockDraft
+from swgsim.drafting.draft_line import DraftLine, travels
+from swgsim.drafting.file_contents import FileContents
 from swgsim.drafting.file_names import FileNames
-from swgsim.drafting.folder import LookedAt
-from swgsim.drafting.seen import Seen
-from swgsim.drafting.taken import Taken, travels
+from swgsim.drafting.folder import FolderContents
 from swgsim.drafting.yaml_text import ASK, clock_lines, layout_lines, left_lines, line
 from swgsim.joint.recording import PREDICTED
 
@@ -19,62 +19,62 @@ STANDS = 1e-3
 
 
 def joint_lines(
-    looked: LookedAt, seen: Seen, clock: ClockDraft | None, taken: Sequence[Taken], names: FileNames,
-    known: Mapping[str, Any],
+    folder: FolderContents, contents: FileContents, clock: ClockDraft | None, drafted: Sequence[DraftLine],
+    names: FileNames, known: Mapping[str, Any],
 ) -> Iterator[str]:  # fmt: skip
     """The lines of the source in YAML; parameters as for :func:`swgsim.drafting.gauge_text.gauge_lines`."""
-    yield f"# A first source, drafted from {next(iter(looked.runs))}. Decide the lines with {ASK[2:]}, then read."
+    yield f"# A first source, drafted from {next(iter(folder.runs))}. Decide the lines with {ASK[2:]}, then read."
     yield line("robot", known.get("robot", "my robot"), "", "" if "robot" in known else "its name")
-    yield from layout_lines(seen, taken)
+    yield from layout_lines(contents, drafted)
     endings = sorted(
         {
             "".join(PurePosixPath(name).suffixes[-2:]) if name.endswith(".gz") else PurePosixPath(name).suffix
-            for name in looked.names
+            for name in folder.names
         }
     )
-    named = looked.named or len(looked.names) == 1
-    yield line("files", list(looked.names) if named else [f"*{ending}" for ending in endings])
-    standing = [name for name, run in looked.runs.items() if _stands(run, seen, taken)]
+    named = folder.named or len(folder.names) == 1
+    yield line("files", list(folder.names) if named else [f"*{ending}" for ending in endings])
+    standing = [name for name, run in folder.runs.items() if _stands(run, contents, drafted)]
     if standing:
         yield line("rest", standing, "the angles stand")
-    if looked.others and not named:
-        yield line("leave_out", list(looked.others), "see below")
+    if folder.others and not named:
+        yield line("leave_out", list(folder.others), "see below")
     if names.path:
         yield line(
-            "path", names.path, "", "" if looked.by_signal else "the session: between sessions something was dismounted"
+            "path", names.path, "", "" if folder.by_signal else "the session: between sessions something was dismounted"
         )
-    elif len(looked.names) > 1:
+    elif len(folder.names) > 1:
         yield f"{ASK} each file is a session of its own; 'path' says by a group which were recorded without dismounting"
     yield from clock_lines("time", clock)
     if clock is None:
-        if any(each.quantity == "omega" and each.active for each in taken):
+        if any(each.quantity == "omega" and each.active for each in drafted):
             yield line(
                 "rate", "from_motion", "no time was found: the rate is mean velocity over mean step of the angle"
             )
         else:
             yield line("rate_hz", 1000, "", "no time was found: the sampling rate")
     yield ""
-    yield "joints:" if any(each.joint for each in taken) else "joints: {}"
+    yield "joints:" if any(each.joint for each in drafted) else "joints: {}"
     asked: set[tuple[str, str]] = set()
-    joints = dict.fromkeys(each.joint for each in taken if each.joint)
+    joints = dict.fromkeys(each.joint for each in drafted if each.joint)
     for joint in joints:
-        own = [_once(each, asked) for each in taken if each.joint == joint]
+        own = [_once(each, asked) for each in drafted if each.joint == joint]
         yield from _joint(joint, own, known)
         asked |= {(each.quantity, each.question) for each in own}
-    loaded = {each.joint for each in taken if each.active and each.quantity in PREDICTED}
+    loaded = {each.joint for each in drafted if each.active and each.quantity in PREDICTED}
     if missing := [joint for joint in joints if joint not in loaded]:
         yield f"{ASK} nothing to explain in {', '.join(missing)}: map current, T_motor or T_sensor"
-    yield from left_lines(taken, seen, looked.others)
+    yield from left_lines(drafted, contents, folder.others)
 
 
-def _once(each: Taken, asked: Collection[tuple[str, str]]) -> Taken:
+def _once(each: DraftLine, asked: Collection[tuple[str, str]]) -> DraftLine:
     """A line whose question was asked for another joint already points to it."""
     if each.active and (each.quantity, each.question) in asked:
         return replace(each, question="", why=f"as above: {each.question}" if each.question else each.why)
     return each
 
 
-def _joint(joint: str, own: Sequence[Taken], known: Mapping[str, Any]) -> Iterator[str]:
+def _joint(joint: str, own: Sequence[DraftLine], known: Mapping[str, Any]) -> Iterator[str]:
     """One joint."""
     yield f"  {joint}:"
     for each in own:
@@ -93,7 +93,7 @@ def _joint(joint: str, own: Sequence[Taken], known: Mapping[str, Any]) -> Iterat
             )
 
 
-def _stands(run: Seen, seen: Seen, taken: Sequence[Taken]) -> bool:
+def _stands(run: FileContents, contents: FileContents, drafted: Sequence[DraftLine]) -> bool:
     """Whether all angles of a run stand."""
-    usual, found = travels(seen, taken), travels(run, taken)
+    usual, found = travels(contents, drafted), travels(run, drafted)
     return bool(found) and all(each < STANDS * max(usual) for each in found)

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 from swgsim.common.files import replacing, write_text
 from swgsim.drafting.clock import ClockDraft
-from swgsim.drafting.taken import Taken
+from swgsim.drafting.draft_line import DraftLine
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from pandas import DataFrame
 
-WIDEST = 28
+WIDEST_COLUMN = 28
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -27,7 +27,7 @@ class MapDraft:
         The files that were looked at.
     text : str
         YAML of the map, with comments.
-    taken : tuple of Taken
+    drafted : tuple of DraftLine
         What each column was taken for.
     clock : ClockDraft or None
     findings : str
@@ -39,7 +39,7 @@ class MapDraft:
     kind: str
     path: Path
     text: str
-    taken: tuple[Taken, ...]
+    drafted: tuple[DraftLine, ...]
     clock: ClockDraft | None
     findings: str
     readable: bool
@@ -62,7 +62,7 @@ class MapDraft:
                 "unit": str(each.entry.get("unit", "")),
                 "why": "; ".join(filter(None, [each.why, each.question])),
             }
-            for each in self.taken
+            for each in self.drafted
             if each.quantity != "gear_ratio"
         ]
         return DataFrame(rows)
@@ -71,7 +71,7 @@ class MapDraft:
         """Each column of numbers against time."""
         from swgsim.drafting.picture import picture  # imports matplotlib, which takes a second
 
-        return picture(self.taken, self.clock)
+        return picture(self.drafted, self.clock)
 
     def save(self, path: str | Path) -> None:
         """Write the draft, and its picture beside it as PNG; both are complete or absent.
@@ -98,9 +98,9 @@ class MapDraft:
 
 
 def _aligned(table: "DataFrame") -> str:
-    """A table as text, each column as wide as its longest cell, but none wider than :data:`WIDEST`."""
+    """A table as text, each column as wide as its longest cell, but none wider than :data:`WIDEST_COLUMN`."""
     rows = [list(table.columns), *table.to_numpy().tolist()]
-    cells = [[cell if len(cell) <= WIDEST else cell[: WIDEST - 1] + "…" for cell in row] for row in rows]
+    cells = [[cell if len(cell) <= WIDEST_COLUMN else cell[: WIDEST_COLUMN - 1] + "…" for cell in row] for row in rows]
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
     return "\n".join(
         "  ".join(f"{cell:{width}}" for cell, width in zip(row, widths, strict=True)).rstrip() for row in cells

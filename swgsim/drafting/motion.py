@@ -10,7 +10,7 @@ from scipy.integrate import cumulative_trapezoid
 from swgsim.tables.units import FACTORS
 
 # Relative deviation at which two numbers are the same: 57.3 (degrees) and 60 (rpm) differ by 5 %.
-SAME = 0.02
+RATIO_TOLERANCE = 0.02
 # Largest revolution of an encoder that counts [counts].
 MOST_BITS = 32
 # Gears of one stage.
@@ -18,7 +18,7 @@ RATIOS = (20.0, 400.0)
 ANGLE_UNITS = ("rad", "deg", "rev", "mrad")
 SPEED_UNITS = ("rad/s", "deg/s", "rpm", "rev/s")
 # Share of an angle that a velocity must explain to be its velocity, where the names do not say so.
-EXPLAINED = 0.99
+LEAST_EXPLAINED = 0.99
 
 
 class Wrap(NamedTuple):
@@ -60,7 +60,7 @@ def wrap_of(values: Shaped[np.ndarray, " time"]) -> Wrap | None:
     known = {"deg": 360.0, "rad": 2 * np.pi, "rev": 1.0}
     known |= {f"counts {bits}": 2.0**bits for bits in range(8, MOST_BITS + 1)}
     unit = min(known, key=lambda each: abs(np.log(size / known[each])))
-    if abs(size / known[unit] - 1) > SAME or span > known[unit] * (1 + SAME):
+    if abs(size / known[unit] - 1) > RATIO_TOLERANCE or span > known[unit] * (1 + RATIO_TOLERANCE):
         return None
     return Wrap(known[unit], unit.split()[0])
 
@@ -114,4 +114,4 @@ def expected(angle_unit: str, speed_unit: str) -> float:
 
 def near(found: float, wanted: float) -> bool:
     """Whether two numbers are the same but for noise."""
-    return bool(wanted) and abs(found / wanted - 1) < SAME
+    return bool(wanted) and abs(found / wanted - 1) < RATIO_TOLERANCE

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
+from swgsim.drafting.file_column import FileColumn
 from swgsim.drafting.motion import ANGLE_UNITS, RATIOS, SPEED_UNITS, Slope, expected, near, slope_of, wrap_of
-from swgsim.drafting.seen_column import SeenColumn
 from swgsim.tables.units import FACTORS, SHARES
 
 # An angle in whole numbers with a larger range counts; 720 degrees may be written without decimals.
@@ -48,14 +48,14 @@ class MotionUnits:
 
 
 def motion_units(
-    angle: SeenColumn, speed: SeenColumn | None, time: Float[np.ndarray, " time"] | None, likely: Sequence[str] = ()
+    angle: FileColumn, speed: FileColumn | None, time: Float[np.ndarray, " time"] | None, likely: Sequence[str] = ()
 ) -> MotionUnits:
     """Units of an angle and of its velocity.
 
     Parameters
     ----------
-    angle : SeenColumn
-    speed : SeenColumn, optional
+    angle : FileColumn
+    speed : FileColumn, optional
     time : array (time,), optional
         [s]; without it the factor of the slope says nothing.
     likely : sequence of str
@@ -114,13 +114,13 @@ def _of_rated(angle: MotionUnits, unit: str, slope: Slope, timed: bool) -> Motio
     return replace(angle, speed=speed, why=f"slope explains {slope.share:.1%}", of_speed=of_speed, fits=fits)
 
 
-def _likely(angle: SeenColumn) -> list[str]:
+def _likely(angle: FileColumn) -> list[str]:
     """Units of an angle that says none, by its range."""
     units = list(ANGLE_UNITS)
     return ["deg", *units] if np.nanmax(np.abs(angle.values.astype(float))) > MOST_TURNED else units
 
 
-def _counts(angle: SeenColumn) -> bool:
+def _counts(angle: FileColumn) -> bool:
     """Whether an angle counts."""
     values = angle.values.astype(float)
     return bool(np.ptp(values) > COUNTED and np.all(values == np.round(values)))

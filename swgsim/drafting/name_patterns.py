@@ -4,26 +4,26 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from swgsim.drafting.seen import Seen
+from swgsim.drafting.file_contents import FileContents
 
 NUMBER = re.compile(r"\d+")
 
 
-def by_pattern(seen: Mapping[str, Seen]) -> dict[str, Seen]:
+def by_pattern(contents: Mapping[str, FileContents]) -> dict[str, FileContents]:
     """Files with columns by patterns, where their names differ by a number only; else the files as they are.
 
     Parameters
     ----------
-    seen : mapping of str to Seen
+    contents : mapping of str to FileContents
         Name of a file to what it shows.
     """
-    files = list(seen.values())
+    files = list(contents.values())
     names = [[str(each.column) for each in one.columns] for one in files]
     patterns = _patterns(names)
     if len({tuple(row) for row in names}) < 2 or patterns is None:
-        return dict(seen)
+        return dict(contents)
     found = {}
-    for file, one in seen.items():
+    for file, one in contents.items():
         columns = tuple(
             replace(each, column=pattern) if "*" in pattern else each
             for each, pattern in zip(one.columns, patterns, strict=True)

@@ -6,18 +6,18 @@ from dataclasses import replace
 import numpy as np
 
 from swgsim.drafting.clock import EVEN, ClockDraft, evenness
-from swgsim.drafting.seen_column import SeenColumn
+from swgsim.drafting.file_column import FileColumn
 
 # Share of the time of all by which another time may begin and end elsewhere.
 APART = 0.01
 
 
-def own_times(columns: Sequence[SeenColumn], clock: ClockDraft) -> tuple[list[SeenColumn], list[SeenColumn]]:
+def own_times(columns: Sequence[FileColumn], clock: ClockDraft) -> tuple[list[FileColumn], list[FileColumn]]:
     """Signals with their own times, and the columns of these times.
 
     Parameters
     ----------
-    columns : sequence of SeenColumn
+    columns : sequence of FileColumn
         All columns of a file, in its order.
     clock : ClockDraft
         The time of all. Signals with other times get its values by interpolation, as when they are read.
@@ -39,7 +39,7 @@ def own_times(columns: Sequence[SeenColumn], clock: ClockDraft) -> tuple[list[Se
     return found, others
 
 
-def _is_time(column: SeenColumn, main: SeenColumn) -> bool:
+def _is_time(column: FileColumn, main: FileColumn) -> bool:
     """Whether a column increases in even steps over the same time as another one."""
     if column.is_text or evenness(column) > EVEN:
         return False
@@ -47,7 +47,7 @@ def _is_time(column: SeenColumn, main: SeenColumn) -> bool:
     return bool(np.all(np.abs(ends - wanted) <= APART * np.ptp(wanted)))
 
 
-def _at(signal: SeenColumn, time: SeenColumn, main: SeenColumn) -> SeenColumn:
+def _at(signal: FileColumn, time: FileColumn, main: FileColumn) -> FileColumn:
     """A signal at the times of another one."""
     if signal.is_text:
         return signal

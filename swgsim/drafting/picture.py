@@ -7,19 +7,19 @@ from matplotlib.figure import Figure
 
 from swgsim.common import style
 from swgsim.drafting.clock import ClockDraft
-from swgsim.drafting.taken import Taken
+from swgsim.drafting.draft_line import DraftLine
 
 # Panels beside one another, and samples that are drawn of each column.
 BESIDE = 3
 DRAWN = 5000
 # Most panels: those of six joints with all that a controller logs.
-MOST = 60
+MOST_PANELS = 60
 
 
-def picture(taken: Sequence[Taken], clock: ClockDraft | None) -> Figure:
+def picture(drafted: Sequence[DraftLine], clock: ClockDraft | None) -> Figure:
     """Draw all columns; those that are not read are grey."""
-    numbers = [each for each in taken if each.quantity not in ("t", "gear_ratio") and not each.column.is_text]
-    shown = numbers[:MOST]
+    numbers = [each for each in drafted if each.quantity not in ("t", "gear_ratio") and not each.column.is_text]
+    shown = numbers[:MOST_PANELS]
     rows = max(-(-len(shown) // BESIDE), 1)
     figure = style.figure(4.2 * BESIDE, 1.9 * rows)
     panels = figure.subplots(rows, BESIDE, squeeze=False).ravel()

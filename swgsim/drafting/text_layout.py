@@ -24,8 +24,8 @@ from swgsim.tables.limits import FEWEST_ROWS
 from swgsim.tables.text_stream import NUMBER, cells_of
 
 # What is looked at [byte], [rows]: preambles have at most some hundred rows.
-LOOKED = 2**20
-ROWS = 400
+BYTES_READ = 2**20
+ROWS_READ = 400
 MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
 # In the order in which they win if they fit equally well: a blank splits also what a tab separates.
 SEPARATORS = ("\t", ";", ",", "|", " ")
@@ -124,9 +124,9 @@ def layout_of(lines: Sequence[str], choices: Sequence[tuple[str, str]], encoding
 def _lines(path: Path) -> tuple[str, list[str]]:
     """Encoding and first lines of a file; the last one is cut off where the file goes on."""
     with gzip.open(path) if path.suffix.lower() == ".gz" else path.open("rb") as raw:
-        head = raw.read(LOOKED + 1)
+        head = raw.read(BYTES_READ + 1)
     encoding = next((name for mark, name in MARKS if head.startswith(mark)), "")
-    whole = len(head) <= LOOKED
+    whole = len(head) <= BYTES_READ
     if not encoding:
         try:
             codecs.getincrementaldecoder("utf-8")().decode(head, final=whole)
@@ -135,7 +135,7 @@ def _lines(path: Path) -> tuple[str, list[str]]:
             encoding = "cp1252"
     # An editor counts rows by these ends only; Python knows further ones.
     lines = re.split(r"\r\n|\n|\r", head.decode(encoding, errors="replace"))
-    return encoding, (lines if whole else lines[:-1])[:ROWS]
+    return encoding, (lines if whole else lines[:-1])[:ROWS_READ]
 
 
 def _split(lines: Sequence[str], separator: str) -> list[list[str]]:

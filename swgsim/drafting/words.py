@@ -5,7 +5,7 @@ import unicodedata
 from collections.abc import Set
 from dataclasses import dataclass
 
-from swgsim.drafting.seen_column import SeenColumn
+from swgsim.drafting.file_column import FileColumn
 from swgsim.drafting.units import quantity_of
 from swgsim.drafting.vocabulary import CHANNEL, PARTS, SET, WORDS
 
@@ -45,7 +45,7 @@ class Meaning:
         return wanted or self.says(SET) or any(word.startswith("soll") for word in self.words)
 
 
-def meaning_of(column: SeenColumn) -> Meaning:
+def meaning_of(column: FileColumn) -> Meaning:
     """What the name and the unit of a column say."""
     words, index = words_of(column.name)
     by_unit = quantity_of(column.unit)

@@ -6,15 +6,15 @@ from typing import Any
 import yaml
 
 from swgsim.drafting.clock import ClockDraft
-from swgsim.drafting.seen import Seen
-from swgsim.drafting.taken import Taken
+from swgsim.drafting.draft_line import DraftLine
+from swgsim.drafting.file_contents import FileContents
 from swgsim.tables.layout import Layout
 
 ASK = "# ???"
 NOT_UNDERSTOOD = "???"
 SEPARATORS = {"\t": "tab", " ": "blanks"}
 # Longest comment, so that a line is read at a glance.
-LONGEST = 110
+LONGEST_COMMENT = 110
 
 
 def flow(value: Any) -> str:
@@ -37,12 +37,12 @@ def line(key: str, value: Any, why: str = "", question: str = "", indent: int = 
 def short(text: str) -> str:
     """A comment of one line."""
     one = " ".join(text.split())
-    return one if len(one) <= LONGEST else one[: LONGEST - 1] + "…"
+    return one if len(one) <= LONGEST_COMMENT else one[: LONGEST_COMMENT - 1] + "…"
 
 
-def layout_lines(seen: Seen, taken: Sequence[Taken]) -> Iterable[str]:
+def layout_lines(contents: FileContents, drafted: Sequence[DraftLine]) -> Iterable[str]:
     """Entries of the layout that are not the usual ones."""
-    layout, usual = seen.layout, Layout()
+    layout, usual = contents.layout, Layout()
     if layout is not None:
         if layout.separator != usual.separator:
             yield line("separator", SEPARATORS.get(layout.separator, layout.separator))
@@ -61,28 +61,28 @@ def layout_lines(seen: Seen, taken: Sequence[Taken]) -> Iterable[str]:
             yield line("header_row", layout.header_row)
         if layout.first_row is not None:
             yield line("first_row", layout.first_row)
-    read = [each.column for each in taken if each.quantity and each.active]
+    read = [each.column for each in drafted if each.quantity and each.active]
     if lost := max((each.lost for each in read), default=0):
         share = lost / len(read[0].values)
         value = "leave_out" if share < 0.01 else {"leave_out": lost}
         yield line("lost", value, "", f"up to {lost} readings are lost in a column: leave out their rows?")
-    if seen.interleaved > 1:
-        yield line("interleaved", seen.interleaved, "so many signals follow one another in each column")
+    if contents.interleaved > 1:
+        yield line("interleaved", contents.interleaved, "so many signals follow one another in each column")
 
 
-def left_lines(taken: Sequence[Taken], seen: Seen, others: Mapping[str, str]) -> Iterable[str]:
+def left_lines(drafted: Sequence[DraftLine], contents: FileContents, others: Mapping[str, str]) -> Iterable[str]:
     """Comments on what is not read."""
-    left = [each for each in taken if not each.quantity]
+    left = [each for each in drafted if not each.quantity]
     if left:
         yield ""
         yield "# Columns that are not read, with their first values:"
     for each in left:
         file = f" of {each.column.file}" if each.column.file else ""
         yield f"#   {short(f'{each.column.column}{file}: {each.column.first}  ({each.why or NOT_UNDERSTOOD})')}"
-    if seen.others:
+    if contents.others:
         yield ""
         yield "# What else is in the file: " + short(
-            "; ".join(f"{name} ({what})" for name, what in seen.others.items())
+            "; ".join(f"{name} ({what})" for name, what in contents.others.items())
         )
     for name, why in list(others.items())[:10]:
         yield f"# Not read: {short(f'{name}: {why}')}"

@@ -31,7 +31,7 @@ OF_TEMPERATURE, OF_TIME = (
 )
 KELVIN, HOUR = 10.0, 3600.0
 # Highest order; with 64 samples per revolution a model would alias a higher one to an order below 13.
-HIGHEST = 50
+HIGHEST_ORDER = 50
 # Simple ones first.
 LAWS: Mapping[str, Callable[[OperatingPoint, Conditions], float]] = {
     "constant": lambda point, _: 1.0,
@@ -70,7 +70,7 @@ class Regularity(Effect):
     """
 
     place = "acquisition"
-    order: int = choice(low=0, high=HIGHEST)
+    order: int = choice(low=0, high=HIGHEST_ORDER)
     amplitude: float = size(unit="-", low=-100, high=100, typical=1e-3)
     phase: float = phase()
     pattern: str = "the same in s1 to s4"

@@ -225,7 +225,7 @@ def gear_from(config: Mapping[str, Any]) -> Gear:
 
 
 # Catalogue limits of SHG-17-100: maximum input speed [rpm] and momentary peak torque [N m].
-HIGHEST = {"n_in_rpm": 7300.0, "T_out": 143.0}
+CATALOGUE_LIMITS = {"n_in_rpm": 7300.0, "T_out": 143.0}
 
 
 @dataclass(frozen=True)
@@ -244,8 +244,8 @@ class OperatingPoint:
     T_out: float
 
     def __post_init__(self) -> None:
-        require("the operating point", "n_in_rpm", self.n_in_rpm, low=10, high=HIGHEST["n_in_rpm"])
-        require("the operating point", "T_out", self.T_out, low=0, high=HIGHEST["T_out"])
+        require("the operating point", "n_in_rpm", self.n_in_rpm, low=10, high=CATALOGUE_LIMITS["n_in_rpm"])
+        require("the operating point", "T_out", self.T_out, low=0, high=CATALOGUE_LIMITS["T_out"])
 
     @property
     def omega_in(self) -> float:

@@ -7,7 +7,7 @@ from typing import Any
 
 from swgsim.common.files import require_writable
 from swgsim.identification.calls import commission
-from swgsim.identification.report.given import say, source_of
+from swgsim.identification.report.loop_input import say, source_of
 from swgsim.jobs import settings
 from swgsim.recordings.checks.defect import summary
 from swgsim.recordings.read import read_recordings

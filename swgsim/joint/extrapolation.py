@@ -4,22 +4,25 @@ from typing import Any
 
 import numpy as np
 
-from swgsim.joint.judged import Judged
 from swgsim.joint.regression import rms
+from swgsim.joint.validation import Validation
 
 
-def by_speed(judged: Judged) -> dict[str, Any]:
+def by_speed(validation: Validation) -> dict[str, Any]:
     """Highest fitted speed [rad/s]; errors of both models up to it and above, and the share of samples above.
 
     Errors of a range without samples are None.
     """
     fitted, held = (
-        np.concatenate([np.abs(each.speed) for each in table.recordings]) for table in (judged.table, judged.heldout)
+        np.concatenate([np.abs(each.speed) for each in table.recordings])
+        for table in (validation.table, validation.heldout)
     )
     highest = float(fitted.max())
     beyond = held > highest
-    ladder = judged.ladder
-    missed = {name: fit.missed(judged.heldout) for name, fit in (("before", ladder.textbook), ("after", ladder.top))}
+    ladder = validation.ladder
+    missed = {
+        name: fit.missed(validation.heldout) for name, fit in (("before", ladder.textbook), ("after", ladder.top))
+    }
     return {
         "fitted_up_to": highest,
         "share_beyond": float(beyond.mean()),

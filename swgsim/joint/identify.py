@@ -19,14 +19,14 @@ from swgsim.effects.text import as_text
 from swgsim.joint.days import Days, days
 from swgsim.joint.effects import SEARCHED
 from swgsim.joint.intake.read import JointRecordings, read_joints
-from swgsim.joint.judged import Judged
-from swgsim.joint.ladder import climb
+from swgsim.joint.ladder import forward_selection
 from swgsim.joint.naming import sizes
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.remaining import RemainingLine, remaining
 from swgsim.joint.report import report
 from swgsim.joint.split import Patterns, select
 from swgsim.joint.term import Term
+from swgsim.joint.validation import Validation
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -46,7 +46,7 @@ class JointAnswer:
     ----------
     report : mapping
         Content of ``report.json``.
-    judged : Judged
+    validation : Validation
         Models with and without effects, with their errors on held-out recordings.
     by_day : Days or None
         Friction by session.
@@ -57,7 +57,7 @@ class JointAnswer:
     """
 
     report: Mapping[str, Any]
-    judged: Judged
+    validation: Validation
     by_day: Days | None
     lines: tuple[RemainingLine, ...]
     digest: str
@@ -95,7 +95,7 @@ class JointAnswer:
         """Pictures of the page by name, as PNG with title and caption, and as figure of matplotlib."""
         from swgsim.joint.figures import pictures  # imports matplotlib, which takes a second
 
-        return pictures(self.judged, self.by_day, self.lines, self.report)
+        return pictures(self.validation, self.by_day, self.lines, self.report)
 
     @property
     def figures(self) -> "dict[str, Figure]":
@@ -115,7 +115,7 @@ class JointAnswer:
         folder = Path(folder)
         html = page(self.report, {name: picture for name, (picture, _) in self.pictures.items()})
         write_json(folder / "report.json", self.report)
-        write_text(folder / "effects.yaml", as_text(self.judged.ladder.top.terms))
+        write_text(folder / "effects.yaml", as_text(self.validation.ladder.top.terms))
         write_text(folder / "page.html", html)
         for name, (picture, _) in self.pictures.items():
             with replacing(folder / f"{name}.png") as aside:
@@ -190,15 +190,15 @@ def identify_joint(
     judging = holdout if isinstance(holdout, JointRecordings) else None
     patterns = str(holdout.folder) if isinstance(holdout, JointRecordings) else holdout
     case = select(recordings, judging, joint, signal, patterns, without)
-    judged = Judged(climb(case.table, kinds, progress, bar=bar), case.heldout, case.floor)
-    tables = judged.table, judged.heldout
+    validation = Validation(forward_selection(case.table, kinds, progress, bar=bar), case.heldout, case.floor)
+    tables = validation.table, validation.heldout
     progress("comparing sessions, and searching lines that remain")
-    by_day = days(judged.ladder.top, tables)
-    lines = remaining([(judged.ladder.top, table) for table in tables])
+    by_day = days(validation.ladder.top, tables)
+    lines = remaining([(validation.ladder.top, table) for table in tables])
     used = (*case.table.recordings, *case.heldout.recordings)
     known = {f"{each.name} {each.joint}" for each in used} | {each.name for each in used}
     defects = (*recordings.defects, *(judging.defects if judging else ()))
-    content = report(judged, by_day, lines, case.left_out) | {
+    content = report(validation, by_day, lines, case.left_out) | {
         "noise_floor_how": case.floor_how,
         "defects": [str(each) for each in defects if each.recording in known or each.severity == "refuse"],
         "seconds": round(time.perf_counter() - start, 1),
@@ -206,7 +206,7 @@ def identify_joint(
         "folder": str(recordings.folder),
         "version": code_version("joint"),
     }
-    return JointAnswer(content, judged, by_day, lines, _digest(used, f"{joint} {signal} {patterns} {without}"))
+    return JointAnswer(content, validation, by_day, lines, _digest(used, f"{joint} {signal} {patterns} {without}"))
 
 
 def source_path(source: str | Path) -> Path:

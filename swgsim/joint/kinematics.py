@@ -8,11 +8,11 @@ from scipy.ndimage import uniform_filter1d
 from scipy.signal import savgol_coeffs, savgol_filter
 
 # Window of the smoothing of speeds [s]; trajectories and speed controls are slower.
-SMOOTHED = 0.15
+SMOOTHING_WINDOW = 0.15
 # Share of the rigid-body torque that the inertia must explain.
-EXPLAINED = 0.8
+LEAST_RIGID_SHARE = 0.8
 # Least inertia, as a share of the mean: a fit may go below in postures with few samples.
-LEAST = 0.1
+LEAST_INERTIA = 0.1
 
 
 def smooth(omega: Float[np.ndarray, " time"], rate: float, derivative: int) -> Float[np.ndarray, " time"]:
@@ -50,7 +50,7 @@ def least_doubt(
 
 def window(samples: int, rate: float) -> int:
     """Odd number of samples of the smoothing of a speed."""
-    return min(max(5, int(SMOOTHED * rate) // 2 * 2 + 1), (samples - 1) // 2 * 2 + 1)
+    return min(max(5, int(SMOOTHING_WINDOW * rate) // 2 * 2 + 1), (samples - 1) // 2 * 2 + 1)
 
 
 def play(values: Float[np.ndarray, " time"], width: float) -> Float[np.ndarray, " time"]:
@@ -117,6 +117,6 @@ def inertia(
     X = (parts * acceleration + np.gradient(parts, time, axis=1) * speed).T
     weights = np.linalg.lstsq(X, torque, rcond=1e-6)[0]
     left, found = torque - X @ weights, weights @ parts
-    if not left @ left < (1 - EXPLAINED) * (torque @ torque) or found.mean() <= 0:
+    if not left @ left < (1 - LEAST_RIGID_SHARE) * (torque @ torque) or found.mean() <= 0:
         return None
-    return np.maximum(found, LEAST * found.mean())
+    return np.maximum(found, LEAST_INERTIA * found.mean())

@@ -9,8 +9,8 @@ from tqdm import tqdm
 
 from swgsim.joint.naming import in_words
 from swgsim.joint.recording import SIGNALS
-from swgsim.joint.regression import WORTH, Fit, Table, fit, rms
-from swgsim.joint.rest import trusted
+from swgsim.joint.regression import LEAST_GAIN, Fit, Table, fit, rms
+from swgsim.joint.row_variance import weighted_by_variance
 from swgsim.joint.shaping import shaped
 from swgsim.joint.shared import OfFriction, OfLoad
 from swgsim.joint.sign_width import with_sign_width
@@ -21,7 +21,7 @@ from swgsim.joint.waves import LOOKED_AT, Wave, waves
 # Significance level of an effect or wave in one round, and of an order that stands out of the spectrum.
 ALPHA, LINE_ALPHA = 0.05, 0.005
 # Largest number of added effects.
-MOST = 24
+MOST_STEPS = 24
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +49,7 @@ class Trial:
     chance: float
 
     @property
-    def pays(self) -> bool:
+    def accepted(self) -> bool:
         """Whether the gain is large enough, significant, and larger than the loss of any session."""
         return self._helps and self.chance < ALPHA
 
@@ -60,22 +60,24 @@ class Trial:
 
     @property
     def _helps(self) -> bool:
-        return not self._unsound and self.gain > WORTH and self.worst > -self.gain
+        return not self._unphysical and self.gain > LEAST_GAIN and self.worst > -self.gain
 
     @property
-    def _unsound(self) -> Term | None:
+    def _unphysical(self) -> Term | None:
         """First term with a sign that its physics forbids; the new term is checked first."""
-        return next((term for term in reversed(self.fit.terms) if not term.sound), None)
+        return next((term for term in reversed(self.fit.terms) if not term.has_physical_sign), None)
 
     @property
     def why(self) -> str:
         """Reason of the refusal, in words."""
-        if self._unsound:
-            own = self._unsound is self.fit.terms[-1]
-            return "its size would have the wrong sign" if own else f"{self._unsound.title()} would have the wrong sign"
+        if self._unphysical:
+            own = self._unphysical is self.fit.terms[-1]
+            return (
+                "its size would have the wrong sign" if own else f"{self._unphysical.title()} would have the wrong sign"
+            )
         if self.gain <= 0:
             return f"raises the cross-validated error by {-100 * self.gain:.2g} %"
-        if self.gain <= WORTH:
+        if self.gain <= LEAST_GAIN:
             return f"lowers the cross-validated error by only {100 * self.gain:.2g} %"
         if self.worst <= -self.gain:
             return f"lowers the error by {100 * self.gain:.2g} %, raises that of a session by {-100 * self.worst:.2g} %"
@@ -110,7 +112,7 @@ class Ladder:
         return self.steps[-1].fit if self.steps else self.textbook
 
 
-def climb(
+def forward_selection(
     table: Table, kinds: Sequence[type[Term]], progress: Callable[[str], None] = lambda _: None, *, bar: bool = False
 ) -> Ladder:
     """Add the best candidate, round after round, as long as one is accepted.
@@ -126,7 +128,7 @@ def climb(
     bar : bool
         Whether to show a progress bar of the candidates.
     """
-    now = start = with_link(trusted(fitted_textbook(table)))
+    now = start = with_link(weighted_by_variance(fitted_textbook(table)))
     unit, ratio = SIGNALS[table.of].unit, table.recordings[0].gear_ratio
     progress(f"textbook model: error {now.error:.4g} {unit} on the {len(table.recordings)} fitted recordings")
     steps: list[Trial] = []
@@ -143,8 +145,8 @@ def climb(
             candidates, f"step {len(steps) + 1}", unit=" candidates", leave=False, disable=None if bar else True
         )
         trials = sorted(tested, key=lambda trial: -trial.gain)
-        best = next((trial for trial in trials if trial.pays), None)
-        if best is None or len(steps) == MOST:
+        best = next((trial for trial in trials if trial.accepted), None)
+        if best is None or len(steps) == MOST_STEPS:
             progress(f"step {len(steps) + 1}: none of {len(trials)} candidates is accepted")
             return Ladder(start, tuple(steps), tuple(trials), unsearched)
         now = with_sign_width(best.fit)
@@ -178,7 +180,7 @@ def _best(now: Fit, shapes: Sequence[Wave]) -> Trial:
     """The shape of a wave with the largest gain, accepted shapes first."""
     # The correction counts all orders that were looked at, in as many shapes.
     trials = [_tried(now, shape, LOOKED_AT * len(shapes)) for shape in shapes]
-    return max(trials, key=lambda trial: (trial.pays, trial.gain))
+    return max(trials, key=lambda trial: (trial.accepted, trial.gain))
 
 
 def _tried(now: Fit, term: Term, trials: int) -> Trial:

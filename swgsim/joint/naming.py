@@ -10,9 +10,9 @@ from swgsim.joint.effects.ripple import Ripple
 from swgsim.joint.term import Term
 
 # An order counts as a multiple of a revolution within this difference.
-SAME = 0.5
+ORDER_TOLERANCE = 0.5
 # Highest named multiple of a revolution of the motor.
-MOST = 30
+HIGHEST_MULTIPLE = 30
 
 
 def in_words(term: Term, gear_ratio: float | None) -> str:
@@ -32,7 +32,7 @@ def part_of(order: float, gear_ratio: float | None) -> str:
     if gear_ratio is not None:
         for ratio, what in ((gear_ratio, "motor"), (gear_ratio + 1, "wave generator in the flex spline")):
             multiple = round(order / ratio)
-            if 1 <= multiple <= MOST and abs(order - multiple * ratio) < SAME:
+            if 1 <= multiple <= HIGHEST_MULTIPLE and abs(order - multiple * ratio) < ORDER_TOLERANCE:
                 return f"{multiple} per revolution of the {what}"
     return f"{round(order)} per revolution of the output" if order == round(order) else ""
 

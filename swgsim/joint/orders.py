@@ -10,17 +10,17 @@ from swgsim.common.chi2_logsf import log_tail
 from swgsim.joint.regression import Table
 
 # Oversampling of the resolution of orders, and the highest order if the gear ratio is unknown.
-FINENESS, HIGHEST = 4, 2500
+FINENESS, HIGHEST_ORDER = 4, 2500
 # Highest order as a multiple of the gear ratio.
-RATIOS = 25
+HIGHEST_MULTIPLE = 25
 # A recording must contain so many waves of an order.
-WAVES = 2.0
+LEAST_WAVES = 2.0
 # Lines within so many resolutions of a stronger line belong to it.
-NEIGHBOURS = 4
+LEAKAGE_LINES = 4
 # Share of the samples of a recording that must be dense enough for a wave.
 SLOWER = 0.3
 # Width of the median filter for the noise, in units of FINENESS lines.
-BESIDE = 40
+MEDIAN_WIDTH = 40
 
 
 class Line(NamedTuple):
@@ -47,14 +47,14 @@ def lines(table: Table, residual: Float[np.ndarray, " row"], level: float, most:
         Lowest order.
     """
     ratio = max((each.gear_ratio or 0 for each in table.recordings), default=0)
-    highest = int(RATIOS * ratio) or HIGHEST
+    highest = int(HIGHEST_MULTIPLE * ratio) or HIGHEST_ORDER
     orders, power = spectrum(table, residual, highest)
     numbers = 2 * np.isfinite(power).sum(axis=0)
     log_chance = log_tail(np.nansum(power, axis=0), np.maximum(numbers, 1)) + np.log(len(orders))
     log_chance[(numbers == 0) | (orders <= above)] = 0.0
     found: list[Line] = []
     # Neighbours of a line belong to it.
-    width = NEIGHBOURS * 2 * np.pi / max(float(np.ptp(each.signals["q"])) for each in table.recordings)
+    width = LEAKAGE_LINES * 2 * np.pi / max(float(np.ptp(each.signals["q"])) for each in table.recordings)
     free = np.ones(len(orders), bool)
     while len(found) < most:
         best = int(np.where(free, log_chance, 0.0).argmin())
@@ -86,7 +86,7 @@ def spectrum(
         q, r = each.signals["q"], residual[table.run == number]
         # Where the speed varies, fast stretches miss a wave but do not alias it to one order.
         usual = float(np.quantile(np.abs(each.signals["omega"]), SLOWER))
-        seen = (orders * spans[number] >= WAVES * 2 * np.pi) & (orders * usual < 0.8 * np.pi * each.rate)
+        seen = (orders * spans[number] >= LEAST_WAVES * 2 * np.pi) & (orders * usual < 0.8 * np.pi * each.rate)
         if not seen.any():
             continue
         place = np.floor((q - q.min()) / width).astype(int)
@@ -98,6 +98,6 @@ def spectrum(
                 # The taper keeps strong lines within their own bins.
                 total = total * np.hanning(len(total))
                 raw = np.abs(np.fft.rfft(total, length)[1 : len(orders) + 1]) ** 2
-                noise = median_filter(raw, BESIDE * FINENESS * wide, mode="reflect") / np.log(2)
+                noise = median_filter(raw, MEDIAN_WIDTH * FINENESS * wide, mode="reflect") / np.log(2)
                 power[2 * number + law] = np.where(seen, 2 * raw / np.maximum(noise, 1e-300), np.nan)
     return orders, power

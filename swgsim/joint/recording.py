@@ -32,7 +32,7 @@ SIGNALS: Mapping[str, Signal] = {
 # its way swings back by up to 0.024 of its way; one that is moved to and fro has 0.5.
 BACK = 0.05
 # Accuracy [rad] with which a joint's angle must agree with an angle of the posture to be the same.
-SAME = 1e-6
+ANGLE_TOLERANCE = 1e-6
 # Signals that the model predicts; the others are its inputs.
 PREDICTED = ("T_sensor", "current", "T_motor")
 # Those of the drive, which the friction of the gear is in.
@@ -176,7 +176,7 @@ class JointRecording:
         """
         own = self.signals["q"][None]
         if self.posture is not None:
-            same = (np.abs(self.posture - own) < SAME).all(axis=1)
+            same = (np.abs(self.posture - own) < ANGLE_TOLERANCE).all(axis=1)
             if same.any():
                 return np.cumsum(self.posture, axis=0), int(same.argmax())
         return own, 0

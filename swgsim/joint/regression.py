@@ -19,9 +19,9 @@ SLOW = 5.0
 # Length of a stretch [s]; errors of different stretches count as independent.
 STRETCH = 1.0
 # Relative reduction of a cross-validated error that is worth a term.
-WORTH = 0.005
+LEAST_GAIN = 0.005
 # Groups for the cross-validation of a single recording.
-PARTS = 5
+FOLDS = 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +85,7 @@ class Table:
     @cached_property
     def group(self) -> Int[np.ndarray, " row"]:
         """Number of the group of every row for cross-validation: a run, or a part of a single run."""
-        return self.run if len(self.recordings) > 1 else np.arange(len(self.run)) * PARTS // len(self.run)
+        return self.run if len(self.recordings) > 1 else np.arange(len(self.run)) * FOLDS // len(self.run)
 
     def means_of_runs(self, values: Float[np.ndarray, "row column"]) -> Float[np.ndarray, "row column"]:
         """Mean of each run, in all its rows; of values that have the factor ``trust``, as the result has."""

@@ -13,13 +13,13 @@ from swgsim.joint.recording import JointRecording
 from swgsim.joint.regression import Fit, Table, rms
 
 # Speeds whose standard deviation is below this share of the mean are steady.
-STEADY = 0.1
+STEADY_SPEED = 0.1
 # Power of a line relative to the noise near it, and largest number of lines in a run.
 STRONG, MOST_LINES = 30.0, 8
 # Relative accuracy of frequencies, as that of estimated clocks; lines this near to a law follow it.
 MET = 0.03
 # A line needs so many resolutions of the run in frequency; below is drift.
-WAVES = 5
+LEAST_RESOLUTIONS = 5
 # Least number of runs of a law, and largest number of laws.
 LEAST_RUNS, MOST_LAWS = 4, 3
 # Lines within so many tolerances of a law belong to its skirt.
@@ -29,7 +29,7 @@ PERMUTATIONS = 19
 # Rounds of the refinement of a law.
 REFINED = 3
 # A fixed part below this share of the largest frequency counts as zero.
-NOTHING = 0.05
+ZERO_FREQUENCY = 0.05
 # Oversampling of the resolution of half of a run.
 FINER = 16
 
@@ -176,7 +176,7 @@ def significant_peaks(fit: Fit, table: Table) -> list[Peak]:
     found = []
     for number, each in enumerate(table.recordings):
         mean = float(each.speed.mean())
-        if abs(mean) < 1e-9 or float(each.speed.std()) > STEADY * abs(mean):
+        if abs(mean) < 1e-9 or float(each.speed.std()) > STEADY_SPEED * abs(mean):
             continue
         own = missed[table.run == number]
         f, power = periodogram(own - own.mean(), each.rate, window="hann", scaling="spectrum")
@@ -184,7 +184,9 @@ def significant_peaks(fit: Fit, table: Table) -> list[Peak]:
         noise = np.array([np.median(power[max(0, i - width) : i + width + 1]) for i in range(len(f))])
         places, _ = find_peaks(power / np.maximum(noise, 1e-300), height=STRONG)
         resolution = 2 / float(each.time[-1] - each.time[0])
-        strongest = sorted((i for i in places if f[i] > WAVES * resolution), key=lambda i: -power[i])[:MOST_LINES]
+        strongest = sorted((i for i in places if f[i] > LEAST_RESOLUTIONS * resolution), key=lambda i: -power[i])[
+            :MOST_LINES
+        ]
         found += [Peak(float(f[i]), float(np.sqrt(2 * power[i])), each.name, abs(mean), resolution) for i in strongest]
     return found
 
@@ -196,7 +198,7 @@ def _laws(one: Peak, other: Peak) -> list[tuple[float, float]]:
         slope = (one.frequency - other.frequency) / (one.speed - other.speed)
         fixed = one.frequency - slope * one.speed
         change = abs(slope) * max(one.speed, other.speed)
-        if fixed > NOTHING * max(one.frequency, other.frequency) and change > 2 * MET * fixed:
+        if fixed > ZERO_FREQUENCY * max(one.frequency, other.frequency) and change > 2 * MET * fixed:
             found.append((fixed, slope))
     return found
 

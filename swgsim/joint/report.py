@@ -8,49 +8,49 @@ import numpy as np
 
 from swgsim.common.outcome import FOUND
 from swgsim.effects.quantity import Role, quantities
-from swgsim.joint.cautions import SLOWEST, cautions, differ, likely, next_experiment
+from swgsim.joint.cautions import LEAST_GEAR_RATIO, cautions, differ, likely, next_experiment
 from swgsim.joint.days import Days, no_days
 from swgsim.joint.effects.friction import PositionFriction
 from swgsim.joint.effects.ripple import Ripple
 from swgsim.joint.extrapolation import by_speed
-from swgsim.joint.judged import Judged, Rung
 from swgsim.joint.low_speed import in_sum
 from swgsim.joint.naming import in_words, listed
 from swgsim.joint.recording import SIGNALS
 from swgsim.joint.regression import Fit, rms
 from swgsim.joint.remaining import RemainingLine
 from swgsim.joint.term import Term
+from swgsim.joint.validation import Rung, Validation
 from swgsim.joint.verdict import explained, fails, sentence, verdict
 from swgsim.joint.waves import SLOW
 
 
 def report(
-    judged: Judged, days: Days | None, lines: Sequence[RemainingLine], left_out: Sequence[str] = ()
+    validation: Validation, days: Days | None, lines: Sequence[RemainingLine], left_out: Sequence[str] = ()
 ) -> dict[str, Any]:
     """The answer as plain numbers and text; unknown values are None. ``left_out`` names recordings with the reason."""
-    first, top, unit = judged.table.recordings[0], judged.ladder.top, SIGNALS[judged.table.of].unit
-    ratio, steps, base = first.gear_ratio, judged.ladder.steps, len(judged.ladder.textbook.terms)
+    first, top, unit = validation.table.recordings[0], validation.ladder.top, SIGNALS[validation.table.of].unit
+    ratio, steps, base = first.gear_ratio, validation.ladder.steps, len(validation.ladder.textbook.terms)
     words = [*map(str, lines), *([_friction_by_session(days)] if days and differ(days) else [])]
-    share, word = judged.explained(judged.ladder.textbook), verdict(judged, words)
+    share, word = validation.explained(validation.ladder.textbook), verdict(validation, words)
     return {
         "textbook_explains": share.value,
         "textbook_explains_ci95": [share.value - share.half, share.value + share.half],
-        "explains": explained(judged),
+        "explains": explained(validation),
         "verdict": word,
-        "sentence": sentence(judged, words),
-        "lacks": listed([step.term for step in judged.confirmed], ratio) if word == FOUND else "",
-        "contradicted": listed([step.term for step in judged.contradicted], ratio),
+        "sentence": sentence(validation, words),
+        "lacks": listed([step.term for step in validation.confirmed], ratio) if word == FOUND else "",
+        "contradicted": listed([step.term for step in validation.contradicted], ratio),
         "robot": first.robot,
         "joint": first.joint,
-        "signal": judged.table.of,
+        "signal": validation.table.of,
         "unit": unit,
         "split": {
-            "fit": [each.name for each in judged.table.recordings],
-            "heldout": [each.name for each in judged.heldout.recordings],
+            "fit": [each.name for each in validation.table.recordings],
+            "heldout": [each.name for each in validation.heldout.recordings],
             "left_out": list(left_out),
         },
-        "noise_floor": judged.floor,
-        "gear_ratio": gear_ratio(judged),
+        "noise_floor": validation.floor,
+        "gear_ratio": gear_ratio(validation),
         "calibrated": _weights(top, 0, base, unit),
         "friction_in_sum": in_sum(top, unit),
         "effects": [
@@ -63,28 +63,29 @@ def report(
             }
             for number, step in enumerate(steps, base)
         ],
-        "rungs": _rungs(judged, ratio),
+        "rungs": _rungs(validation, ratio),
         "error": {
-            "before": _errors(judged.before), "after": _errors(judged.after), "noise_floor": judged.floor, "unit": unit,
+            "before": _errors(validation.before), "after": _errors(validation.after),
+            "noise_floor": validation.floor, "unit": unit,
         },
-        "runs": runs(judged),
-        "speeds": by_speed(judged),
+        "runs": runs(validation),
+        "speeds": by_speed(validation),
         "days": None if days is None else {
             "sessions": [vars(day) for day in days.days], "chance": days.chance, "spread": days.spread,
         },
-        "no_days": "" if days else no_days((judged.table, judged.heldout)),
+        "no_days": "" if days else no_days((validation.table, validation.heldout)),
         "unknown": {"words": words, "lines": [vars(line) for line in lines]} if words else None,
-        "cautions": cautions(judged, left_out),
-        "likely": likely(judged) if fails(judged) else [],
-        "next_experiment": next_experiment(judged, days),
+        "cautions": cautions(validation, left_out),
+        "likely": likely(validation) if fails(validation) else [],
+        "next_experiment": next_experiment(validation, days),
     }  # fmt: skip
 
 
-def runs(judged: Judged) -> list[dict[str, Any]]:
+def runs(validation: Validation) -> list[dict[str, Any]]:
     """Error of every recording before and after."""
     found = []
-    for table, heldout in ((judged.table, False), (judged.heldout, True)):
-        before, after = judged.ladder.textbook.missed(table), judged.ladder.top.missed(table)
+    for table, heldout in ((validation.table, False), (validation.heldout, True)):
+        before, after = validation.ladder.textbook.missed(table), validation.ladder.top.missed(table)
         for number, each in enumerate(table.recordings):
             own = table.run == number
             found.append(
@@ -100,17 +101,17 @@ def runs(judged: Judged) -> list[dict[str, Any]]:
     return found
 
 
-def gear_ratio(judged: Judged) -> dict[str, Any] | None:
+def gear_ratio(validation: Validation) -> dict[str, Any] | None:
     """The declared ratio; else the largest number that divides all orders above SLOW, if there are two."""
-    known = judged.table.recordings[0].gear_ratio
+    known = validation.table.recordings[0].gear_ratio
     if known is not None:
         return {"value": known, "ci95": None, "how": "declared"}
-    waves = [step.term for step in judged.ladder.steps if isinstance(step.term, Ripple | PositionFriction)]
+    waves = [step.term for step in validation.ladder.steps if isinstance(step.term, Ripple | PositionFriction)]
     orders = sorted({wave.order for wave in waves if wave.order > SLOW})
     if len(orders) < 2:
         return None
-    doubt = np.pi / max(float(np.ptp(each.signals["q"])) for each in judged.table.recordings)
-    for ratio in (orders[0] / k for k in range(1, int(orders[0] / SLOWEST) + 1)):
+    doubt = np.pi / max(float(np.ptp(each.signals["q"])) for each in validation.table.recordings)
+    for ratio in (orders[0] / k for k in range(1, int(orders[0] / LEAST_GEAR_RATIO) + 1)):
         if all(abs(order - round(order / ratio) * ratio) <= doubt for order in orders):
             half = doubt * ratio / orders[-1]
             return {
@@ -161,11 +162,11 @@ def _shape(term: Term) -> dict[str, dict[str, Any]]:
     return {n: {"value": float(getattr(term, n)), "ci95": None, "unit": q.unit} for n, q in declared.items()}
 
 
-def _rungs(judged: Judged, ratio: float | None) -> list[dict[str, Any]]:
+def _rungs(validation: Validation, ratio: float | None) -> list[dict[str, Any]]:
     """Accepted and refused terms with their errors, and a remark where there is one."""
     found = []
-    against = judged.contradicted
-    for rung in judged.rungs:
+    against = validation.contradicted
+    for rung in validation.rungs:
         raises = rung.kept and any(rung.trial is trial for trial in against)
         remark = "contradicted: raises the error on held-out recordings" if raises else ""
         found.append(

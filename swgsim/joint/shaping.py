@@ -15,7 +15,7 @@ T = TypeVar("T", bound=Term)
 # A parameter is searched in its logarithm if the ratio of its bounds is at least this.
 WIDE = 10.0
 # Evaluations after the grid search, for each parameter.
-ROUNDS = 35
+EVALUATIONS = 35
 
 
 def shaped(now: Fit, term: T) -> T:
@@ -69,7 +69,7 @@ def _downhill(now: Fit, begin: T, searched: dict[str, Quantity]) -> T:
         return _with(begin, names, [_outer(q, each) for q, each in zip(declared, x, strict=True)])
 
     options = {
-        "initial_simplex": np.vstack([x, x + np.diag(inwards)]), "maxfev": ROUNDS * len(x),
+        "initial_simplex": np.vstack([x, x + np.diag(inwards)]), "maxfev": EVALUATIONS * len(x),
         "xatol": 1e-3, "fatol": 1e-6 * rms(now.residual) ** 2,
     }  # fmt: skip
     found = minimize(lambda x: -gain(now, moved(x)), x, method="Nelder-Mead", bounds=ends, options=options)

@@ -12,11 +12,11 @@ from swgsim.joint.shared import OfSign
 from swgsim.joint.term import Term
 
 # Widest change of the sign [rad/s]. Above begins Stribeck friction, which is friction that depends on the speed.
-WIDEST = 0.02
+WIDEST_SIGN = 0.02
 # Longest lag between a signal and the motion, either way [s]: filters of drives and of their speeds.
-LONGEST = 0.02
+LONGEST_LAG = 0.02
 # Values of the first search of each, and accuracy of the second in their steps.
-POINTS, FINE = 7, 0.05
+GRID_POINTS, GRID_ACCURACY = 7, 0.05
 
 
 def with_sign_width(now: Fit) -> Fit:
@@ -39,19 +39,19 @@ def with_sign_width(now: Fit) -> Fit:
     if not any(isinstance(term, OfSign) for term in now.terms):
         if not any(_has(term, "lag") for term in now.terms):
             return now
-        return at(lag=_lowest(lambda x: error(lag=x), -LONGEST, LONGEST))
-    least = max(float(np.sqrt(np.mean(np.square(doubts)))), 1e-3 * WIDEST)
+        return at(lag=_lowest(lambda x: error(lag=x), -LONGEST_LAG, LONGEST_LAG))
+    least = max(float(np.sqrt(np.mean(np.square(doubts)))), 1e-3 * WIDEST_SIGN)
     # A sign that changes within its least width has no shape of which more could be told.
-    ends = np.log(least), np.log(max(WIDEST, least * (1 + 1e-9)))
+    ends = np.log(least), np.log(max(WIDEST_SIGN, least * (1 + 1e-9)))
     width = _lowest(lambda x: error(sign_width=float(np.exp(x))), *ends)
-    lag = _lowest(lambda x: error(sign_width=float(np.exp(width)), lag=x), -LONGEST, LONGEST)
+    lag = _lowest(lambda x: error(sign_width=float(np.exp(width)), lag=x), -LONGEST_LAG, LONGEST_LAG)
     width = _lowest(lambda x: error(sign_width=float(np.exp(x)), lag=lag), *ends)
     return at(sign_width=float(np.exp(width)), lag=lag)
 
 
 def at_longest(lag: float) -> bool:
     """Whether a lag [s] ran to its bound, as far as the search tells."""
-    return LONGEST - abs(lag) < 2 * FINE * 2 * LONGEST / (POINTS - 1)
+    return LONGEST_LAG - abs(lag) < 2 * GRID_ACCURACY * 2 * LONGEST_LAG / (GRID_POINTS - 1)
 
 
 def _with(term: Term, motion: Mapping[str, Any]) -> Term:
@@ -65,8 +65,8 @@ def _has(term: Term, name: str) -> bool:
 
 def _lowest(error: Callable[[float], float], low: float, high: float) -> float:
     """Place of the lowest error between two ends: on a grid, then between its neighbours."""
-    grid = np.linspace(low, high, POINTS).tolist()
+    grid = np.linspace(low, high, GRID_POINTS).tolist()
     best = int(np.argmin([error(x) for x in grid]))
-    between = grid[max(best - 1, 0)], grid[min(best + 1, POINTS - 1)]
-    refined = minimize_scalar(error, bounds=between, options={"xatol": FINE * (grid[1] - grid[0])})
+    between = grid[max(best - 1, 0)], grid[min(best + 1, GRID_POINTS - 1)]
+    refined = minimize_scalar(error, bounds=between, options={"xatol": GRID_ACCURACY * (grid[1] - grid[0])})
     return min((grid[best], float(refined.x)), key=error)

@@ -7,9 +7,9 @@ from fnmatch import fnmatchcase
 import numpy as np
 
 from swgsim.joint.intake.read import JointRecordings
-from swgsim.joint.judged import noise_floor, standing_noise
 from swgsim.joint.recording import PREDICTED, SIGNALS, JointRecording
 from swgsim.joint.regression import SLOW, Table
+from swgsim.joint.validation import noise_floor, standing_noise
 
 # A joint must move by this angle [rad], 0.3 degrees: several times the lost motion of a strain wave gear, so that
 # friction reverses. What motions below a revolution of the motor do not show is a caution of the answer.

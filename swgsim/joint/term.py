@@ -70,7 +70,7 @@ class Term(Effect, ABC):
         return self
 
     @property
-    def sound(self) -> bool:
+    def has_physical_sign(self) -> bool:
         """Whether the weights have the sign that physics requires."""
         return not self.brakes or all(weight > 0 for weight in self.weights)
 

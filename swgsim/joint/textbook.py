@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.joint.recording import PREDICTED, JointRecording, turns_back
-from swgsim.joint.regression import WORTH, Fit, Table, fit, rms
+from swgsim.joint.regression import LEAST_GAIN, Fit, Table, fit, rms
 from swgsim.joint.shared import OfLoad, OfMotion, OfSign, link
 from swgsim.joint.sign_width import with_sign_width
 from swgsim.joint.term import Term
@@ -121,7 +121,7 @@ def fitted_textbook(table: Table) -> Fit:
     if not all("T_sensor" in each.signals for each in table.recordings):
         return plain
     measured = with_sign_width(fit(table, textbook(table.recordings, table.of, measured=True)))
-    return measured if (_errors(measured) < (1 - WORTH) * _errors(plain)).all() else plain
+    return measured if (_errors(measured) < (1 - LEAST_GAIN) * _errors(plain)).all() else plain
 
 
 def with_link(found: Fit) -> Fit:

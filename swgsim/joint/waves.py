@@ -7,7 +7,7 @@ import numpy as np
 
 from swgsim.joint.effects.friction import PositionFriction
 from swgsim.joint.effects.ripple import InertiaRipple, Ripple
-from swgsim.joint.orders import NEIGHBOURS, Line, lines
+from swgsim.joint.orders import LEAKAGE_LINES, Line, lines
 from swgsim.joint.recording import OF_DRIVE, turns_back
 from swgsim.joint.regression import Fit, slow
 from swgsim.joint.shaping import gain, shapes
@@ -18,9 +18,9 @@ Wave = Ripple | PositionFriction
 SLOW, SLOW_ORDERS = 40, 2
 # Above, so many lines are tested. An order is a multiple of the motor's, or else a whole number, unless a free order
 # near it explains so many times as much.
-ORDERS, OTHERWISE = 4, 1.25
+TESTED_LINES, OTHERWISE = 4, 1.25
 # Orders that are looked at in a round, for the correction of p-values.
-LOOKED_AT = SLOW + ORDERS
+LOOKED_AT = SLOW + TESTED_LINES
 
 
 def waves(now: Fit, level: float, known: dict[float, tuple[Wave, ...]]) -> list[tuple[Wave, ...]]:
@@ -60,12 +60,14 @@ def _lines(now: Fit, level: float) -> list[Line]:
     that reverses.
     """
     fast = now.residual - slow(now.table, now.residual)
-    every = [line for part in (now.residual, fast) for line in lines(now.table, part, level / 2, ORDERS, above=SLOW)]
+    every = [
+        line for part in (now.residual, fast) for line in lines(now.table, part, level / 2, TESTED_LINES, above=SLOW)
+    ]
     found: list[Line] = []
     for line in sorted(every, key=lambda line: line.log_chance):
-        if all(abs(line.order - other.order) > NEIGHBOURS * _resolution(now) for other in found):
+        if all(abs(line.order - other.order) > LEAKAGE_LINES * _resolution(now) for other in found):
             found.append(line)
-    return found[:ORDERS]
+    return found[:TESTED_LINES]
 
 
 def _resolution(now: Fit) -> float:

@@ -14,8 +14,8 @@ from swgsim.dataset.plan import Plan
 from swgsim.gear.gear import Gear, OperatingPoint
 from swgsim.oracle.cells import Cells
 from swgsim.oracle.model import ORDERS, Expectation, bench_of, observations
-from swgsim.oracle.moved import moved_with_recording
 from swgsim.oracle.point import PointModel
+from swgsim.oracle.recording_errors import with_recording_errors
 from swgsim.storage.labelled_signals import CLASSES, SENSORS, LabelledSignals
 from swgsim.storage.orders import whole_revolutions
 
@@ -137,7 +137,7 @@ def joint_model(
     }
     if len(expected) == 1:
         # Units would need two more directions for every operating point, which is too much for the memory.
-        faults = {label: moved_with_recording(cells, bench_of(plan)) for label, cells in faults.items()}
+        faults = {label: with_recording_errors(cells, bench_of(plan)) for label, cells in faults.items()}
     return PointModel(np.concatenate(means), block_diag(*covariances) + shared @ shared.T, faults)
 
 

@@ -18,7 +18,7 @@ from jaxtyping import AbstractArray
 from swgsim.storage.attributes import attribute, set_attributes
 
 # Room that every member takes at least [bytes], so that a forged file cannot name one member very many times.
-LEAST = 8
+LEAST_BYTES = 8
 # Whether the axes of a variable are reversed. Matrix products round by the order in memory, so it is kept.
 TRANSPOSED = "transposed"
 # What an attribute of each of these types is in a file.
@@ -58,7 +58,7 @@ class Room:
         ValueError
             If the file has no room for it.
         """
-        self.left -= max(size, LEAST)
+        self.left -= max(size, LEAST_BYTES)
         if self.left < 0:
             raise ValueError(f"{where}: found more numbers than the file has room for, expected each number once")
 
@@ -124,7 +124,7 @@ def read_member(group: h5py.Group, name: str, kind: Any, room: Room, notations: 
         return _read_array(variable, where, needed, room)
     if not isinstance(variable, h5py.Group):
         raise ValueError(f"{where}: found no group of the file itself, expected {_in_words(needed)}")
-    room.take(where, LEAST)
+    room.take(where, LEAST_BYTES)
     return _read_group(variable, where, needed, room, notations)
 
 
@@ -193,7 +193,7 @@ def _read_attribute(group: h5py.Group, name: str, where: str, kind: type, room: 
         raise ValueError(f"{where}: found no attribute, {expected}") from None
     except ValueError as error:
         raise ValueError(f"{where}: found an {error}") from error
-    room.take(where, len(value) if isinstance(value, str) else LEAST)
+    room.take(where, len(value) if isinstance(value, str) else LEAST_BYTES)
     if kind in NUMBERS:
         whole = kind is float or isinstance(value, int)
         if isinstance(value, str) or not whole or not np.isfinite(value) or (kind is bool and value not in (0, 1)):

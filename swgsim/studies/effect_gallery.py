@@ -21,12 +21,12 @@ from swgsim.gear.gear import Gear
 from swgsim.identification.interharmonics.named_interharmonics import has_sidelines, is_random
 from swgsim.identification.report.engineering_units import parameter_words, value_text
 from swgsim.studies.effect_signature import (
-    ELSEWHERE,
-    LEAST,
     ORDERS,
+    OTHER_SETTINGS,
     OWN,
     REVOLUTIONS,
-    SHOWN,
+    ROUNDING_SHARE,
+    SHOWN_CHANNELS,
     USUAL,
     Signature,
     signatures,
@@ -42,10 +42,12 @@ def picture(found: Sequence[Signature]) -> bytes:
     If several effects change means only, they share the last panel, over effects and channels. Channels that no effect
     changes are left out.
     """
-    shares = np.array([np.maximum(half_orders(each.share[0]), LEAST) for each in found])  # (effect, channel, half)
-    changed = np.flatnonzero((shares > LEAST).any(axis=(0, 2)))
-    shares, channels = shares[:, changed], [SHOWN[channel] for channel in changed]
-    means = (shares[..., 1:] <= LEAST).all(axis=(1, 2))
+    shares = np.array(
+        [np.maximum(half_orders(each.share[0]), ROUNDING_SHARE) for each in found]
+    )  # (effect, channel, half)
+    changed = np.flatnonzero((shares > ROUNDING_SHARE).any(axis=(0, 2)))
+    shares, channels = shares[:, changed], [SHOWN_CHANNELS[channel] for channel in changed]
+    means = (shares[..., 1:] <= ROUNDING_SHARE).all(axis=(1, 2))
     means &= means.sum() >= FEWEST_MEANS
     count = int((~means).sum() + means.any())
     columns = min(4, count)
@@ -57,7 +59,7 @@ def picture(found: Sequence[Signature]) -> bytes:
         axis.set_axis_off()
     # Changes that are rounding are white.
     white_below = colormaps["YlGnBu"].with_extremes(under="white")
-    norm = LogNorm(LEAST * (1 + 1e-9), 1)
+    norm = LogNorm(ROUNDING_SHARE * (1 + 1e-9), 1)
     colours = {"norm": norm, "cmap": white_below, "aspect": "auto", "interpolation": "nearest"}
     for axis, number in zip(axes.flat, np.flatnonzero(~means), strict=False):
         extent = (-0.25, ORDERS + 0.25, len(channels) - 0.5, -0.5)
@@ -100,7 +102,7 @@ def row(signature: Signature) -> str:
     channel, line = signature.where
     # A bar as in |T| would end the cell.
     physics = (inspect.getdoc(kind) or "").split("\n\n")[0].replace("\n", " ").replace("|", "\\|")
-    largest = f"{SHOWN[channel]}, order {line / REVOLUTIONS:.3g}: {significant(100 * signature.top[0])} %"
+    largest = f"{SHOWN_CHANNELS[channel]}, order {line / REVOLUTIONS:.3g}: {significant(100 * signature.top[0])} %"
     cells = f"`{kind.name()}`: {physics}", sizes(kind), largest, " / ".join(signature.growth), signature.over_gauges
     return f"| {' | '.join(cells)} |"
 
@@ -152,7 +154,7 @@ line other than the mean. White is no change. The operating point is {USUAL}, wi
 session. Choices such as an order are at their default or first value; a gauge is s1, or all of them where that is the
 default. Effects that change nothing there are shown at other points:
 
-{chr(10).join(f"- `{kind.name()}` at {each}: {each.reason}." for kind, each in ELSEWHERE.items())}
+{chr(10).join(f"- `{kind.name()}` at {each}: {each.reason}." for kind, each in OTHER_SETTINGS.items())}
 
 In the tables, *size* has bounds and typical size, and then the other parameters. *Growth* has two factors by which the
 largest change grows: from a tenth of the load to the load shown, and from the speed shown to twice that. "-" means

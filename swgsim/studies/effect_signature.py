@@ -21,10 +21,10 @@ from swgsim.storage.labelled_signals import SENSORS
 
 # Warm and late, so that effects of temperature and time show.
 CONDITIONS = Conditions(temperature=35.0, elapsed=3600.0)
-SHOWN = ("n_in", "T_in", "T_out", *SENSORS)
+SHOWN_CHANNELS = ("n_in", "T_in", "T_out", *SENSORS)
 REVOLUTIONS, SAMPLES, ORDERS = 12, 64, 12
 # Changes below this share of a channel's largest line are rounding.
-LEAST = 1e-6
+ROUNDING_SHARE = 1e-6
 # A pattern over the gauges is named where it has this share of the line's power. Of what a torque changes, "the same in
 # all gauges" has 0.86 to 0.9, as s0 shows twice as much as the others.
 OWN = 0.85
@@ -60,7 +60,7 @@ class Setting:
 
 USUAL = Setting(OperatingPoint(2000, 70))
 # Effects that change nothing at the usual setting.
-ELSEWHERE: Mapping[type[Effect], Setting] = {
+OTHER_SETTINGS: Mapping[type[Effect], Setting] = {
     LostMotion: Setting(
         OperatingPoint(750, 0.7),
         (KinematicErrorOrder(2, 1e-4),),
@@ -91,16 +91,17 @@ class Signature:
     largest_line: Float[np.ndarray, "3 channel"]
 
     def __post_init__(self) -> None:
-        if self.top[0] < LEAST:
+        if self.top[0] < ROUNDING_SHARE:
             raise ValueError(
                 f"{self.kind.name()} changes nothing at {self.setting} (at most {self.top[0]:.1e} of a channel's "
-                f"largest line, must be {LEAST:g}), so its picture would be empty; give it a setting in ELSEWHERE"
+                f"largest line, must be {ROUNDING_SHARE:g}), so its picture would be empty; give it a setting in "
+                "OTHER_SETTINGS"
             )
 
     @property
     def setting(self) -> Setting:
         """Operating point of the signature."""
-        return ELSEWHERE.get(self.kind, USUAL)
+        return OTHER_SETTINGS.get(self.kind, USUAL)
 
     @cached_property
     def share(self) -> Float[np.ndarray, "3 channel line"]:
@@ -122,14 +123,14 @@ class Signature:
     def growth(self) -> tuple[str, str]:
         """Factors of growth with ten times the load and with twice the speed."""
         shown, light, fast = np.abs(self.change[:, *self.where])
-        visible = self.top > LEAST
+        visible = self.top > ROUNDING_SHARE
         return f"{shown / light:.2g}" if visible[1] else "-", f"{fast / shown:.2g}" if visible[2] else "0"
 
     @property
     def over_gauges(self) -> str:
         """Order and pattern of the largest change of a gauge."""
         gauges = slice(-len(SENSORS), None)
-        if self.share[0, gauges].max() < LEAST:
+        if self.share[0, gauges].max() < ROUNDING_SHARE:
             return "-"
         lines = self.change[0, gauges]
         line = int(np.abs(lines).max(axis=0).argmax())
@@ -160,13 +161,13 @@ def signatures(kinds: Sequence[type[Effect]], gear: Gear, sectors: int = SECTORS
     runs = [
         Run(gear, point, effects, conditions=CONDITIONS)
         for kind in kinds
-        for setting in (ELSEWHERE.get(kind, USUAL),)
+        for setting in (OTHER_SETTINGS.get(kind, USUAL),)
         for effects in (setting.beside, (*setting.beside, typical(kind)))
         for point in setting.points
     ]
     recordings = simulate_turns(runs, REVOLUTIONS, SAMPLES, sectors)
-    values = np.array([[recording.channels[name] for name in SHOWN] for recording in recordings])
-    without, with_it = np.moveaxis(values.reshape(len(kinds), 2, 3, len(SHOWN), -1), 1, 0)
+    values = np.array([[recording.channels[name] for name in SHOWN_CHANNELS] for recording in recordings])
+    without, with_it = np.moveaxis(values.reshape(len(kinds), 2, 3, len(SHOWN_CHANNELS), -1), 1, 0)
     largest_line = np.abs(lines(without)[..., 1:]).max(axis=-1)
     return [Signature(*each) for each in zip(kinds, lines(with_it - without), largest_line, strict=True)]
 

@@ -5,7 +5,7 @@ from swgsim.tables.units import FACTORS
 # Counters of controllers.
 BITS = (16, 32)
 # A step back is shorter than the period by one step of the clock.
-SAME = 0.01
+PERIOD_TOLERANCE = 0.01
 DAY = 86400.0
 
 
@@ -15,7 +15,7 @@ def bits_of(back: float) -> int:
     >>> bits_of(2**32 - 4000), bits_of(1000)
     (32, 0)
     """
-    return next((bits for bits in BITS if abs(back / 2**bits - 1) < SAME), 0)
+    return next((bits for bits in BITS if abs(back / 2**bits - 1) < PERIOD_TOLERANCE), 0)
 
 
 def jump_remedy(back: float) -> str:
@@ -27,7 +27,7 @@ def jump_remedy(back: float) -> str:
     for unit in ("ns", "us", "ms"):
         if bits := bits_of(back / FACTORS["s"][unit]):
             return f"the counter of {unit} was full: set bits: {bits} in the time of a map"
-    if abs(back / DAY - 1) < SAME:
+    if abs(back / DAY - 1) < PERIOD_TOLERANCE:
         return "the time passes midnight: give its stamps with the date, or as a format such as '%H:%M:%S.%f'"
     if back > 0:
         return (

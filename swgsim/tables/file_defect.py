@@ -9,10 +9,10 @@ from reprlib import Repr
 FIRST_ROW = 2
 
 # A found value is shown up to this many characters.
-SHOWN = 60
+SHOWN_CHARACTERS = 60
 # Nested values could fill the memory as text, so they are abbreviated.
 _SHORT = Repr()
-_SHORT.maxlong = _SHORT.maxother = _SHORT.maxstring = 2 * SHOWN
+_SHORT.maxlong = _SHORT.maxother = _SHORT.maxstring = 2 * SHOWN_CHARACTERS
 
 
 class FileDefect(ValueError):
@@ -56,4 +56,4 @@ def shown(value: object) -> str:
     "'3,14'"
     """
     text = value if isinstance(value, str) else _SHORT.repr(value)
-    return repr(text if len(text) <= SHOWN else text[:SHOWN] + "…")
+    return repr(text if len(text) <= SHOWN_CHARACTERS else text[:SHOWN_CHARACTERS] + "…")

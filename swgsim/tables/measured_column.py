@@ -20,7 +20,7 @@ LONGEST_TEXT = 1000
 # What the unit of a column may need.
 OF_UNIT = ("per_revolution", "rated", "full_scale", "gauge_factor", "active_arms")
 KEYS = ("column", "file", "unit", "factor", "offset", "inverted", "time", "rows", *OF_UNIT)
-LARGEST = 1e15
+LARGEST_NUMBER = 1e15
 # Stands for the name of one of the recordings of a file, in columns and sheet of a map.
 EACH = "{each}"
 
@@ -133,7 +133,7 @@ def read_column(
         require_integer(quantity, "column", column, 1, interleaved)
     factor, offset = number("factor", entry, 1.0), number("offset", entry, 0.0)
     for name, value in (("factor", factor), ("offset", offset)):
-        require(quantity, name, value, low=-LARGEST, high=LARGEST)
+        require(quantity, name, value, low=-LARGEST_NUMBER, high=LARGEST_NUMBER)
     if not factor:
         raise ValueError(f"factor of {quantity} is 0, must be another number")
     unit = known_unit(text(f"unit of {quantity}", entry.get("unit")))

@@ -9,7 +9,7 @@ from swgsim.common.plain_yaml import plain
 from swgsim.tables.file_defect import FileDefect, shown
 from swgsim.tables.limits import require_readable
 
-LARGEST = 2**20  # bytes
+MOST_BYTES = 2**20  # bytes
 
 T = TypeVar("T")
 
@@ -33,8 +33,8 @@ def described(path: Path, what: str, example: str, make: Callable[[Any], T]) -> 
         If the file is too large, is not YAML, or ``make`` refuses its contents.
     """
     require_readable(path)
-    if path.stat().st_size > LARGEST:
-        raise FileDefect(str(path), f"{path.stat().st_size} bytes", f"{what} of at most {LARGEST}")
+    if path.stat().st_size > MOST_BYTES:
+        raise FileDefect(str(path), f"{path.stat().st_size} bytes", f"{what} of at most {MOST_BYTES}")
     try:
         return make(plain(path.read_bytes()))
     except (TypeError, ValueError, OverflowError) as error:

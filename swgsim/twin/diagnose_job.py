@@ -6,7 +6,7 @@ from typing import Any
 
 from swgsim.common.files import require_writable
 from swgsim.identification.report.close_loop import library
-from swgsim.identification.report.given import given, say
+from swgsim.identification.report.loop_input import read_input, say
 from swgsim.twin.unit_diagnosis import Diagnosis, diagnose
 
 
@@ -24,7 +24,7 @@ def run(config: Mapping[str, Any]) -> Diagnosis:
     """
     kinds, out = library(config), Path(config["out"])
     require_writable(out)
-    recordings, gear, declared, healthy = given(config)
+    recordings, gear, declared, healthy = read_input(config)
     if healthy is None:
         raise ValueError(
             "no healthy recordings: give commissioning=FOLDER of this gear when it was healthy, or the file of swg "

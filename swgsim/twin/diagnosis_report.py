@@ -13,13 +13,13 @@ from swgsim.effects.quantity import quantities, size_of
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.report.answer_page import next_steps, rendered
 from swgsim.identification.report.effect_words import effect_in_words, effect_text
-from swgsim.identification.report.found import probability_text
+from swgsim.identification.report.found_effects import probability_text
 from swgsim.identification.report.identification import Identification
 from swgsim.oracle.cells import Partition
 from swgsim.oracle.diagnosis import ENDS
 from swgsim.oracle.severity import Severities, positions
 from swgsim.storage.labelled_signals import CLASSES
-from swgsim.twin.fault_posterior import Seen, Suspected, lack_of_fit
+from swgsim.twin.fault_posterior import FaultPosterior, Suspected, lack_of_fit
 
 HEALTHY, FAULTY, SOMETHING_ELSE = "healthy", "faulty", "something_else"
 # Probability above which a sentence names another class.
@@ -54,7 +54,7 @@ def report_of(
         Of simulated healthy gears.
     """
     measured = suspected.fitted.measured
-    whole = suspected.seen(np.ones(len(measured), bool))
+    whole = suspected.posterior_of(np.ones(len(measured), bool))
     probabilities = _by_class(whole)
     fault = max(FAULTS, key=probabilities.__getitem__)
     found: dict[str, Any] = {
@@ -73,7 +73,7 @@ def report_of(
                 "name": each.name,
                 "n_in_rpm": float(each.point.n_in_rpm),
                 "T_out_nm": float(each.point.T_out),
-                "probabilities": _by_class(suspected.seen(np.arange(len(measured)) == number)),
+                "probabilities": _by_class(suspected.posterior_of(np.arange(len(measured)) == number)),
             }
             for number, each in enumerate(measured.recordings)
         ],
@@ -84,11 +84,11 @@ def report_of(
     return {"verdict": verdict, "sentence": sentence, **found}
 
 
-def _by_class(seen: Seen) -> dict[str, float]:
-    return dict(zip(CLASSES, seen.posterior[0].tolist(), strict=True))
+def _by_class(posterior: FaultPosterior) -> dict[str, float]:
+    return dict(zip(CLASSES, posterior.posterior[0].tolist(), strict=True))
 
 
-def _parameters(partition: Partition, whole: Seen) -> dict[str, Any]:
+def _parameters(partition: Partition, whole: FaultPosterior) -> dict[str, Any]:
     """Size and position of a fault, as in ``report.json``."""
     kind, places = named(partition.label), whole.model.places(whole.x, partition.label)
     severities = Severities.of(partition, places)

@@ -53,9 +53,9 @@ class Suspected:
         predicted = predict([model, *faulty], measured.situations, measured.layout)
         return cls(fitted, partitions, prior, measured.rows(np.moveaxis(predicted[1:] - predicted[0], 0, -1)))
 
-    def seen(
+    def posterior_of(
         self, chosen: Bool[np.ndarray, " recording"], residuals: Float[np.ndarray, "row sample"] | None = None
-    ) -> "Seen":
+    ) -> "FaultPosterior":
         """What some of the recordings say together; all that they do not show is open within its spread.
 
         Parameters
@@ -76,7 +76,9 @@ class Suspected:
         faults = {label: self._uncertain(each.cells(piece)) for (label, each), piece in pieces}
         model = PointModel(np.zeros(len(size)), np.eye(len(size)), faults)
         log_prior = np.log([self.prior[label] for label in CLASSES])
-        return Seen(model, residual.T @ changes @ V / size, log_prior, (residual**2).sum(axis=0), len(residual))
+        return FaultPosterior(
+            model, residual.T @ changes @ V / size, log_prior, (residual**2).sum(axis=0), len(residual)
+        )
 
     def _uncertain(self, cells: Cells) -> Cells:
         """Cells whose change is known to the spread of the structure only: 1 % by the mesh, more in foreign gears."""
@@ -85,7 +87,7 @@ class Suspected:
 
 
 @dataclass(frozen=True, eq=False)
-class Seen:
+class FaultPosterior:
     """What samples of recordings say of the classes.
 
     Attributes

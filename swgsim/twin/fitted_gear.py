@@ -17,7 +17,7 @@ from swgsim.oracle.oracle import FEATURES
 from swgsim.storage.labelled_signals import SENSORS
 from swgsim.twin.knowledge import Knowledge
 from swgsim.twin.references import References
-from swgsim.twin.seen import Seen
+from swgsim.twin.revolution_features import RevolutionFeatures
 
 # Fits, each with the scatter of the gear that the one before found: with that of another gear, the common errors of
 # the largest lines, which are hundreds of times the noise, point into a slightly wrong direction.
@@ -86,27 +86,27 @@ def fit_gear(
     forget()
     plan = knowledge.plan
     if start is None:
-        start, scattered = knowledge.start, knowledge.at_start
+        start, scatter = knowledge.start, knowledge.at_start
     else:
-        scattered = knowledge.scattered(start)
+        scatter = knowledge.scatter_of(start)
     searched = parameters is None
     parameters = knowledge.parameters(SPREADS[-1]) if parameters is None else parameters
     rows = _rows(references, plan.grid.points)
     mean, count = references.mean[rows], references.count[rows]
-    seen = Seen(N=knowledge.nominal.transmission.N)
+    layout = RevolutionFeatures(N=knowledge.nominal.transmission.N)
     at: Model = start
     position: Mapping[str, float] = {}
     lack = 0.0
     for turn in range(turns):
-        scattered = knowledge.scattered(at) if turn else scattered
-        errors = scattered.errors(count)
+        scatter = knowledge.scatter_of(at) if turn else scatter
+        errors = scatter.errors(count)
         # The mean of scattered observations lies off that without scatter, as a turned trigger shortens large lines.
-        still = predict([at], knowledge.situations, seen, plan.sectors)[0]
-        measured = mean - (scattered.mean - still)
+        still = predict([at], knowledge.situations, layout, plan.sectors)[0]
+        measured = mean - (scatter.mean - still)
         lines = _of_lines(still)
         found = calibrate(
             start, parameters, measured, errors.with_columns(lack * lines), knowledge.situations,
-            np.arange(len(mean)), seen, position, plan.sectors,
+            np.arange(len(mean)), layout, position, plan.sectors,
         )  # fmt: skip
         at, position = found.model, found.position
         J, left = found.J.reshape(mean.size, -1), (measured - found.predicted).ravel()

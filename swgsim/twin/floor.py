@@ -11,7 +11,7 @@ from swgsim.twin.fitted_gear import fit_gear
 from swgsim.twin.knowledge import Knowledge
 from swgsim.twin.parameters import parameters_of
 from swgsim.twin.references import References
-from swgsim.twin.seen import Seen
+from swgsim.twin.revolution_features import RevolutionFeatures
 from swgsim.twin.twin import Twin
 
 
@@ -33,8 +33,8 @@ def floor_of(knowledge: Knowledge, true: Model, references: References, expected
     of_unit = parameters_of(gear, knowledge.bench, further=knowledge.further)
     friction = {name: of_unit[name] for name in ("b1", *knowledge.further)}
     fitted = fit_gear(knowledge, references, start, friction, turns=1)
-    seen = Seen(N=gear.transmission.N)
-    was, found = predict([start, fitted.model], knowledge.situations, seen, knowledge.plan.sectors)
+    layout = RevolutionFeatures(N=gear.transmission.N)
+    was, found = predict([start, fitted.model], knowledge.situations, layout, knowledge.plan.sectors)
     moved = [
         Expectation(each.point, each.healthy + by, each.faults) for each, by in zip(expected, found - was, strict=True)
     ]

@@ -12,8 +12,8 @@ from swgsim.identification.data.model import Model, Situation
 from swgsim.identification.fit.priors import Declared
 from swgsim.oracle.cells import Resolution
 from swgsim.oracle.model import bench_of
+from swgsim.twin.healthy_scatter import HealthyScatter
 from swgsim.twin.parameters import parameters_of, start_of
-from swgsim.twin.scattered import Scattered
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,9 +58,9 @@ class Knowledge:
         bench = replace(self.bench, **dict.fromkeys(drawn, 0.0))
         return replace(self.plan, bench=bench, effects=effects)
 
-    def scattered(self, model: Model) -> Scattered:
+    def scatter_of(self, model: Model) -> HealthyScatter:
         """How healthy recordings of a gear scatter."""
-        return Scattered.of(self.plan_of(model.effects), self.whole(model), self.resolution.draws)
+        return HealthyScatter.of(self.plan_of(model.effects), self.whole(model), self.resolution.draws)
 
     @cached_property
     def start(self) -> Model:
@@ -68,9 +68,9 @@ class Knowledge:
         return start_of(self.nominal).plus(*self.plan.effects)
 
     @cached_property
-    def at_start(self) -> Scattered:
+    def at_start(self) -> HealthyScatter:
         """How healthy recordings scatter before anything is known of the gear."""
-        return self.scattered(self.start)
+        return self.scatter_of(self.start)
 
     def parameters(self, structure: float = 0.0) -> dict[str, Declared]:
         """What may differ between units, with a spread of the factors of the structure."""

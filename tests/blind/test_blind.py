@@ -23,10 +23,10 @@ from swgsim.blind.bench import Setting, in_question, unit_of, unseen
 from swgsim.blind.drawing import drawn_inner
 from swgsim.blind.families import FAMILIES
 from swgsim.blind.intervals import median
-from swgsim.blind.judged import RIGHT, Judged
 from swgsim.blind.outside import OUTSIDE
 from swgsim.blind.prediction import expected, unseen_error
 from swgsim.blind.score import score, worst
+from swgsim.blind.scored_case import RIGHT, ScoredCase
 from swgsim.blind.sealed import Sealed, as_json, from_json
 from swgsim.blind.strata import CYCLE, FULL, NULLS, SINGLE, UNTESTABLE, Plan, plans, searched
 from swgsim.blind.strength import sized, strengths
@@ -100,7 +100,7 @@ HIDDEN = replace(CASE, effects=(LIBRARY["cam_form"](3, 2e-6, 1.0),), strengths=(
 def fitted() -> Fitted:
     """A model fitted to a healthy unit at two points."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(calibration, "STEPS", 3)
+        patch.setattr(calibration, "MOST_STEPS", 3)
         return fit(Measured.of(in_question(SHORT, SETTING, ())), Unit(Model(GEAR)))
 
 
@@ -350,7 +350,7 @@ def test_a_family_holds_effects_of_the_library_and_no_effect_twice() -> None:
     ],
 )  # fmt: skip
 def test_what_went_wrong_is_said(case: Sealed, changes: dict, cause: str) -> None:
-    judged = Judged(case, {**SAID, **changes})
+    judged = ScoredCase(case, {**SAID, **changes})
     assert judged.cause == cause
     assert judged.right == (cause == RIGHT)
     assert judged.why.startswith(case.stratum)
@@ -361,7 +361,7 @@ def test_what_went_wrong_is_said(case: Sealed, changes: dict, cause: str) -> Non
 def test_how_likely_the_true_model_is_goes_unsaid_where_it_is_random() -> None:
     """Lines between the orders are in no fit."""
     case = replace(HIDDEN, effects=(*HIDDEN.effects, LIBRARY["mains_hum"](1e-3)), strengths=(3000.0, 400.0))
-    assert "log-likelihood" not in Judged(case, SAID).why
+    assert "log-likelihood" not in ScoredCase(case, SAID).why
 
 
 @pytest.mark.parametrize(("orders", "which"), [((10, 3), 1), ((3, 10), 0), ((10,), 0), ((), None)])
@@ -398,10 +398,10 @@ def test_a_mean_has_the_real_part_of_a_pattern_only() -> None:
     unknown = {**SAID, **CALLED_UNKNOWN}
     leaning = replace(HIDDEN, stratum="written", effects=(OUTSIDE[5](0.01, 1.0),))
     atom = OUTSIDE[5].described
-    assert Judged(leaning, {**unknown, "unknown": [[0, turning, atom.law]]}).described == (True, True, True)
-    assert Judged(leaning, {**unknown, "unknown": [[3, "in s1 alone", atom.law]]}).described == (False, False, True)
+    assert ScoredCase(leaning, {**unknown, "unknown": [[0, turning, atom.law]]}).described == (True, True, True)
+    assert ScoredCase(leaning, {**unknown, "unknown": [[3, "in s1 alone", atom.law]]}).described == (False, False, True)
     wobbling = replace(HIDDEN, stratum="written", effects=(OUTSIDE[2](0.01, 1.0),))
-    said = Judged(wobbling, {**unknown, "unknown": [[3, atom.pattern, "constant"]]})
+    said = ScoredCase(wobbling, {**unknown, "unknown": [[3, atom.pattern, "constant"]]})
     assert said.described == (True, False, False)
 
 
@@ -411,15 +411,15 @@ def test_the_score_counts_what_it_says() -> None:
     written = replace(HIDDEN, stratum="written", effects=(OUTSIDE[0](0.01, 1.0),))
     unknown = {**quiet, **CALLED_UNKNOWN}
     cases = [
-        Judged(HIDDEN, {**SAID, "seconds": {"loop": 7.0, "loop_of_one_core": 4.0}}),
-        Judged(HIDDEN, {**SAID, **WRONG, **dict.fromkeys(INTERVALS, ())}),
-        Judged(replace(HIDDEN, strengths=(60.0,)), {**SAID, **quiet}),
-        Judged(null, {**SAID, **quiet}),
-        Judged(null, SAID),
-        Judged(null, {"failure": "it broke"}),
-        Judged(written, {**SAID, **unknown, "unknown": [[1, "in s4 alone", "constant"]]}),
-        Judged(written, {**SAID, **dict.fromkeys(INTERVALS, ({"true": 1.0, "found": 2.0, "deviation": 0.1},))}),
-        Judged(HIDDEN, {"failure": "it broke"}),
+        ScoredCase(HIDDEN, {**SAID, "seconds": {"loop": 7.0, "loop_of_one_core": 4.0}}),
+        ScoredCase(HIDDEN, {**SAID, **WRONG, **dict.fromkeys(INTERVALS, ())}),
+        ScoredCase(replace(HIDDEN, strengths=(60.0,)), {**SAID, **quiet}),
+        ScoredCase(null, {**SAID, **quiet}),
+        ScoredCase(null, SAID),
+        ScoredCase(null, {"failure": "it broke"}),
+        ScoredCase(written, {**SAID, **unknown, "unknown": [[1, "in s4 alone", "constant"]]}),
+        ScoredCase(written, {**SAID, **dict.fromkeys(INTERVALS, ({"true": 1.0, "found": 2.0, "deviation": 0.1},))}),
+        ScoredCase(HIDDEN, {"failure": "it broke"}),
     ]
     found = score(cases)
     assert found["cases"] == 9
@@ -448,14 +448,14 @@ def test_the_score_counts_what_it_says() -> None:
 def test_probabilities_are_compared_with_the_share_of_right_answers() -> None:
     """Eight of ten right where 0.9 was said, and one of two where 0.6 was said."""
     said = [(0.9, {})] * 8 + [(0.9, WRONG)] * 2 + [(0.6, {}), (0.6, WRONG)]
-    found = score([Judged(HIDDEN, {**SAID, **changes, "probability": p}) for p, changes in said])
+    found = score([ScoredCase(HIDDEN, {**SAID, **changes, "probability": p}) for p, changes in said])
     assert [(each["stated"], each["right"]["value"], each["right"]["count"]) for each in found["reliability"]] == [
         (pytest.approx(0.6), 0.5, 2),
         (pytest.approx(0.9), 0.8, 10),
     ]
     assert found["expected_calibration_error"] == pytest.approx(0.1)
     assert (found["right_of_sure"]["value"], found["right_of_sure"]["count"]) == (0.8, 10)
-    assert score([Judged(HIDDEN, {"failure": "it broke"})])["expected_calibration_error"] is None
+    assert score([ScoredCase(HIDDEN, {"failure": "it broke"})])["expected_calibration_error"] is None
 
 
 @pytest.mark.parametrize("order", [3, 5])
@@ -483,7 +483,7 @@ def test_the_true_model_is_likelier_than_an_answer_that_names_nothing() -> None:
 
 def test_an_angle_that_may_be_any_is_not_counted() -> None:
     angles = [{"true": 1.0, "found": 1.2, "deviation": deviation} for deviation in (0.2, 0.05, 2.0)]
-    covered = score([Judged(HIDDEN, {**SAID, "angles": angles})])["coverage95_of_angles"]
+    covered = score([ScoredCase(HIDDEN, {**SAID, "angles": angles})])["coverage95_of_angles"]
     assert (covered["value"], covered["count"]) == (0.5, 2)
 
 
@@ -492,7 +492,7 @@ def test_worse_predictions_are_told_from_those_of_the_true_model() -> None:
     errors = [(1.0, 1.2, 1.0), (1.0, 1.2, 1.2), (1.0, 1.04, 1.04), (1.0, 0.5, 1.2)]
     weak = replace(HIDDEN, strengths=(60.0,))
     cases = [
-        Judged(case, {**SAID, "error": {"before": before, "after": after, "oracle": oracle}})
+        ScoredCase(case, {**SAID, "error": {"before": before, "after": after, "oracle": oracle}})
         for case, (before, after, oracle) in zip((HIDDEN, weak, HIDDEN, HIDDEN), errors, strict=True)
     ]
     found = score(cases)
@@ -506,7 +506,7 @@ def test_worse_predictions_are_told_from_those_of_the_true_model() -> None:
 def test_of_one_operating_point_there_is_no_error_held_out() -> None:
     """Worse, within a few per cent, and not to be had."""
     heldout = [(1.0, 1.2), (1.0, 1.04), (None, None)]
-    cases = [Judged(HIDDEN, {**SAID, "heldout": {"before": before, "after": after}}) for before, after in heldout]
+    cases = [ScoredCase(HIDDEN, {**SAID, "heldout": {"before": before, "after": after}}) for before, after in heldout]
     found = score(cases)["worse_where_recorded"]
     assert (found["value"], found["count"]) == (0.5, 2)
 
@@ -523,7 +523,7 @@ def test_of_one_operating_point_there_is_no_error_held_out() -> None:
 )
 def test_what_is_untestable_is_told_if_it_would_not_have_been_seen(said: dict[str, Any], told: bool) -> None:
     """A cam form of 2 um."""
-    case = Judged(replace(HIDDEN, stratum=UNTESTABLE), {**SAID, **said})
+    case = ScoredCase(replace(HIDDEN, stratum=UNTESTABLE), {**SAID, **said})
     assert case.reported_untestable == told
     assert score([case])["untestable_told"]["value"] == told
 

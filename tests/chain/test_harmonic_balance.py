@@ -96,7 +96,7 @@ def test_what_does_not_settle_is_integrated(monkeypatch):
     forget()
     found = one_turn(runs, POINTS)
     forget()
-    monkeypatch.setattr(harmonic_balance, "CORRECTIONS", 1)
+    monkeypatch.setattr(harmonic_balance, "MOST_CORRECTIONS", 1)
     integrated = []
     shoot = settling.shooting
     monkeypatch.setattr(settling, "shooting", lambda drive: integrated.extend(drive.points) or shoot(drive))

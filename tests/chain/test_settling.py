@@ -12,7 +12,7 @@ from swgsim.chain import settling, unsteady
 from swgsim.chain.dynamics import OMEGA_IN, PHI_IN, PHI_OUT, Drive, State
 from swgsim.chain.equilibrium import resonance, uniform_rotation
 from swgsim.chain.motion import Motion, NoSteadyState, run, shooting
-from swgsim.chain.newton import TIMES, stable_revolution
+from swgsim.chain.newton import LEAST_TIMES, stable_revolution
 from swgsim.chain.settling import steady_revolution, steady_state
 from swgsim.chain.unsteady import Averaged, mean_revolution
 from swgsim.common.seeds import generator
@@ -147,7 +147,7 @@ def test_the_mean_of_a_motion_that_repeats_is_that_motion() -> None:
 
 def test_newtons_method_finds_what_the_harmonic_balance_finds() -> None:
     drive = Drive([NOMINAL], [OperatingPoint(2000, 39)])
-    found, expected = stable_revolution(drive, 0.7, TIMES), steady_revolution(drive, np.array([0.7]), TIMES)
+    found, expected = stable_revolution(drive, 0.7, LEAST_TIMES), steady_revolution(drive, np.array([0.7]), LEAST_TIMES)
     assert found is not None
     np.testing.assert_allclose(found.motion.T_out, expected.T_out, rtol=1e-6)
     np.testing.assert_allclose(found.start[PHI_IN], 0.7)
@@ -192,7 +192,7 @@ def test_no_gear_of_two_hundred_raises() -> None:
     rng = generator("two hundred gears")
     cases = [*drawn(rng, 100, resonant=False), *drawn(rng, 100, resonant=True)]
     drive = Drive(*zip(*cases, strict=True))
-    found = steady_revolution(drive, np.zeros(len(cases)), TIMES)  # at as many times as a state is searched
+    found = steady_revolution(drive, np.zeros(len(cases)), LEAST_TIMES)  # at as many times as a state is searched
     assert np.isfinite(found.T_out).all()
     speed, load = ([getattr(point, name) for _, point in cases] for name in ("n_in_rpm", "T_out"))
     np.testing.assert_allclose(found.omega_in[:, :-1].mean(axis=1) * 30 / np.pi, speed, rtol=0.01)
@@ -202,7 +202,7 @@ def test_no_gear_of_two_hundred_raises() -> None:
 
 
 def test_a_speed_that_is_not_held_is_named_with_what_to_look_at(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(unsteady, "HELD", 0.0)
+    monkeypatch.setattr(unsteady, "SPEED_TOLERANCE", 0.0)
     drive = Drive([replace(NOMINAL, control_frequency=50.0)], [OperatingPoint(2000, 7)])
     with pytest.raises(NoSteadyState, match=r"2000 rpm and 7 N m turns at 2000 rpm .* 50 Hz .*look at the friction"):
         mean_revolution(drive, np.zeros(1), POINTS)

@@ -61,7 +61,7 @@ def test_a_revolution_is_repeated():
 
 
 def test_memory_is_bounded(monkeypatch):
-    monkeypatch.setattr(turning, "MOST", 2)
+    monkeypatch.setattr(turning, "MOST_MOTIONS", 2)
     one_turn([SOFT, STIFF], 64)
     found = one_turn([STIFF, HUMMING], 64)
     assert len(turning._remembered) == len(found.phi_in) == 2

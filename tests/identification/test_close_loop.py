@@ -40,8 +40,8 @@ from swgsim.identification.interharmonics.line_pattern import Part
 from swgsim.identification.interharmonics.unattributed_lines import Unnamed
 from swgsim.identification.report import close_loop as job
 from swgsim.identification.report.answer import Answer
-from swgsim.identification.report.given import _comparable
 from swgsim.identification.report.identification import Identification
+from swgsim.identification.report.loop_input import _comparable
 from swgsim.identification.report.next_experiment import RECORDINGS, SEPARATED, next_experiments
 from swgsim.identification.report.open_questions import next_experiment
 from swgsim.identification.report.report_fields import report
@@ -284,7 +284,7 @@ def test_an_interrupted_command_says_that_it_keeps_nothing(folders, monkeypatch)
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("swgsim.identification.report.given.read_recordings", interrupted)
+    monkeypatch.setattr("swgsim.identification.report.loop_input.read_recordings", interrupted)
     with pytest.raises(KeyboardInterrupt, match="nothing is kept"):
         job.run(choices(folders, "sick", out=str(folders / "interrupted")))
 

@@ -18,7 +18,7 @@ from swgsim.identification.covariance.recording_covariance import RecordingCovar
 from swgsim.identification.data.features import Layout
 from swgsim.identification.data.model import Model, Situation, predict
 from swgsim.identification.fit.map_fit import DIFFERENCE, calibrate, linearised
-from swgsim.identification.fit.priors import MOST, Declared, at, of_effects, of_unit
+from swgsim.identification.fit.priors import MOST_RATIO, Declared, at, of_effects, of_unit
 
 LAYOUT = Layout(("s0", "s1"))
 SITUATIONS = tuple(Situation(point, Conditions()) for point in POINTS)
@@ -293,7 +293,9 @@ def test_no_fit_makes_a_parameter_of_the_gear_that_cannot_be():
     assert 0 < moved.wave_generator.w0 < GEAR.wave_generator.w0
     far = ("k1", "b0", "b1", "mu", "J_in", "J_out")
     moved = at(model, {name: of_unit(GEAR)[name] for name in far}, dict.fromkeys(far, 1e3)).gear.transmission
-    assert [getattr(moved, name) / getattr(GEAR.transmission, name) for name in far] == pytest.approx([MOST] * len(far))
+    assert [getattr(moved, name) / getattr(GEAR.transmission, name) for name in far] == pytest.approx(
+        [MOST_RATIO] * len(far)
+    )
 
 
 @pytest.mark.parametrize("name", ["b0", "b1", "mu"])

@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 from loop_fixtures import fitted_to
 
-from swgsim.identification.commissioning.lack_of_fit import FALSE_DISCOVERIES, UNEXPLAINED, beyond_noise, require_own
+from swgsim.identification.commissioning.lack_of_fit import (
+    FALSE_DISCOVERIES,
+    UNEXPLAINED_SHARE,
+    beyond_noise,
+    require_own,
+)
 from swgsim.identification.commissioning.relinearisation import posterior, triangular_factor
 from swgsim.identification.data.features import Layout
 from swgsim.identification.data.measured import Measured
@@ -57,9 +62,9 @@ def test_gauges_that_sit_alike_are_missed_alike(measured):
 
 def test_a_channel_of_which_a_tenth_is_missed_is_refused(measured):
     missed = np.zeros(measured.values.shape)
-    missed[:, line("s0", 1)] = 100 * 0.9 * UNEXPLAINED
+    missed[:, line("s0", 1)] = 100 * 0.9 * UNEXPLAINED_SHARE
     require_own(measured, missed)
-    missed[:, line("s0", 1)] = 100 * 1.1 * UNEXPLAINED
+    missed[:, line("s0", 1)] = 100 * 1.1 * UNEXPLAINED_SHARE
     with pytest.raises(ValueError, match=r"leaves s0 \(11 %\) of the ripple unexplained, at most 10 %"):
         require_own(measured, missed)
 

@@ -19,11 +19,11 @@ from swgsim.identification.data.features import ORDERS, Layout
 from swgsim.identification.decide import search as search_module
 from swgsim.identification.decide.decision import CREDIBLE, decide
 from swgsim.identification.decide.option import ZEROS, expected_gain, option
-from swgsim.identification.decide.prior import BALANCED, CAUSES, FORM_ERRORS, SCALES, TIMES_BALANCED, log_prior
+from swgsim.identification.decide.prior import BALANCED, CAUSES, FORM_ERRORS, LOG_SIZE_RANGE, TIMES_BALANCED, log_prior
 from swgsim.identification.decide.search import Search
 from swgsim.identification.fit.form_error import all_show, form_directions, parts
 from swgsim.identification.report.answer import Answer
-from swgsim.identification.report.found import alternatives, found_effects, options, probability_text, small
+from swgsim.identification.report.found_effects import alternatives, found_effects, options, probability_text, small
 from swgsim.identification.report.sentence import sentence
 from swgsim.identification.search.regularities import Atom, columns
 
@@ -153,7 +153,7 @@ def test_a_size_is_integrated_over_its_logarithm_wherever_the_fit_began(null, ch
         normal = multivariate_normal(cov=np.diag(held.errors.variance) + every @ every.T)
         likely.append(normal.logpdf(held.residual - sizes[:, None] * column) + len(column) / 2 * np.log(2 * np.pi))
     densities = np.exp(logsumexp(likely, axis=0) - np.log(len(FORM_ERRORS)) - logsumexp(found.evidences[0]))
-    integral = np.trapezoid(densities / (2 * SCALES * np.abs(sizes)), sizes)
+    integral = np.trapezoid(densities / (2 * LOG_SIZE_RANGE * np.abs(sizes)), sizes)
     expected = np.log(1 - BALANCED) + np.log(integral) + logsumexp(found.evidences[0]) + log_prior(1, 0, len(KINDS))
     assert found.log_prior + logsumexp(found.evidences[0]) == pytest.approx(expected, abs=0.05)
 
@@ -223,7 +223,7 @@ def test_the_search_finds_an_effect_beside_a_regularity(null, changes):
 
 def drawn_size(rng):
     """A size in standard deviations: its logarithm is uniform, and below one all sizes are equally probable."""
-    return rng.uniform() if rng.uniform() < 1 / (1 + SCALES) else np.exp(rng.uniform(0, SCALES))
+    return rng.uniform() if rng.uniform() < 1 / (1 + LOG_SIZE_RANGE) else np.exp(rng.uniform(0, LOG_SIZE_RANGE))
 
 
 @pytest.mark.end_to_end
@@ -241,7 +241,9 @@ def test_probabilities_are_true(monkeypatch):
         D[kind] = form_directions(lone, 1)
     sets = [(), (Bump,), (Mimic,), (Bump, Mimic)]
     # Sizes below the standard deviation belong to the prior too.
-    prior = np.array([np.exp(log_prior(len(each), 0, len(kinds))) * (1 + 1 / SCALES) ** len(each) for each in sets])
+    prior = np.array(
+        [np.exp(log_prior(len(each), 0, len(kinds))) * (1 + 1 / LOG_SIZE_RANGE) ** len(each) for each in sets]
+    )
     stated, right = [], []
     for _ in range(300):
         truth = rng.choice(len(sets), p=prior / prior.sum())

@@ -9,7 +9,7 @@ from loop_fixtures import POINTS, drawn, fitted_to, holding
 from swgsim.identification.data.features import Layout
 from swgsim.identification.fit.errors import Errors, noise_floor, repeat_noise, rms
 from swgsim.identification.fit.priors import Declared
-from swgsim.identification.report.prediction_errors import FEWEST, WHAT, _explained, _of_floor, _ratio, error
+from swgsim.identification.report.prediction_errors import FEWEST_POINTS, WHAT, _explained, _of_floor, _ratio, error
 from swgsim.identification.search.regularities import Atom, columns
 
 LAYOUT = Layout(("s1", "s2"))
@@ -88,8 +88,8 @@ def test_ratio_has_an_interval_where_operating_points_differ():
 
 
 def test_ratio_has_no_interval_of_a_few_points_nor_where_nothing_was_added():
-    before = np.ones((FEWEST - 1, 2))
-    assert _ratio(0.2 * before, before, np.arange(FEWEST - 1)) == {"value": pytest.approx(0.2), "ci95": None}
+    before = np.ones((FEWEST_POINTS - 1, 2))
+    assert _ratio(0.2 * before, before, np.arange(FEWEST_POINTS - 1)) == {"value": pytest.approx(0.2), "ci95": None}
     before = np.ones((6, 2))
     assert _ratio(before, before, np.arange(6)) == {"value": 1.0, "ci95": None}
     assert _ratio(np.nan * before, np.nan * before, np.arange(6)) == {"value": None, "ci95": None}

@@ -49,7 +49,7 @@ def test_a_drift_within_a_recording_is_no_ripple(monkeypatch):
     drifting = {name: values + 0.003 * ramp * (name != "phi_in") for name, values in steady.items()}
     expected = features(recorded(steady), LAYOUT)
     np.testing.assert_allclose(features(recorded(drifting), LAYOUT), expected, atol=1e-9)
-    monkeypatch.setattr(feature_module, "STEADY", np.inf)
+    monkeypatch.setattr(feature_module, "TURNS_FOR_DRIFT", np.inf)
     assert np.abs(features(recorded(drifting), LAYOUT) - expected).max() > 5e-5
 
 

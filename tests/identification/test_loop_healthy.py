@@ -9,7 +9,7 @@ from loop_fixtures import POINTS, recorded
 
 from swgsim.gear.conditions import Conditions
 from swgsim.identification.data.features import ORDERS, Layout
-from swgsim.identification.data.measured import KEPT, MOST_WANDER, OF_SESSION, WANDER, Measured
+from swgsim.identification.data.measured import LEAST_EXPLAINED_VARIANCE, MOST_WANDER, OF_SESSION, WANDER, Measured
 from swgsim.identification.data.model import Model, Situation
 from swgsim.identification.fit import healthy_variability as healthy
 from swgsim.identification.fit.priors import of_unit
@@ -98,7 +98,7 @@ def test_zeros_of_a_session_wander_as_a_random_walk_of_that_session(predicted):
     gain = np.outer(predicted[:, mean], predicted[:, mean]) * OF_SESSION["gain of s1"] ** 2
     found = columns @ columns.T - same * (zero + drift + gain + index)
     assert not found[~same].any()
-    np.testing.assert_allclose(found, same * walk, atol=(1 - KEPT) * WANDER**2 * hours.sum())
+    np.testing.assert_allclose(found, same * walk, atol=(1 - LEAST_EXPLAINED_VARIANCE) * WANDER**2 * hours.sum())
     assert (np.diag(found)[hours > 0] > 0).all()
 
 

@@ -19,9 +19,9 @@ from swgsim.identification.fit import fitting
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import (
     IMPROBABLE,
+    MOST_TURNS,
+    MOST_TURNS_UNREPEATED,
     SAME_SCATTER,
-    TURNS,
-    UNREPEATED,
     at_plausible_parameters,
     extended,
     fit,
@@ -128,9 +128,9 @@ def test_repeats_tell_the_errors_of_single_recordings_before_anything_is_fitted(
     [
         ([1.01, 9], True, 3, 1),
         ([5, 1, 1.01, 9], True, 3, 3),
-        ([5, 1, 5, 1, 5], True, 3, TURNS),
-        ([1] * 9, False, 3, TURNS),
-        ([5, 1, 5, 1], True, 1, UNREPEATED),
+        ([5, 1, 5, 1, 5], True, 3, MOST_TURNS),
+        ([1] * 9, False, 3, MOST_TURNS),
+        ([5, 1, 5, 1], True, 1, MOST_TURNS_UNREPEATED),
     ],
 )
 def test_a_fit_goes_on_until_the_errors_of_single_recordings_stay(monkeypatch, found, sizes, settled, repeats, turns):

@@ -8,7 +8,7 @@ from chain_fixtures import GEAR
 from loop_fixtures import fitted_to
 
 from swgsim.flexspline.structure_factors import EXACT_STRUCTURE, WAVES
-from swgsim.identification.commissioning.structural_spread import OF_GAUGES, WIDEST, most_probable
+from swgsim.identification.commissioning.structural_spread import OF_GAUGES, WIDEST_SPREAD, most_probable
 from swgsim.identification.data.features import Layout
 from swgsim.identification.data.model import Model
 from swgsim.identification.fit.map_fit import Calibrated
@@ -51,7 +51,7 @@ def test_factors_of_neighbouring_waves_are_alike_within_their_spread():
 def test_the_spreads_that_recordings_were_drawn_with_are_the_most_probable(structure, of_gauges):
     rng = np.random.default_rng(3)
     fitted = fitted_to(LAYOUT, rng)
-    unit = replace(fitted.unit, seen_healthy=True, structure=WIDEST, of_gauges=OF_GAUGES[-1])
+    unit = replace(fitted.unit, seen_healthy=True, structure=WIDEST_SPREAD, of_gauges=OF_GAUGES[-1])
     truth, parameters = replace(unit, structure=structure, of_gauges=of_gauges).declared, unit.declared
     situations = len(fitted.measured.situations)
     J = 3e3 * rng.standard_normal((situations, len(LAYOUT), len(parameters)))

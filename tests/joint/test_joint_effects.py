@@ -251,8 +251,8 @@ BRAKING = (StribeckFriction(), QuadraticFriction(), SublinearFriction(), LoadDep
 @pytest.mark.parametrize("term", [*BRAKING, MaxwellSlip()], ids=name)
 def test_friction_that_drives_is_not_sound(term: Term) -> None:
     wrong, right = ((-0.2, -0.1), (0.1, 0.2)) if isinstance(term, MaxwellSlip) else ((-0.1,), (0.1,))
-    assert not term.weighted(np.array(wrong)).sound
-    assert term.weighted(np.array(right)).sound
+    assert not term.weighted(np.array(wrong)).has_physical_sign
+    assert term.weighted(np.array(right)).has_physical_sign
 
 
 def test_weights_have_names() -> None:

@@ -11,7 +11,7 @@ from joint_fixtures import NOTHING, PER_TORQUE, Hidden, Wave, sessions, steady, 
 from swgsim.joint.effects import SEARCHED
 from swgsim.joint.effects.friction import StribeckFriction
 from swgsim.joint.effects.ripple import Ripple
-from swgsim.joint.ladder import Ladder, climb
+from swgsim.joint.ladder import Ladder, forward_selection
 from swgsim.joint.orders import lines
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.regression import Table, fit, rms
@@ -27,7 +27,7 @@ SOME = (0.05, 0.1, 0.25, 0.55, 1.0)
 
 
 def climbed(recordings: tuple[JointRecording, ...], of: str) -> Ladder:
-    return climb(Table(recordings, of), SEARCHED)
+    return forward_selection(Table(recordings, of), SEARCHED)
 
 
 def names(ladder: Ladder) -> list[str]:
@@ -187,7 +187,7 @@ def test_a_wave_is_found_although_a_sharp_resonance_in_few_stretches_is_more_lik
     now = fit(table, textbook(recordings, "current"))
     sharp = shaped(now, Ripple(order=200.0))
     assert sharp.damping < 0.2
-    first = climb(table, SEARCHED).steps[0]
+    first = forward_selection(table, SEARCHED).steps[0]
     assert (first.term.order, first.term.power) == (200.0, 0)
     np.testing.assert_allclose(first.term.response(np.array(SOME)), 1, atol=0.05)
     assert gain(now, first.term) < gain(now, sharp)
@@ -232,8 +232,8 @@ def test_an_effect_of_one_session_alone_is_refused_for_that() -> None:
 
 def test_refused_candidates_have_a_reason_and_steps_lower_the_error() -> None:
     ladder = moved_ladder("presliding")
-    assert all(trial.why for trial in ladder.refused if not trial.pays)
-    assert all(step.pays and not step.why for step in ladder.steps)
+    assert all(trial.why for trial in ladder.refused if not trial.accepted)
+    assert all(step.accepted and not step.why for step in ladder.steps)
     fits = [ladder.textbook, *(step.fit for step in ladder.steps)]
     assert all(after.error < before.error for before, after in pairwise(fits))
     assert [len(each.terms) for each in fits] == list(range(3, 3 + len(fits)))
@@ -243,7 +243,10 @@ def test_refused_candidates_have_a_reason_and_steps_lower_the_error() -> None:
 def test_the_same_recordings_give_the_same_ladder_and_every_step_is_reported() -> None:
     hidden, of, *_ = MOVED["presliding"]
     lines: list[str] = []
-    first, again = moved_ladder("presliding"), climb(Table(runs("presliding", hidden), of), SEARCHED, lines.append)
+    first, again = (
+        moved_ladder("presliding"),
+        forward_selection(Table(runs("presliding", hidden), of), SEARCHED, lines.append),
+    )
     assert again.top.terms == first.top.terms
     assert [trial.term for trial in again.refused] == [trial.term for trial in first.refused]
     assert len(lines) == len(again.steps) + 2 > 2
@@ -253,7 +256,7 @@ def test_the_same_recordings_give_the_same_ladder_and_every_step_is_reported() -
 
 def test_a_library_without_the_effect_does_not_find_it() -> None:
     kinds = [kind for kind in SEARCHED if not kind.__name__.startswith("Load")]
-    ladder = climb(Table(runs("load", MOVED["load"][0]), "current"), kinds)
+    ladder = forward_selection(Table(runs("load", MOVED["load"][0]), "current"), kinds)
     assert ladder.top.error > 1.2 * moved_ladder("load").top.error
 
 

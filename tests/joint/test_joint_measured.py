@@ -12,9 +12,9 @@ from swgsim.joint.effects import SEARCHED
 from swgsim.joint.effects.friction import StribeckFriction
 from swgsim.joint.effects.ripple import InertiaRipple
 from swgsim.joint.effects.slip import LoadDependentFriction
-from swgsim.joint.judged import Judged
-from swgsim.joint.ladder import climb
+from swgsim.joint.ladder import forward_selection
 from swgsim.joint.split import select
+from swgsim.joint.validation import Validation
 
 UR_HELD_OUT = "*-50sec_12harm,*-20sec_10harm"
 
@@ -88,9 +88,9 @@ def test_noise_of_the_currents_is_that_of_the_joints_that_stand(ur: JointRecordi
         assert select(ur, None, joint, "current", "*-50sec_12harm", None).floor == pytest.approx(noise, abs=1e-3)
 
 
-def judged(files: JointRecordings, joint: str, holdout: str, without: str | None = None) -> Judged:
+def validation(files: JointRecordings, joint: str, holdout: str, without: str | None = None) -> Validation:
     case = select(files, None, joint, "current", holdout, without)
-    return Judged(climb(case.table, SEARCHED), case.heldout, case.floor)
+    return Validation(forward_selection(case.table, SEARCHED), case.heldout, case.floor)
 
 
 @pytest.fixture
@@ -106,7 +106,7 @@ def test_friction_that_grows_with_the_load_is_found_where_there_is_load(
     ur: JointRecordings, joint: str, error: float
 ) -> None:
     """The error on recordings not seen [A] , without waves, is within 2 % of what it was."""
-    found = judged(ur, joint, UR_HELD_OUT, "*Load")
+    found = validation(ur, joint, UR_HELD_OUT, "*Load")
     assert LoadDependentFriction in {type(step.term) for step in found.ladder.steps}
     assert found.after.heldout < min(error, 0.92 * found.before.heldout)
 
@@ -117,7 +117,7 @@ def test_friction_that_grows_with_the_load_is_not_claimed_for_an_upright_axis(ur
     """Its load is inertia only. The model lacks the wave of both lobes of the wave generator, which the inertia of the
     arm reduces.
     """
-    found = judged(ur, "joint_1", UR_HELD_OUT, "*Load")
+    found = validation(ur, "joint_1", UR_HELD_OUT, "*Load")
     assert LoadDependentFriction not in {type(step.term) for step in found.ladder.steps}
     assert next(each.term.order for each in found.ladder.steps if isinstance(each.term, InertiaRipple)) == 202.0
     assert found.after.heldout < 0.98 * found.before.heldout
@@ -126,5 +126,5 @@ def test_friction_that_grows_with_the_load_is_not_claimed_for_an_upright_axis(ur
 @pytest.mark.end_to_end
 @pytest.mark.usefixtures("_no_waves")
 def test_stribeck_friction_is_not_claimed_for_a_current_that_does_not_need_it(kinova: JointRecordings) -> None:
-    found = judged(kinova, "joint_7", "S3")
+    found = validation(kinova, "joint_7", "S3")
     assert StribeckFriction not in {type(step.term) for step in found.ladder.steps}

@@ -108,9 +108,9 @@ def test_noise_has_a_power_of_two_at_every_order() -> None:
 def test_nothing_is_said_of_orders_that_a_run_cannot_show() -> None:
     orders, power = spectrum(FIVE, generator("unseen").normal(size=len(FIVE.run)), 2500)
     for number, each in enumerate(SPEEDS):
-        seen = np.isfinite(power[2 * number])
-        assert orders[seen].min() >= 2 * 2 * np.pi / (each * 4) * 0.99
-        assert orders[seen].max() * each / (2 * np.pi) < RATE / 2
+        visible = np.isfinite(power[2 * number])
+        assert orders[visible].min() >= 2 * 2 * np.pi / (each * 4) * 0.99
+        assert orders[visible].max() * each / (2 * np.pi) < RATE / 2
 
 
 def test_a_wave_too_fast_for_the_sampling_is_not_taken_for_another_one() -> None:

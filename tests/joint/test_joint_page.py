@@ -19,8 +19,7 @@ from swgsim.joint.figures import pictures
 from swgsim.joint.figures.friction import friction
 from swgsim.joint.figures.parts import pieces, short
 from swgsim.joint.figures.unexplained import unexplained
-from swgsim.joint.figures.waves import modelled, seen
-from swgsim.joint.judged import Judged
+from swgsim.joint.figures.waves import modelled, ripple_estimates
 from swgsim.joint.ladder import Ladder, Trial
 from swgsim.joint.naming import listed
 from swgsim.joint.pages import page, page_of_cases
@@ -30,6 +29,7 @@ from swgsim.joint.remaining import RemainingLine
 from swgsim.joint.report import report
 from swgsim.joint.term import Term
 from swgsim.joint.textbook import textbook
+from swgsim.joint.validation import Validation
 
 ORDER, SIZE, CORNER, DAMPING = 200.0, 0.05, 60.0, 0.4
 RIPPLE = Hidden(ripple=(Wave(ORDER, SIZE),), corner=CORNER, damping=DAMPING, stribeck=(0.2, 0.1))
@@ -37,11 +37,13 @@ SPEEDS = (-0.6, 0.2, 0.6, 1.0, 1.5)
 LINE = RemainingLine(120.0, -300.0, 0.01, 0.6, ("B 0.6",), -0.02)
 NASTY = "<script>alert('R&D')</script>"
 Drawn = dict[str, tuple[Picture, Figure]]
-Torque = tuple[Judged, dict[str, Any], Drawn]
+Torque = tuple[Validation, dict[str, Any], Drawn]
 Trajectory = tuple[dict[str, Any], Drawn]
 
 
-def judged(fitted: tuple[JointRecording, ...], held: tuple[JointRecording, ...], of: str, *tried: Term) -> Judged:
+def validation(
+    fitted: tuple[JointRecording, ...], held: tuple[JointRecording, ...], of: str, *tried: Term
+) -> Validation:
     """A ladder with the first term accepted and the others refused, without the search."""
     table = Table(fitted, of)
     start = fit(table, textbook(table.recordings, of))
@@ -49,7 +51,7 @@ def judged(fitted: tuple[JointRecording, ...], held: tuple[JointRecording, ...],
     step = Trial(kept.terms[-1], kept, 0.5, 0.4, 1e-9)
     added = (fit(table, (*kept.terms, term)) for term in tried[1:])
     refused = tuple(Trial(each.terms[-1], each, 0.001, 0.0, 0.3) for each in added)
-    return Judged(Ladder(start, (step,), refused), Table(held, of), 0.01)
+    return Validation(Ladder(start, (step,), refused), Table(held, of), 0.01)
 
 
 RUNS = {s: tuple(steady(v, "page", RIPPLE, s, seconds=2.0) for v in SPEEDS) for s in "AB"}
@@ -64,7 +66,7 @@ def full(answer: dict[str, Any]) -> dict[str, Any]:
 @pytest.fixture(scope="module")
 def torque() -> Torque:
     wave = Ripple(order=ORDER, corner=CORNER, damping=DAMPING)
-    found = judged(RUNS["A"], RUNS["B"], "T_sensor", wave, Ripple(order=3.0))
+    found = validation(RUNS["A"], RUNS["B"], "T_sensor", wave, Ripple(order=3.0))
     answer = full(report(found, None, [LINE]))
     return found, answer, pictures(found, None, [LINE], answer)
 
@@ -72,7 +74,7 @@ def torque() -> Torque:
 @pytest.fixture(scope="module")
 def trajectory() -> Trajectory:
     recordings = trajectories("page", Hidden(load=0.02), seconds=10.0)
-    found = judged(recordings[:3], recordings[3:], "current", LoadDependentFriction(), Ripple(order=101.0))
+    found = validation(recordings[:3], recordings[3:], "current", LoadDependentFriction(), Ripple(order=101.0))
     by_day = Days(tuple(Day(each.session, 1.0, 0.05, 0.4, 0.03, 3) for each in recordings), 0.3)
     found = replace(found, floor=None)
     answer = full(report(found, by_day, [LINE]))
@@ -134,7 +136,7 @@ def test_lines_that_remain_are_drawn_with_their_laws(torque: Torque) -> None:
 
 
 def test_ripple_is_measured_in_every_run_as_it_was_made(torque: Torque) -> None:
-    points = seen(torque[0], ORDER)
+    points = ripple_estimates(torque[0], ORDER)
     assert {point.session for point in points} == {"A", "B"}
     assert {point.heldout for point in points} == {False, True}
     # The response of the second-order filter by its textbook formula; backward runs are mirrored onto it.
@@ -149,7 +151,7 @@ def test_ripple_is_measured_in_every_run_as_it_was_made(torque: Torque) -> None:
 
 
 def test_friction_points_lie_on_the_lines_of_their_session() -> None:
-    found = judged(RUNS["A"], RUNS["B"], "current", StribeckFriction(v_s=0.1))
+    found = validation(RUNS["A"], RUNS["B"], "current", StribeckFriction(v_s=0.1))
     by_day = days(found.ladder.top, (found.table, found.heldout))
     assert by_day is not None
     over, below = friction(found, by_day).get_axes()
@@ -206,7 +208,7 @@ def test_a_higher_error_on_recordings_not_seen_is_said_plainly() -> None:
     """Stribeck friction on the fitted days, and the opposite on the held-out day."""
     fitted = tuple(steady(v, "here", Hidden(stribeck=(0.07, 0.15)), "A", rate=100.0) for v in (0.05, 0.1, 0.3, 0.8))
     held = tuple(steady(v, "there", Hidden(stribeck=(-0.07, 0.15)), "B", rate=100.0) for v in (0.05, 0.1, 0.3, 0.8))
-    found = judged(fitted, held, "current", StribeckFriction(v_s=0.15))
+    found = validation(fitted, held, "current", StribeckFriction(v_s=0.15))
     answer = full(report(found, None, []))
     assert answer["verdict"] == "not_confirmed"
     before, after = (answer["error"][when]["heldout"] for when in ("before", "after"))
@@ -218,7 +220,7 @@ def test_a_higher_error_on_recordings_not_seen_is_said_plainly() -> None:
     assert answer["rungs"][1]["why"] == "contradicted: raises the error on held-out recordings"
     assert page(answer, {}).count("contradicted: raises") == 1
     assert "Do not use the effects found" in page(answer, {})
-    reversed_ = full(report(judged(held, held, "current", StribeckFriction(v_s=0.15)), None, []))
+    reversed_ = full(report(validation(held, held, "current", StribeckFriction(v_s=0.15)), None, []))
     assert reversed_["verdict"] == "effect_found"
     assert "falls from" in reversed_["sentence"]
 

@@ -11,7 +11,7 @@ from swgsim.joint.effects.friction import AsymmetricFriction, QuadraticFriction
 from swgsim.joint.effects.load import GravityError
 from swgsim.joint.effects.ripple import Ripple
 from swgsim.joint.recording import JointRecording
-from swgsim.joint.regression import PARTS, Fit, Table, fit, rms
+from swgsim.joint.regression import FOLDS, Fit, Table, fit, rms
 from swgsim.joint.term import Term
 from swgsim.joint.textbook import Friction, RigidBody, Zero, textbook
 
@@ -83,7 +83,7 @@ def test_unseen_is_the_error_of_refits_without_each_run(of: str) -> None:
 
 def test_a_single_run_is_cut_to_parts() -> None:
     found = fit(Table(RUNS[:1], "current"), (*TERMS, QuadraticFriction()))
-    parts = np.repeat(np.arange(PARTS), len(RUNS[0]) // PARTS)
+    parts = np.repeat(np.arange(FOLDS), len(RUNS[0]) // FOLDS)
     np.testing.assert_allclose(found.unseen, by_hand(found, parts), atol=1e-8)
 
 

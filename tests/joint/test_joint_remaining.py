@@ -10,13 +10,13 @@ from scipy.stats import binom
 from swgsim.common.seeds import generator
 from swgsim.joint.days import days, no_days
 from swgsim.joint.effects.ripple import Ripple
-from swgsim.joint.judged import Judged
 from swgsim.joint.ladder import Ladder, Trial
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.regression import Table, fit
 from swgsim.joint.remaining import RemainingLine, remaining
 from swgsim.joint.report import gear_ratio
 from swgsim.joint.textbook import textbook
+from swgsim.joint.validation import Validation
 
 pytestmark = pytest.mark.end_to_end
 
@@ -135,7 +135,7 @@ def test_the_gear_ratio_divides_all_fast_orders(orders, ratio):
     table = Table(tuple(replace(each, gear_ratio=None) for each in RUNS), "T_sensor")
     start = fit(table, textbook(table.recordings, "T_sensor"))
     steps = tuple(Trial(Ripple(order=order), start, 0.1, 0.1, 1e-9) for order in (8.0, *orders))
-    found = gear_ratio(Judged(Ladder(start, steps, ()), table, None))
+    found = gear_ratio(Validation(Ladder(start, steps, ()), table, None))
     assert (found and found["value"]) == (ratio and pytest.approx(ratio))
     if found:
         assert found["ci95"][0] < ratio < found["ci95"][1]

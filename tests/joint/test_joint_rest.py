@@ -8,7 +8,7 @@ from swgsim.common.seeds import generator
 from swgsim.joint.kinematics import displaced, jitter, least_doubt
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.regression import Fit, Table
-from swgsim.joint.rest import trusted
+from swgsim.joint.row_variance import weighted_by_variance
 from swgsim.joint.textbook import Friction, RigidBody, fitted_textbook
 
 RATE, NOISE, INERTIA, MOVE = 100.0, 0.03, 0.4, 100
@@ -47,18 +47,18 @@ def trust_at_rest(found: Fit) -> float:
 
 
 def test_a_standstill_counts_as_one_sample_with_the_variance_of_coulomb_friction() -> None:
-    found = trusted(fitted_textbook(strokes("open", 1.0)))
+    found = weighted_by_variance(fitted_textbook(strokes("open", 1.0)))
     once = NOISE / (COULOMB / np.sqrt(3))
     # The residual of the first fit has more than the noise, as what holds the joint disturbs it.
     assert once / np.sqrt(40) < trust_at_rest(found) < 2 * once / np.sqrt(40)
 
 
 def test_a_joint_that_is_predicted_at_rest_is_trusted_there() -> None:
-    assert trust_at_rest(trusted(fitted_textbook(strokes("known", None)))) > 0.7
+    assert trust_at_rest(weighted_by_variance(fitted_textbook(strokes("known", None)))) > 0.7
 
 
 def test_what_holds_a_joint_does_not_change_the_friction_of_its_motion() -> None:
-    found = trusted(fitted_textbook(strokes("friction", 1.0, lag=0.01)))
+    found = weighted_by_variance(fitted_textbook(strokes("friction", 1.0, lag=0.01)))
     weights = {type(term): term for term in found.terms}
     coulomb, viscous = weights[Friction].weights
     assert (coulomb, viscous) == (pytest.approx(COULOMB, rel=0.03), pytest.approx(VISCOUS, rel=0.1))

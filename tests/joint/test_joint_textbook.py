@@ -12,13 +12,13 @@ from swgsim.joint.effects import SEARCHED
 from swgsim.joint.effects.friction import StribeckFriction
 from swgsim.joint.effects.load import EncoderEccentricity, GravityError, LoadCurve
 from swgsim.joint.effects.slip import LoadDependentFriction, MaxwellSlip
-from swgsim.joint.judged import Judged
-from swgsim.joint.ladder import Ladder, climb
+from swgsim.joint.ladder import Ladder, forward_selection
 from swgsim.joint.low_speed import in_sum
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.regression import Table, fit, rms
 from swgsim.joint.report import report
 from swgsim.joint.textbook import Friction, RigidBody, Stiction, fitted_textbook, textbook, wrong_signs
+from swgsim.joint.validation import Validation
 
 NOISE = 0.03
 
@@ -46,7 +46,7 @@ def width_of(table: Table) -> float:
 @pytest.mark.parametrize("slower", [1.0, 4.0])
 def test_nothing_is_missing_however_sharply_coulomb_friction_turns(width: float, slower: float) -> None:
     table = Table(moved(("sharp", width, slower), width, slower), "current")
-    ladder = climb(table, SEARCHED)
+    ladder = forward_selection(table, SEARCHED)
     assert [type(step.term).__name__ for step in ladder.steps] == []
 
 
@@ -67,9 +67,9 @@ def test_the_lag_of_the_current_is_fitted_and_is_no_effect() -> None:
         for each in moved("late", 0.0, 4.0)
     )
     table = Table(late, "current")
-    ladder = climb(table, SEARCHED)
+    ladder = forward_selection(table, SEARCHED)
     assert ladder.steps == ()
-    assert not any("at its bound" in each for each in cautions(Judged(ladder, table, None), []))
+    assert not any("at its bound" in each for each in cautions(Validation(ladder, table, None), []))
     (friction,) = (term for term in ladder.top.terms if isinstance(term, Friction))
     assert friction.lag == pytest.approx(0.012, abs=0.008)
 
@@ -79,8 +79,8 @@ def test_a_lag_at_its_bound_is_a_caution() -> None:
     start = fitted_textbook(table)
     for lag, said in ((0.02, True), (-0.02, True), (0.015, False)):
         terms = tuple(replace(term, lag=lag) if hasattr(term, "lag") else term for term in start.terms)
-        judged = Judged(Ladder(fit(table, terms), (), ()), table, None)
-        assert any("at its bound of 20 ms" in each for each in cautions(judged, [])) == said
+        validation = Validation(Ladder(fit(table, terms), (), ()), table, None)
+        assert any("at its bound of 20 ms" in each for each in cautions(validation, [])) == said
 
 
 def stopping(seed: object, part: float) -> tuple[JointRecording, ...]:
@@ -169,7 +169,10 @@ def test_the_measured_torque_is_the_load_of_a_current() -> None:
     assert found.terms[0].weights[0] == pytest.approx(PER_TORQUE, rel=0.02)
     assert found.error < 1.1 * NOISE < fit(table, textbook(table.recordings, "current")).error / 5
     # Errors of the rigid-body model have no meaning then.
-    asked = {type(trial.term) for trial in climb(table, (GravityError, EncoderEccentricity, StribeckFriction)).refused}
+    asked = {
+        type(trial.term)
+        for trial in forward_selection(table, (GravityError, EncoderEccentricity, StribeckFriction)).refused
+    }
     assert GravityError not in asked
     assert StribeckFriction in asked
 
@@ -226,7 +229,7 @@ def without_rigid(recordings: tuple[JointRecording, ...], moves: float = 1.0, ab
 
 def test_the_load_of_the_textbooks_own_link_shows_load_dependent_friction() -> None:
     table = without_rigid(trajectories("link", Hidden(load=0.02), rate=50.0))
-    ladder = climb(table, (LoadDependentFriction, LoadCurve))
+    ladder = forward_selection(table, (LoadDependentFriction, LoadCurve))
     (step,) = ladder.steps
     assert isinstance(step.term, LoadDependentFriction)
     assert step.term.weights[0] == pytest.approx(0.02 / PER_TORQUE, rel=0.1)
@@ -235,10 +238,10 @@ def test_the_load_of_the_textbooks_own_link_shows_load_dependent_friction() -> N
 
 
 def test_a_joint_that_moves_near_one_angle_does_not_give_its_load() -> None:
-    ladder = climb(without_rigid(trajectories("near", rate=50.0), 0.02, 0.8), (LoadDependentFriction,))
+    ladder = forward_selection(without_rigid(trajectories("near", rate=50.0), 0.02, 0.8), (LoadDependentFriction,))
     assert [type(term) for term in ladder.unsearched] == [LoadDependentFriction]
     assert ladder.steps == ()
-    said = report(Judged(ladder, ladder.top.table, None), None, [])
+    said = report(Validation(ladder, ladder.top.table, None), None, [])
     assert "not searched, needs T_rigid: load dependent friction" in said["sentence"]
 
 

@@ -13,14 +13,14 @@ from swgsim.common.seeds import generator
 from swgsim.joint.effects.friction import AsymmetricFriction, QuadraticFriction, StribeckFriction
 from swgsim.joint.effects.load import LoadCurve
 from swgsim.joint.effects.ripple import Ripple
-from swgsim.joint.judged import Judged
-from swgsim.joint.ladder import Ladder, Trial, climb
+from swgsim.joint.ladder import Ladder, Trial, forward_selection
 from swgsim.joint.pages import page
 from swgsim.joint.recording import JointRecording
 from swgsim.joint.regression import Fit, Table, fit
 from swgsim.joint.report import report
 from swgsim.joint.term import Term
 from swgsim.joint.textbook import textbook
+from swgsim.joint.validation import Validation
 from swgsim.joint.verdict import LEAST_EXPLAINED, percent
 
 EFFECTS = (StribeckFriction(), AsymmetricFriction(), QuadraticFriction(), LoadCurve(), Ripple(order=101.0))
@@ -36,11 +36,11 @@ def disturbed(found: Fit, by: float, seed: int) -> Fit:
     return Fit(found.table, tuple(terms), found.X)
 
 
-def fabricated(sizes: list[float], seed: int) -> Judged:
+def fabricated(sizes: list[float], seed: int) -> Validation:
     """Accepted effects, of models that are off by some relative size each."""
     fits = [disturbed(found, by, seed) for found, by in zip(FITTED, sizes, strict=False)]
     steps = tuple(Trial(each.terms[-1], each, 0.1, 0.1, 1e-3) for each in fits[1:])
-    return Judged(Ladder(fits[0], steps, ()), TABLES[1], None)
+    return Validation(Ladder(fits[0], steps, ()), TABLES[1], None)
 
 
 @settings(max_examples=25, deadline=None)
@@ -49,8 +49,8 @@ def fabricated(sizes: list[float], seed: int) -> Judged:
     seed=st.integers(0, 10**6),
 )
 def test_no_sentence_contradicts_its_numbers(sizes: list[float], seed: int) -> None:
-    judged = fabricated(sizes, seed)
-    said = report(judged, None, [])
+    validation = fabricated(sizes, seed)
+    said = report(validation, None, [])
     text, kept = said["sentence"], [rung for rung in said["rungs"] if rung["kept"]]
     before, after = (said["error"][when]["heldout"] for when in ("before", "after"))
     change = re.search(r"(falls|rises) from (\S+) to (\S+) A", text)
@@ -70,7 +70,7 @@ def test_no_sentence_contradicts_its_numbers(sizes: list[float], seed: int) -> N
         if lacks:
             assert (name in lacks) != rung["contradicted"]
             assert not rung["contradicted"] or "raise" in text
-    variance = float(np.var(judged.heldout.signal))
+    variance = float(np.var(validation.heldout.signal))
     assert np.isclose(said["textbook_explains"], 1 - before**2 / variance)
     assert said["explains"].startswith(percent(said["textbook_explains"]))
     html = page(
@@ -101,7 +101,7 @@ def noise_alone(number: int) -> JointRecording:
 
 
 def answer(recordings: tuple[JointRecording, ...], of: str, kinds: tuple[type[Term], ...] = ()) -> dict:
-    found = Judged(climb(Table(recordings[:-1], of), kinds), Table(recordings[-1:], of), None)
+    found = Validation(forward_selection(Table(recordings[:-1], of), kinds), Table(recordings[-1:], of), None)
     return report(found, None, [])
 
 
@@ -152,7 +152,7 @@ def test_a_signal_of_noise_alone_is_no_failure_of_the_textbook() -> None:
 
 def test_errors_within_and_beyond_the_fitted_speeds_make_up_the_whole() -> None:
     slow, fast = trajectory(0, "slow", rate=20.0, seconds=50.0), trajectory(1, "fast", rate=20.0)
-    found = Judged(climb(Table((slow,), "current"), ()), Table((fast,), "current"), None)
+    found = Validation(forward_selection(Table((slow,), "current"), ()), Table((fast,), "current"), None)
     speeds = report(found, None, [])["speeds"]
     share = speeds["share_beyond"]
     assert 0 < share < 1

@@ -97,12 +97,12 @@ def test_same_seed_same_numbers(kind):
 
 
 def test_the_log_of_a_healthy_joint_is_the_textbook_and_noise():
-    judged = 0
+    validation = 0
     for seed in range(20):
         moving, _, truth = joint(seed)
         if truth.signal != "current" or truth.rigid_factor is None:
             continue
-        judged += 1
+        validation += 1
         for each in moving:
             omega = each.signals["omega"]
             friction = truth.plant.coulomb * np.sign(omega) + truth.plant.viscous * omega
@@ -110,4 +110,4 @@ def test_the_log_of_a_healthy_joint_is_the_textbook_and_noise():
             left = each.signals["current"] - torque / truth.plant.constant
             fast = np.abs(omega) > 0.3 * np.abs(omega).max()
             assert np.std(left[fast]) == pytest.approx(truth.current_noise, rel=0.1)
-    assert judged >= 3
+    assert validation >= 3

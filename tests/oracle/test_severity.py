@@ -9,9 +9,9 @@ from scipy.stats import norm
 from swgsim.bench.scatter import Bench
 from swgsim.oracle.cells import UNIFORM, Cells, Partition
 from swgsim.oracle.model import ORDERS
-from swgsim.oracle.moved import moved_with_recording
 from swgsim.oracle.oracle import FEATURES
 from swgsim.oracle.point import Places, PointModel
+from swgsim.oracle.recording_errors import with_recording_errors
 from swgsim.oracle.severity import Severities, positions
 from swgsim.storage.labelled_signals import SENSORS
 
@@ -85,7 +85,7 @@ def test_a_change_follows_load_and_trigger() -> None:
     cosine, sine = ORDERS + 1 + 3, means + ORDERS + 2
     shift = np.zeros((1, FEATURES))
     shift[0, cosine], shift[0, sine], shift[0, ORDERS + 1] = 2 * np.cos(0.5), 2 * np.sin(0.5), 7.0
-    cells = moved_with_recording(Cells(shift, np.zeros((1, 1, FEATURES))), Bench(load=0.01, index_angle=1e-4))
+    cells = with_recording_errors(Cells(shift, np.zeros((1, 1, FEATURES))), Bench(load=0.01, index_angle=1e-4))
     assert cells.spread.shape == (1, 3, FEATURES)
     np.testing.assert_allclose(cells.spread[0, 1], 0.01 * shift[0])
     turned = np.zeros(FEATURES)

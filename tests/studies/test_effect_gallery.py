@@ -15,7 +15,14 @@ from swgsim.effects.torque_nonlinearity import TorqueNonlinearity
 from swgsim.effects.worn_wave_generator import WornWaveGenerator
 from swgsim.studies import effect_gallery, effect_signature
 from swgsim.studies.effect_gallery import picture, row, title
-from swgsim.studies.effect_signature import ELSEWHERE, LEAST, USUAL, Signature, pattern, signatures
+from swgsim.studies.effect_signature import (
+    OTHER_SETTINGS,
+    ROUNDING_SHARE,
+    USUAL,
+    Signature,
+    pattern,
+    signatures,
+)
 
 KINDS = (LostMotion, StribeckFriction, TorqueNonlinearity, FlangeZero, GaugeGain, WornWaveGenerator)
 
@@ -27,13 +34,13 @@ def found():
 
 @pytest.mark.end_to_end
 def test_every_effect_changes_something_where_it_is_shown():
-    assert all(signature.top[0] > LEAST for signature in signatures(SEARCHED, GEAR, SECTORS))
+    assert all(signature.top[0] > ROUNDING_SHARE for signature in signatures(SEARCHED, GEAR, SECTORS))
 
 
-@pytest.mark.parametrize("kind", ELSEWHERE)
+@pytest.mark.parametrize("kind", OTHER_SETTINGS)
 def test_an_effect_is_shown_elsewhere_only_where_the_usual_setting_hides_it(kind, monkeypatch):
-    monkeypatch.setattr(effect_signature, "ELSEWHERE", {})
-    with pytest.raises(ValueError, match=rf"{kind.name()} changes nothing at 2000 rpm, 70 N m .* ELSEWHERE"):
+    monkeypatch.setattr(effect_signature, "OTHER_SETTINGS", {})
+    with pytest.raises(ValueError, match=rf"{kind.name()} changes nothing at 2000 rpm, 70 N m .* OTHER_SETTINGS"):
         signatures([kind], GEAR, SECTORS)
 
 

@@ -135,7 +135,7 @@ def test_map_separates_gain_from_harm():
     assert studies.verdicts(table.assign(low=np.nan, high=np.nan)) == ["too few gears"] * 2
     assert "pays in 1 of 2 cases" in studies.map_sentence(table)
     assert "was not run in these scenarios" in studies.map_sentence(table)
-    assert is_png(figures.pays(table))
+    assert is_png(figures.benefit(table))
 
 
 def test_map_names_the_best_method_without_adaptation():

@@ -172,6 +172,6 @@ def test_faults_lie_where_their_posterior_says(suspected, which) -> None:
 def test_false_alarms_are_as_frequent_as_said(suspected) -> None:
     chosen = np.ones(2 * len(POINTS), bool)
     rng = np.random.default_rng(2)
-    chance = suspected.seen(chosen, suspected.fitted.whole.drawn(rng, 400)).chance(rng)
+    chance = suspected.posterior_of(chosen, suspected.fitted.whole.drawn(rng, 400)).chance(rng)
     assert kstest(chance, "uniform").pvalue > 1e-3
     assert (chance <= 0.05).sum() < binom.ppf(0.999, 400, 0.05)

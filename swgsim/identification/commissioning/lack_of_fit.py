@@ -11,7 +11,7 @@ from swgsim.storage.labelled_signals import SENSORS
 # Share of a channel's ripple that the model of a healthy gear may leave unexplained. With a larger share, the ripple
 # does not belong to this gear if the mean square of one of its lines is also above MISFIT. If none is, the ripple is
 # hardly more than noise, and a large share of it says nothing.
-UNEXPLAINED = 0.1
+UNEXPLAINED_SHARE = 0.1
 # False discovery rate of lines with lack of fit.
 FALSE_DISCOVERIES = 0.05
 
@@ -62,7 +62,7 @@ def unexplained(measured: Measured, missed: Float[np.ndarray, "recording feature
 
 
 def foreign_ripple(
-    measured: Measured, missed: Float[np.ndarray, "recording feature"], most: float = UNEXPLAINED
+    measured: Measured, missed: Float[np.ndarray, "recording feature"], most: float = UNEXPLAINED_SHARE
 ) -> Bool[np.ndarray, " feature"]:
     """Ripple of speed and torques that is not the model's, as where the torque is that of the brake: features of it.
 
@@ -76,11 +76,11 @@ def foreign_ripple(
 def require_own(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> None:
     """Refuse a healthy gear if more than UNEXPLAINED of a channel's ripple is lack of fit."""
     shares = unexplained(measured, missed)
-    poor = sorted(((share, name) for name, share in shares.items() if share > UNEXPLAINED), reverse=True)
+    poor = sorted(((share, name) for name, share in shares.items() if share > UNEXPLAINED_SHARE), reverse=True)
     if poor:
         differ = ", ".join(f"{name} ({100 * share:.0f} %)" for share, name in poor)
         raise ValueError(
             f"the model cannot be commissioned on these recordings: it leaves {differ} of the ripple unexplained, at "
-            f"most {100 * UNEXPLAINED:.0f} % may be. Correct the gear file (load inertia J_out, "
+            f"most {100 * UNEXPLAINED_SHARE:.0f} % may be. Correct the gear file (load inertia J_out, "
             "speed control), the zero of the angle or a channel of another gear, or leave that channel out"
         )

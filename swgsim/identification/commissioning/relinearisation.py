@@ -14,7 +14,7 @@ from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import fit
 
 # So often at most, until the log-likelihood stays within so much.
-ROUNDS, AT_REST = 6, 1.0
+MOST_ROUNDS, AT_REST = 6, 1.0
 
 
 def about_its_lines(fitted: Fitted) -> Fitted:
@@ -25,7 +25,7 @@ def about_its_lines(fitted: Fitted) -> Fitted:
     if fitted.unit.learned is None:
         return fitted
     largest = largest_of(fitted)
-    for _ in range(ROUNDS):
+    for _ in range(MOST_ROUNDS):
         _, mean = posterior(fitted)
         lines, form = lines_found(fitted, mean)
         # The prior of the lines is still centred on the model without learned lines.

@@ -17,7 +17,7 @@ from swgsim.identification.fit.unit import Unit
 # far off leaves the gears that exist.
 ROUGH = 1e4
 # So often at most the variances are estimated again, until none changes by more than this factor.
-ROUNDS, SAME = 6, 1.5
+MOST_ROUNDS, SETTLED_FACTOR = 6, 1.5
 
 
 def roughly_fitted(
@@ -46,9 +46,9 @@ def roughly_fitted(
     known = unit.inflated(np.ones(len(lines)))
     inflation = np.where(lines, ROUGH * known, known)
     fitted = fit(measured, replace(unit, inflation=inflation), position=position, held=held)
-    for _ in range(ROUNDS):
+    for _ in range(MOST_ROUNDS):
         before, inflation = inflation, np.where(lines, _between_repeats(fitted, inflation, known), known)
-        if np.abs(np.log(inflation / before)).max() < np.log(SAME):
+        if np.abs(np.log(inflation / before)).max() < np.log(SETTLED_FACTOR):
             break
         position = {**(position or {}), **fitted.calibrated.position}
         fitted = fit(measured, replace(unit, inflation=inflation), position=position, held=held)

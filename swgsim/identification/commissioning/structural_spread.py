@@ -21,7 +21,7 @@ SPREADS = (0.01, 0.03, 0.1, 0.3, 0.5)
 # Spreads of the gauges that are tried, relative to those of a series.
 OF_GAUGES = (1.0, 3.0, 10.0)
 # With this one and the last of the gauges all waves are free, so that the linearised model serves all others.
-WIDEST = 0.5
+WIDEST_SPREAD = 0.5
 
 
 def with_probable_spreads(
@@ -39,7 +39,7 @@ def with_probable_spreads(
     held : collection of str
         Parameters that stay there.
     """
-    widest = replace(unit, structure=WIDEST, of_gauges=OF_GAUGES[-1])
+    widest = replace(unit, structure=WIDEST_SPREAD, of_gauges=OF_GAUGES[-1])
     ripple = measured.layout.of_gauges & (measured.layout.order > 0)
     wide = roughly_fitted(measured, widest, ripple, position, held)
     found = most_probable(wide)

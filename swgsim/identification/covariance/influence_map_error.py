@@ -11,7 +11,7 @@ from jaxtyping import Float
 
 from swgsim.flexspline.gauges import GaugeSet
 from swgsim.identification.data.features import ORDERS, Layout, basis
-from swgsim.identification.data.model import POINTS, Situation
+from swgsim.identification.data.model import SAMPLES_PER_TURN, Situation
 from swgsim.identification.data.unit_lines import LAWS, Lines, laws
 from swgsim.storage.labelled_signals import SENSORS
 
@@ -72,7 +72,7 @@ def _followed(
     situation: Situation, torque: Float[np.ndarray, " one"], layout: Layout
 ) -> Float[np.ndarray, "channel law one one"]:
     """What becomes of every line of a channel by each law: of a gauge by the torque over the turn, else by its mean."""
-    turn = basis(2 * np.pi * np.arange(POINTS) / POINTS, ORDERS)
+    turn = basis(2 * np.pi * np.arange(SAMPLES_PER_TURN) / SAMPLES_PER_TURN, ORDERS)
     mean = np.array(situation.point.T_out, dtype=float)
     over_turn = laws(mean + turn[:, 1:] @ torque[1:], situation.point.n_in_rpm)
     by_ripple = (turn / (turn**2).sum(axis=0)).T @ (over_turn[:, :, None] * turn)  # angles are passed evenly

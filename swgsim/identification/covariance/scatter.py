@@ -9,7 +9,7 @@ from jaxtyping import Float
 from swgsim.effects import ParameterScatter
 from swgsim.effects.frozen import FULL_LOAD
 from swgsim.effects.kinematic_error_order import KinematicErrorOrder
-from swgsim.gear.gear import HIGHEST
+from swgsim.gear.gear import CATALOGUE_LIMITS
 from swgsim.identification.data.beat import BEATING, drifting
 from swgsim.identification.data.features import Layout
 from swgsim.identification.data.measured import Measured
@@ -114,7 +114,7 @@ def directions(
     # Downwards where a step upwards leads beyond what a gear may bear.
     steps = {
         name: np.array([STEP if getattr(s.point, name) * (1 + STEP) <= most else -STEP for s in situations])
-        for name, most in HIGHEST.items()
+        for name, most in CATALOGUE_LIMITS.items()
     }
     t = model.gear.transmission
     viscous = model.plus(ParameterScatter(1 + STEP, 1.0))

@@ -21,7 +21,7 @@ FITTED = 16
 # Smallest number of samples per revolution that separates all these orders.
 DENSE = 2 * FITTED + 1
 # Revolutions from which on a drift is fitted along; over fewer, it looks like ripple of order 1.
-STEADY = 2.0
+TURNS_FOR_DRIFT = 2.0
 # The angle itself is what all other channels are plotted against.
 COMPARED = ("n_in", "T_in", "T_out", "s0", "s1", "s2", "s3", "s4")
 
@@ -126,7 +126,7 @@ def features_alike(recordings: Sequence[Recording], layout: Layout) -> Float[np.
 def fitted_columns(phi: Float[np.ndarray, "*batch time"]) -> Float[np.ndarray, "*batch time column"]:
     """The orders that are fitted and, over several revolutions, a straight line: a drift of the speed is no ripple."""
     orders, turned = basis(phi, FITTED), phi[..., -1:] - phi[..., :1]
-    if np.abs(turned).min() < 2 * np.pi * STEADY:
+    if np.abs(turned).min() < 2 * np.pi * TURNS_FOR_DRIFT:
         return orders
     return np.concatenate([orders, ((phi - phi.mean(axis=-1, keepdims=True)) / turned)[..., None]], axis=-1)
 

@@ -30,7 +30,7 @@ OF_SESSION = {
 }
 # Random walk of the zero of a gauge, in addition to its drift, as in a room with unsteady temperature [mV/V per square
 # root of an hour, an estimate]; and the share of its variance that the retained paths must explain.
-WANDER, KEPT = 0.001, 0.95
+WANDER, LEAST_EXPLAINED_VARIANCE = 0.001, 0.95
 # Zeros that lie further off may wander more too, up to this factor (an estimate): balancing moves them only once.
 MOST_WANDER = 4.0
 
@@ -214,6 +214,6 @@ def _walks(
     """Karhunen-Loeve modes of a random walk that is observed at some times, evaluated at other times."""
     values, vectors = np.linalg.eigh(np.minimum.outer(known_hours, known_hours))
     largest = np.argsort(-values)
-    beyond = np.cumsum(values[largest]) - values[largest] > KEPT * values.sum()
+    beyond = np.cumsum(values[largest]) - values[largest] > LEAST_EXPLAINED_VARIANCE * values.sum()
     kept = largest[~beyond & (values[largest] > 0)]
     return WANDER * (np.minimum(known_hours, hours) @ (vectors[:, kept] / np.sqrt(values[kept]))).T

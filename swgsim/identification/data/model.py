@@ -17,7 +17,7 @@ from swgsim.identification.data.features import Layout
 from swgsim.identification.data.unit_lines import Lines, OwnLines
 
 # Samples per revolution; the highest order that is fitted needs more than twice its number.
-POINTS = 64
+SAMPLES_PER_TURN = 64
 # Recordings whose features are found at once: as many as a cache of the processor holds.
 AT_ONCE = 64
 
@@ -80,7 +80,9 @@ def predict(
     runs = [m.run(s) for m in models for s in situations]
     _, row = distinct([_key(run) for run in runs])
     _, first = np.unique(row, return_index=True)
-    recordings = simulate_turns([runs[i] for i in first], revolutions=1, points=POINTS, sectors=sectors, search=search)
+    recordings = simulate_turns(
+        [runs[i] for i in first], revolutions=1, points=SAMPLES_PER_TURN, sectors=sectors, search=search
+    )
     some = (recordings[i : i + AT_ONCE] for i in range(0, len(recordings), AT_ONCE))
     found = np.concatenate([layout.of(each) for each in some])
     return found[row].reshape(len(models), len(situations), len(layout))

@@ -23,7 +23,7 @@ RESOLVED, FINEST = 1e-4, 1e-6
 # Lines this close to an integer order may hold what leaks from it [lines of the spectrum].
 GUARD = 1.5
 # Smallest number of interharmonic lines of a recording from which noise is estimated.
-FEWEST = 8
+FEWEST_LINES = 8
 # Mean of the logarithm of a periodogram line over its expectation: minus Euler's constant.
 LOG_MEAN = -0.5772156649
 
@@ -99,10 +99,11 @@ def _between(
     frequency = np.fft.rfftfreq(left.shape[1], 1 / recording.rate)
     order = np.arange(len(frequency)) / revolutions
     between = (np.abs(order - np.round(order)) * revolutions > GUARD) & (order < FITTED)
-    if between.sum() < FEWEST:
+    if between.sum() < FEWEST_LINES:
         raise ValueError(
             f"recording {recording.name}: {revolutions:.1f} revolutions leave {between.sum()} lines between the "
-            f"integer orders, at least {FEWEST} are needed to see the noise: record 4 revolutions or more, better 12"
+            f"integer orders, at least {FEWEST_LINES} are needed to see the noise: record 4 revolutions or more, "
+            "better 12"
         )
     return frequency[between], power[:, between]
 

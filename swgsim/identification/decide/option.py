@@ -11,7 +11,7 @@ from scipy.special import logsumexp
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, beyond_nothing, quantities, size_of
 from swgsim.identification.covariance.low_rank_covariance import as_squares
-from swgsim.identification.decide.prior import BALANCED, FORM_ERRORS, SCALES, TIMES_BALANCED, log_prior
+from swgsim.identification.decide.prior import BALANCED, FORM_ERRORS, LOG_SIZE_RANGE, TIMES_BALANCED, log_prior
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import extended
 from swgsim.identification.fit.form_error import form_directions, parts
@@ -118,7 +118,7 @@ def option(start: Fitted, effects: Sequence[Effect], regularities: Sequence[Desc
     free = reduce(set_free, regularities, start.without_free)
     fitted = extended(free, effects).closed
     added = fitted.added
-    prior = log_prior(len(added), len(regularities), kinds) - len(regularities) * np.log(SCALES)
+    prior = log_prior(len(added), len(regularities), kinds) - len(regularities) * np.log(LOG_SIZE_RANGE)
     prior += sum(size_correction(fitted, number) for number in range(len(added)))
     return Option(replace(fitted), added, tuple(regularities), prior, *log_evidences(fitted))
 
@@ -141,7 +141,7 @@ def size_correction(fitted: Fitted, number: int) -> float:
     sd, position = fitted.parameters[name].sd, fitted.calibrated.position[name]
     size = max(abs(beyond_nothing(effect)), fitted.deviation[name]) / sd
     both_signs = q.low < q.nothing < q.high
-    return float(-np.log(SCALES * size * (1 + both_signs)) + (position**2 + np.log(2 * np.pi)) / 2)
+    return float(-np.log(LOG_SIZE_RANGE * size * (1 + both_signs)) + (position**2 + np.log(2 * np.pi)) / 2)
 
 
 def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"], float]:
@@ -195,4 +195,4 @@ def expected_gain(fitted: Fitted, change: Float[np.ndarray, " row"]) -> float:
     root = size / (norm * (1 + norm))  # (1 + size size')^-1/2 = 1 - root size'
     forms = white[:, 1:] - np.outer(root, size @ white[:, 1:])
     gains = _gains(forms, r - root * float(size @ r))
-    return along**2 / 2 - np.log(norm * SCALES) + float(logsumexp(gains) - np.log(len(gains)))
+    return along**2 / 2 - np.log(norm * LOG_SIZE_RANGE) + float(logsumexp(gains) - np.log(len(gains)))

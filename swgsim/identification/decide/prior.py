@@ -13,7 +13,7 @@ from swgsim.identification.data.features import ORDERS
 # each further one is five times less probable.
 CAUSES = (0.8, 0.16, 0.032, 0.008)
 # Probability that a cause is not in the library, which holds what the literature describes.
-UNKNOWN = 0.1
+OUTSIDE_LIBRARY = 0.1
 # Probability that an unknown cause shows in one more regularity. A regularity is one order, one pattern over the
 # channels and one law; a real cause shows in several, which have one of the three in common.
 ANOTHER_REGULARITY = 0.5
@@ -25,7 +25,7 @@ BALANCED, TIMES_BALANCED = 0.05, (2.0, 4.0, 8.0, 16.0)
 FORM_ERRORS = (0.01, 0.02, 0.05, 0.1, 0.2)
 # Sizes of effects and amplitudes of regularities are known to a factor only: their logarithm is uniform over so many
 # factors of e, a ratio of 3000.
-SCALES = 8.0
+LOG_SIZE_RANGE = 8.0
 
 
 def log_prior(effects: int, regularities: int, kinds: int) -> float:
@@ -48,8 +48,8 @@ def log_prior(effects: int, regularities: int, kinds: int) -> float:
     causes = effects + bool(regularities)
     if causes >= len(CAUSES):
         return -np.inf
-    known = effects * np.log((1 - UNKNOWN) / kinds) + np.log(np.arange(1, effects + 1)).sum()  # in any order
-    first = UNKNOWN * (1 - ANOTHER_REGULARITY) / ((ORDERS + 1) * len(PATTERNS) * len(LAWS))
+    known = effects * np.log((1 - OUTSIDE_LIBRARY) / kinds) + np.log(np.arange(1, effects + 1)).sum()  # in any order
+    first = OUTSIDE_LIBRARY * (1 - ANOTHER_REGULARITY) / ((ORDERS + 1) * len(PATTERNS) * len(LAWS))
     further = ANOTHER_REGULARITY / (ORDERS + len(PATTERNS) + len(LAWS))
     unknown = np.log(first) + (regularities - 1) * np.log(further) if regularities else 0.0
     return float(np.log(CAUSES[causes]) + known + unknown)

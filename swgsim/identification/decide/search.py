@@ -17,7 +17,7 @@ from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities
 from swgsim.identification.decide.formless import formless, ill_fitting
 from swgsim.identification.decide.option import Option, causes_of, expected_gain, option
-from swgsim.identification.decide.prior import CAUSES, SCALES, log_prior
+from swgsim.identification.decide.prior import CAUSES, LOG_SIZE_RANGE, log_prior
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import at_plausible_parameters
 from swgsim.identification.fit.form_error import all_show
@@ -30,7 +30,7 @@ from swgsim.identification.search.screening import Score, best_of_kind, rank
 # option, and fits in all.
 EFFECTS_LOOKED_AT, EFFECTS_TRIED, MOST_REGULARITIES, MOST_FITS = 15, 5, 3, 20
 # An option is fitted if its posterior, as the score test estimates it, is at most so far below the best one [nat].
-NEGLIGIBLE = 3.0
+LOG_POSTERIOR_MARGIN = 3.0
 STEPS = logging.getLogger(__name__)
 
 
@@ -121,7 +121,7 @@ class Search:
                     self._fit(start, (zoom(score, start),), base.regularities)
             if len(base.regularities) < MOST_REGULARITIES and causes + (not base.regularities) < len(CAUSES):
                 first, *others = describe(opened)
-                gain = (first.gain - first.freedom * np.log1p(first.gain / first.freedom)) / 2 - np.log(SCALES)
+                gain = (first.gain - first.freedom * np.log1p(first.gain / first.freedom)) / 2 - np.log(LOG_SIZE_RANGE)
                 if self._promises(base, evidence + gain, regularities=1):
                     named = replace(first, rivals=other_laws(first, others))
                     self._fit(opened, (), (*base.regularities, named))
@@ -132,7 +132,7 @@ class Search:
         then = log_prior(len(base.effects) + effects, len(base.regularities) + regularities, len(self.kinds))
         if ill_fitting(self._best):
             return bool(then > -np.inf)  # no estimate is worth much beside such a misfit
-        return bool(log_evidence + base.log_prior + then - now > self._best.log_posterior - NEGLIGIBLE)
+        return bool(log_evidence + base.log_prior + then - now > self._best.log_posterior - LOG_POSTERIOR_MARGIN)
 
     def _leading(self, start: Fitted) -> list[tuple[float, Score]]:
         """The best hypotheses of the leading effects that are not in the model, with the expected log evidence."""

@@ -24,9 +24,9 @@ from swgsim.identification.fit.unit import Unit
 IMPROBABLE, MISFIT = 5.0, 10.0
 # Largest number of turns; and the Kullback-Leibler divergence between two estimates of the errors of single recordings
 # at which the turns end [nat per recording]: an error of one third in one standard deviation (estimates).
-TURNS, SAME_SCATTER = 4, 0.1
+MOST_TURNS, SAME_SCATTER = 4, 0.1
 # Turns where nothing was repeated: what the model lacks passes for such errors then, and more turns go astray with it.
-UNREPEATED = 2
+MOST_TURNS_UNREPEATED = 2
 
 
 def fit(
@@ -37,7 +37,7 @@ def fit(
     position: Mapping[str, float] | None = None,
     allowed: Allowed | None = None,
     held: Collection[str] = (),
-    turns: int = TURNS,
+    turns: int = MOST_TURNS,
 ) -> Fitted:
     """Fit the parameters, and estimate the standard deviations of single recordings, in turns.
 
@@ -62,7 +62,7 @@ def fit(
     known = unit.scatter.carried if unit.scatter else Scatter.stated(measured.layout)
     fixed = _Fixed(measured, unit, start, parameters, known, allowed or Allowed.nothing(measured.values.size))
     estimated: Scatter | None = None
-    for _ in range(turns if fixed.has_repeats else min(turns, UNREPEATED)):
+    for _ in range(turns if fixed.has_repeats else min(turns, MOST_TURNS_UNREPEATED)):
         found, assumed = _turn(fixed, begin, estimated)
         by = found.errors.alone.divergence(found.scattering(assumed).errors.alone)
         if by < SAME_SCATTER * found.calibrated.lack_of_fit and found.calibrated.settled:

@@ -14,7 +14,7 @@ from swgsim.identification.data.model import Model, Situation, predict, predict_
 from swgsim.identification.fit.priors import Declared, at
 
 # Gauss-Newton: fall of the cost below which it rests, and at most so many steps, each of at most so many spreads.
-SETTLED, STEPS, LONGEST = 0.05, 24, 5.0
+SETTLED, MOST_STEPS, LONGEST_STEP = 0.05, 24, 5.0
 # The next steps are half as long where the cost fell by less than the first share of what was expected, as the model is
 # not linear, and twice as long where it fell by more than the second. What makes them shorter is damping, which bends
 # them along curved valleys.
@@ -130,7 +130,7 @@ def calibrate(
     predicted, J = linearised(model, parameters, situations, layout, sectors)
     r, cost = missed(predicted, here)
     length, settled = 1.0, False
-    for _ in range(STEPS):
+    for _ in range(MOST_STEPS):
         columns = errors.whiten(J[of_recording].reshape(-1, len(here)))
         curvature, slope = columns.T @ columns + np.eye(len(here)), columns.T @ r - here
         little = SETTLED * max(1.0, cost / len(r))
@@ -185,7 +185,7 @@ def _step(
     """
     full = _least(curvature, slope, room)
     size = float(np.abs(full).max())
-    longest = share * min(size, LONGEST)
+    longest = share * min(size, LONGEST_STEP)
     if size <= longest:
         return full
     stiffness, axes = np.linalg.eigh(curvature)

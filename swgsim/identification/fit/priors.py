@@ -17,7 +17,7 @@ from swgsim.identification.data.model import Model
 # Relative prior standard deviations of the bench: inertias, and speed control (each drive has its own); estimates.
 BENCH, CONTROL = 0.3, 1.0
 # Prior standard deviation of a share between 0 and 1.
-SHARE = 0.5
+SHARE_SD = 0.5
 # Relative prior standard deviation of stiffness and friction in a series; and of friction with commissioning, because
 # catalogues and greases differ by a factor of two; estimates.
 SERIES, ANY_FRICTION = 0.1, 0.5
@@ -35,7 +35,7 @@ COURSE, LEAST_MODE = 2.0, 0.005
 UNSEEN_SHARE = 20.0
 # Below this share of its nominal value, a stiffness, a friction or the stroke of the wave generator is that of no gear;
 # nor is a stiffness, a friction or what belongs to the bench beyond so many times it.
-LEAST, MOST = 0.05, 5.0
+LEAST_RATIO, MOST_RATIO = 0.05, 5.0
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ def _of_size(name: str, unit: str, nominal: float, spread: float) -> Declared:
             f"{name} of the gear is {nominal:g} {unit}, must be more than 0 for a loop, which looks for it within a "
             "share of that: give an estimate in the gear file"
         )
-    return _of_transmission(name, unit, spread * nominal, LEAST * nominal, MOST * nominal)
+    return _of_transmission(name, unit, spread * nominal, LEAST_RATIO * nominal, MOST_RATIO * nominal)
 
 
 def _of_gauge(name: str, sensor: int, unit: str, sd: float) -> Declared:
@@ -198,9 +198,9 @@ def of_unit(
         # Inertias, flange and speed control belong to the test bench, of which a gear file says little.
         "J_in": _of_size("J_in", "kg m^2", t.J_in, BENCH),
         "J_out": _of_size("J_out", "kg m^2", t.J_out, BENCH),
-        "rotor share": _of_transmission("rotor_share", "-", SHARE, 0.0, 1.0),
-        "load share": _of_transmission("load_share", "-", SHARE, 0.0, 1.0),
-        "error lever": _of_transmission("error_lever", "-", SHARE, 0.0, 1.0),
+        "rotor share": _of_transmission("rotor_share", "-", SHARE_SD, 0.0, 1.0),
+        "load share": _of_transmission("load_share", "-", SHARE_SD, 0.0, 1.0),
+        "error lever": _of_transmission("error_lever", "-", SHARE_SD, 0.0, 1.0),
         "control frequency": _of_size("control_frequency", "Hz", t.control_frequency, CONTROL),
         "control damping": _of_size("control_damping", "-", t.control_damping, CONTROL),
         "w0": _of_gear(
@@ -208,7 +208,7 @@ def of_unit(
             STRAINED * gear.wave_generator.w0,
             lambda each: each.wave_generator.w0,
             lambda each, to: replace(each, wave_generator=replace(each.wave_generator, w0=to)),
-            max(LEAST * gear.wave_generator.w0, W0_LIMITS[0]),
+            max(LEAST_RATIO * gear.wave_generator.w0, W0_LIMITS[0]),
             W0_LIMITS[1],
         ),
     }

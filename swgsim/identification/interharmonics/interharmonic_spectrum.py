@@ -22,15 +22,15 @@ from swgsim.storage.labelled_signals import SENSORS
 # any other direction must have.
 LEAST_SHARE = 1e-3
 # Samples per revolution at which patterns are computed; more than twice the orders that are fitted.
-SAMPLES = 48
+SAMPLES_PER_TURN = 48
 # Number of spectral lines on either side from which the noise next to a line is estimated.
-NEIGHBOURS = 6
+NOISE_LINES = 6
 # Weight of the common noise floor in the noise next to a line, as a number of degrees of freedom.
 ALL_TOGETHER = 20
 # Effects whose patterns are computed at once: as many as a cache of the processor holds.
 AT_ONCE = 16
 # Part of a direction that a line must hold to be one of its lines.
-HELD = 0.05
+LEAST_PROJECTION = 0.05
 
 # Of one line, or of many.
 Sums = float | Float[np.ndarray, "*line"]
@@ -96,7 +96,7 @@ class GaugeSpectrum:
         cls, recording: Recording, gauges: tuple[str, ...], noise: Sequence[Floor], N: int | None
     ) -> "GaugeSpectrum":
         """Of a recording whose gauges have these floors, of a gear of this ratio."""
-        step = max(1, int(recording.rate * 60 / recording.point.n_in_rpm / SAMPLES))
+        step = max(1, int(recording.rate * 60 / recording.point.n_in_rpm / SAMPLES_PER_TURN))
         length = len(recording.time) // step * step
         # Patterns are narrow-band: fewer samples hold them as well.
         scene = scene_of(recording, slice(0, length, step))
@@ -168,8 +168,8 @@ class GaugeSpectrum:
         U = np.einsum("edc,edn->ecn", turned, patterns)
         along = np.einsum("ecn,n->ec", U, self.left)
         square = (U**2).sum(axis=1)
-        holds = square.reshape(len(effects), -1, self.scale.shape[1]).sum(axis=1) > HELD
-        near = maximum_filter1d(holds.astype(np.uint8), 2 * NEIGHBOURS + 1, mode="constant") > 0
+        holds = square.reshape(len(effects), -1, self.scale.shape[1]).sum(axis=1) > LEAST_PROJECTION
+        near = maximum_filter1d(holds.astype(np.uint8), 2 * NOISE_LINES + 1, mode="constant") > 0
         neighbours = np.tile(near & self.clear, 2 * len(self.gauges))
         rest = ((self.left - np.einsum("ec,ecn->en", along, U)) ** 2 * neighbours).sum(axis=1)
         count = (neighbours * (1.0 - square - (self.taken**2).sum(axis=1))).sum(axis=1)

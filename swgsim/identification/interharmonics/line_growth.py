@@ -17,9 +17,9 @@ from swgsim.identification.interharmonics.interharmonic_spectrum import GaugeSpe
 
 # Standard deviation of the logarithm of an amplitude from day to day (an estimate). The mains may differ by 10 %
 # (EN 50160); where cables lie, and how a gear is mounted and preloaded, matters more.
-DAY = 0.2
+DAY_TO_DAY_SD = 0.2
 # From recording to recording where nothing was repeated: no less than from day to day.
-UNREPEATED = DAY
+UNREPEATED_SD = DAY_TO_DAY_SD
 # Standard normal deviates over which the days are integrated.
 DEVIATES = np.linspace(-6.0, 6.0, 241)
 
@@ -96,7 +96,7 @@ def _chance(effect: Effect, spectra: Sequence[GaugeSpectrum], healthy: Sequence[
     )
     shown, known = (float(sum(group[i].power.mean() for group in groups)) for i in (0, 1))
     # Two days differ, of each of which the amplitude has its own factor.
-    days = max(known, 0.0) * np.exp(2 * np.sqrt(2) * DAY * DEVIATES)
+    days = max(known, 0.0) * np.exp(2 * np.sqrt(2) * DAY_TO_DAY_SD * DEVIATES)
     weight = norm.pdf(DEVIATES)
     return float(t.sf((shown - days) / np.sqrt(variance), freedom) @ weight / weight.sum())
 
@@ -112,7 +112,7 @@ def _scatter(healthy: Sequence[_Powers]) -> tuple[float, float]:
         brought += (count - 1) * mean**2
         repeats += count - 1
     if not repeats:
-        return 2 * UNREPEATED, np.inf
+        return 2 * UNREPEATED_SD, np.inf
     # No line scatters more than noise of a narrow band, whose power is exponentially distributed. A healthy gear that
     # hardly shows the line says no more than that.
     return float(np.sqrt(min(max(squares - noise, 0.0) / brought, 1.0))) if brought else 0.0, float(repeats)

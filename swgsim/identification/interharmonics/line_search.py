@@ -22,7 +22,7 @@ from swgsim.recordings.recording import Recording
 from swgsim.storage.labelled_signals import SENSORS
 
 # Lines that are reported at most, with a name or without.
-MOST = 4
+MOST_LINES = 4
 # Shapes below this share of the largest one are rounding; above the other one they are seen as well as it.
 LEAST_SHAPE, WELL_SEEN = 1e-3, 0.5
 
@@ -109,7 +109,7 @@ def search(
     for effect in known if spectra else ():
         found = found.taking_out(nearby(effect, spectra))
     sought = list(kinds)
-    while len(found.named) + len(found.unnamed) < MOST:
+    while len(found.named) + len(found.unnamed) < MOST_LINES:
         likely = ranked(found.left, sought)
         best = next((line for line in likely[:1] if line.chance <= level and line.holds), None)
         bare = unnamed(found.left, level)

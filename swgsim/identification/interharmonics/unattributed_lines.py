@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from swgsim.effects.line_between import FixedFrequency, FractionalOrder, LineBetween
 from swgsim.identification.data.features import FITTED
-from swgsim.identification.interharmonics.interharmonic_spectrum import NEIGHBOURS, GaugeSpectrum, f_test
+from swgsim.identification.interharmonics.interharmonic_spectrum import NOISE_LINES, GaugeSpectrum, f_test
 from swgsim.identification.interharmonics.line_pattern import Part, line_parts
 
 KINDS = ("order", "frequency")
@@ -150,6 +150,6 @@ def _best(spectra: Sequence[GaugeSpectrum], kind: str, level: float) -> list[Unn
 
 def _neighbours(lines: Float[np.ndarray, " line"]) -> Float[np.ndarray, " line"]:
     """Sum over the lines to both sides of each, without those that may hold a part of it."""
-    window = np.ones(2 * NEIGHBOURS + 1)
-    window[NEIGHBOURS - SPILLED : NEIGHBOURS + SPILLED + 1] = 0
-    return np.convolve(np.pad(lines, NEIGHBOURS), window, "valid")
+    window = np.ones(2 * NOISE_LINES + 1)
+    window[NOISE_LINES - SPILLED : NOISE_LINES + SPILLED + 1] = 0
+    return np.convolve(np.pad(lines, NOISE_LINES), window, "valid")

@@ -26,7 +26,7 @@ from swgsim.recordings.recording import CHANNELS
 from swgsim.storage.labelled_signals import SENSORS
 
 BEFORE, AFTER, FLOOR, GREY = "#D55E00", "#0072B2", "#000000", "#bbbbbb"
-POINTS = 360
+CURVE_POINTS = 360
 # Bars of the picture of probabilities, at most.
 MOST_BARS = 6
 
@@ -131,7 +131,7 @@ def over_angle(answer: Answer, *, largest_only: bool = False) -> Figure:
     if largest_only:
         square = _white(before, after)[rows].mean(axis=0) ** 2
         shown = [max(shown, key=lambda i: float(_of_channel(square, i).sum()))]
-    psi = np.linspace(0, 2 * np.pi, POINTS)
+    psi = np.linspace(0, 2 * np.pi, CURVE_POINTS)
     noise = _of_mean(before, rows)
     picture = style.figure(5.6, 3.2) if largest_only else style.figure(11, 2.1 * len(shown))
     all_axes = np.atleast_1d(picture.subplots(len(shown), 1, sharex=True))

@@ -13,7 +13,7 @@ from swgsim.common.outcome import FOUND
 from swgsim.effects.library import named
 from swgsim.identification.report import engineering_units
 from swgsim.identification.report.effect_words import effect_text, plain_title
-from swgsim.identification.report.found import probability_text
+from swgsim.identification.report.found_effects import probability_text
 from swgsim.identification.report.next_experiment import HELPLESS, separation_text
 
 TEMPLATE = "identification/report/answer_page.html.jinja"

@@ -22,7 +22,7 @@ from swgsim.identification.calls import commission, identify, nominal_unit
 from swgsim.identification.fit.unit import Unit
 from swgsim.identification.report.effect_words import effect_in_words, effect_text
 from swgsim.identification.report.engineering_units import value_text
-from swgsim.identification.report.given import given, say, source_of
+from swgsim.identification.report.loop_input import read_input, say, source_of
 from swgsim.recordings.recording import Recording
 
 
@@ -52,7 +52,7 @@ def _run(config: Mapping[str, Any]) -> Outcome:
     kinds = library(config)
     require_writable(Path(config["out"]))
     hidden = None if config["truth"] is None else _hidden(Path(config["truth"]), source)
-    recordings, gear, declared, healthy = given(config)
+    recordings, gear, declared, healthy = read_input(config)
     if healthy is None:
         unit = nominal_unit(gear, declared)
     elif isinstance(healthy, Unit):

@@ -20,7 +20,7 @@ from swgsim.identification.data.model import Model, Situation, predict
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.form_error import FORM_TOLERANCE, allowance
 from swgsim.identification.report.answer import Answer
-from swgsim.identification.report.found import in_words
+from swgsim.identification.report.found_effects import in_words
 
 # Operating points and conditions of a test bench: as it stands, with a warm gear, or after an hour.
 FEASIBLE = tuple(OperatingPoint(n, T) for n in (300.0, 1000.0, 2000.0, 3000.0, 4000.0) for T in (3.0, 20.0, 45.0, 70.0))

@@ -10,7 +10,7 @@ from swgsim.effects.text import entries, path_of
 from swgsim.identification.interharmonics.named_interharmonics import acts_on_signals, is_random
 from swgsim.identification.interharmonics.unattributed_lines import Unnamed
 from swgsim.identification.report.answer import Answer
-from swgsim.identification.report.found import in_words
+from swgsim.identification.report.found_effects import in_words
 from swgsim.identification.report.next_experiment import Experiment
 from swgsim.identification.search.regularities import Described
 from swgsim.identification.search.screening import Score

@@ -18,7 +18,7 @@ UNIT = "% of the root mean square of each channel, root mean square over the cha
 WHAT = ("fit", "repeats", "heldout")
 CONFIDENCE, RESAMPLES = 0.95, 2000
 # Smallest number of operating points for a bootstrap; with three or four its intervals are far too narrow.
-FEWEST = 5
+FEWEST_POINTS = 5
 TAILS = np.array([(1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2])
 
 
@@ -92,7 +92,7 @@ def _ratio(
     if not len(squares) or not squares[:, 1].any():
         return {"value": None, "ci95": None}
     value, interval = float(np.sqrt(np.divide(*squares.sum(axis=0)))), None
-    if len(squares) >= FEWEST and (after != before)[known].any():
+    if len(squares) >= FEWEST_POINTS and (after != before)[known].any():
         drawn = generator("bootstrap of an error").integers(len(squares), size=(RESAMPLES, len(squares)))
         interval = np.quantile(np.sqrt(np.divide(*squares[drawn].sum(axis=1).T)), TAILS).tolist()
     return {"value": value, "ci95": interval}

@@ -15,7 +15,7 @@ from swgsim.identification.fit.errors import noise_floor
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.unit import UNHEARD
 from swgsim.identification.report.answer import Answer
-from swgsim.identification.report.found import alternatives, found_effects, options, small
+from swgsim.identification.report.found_effects import alternatives, found_effects, options, small
 from swgsim.identification.report.next_experiment import Experiment
 from swgsim.identification.report.open_questions import absorbed, detectable, next_experiment, scored, unknown, untried
 from swgsim.identification.report.prediction_errors import error, named

@@ -6,7 +6,7 @@ from typing import Any
 from swgsim.common.outcome import FOUND, NOTHING
 from swgsim.identification.report.answer import Answer
 from swgsim.identification.report.effect_words import effect_in_words, effect_text
-from swgsim.identification.report.found import in_words, probability_text
+from swgsim.identification.report.found_effects import in_words, probability_text
 
 # Untestable effects, and other answers, that the sentence names at most; the report has all of them.
 MOST_NAMED = 6

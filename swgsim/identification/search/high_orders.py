@@ -12,7 +12,7 @@ from jaxtyping import Complex, Float
 
 from swgsim.chain.chain import distinct, simulate_turns
 from swgsim.common.singular import svd
-from swgsim.effects.regularity import HIGHEST, LAWS, PATTERNS
+from swgsim.effects.regularity import HIGHEST_ORDER, LAWS, PATTERNS
 from swgsim.identification.data.features import ORDERS, Layout, basis, layout_of, samples_per_turn
 from swgsim.identification.data.model import Model, Situation
 from swgsim.identification.data.noise import RESOLVED, floors
@@ -23,9 +23,9 @@ from swgsim.identification.search.regularities import Atom, Described, other_law
 from swgsim.recordings.recording import Recording
 
 # Share of a line that is known to which it may differ all the same, as by an index that is off by 1 degree at order 30.
-KNOWN = 0.5
+LINE_TOLERANCE = 0.5
 # Samples per revolution of the model.
-POINTS = 128
+SAMPLES_PER_TURN = 128
 # Laws below this share of the largest one are rounding, as where few operating points were recorded.
 RANK = 1e-6
 
@@ -117,7 +117,7 @@ def above(
 def residual_lines(recordings: Sequence[Recording], healthy: Sequence[Recording], before: Model, after: Model) -> Above:
     """The remainder of the lines; parameters as of :func:`above`."""
     every, count = (*recordings, *healthy), len(recordings)
-    channels, highest = layout_of(every).channels, min(HIGHEST, int(min(map(samples_per_turn, every)) / 2) - 1)
+    channels, highest = layout_of(every).channels, min(HIGHEST_ORDER, int(min(map(samples_per_turn, every)) / 2) - 1)
     known = _modelled(before, every, channels, highest)
     now = _modelled(after, recordings, channels, highest)
     # What was found may be as much sharper than the library has it as its form is open at the lower orders.
@@ -127,7 +127,7 @@ def residual_lines(recordings: Sequence[Recording], healthy: Sequence[Recording]
     left = (_lines(every, channels, highest) - modelled)[ORDERS + 1 :]
     followed = np.array([laws(np.array(each.point.T_out), each.point.n_in_rpm) for each in every])
     own = left[..., count:] @ (followed @ np.linalg.pinv(followed[count:])).T if healthy else np.zeros(left.shape)
-    doubt = KNOWN * (np.abs(modelled[ORDERS + 1 :]) + np.abs(own)) + FORM_TOLERANCE * changed
+    doubt = LINE_TOLERANCE * (np.abs(modelled[ORDERS + 1 :]) + np.abs(own)) + FORM_TOLERANCE * changed
     scale = 1 / np.sqrt(_variance(every, channels, highest)[ORDERS + 1 :] + doubt**2)
     # Healthy recordings do not contain the effect; they show the normal dependence of the gear on load and speed.
     sought = np.array([[law(each.point, each.conditions) for law in LAWS.values()] for each in every])
@@ -150,7 +150,7 @@ def _modelled(
 ) -> Complex[np.ndarray, "order channel recording"]:
     """The lines of a model for every recording."""
     runs, of_recording = distinct([model.run(Situation(each.point, each.conditions)) for each in recordings])
-    return _lines(simulate_turns(runs, revolutions=1, points=POINTS), channels, highest)[..., of_recording]
+    return _lines(simulate_turns(runs, revolutions=1, points=SAMPLES_PER_TURN), channels, highest)[..., of_recording]
 
 
 def _lines(

@@ -15,14 +15,14 @@ from swgsim.identification.search.hypotheses import Hypothesis, signatures
 from swgsim.identification.search.screening import Score, rank
 
 # Values on either side of the best one, and rounds; every round has a third of the range of the last one.
-TRIED, ROUNDS = 2, 4
+TRIED, GRID_ROUNDS = 2, 4
 # An estimate holds if the chain keeps so much of the gain that the score promised; else the typical size is tried, and
 # so many over the range, and then as many about the best of these.
-KEPT, SIZES = 0.5, 13
+LEAST_KEPT_GAIN, SIZES_TRIED = 0.5, 13
 # Places around one that are tried, in spacings of the screening, each with so many times the size; and moves at most.
-STEPS, FACTORS, MOVES = (-0.5, -0.25, 0.25, 0.5), (0.7, 1.0, 1.4), 6
+PLACE_STEPS, SIZE_FACTORS, MOVES = (-0.5, -0.25, 0.25, 0.5), (0.7, 1.0, 1.4), 6
 # A size at least this share of its range from nothing; a smaller one has no signature above rounding.
-LEAST = 1e-3
+LEAST_SIZE = 1e-3
 
 
 def zoom(score: Score, fitted: Fitted) -> Effect:
@@ -35,7 +35,7 @@ def zoom(score: Score, fitted: Fitted) -> Effect:
     searched = [name for name, q in declared.items() if q.role in (Role.ANGLE, Role.SHAPE) and q.open(another)]
     best = score
     reach = {name: spacing(declared[name]) for name in searched}
-    for _ in range(ROUNDS if searched else 1):
+    for _ in range(GRID_ROUNDS if searched else 1):
         offsets = product(*[np.linspace(-1, 1, 2 * TRIED + 1) * reach[name] for name in searched])
         around = [_moved(best, dict(zip(searched, offset, strict=True)), declared) for offset in offsets]
         best = rank(around, signatures(around, fitted.model, fitted.measured), fitted)[0]
@@ -54,16 +54,16 @@ def _at_its_size(score: Score, quantity: Quantity, fitted: Fitted) -> Effect:
 
     r = fitted.whole.whiten(fitted.from_start)
     estimated = effects([score.estimate])
-    if float(r @ r) - _left(fitted, estimated)[0] > KEPT * score.gain:
+    if float(r @ r) - _left(fitted, estimated)[0] > LEAST_KEPT_GAIN * score.gain:
         return estimated[0]
     spaced = np.geomspace if quantity.low > 0 else np.linspace
-    least = LEAST * (quantity.high - quantity.low)
-    grid = spaced(quantity.low, quantity.high, SIZES)
+    least = LEAST_SIZE * (quantity.high - quantity.low)
+    grid = spaced(quantity.low, quantity.high, SIZES_TRIED)
     coarse = [size for size in (quantity.typical, *grid.tolist()) if abs(size - quantity.nothing) > least]
     best = coarse[int(_left(fitted, effects(coarse)).argmin())]
     below = grid[grid < best - least].max(initial=quantity.low)
     above = grid[grid > best + least].min(initial=quantity.high)
-    fine = [size for size in np.linspace(below, above, SIZES).tolist() if abs(size - quantity.nothing) > least]
+    fine = [size for size in np.linspace(below, above, SIZES_TRIED).tolist() if abs(size - quantity.nothing) > least]
     tried = [*estimated, *effects([best, *fine])]
     return tried[int(_left(fitted, tried).argmin())]
 
@@ -79,11 +79,11 @@ def _at_its_place(effect: Effect, fitted: Fitted) -> Effect:
     q = declared[size]
     for _ in range(MOVES if places else 0):
         here = getattr(effect, size) - q.nothing
-        sizes = [float(np.clip(q.nothing + factor * here, q.low, q.high)) for factor in FACTORS]
+        sizes = [float(np.clip(q.nothing + factor * here, q.low, q.high)) for factor in SIZE_FACTORS]
         moved = [
             replace(effect, **{name: float((getattr(effect, name) + step * spacing(declared[name])) % (2 * np.pi))})
             for name in places
-            for step in STEPS
+            for step in PLACE_STEPS
         ]
         around = [effect, *(replace(each, **{size: to}) for each in (effect, *moved) for to in sizes)]
         before, effect = effect, around[int(_left(fitted, around).argmin())]
@@ -119,6 +119,6 @@ def _moved(score: Score, by: dict[str, float], declared: Mapping[str, Quantity])
         inner[name] = float(value % (2 * np.pi) if q.role is Role.ANGLE else np.clip(value, q.low, q.high))
     q = declared[hypothesis.size]
     found = score.estimate if np.isfinite(score.estimate) else q.typical
-    if abs(found - q.nothing) < LEAST * (q.high - q.low):
-        found = q.nothing + np.copysign(LEAST * (q.high - q.low), found - q.nothing or q.typical - q.nothing)
+    if abs(found - q.nothing) < LEAST_SIZE * (q.high - q.low):
+        found = q.nothing + np.copysign(LEAST_SIZE * (q.high - q.low), found - q.nothing or q.typical - q.nothing)
     return replace(hypothesis, inner=tuple(inner.items()), reference=float(found))

@@ -18,7 +18,7 @@ from swgsim.identification.covariance.low_rank_covariance import as_squares
 from swgsim.identification.data.features import ORDERS, Layout
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.form_error import LEAST_GAIN
-from swgsim.identification.search.screening import VISIBLE
+from swgsim.identification.search.screening import LEAST_VISIBLE_SHARE
 
 
 @dataclass(frozen=True)
@@ -123,7 +123,7 @@ def describe(fitted: Fitted) -> list[Described]:
         for atom in group:
             C = columns(atom, fitted)[rows]
             s2, V = np.linalg.eigh(C.T @ whole @ C)
-            kept = s2 > VISIBLE * max(float((C * (alone @ C)).sum(axis=0).max()), 1e-300)
+            kept = s2 > LEAST_VISIBLE_SHARE * max(float((C * (alone @ C)).sum(axis=0).max()), 1e-300)
             # Along each of these directions a weighed residual has a standard deviation of 1.
             weights = V[:, kept] / np.sqrt(s2[kept])
             found.append(_described(atom, weights, (C @ weights).T @ fitted.weighed[rows]))

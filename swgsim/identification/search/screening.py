@@ -20,9 +20,9 @@ from swgsim.identification.search.hypotheses import Hypothesis
 
 # Visible share of a signature below which it is rounding of the chain and of its differences. It is no measure of
 # detectability: the share is small wherever the noise is small relative to the prior of a nuisance parameter.
-VISIBLE = 1e-8
+LEAST_VISIBLE_SHARE = 1e-8
 # Directions of a signature below this part of its largest one are rounding.
-NEGLIGIBLE = 1e-6
+LEAST_DIRECTION = 1e-6
 # Largest number of draws of noise, draws at a time, and number of higher scores at which drawing ends, because the best
 # score is then not significant (Besag and Clifford, Biometrika 78 (1991) 301).
 DRAWS, AT_ONCE, ENOUGH = 1000, 100, 20
@@ -103,7 +103,7 @@ class Score:
         """Whether no size within the bounds would be seen."""
         quantity = self._quantity
         largest = max(quantity.high - quantity.nothing, quantity.nothing - quantity.low)
-        return self.visible < VISIBLE or self.detectable > largest
+        return self.visible < LEAST_VISIBLE_SHARE or self.detectable > largest
 
     @property
     def _quantity(self) -> Quantity:
@@ -191,7 +191,7 @@ def _projected(
     _, s, Vt = svd(white)
     size = float((alone**2).sum())
     visible = float((s**2).sum()) / size if size > 0 else 0.0
-    kept = s > NEGLIGIBLE * np.sqrt(size) if visible > VISIBLE else np.zeros(len(s), bool)
+    kept = s > LEAST_DIRECTION * np.sqrt(size) if visible > LEAST_VISIBLE_SHARE else np.zeros(len(s), bool)
     return Projected(signature @ (Vt[kept].T / s[kept]), s[kept], Vt[kept], visible)
 
 

@@ -72,6 +72,6 @@ class MaxwellSlip(OfFriction):
         return np.zeros(columns)
 
     @property
-    def sound(self) -> bool:
+    def has_physical_sign(self) -> bool:
         """Friction brakes; one of the elements may be absent."""
         return max(self.weights) > 0

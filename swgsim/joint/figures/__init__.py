@@ -12,8 +12,8 @@ from swgsim.joint.figures.rungs import rungs
 from swgsim.joint.figures.stretches import stretches
 from swgsim.joint.figures.unexplained import unexplained
 from swgsim.joint.figures.waves import waves
-from swgsim.joint.judged import Judged
 from swgsim.joint.remaining import RemainingLine
+from swgsim.joint.validation import Validation
 
 LADDER = (
     "Error after each effect",
@@ -49,13 +49,13 @@ UNEXPLAINED = (
 
 
 def pictures(
-    judged: Judged, days: Days | None, lines: Sequence[RemainingLine], report: Mapping[str, Any]
+    validation: Validation, days: Days | None, lines: Sequence[RemainingLine], report: Mapping[str, Any]
 ) -> dict[str, tuple[style.Picture, Figure]]:
     """All pictures by their names, without empty ones.
 
     Parameters
     ----------
-    judged : Judged
+    validation : Validation
     days : Days or None
         Friction by session, if known.
     lines : sequence of RemainingLine
@@ -65,10 +65,10 @@ def pictures(
     """
     drawn = {
         "ladder": (*LADDER, rungs(report)),
-        "stretches": (*STRETCHES, stretches(judged)),
-        "waves": (*WAVES, waves(judged)),
-        "friction": (*FRICTION, friction(judged, days) if days else None),
-        "unexplained": (*UNEXPLAINED, unexplained(judged, lines) if lines else None),
+        "stretches": (*STRETCHES, stretches(validation)),
+        "waves": (*WAVES, waves(validation)),
+        "friction": (*FRICTION, friction(validation, days) if days else None),
+        "unexplained": (*UNEXPLAINED, unexplained(validation, lines) if lines else None),
     }
     return {
         name: (style.Picture(title, caption, style.png(figure)), figure)

@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
 
-from swgsim.joint.judged import Judged
 from swgsim.joint.recording import SIGNALS, JointRecording
 from swgsim.joint.regression import Table
+from swgsim.joint.validation import Validation
 
 BEFORE, AFTER, FLOOR, GREY = "#D55E00", "#0072B2", "#000000", "#8c8c8c"
 # Width of all pictures [inch]: text is readable on a narrow screen, so panels are stacked.
@@ -25,14 +25,14 @@ SHORT = {"T_sensor": "torque", "current": "current", "T_motor": "motor torque"}
 # A motion is in one direction if it ends at least this share of its range away from its start.
 ONE_WAY = 0.9
 # Classes of speed in each direction of a joint that reverses, and least samples of a class.
-CLASSES, FEWEST = 5, 50
+CLASSES, FEWEST_SAMPLES = 5, 50
 # Letters that fit in a line of a legend.
 LINE = 62
 
 
-def unit(judged: Judged) -> str:
+def unit(validation: Validation) -> str:
     """Unit of the signal to explain."""
-    return SIGNALS[judged.table.of].unit
+    return SIGNALS[validation.table.of].unit
 
 
 def one_way(recording: JointRecording) -> bool:
@@ -41,9 +41,9 @@ def one_way(recording: JointRecording) -> bool:
     return bool(abs(q[-1] - q[0]) > ONE_WAY * np.ptp(q))
 
 
-def tables(judged: Judged) -> tuple[tuple[Table, bool], ...]:
+def tables(validation: Validation) -> tuple[tuple[Table, bool], ...]:
     """Fitted and held-out recordings, each with whether it was held out."""
-    return (judged.table, False), (judged.heldout, True)
+    return (validation.table, False), (validation.heldout, True)
 
 
 def pieces(recording: JointRecording) -> Iterator[Bool[np.ndarray, " time"]]:
@@ -57,22 +57,22 @@ def pieces(recording: JointRecording) -> Iterator[Bool[np.ndarray, " time"]]:
     for low, high in pairwise(edges[1:]):
         for side in (-1, 1):
             chosen = (side * speed > low) & (side * speed <= high)
-            if chosen.sum() >= FEWEST:
+            if chosen.sum() >= FEWEST_SAMPLES:
                 yield chosen
 
 
-def sessions(judged: Judged) -> dict[str, tuple[str, str]]:
+def sessions(validation: Validation) -> dict[str, tuple[str, str]]:
     """Colour and marker of every session."""
-    names = sorted({each.session for table, _ in tables(judged) for each in table.recordings})
+    names = sorted({each.session for table, _ in tables(validation) for each in table.recordings})
     return {
         name: (COLOURS[number % len(COLOURS)], MARKERS[number // len(COLOURS) % len(MARKERS)])
         for number, name in enumerate(names)
     }
 
 
-def session_key(picture: Figure, judged: Judged) -> None:
+def session_key(picture: Figure, validation: Validation) -> None:
     """A legend for sessions, and for fitted and held-out recordings."""
-    look = sessions(judged)
+    look = sessions(validation)
     names = short(list(look))
     entries = [dot(colour, name, True, marker) for name, (colour, marker) in zip(names, look.values(), strict=True)]
     entries += [dot(GREY, "fitted", False), dot(GREY, "held out", True)]

@@ -8,36 +8,36 @@ from matplotlib.figure import Figure
 from swgsim.common import style
 from swgsim.joint.effects.ripple import Ripple
 from swgsim.joint.figures.parts import AFTER, BEFORE, FLOOR, SHORT, WIDTH, one_way, unit
-from swgsim.joint.judged import Judged
 from swgsim.joint.recording import JointRecording
+from swgsim.joint.validation import Validation
 
-SHOWN = 3
+SHOWN_STRETCHES = 3
 # Waves of the strongest fast ripple in a close-up, least fast order, and share of a recording without a fast ripple.
-CLOSE_WAVES, FAST, SHARE = 12, 40, 0.1
+CLOSE_WAVES, FAST, CLOSE_UP_SHARE = 12, 40, 0.1
 # Largest share of a recording in a close-up.
-LARGEST = 0.4
+LARGEST_CLOSE_UP = 0.4
 # Share in a close-up around a reversal.
-TURNING = 0.25
+REVERSAL_SHARE = 0.25
 # A step of the angle by this share of its range is a jump.
 JUMP = 0.02
 # Colours, names and widths of the measured signal and of both models.
 LOOK = ((FLOOR, "measured", 0.7), (BEFORE, "textbook model", 1.4), (AFTER, "with the effects found", 1.2))
 
 
-def stretches(judged: Judged) -> Figure:
+def stretches(validation: Validation) -> Figure:
     """A slow, a middle and a fast held-out recording."""
-    recordings = judged.heldout.recordings
+    recordings = validation.heldout.recordings
     by_speed = sorted(range(len(recordings)), key=lambda number: float(np.abs(recordings[number].speed).mean()))
-    middle = np.linspace(0, len(by_speed) - 1, min(SHOWN, len(by_speed))).round().astype(int)
+    middle = np.linspace(0, len(by_speed) - 1, min(SHOWN_STRETCHES, len(by_speed))).round().astype(int)
     picture = style.figure(WIDTH, 4.2 * len(middle) + 0.4)
     panels = picture.subplots(2 * len(middle), 1).reshape(-1, 2)
-    measured = judged.heldout.signal
-    residuals = [fit.missed(judged.heldout) for fit in (judged.ladder.textbook, judged.ladder.top)]
+    measured = validation.heldout.signal
+    residuals = [fit.missed(validation.heldout) for fit in (validation.ladder.textbook, validation.ladder.top)]
     for (whole, close), number in zip(panels, [by_speed[i] for i in middle], strict=True):
-        own, each = judged.heldout.run == number, recordings[number]
+        own, each = validation.heldout.run == number, recordings[number]
         curves = [measured[own], *(measured[own] - missed[own] for missed in residuals)]
         x, name = _along(each)
-        chosen = _close(judged, each)
+        chosen = _close(validation, each)
         _draw(whole, x, curves)
         whole.axvspan(np.nanmin(x[chosen]), np.nanmax(x[chosen]), color="#dddddd", zorder=0)
         if one_way(each):
@@ -49,9 +49,12 @@ def stretches(judged: Judged) -> Figure:
             close.margins(x=0)
         speed = float(np.abs(each.speed).mean())
         style.label(
-            whole, name, f"{SHORT[judged.table.of]} [{unit(judged)}]", f"{each.name}, {speed:.2g} rad/s on average"
+            whole,
+            name,
+            f"{SHORT[validation.table.of]} [{unit(validation)}]",
+            f"{each.name}, {speed:.2g} rad/s on average",
         )
-        signal = f"{SHORT[judged.table.of]} [{unit(judged)}]"
+        signal = f"{SHORT[validation.table.of]} [{unit(validation)}]"
         style.label(close, name, signal, "close-up" if one_way(each) else "close-up: measured minus predicted")
     picture.legend(*panels[0, 0].get_legend_handles_labels(), ncols=3, loc="outside upper center", fontsize=9)
     return picture
@@ -67,18 +70,18 @@ def _along(recording: JointRecording) -> tuple[Float[np.ndarray, " time"], str]:
     return recording.time - recording.time[0], "time [s]"
 
 
-def _close(judged: Judged, recording: JointRecording) -> slice:
+def _close(validation: Validation, recording: JointRecording) -> slice:
     """A stretch in which single waves are visible, or around a reversal."""
     number = len(recording)
-    fast = [step.term for step in judged.ladder.steps if isinstance(step.term, Ripple) and step.term.order > FAST]
+    fast = [step.term for step in validation.ladder.steps if isinstance(step.term, Ripple) and step.term.order > FAST]
     if not one_way(recording):
-        length = int(TURNING * number)
+        length = int(REVERSAL_SHARE * number)
         turns = np.flatnonzero(np.diff(np.sign(recording.speed)))
         centre = int(turns[np.argmin(np.abs(turns - number / 2))]) if len(turns) else number // 2
     else:
         wanted = CLOSE_WAVES * 2 * np.pi / fast[0].order if fast else 0.0
         span = float(np.ptp(recording.signals["q"]))
-        length = int(number * min(wanted / span or SHARE, LARGEST))
+        length = int(number * min(wanted / span or CLOSE_UP_SHARE, LARGEST_CLOSE_UP))
         centre = number // 2
     length = min(number, max(length, 10))
     begin = min(max(centre - length // 2, 0), number - length)

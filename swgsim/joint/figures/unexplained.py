@@ -7,8 +7,8 @@ from matplotlib.figure import Figure
 
 from swgsim.common import style
 from swgsim.joint.figures.parts import WIDTH, tables, unit
-from swgsim.joint.judged import Judged
 from swgsim.joint.remaining import RemainingLine, significant_peaks
+from swgsim.joint.validation import Validation
 
 # Area of the largest dot.
 LARGEST_DOT = 220.0
@@ -16,9 +16,9 @@ LAWS = ("#D55E00", "#0072B2", "#009E73")
 STYLES = ("-", "--", "-.")
 
 
-def unexplained(judged: Judged, lines: Sequence[RemainingLine]) -> Figure | None:
+def unexplained(validation: Validation, lines: Sequence[RemainingLine]) -> Figure | None:
     """Frequency of the significant lines of every steady run over its speed, with their laws; None without lines."""
-    peaks = [peak for table, _ in tables(judged) for peak in significant_peaks(judged.ladder.top, table)]
+    peaks = [peak for table, _ in tables(validation) for peak in significant_peaks(validation.ladder.top, table)]
     if not peaks:
         return None
     speed, frequency, size = np.array([(peak.speed, peak.frequency, peak.amplitude) for peak in peaks]).T
@@ -33,7 +33,7 @@ def unexplained(judged: Judged, lines: Sequence[RemainingLine]) -> Figure | None
     axes.set_ylim(0, 1.05 * float(frequency.max()))
     axes.set_xlim(0, grid[-1])
     style.label(
-        axes, "mean speed of the joint [rad/s]", "frequency [Hz]", f"largest dot: {size.max():.2g} {unit(judged)}"
+        axes, "mean speed of the joint [rad/s]", "frequency [Hz]", f"largest dot: {size.max():.2g} {unit(validation)}"
     )
     picture.legend(*axes.get_legend_handles_labels(), ncols=1, loc="outside upper center", fontsize=9)
     return picture

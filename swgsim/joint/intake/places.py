@@ -12,7 +12,7 @@ from swgsim.tables.limits import inside, require_file_count
 from swgsim.tables.path_pattern import path_groups
 
 # Names that a message lists.
-LISTED = 10
+LISTED_NAMES = 10
 
 
 class RunFiles(NamedTuple):
@@ -63,7 +63,7 @@ def places(folder: Path, source: JointSource) -> Places:
     for name in (*kinds["moving"], *kinds["resting"]):
         inside(folder, name, "the source")
     if not kinds["moving"]:
-        found = f"no file that matches {', '.join(source.files)} among {', '.join(names[:LISTED]) or 'none'}"
+        found = f"no file that matches {', '.join(source.files)} among {', '.join(names[:LISTED_NAMES]) or 'none'}"
         raise FileDefect(str(folder), found, f"recordings of {source.robot}, by 'files' of the source")
     moving, resting = (_runs(kinds[kind], source) for kind in ("moving", "resting"))
     require_file_count(folder, len(moving) + len(resting))

@@ -12,11 +12,11 @@ from swgsim.joint.intake.source import JointSource
 from swgsim.joint.intake.thresholds import (
     FEWEST_FOR_MEDIAN,
     LEAST_MOVED,
-    NAMED,
     NAMED_HALF,
     ONE_WAY,
     SCALE_REFUSES,
     SCALE_WARNS,
+    UNIT_TOLERANCE,
     WINDOWS,
 )
 from swgsim.recordings.checks.defect import Defect
@@ -130,11 +130,11 @@ def mistake(ratio: float, gear_ratio: float | None, clock: bool) -> tuple[str, s
     for kind, factor, reason in () if clock else HALVES:
         if abs(ratio / factor - 1) < NAMED_HALF:
             return kind, reason
-    if gear_ratio is not None and abs(ratio * gear_ratio - 1) < NAMED:
+    if gear_ratio is not None and abs(ratio * gear_ratio - 1) < UNIT_TOLERANCE:
         return "velocity_of_motor", f"the velocity is that of the motor, {gear_ratio:g} times that of the output"
-    if gear_ratio is not None and abs(ratio / gear_ratio - 1) < NAMED:
+    if gear_ratio is not None and abs(ratio / gear_ratio - 1) < UNIT_TOLERANCE:
         return "angle_of_motor", f"the angle is that of the motor, {gear_ratio:g} times that of the output"
-    return next(((kind, reason) for kind, factor, reason in MISTAKES if abs(ratio / factor - 1) < NAMED), None)
+    return next(((kind, reason) for kind, factor, reason in MISTAKES if abs(ratio / factor - 1) < UNIT_TOLERANCE), None)
 
 
 def clock_findings(run: Run, rate: float | None) -> Iterator[Defect]:

@@ -22,7 +22,7 @@ KEYS = (
 )  # fmt: skip
 FROM_MOTION, FROM_ANGLE, MOTOR = "from_motion", "from_angle", "motor"
 # Window of a velocity from the angle [s], where the source has none: motions of robots are slower.
-SMOOTHED = 0.05
+SMOOTHING_WINDOW = 0.05
 
 
 def read_source(path: Path) -> JointSource:
@@ -101,11 +101,11 @@ def _from_angle(entry: Any) -> bool:
 def _smoothed(entry: Any) -> float:
     """Window of a velocity from the angle [s]."""
     if entry == FROM_ANGLE:
-        return SMOOTHED
+        return SMOOTHING_WINDOW
     require_names("omega", entry, ("from", "smoothed_s"))
     if entry["from"] != "q":
         raise ValueError(f"from of omega is {shown(entry['from'])}, must be q")
-    return number("smoothed_s", entry, SMOOTHED) or 0.0
+    return number("smoothed_s", entry, SMOOTHING_WINDOW) or 0.0
 
 
 def _posture(entry: Any, interleaved: int) -> tuple[MeasuredColumn, ...]:

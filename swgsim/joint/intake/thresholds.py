@@ -16,7 +16,7 @@ ONE_WAY = 0.5
 SCALE_WARNS = 0.1
 SCALE_REFUSES = 0.3
 # Relative distance within which a ratio is attributed to a wrong unit: 57.3 (degrees) and 60 differ by 5 %.
-NAMED = 0.04
+UNIT_TOLERANCE = 0.04
 # The same for 2 and 1/2, which no other mistake comes near.
 NAMED_HALF = 0.15
 # Runs of a session whose median rate is trusted.

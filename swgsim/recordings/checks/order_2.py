@@ -8,7 +8,7 @@ from swgsim.recordings.files.assembly import unwrapped
 from swgsim.recordings.recording import Recording
 from swgsim.storage.labelled_signals import SENSORS
 
-ORDERS = 4
+FITTED_ORDERS = 4
 
 
 def angle_of(recording: Recording) -> Float[np.ndarray, " time"]:
@@ -24,8 +24,8 @@ def order_2(recording: Recording) -> dict[str, Complex[np.ndarray, ""]]:
     gauges = [sensor for sensor in SENSORS[1:] if sensor in recording.channels]
     if not gauges or angle[-1] - angle[0] < 2 * np.pi * 0.99:
         return {}
-    k = np.arange(1, ORDERS + 1)[:, None]
+    k = np.arange(1, FITTED_ORDERS + 1)[:, None]
     waves = np.concatenate([np.ones((1, len(angle))), np.cos(k * angle), np.sin(k * angle)])
     signals = np.array([recording.channels[sensor] for sensor in gauges])
     weights = np.linalg.lstsq(waves.T, signals.T, rcond=None)[0]
-    return {sensor: np.asarray(w[2] - 1j * w[ORDERS + 2]) for sensor, w in zip(gauges, weights.T, strict=True)}
+    return {sensor: np.asarray(w[2] - 1j * w[FITTED_ORDERS + 2]) for sensor, w in zip(gauges, weights.T, strict=True)}

@@ -2,7 +2,7 @@
 
 from math import pi
 
-from swgsim.recordings.checks.thresholds import NAMED, RATIOS
+from swgsim.recordings.checks.thresholds import RATIOS, UNIT_TOLERANCE
 
 # Found speed / set speed, for an angle over time and for a recorded speed.
 ANGLE_MISTAKES = (
@@ -41,9 +41,9 @@ def mistake(ratio: float, mistakes: tuple[tuple[str, float, str], ...], otherwis
     ('angle_in_degrees', 'the angle is in degrees')
     """
     for kind, factor, reason in mistakes:
-        if abs(ratio / factor - 1) < NAMED:
+        if abs(ratio / factor - 1) < UNIT_TOLERANCE:
             return kind, reason
-    reasons = [reason for factor, reason in SET_MISTAKES if abs(ratio / factor - 1) < NAMED]
+    reasons = [reason for factor, reason in SET_MISTAKES if abs(ratio / factor - 1) < UNIT_TOLERANCE]
     low, high = RATIOS
     if low <= 1 / ratio <= high:
         reasons.append(f"it is the speed of the output of a gear of ratio {1 / ratio:.0f}")

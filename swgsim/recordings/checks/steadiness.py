@@ -10,7 +10,7 @@ from swgsim.recordings.checks.thresholds import SPEED_REFUSES, TORQUE_REFUSES
 from swgsim.recordings.files.assembly import unwrapped
 from swgsim.recordings.recording import Recording
 
-PARTS = 4
+STEADINESS_PARTS = 4
 REMEDY = "cut it into recordings of one operating point each, such as by 'parts' of a map"
 
 
@@ -20,9 +20,9 @@ def steadiness_defects(recording: Recording) -> Iterator[Defect]:
     A quarter has one revolution of the wave generator or more, so that the torques of its orders are averaged.
     """
     turns = recording.point.n_in_rpm / 60 * (recording.time[-1] - recording.time[0])
-    if turns < PARTS:
+    if turns < STEADINESS_PARTS:
         return
-    quarters = np.array_split(np.arange(len(recording.time)), PARTS)
+    quarters = np.array_split(np.arange(len(recording.time)), STEADINESS_PARTS)
     if "T_out" in recording.channels:
         loads = [float(recording.channels["T_out"][rows].mean()) for rows in quarters]
         share, least = TORQUE_REFUSES

@@ -15,7 +15,7 @@ JITTER_REFUSES = 0.1
 SPEED_WARNS = 0.02
 SPEED_REFUSES = 0.1
 # Tolerance for naming a wrong unit, relative: 57.3 (degrees) and 60 differ by 5 %.
-NAMED = 0.02
+UNIT_TOLERANCE = 0.02
 # Catalogue ratios of one stage, N and N + 1.
 RATIOS = (30, 321)
 # Rotation backwards [rad]: encoder jitter is below 1 degree; a drive that starts or swings turns back further.

@@ -6,12 +6,12 @@ import numpy as np
 
 from swgsim.recordings.checks.defect import Defect, Severity
 from swgsim.recordings.checks.thresholds import (
-    NAMED,
     POOREST_EFFICIENCY,
     RATIOS,
     RUNNING_TORQUE,
     TORQUE_REFUSES,
     TORQUE_WARNS,
+    UNIT_TOLERANCE,
 )
 from swgsim.recordings.recording import Recording
 
@@ -34,7 +34,7 @@ def _output(recording: Recording, mean: float, load: float) -> Iterator[Defect]:
     if off < max(TORQUE_WARNS[0] * load, TORQUE_WARNS[1]):
         return
     severity: Severity = "refuse" if off > max(TORQUE_REFUSES[0] * load, TORQUE_REFUSES[1]) else "warn"
-    units = [unit for factor, unit in UNITS if load and abs(abs(mean) / load / factor - 1) < 2.5 * NAMED]
+    units = [unit for factor, unit in UNITS if load and abs(abs(mean) / load / factor - 1) < 2.5 * UNIT_TOLERANCE]
     turned = bool(load) and mean < 0 and abs(abs(mean) / load - 1) < TORQUE_REFUSES[0]
     kind = "torque_unit" if units else "torque_sign" if turned else "torque_against_set_load"
     reason = f"it is in {units[0]}" if units else "its sign is wrong" if turned else "zero, scale or set load is wrong"

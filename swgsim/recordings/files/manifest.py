@@ -11,7 +11,7 @@ from swgsim.tables.limits import inside, require_file_count, require_readable
 
 NAME = "manifest.csv"
 # Bytes, more than the facts of 10 000 recordings have; it is read at once.
-LARGEST = 32 * 2**20
+MOST_BYTES = 32 * 2**20
 
 # Columns in the order in which they are written.
 COLUMNS = ("recording", "file", *(name for name in facts.KNOWN if name != "recording"))
@@ -28,8 +28,8 @@ def read(folder: Path) -> list[tuple[Path, dict[str, object]]]:
     """
     path = folder / NAME
     require_readable(path)
-    if path.stat().st_size > LARGEST:
-        raise FileDefect(NAME, f"{path.stat().st_size} bytes", f"at most {LARGEST}")
+    if path.stat().st_size > MOST_BYTES:
+        raise FileDefect(NAME, f"{path.stat().st_size} bytes", f"at most {MOST_BYTES}")
     rows = _rows(path)
     require_file_count(folder, len(rows) - 1)
     header = [cell.strip() for cell in rows[0]]

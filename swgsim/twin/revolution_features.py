@@ -15,7 +15,7 @@ from swgsim.storage.orders import order_lines
 
 
 @dataclass(frozen=True)
-class Seen(Layout):
+class RevolutionFeatures(Layout):
     """Order lines over time, logarithm of the efficiency and temperature.
 
     Recordings of a data set have no angle, so their lines are over time, unlike those of the loop.

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from swgsim.drafting.seen_column import SeenColumn
+from swgsim.drafting.file_column import FileColumn
 from swgsim.drafting.vocabulary import COMMON, MOTOR, OUTPUT, WORDS
 from swgsim.drafting.words import Meaning
 
@@ -11,10 +11,10 @@ OF_DRIVE = frozenset({"6064h", "606ch"})
 
 
 @dataclass(frozen=True, eq=False)
-class Named:
+class NamedColumn:
     """A column with what its name says."""
 
-    column: SeenColumn
+    column: FileColumn
     meaning: Meaning
 
     @property

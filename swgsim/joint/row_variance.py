@@ -14,7 +14,7 @@ from swgsim.joint.textbook import Friction, RigidBody
 MEDIAN_OF_SQUARE = 0.4549
 
 
-def trusted(textbook: Fit) -> Fit:
+def weighted_by_variance(textbook: Fit) -> Fit:
     """The textbook model, fitted by generalised least squares: rows count by the inverse of their variance.
 
     Two torques of the textbook lie in an interval, and no function of the recorded motion says where. Their variance is

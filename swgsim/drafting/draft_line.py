@@ -6,17 +6,17 @@ from typing import Any
 
 import numpy as np
 
-from swgsim.drafting.seen import Seen
-from swgsim.drafting.seen_column import SeenColumn
+from swgsim.drafting.file_column import FileColumn
+from swgsim.drafting.file_contents import FileContents
 
 
 @dataclass(frozen=True, eq=False)
-class Taken:
+class DraftLine:
     """One line of a draft.
 
     Attributes
     ----------
-    column : SeenColumn
+    column : FileColumn
     quantity : str
         Channel, signal or ``time``; empty for a column that is not taken.
     entry : mapping
@@ -31,7 +31,7 @@ class Taken:
         Whether the map reads it; else its line is a comment until the user has decided.
     """
 
-    column: SeenColumn
+    column: FileColumn
     quantity: str
     entry: Mapping[str, Any] = field(default_factory=dict)
     why: str = ""
@@ -45,14 +45,14 @@ def joined(*reasons: str) -> str:
     return "; ".join(reason for reason in reasons if reason)
 
 
-def place(column: SeenColumn) -> dict[str, Any]:
+def place(column: FileColumn) -> dict[str, Any]:
     """Where a map finds a column."""
     time = {"time": column.time} if column.time is not None else {}
     return {"column": column.column} | ({"file": column.file} if column.file else {}) | time
 
 
-def travels(run: Seen, taken: Sequence[Taken]) -> list[float]:
+def travels(run: FileContents, drafted: Sequence[DraftLine]) -> list[float]:
     """How far each angle moves in a run, in the unit of its column."""
-    angles = [(each.column.column, each.column.file) for each in taken if each.quantity in ("q", "phi_in")]
+    angles = [(each.column.column, each.column.file) for each in drafted if each.quantity in ("q", "phi_in")]
     moved = [each.values for each in run.columns if (each.column, each.file) in angles]
     return [float(np.nanmax(values) - np.nanmin(values)) for values in moved]

@@ -20,7 +20,7 @@ from swgsim.recordings.recording_set import RecordingSet
 from swgsim.tables.file_defect import read_for
 
 
-class Given(NamedTuple):
+class LoopInput(NamedTuple):
     """Recordings in question, nominal gear, declared effects, and the healthy gear if it is known.
 
     The healthy gear is known by recordings with the channels that those in question have too, or by its unit.
@@ -39,7 +39,7 @@ def source_of(config: Mapping[str, Any]) -> str:
     return str(config["recordings"])
 
 
-def given(config: Mapping[str, Any]) -> Given:
+def read_input(config: Mapping[str, Any]) -> LoopInput:
     """Read what the choices ``recordings``, ``commissioning``, ``gear`` and ``effects`` name.
 
     Raises
@@ -52,15 +52,15 @@ def given(config: Mapping[str, Any]) -> Given:
     recordings = _read(source, "recordings", config["mapping"])
     gear, declared = settings.gear(config["gear"]), settings.effects(config["effects"])
     if healthy_source is None:
-        return Given(recordings, gear, declared, None)
+        return LoopInput(recordings, gear, declared, None)
     if is_unit_file(Path(healthy_source)):
-        return Given(recordings, gear, declared, _kept(config))
+        return LoopInput(recordings, gear, declared, _kept(config))
     say(f"reading {healthy_source}")
     own_format = (Path(healthy_source) / MANIFEST).is_file()
     mapping = config["commissioning_mapping"] or (None if own_format else config["mapping"])
     healthy = _read(healthy_source, "commissioning", mapping)
     recordings = replace(recordings, defects=(*recordings.defects, *healthy.defects))
-    return Given(recordings, gear, declared, _comparable(recordings, healthy))
+    return LoopInput(recordings, gear, declared, _comparable(recordings, healthy))
 
 
 def _kept(config: Mapping[str, Any]) -> Unit:

@@ -14,7 +14,7 @@ from swgsim.oracle.oracle import EFFICIENCY, added_variance, session_columns
 
 
 @dataclass(frozen=True, eq=False)
-class Scattered:
+class HealthyScatter:
     """Healthy runs of a gear with the scatter of the bench.
 
     Attributes
@@ -31,7 +31,7 @@ class Scattered:
     healthy: Float[np.ndarray, "point draw feature"]
 
     @classmethod
-    def of(cls, plan: Plan, gear: Gear, draws: int) -> "Scattered":
+    def of(cls, plan: Plan, gear: Gear, draws: int) -> "HealthyScatter":
         """So many simulated runs at every operating point of a plan."""
         return cls(plan, gear, healthy_runs(plan, gear, draws))
 

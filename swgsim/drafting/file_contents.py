@@ -9,9 +9,9 @@ import numpy as np
 import pandas as pd
 
 from swgsim.drafting.binary_columns import MOST_SIGNALS, SHEET, binary_columns, sheet_lines
+from swgsim.drafting.file_column import MOST_ROWS, FileColumn, within
 from swgsim.drafting.first_recording import first_of_rows, first_table
 from swgsim.drafting.interleaved import interleaved_in
-from swgsim.drafting.seen_column import MOST_ROWS, SeenColumn, within
 from swgsim.drafting.text_layout import TextLayout, layout_of, text_layout
 from swgsim.drafting.units import split_unit, unit_in
 from swgsim.tables import binary
@@ -23,12 +23,12 @@ from swgsim.tables.measured_column import EACH
 
 
 @dataclass(frozen=True, eq=False)
-class Seen:
+class FileContents:
     """One file, or the files of one run that are joined.
 
     Attributes
     ----------
-    columns : tuple of SeenColumn
+    columns : tuple of FileColumn
         Of numbers or time stamps, all of the same length.
     others : mapping of str to str
         Name of what else the file holds, and what it is.
@@ -38,7 +38,7 @@ class Seen:
         How many signals follow one another in the only column.
     """
 
-    columns: tuple[SeenColumn, ...]
+    columns: tuple[FileColumn, ...]
     others: Mapping[str, str] = field(default_factory=dict)
     layout: Layout | None = None
     interleaved: int = 1
@@ -49,7 +49,7 @@ class Seen:
         return tuple((each.column, each.unit) for each in self.columns)
 
 
-def see(path: Path, name: str) -> Seen:
+def contents_of(path: Path, name: str) -> FileContents:
     """Look at a file, of several recordings at the first.
 
     Raises
@@ -57,20 +57,20 @@ def see(path: Path, name: str) -> Seen:
     FileDefect
         If it holds no table of numbers.
     """
-    seen = _see(path, name)
-    columns, by = first_of_rows(seen.columns)
+    contents = _contents_of(path, name)
+    columns, by = first_of_rows(contents.columns)
     return (
-        seen
+        contents
         if by is None
-        else replace(seen, columns=columns, layout=replace(seen.layout or Layout(), rows=((by, EACH),)))
+        else replace(contents, columns=columns, layout=replace(contents.layout or Layout(), rows=((by, EACH),)))
     )
 
 
-def _see(path: Path, name: str) -> Seen:
+def _contents_of(path: Path, name: str) -> FileContents:
     """All rows of a file."""
     if binary.is_binary(path):
         columns, others = binary_columns(path, name)
-        return Seen(columns, others)
+        return FileContents(columns, others)
     if is_spreadsheet(path):
         lines = sheet_lines(path, name)
         found = layout_of(lines, [SHEET], Layout().encoding, name)
@@ -79,7 +79,7 @@ def _see(path: Path, name: str) -> Seen:
     return _text(found, path, found.layout)
 
 
-def _text(found: TextLayout, source: Path | StringIO, layout: Layout) -> Seen:
+def _text(found: TextLayout, source: Path | StringIO, layout: Layout) -> FileContents:
     """The columns of a table of text."""
     table = _table(source, found)
     if end := first_table(table, found.names, found.layout):
@@ -87,10 +87,10 @@ def _text(found: TextLayout, source: Path | StringIO, layout: Layout) -> Seen:
     columns = tuple(_text_columns(table, found))
     numbers = tuple(each for each in columns if not each.is_empty)
     others = {str(each.column): "empty" for each in columns if each.is_empty}
-    return Seen(numbers, others, layout)
+    return FileContents(numbers, others, layout)
 
 
-def joined(seen: Mapping[str, Seen], name: str) -> Seen:
+def joined(contents: Mapping[str, FileContents], name: str) -> FileContents:
     """The files of one run, by their signal, as one; files with one column may have several signals in turn.
 
     Raises
@@ -98,23 +98,23 @@ def joined(seen: Mapping[str, Seen], name: str) -> Seen:
     FileDefect
         If their lengths differ otherwise.
     """
-    first = next(iter(seen.values()))
-    lengths = {signal: len(each.columns[0].values) for signal, each in seen.items()}
-    single = all(len(each.columns) == 1 for each in seen.values())
+    first = next(iter(contents.values()))
+    lengths = {signal: len(each.columns[0].values) for signal, each in contents.items()}
+    single = all(len(each.columns) == 1 for each in contents.values())
     turns = max(lengths.values()) // min(lengths.values())
     if single and turns == 1:
-        turns = min(interleaved_in(each.columns[0].values) for each in seen.values())
+        turns = min(interleaved_in(each.columns[0].values) for each in contents.values())
     rows = max(lengths.values()) // turns
     if any(length not in (rows, rows * turns) for length in lengths.values()) or (turns > 1 and not single):
         raise FileDefect(name, f"files of one run with different lengths {lengths}", "as many rows in each")
-    columns: list[SeenColumn] = []
-    for signal, one in seen.items():
+    columns: list[FileColumn] = []
+    for signal, one in contents.items():
         whole = [replace(each, file=signal) for each in one.columns]
         columns += _in_turn(whole[0], turns) if turns > 1 and lengths[signal] == rows * turns else whole
-    return Seen(tuple(columns), {}, first.layout, turns)
+    return FileContents(tuple(columns), {}, first.layout, turns)
 
 
-def _in_turn(column: SeenColumn, turns: int) -> Iterator[SeenColumn]:
+def _in_turn(column: FileColumn, turns: int) -> Iterator[FileColumn]:
     """The signals that follow one another in a column."""
     for number in range(turns):
         yield replace(
@@ -145,7 +145,7 @@ def _table(source: Path | StringIO, found: TextLayout) -> pd.DataFrame:
     return table[: int(np.flatnonzero(table.notna().any(axis=1)).max(initial=-1)) + 1]
 
 
-def _text_columns(table: pd.DataFrame, found: TextLayout) -> Iterator[SeenColumn]:
+def _text_columns(table: pd.DataFrame, found: TextLayout) -> Iterator[FileColumn]:
     """The columns of a table, and those of the lists in its cells."""
     for place in range(found.width):
         name = found.names[place] if place < len(found.names) else ""
@@ -160,10 +160,10 @@ def _text_columns(table: pd.DataFrame, found: TextLayout) -> Iterator[SeenColumn
         unit = unit or unit_in(found.units[place])
         signals = _of_lists(values) if column == name else []
         for number, signal in enumerate(signals, 1):
-            yield SeenColumn(f"{name}[{number}]", f"{bare}[{number}]", unit, signal, "", int(np.isnan(signal).sum()))
+            yield FileColumn(f"{name}[{number}]", f"{bare}[{number}]", unit, signal, "", int(np.isnan(signal).sum()))
         if not signals:
             readings = within(values.to_numpy())
-            yield SeenColumn(column, bare, unit, readings, "", int(pd.isna(readings).sum()))
+            yield FileColumn(column, bare, unit, readings, "", int(pd.isna(readings).sum()))
 
 
 def _of_lists(cells: pd.Series) -> list[np.ndarray]:

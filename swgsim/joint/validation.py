@@ -42,7 +42,7 @@ class Share(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Judged:
+class Validation:
     """A ladder with held-out recordings.
 
     Attributes

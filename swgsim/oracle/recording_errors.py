@@ -9,7 +9,7 @@ from swgsim.oracle.model import ORDERS
 from swgsim.storage.labelled_signals import SENSORS
 
 
-def moved_with_recording(cells: Cells, bench: Bench) -> Cells:
+def with_recording_errors(cells: Cells, bench: Bench) -> Cells:
     """Cells whose change varies between recordings, by two more directions: it follows the load, and the trigger.
 
     A large fault changes lines by hundreds of standard deviations of the noise, of which a load error of 0.5 % and a

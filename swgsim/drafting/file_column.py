@@ -9,13 +9,13 @@ from jaxtyping import Shaped
 # Rows that are looked at: minutes at the usual rates of joints, seconds at those of gauges.
 MOST_ROWS = 100_000
 # Beyond every unit, also nanoseconds since 1970; squares are still finite.
-LARGEST = 1e20
+LARGEST_NUMBER = 1e20
 # Values of a column that are shown.
-SHOWN = 3
+SHOWN_VALUES = 3
 
 
 @dataclass(frozen=True, eq=False)
-class SeenColumn:
+class FileColumn:
     """One column.
 
     Attributes
@@ -62,7 +62,7 @@ class SeenColumn:
     @property
     def first(self) -> str:
         """Its first values as text."""
-        return ", ".join(f"{each:.6g}" if not self.is_text else str(each) for each in self.values[:SHOWN])
+        return ", ".join(f"{each:.6g}" if not self.is_text else str(each) for each in self.values[:SHOWN_VALUES])
 
     @property
     def range(self) -> str:
@@ -76,4 +76,4 @@ def within(values: np.ndarray) -> np.ndarray:
     """Numbers that are too large for a measured value are lost readings."""
     if values.dtype.kind != "f":
         return values
-    return np.where(np.abs(values) < LARGEST, values, np.nan)
+    return np.where(np.abs(values) < LARGEST_NUMBER, values, np.nan)

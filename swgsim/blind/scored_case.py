@@ -26,7 +26,7 @@ RIGHT = "right"
 
 
 @dataclass(frozen=True)
-class Judged:
+class ScoredCase:
     """One case.
 
     Attributes
