@@ -35,6 +35,9 @@ EXAMPLES ?= yes  # EXAMPLES= builds the site without running them
 JOBS := $(shell echo $$(( ($(CORES) + 3) / 4 )))
 
 export MLFLOW_DISABLE_TELEMETRY := true
+# Many processes start, and without byte code each would compile all that it imports anew. For the same reason nothing is
+# compiled at installation: most of the packages' files are never imported.
+unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
 .PHONY: help install install-dev site data experiments report paper paper-choices transfer loop blind other-benches robots sim-to-real joints embedded test lint scale benchmark convergence docs ui clean $(TABLES)
@@ -44,11 +47,11 @@ help:  ## this list
 
 $(READY): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[data,rocket,choices]'
+	$(BIN)/pip install --quiet --disable-pip-version-check --no-compile --constraint constraints.txt --editable '.[data,rocket,choices]'
 	touch $@
 
 $(DEV): $(READY)
-	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[data,rocket,choices,formats,dask,slurm,postgresql,embedded,dev,site]'
+	$(BIN)/pip install --quiet --disable-pip-version-check --no-compile --constraint constraints.txt --editable '.[data,rocket,choices,formats,dask,slurm,postgresql,embedded,dev,site]'
 	touch $@
 
 install: $(READY)  ## virtual environment with what the commands need
@@ -86,8 +89,9 @@ transfer: data  ## beyond the paper: networks, transfer to gears never seen, rep
 
 loop: $(READY)  ## closing the loop once, from nothing: record, hide an effect, find it; loop/answer/page.html (about a minute)
 	@set -e; rm -rf loop; \
-	$(SWG) record out=loop/commissioning seed=1 sessions.name=commissioning; \
+	$(SWG) record out=loop/commissioning seed=1 sessions.name=commissioning & healthy=$$!; \
 	$(SWG) record out=loop/recordings seed=2 'hidden=[{eccentric_wave_generator: {r: 1.0e-5, theta: 1.0}}]'; \
+	wait $$healthy; \
 	$(SWG) close-loop recordings=loop/recordings commissioning=loop/commissioning \
 	    truth=loop/recordings.truth.json out=loop/answer
 	@echo "open loop/answer/page.html; 'make ui' shows the run"
@@ -117,7 +121,7 @@ embedded: $(DEV)  ## classifiers as C on microcontrollers, report/embedded.md; f
 	$(SWG) export grid=$(GEARS) target=onnx
 
 test: $(DEV)  ## all tests and doctests (FAST=1: without the slow ones)
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(CORES) --dist loadfile -q $(if $(FAST),-m "not slow") $(if $(FAST),,--doctest-modules swgsim learn tests)
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(CORES) --dist worksteal -q $(if $(FAST),-m "not slow") $(if $(FAST),,--doctest-modules swgsim learn tests)
 
 lint: $(DEV)  ## style and types
 	$(BIN)/ruff check .

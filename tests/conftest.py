@@ -1,5 +1,6 @@
 """Shapes and types of the annotations are checked at run time, in tests only."""
 
+import gc
 import os
 from collections.abc import Iterator
 
@@ -25,3 +26,8 @@ def _unchecked(request: pytest.FixtureRequest) -> Iterator[None]:
 # The fixtures of a module that is marked are made before the fixtures of its tests.
 _module = pytest.fixture(_unchecked, scope="module", autouse=True)
 _test = pytest.fixture(_unchecked, autouse=True)
+
+
+def pytest_collection_finish() -> None:
+    """What is loaded by now is no garbage and need not be searched for it."""
+    gc.freeze()

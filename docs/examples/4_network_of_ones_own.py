@@ -4,6 +4,7 @@ A network of one's own
 
 Every classifier with ``fit``, ``predict``, ``predict_proba`` and ``classes_`` can be judged: scikit-learn's contract.
 On the command line it is ``PYTHONPATH=FOLDER swg train classifier=my_module:MyNet``, with ``my_module.py`` in FOLDER.
+The networks of the workbench are in ``learn/methods/networks.py``.
 """
 
 import numpy as np

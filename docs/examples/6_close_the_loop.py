@@ -4,6 +4,7 @@ Close the loop on a folder of recordings
 
 A virtual test bench records a gear twice: healthy, and with a wave generator that sits 10 µm off centre. Nothing in the
 second folder says so. The loop learns the gear from the first folder and explains the residual of the second.
+``docs/architecture.md`` names the function of every step from the folder to the sentence.
 """
 
 from pathlib import Path

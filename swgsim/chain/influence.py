@@ -5,8 +5,8 @@ once over the angle; a recording evaluates both along phi_in(t) and T_out(t). Th
 
 - eccentric wave generator: :func:`boundary_conditions` adds u_ecc to the imposed displacement,
 - tip tooth crack: :func:`boundary_conditions` reduces F_tooth,
-- root tooth crack: :func:`_cracked` adds the change of the signals by bars with reduced k_bar. The truss stays as it
-  is. The bars are those of :attr:`~swgsim.flexspline.flexspline.FlexSpline.crossing_stiffness`.
+- root tooth crack: :func:`change_by_cracks` adds the change of the signals by bars with reduced k_bar. The truss stays
+  as it is. The bars are those of :attr:`~swgsim.flexspline.flexspline.FlexSpline.crossing_stiffness`.
 """
 
 from collections.abc import Sequence
@@ -202,7 +202,7 @@ def influence_map(
     cracks = [crack for effect in effects for crack in effect.cracks()]
     of_loads = response[:, :, [WAVE_GENERATOR, TEETH]]
     if cracks:
-        of_loads = of_loads + _cracked(flex, response, cracks)
+        of_loads = of_loads + change_by_cracks(flex, response, cracks)
     values = (amplitudes @ np.moveaxis(of_loads, 2, 0)).real
     values[0] += offsets(gauges)
     coefficients = np.fft.rfft(values, axis=1)[:, : MAP_ORDERS + 1] / ANGLES
@@ -224,7 +224,7 @@ def _load_amplitudes(
     return np.stack([np.fft.rfft(load, axis=1) for load in loads]) / sectors * order_weights(sectors)
 
 
-def _cracked(
+def change_by_cracks(
     flex: FlexSpline, response: Complex[np.ndarray, "order 5 load"], cracks: Sequence[Crack]
 ) -> Complex[np.ndarray, "order 5 2"]:
     """Change of the response to both loads by root tooth cracks (reduced k_bar, section II-B).

@@ -35,9 +35,8 @@ def test_a_name_that_is_a_number_is_a_name() -> None:
     assert {**names, "seed": 3, "mapping": None}.items() <= found.items()
 
 
-@pytest.mark.parametrize("name", ["2024_10_05", "1.50"])
-def test_a_name_that_looks_like_a_number_is_as_it_was_written(name: str) -> None:
-    assert f"recordings={name}: found nothing" in given(f"recordings={name}").stderr
+def test_a_name_that_looks_like_a_number_is_as_it_was_written() -> None:
+    assert "recordings=2024_10_05: found nothing" in given("recordings=2024_10_05").stderr
 
 
 @pytest.mark.parametrize("words", [(), ("--multirun", "seed=1,2")])

@@ -52,4 +52,7 @@ def test_all_names_with_a_dot_have_a_file() -> None:
 def test_the_tables_list_every_room(package: str) -> None:
     table = PAGE.split(f"| `{package}`, from top to bottom | |")[1].split("\n\n")[0]
     listed = re.findall(r"`(\w+)`", " ".join(row.split("|")[1] for row in table.splitlines() if row))
-    assert set(listed) == {each.parent.name for each in (ROOT / package).glob("*/__init__.py")}
+    sized = re.findall(
+        r"^\| `(\w+)` \| [\d,]+ \|", PAGE.split(f"| `{package}`, by size |")[1].split("\n\n")[0], re.MULTILINE
+    )
+    assert set(listed) == set(sized) == {each.parent.name for each in (ROOT / package).glob("*/__init__.py")}
