@@ -28,6 +28,7 @@ from swgsim.identification.report.identification import Identification
 from swgsim.identification.report.next_experiment import next_experiments
 from swgsim.identification.report.report_fields import report
 from swgsim.identification.search.shortlist import ALPHA
+from swgsim.recordings.checks.across import session_defects
 from swgsim.recordings.read import require_usable
 from swgsim.recordings.recording import Recording
 from swgsim.recordings.recording_set import RecordingSet
@@ -123,7 +124,7 @@ def identify(
         found = answer(given, unit, kinds, known=unit.interharmonics, interest=interest, seed=seed)
         STEPS.info("report: next experiments")
         experiments = next_experiments(found)
-        warnings = (*read.defects, *zero_defects(given, unit.zero))
+        warnings = (*read.defects, *zero_defects(given, unit.zero), *session_defects(given, unit.healthy))
         seconds = time.perf_counter() - start
         return Identification(found, report(found, kinds, experiments, warnings, seconds, source))
 

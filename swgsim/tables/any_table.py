@@ -8,6 +8,7 @@ from swgsim.tables.file_defect import FileDefect
 from swgsim.tables.formats.limited import LimitedReader
 from swgsim.tables.formats.spreadsheet import is_spreadsheet
 from swgsim.tables.layout import Layout
+from swgsim.tables.raw_numbers import read_raw
 from swgsim.tables.repeated_names import layout_of_table
 from swgsim.tables.spreadsheet_table import read_spreadsheet
 from swgsim.tables.text import Columns, read_text, start_of
@@ -39,6 +40,8 @@ def read_table(
     FileDefect
         If the file cannot be read, or a column is missing.
     """
+    if layout.raw:
+        return read_raw(path, name, wanted, layout), 1
     if binary.is_binary(path):
         return binary.read_columns(path, name, wanted, reader), 1
     if is_spreadsheet(path):

@@ -12,6 +12,8 @@ from swgsim.tables.plain_file import require_names
 
 # Names of separators that are hard to see in a YAML file.
 SEPARATORS = {"tab": "\t", "blanks": " "}
+# Types of bare numbers as NumPy names them, with < where the least byte comes first.
+RAW = tuple(f"{order}{kind}" for kind in ("i2", "i4", "u2", "f4", "f8") for order in ("<", ">"))
 # What recorders and spreadsheets write in place of a number that they did not get.
 LOST_READINGS = ("", "nan", "NaN", "NAN", "NA", "N/A", "#N/A", "null", "NULL", "None", "-", "--", "1.#QNAN", "-1.#IND")
 LONGEST_PREAMBLE = 10_000
@@ -51,6 +53,8 @@ class Layout:
         Texts that stand for a lost reading, besides :data:`LOST_READINGS`.
     lost_rows : int or float
         How many rows with a lost reading may be left out: a number, or a share of all rows below 1.
+    raw : str
+        Type of the numbers of a file that has nothing else, as NumPy names it; empty for other files.
     lines : range, optional
         Rows of a text file, from 0, that are read as if they were the file.
 
@@ -71,6 +75,7 @@ class Layout:
     rows: tuple[tuple[str | int, str], ...] = ()
     lost_values: tuple[str, ...] = ()
     lost_rows: float = 0
+    raw: str = ""
     lines: range | None = None
 
     def __post_init__(self) -> None:
@@ -82,6 +87,7 @@ class Layout:
             raise ValueError(f"thousands is {shown(self.thousands)}, must be a sign such as '.' and not the decimal")
         if len(self.comment) > 1:
             raise ValueError(f"comment is {shown(self.comment)}, must be one character, such as '#'")
+        require_known("raw", [self.raw] if self.raw else [], RAW)
         try:
             codecs.lookup(self.encoding)
         except LookupError:
@@ -110,6 +116,7 @@ KEYS = (
     "sheet",
     "rows",
     "lost",
+    "raw",
 )
 
 
@@ -122,7 +129,7 @@ def read_layout(config: Mapping[str, Any]) -> Layout:
         If an entry has no sense.
     """
     given = {key: config[key] for key in KEYS if key in config}
-    for key in ("separator", "decimal", "thousands", "encoding", "comment", "sheet"):
+    for key in ("separator", "decimal", "thousands", "encoding", "comment", "sheet", "raw"):
         if not isinstance(given.get(key, ""), str):
             raise ValueError(f"{key} is {shown(given[key])}, must be a text in quotes")
     header = given.pop("header", True)
@@ -131,6 +138,8 @@ def read_layout(config: Mapping[str, Any]) -> Layout:
     if not header:
         if given.get("header_row"):
             raise ValueError(f"header is false, and header_row is {given['header_row']}: keep one of them")
+        given["header_row"] = 0
+    if given.get("raw"):
         given["header_row"] = 0
     if "separator" in given:
         given["separator"] = SEPARATORS.get(given["separator"], given["separator"])

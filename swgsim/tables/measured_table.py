@@ -140,7 +140,7 @@ def first_lost(
         bad = _lost([values])
         if len(bad):
             name, index = files[column.file], int(bad[0])
-            text = not binary.is_binary(folder / name) and not is_spreadsheet(folder / name)
+            text = not (layout.raw or binary.is_binary(folder / name) or is_spreadsheet(folder / name))
             row = row_of(folder / name, layout, table.first_row, index) if text else index + table.first_row
             more = f" and {len(bad) - 1} more" if len(bad) > 1 else ""
             expected = f"a finite number; {remedy(bad, len(values))}"

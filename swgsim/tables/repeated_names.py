@@ -40,10 +40,14 @@ def tables_of(path: Path, name: str, layout: Layout) -> list[range]:
 
 
 def _after_numbers(rows: list[str], first: int, end: int, width: int, layout: Layout) -> int:
-    """The row after the last one with as many cells as names, of which one is a number."""
+    """The row after the last one that begins with a number, or has as many cells as names and a number in one.
+
+    A row that was cut off begins with a number too: it is read, and its empty cells are lost readings.
+    """
     while end > first + 1:
         cells = cells_of(rows[end - 1], layout)
-        if len(cells) >= width and any(number_of(cell, layout) is not None for cell in cells):
+        counted = cells if len(cells) >= width else cells[:1]
+        if any(number_of(cell, layout) is not None for cell in counted):
             break
         end -= 1
     return end

@@ -17,7 +17,7 @@ from swgsim.tables.layout import Layout, read_layout
 from swgsim.tables.measured_column import EACH, MeasuredColumn, text
 from swgsim.tables.plain_file import require_names
 
-KEYS = (*OF_LAYOUT, "path", "each", "interleaved", "parts", "accept")
+KEYS = (*OF_LAYOUT, "path", "head", "each", "interleaved", "parts", "accept")
 LATEST = 1e9
 MOST_INTERLEAVED = 1000
 # Nothing can be computed with such numbers.
@@ -47,6 +47,8 @@ class TableMap:
     layout : Layout
     path : str
         Regular expression of RE2 for the path of a file in its folder, with named groups.
+    head : tuple of str
+        Regular expressions of RE2 for places in the text before the numbers of a file, with named groups.
     each : str
         Regular expression for the groups, elements of struct arrays, sheets, or contents of a column of a file that are
         recordings.
@@ -62,6 +64,7 @@ class TableMap:
 
     layout: Layout = field(default_factory=Layout)
     path: str = ""
+    head: tuple[str, ...] = ()
     each: str = ""
     of_each: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     interleaved: int = 1
@@ -101,6 +104,7 @@ def read_table_map(config: Mapping[str, Any]) -> TableMap:
     return TableMap(
         read_layout(config),
         text("path", config["path"]) if "path" in config else "",
+        tuple(text("head", each) for each in _listed(config.get("head", []))),
         *_each(config.get("each", "")),
         interleaved,
         tuple(_part(name, limits) for name, limits in parts.items()),
@@ -131,8 +135,12 @@ def _part(name: str, entry: Any) -> Part:
     return Part(text("name of a part", name), float(limits[0]), float(limits[1]), facts)
 
 
+def _listed(value: Any) -> Sequence[Any]:
+    return value if isinstance(value, list) else [value]
+
+
 def _kinds(value: Any) -> tuple[str, ...]:
-    kinds: Sequence[Any] = value if isinstance(value, list) else [value]
+    kinds = _listed(value)
     for kind in kinds:
         if text("accept", kind) in NEVER_ACCEPTED:
             raise ValueError(f"accept has {kind!r}, with which nothing can be computed: leave it out")

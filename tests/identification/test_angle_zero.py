@@ -123,7 +123,8 @@ def test_a_zero_in_a_column_map_mends_it(tmp_path: Path) -> None:
 
 
 def test_recordings_and_commissioning_are_counted_from_the_zero_of_the_gear(monkeypatch: pytest.MonkeyPatch) -> None:
-    healthy, recordings = good(points=CORNERS), good(points=CORNERS, turns=13)
+    healthy, later = good(points=CORNERS), good(points=CORNERS, turns=13)
+    recordings = tuple(replace(each, session="later") for each in later)
     seen, warnings = [], []
     monkeypatch.setattr(
         calls, "learn_unit", lambda measured, unit: seen.append(measured.recordings) or replace(unit, healthy=seen[0])

@@ -15,6 +15,7 @@ from swgsim.dataset.faults import FAULTS
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import Gear, OperatingPoint
 from swgsim.gear.population import Population
+from swgsim.recordings.checks.across import session_defects
 from swgsim.recordings.checks.defect import summary
 from swgsim.recordings.checks.inspection import inspect
 from swgsim.recordings.recording import Recording
@@ -355,6 +356,15 @@ def test_most_gauges_inverted_are_named() -> None:
     inverted = ("s0", "s1", "s2", "s4")
     found = inspect(at_once(*(scaled(sensor, -1) for sensor in inverted))(good()))
     assert {(defect.kind, defect.channel) for defect in found} == {("gauge_inverted", sensor) for sensor in inverted}
+
+
+def test_a_session_of_the_commissioning_is_told() -> None:
+    recordings = tuple(replace(each, session="tuesday") for each in good())
+    monday = tuple(replace(each, session="monday") for each in good())
+    (warning,) = session_defects((*monday[1:], *recordings), monday)
+    assert (warning.kind, warning.severity, warning.recording) == ("session_of_commissioning", "warn", monday[1].name)
+    assert "'monday'" in warning.found
+    assert not list(session_defects(recordings, monday))
 
 
 def test_the_page_for_people_names_every_defect() -> None:

@@ -219,6 +219,12 @@ TEXT = (
     Example("Speed, load and repeat in the name of the file", GAUGES, table("2000rpm_39.5Nm_1.csv", PLAIN),
             r"path: '(?P<n_in_rpm>\d+)rpm_(?P<T_out_nm>[\d.]+)Nm_(?P<repeat>\d+)\.csv'" + IN_PLAIN
             + "facts: {gear: A17, session: monday}"),
+    Example("Speed, load and repeat in lines before the names", GAUGES,
+            table("run1.asc", GERMAN, separator="\t", decimal=",", before="Prüfstand 3\nDrehzahl: 2000 1/min\n"
+                  "Drehmoment: 39,5 Nm, Lauf 1\n\n"),
+            "separator: tab\ndecimal: ','\nheader_row: 5\nhead:\n- 'Drehzahl: (?P<n_in_rpm>[0-9]+)'\n"
+            "- 'Drehmoment: (?P<T_out_nm>[0-9,]+) Nm, Lauf (?P<repeat>[0-9]+)'" + IN_GERMAN
+            + "facts: {gear: A17, session: monday}"),
     Example("One file for each channel", GAUGES,
             several(*(table(f"run1_{name}.csv", {"t": TIME, "value": PLAIN[name]})
                       for name in ("angle", "torque", "bridge"))),
@@ -411,6 +417,7 @@ def save_xlsx(path: Path) -> None:
     book.save(path)
 
 
+COUNTS = np.stack([PHI * 3600 / np.pi, GAUGES["T_out"] * 500, GAUGES["s1"] * 1e5], axis=1)
 SHARES = np.array([[1.5], [1.0], [2.5]])  # of three joints
 STRUCTS = {
     "time": TIME,
@@ -429,6 +436,19 @@ BINARY = (
             GAUGES, saved("run1.mat", lambda path: savemat(path, PLAIN)), IN_PLAIN),
     Example("MATLAB 7.3: a struct", GAUGES, saved("run1.mat", save_matlab_73),
             IN_PLAIN.replace("column: ", "column: bench.")),
+    Example("Bare numbers of a card for data acquisition: counts of 16 bits, channels in turn", GAUGES,
+            saved("run1.bin", lambda path: np.round(COUNTS).astype("<i2").tofile(path)),
+            """
+            raw: '<i2'
+            interleaved: 3
+            sampling_rate_hz: 1000
+            channels:
+              phi_in: {column: 1, unit: counts, per_revolution: 7200}
+              T_out: {column: 2, unit: counts, full_scale: 30000 counts = 60 N m}
+              s1: {column: 3, unit: counts, full_scale: 30000 counts = 0.3 mV/V}
+            facts: {gear: A17, session: monday}
+            files: {run1.bin: {n_in_rpm: 2000, T_out_nm: 39.5, repeat: 1}}
+            """, 1e-4),
     Example("HDF5: variables in a group", GAUGES, saved("run1.h5", save_hdf5),
             IN_PLAIN.replace("column: ", "column: bench/")),
     Example("Parquet", GAUGES, saved("run1.parquet", lambda path: pd.DataFrame(PLAIN).to_parquet(path)), IN_PLAIN),

@@ -14,7 +14,9 @@ from hypothesis import strategies as st
 from swgsim.tables import limits
 from swgsim.tables.any_table import read_table
 from swgsim.tables.file_defect import FileDefect
+from swgsim.tables.head_facts import head_facts
 from swgsim.tables.layout import Layout, read_layout
+from swgsim.tables.table_map import TableMap
 from swgsim.tables.text import read_text
 
 NAMES = "t,q,note\n"
@@ -178,5 +180,36 @@ def test_tables_below_one_another_are_told_apart(tmp_path: Path) -> None:
         FileDefect, match=r"row 3, column q: found 'q', expected a number; the row of names again.*each"
     ):
         read(tmp_path, "t,q\n0,1\nt,q\n0,1\n", ["q"])
+    path.write_text(text.replace("1;2\n", "1;2\n2\n"), encoding="utf-8")  # the recorder was stopped within a row
+    np.testing.assert_array_equal(read_table(path, "a.txt", ["q"], [], layout)[0]["q"], [1, 2, np.nan])
     with pytest.raises(FileDefect, match=r"2 tables with the same row of names, expected a sheet from 1 to 2, not '3'"):
         read_table(path, "a.txt", ["q"], [], replace(layout, sheet="3"))
+
+
+HEADED = "Speed: 2000 rpm\nLoad: 39,5 Nm\nt;x\n0;1\n1;2\n"
+
+
+def test_lines_before_the_numbers_give_facts(tmp_path: Path) -> None:
+    """In the decimal sign of the table, and from no line of numbers."""
+    path = tmp_path / "a.txt"
+    path.write_text(HEADED, encoding="utf-8")
+    speed, load = r"Speed: (?P<n_in_rpm>\d+) rpm", r"Load: (?P<T_out_nm>[\d,]+) Nm"
+    table = TableMap(Layout(separator=";", decimal=",", header_row=3), head=(speed, load))
+    assert head_facts(path, "a.txt", table) == {"n_in_rpm": "2000", "T_out_nm": "39.5"}
+    with pytest.raises(FileDefect, match=r"a\.txt: found nothing like .*0;1.* in rows 1 to 3, expected what 'head'"):
+        head_facts(path, "a.txt", replace(table, head=("(?P<repeat>0;1)",)))
+    with pytest.raises(FileDefect, match=r"no lines of text before the numbers"):
+        head_facts(path.with_suffix(".mat"), "a.mat", table)
+
+
+def test_bare_numbers_are_one_column_of_whole_numbers(tmp_path: Path) -> None:
+    path, layout = tmp_path / "a.bin", Layout(raw=">i2", header_row=0)
+    path.write_bytes(np.arange(20, dtype=">i2").tobytes())
+    np.testing.assert_array_equal(read_table(path, "a.bin", [1], [], layout)[0][1], np.arange(20))
+    with pytest.raises(FileDefect, match=r"column '2' in a file of bare numbers, expected column 1.*interleaved"):
+        read_table(path, "a.bin", [2], [], layout)
+    path.write_bytes(bytes(41))
+    with pytest.raises(FileDefect, match=r"a\.bin: found 41 bytes, expected whole numbers of 2 bytes, as '>i2' has"):
+        read_table(path, "a.bin", [1], [], layout)
+    with pytest.raises(ValueError, match="unknown choice 'int12' of raw"):
+        Layout(raw="int12")

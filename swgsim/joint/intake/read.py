@@ -25,6 +25,7 @@ from swgsim.joint.recording import SIGNALS, JointRecording
 from swgsim.recordings.checks.defect import Defect, accepted, summary, unread_defects, with_columns
 from swgsim.tables.file_defect import FileDefect, shown
 from swgsim.tables.formats.limited import LimitedReader
+from swgsim.tables.head_facts import head_facts
 from swgsim.tables.several import recordings_in
 
 
@@ -139,16 +140,19 @@ def read_joints(folder: Path, source: JointSource | Path) -> JointRecordings:
 
 def _read_each(folder: Path, files: RunFiles, source: JointSource, start: bool, reader: LimitedReader) -> Iterator[Run]:
     """The runs of one file, or the one of several."""
+    files = _known(files, head_facts(folder / files.name, files.name, source.table))
     if not source.table.each:
         yield from read_runs(folder, files, source, start, reader)
         return
     for each, groups in recordings_in(folder / files.name, files.name, source.table, reader):
-        one = files._replace(
-            run=groups.get("run", f"{files.run} {each}"),
-            session=groups.get("session", files.session),
-            joint=groups.get("joint", files.joint),
-        )
+        one = _known(files, {"run": f"{files.run} {each}", **groups})
         yield from read_runs(folder, one, source.of(each), start, reader)
+
+
+def _known(files: RunFiles, facts: Mapping[str, str]) -> RunFiles:
+    """The files with what is known of their session, run and joint."""
+    session, run, joint = (facts.get(name, getattr(files, name)) for name in ("session", "run", "joint"))
+    return files._replace(session=session, run=run, joint=joint)
 
 
 def _recording(run: Run, rates: Mapping[str, float], robot: str) -> JointRecording:

@@ -98,7 +98,8 @@ class JointSource:
 
     def __post_init__(self) -> None:
         require_pattern(self.table.path, GROUPS)
-        require_pattern(self.table.each, GROUPS[:3])
+        for pattern in (self.table.each, *self.table.head):
+            require_pattern(pattern, GROUPS[:3])
         require_each(self.table, [*self.columns, *([self.clock] if self.clock else [])])
         if not self.files:
             raise ValueError("files is empty, must name the files in motion, such as '*.csv'")

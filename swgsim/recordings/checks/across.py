@@ -22,6 +22,19 @@ def set_defects(recordings: Sequence[Recording]) -> Iterator[Defect]:
         )  # fmt: skip
 
 
+def session_defects(recordings: Sequence[Recording], healthy: Sequence[Recording]) -> Iterator[Defect]:
+    """A warning for each session that is in the commissioning too."""
+    before = {each.session: each.name for each in healthy}
+    for session, first in {each.session: each.name for each in reversed(recordings)}.items():
+        if session in before:
+            yield Defect(
+                "session_of_commissioning", "warn", first, "",
+                f"the session {session!r}, which recording {before[session]} of the commissioning has too",
+                "another session, or the bench as it was: nothing dismounted and no bridge balanced in between",
+                "give the later recordings a session of their own, in the manifest or in 'facts' of a map",
+            )  # fmt: skip
+
+
 def _copies(recordings: Sequence[Recording]) -> Iterator[Defect]:
     """The same numbers under two names would count as repeats without noise."""
     first: dict[str, str] = {}

@@ -62,7 +62,8 @@ class SourceMap:
         if self.table.path and self.files:
             raise ValueError("the column map has both path and files: facts come from the path or from files")
         require_pattern(self.table.path, (*KNOWN, SIGNAL))
-        require_pattern(self.table.each, KNOWN)
+        for pattern in (self.table.each, *self.table.head):
+            require_pattern(pattern, KNOWN)
 
     def of(self, each: str) -> "SourceMap":
         """The map of one of the recordings of a file."""

@@ -12,6 +12,7 @@ from swgsim.recordings.recording import Recording
 from swgsim.tables.endings import ENDINGS, files_of, is_data
 from swgsim.tables.file_defect import FileDefect, shown
 from swgsim.tables.formats.limited import LimitedReader
+from swgsim.tables.head_facts import head_facts
 from swgsim.tables.limits import inside, require_file_count
 from swgsim.tables.measured_table import first_lost, read_measured
 from swgsim.tables.path_pattern import path_groups
@@ -97,12 +98,14 @@ def _by_path(path: Path, names: list[str], mapping: SourceMap) -> Iterator[Run]:
 
 def _read_each(folder: Path, run: Run, mapping: SourceMap, reader: LimitedReader) -> Iterator[Recording]:
     """The recordings of one file, or the one of several."""
+    first = next(iter(run.files.values()))
+    # What the map says of a file counts more than what the file says.
+    run = run._replace(known=head_facts(inside(folder, first, "the column map"), first, mapping.table) | run.known)
     if not mapping.table.each:
         yield from _read_one(folder, run, mapping, reader)
         return
-    name = next(iter(run.files.values()))
-    stem = run.known.get("recording", name.partition(".")[0])
-    for each, groups in recordings_in(inside(folder, name, "the column map"), name, mapping.table, reader):
+    stem = run.known.get("recording", first.partition(".")[0])
+    for each, groups in recordings_in(folder / first, first, mapping.table, reader):
         known = {"recording": f"{stem} {each}", **{k: v for k, v in run.known.items() if k != "recording"}, **groups}
         yield from _read_one(folder, Run(run.files, known), mapping.of(each), reader)
 
