@@ -92,12 +92,16 @@ class MeasuredColumn:
         return 1 if self.interleaved > 1 else self.column
 
     def own(self, numbers: Shaped[np.ndarray, " number"]) -> Shaped[np.ndarray, " time"]:
-        """The numbers of this signal among those that follow one another in its column."""
+        """The numbers of this signal among those that follow one another in its column.
+
+        What the last group lacks, because the recording was cut in it, is a lost reading.
+        """
         if self.interleaved == 1:
             return numbers
-        return numbers[: len(numbers) // self.interleaved * self.interleaved].reshape(-1, self.interleaved)[
-            :, int(self.column) - 1
-        ]
+        lost = -len(numbers) % self.interleaved
+        if lost:
+            numbers = np.append(numbers.astype(float), np.full(lost, np.nan))
+        return numbers.reshape(-1, self.interleaved)[:, int(self.column) - 1]
 
 
 def filled(column: str | int, each: str) -> str | int:

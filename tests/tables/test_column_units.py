@@ -73,7 +73,8 @@ def test_an_angle_wraps_at_the_revolution_of_its_numbers() -> None:
 def test_joints_that_follow_one_another_are_told_apart() -> None:
     column = read_column("q", {"column": 2, "unit": "rad"}, "rad", interleaved=3)
     assert column.place == 1
-    np.testing.assert_array_equal(column.own(np.arange(10)), [1, 4, 7])
+    np.testing.assert_array_equal(column.own(np.arange(12)), [1, 4, 7, 10])
+    np.testing.assert_array_equal(column.own(np.arange(10)), [1, 4, 7, np.nan])  # the recording was cut: a lost reading
     with pytest.raises(ValueError, match="must be an integer from 1 to 3"):
         read_column("q", {"column": 4, "unit": "rad"}, "rad", interleaved=3)
 
