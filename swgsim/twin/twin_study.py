@@ -52,10 +52,10 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
     """Write ``<data>/<grid>-<condition>-twin.parquet``, or ``<grid>-<condition>-twin-<case>.parquet``.
 
     Columns: ``row``, the number among the data set's samples; with ``true:``, :data:`FACTS` of the sample; the
-    probability of every class by every one of :data:`WHO`; those of :data:`~swgsim.oracle.diagnosis.FOUND` for the recording and, with ``unit:``, for its unit;
-    ``below`` and ``unit:below``, the posterior probability of a severity below the true one, given the true class;
-    ``misfit`` of the references, and ``fit_seconds`` and ``seconds`` that the fit and the whole twin took, the same for
-    all recordings of a gear.
+    probability of every class by every one of :data:`WHO`; those of :data:`~swgsim.oracle.diagnosis.FOUND` for the
+    recording and, with ``unit:``, for its unit; ``below`` and ``unit:below``, the posterior probability of a severity
+    below the true one, given the true class; ``misfit`` of the references, and ``fit_seconds`` and ``seconds`` that the
+    fit and the whole twin took, the same for all recordings of a gear.
 
     Returns
     -------

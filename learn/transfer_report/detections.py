@@ -1,0 +1,66 @@
+"""What a workshop finds if 1 % of healthy recordings or units may alarm: shares and sizes of each fault."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from learn.evaluation.detection import alarms, detection_table, false_alarm_rate
+from learn.protocols.fault_size import UNITS
+from learn.transfer_report.tables import finite, number
+from swgsim.common.style import words
+
+RATE = 0.01  # of false alarms
+
+
+def detections(of: str, predictions: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
+    """A row for every method and fault: ``method``, ``of``, ``rate``, ``low`` and ``high`` of false alarms [%], and the
+    columns of :func:`learn.evaluation.detection.detection_table`.
+
+    Parameters
+    ----------
+    of : str
+        What the rows of the tables are: recordings or units.
+    predictions : mapping
+        Method to its predictions.
+    """
+    parts = []
+    for method, table in predictions.items():
+        alarm = alarms(table, RATE)
+        rate = {name: value for name, value in false_alarm_rate(table, alarm).items() if "gears" not in name}
+        parts.append(detection_table(table, alarm).assign(method=method, of=of, **rate))
+    return pd.concat(parts, ignore_index=True)
+
+
+def detections_text(table: pd.DataFrame) -> pd.DataFrame:
+    """Method and what it judges in rows, false alarms and faults in columns; a cell has the share and a90/95."""
+    sizes = [
+        "-" if np.isnan(size) else f"{size:.2g}{UNITS.get(label, '')}"
+        for size, label in zip(table["a90_95"], table["label"], strict=True)
+    ]
+    cells = table.assign(
+        text=[f"{hits:.0f} %; {size}" for hits, size in zip(table["hits"], sizes, strict=True)],
+        alarms=[number(*each) for each in table[["rate", "low", "high"]].to_numpy(dtype=float)],
+    )
+    rows = ["method", "of", "alarms"]
+    wide = cells.pivot(index=rows, columns="label", values="text").rename(columns=words)
+    wide = wide.reindex(pd.MultiIndex.from_frame(cells[rows].drop_duplicates())).reset_index("alarms")
+    return wide.rename(columns={"alarms": "false alarms [%]"}).rename_axis(None, axis="columns")
+
+
+def detections_json(table: pd.DataFrame) -> dict[str, Any]:
+    """Method to recordings or units to fault: ``found`` [%], ``a90``, ``a90_95``, and why a size is None."""
+    nested: dict[str, Any] = {}
+    for row in table.to_dict("records"):
+        here = nested.setdefault(row["method"], {}).setdefault(row["of"], {"false_alarms": finite(row["rate"])})
+        here[row["label"]] = {
+            "found": finite(row["hits"]), **{name: _size(row[name]) for name in ("a90", "a90_95")},
+            "reason": row["reason"] or None,
+        }  # fmt: skip
+    return nested
+
+
+def _size(value: float) -> float | None:
+    """Sizes are as small as micrometres in metres, so digits count and not decimals."""
+    return float(f"{value:.3g}") if np.isfinite(value) else None
