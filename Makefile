@@ -79,6 +79,7 @@ transfer: data  ## beyond the paper: networks, transfer to gears never seen, rep
 	@set -e; \
 	for set in $(GEARS)-bench $(FOREIGN); do $(SWG) generate grid=$${set%-*} condition=$${set##*-}; done; \
 	$(SWG) oracle grid=$(GEARS); \
+	$(SWG) twin grid=$(GEARS); \
 	for name in $(ON_PAPER); do $(SWG) train experiment=$$name grid=$(GRID); done; \
 	for name in $(ON_GEARS); do $(SWG) train experiment=$$name grid=$(GEARS) $(QUICK); done; \
 	$(SWG) transfer-report grid=$(GEARS) paper_grid=$(GRID) started=$(STARTED)

@@ -5,9 +5,11 @@ import pandas as pd
 from jaxtyping import Bool
 
 from learn.evaluation.bootstrap import FEWEST_GEARS
-from learn.evaluation.decisions import truth
+from learn.evaluation.decisions import decisions, truth
 from learn.evaluation.detection_curve import detection
+from learn.inputs.inputs import OPERATING_POINT
 from learn.protocols.fault_size import UNITS, size
+from swgsim.storage.labelled_signals import CLASSES
 
 
 def alarms(predictions: pd.DataFrame, rate: float) -> Bool[np.ndarray, " row"]:
@@ -79,3 +81,15 @@ def false_alarm_rate(predictions: pd.DataFrame, alarm: Bool[np.ndarray, " row"])
         low, high = proportion_confint(rate * independent, independent, method="wilson")
     shares = {"rate": 100 * rate, "low": 100 * float(low), "high": 100 * float(high)}
     return {**shares, "gears": float(count), "alarming_gears": float((by_gear > 0).sum())}
+
+
+def worst_cell(predictions: pd.DataFrame) -> pd.Series:
+    """Operating point and class with the lowest recall; ``recall`` [%], ``recordings``.
+
+    As the minimum of many estimates, it is lower than the recall of that cell on new recordings.
+    """
+    rows = predictions[list(OPERATING_POINT)].assign(label=pd.Categorical(truth(predictions), CLASSES))
+    rows["right"] = decisions(predictions) == truth(predictions)
+    cells = rows.groupby([*OPERATING_POINT, "label"], observed=True)["right"].agg(recall="mean", recordings="size")
+    cells["recall"] *= 100
+    return cells.reset_index().iloc[int(cells["recall"].argmin())]

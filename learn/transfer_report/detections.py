@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from learn.evaluation.detection import alarms, detection_table, false_alarm_rate
+from learn.evaluation.detection import alarms, detection_table, false_alarm_rate, worst_cell
 from learn.protocols.fault_size import UNITS
 from learn.transfer_report.tables import finite, number
 from swgsim.common.style import words
@@ -47,6 +47,15 @@ def detections_text(table: pd.DataFrame) -> pd.DataFrame:
     wide = cells.pivot(index=rows, columns="label", values="text").rename(columns=words)
     wide = wide.reindex(pd.MultiIndex.from_frame(cells[rows].drop_duplicates())).reset_index("alarms")
     return wide.rename(columns={"alarms": "false alarms [%]"}).rename_axis(None, axis="columns")
+
+
+def worst_text(predictions: pd.DataFrame) -> str:
+    """The operating point and class with the smallest share of right decisions."""
+    worst = worst_cell(predictions)
+    return (
+        f"The worst combination of class and operating point is {words(str(worst['label']))} at {worst['n_in_rpm']:g} "
+        f"rpm and {worst['T_out_nm']:g} N m: {worst['recall']:.1f} % of {worst['recordings']} recordings are recognised."
+    )
 
 
 def detections_json(table: pd.DataFrame) -> dict[str, Any]:

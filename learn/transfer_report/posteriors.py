@@ -63,12 +63,12 @@ def units_of(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def mismatch(path: Path, judged: pd.DataFrame, digest: str) -> tuple[pd.DataFrame, pd.DataFrame] | None:
-    """Predictions of recordings and of units by a twin whose beliefs are not those of the data; None without a file.
+    """Predictions of recordings and of units by a twin, with the ``misfit`` of its gear; None without a file.
 
     Parameters
     ----------
     path : Path
-        File of ``swg twin``, perhaps of other data.
+        File of ``swg twin``, perhaps of other data or with mistaken beliefs.
     judged : DataFrame
         Predictions of any method. Of the data set with this digest, these recordings count, of others all.
     digest : str
@@ -79,6 +79,7 @@ def mismatch(path: Path, judged: pd.DataFrame, digest: str) -> tuple[pd.DataFram
     if table.attrs["data"] == digest:
         table = table[table["row"].isin(judged["row"])]
     facts = table.filter(like="true:").rename(columns=lambda name: name.removeprefix("true:"))
+    facts["misfit"] = table["misfit"]
     recordings, units = (
         facts.join(table[[prefix + label for label in CLASSES]].set_axis(list(CLASSES), axis="columns"))
         for prefix in (OF_TWIN[TWIN], OF_UNITS[TWIN])

@@ -89,7 +89,6 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
         "grid": runs.grids["bench"],
         "headline": sentences.headline(zero, gears),
         "claim": None,
-        "mistaken": None,
         "lead": sentences.lead(zero, few, development_scores(adapting), cases),
         "best": best,
         "errors": figures.errors(zero),
@@ -102,6 +101,7 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
         "draws": adapting["draws"].iloc[0],
         "forgotten": tables.forgetting_text(runs.tables(adapting, "gears")),
         "detection": detections.detections_text(found),
+        "worst": detections.worst_text(predictions[best]),
         **practice(runs, methods, predictions, units, best),
         "disturbed": cases.map("{:.1f}".format),
         "studies": studies_of(runs, inputs, input_errors),
@@ -111,11 +111,11 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
     content = transfer_json.content(zero, of_units, few, of_inputs, cases, gears, seconds)
     content["detection"] = detections.detections_json(found)
     if twins.TWIN in predictions:
-        mistaken = twins.mismatches(mistaken_twins(runs, judged))
+        cases = twins.mismatches(every_twin(runs, judged))
         ratio = twins.ratio_to_floor(errors)
         page["claim"] = sentences.claim(zero, of_units, ratio, gears, references(runs))
-        page["mistaken"] = twins.mismatches_text(mistaken) if len(mistaken) else None
-        content["twin"] = twins.twin_json(zero, ratio, predictions[twins.TWIN], mistaken)
+        page["twins"] = twins.mismatches_text(cases)
+        content["twin"] = twins.twin_json(zero, ratio, cases)
     return page, content
 
 
@@ -132,10 +132,12 @@ def not_learned(runs: Runs, judged: pd.DataFrame) -> tuple[dict[str, pd.DataFram
     return posteriors(twin, digest, judged, OF_TWIN) | found, posteriors(twin, digest, judged, OF_UNITS)
 
 
-def mistaken_twins(runs: Runs, judged: pd.DataFrame) -> dict[str, tuple[pd.DataFrame, pd.DataFrame]]:
-    """Predictions of twins with mistaken beliefs, by case, as far as ``swg twin`` was run on them."""
-    found = {case: mismatch(path, judged, runs.digests["bench"]) for case, path in runs.mistaken.items()}
-    return {case: tables for case, tables in found.items() if tables}
+def every_twin(runs: Runs, judged: pd.DataFrame) -> dict[str, tuple[pd.DataFrame, pd.DataFrame]]:
+    """Predictions of twins with true and with mistaken beliefs, by case, as far as ``swg twin`` was run."""
+    bench = runs.paths["bench"]
+    files = {"matched": bench.with_name(f"{bench.stem}-twin.parquet"), **runs.mistaken}
+    found = {case: mismatch(path, judged, runs.digests["bench"]) for case, path in files.items()}
+    return {case: each for case, each in found.items() if each}
 
 
 def without_references(runs: Runs) -> pd.DataFrame:

@@ -25,8 +25,9 @@ from learn.transfer_report.tables import (
 )
 from swgsim.common.seeds import generator
 
-# Twins with mistaken beliefs, in the words of the page.
+# Twins, in the words of the page.
 CASES: Mapping[str, str] = {
+    "matched": "it believes what is true",
     "mesh": "it believes another mesh",
     "population": "gears of another population",
     "before": "an effect that it does not know",
@@ -64,7 +65,7 @@ def ratio_to_floor(errors: pd.DataFrame) -> pd.Series | None:
 
 
 def mismatches(found: Mapping[str, tuple[pd.DataFrame, pd.DataFrame]]) -> pd.DataFrame:
-    """Twins with mistaken beliefs, by case.
+    """Twins with true and with mistaken beliefs, by case.
 
     Parameters
     ----------
@@ -75,14 +76,18 @@ def mismatches(found: Mapping[str, tuple[pd.DataFrame, pd.DataFrame]]) -> pd.Dat
     -------
     DataFrame
         ``value``, ``low``, ``high`` of recordings and ``unit``, ``unit_low``, ``unit_high`` of units [%];
-        ``calibration_error`` [-], ``gears``.
+        ``calibration_error`` [-], median ``misfit`` of the references [-], ``gears``.
     """
     rows = {}
     for case, (recordings, of_units) in found.items():
         error, of_unit = (
             row_of(with_intervals({case: specimens(each)}, f"mismatch {case}"), case) for each in (recordings, of_units)
         )
-        facts = {"calibration_error": calibration_error(recordings), "gears": recordings["gear"].nunique()}
+        facts = {
+            "calibration_error": calibration_error(recordings),
+            "misfit": recordings["misfit"].median(),
+            "gears": recordings["gear"].nunique(),
+        }
         rows[case] = {**error, **named("unit", of_unit.to_frame().T).iloc[0], **facts}
     return pd.DataFrame.from_dict(rows, orient="index")
 
@@ -94,14 +99,13 @@ def mismatches_text(table: pd.DataFrame) -> pd.DataFrame:
             "error [%]": text_of(table),
             "error of units [%]": text_of(table, "unit"),
             "calibration error [points]": [number(100 * each) for each in table["calibration_error"]],
+            "median misfit of the references": [f"{each:.2g}" for each in table["misfit"]],
             "gears": table["gears"].map("{:.0f}".format),
         }
     ).set_axis(pd.Index([CASES[case] for case in table.index], name="twin"))
 
 
-def twin_json(
-    zero: pd.DataFrame, ratio: pd.Series | None, matched: pd.DataFrame, mistaken: pd.DataFrame
-) -> dict[str, Any]:
+def twin_json(zero: pd.DataFrame, ratio: pd.Series | None, cases: pd.DataFrame) -> dict[str, Any]:
     """The part ``twin`` of ``transfer.json``: errors [%], calibration errors [-]; None for what was not run.
 
     Parameters
@@ -110,23 +114,21 @@ def twin_json(
         Result of :func:`.tables.zero_shot`.
     ratio : Series or None
         Result of :func:`ratio_to_floor`.
-    matched : DataFrame
-        Predictions of the twin.
-    mistaken : DataFrame
+    cases : DataFrame
         Result of :func:`mismatches`.
     """
-    case = {name: in_json(row_of(mistaken, name)) if name in mistaken.index else None for name in CASES}
-    others = [mistaken["calibration_error"][name] for name in ("mesh", "population") if name in mistaken.index]
+    error = {name: in_json(row_of(cases, name)) if name in cases.index else None for name in CASES}
+    mistaken = [cases["calibration_error"][name] for name in ("mesh", "population") if name in cases.index]
     return {
         "matched": in_json(row_of(zero, TWIN)),
-        "mesh": case["mesh"],
-        "population": case["population"],
+        "mesh": error["mesh"],
+        "population": error["population"],
         "other_authors": None,
-        "undeclared": {"before": case["before"], "after": case["after"]},
+        "undeclared": {"before": error["before"], "after": error["after"]},
         "floor": None if ratio is None else in_json(row_of(zero, FLOOR)),
         "ratio_to_floor": None if ratio is None else in_json(ratio),
-        "calibration_error": finite(calibration_error(matched)),
-        "calibration_error_mismatched": finite(max(others)) if others else None,
+        "calibration_error": finite(cases["calibration_error"]["matched"]),
+        "calibration_error_mismatched": finite(max(mistaken)) if mistaken else None,
     }
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from learn.evaluation.detection import alarms, detection_table, false_alarm_rate
+from learn.evaluation.detection import alarms, detection_table, false_alarm_rate, worst_cell
 from learn.evaluation.detection_curve import DetectionCurve, detection
 from learn.protocols.fault_size import SIZES, size
 from swgsim.common.seeds import generator
@@ -152,3 +152,12 @@ def test_alarms_keep_their_rate_on_gears_that_did_not_set_the_limit():
     sick = pd.concat([made, made[:5].assign(label="tip_tooth_crack", healthy=[0.0, 0.001, 0.2, 0.5, 0.9])])
     assert alarms(sick, 0.05)[-5:].tolist() == [True, True, False, False, False]
     assert not alarms(made[made["gear"] < 1], 0.05).any()  # no other gear tells what is usual
+
+
+def test_worst_cell_is_found():
+    rows = [(1, label, v, 1.0, speed, label) for label in CLASSES for v in range(4) for speed in (2000, 4000)]
+    rows[-1] = (*rows[-1][:5], "healthy")
+    worst = worst_cell(table(rows))
+    assert worst.to_dict() == {
+        "n_in_rpm": 4000, "T_out_nm": 7.0, "label": "tip_tooth_crack", "recall": 75.0, "recordings": 4
+    }  # fmt: skip

@@ -117,7 +117,7 @@ def twin_table(wrong):
     facts = predictions(0, "facts").drop(columns=list(CLASSES))
     said = [predictions(share, prefix)[list(CLASSES)].add_prefix(prefix) for prefix, share in wrong.items()]
     table = pd.concat([facts.add_prefix("true:").rename(columns={"true:row": "row"}), *said], axis=1)
-    table.attrs = {"data": "another"}
+    table["misfit"], table.attrs = 1.1, {"data": "another"}
     return table
 
 
