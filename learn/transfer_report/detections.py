@@ -54,7 +54,8 @@ def worst_text(predictions: pd.DataFrame) -> str:
     worst = worst_cell(predictions)
     return (
         f"The worst combination of class and operating point is {words(str(worst['label']))} at {worst['n_in_rpm']:g} "
-        f"rpm and {worst['T_out_nm']:g} N m: {worst['recall']:.1f} % of {worst['recordings']} recordings are recognised."
+        f"rpm and {worst['T_out_nm']:g} N m: {worst['recall']:.1f} % of {worst['recordings']} recordings are "
+        "recognised."
     )
 
 

@@ -61,7 +61,7 @@ def known(table: pd.DataFrame) -> bytes:
             ends = ("low", "high") if of == "value" else ("unit_low", "unit_high")
             axes.vlines(places, rows[ends[0]], rows[ends[1]], color=colour, linewidth=1.1)
             text = f"{who}, per {'recording' if of == 'value' else 'unit'}"
-            axes.plot(places, rows[of], f"{MARKERS[number]}--", color=colour, markerfacecolor=face, label=text)
+            axes.plot(places, rows[of], MARKERS[number], color=colour, markerfacecolor=face, label=text)
     axes.set_xticks(range(len(levels)), [fill(each, 16) for each in levels])
     axes.set_ylim(0, None)
     style.label(axes, "known of the gear", "error [%]")

@@ -34,7 +34,7 @@ CASES: Mapping[str, str] = {
     "after": "the same, after the loop has found the effect",
 }
 # Of the picture: levels, who learns, and numbers of healthy recordings of the day and of specimens of each fault.
-REFERENCES, LEARNED, HEALTHY, SHOTS = "healthy references", "best method that learns from other gears", 2, 5
+REFERENCES, LEARNED, HEALTHY, SHOTS = "references", "best method that learns from other gears", 2, 5
 Tables = Mapping[str, pd.DataFrame]
 
 
@@ -149,8 +149,8 @@ def known(zero: pd.DataFrame, of_units: pd.DataFrame, few: pd.DataFrame, nothing
     learned = {
         "nothing": None if nothing.empty else least(nothing),
         REFERENCES: least(both.drop(index=[TWIN, *LIMITS], errors="ignore")),
-        f"and {HEALTHY} healthy of the day": best_rezeroed(few).get(HEALTHY),
-        f"and {SHOTS} of each fault": best_adapted(few, SHOTS),
+        f"references, {HEALTHY} healthy of the day": best_rezeroed(few).get(HEALTHY),
+        f"references, {SHOTS} of each fault": best_adapted(few, SHOTS),
     }
     rows = [{**row, "known": name, "who": LEARNED} for name, row in learned.items() if row is not None]
     rows += [{**row_of(both, who), "known": REFERENCES, "who": who} for who in (TWIN, FLOOR) if who in both.index]

@@ -211,7 +211,7 @@ def test_the_picture_has_a_place_for_everything_that_is_known():
     with_twin = zero.rename(index={tables.ORACLE: twins.TWIN})
     table = twins.known(with_twin, with_twin, pd.concat([few, rezero]), nothing)
     learned = table[table["who"] == twins.LEARNED]
-    levels = ["nothing", "healthy references", "and 2 healthy of the day", "and 5 of each fault"]
+    levels = ["nothing", "references", "references, 2 healthy of the day", "references, 5 of each fault"]
     assert learned["known"].tolist() == levels
     np.testing.assert_allclose(learned["value"], [40, 9.1, 3.5, 4], atol=0.1)
     assert table["who"].tolist()[-1] == twins.TWIN
