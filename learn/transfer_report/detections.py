@@ -35,10 +35,7 @@ def detections(of: str, predictions: Mapping[str, pd.DataFrame]) -> pd.DataFrame
 
 def detections_text(table: pd.DataFrame) -> pd.DataFrame:
     """Method and what it judges in rows, false alarms and faults in columns; a cell has the share and a90/95."""
-    sizes = [
-        "-" if np.isnan(size) else f"{size:.2g}{UNITS.get(label, '')}"
-        for size, label in zip(table["a90_95"], table["label"], strict=True)
-    ]
+    sizes = [_size_text(row) for row in table.to_dict("records")]
     cells = table.assign(
         text=[f"{hits:.0f} %; {size}" for hits, size in zip(table["hits"], sizes, strict=True)],
         alarms=[number(*each) for each in table[["rate", "low", "high"]].to_numpy(dtype=float)],
@@ -47,6 +44,13 @@ def detections_text(table: pd.DataFrame) -> pd.DataFrame:
     wide = cells.pivot(index=rows, columns="label", values="text").rename(columns=words)
     wide = wide.reindex(pd.MultiIndex.from_frame(cells[rows].drop_duplicates())).reset_index("alarms")
     return wide.rename(columns={"alarms": "false alarms [%]"}).rename_axis(None, axis="columns")
+
+
+def _size_text(row: Mapping[Any, Any]) -> str:
+    if not np.isnan(row["a90_95"]):
+        return f"{row['a90_95']:.2g}{UNITS.get(row['label'], '')}"
+    beyond = {"a90_95: below": "all sizes", "a90_95: not reached": "no size"}
+    return next((text for start, text in beyond.items() if start in row["reason"]), "-")
 
 
 def worst_text(predictions: pd.DataFrame) -> str:

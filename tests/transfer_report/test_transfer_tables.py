@@ -182,7 +182,7 @@ def test_detection_has_a_size_or_a_reason(monkeypatch):
     p[small] = np.eye(len(CLASSES))[0]
     found = detections.detections("recordings", {"any": table.assign(**dict(zip(CLASSES, p.T, strict=True)))})
     text = detections.detections_text(found)
-    assert text.loc[("any", "recordings"), "reduced damping"] == "100 %; -"
+    assert text.loc[("any", "recordings"), "reduced damping"] == "100 %; all sizes"
     json_of = detections.detections_json(found)["any"]["recordings"]
     assert json_of["reduced_damping"]["reason"].startswith("a90: below the smallest size tried")
     assert json_of["reduced_damping"]["a90_95"] is None
