@@ -122,14 +122,15 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
 def not_learned(runs: Runs, judged: pd.DataFrame) -> tuple[dict[str, pd.DataFrame], dict[str, pd.DataFrame]]:
     """Predictions of oracles, twin and floor, of recordings, and of units by those that take one as a whole.
 
-    The twin is left out if ``swg twin`` was not run; `judged` are predictions of any method.
+    ``swg twin`` has all of them; without it, or without its comparison, the oracles are those of ``swg oracle``.
+    `judged` are predictions of any method.
     """
     bench, digest = runs.paths["bench"], runs.digests["bench"]
     oracle, twin = (bench.with_name(f"{bench.stem}-{name}.parquet") for name in ("oracle", "twin"))
-    found = posteriors(oracle, digest, judged, OF_ORACLE)
-    if not twin.is_file():
-        return found, {}
-    return posteriors(twin, digest, judged, OF_TWIN) | found, posteriors(twin, digest, judged, OF_UNITS)
+    found, joint = (posteriors(twin, digest, judged, of) if twin.is_file() else {} for of in (OF_TWIN, OF_UNITS))
+    if ORACLE not in found:
+        found |= posteriors(oracle, digest, judged, OF_ORACLE)
+    return found, joint
 
 
 def every_twin(runs: Runs, judged: pd.DataFrame) -> dict[str, tuple[pd.DataFrame, pd.DataFrame]]:
