@@ -62,10 +62,11 @@ def known(table: pd.DataFrame) -> bytes:
             axes.vlines(places, rows[ends[0]], rows[ends[1]], color=colour, linewidth=1.1)
             text = f"{who}, per {'recording' if of == 'value' else 'unit'}"
             axes.plot(places, rows[of], MARKERS[number], color=colour, markerfacecolor=face, label=text)
-    axes.set_xticks(range(len(levels)), [fill(each, 16) for each in levels])
+    axes.set_xticks(range(len(levels)), [fill(each, 13) for each in levels])
     axes.set_ylim(0, None)
     style.label(axes, "known of the gear", "error [%]")
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), ncols=1, fontsize=9, frameon=False)
+    axes.margins(x=0.12)
+    picture.legend(loc="outside lower center", fontsize=9, frameon=False)
     return style.png(picture)
 
 

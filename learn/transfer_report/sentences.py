@@ -52,7 +52,7 @@ def claim(zero: pd.DataFrame, of_units: pd.DataFrame, ratio: pd.Series | None, g
     floor = ""
     if ratio is not None:
         times = number(ratio["value"], ratio["low"], ratio["high"], digits=2)
-        floor = f"; who knows all of the gear but its friction, {of_row(row_of(zero, FLOOR))}: ratio {times}"
+        floor = f"; who knows all of the gear but its friction errs in {of_row(row_of(zero, FLOOR))}: ratio {times}"
     return (
         f"{references} healthy recordings at each operating point identify a gear, and its twin names faults that "
         f"nobody has recorded, without any training gear or label: it errs in {of_row(row_of(zero, TWIN))} of the "

@@ -100,7 +100,7 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
         "few_units": tables.shots_text(few, "unit", labelled, marks),
         "draws": adapting["draws"].iloc[0],
         "forgotten": tables.forgetting_text(runs.tables(adapting, "gears")),
-        "detection": detections.detections_text(found),
+        "detection": None if found.empty else detections.detections_text(found),
         "worst": detections.worst_text(predictions[best]),
         **practice(runs, methods, predictions, units, best),
         "disturbed": cases.map("{:.1f}".format),

@@ -175,6 +175,7 @@ def test_a_single_gear_has_no_temperature():
 
 
 def test_detection_has_a_size_or_a_reason(monkeypatch):
+    assert detections.detections("recordings", {"any": predictions(0.0, "few")}).empty
     monkeypatch.setattr(detections, "RATE", 0.05)  # fewer gears are made up than 1 % needs
     table = predictions(0.0, "missed")
     p = table[list(CLASSES)].to_numpy(copy=True)
