@@ -16,6 +16,7 @@ ON_GEARS := zero_shot $(if $(SMALL),inputs_small,inputs inputs_features) transfe
             $(if $(SMALL),,transfer_extra_trees transfer_cnn transfer_rezero transfer_map transfer_map_foreign)
 ON_PAPER := zero_shot_disturbed
 comma := ,
+JUDGED := $(if $(SMALL),,'gears=[$(subst $() $(),$(comma),$(shell seq 20))]')
 QUICK := $(if $(SMALL),shots=[1$(comma)2] draws=1 protocol.folds=2 protocol.development=0 \
          protocol.labelled=2 protocol.unlabelled=1 protocol.kept_out=1)
 # The small forms of the loop's studies: effects of every place to hide and to search; undeclared effects that are left out.
@@ -81,7 +82,7 @@ paper-choices: $(READY)  ## the choices that the paper leaves open, fitted to it
 transfer: data  ## beyond the paper: networks, transfer to gears never seen, report/transfer.html (SMALL=1: a few minutes)
 	@set -e; \
 	for set in $(GEARS)-bench $(FOREIGN); do $(SWG) generate grid=$${set%-*} condition=$${set##*-}; done; \
-	$(SWG) oracle grid=$(GEARS); \
+	$(SWG) twin grid=$(GEARS) $(JUDGED); \
 	for name in $(ON_PAPER); do $(SWG) train experiment=$$name grid=$(GRID); done; \
 	for name in $(ON_GEARS); do $(SWG) train experiment=$$name grid=$(GEARS) $(QUICK); done; \
 	$(SWG) transfer-report grid=$(GEARS) paper_grid=$(GRID) started=$(STARTED)

@@ -19,7 +19,8 @@ class Adapted:
     ----------
     specimens : DataFrame
         ``gear``, ``label``, ``variant``, ``shots``; ``error``, share of wrong decisions over operating points and draws
-        [%]; ``unadapted``, the same of the source model [%].
+        [%]; ``unit``, the same of decisions by all operating points together; ``unadapted``, ``error`` of the source
+        model [%].
     gears : DataFrame
         ``gear``, ``shots``; ``error`` and ``unadapted`` as above [%]; ``forgotten``, loss of accuracy on source gears
         by the adaptation [points].
@@ -41,6 +42,7 @@ class Adapted:
         target: Target,
         shots: int,
         wrong: Sequence[Bool[np.ndarray, " judged"]],
+        wrong_unit: Sequence[Bool[np.ndarray, " judged"]],
         unadapted: Bool[np.ndarray, " judged"],
         forgotten: Sequence[float],
     ) -> "Adapted":
@@ -54,6 +56,8 @@ class Adapted:
         shots : int
         wrong : sequence of array (judged,)
             Whether the adapted model of each draw decides wrongly.
+        wrong_unit : sequence of array (judged,)
+            The same of its decision on the whole unit.
         unadapted : array (judged,)
             The same of the source model.
         forgotten : sequence of float
@@ -61,8 +65,11 @@ class Adapted:
         """
         error: Float[np.ndarray, " judged"] = 100 * np.mean(wrong, axis=0)
         facts = table.iloc[target.judged][list(SPECIMEN)]
-        rows = facts.assign(label=facts["label"].astype(str), shots=shots, error=error, unadapted=100.0 * unadapted)
-        specimens = rows.groupby([*SPECIMEN, "shots"])[["error", "unadapted"]].mean().reset_index()
+        rows = facts.assign(
+            label=facts["label"].astype(str), shots=shots, error=error,
+            unit=100 * np.mean(wrong_unit, axis=0), unadapted=100.0 * unadapted,
+        )  # fmt: skip
+        specimens = rows.groupby([*SPECIMEN, "shots"])[["error", "unit", "unadapted"]].mean().reset_index()
         of_gear = (target.gear, shots, error.mean(), 100.0 * unadapted.mean(), float(np.mean(forgotten)))
         names = ["gear", "shots", "error", "unadapted", "forgotten"]
         return cls(specimens, pd.DataFrame([of_gear], columns=names))

@@ -8,7 +8,8 @@ import numpy as np
 from learn.adaptation.adapted import Adapted
 from learn.adaptation.rezero import Rezero
 from learn.adaptation.transfer import Adaptation, Labelled
-from learn.inputs.inputs import LearningSet
+from learn.inputs.inputs import SPECIMEN, LearningSet
+from learn.methods.product import product
 from learn.protocols.levels import Episode, Target
 from swgsim.common.seeds import seed_hash
 
@@ -39,6 +40,7 @@ def adapt_and_judge(
         Number of draws of the shots; the draws are the same for all methods.
     """
     y, gears = data.table["label"].astype(str).to_numpy(), data.table["gear"].to_numpy()
+    unit = data.table.groupby(list(SPECIMEN), observed=True).ngroup().to_numpy()
 
     def trained(given: LearningSet, rows: np.ndarray) -> Any:
         return source_model(np.asarray(given.features[rows]), y[rows], gears[rows])
@@ -48,6 +50,10 @@ def adapt_and_judge(
             return np.zeros(0, bool)
         return np.asarray(model.predict(given.features[rows]) != y[rows])
 
+    def wrong_units(model: Any, given: LearningSet, rows: np.ndarray) -> np.ndarray:
+        together = product(np.asarray(model.predict_proba(given.features[rows])), unit[rows])
+        return np.asarray(np.asarray(model.classes_)[together.argmax(axis=1)] != y[rows])
+
     def adapted(episode: Episode) -> Iterator[Adapted]:
         kept = Labelled(np.asarray(data.features[episode.source]), y[episode.source])
         model = trained(data, episode.source)
@@ -55,6 +61,7 @@ def adapt_and_judge(
         of_target = [wrong(model, data, target.judged) for target in episode.targets]
         for number in shots:
             judged: list[list[np.ndarray]] = [[] for _ in episode.targets]
+            units: list[list[np.ndarray]] = [[] for _ in episode.targets]
             forgotten: list[list[float]] = [[] for _ in episode.targets]
             for draw in range(draws if number else 1):
                 if isinstance(adaptation, Rezero):
@@ -66,9 +73,10 @@ def adapt_and_judge(
                     else:
                         new, inputs = _adapted(data, y, model, kept, target, adaptation, number, draw), data
                     judged[i].append(wrong(new, inputs, target.judged))
+                    units[i].append(wrong_units(new, inputs, target.judged))
                     forgotten[i].append(_lost(before, wrong(new, inputs, episode.kept_out)))
-            for target, each, plain, lost in zip(episode.targets, judged, of_target, forgotten, strict=True):
-                yield Adapted.of_gear(data.table, target, number, each, plain, lost)
+            for i, target in enumerate(episode.targets):
+                yield Adapted.of_gear(data.table, target, number, judged[i], units[i], of_target[i], forgotten[i])
 
     return Adapted.of([part for episode in episodes for part in adapted(episode)])
 

@@ -1,4 +1,4 @@
-"""Probability of detection, false alarms, and the operating point and class with the lowest recall."""
+"""Alarms at a rate of false alarms, and the sizes of faults that they find."""
 
 import numpy as np
 import pandas as pd
@@ -12,21 +12,38 @@ from learn.protocols.fault_size import UNITS, size
 from swgsim.storage.labelled_signals import CLASSES
 
 
-def detected(predictions: pd.DataFrame) -> Bool[np.ndarray, " row"]:
-    """Whether the decision is a fault, right or wrong."""
-    return decisions(predictions) != "healthy"
+def alarms(predictions: pd.DataFrame, rate: float) -> Bool[np.ndarray, " row"]:
+    """Whether each row alarms, if the share `rate` of healthy rows may.
+
+    A row alarms if its probability of healthy is as low as that of so few healthy rows of the other gears: the p-value
+    (1 + number as low) / (1 + number) is at most `rate`. This keeps the rate if healthy rows of all gears scatter
+    alike; :func:`false_alarm_rate` shows what it is. With fewer than 1 / rate - 1 healthy rows nothing alarms.
+    """
+    healthy, gears = predictions["healthy"].to_numpy(dtype=float), predictions["gear"].to_numpy()
+    is_healthy, found = truth(predictions) == "healthy", np.zeros(len(predictions), bool)
+    for gear in np.unique(gears):
+        here = gears == gear
+        others = np.sort(healthy[is_healthy & ~here])
+        as_low = np.searchsorted(others, healthy[here], side="right")
+        found[here] = 1 + as_low <= rate * (1 + len(others))
+    return found
 
 
-def detection_table(predictions: pd.DataFrame) -> pd.DataFrame:
+def detection_table(predictions: pd.DataFrame, alarm: Bool[np.ndarray, " row"]) -> pd.DataFrame:
     """Detectable sizes by fault class, over all operating points.
+
+    Parameters
+    ----------
+    predictions : DataFrame
+    alarm : array (row,)
+        Such as of :func:`alarms`.
 
     Returns
     -------
     DataFrame
-        One row per fault in the predictions: ``label``, ``hits`` [%] of :func:`detected`, ``a90``, ``a90_95`` and
-        ``reason``.
+        One row per fault in the predictions: ``label``, ``hits`` [%], ``a90``, ``a90_95`` and ``reason``.
     """
-    faulty = predictions.assign(hit=detected(predictions), label=truth(predictions))[truth(predictions) != "healthy"]
+    faulty = predictions.assign(hit=alarm, label=truth(predictions))[truth(predictions) != "healthy"]
     rows = []
     for key, part in faulty.groupby("label"):
         label, hits = str(key), part["hit"].to_numpy(dtype=bool)
@@ -37,7 +54,7 @@ def detection_table(predictions: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def false_alarm_rate(predictions: pd.DataFrame) -> dict[str, float]:
+def false_alarm_rate(predictions: pd.DataFrame, alarm: Bool[np.ndarray, " row"]) -> dict[str, float]:
     """Share of healthy recordings with an alarm [%], and Wilson's 95 % interval for the effective number of recordings.
 
     This number has a binomial variance equal to the variance between gears (Dean and Pagano, Journal of Survey
@@ -51,7 +68,7 @@ def false_alarm_rate(predictions: pd.DataFrame) -> dict[str, float]:
     """
     from statsmodels.stats.proportion import proportion_confint
 
-    healthy = predictions.assign(alarm=detected(predictions))[truth(predictions) == "healthy"]
+    healthy = predictions.assign(alarm=alarm)[truth(predictions) == "healthy"]
     if healthy.empty:
         raise ValueError("no healthy recording among the predictions: add healthy specimens to judge false alarms")
     by_gear = healthy.groupby("gear")["alarm"].mean()

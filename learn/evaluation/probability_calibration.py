@@ -4,8 +4,8 @@ import numpy as np
 import pandas as pd
 from jaxtyping import Float, Int
 
-# Lower bound of probabilities in logarithms, as a forest may give a class no vote.
-SMALLEST = 1e-6
+from learn.methods.product import SMALLEST
+
 COLDEST, HOTTEST = 0.05, 20.0
 
 

@@ -1,4 +1,4 @@
-"""Abstention: decisions on confident recordings only, sets of classes, and novelty of gears."""
+"""Abstention: decisions on confident recordings only, and sets of classes."""
 
 import numpy as np
 import pandas as pd
@@ -89,9 +89,15 @@ def conformal_threshold(
     return float(true[order][enough.argmax()]) if enough.any() else -np.inf
 
 
-def prediction_sets(probabilities: Float[np.ndarray, "row class"], threshold: float) -> Bool[np.ndarray, "row class"]:
-    """Classes in the prediction set of each recording."""
-    return probabilities >= threshold
+def class_thresholds(
+    probabilities: Float[np.ndarray, "row class"], y: Int[np.ndarray, " row"], gears: np.ndarray, nominal: float
+) -> Float[np.ndarray, " class"]:
+    """A :func:`conformal_threshold` for every class, from its own recordings: the coverage then holds in each class.
+
+    Also called Mondrian conformal prediction (Vovk, Asian Conference on Machine Learning, 2012).
+    """
+    of_class = (y == number for number in range(probabilities.shape[1]))
+    return np.array([conformal_threshold(probabilities[r], y[r], gears[r], nominal) for r in of_class])
 
 
 def set_figures(sets: Bool[np.ndarray, "row class"], y: Int[np.ndarray, " row"], gears: np.ndarray) -> pd.DataFrame:
@@ -106,47 +112,3 @@ def set_figures(sets: Bool[np.ndarray, "row class"], y: Int[np.ndarray, " row"],
     sizes = sets.sum(axis=1)
     rows = pd.DataFrame({"coverage": sets[np.arange(len(y)), y], "mean_size": sizes, "empty": sizes == 0})
     return rows.groupby(pd.Index(gears, name="gear")).mean()
-
-
-def gear_novelty(
-    source: Float[np.ndarray, "gear feature"], target: Float[np.ndarray, "target feature"]
-) -> Float[np.ndarray, " target"]:
-    """Mahalanobis distance of gears to the source gears, divided by the root of the number of features.
-
-    There are fewer gears than features, so the covariance between gears is shrunk (Ledoit and Wolf, 2004). Before,
-    every feature is divided by its standard deviation over the source gears.
-
-    Parameters
-    ----------
-    source : array (gear, feature)
-        One row per source gear: means of its healthy references at all operating points.
-    target : array (target, feature)
-        The same of other gears; the distance of a source gear would be too small.
-
-    Raises
-    ------
-    ValueError
-        If there are fewer than 3 source gears.
-    """
-    from sklearn.covariance import LedoitWolf
-
-    if len(source) < 3:
-        raise ValueError(f"{len(source)} source gears, at least 3 are needed for the spread of gears")
-    spread = source.std(axis=0)
-    used = spread > 1e-12 * np.abs(source).max(axis=0)
-    middle, spread = source.mean(axis=0)[used], spread[used]
-    covariance = LedoitWolf(assume_centered=True).fit((source[:, used] - middle) / spread)
-    return np.sqrt(covariance.mahalanobis((target[:, used] - middle) / spread) / used.sum())
-
-
-def novelty_left_out(gears: Float[np.ndarray, "gear feature"]) -> Float[np.ndarray, " gear"]:
-    """Leave-one-out distance of every gear to all others: the usual distances within a population."""
-    return np.concatenate([gear_novelty(np.delete(gears, g, axis=0), gears[[g]]) for g in range(len(gears))])
-
-
-def novelty_auroc(usual: Float[np.ndarray, " known"], novel: Float[np.ndarray, " novel"]) -> float:
-    """Probability that a novel gear has a larger distance than a usual one; 0.5 is chance, 1 is full separation."""
-    from sklearn.metrics import roc_auc_score
-
-    truth = np.concatenate([np.zeros(len(usual)), np.ones(len(novel))])
-    return float(roc_auc_score(truth, np.concatenate([usual, novel])))

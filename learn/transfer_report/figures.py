@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from learn.evaluation.probability_calibration import expected_calibration_error
 from learn.evaluation.selective import coverage_at
 from learn.transfer_report.studies import verdicts
-from learn.transfer_report.tables import FOREST, FROM_SCRATCH, ORACLES, row_of
+from learn.transfer_report.tables import FOREST, FROM_SCRATCH, LIMITS, row_of
 from swgsim.common import style
 
 WIDTH = 6.0  # inch
@@ -33,18 +33,40 @@ def intervals(axes: Axes, table: pd.DataFrame, colours: list[str], heights: np.n
 
 
 def errors(table: pd.DataFrame) -> bytes:
-    """Errors of :func:`.tables.zero_shot` with intervals; oracles are lines."""
-    methods = table.drop(index=ORACLES).sort_values("value", ascending=False)
+    """Errors of :func:`.tables.zero_shot` with intervals; those who know the gear are lines."""
+    methods = table.drop(index=LIMITS, errors="ignore").sort_values("value", ascending=False)
     picture = style.figure(WIDTH, 1.3 + 0.3 * len(methods))
     axes = picture.add_subplot()
     heights = np.arange(len(methods))
     intervals(axes, methods, [ORANGE if name == FOREST else BLUE for name in methods.index], heights)
-    for name, dashes in zip(ORACLES, ("--", ":"), strict=True):
+    for name, dashes in zip(LIMITS, ("-", "--", ":"), strict=True):
+        if name not in table.index:
+            continue
         axes.axvline(row_of(table, name)["value"], color="black", linewidth=1.1, linestyle=dashes, label=name)
     axes.set_yticks(heights, list(methods.index))
     axes.set_xlim(0, None)
     style.label(axes, "error [%]", "")
     picture.legend(loc="outside upper center", ncols=2)
+    return style.png(picture)
+
+
+def known(table: pd.DataFrame) -> bytes:
+    """Errors of :func:`.twins.known` over what is known; full marks for recordings, empty ones for units."""
+    levels = list(dict.fromkeys(table["known"]))
+    picture = style.figure(WIDTH, 4.6)
+    axes = picture.add_subplot()
+    for number, (who, rows) in enumerate(table.groupby("who", sort=False)):
+        colour, places = COLOURS[number], [levels.index(each) + 0.12 * number for each in rows["known"]]
+        for of, face in (("value", colour), ("unit", "white")):
+            ends = ("low", "high") if of == "value" else ("unit_low", "unit_high")
+            axes.vlines(places, rows[ends[0]], rows[ends[1]], color=colour, linewidth=1.1)
+            text = f"{who}, per {'recording' if of == 'value' else 'unit'}"
+            axes.plot(places, rows[of], MARKERS[number], color=colour, markerfacecolor=face, label=text)
+    axes.set_xticks(range(len(levels)), [fill(each, 13) for each in levels])
+    axes.set_ylim(0, None)
+    style.label(axes, "known of the gear", "error [%]")
+    axes.margins(x=0.12)
+    picture.legend(loc="outside lower center", fontsize=9, frameon=False)
     return style.png(picture)
 
 

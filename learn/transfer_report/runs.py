@@ -10,15 +10,12 @@ import pandas as pd
 import yaml
 
 from learn.evaluation.bootstrap import specimens
-from learn.inputs.inputs import OPERATING_POINT, SPECIMEN
 from learn.jobs import settings
 from learn.jobs.identity import code_version
 from learn.tracking import Store, finished_runs, table_of
 from learn.transfer_report.seeds import averaged, mean_of
 from swgsim.common.style import words
-from swgsim.oracle.columns import KNOWN
 from swgsim.storage import storage
-from swgsim.storage.labelled_signals import CLASSES
 
 # A study and the experiments that make it: on the gears never seen, and on the paper's grid.
 EXPERIMENTS: Mapping[str, tuple[str, ...]] = {
@@ -62,7 +59,6 @@ ADAPTATIONS: Mapping[str, str] = {
     "structure_transfer": "STRUT",
     "rezero": "rezero, healthy recordings only",
 }
-FACTS = ["row", *SPECIMEN, "severity", *OPERATING_POINT]
 
 
 @dataclass(frozen=True)
@@ -73,6 +69,8 @@ class Runs:
     ----------
     grids, paths, digests : mapping
         ``bench`` and ``disturbed`` to the grid, the file and the digest of the data set.
+    mistaken : mapping
+        Case of a twin with mistaken beliefs to the file of ``swg twin``, which need not exist.
     store : Store
     frame : DataFrame
         One row per configuration, newest first: parameters, metrics (means over its seeds, :func:`.seeds.averaged`) and
@@ -82,6 +80,7 @@ class Runs:
     grids: Mapping[str, str]
     paths: Mapping[str, Path]
     digests: Mapping[str, str]
+    mistaken: Mapping[str, Path]
     store: Store
     frame: pd.DataFrame
 
@@ -165,7 +164,8 @@ def collected(config: Mapping[str, Any]) -> Runs:
     digests = {name: storage.digest(path) for name, path in paths.items()}
     foreign = [storage.digest(path) for path in Path(config["data"]).glob("*-*.h5")]
     store = settings.store(config["tracking"])
-    return Runs(grids, paths, digests, store, present_runs(store, digests.values(), foreign))
+    mistaken = {case: Path(config["data"]) / f"{name}.parquet" for case, name in config["mistaken"].items()}
+    return Runs(grids, paths, digests, mistaken, store, present_runs(store, digests.values(), foreign))
 
 
 def present_runs(store: Store, digests: Iterable[str], foreign: Iterable[str] = ()) -> pd.DataFrame:
@@ -222,35 +222,3 @@ def trials(runs: pd.DataFrame) -> list[int]:
     """Number of options that were tried, of every run with options."""
     counts = runs.filter(regex=r"^trial/").notna().sum(axis="columns")
     return [int(count) for count in counts if count]
-
-
-def oracle(path: Path, digest: str, predictions: pd.DataFrame) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Predictions of the oracle and of the oracle that knows the session, on the recordings of some predictions.
-
-    Parameters
-    ----------
-    path : Path
-        ``<grid>-<condition>-oracle.parquet``.
-    digest : str
-        Digest of the data set.
-    predictions : DataFrame
-        Predictions of any method, for the judged rows and their facts.
-
-    Raises
-    ------
-    ValueError
-        If the file is missing, belongs to another data set or lacks a judged gear, with the command that makes it.
-    """
-    grid, condition = path.stem.removesuffix("-oracle").rsplit("-", 1)
-    remedy = f"run 'swg oracle grid={grid} condition={condition}'"
-    if not path.is_file():
-        raise ValueError(f"no oracle {path}: {remedy}")
-    table = pd.read_parquet(path)
-    if table.attrs.get("data") != digest:
-        raise ValueError(f"{path} belongs to another data set than the present {grid}-{condition}.h5: {remedy}")
-    joined = predictions[FACTS].merge(table, on="row", how="left")
-    missing = joined[joined[CLASSES[0]].isna()]
-    if len(missing):
-        raise ValueError(f"{path} lacks gear {missing.iloc[0]['gear']}, which is judged: {remedy}")
-    known = joined[FACTS].join(joined[[KNOWN + label for label in CLASSES]].set_axis(list(CLASSES), axis="columns"))
-    return joined[[*FACTS, *CLASSES]], known

@@ -7,7 +7,7 @@ from re import fullmatch
 import pandas as pd
 from pandas.api.types import is_numeric_dtype
 
-MEASURED = ("error", "unadapted", "forgotten")  # columns of tables of runs; the others say of what
+MEASURED = ("error", "unit", "unadapted", "forgotten")  # columns of tables of runs; the others say of what
 
 
 def averaged(runs: pd.DataFrame) -> pd.DataFrame:

@@ -4,7 +4,7 @@ Functions return numbers; those that end with ``_text`` return the text of a tab
 """
 
 from collections.abc import Mapping
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 import pandas as pd
@@ -17,12 +17,12 @@ from learn.evaluation.bootstrap import (
     paired_comparison,
     ratio_to,
 )
+from learn.transfer_report.posteriors import FLOOR, ORACLE, ORACLE_OF_SESSION
 from learn.transfer_report.seeds import spread_text
 from swgsim.common.seeds import generator
 
 FOREST = "random forest on Selection 1"  # the paper's best on Selection 1, depth 7
-ORACLE, ORACLE_OF_SESSION = "oracle", "oracle that knows the session"
-ORACLES = [ORACLE, ORACLE_OF_SESSION]
+LIMITS = [FLOOR, ORACLE, ORACLE_OF_SESSION]  # they know the gear
 SEEDS = "seeds: standard deviation [points]"
 FROM_SCRATCH = ": from scratch"  # end of the name of a method that uses no source gear
 REZERO = ": rezero, healthy recordings only"  # end of the name of a method that uses no recorded fault of the new gear
@@ -38,6 +38,17 @@ def number(value: float, low: float = np.nan, high: float = np.nan, digits: int 
         return "-"
     known = np.isfinite(low) and np.isfinite(high)
     return f"{value:.{digits}f}{unit}" + (f" ({low:.{digits}f} to {high:.{digits}f})" if known else "")
+
+
+def finite(value: Any) -> float | None:
+    """A number for JSON, None if it is not finite."""
+    return round(float(value), 4) if np.isfinite(value) else None
+
+
+def in_json(row: pd.Series, prefix: str = "") -> dict[str, Any]:
+    """``value`` and ``ci95`` of a row with ``value``, ``low`` and ``high``, or the same with a prefix."""
+    value, low, high = (finite(row[prefix + name]) for name in ("value", "low", "high"))
+    return {"value": value, "ci95": [low, high]}
 
 
 def row_of(table: pd.DataFrame, name: str) -> pd.Series:
@@ -87,12 +98,13 @@ def difference(errors: pd.DataFrame, method: str, reference: str) -> pd.Series:
     return row_of(gear_bootstrap(both, difference_to(reference), rng), method)
 
 
-def _named(prefix: str, table: pd.DataFrame) -> pd.DataFrame:
+def named(prefix: str, table: pd.DataFrame) -> pd.DataFrame:
+    """A table with ``value``, ``low`` and ``high`` under other names."""
     return table.rename(columns={"value": prefix, "low": f"{prefix}_low", "high": f"{prefix}_high"})
 
 
 def zero_shot(errors: pd.DataFrame, development: pd.Series, fit_seconds: pd.Series) -> pd.DataFrame:
-    """Methods without adaptation and oracles on gears never seen.
+    """Methods without adaptation, and :data:`LIMITS`, on gears never seen.
 
     Parameters
     ----------
@@ -118,14 +130,14 @@ def zero_shot(errors: pd.DataFrame, development: pd.Series, fit_seconds: pd.Seri
         raise ValueError(f"no run of the {FOREST}, the reference of all ratios: add classifier=rf features=selection_1")
     rng = generator("report", "zero-shot")
     table = gear_bootstrap(errors, mean_error, rng)
-    table = table.join(_named("ratio", gear_bootstrap(errors, ratio_to(FOREST), rng)))
-    table = table.join(_named("oracle", gear_bootstrap(errors, ratio_to(ORACLE), rng)))
+    table = table.join(named("ratio", gear_bootstrap(errors, ratio_to(FOREST), rng)))
+    table = table.join(named("oracle", gear_bootstrap(errors, ratio_to(ORACLE), rng)))
     return table.assign(development=development, fit_seconds=fit_seconds)
 
 
 def best_of(table: pd.DataFrame) -> str:
     """The method of :func:`zero_shot` with the smallest error on the judged gears."""
-    return str(table["value"].drop(ORACLES, errors="ignore").idxmin())
+    return str(table["value"].drop(LIMITS, errors="ignore").idxmin())
 
 
 def highest(scores: pd.Series) -> str | None:
@@ -134,23 +146,17 @@ def highest(scores: pd.Series) -> str | None:
     return str(known.idxmax()) if len(known) else None
 
 
-def representations_text(table: pd.DataFrame) -> pd.DataFrame:
-    """Error of every classifier (rows) on every representation (columns); the oracles know everything."""
-    names = table.index.to_series().str.partition(" on ")
-    cells = table.assign(text=text_of(table), method=names[0], on=names[2].where(names[2] != "", "all that is known"))
-    wide = cells.pivot(index="method", columns="on", values="text").fillna("-")
-    least = {key: cells.groupby(key)["value"].min().sort_values().index for key in ("method", "on")}
-    return wide.loc[least["method"], least["on"]].rename_axis("error [%]")
-
-
-def methods_text(table: pd.DataFrame, errors: pd.DataFrame) -> pd.DataFrame:
-    """Every method in comparison with the paper's forest and with the oracle."""
-    compared = paired_comparison(errors.drop(columns=ORACLES), FOREST, generator("report", "against the forest"))
-    rows = table.join(_named("change", compared)).sort_values("value")
+def methods_text(table: pd.DataFrame, errors: pd.DataFrame, of_units: pd.DataFrame) -> pd.DataFrame:
+    """Every method in comparison with the paper's forest and with the oracle, and its error of units."""
+    compared = paired_comparison(
+        errors.drop(columns=LIMITS, errors="ignore"), FOREST, generator("report", "against the forest")
+    )
+    rows = table.join(named("change", compared)).sort_values("value")
     gears = [f"{b:.0f} of {g:.0f}" if g > 0 else "-" for b, g in rows[["better_gears", "gears"]].to_numpy()]
     return pd.DataFrame(
         {
             "error [%]": text_of(rows),
+            "error of units [%]": text_of(of_units.loc[rows.index]),
             "ratio to the paper's forest": text_of(rows, "ratio", 2),
             "ratio to the oracle": text_of(rows, "oracle", 2),
             "change to the paper's forest [points]": text_of(rows, "change"),
@@ -158,7 +164,7 @@ def methods_text(table: pd.DataFrame, errors: pd.DataFrame) -> pd.DataFrame:
             "better in gears": gears,
             "error on development gears [%]": [number(100 - score) for score in rows["development"]],
             "fit, all folds [s]": [number(seconds, digits=0) for seconds in rows["fit_seconds"]],
-            SEEDS: ["-" if name in ORACLES else text for name, text in zip(rows.index, spread_text(rows), strict=True)],
+            SEEDS: ["-" if name in LIMITS else text for name, text in zip(rows.index, spread_text(rows), strict=True)],
         },
         index=rows.index.rename("method"),
     )
@@ -172,14 +178,14 @@ def few_shot(errors: pd.DataFrame, adapted: Mapping[str, pd.DataFrame]) -> pd.Da
     errors : DataFrame
         As of :func:`zero_shot`, for the forest.
     adapted : mapping
-        Method to its table of specimens, with ``shots``, ``error`` and ``unadapted`` [%].
+        Method to its table of specimens, with ``shots``, ``error``, ``unit`` and ``unadapted`` [%].
 
     Returns
     -------
     DataFrame
         One row per ``method`` and ``shots`` (0: without labels, level Z2): ``value``, ``low``, ``high`` [%]; ``ratio``
-        to the forest without transfer and ``gain``, the change of the source model by adapting [points], with
-        ``_low`` and ``_high``; ``unadapted`` [%].
+        to the forest without transfer, ``gain``, the change of the source model by adapting [points], and ``unit``, the
+        error of units [%], with ``_low`` and ``_high``; ``unadapted`` [%].
     """
     forest = errors[[*SPECIMEN, FOREST]].rename(columns={FOREST: "error"})
     rows = []
@@ -189,8 +195,10 @@ def few_shot(errors: pd.DataFrame, adapted: Mapping[str, pd.DataFrame]) -> pd.Da
         changes = {name: part.assign(error=part["error"] - part["unadapted"]) for name, part in here.items()}
         rng = generator("report", "few-shot", shots)
         table = gear_bootstrap(both, mean_error, rng).drop(index=FOREST)
-        table = table.join(_named("ratio", gear_bootstrap(both, ratio_to(FOREST), rng)))
-        table = table.join(_named("gain", gear_bootstrap(paired(changes), mean_error, rng)))
+        table = table.join(named("ratio", gear_bootstrap(both, ratio_to(FOREST), rng)))
+        table = table.join(named("gain", gear_bootstrap(paired(changes), mean_error, rng)))
+        of_units = {name: part.assign(error=part["unit"]) for name, part in here.items()}
+        table = table.join(named("unit", gear_bootstrap(paired(of_units), mean_error, rng)))
         unadapted = pd.Series({name: part["unadapted"].mean() for name, part in here.items()})
         rows.append(table.assign(shots=shots, unadapted=unadapted).rename_axis("method").reset_index())
     return pd.concat(rows, ignore_index=True)

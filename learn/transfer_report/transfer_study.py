@@ -5,29 +5,20 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pandas as pd
+import yaml
 
-from learn.evaluation.bootstrap import gear_errors, specimens
+from learn.evaluation.bootstrap import specimens
 from learn.paper.paper_page import versions
-from learn.transfer_report import confidence, figures, sentences, studies, tables
+from learn.transfer_report import confidence, detections, figures, sentences, studies, tables, transfer_json, twins
 from learn.transfer_report.importance import importance, importance_text
-from learn.transfer_report.runs import Runs, by_method, collected, development_scores, oracle, trials
-from learn.transfer_report.tables import (
-    FOREST,
-    ORACLE,
-    ORACLE_OF_SESSION,
-    best_adapted,
-    best_of,
-    best_rezeroed,
-    highest,
-    row_of,
-)
+from learn.transfer_report.posteriors import OF_ORACLE, OF_TWIN, OF_UNITS, mismatch, posteriors
+from learn.transfer_report.runs import Runs, by_method, collected, development_scores, trials
+from learn.transfer_report.tables import FOREST, ORACLE, ORACLE_OF_SESSION, best_of, row_of
 from swgsim.common.files import write_json, write_text
 from swgsim.common.html import environment
 from swgsim.storage import storage
 
-SHOTS = (1, 2, 5, 10)  # of transfer.json
 COMPARED = (FOREST, "logistic regression on harmonics", "MLP on harmonics", ORACLE)  # with the best, for calibration
 
 
@@ -51,7 +42,7 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
     write_json(folder / "transfer.json", content)
     write_text(folder / "transfer.html", html)
     seconds = time.time() - began
-    print(f"{folder / 'transfer.html'}: {page['headline']} ({seconds:.1f} s)")
+    print(f"{folder / 'transfer.html'}: {page['claim'] or page['headline']} ({seconds:.1f} s)")
     return {"seconds": seconds}
 
 
@@ -66,18 +57,23 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
     """
     methods, adapting = by_method(runs.required("zero_shot")), by_method(runs.required("transfer"))
     predictions = runs.predictions(methods)
-    bench = runs.paths["bench"]
-    oracle_path = bench.with_name(f"{bench.stem}-oracle.parquet")
-    both = oracle(oracle_path, runs.digests["bench"], next(iter(predictions.values())))
-    oracles = dict(zip(tables.ORACLES, both, strict=True))
+    judged = next(iter(predictions.values()))
+    oracles, joint = not_learned(runs, judged)
     errors = tables.paired({**runs.errors(methods), **{name: specimens(table) for name, table in oracles.items()}})
     zero = tables.zero_shot(errors, development_scores(methods), methods["fit_seconds"].astype(float))
-    zero = zero.join(methods[["seeds", "spread"]])
+    zero = zero.join(methods[["seeds", "spread"]]).fillna({"seeds": 1})
+    predictions |= oracles
+    units = twins.of_units(predictions, joint)
+    of_units = twins.errors(units)
     few = tables.few_shot(errors, runs.tables(adapting, "specimens"))
     inputs, cases = runs.required("inputs"), studies.disturbed_cases(runs.required("zero_shot_disturbed"))
     input_errors = runs.errors(inputs)
     of_inputs = studies.inputs(inputs, input_errors)
     best, gears = best_of(zero), int(errors["gear"].nunique())
+    found = pd.concat(
+        detections.detections(of, {name: each[name] for name in compared(best, each)})
+        for of, each in (("recordings", predictions), ("units", units))
+    )
     seconds = time.time() - (started or began) + (0 if started else runs.seconds())
     kind = "measured" if started else "sum of the steps"
 
@@ -92,60 +88,109 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
     page = {
         "grid": runs.grids["bench"],
         "headline": sentences.headline(zero, gears),
+        "claim": None,
         "lead": sentences.lead(zero, few, development_scores(adapting), cases),
         "best": best,
         "errors": figures.errors(zero),
-        "representations": tables.representations_text(zero),
-        "methods": tables.methods_text(zero, errors),
+        "methods": tables.methods_text(zero, errors, of_units),
+        "known": figures.known(twins.known(zero, of_units, few, without_references(runs))),
         "inputs": studies.inputs_text(of_inputs),
         "shots": figures.shots(few, levels) if (few["shots"] > 0).any() else None,
         "few": tables.shots_text(few, "", labelled, marks, adapting),
-        "gains": tables.shots_text(few, "gain", labelled, marks),
+        "few_units": tables.shots_text(few, "unit", labelled, marks),
         "draws": adapting["draws"].iloc[0],
         "forgotten": tables.forgetting_text(runs.tables(adapting, "gears")),
-        **practice(runs, methods, {**predictions, **oracles}, errors, best),
+        "detection": None if found.empty else detections.detections_text(found),
+        "worst": detections.worst_text(predictions[best]),
+        **practice(runs, methods, predictions, units, best),
         "disturbed": cases.map("{:.1f}".format),
         "studies": studies_of(runs, inputs, input_errors),
         "command": runs.command,
         "facts": facts(runs, adapting.iloc[0], [*trials(methods), *trials(adapting)], f"{seconds:.0f} ({kind})"),
     }
-    return page, content_of(zero, few, of_inputs, cases, gears, seconds)
+    content = transfer_json.content(zero, of_units, few, of_inputs, cases, gears, seconds)
+    content["detection"] = detections.detections_json(found)
+    if twins.TWIN in predictions:
+        cases = twins.mismatches(every_twin(runs, judged))
+        ratio = twins.ratio_to_floor(errors)
+        page["claim"] = sentences.claim(zero, of_units, ratio, gears, references(runs))
+        page["twins"] = twins.mismatches_text(cases)
+        content["twin"] = twins.twin_json(zero, ratio, cases)
+    return page, content
+
+
+def not_learned(runs: Runs, judged: pd.DataFrame) -> tuple[dict[str, pd.DataFrame], dict[str, pd.DataFrame]]:
+    """Predictions of oracles, twin and floor, of recordings, and of units by those that take one as a whole.
+
+    ``swg twin`` has all of them; without it, or without its comparison, the oracles are those of ``swg oracle``.
+    `judged` are predictions of any method.
+    """
+    bench, digest = runs.paths["bench"], runs.digests["bench"]
+    oracle, twin = (bench.with_name(f"{bench.stem}-{name}.parquet") for name in ("oracle", "twin"))
+    found, joint = (posteriors(twin, digest, judged, of) if twin.is_file() else {} for of in (OF_TWIN, OF_UNITS))
+    if ORACLE not in found:
+        found |= posteriors(oracle, digest, judged, OF_ORACLE)
+    return found, joint
+
+
+def every_twin(runs: Runs, judged: pd.DataFrame) -> dict[str, tuple[pd.DataFrame, pd.DataFrame]]:
+    """Predictions of twins with true and with mistaken beliefs, by case, as far as ``swg twin`` was run."""
+    bench = runs.paths["bench"]
+    files = {"matched": bench.with_name(f"{bench.stem}-twin.parquet"), **runs.mistaken}
+    found = {case: mismatch(path, judged, runs.digests["bench"]) for case, path in files.items()}
+    return {case: each for case, each in found.items() if each}
+
+
+def without_references(runs: Runs) -> pd.DataFrame:
+    """Errors of the methods of level Z0 as :func:`.twins.known` wants them; empty if none was run."""
+    bare = runs.of_study("no_reference")
+    if bare.empty:
+        return bare
+    each = runs.predictions(bare)
+    return twins.errors(each).join(tables.named("unit", twins.errors(twins.of_units(each, {}))))
+
+
+def references(runs: Runs) -> int:
+    """Healthy recordings of every gear at every operating point."""
+    configuration = yaml.safe_load(storage.attributes(runs.paths["bench"])["configuration"])
+    return int(configuration["grid"]["references"])
 
 
 def practice(
-    runs: Runs, methods: pd.DataFrame, predictions: Mapping[str, pd.DataFrame], errors: pd.DataFrame, best: str
+    runs: Runs,
+    methods: pd.DataFrame,
+    predictions: Mapping[str, pd.DataFrame],
+    units: Mapping[str, pd.DataFrame],
+    best: str,
 ) -> dict[str, Any]:
-    """Detection, confidence and feature importance of the best method.
+    """Calibration, prediction sets and feature importance.
 
     Parameters
     ----------
     runs : Runs
     methods : DataFrame
         Run of every method without adaptation, by name.
-    predictions : mapping
-        Method or oracle to its predictions.
-    errors : DataFrame
-        Errors of specimens of the same methods and oracles [%].
+    predictions, units : mapping
+        Method to its predictions of recordings and of units.
     best : str
     """
-    bench, means = runs.paths["bench"], gear_errors(errors)
-    shown = {name: predictions[name] for name in dict.fromkeys([best, *COMPARED]) if name in predictions}
-    on_harmonics = [name for name in methods.index if name.endswith(" on harmonics")]
-    refitted = str(means[on_harmonics].mean().idxmin()) if on_harmonics else best
-    drops, fold_gears = importance(runs, row_of(methods, refitted), bench)
+    shown = {name: predictions[name] for name in compared(best, predictions)}
+    on_harmonics = methods[methods.index.str.endswith(" on harmonics")]
+    refitted = str(on_harmonics["test_score"].idxmax()) if len(on_harmonics) else str(methods["test_score"].idxmax())
+    drops, fold_gears = importance(runs, row_of(methods, refitted), runs.paths["bench"])
     return {
-        "detection": confidence.detection_text(predictions[best]),
-        "alarms": confidence.alarms_text(predictions[best]),
         "calibration": confidence.calibration_text(shown),
         "confidence": figures.confidence(confidence.reliabilities(shown), confidence.risk_curves(shown)),
-        "sets": confidence.sets_text(predictions[best]),
-        "novelty": confidence.novelty_text(
-            confidence.novelty(bench, bench.with_name("far-bench.h5"), means[best]), best
-        ),
+        "sets": [confidence.sets_text(predictions[best], "recordings"), confidence.sets_text(units[best], "units")],
         "refitted": refitted,
         "fold_gears": fold_gears,
         "importance": importance_text(drops),
     }
+
+
+def compared(best: str, predictions: Mapping[str, pd.DataFrame]) -> list[str]:
+    """The methods that are compared in detail."""
+    return [name for name in dict.fromkeys([best, *COMPARED]) if name in predictions]
 
 
 def studies_of(runs: Runs, inputs: pd.DataFrame, input_errors: Mapping[str, pd.DataFrame]) -> dict[str, Any]:
@@ -195,55 +240,3 @@ def facts(runs: Runs, adapting: pd.Series, tried: list[int], seconds: str) -> di
         "versions": ", ".join(f"{name} {text}" for name, text in versions(code, runs.digests).items()),
         "studies with runs of older code": sentences.listed(runs.older_code()),
     }
-
-
-def content_of(
-    zero: pd.DataFrame, few: pd.DataFrame, inputs: pd.DataFrame, cases: pd.DataFrame, gears: int, seconds: float
-) -> dict[str, Any]:
-    """Content of ``transfer.json``: errors and accuracies [%]; None for an unknown number."""
-    best, chosen, solved = best_of(zero), highest(zero["development"]), studies.best_disturbed(cases)
-    adapted = {shots: row for shots in SHOTS if (row := best_adapted(few, shots)) is not None}
-    return {
-        "z1": {
-            "forest_error": finite(row_of(zero, FOREST)["value"]),
-            "best_method": best,
-            "best_error": finite(row_of(zero, best)["value"]),
-            "ratio": finite(row_of(zero, best)["ratio"]),
-            "ci95": [finite(row_of(zero, best)["ratio_low"]), finite(row_of(zero, best)["ratio_high"])],
-            "ratio_to_oracle": finite(row_of(zero, best)["oracle"]),
-            "seeds": int(row_of(zero, best)["seeds"]),
-            "spread_over_seeds": finite(row_of(zero, best)["spread"]),
-            "chosen_on_development_gears": chosen,
-            "chosen_error": finite(row_of(zero, chosen)["value"]) if chosen else None,
-        },
-        "z3": {
-            str(shots): {
-                "best_method": row["method"],
-                "best_error": finite(row["value"]),
-                "ratio_to_forest": finite(row["ratio"]),
-                "ci95": [finite(row["ratio_low"]), finite(row["ratio_high"])],
-            }
-            for shots, row in adapted.items()
-        },
-        "rezero": {
-            str(shots): {"value": finite(row["value"]), "ci95": [finite(row["low"]), finite(row["high"])]}
-            for shots, row in best_rezeroed(few).items()
-        },
-        "oracle_error": finite(row_of(zero, ORACLE)["value"]),
-        "oracle_session_error": finite(row_of(zero, ORACLE_OF_SESSION)["value"]),
-        "gears": gears,
-        "inputs": studies.nested_inputs(inputs, efficiency=True),
-        "inputs_without_efficiency": studies.nested_inputs(inputs, efficiency=False),
-        "disturbed": {
-            "z1": row_of(cases, solved).round(3).tolist(),
-            "z1_method": solved,
-            "forest_paper": row_of(cases, studies.DISTURBED_FOREST).round(3).tolist(),
-            "forest_in_the_paper": cases.iloc[0].round(3).tolist(),
-        },
-        "seconds": round(seconds, 1),
-    }
-
-
-def finite(value: Any) -> float | None:
-    """A number for JSON, None if it is not finite."""
-    return round(float(value), 4) if np.isfinite(value) else None

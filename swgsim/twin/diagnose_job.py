@@ -32,7 +32,7 @@ def run(config: Mapping[str, Any]) -> Diagnosis:
         )
     found = diagnose(
         recordings, healthy, gear, declared=declared, prior=config["prior"],
-        false_alarms=config["false_alarms"], effects=kinds, seed=config["seed"], progress=say,
+        false_alarms=config["false_alarms"], costs=config["costs"], effects=kinds, seed=config["seed"], progress=say,
     )  # fmt: skip
     found.save(out)
     print(f"{found.sentence}\n{out / 'page.html'}")

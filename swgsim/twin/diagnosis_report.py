@@ -19,6 +19,7 @@ from swgsim.oracle.cells import Partition
 from swgsim.oracle.diagnosis import ENDS
 from swgsim.oracle.severity import Severities, positions
 from swgsim.storage.labelled_signals import CLASSES
+from swgsim.twin.costs import Costs, expected
 from swgsim.twin.fault_posterior import FaultPosterior, Suspected, lack_of_fit
 
 HEALTHY, FAULTY, SOMETHING_ELSE = "healthy", "faulty", "something_else"
@@ -33,6 +34,7 @@ def report_of(
     of_healthy: Sequence[Effect] | None,
     loop: Identification,
     false_alarms: float,
+    costs: Costs,
     rng: np.random.Generator,
 ) -> dict[str, Any]:
     """The diagnosis as plain numbers and text.
@@ -50,6 +52,8 @@ def report_of(
         What it found in the recordings in question.
     false_alarms : float
         Share of healthy gears that may be called faulty.
+    costs : mapping
+        Decision to class to cost.
     rng : Generator
         Of simulated healthy gears.
     """
@@ -63,6 +67,7 @@ def report_of(
         "fault": {"name": fault, "parameters": _parameters(suspected.partitions[fault], whole)},
         "chance": float(whole.chance(rng)[0]),
         "false_alarms": false_alarms,
+        "expected_costs": expected(costs, probabilities),
         "lack_of_fit": {"value": float(whole.lack_of_fit[0]), "chance": float(whole.chance_of_lack[0])},
         "lack_of_fit_healthy": dict(zip(("value", "chance"), lack_of_fit(healthy), strict=True)),
         "structure": loop.report["structure"],

@@ -41,18 +41,21 @@ from swgsim.twin.twin import Twin
 # Who judges, as prefixes of the columns of probabilities: twin and floor judge recordings and units.
 WHO = ("", "unit:", "floor:", "floor unit:", "oracle:", "oracle known:")
 
+# What is known of every sample.
+FACTS = ("gear", "label", "variant", "severity", "n_in_rpm", "T_out_nm")
+
 # Choices of the configuration on which the result depends.
 CHOICES = ("resolution", "believed", "further", "compared")
 
 
 def run(config: Mapping[str, Any]) -> dict[str, float]:
-    """Write ``<data>/<grid>-<condition>-twin.parquet``.
+    """Write ``<data>/<grid>-<condition>-twin.parquet``, or ``<grid>-<condition>-twin-<case>.parquet``.
 
-    Columns: ``row``, the number among the data set's samples; the probability of every class by every one of
-    :data:`WHO`; those of :data:`~swgsim.oracle.diagnosis.FOUND` for the recording and, with ``unit:``, for its unit;
-    ``below`` and ``unit:below``, the posterior probability of a severity below the true one, given the true class;
-    ``misfit`` of the references, and ``fit_seconds`` and ``seconds`` that the fit and the whole twin took, the same for
-    all recordings of a gear.
+    Columns: ``row``, the number among the data set's samples; with ``true:``, :data:`FACTS` of the sample; the
+    probability of every class by every one of :data:`WHO`; those of :data:`~swgsim.oracle.diagnosis.FOUND` for the
+    recording and, with ``unit:``, for its unit; ``below`` and ``unit:below``, the posterior probability of a severity
+    below the true one, given the true class; ``misfit`` of the references, and ``fit_seconds`` and ``seconds`` that the
+    fit and the whole twin took, the same for all recordings of a gear.
 
     Returns
     -------
@@ -73,29 +76,20 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
     made_from = {
         "data": storage.digest(source),
         "code": code_version("identification", "oracle", "twin"),
-        "choices": json.dumps(
-            [config[each] for each in ("resolution", "believed", "further", "compared")], sort_keys=True
-        ),
+        "choices": json.dumps([config[each] for each in CHOICES], sort_keys=True),
     }
     chosen = chosen_gears(plan, config["gears"])
-    path = source.with_name(f"{source.stem}-twin.parquet")
+    path = source.with_name("-".join([source.stem, "twin", *([config["case"]] if config["case"] else [])]) + ".parquet")
     found = GearByGear(plan, source, path, chosen, made_from).table(
         _judged,
         lambda gear, first, recordings: (knowledge, plan, gear, first, recordings, config["compared"]),
         Engine.of(config),
     )
-    truth = np.array([
-        case.variant.label
-        for gear in plan.gears
-        if gear.number in chosen
-        for case in plan.grid.cases(gear)
-        if not case.reference
-    ])  # fmt: skip
     result: dict[str, float] = {"samples": len(found)}
     for who in WHO if config["compared"] else WHO[:2]:
         said = np.array(CLASSES)[found[[who + label for label in CLASSES]].to_numpy().argmax(axis=1)]
         name = who.strip(": ").replace(": ", "_").replace(":", "_").replace(" ", "_") or "twin"
-        result[f"{name}_accuracy"] = float(np.mean(said == truth))
+        result[f"{name}_accuracy"] = float(np.mean(said == found["true:label"]))
         print(f"{path}, {name}: accuracy {result[f'{name}_accuracy']:.2%}")
     return result
 
@@ -121,8 +115,9 @@ def _judged(
         tables = [_diagnosed(twin, samples, each).add_prefix(prefix) for each, prefix in ((False, ""), (True, "unit:"))]
         tables += _compared(knowledge, plan, gear, references, samples) if compared else []
     table = pd.concat(tables, axis=1).assign(misfit=fitted.misfit, fit_seconds=fit_seconds, seconds=seconds)
-    table.insert(0, "row", np.arange(first, first + len(samples)))
-    return table
+    facts = samples.table[list(FACTS)].astype({"label": str}).add_prefix("true:").reset_index(drop=True)
+    facts.insert(0, "row", np.arange(first, first + len(samples)))
+    return pd.concat([facts, table], axis=1)
 
 
 def _compared(

@@ -24,6 +24,7 @@ from swgsim.identification.report.identification import Identification
 from swgsim.oracle.cells import Partition, Resolution
 from swgsim.recordings.recording import Recording
 from swgsim.storage.labelled_signals import CLASSES
+from swgsim.twin.costs import Costs, costs_with
 from swgsim.twin.diagnosis_report import page, report_of
 from swgsim.twin.fault_posterior import Suspected, lack_of_fit
 
@@ -89,6 +90,7 @@ def diagnose(
     declared: Iterable[Effect] = (),
     prior: Mapping[str, float] | None = None,
     false_alarms: float = FALSE_ALARMS,
+    costs: Costs | None = None,
     effects: Iterable[type[Effect]] | None = None,
     seed: int = 0,
     progress: Progress | None = None,
@@ -112,6 +114,8 @@ def diagnose(
         Probability of classes in :data:`PRIOR` that differ; all are scaled to a sum of 1.
     false_alarms : float
         Share of healthy gears that may be called faulty.
+    costs : mapping, optional
+        Decision (leave, inspect, replace) to class to cost, as far as they differ from :data:`.costs.COSTS`.
     effects : iterable of effect classes, optional
         The library that the loop searches; by default all effects.
     seed : int
@@ -125,6 +129,7 @@ def diagnose(
         If a choice is unknown or beyond its limits, or recordings cannot be compared; the message says what to do.
     """
     chosen, kinds = _prior(prior or {}), None if effects is None else tuple(effects)
+    prices = costs_with(costs or {})
     require("the diagnosis", "false_alarms", false_alarms, low=0.001, high=0.5)
     found = None
     if isinstance(healthy, Unit):
@@ -139,7 +144,8 @@ def diagnose(
     loop = identify(recordings, unit, effects=kinds, seed=seed, progress=progress)
     fitted, something_else = _without_faults(loop)
     suspected, rng = Suspected.of(fitted, partitions(), chosen), generator("diagnosis", seed)
-    return Diagnosis(report_of(suspected, something_else, _healthy(unit), found, loop, false_alarms, rng), loop)
+    report = report_of(suspected, something_else, _healthy(unit), found, loop, false_alarms, prices, rng)
+    return Diagnosis(report, loop)
 
 
 def partitions() -> dict[str, Partition]:

@@ -59,6 +59,9 @@ class Spy:
         self.asked.append(X[:, 0].astype(int))
         return np.repeat("healthy", len(X))
 
+    def predict_proba(self, X):
+        return np.ones((len(X), 1))
+
 
 def spied(data, shots, draws=3):
     spy, source = Spy(), Spy()
@@ -109,6 +112,8 @@ def test_errors_are_counted_by_specimen_and_by_gear(numbered):
     judged = {t.gear: t.judged for _, t in targets(numbered.table)}
     assert len(adapted.specimens) == 2 * sum(len(rows) for rows in judged.values()) / 4  # operating points
     assert (adapted.specimens["error"] == np.where(adapted.specimens["label"] == "healthy", 0.0, 100.0)).all()
+    # A spy says the same at all operating points.
+    assert (adapted.specimens["unit"] == adapted.specimens["error"]).all()
     expected = {gear: 100 * np.mean(truth[rows] != "healthy") for gear, rows in judged.items()}
     np.testing.assert_allclose(adapted.gears["error"], adapted.gears["gear"].map(expected))
     assert adapted.gears[["gear", "shots"]].apply(tuple, axis=1).is_unique
@@ -194,7 +199,7 @@ def test_the_results_of_a_job_are_errors_by_specimen_and_gear_and_other_jobs_use
     gears, specimens = tables["tables/gears.parquet"], tables["tables/specimens.parquet"]
     assert gears[["gear", "shots"]].to_numpy().tolist() == [[g, k] for g in (1, 2) for k in (1, 2)]
     assert 100 - gears["error"].mean() == pytest.approx(metrics["test_score"], abs=1e-3)
-    assert list(specimens.columns) == ["gear", "label", "variant", "shots", "error", "unadapted"]
+    assert list(specimens.columns) == ["gear", "label", "variant", "shots", "error", "unit", "unadapted"]
     assert len(specimens) == 2 * 2 * 6 * 3  # gears, numbers of shots, classes, judged variants
     np.testing.assert_allclose(
         specimens.groupby(["gear", "shots"])["error"].mean(), gears.set_index(["gear", "shots"])["error"]

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from learn.evaluation.detection import detection_table, false_alarm_rate, worst_cell
+from learn.evaluation.detection import alarms, detection_table, false_alarm_rate, worst_cell
 from learn.evaluation.detection_curve import DetectionCurve, detection
 from learn.protocols.fault_size import SIZES, size
 from swgsim.common.seeds import generator
@@ -20,6 +20,10 @@ def hits_and_misses(rng, gears=20, per_gear=60, spread=0.0):
     sizes = np.exp(rng.uniform(np.log(0.01), np.log(1), len(gear)))
     odds = SLOPE * np.log(sizes / A50) + rng.normal(0, spread, gears)[gear]
     return sizes, rng.random(len(gear)) < 1 / (1 + np.exp(-odds)), gear
+
+
+def rate_of(made):
+    return false_alarm_rate(made, made["healthy"].to_numpy() < 0.5)
 
 
 def table(rows):
@@ -109,7 +113,8 @@ def test_table_has_a_row_per_fault():
         (gear, "tip_tooth_crack", 0, lost, 2000, "root_tooth_crack" if hit else "healthy")
         for gear, lost, hit in zip(gears, sizes, hits, strict=True)
     ]
-    (found,) = detection_table(table([*rows, (1, "healthy", 0, np.nan, 2000, "healthy")])).to_dict("records")
+    made = table([*rows, (1, "healthy", 0, np.nan, 2000, "healthy")])
+    (found,) = detection_table(made, made["healthy"].to_numpy() < 0.5).to_dict("records")
     assert (found["label"], found["hits"], found["reason"]) == ("tip_tooth_crack", 100 * hits.mean(), "")
     assert found["a90"] == detection(sizes, hits, gears).a90
 
@@ -123,20 +128,30 @@ def healthy(gears, alarm):
 
 
 def test_false_alarms_of_one_gear_are_less_sure_than_spread_ones():
-    spread = false_alarm_rate(healthy(10, lambda gear, variant: variant == 0))
-    one = false_alarm_rate(healthy(10, lambda gear, variant: gear == 0 and variant < 10))
+    spread = rate_of(healthy(10, lambda gear, variant: variant == 0))
+    one = rate_of(healthy(10, lambda gear, variant: gear == 0 and variant < 10))
     assert spread["rate"] == one["rate"] == pytest.approx(5)
     assert one["high"] > 2 * spread["high"]
     assert (spread["alarming_gears"], one["alarming_gears"]) == (10, 1)
 
 
 def test_no_false_alarm_is_no_proof_of_none():
-    rate = false_alarm_rate(healthy(10, lambda gear, variant: False))
+    rate = rate_of(healthy(10, lambda gear, variant: False))
     assert rate["rate"] == rate["low"] == 0
     assert rate["high"] == pytest.approx(100 * 3.8415 / (200 + 3.8415), rel=1e-3)  # Wilson, 0 of 200 specimens
-    assert np.isnan(false_alarm_rate(healthy(3, lambda gear, variant: False))["high"])
+    assert np.isnan(rate_of(healthy(3, lambda gear, variant: False))["high"])
     with pytest.raises(ValueError, match="no healthy recording"):
-        false_alarm_rate(table([(1, "tip_tooth_crack", 0, 1.0, 2000, "healthy")]))
+        rate_of(table([(1, "tip_tooth_crack", 0, 1.0, 2000, "healthy")]))
+
+
+def test_alarms_keep_their_rate_on_gears_that_did_not_set_the_limit():
+    rng, rows = generator("alarms"), 400
+    made = pd.DataFrame({"gear": np.repeat(np.arange(10), rows), "label": "healthy", "healthy": rng.random(10 * rows)})
+    rate = alarms(made, 0.05).mean()
+    assert rate == pytest.approx(0.05, abs=4 * np.sqrt(0.05 * 0.95 / len(made)))
+    sick = pd.concat([made, made[:5].assign(label="tip_tooth_crack", healthy=[0.0, 0.001, 0.2, 0.5, 0.9])])
+    assert alarms(sick, 0.05)[-5:].tolist() == [True, True, False, False, False]
+    assert not alarms(made[made["gear"] < 1], 0.05).any()  # no other gear tells what is usual
 
 
 def test_worst_cell_is_found():

@@ -20,6 +20,7 @@ HOLDS: dict[str, Callable[[dict[str, Any]], bool]] = {
     "6_close_the_loop": lambda found: found["answer"].table()["value"][0] == pytest.approx(10, abs=0.5),
     "7_robot_joint": lambda found: "load dependent friction" in found["answer"].sentence,
     "8_effect_of_ones_own": lambda found: found["shift"][1] == pytest.approx(2e-5 * found["point"].omega_in, rel=1e-3),
+    "9_options_by_optuna": lambda found: found["study"].best_value > 100 / 6,
 }
 
 

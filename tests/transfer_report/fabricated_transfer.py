@@ -21,6 +21,7 @@ from swgsim.storage.labelled_signals import CLASSES
 ROOT = Path(__file__).parents[2]
 POOLS = {"folds": 2, "development": 2, "labelled": 2, "unlabelled": 1, "kept_out": 1, "variants": None}
 METHODS = (("rf", "selection_1", 0.4), ("logistic_regression", "harmonics", 0.15), ("perceptron", "harmonics", 0.2))
+ATTRIBUTES = {"swgsim": "0.1.0", "configuration": "{grid: {references: 20}}"}
 CASES = ("1_2_to_3", "2_3_to_1", "1_3_to_2")
 
 
@@ -52,6 +53,7 @@ def adapted(after, before, shots):
     parts = [every.assign(shots=k, error=100 * after / max(k, 1), unadapted=100.0 * before) for k in shots]
     specimens = pd.concat(parts, ignore_index=True)
     specimens["error"] += generator("fabricated adaptation", after).uniform(0, 5, len(specimens))
+    specimens["unit"] = specimens["error"] / 2
     gears = specimens.groupby(["gear", "shots"])[["error", "unadapted"]].mean().reset_index()
     return specimens, gears.assign(forgotten=0.5 * gears["shots"])
 
@@ -110,11 +112,20 @@ def keep_required(keep, data):
          adaptation="replay", target="far-bench", **{"protocol.sources": 2, "features.acquisitions": 1})  # fmt: skip
 
 
+def twin_table(wrong):
+    """A table of swg twin: prefix to the share of decisions that are random."""
+    facts = predictions(0, "facts").drop(columns=list(CLASSES))
+    said = [predictions(share, prefix)[list(CLASSES)].add_prefix(prefix) for prefix, share in wrong.items()]
+    table = pd.concat([facts.add_prefix("true:").rename(columns={"true:row": "row"}), *said], axis=1)
+    table["misfit"], table.attrs = 1.1, {"data": "another"}
+    return table
+
+
 def write_data(folder):
-    """The data sets and the oracle; returns the digests."""
+    """The data sets, the oracle and the twin; returns the digests."""
     digests = {}
     for name, gears in (("gears-bench", 8), ("far-bench", 3), ("paper-disturbed", 3)):
-        made = replace(recordings(gears=gears, variants=6, disturbance=1e-3), attributes={"swgsim": "0.1.0"})
+        made = replace(recordings(gears=gears, variants=6, disturbance=1e-3), attributes=ATTRIBUTES)
         storage.write(folder / f"{name}.h5", [made], len(made))
         (folder / f"{name}.json").write_text(json.dumps({"seconds": 1.0, "cores": 2, "recordings": len(made)}))
         digests[name] = storage.digest(folder / f"{name}.h5")
@@ -122,4 +133,8 @@ def write_data(folder):
     oracle = p[["row", *CLASSES]].join(p[list(CLASSES)].add_prefix(KNOWN))
     oracle.attrs = {"data": digests["gears-bench"]}
     oracle.to_parquet(folder / "gears-bench-oracle.parquet")
+    twin = twin_table({"": 0.06, "unit:": 0.02, "floor:": 0.06, "floor unit:": 0.02})
+    twin.attrs = {"data": digests["gears-bench"]}
+    twin.to_parquet(folder / "gears-bench-twin.parquet")
+    twin_table({"": 0.08, "unit:": 0.03}).to_parquet(folder / "coning-bench-twin-after.parquet")
     return digests

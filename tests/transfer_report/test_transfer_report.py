@@ -16,6 +16,7 @@ from learn.jobs.identity import code_version, flat
 from learn.protocols.levels import NewGears
 from learn.transfer_report import importance, seeds, tables, transfer_study
 from learn.transfer_report import runs as transfer_runs
+from learn.transfer_report.posteriors import OF_ORACLE, OF_TWIN, TWIN, mismatch, posteriors
 from swgsim.storage import storage
 
 
@@ -47,7 +48,8 @@ def test_whole_report_from_made_up_runs(data, store, tmp_path):
 
     content = json.loads((out / "transfer.json").read_text())
     z1 = content["z1"]
-    assert z1["best_method"] == z1["chosen_on_development_gears"] == "logistic regression on harmonics"
+    assert z1["chosen_on_development_gears"] == "logistic regression on harmonics"
+    assert z1["best_method"] == "twin on references"
     assert z1["ratio"] == pytest.approx(z1["best_error"] / z1["forest_error"], abs=1e-4)
     assert z1["ci95"][0] < z1["ratio"] < z1["ci95"][1]
     assert list(content["z3"]) == ["1", "2", "5"]
@@ -57,6 +59,16 @@ def test_whole_report_from_made_up_runs(data, store, tmp_path):
     assert low < content["rezero"]["2"]["value"] < high
     assert (z1["seeds"], z1["spread_over_seeds"]) == (1, None)
     assert content["gears"] == 6
+    twin = content["twin"]
+    assert twin["matched"]["value"] == z1["best_error"]
+    low, high = twin["ratio_to_floor"]["ci95"]
+    assert low < twin["matched"]["value"] / twin["floor"]["value"] < high
+    of_unit, mistaken = content["unit"]["twin on references"], twin["undeclared"]["after"]
+    assert of_unit["value"] < twin["matched"]["value"] < mistaken["value"]
+    assert twin["mesh"] is twin["other_authors"] is twin["undeclared"]["before"] is None  # they were not run
+    assert 0 < twin["calibration_error"] < 0.5
+    assert twin["calibration_error_mismatched"] is None  # neither mesh nor population
+    assert content["detection"] == {}  # 72 healthy recordings do not show a rate of 1 %
     assert content["inputs"]["raw"]["mlp"] < content["inputs_without_efficiency"]["raw"]["mlp"]
     assert content["inputs"]["residual"] == {"mlp": None, "cnn": None, "minirocket": None}
     assert content["disturbed"]["z1"] == [99.7, 99.8, 99.9]
@@ -66,13 +78,14 @@ def test_whole_report_from_made_up_runs(data, store, tmp_path):
     page = (out / "transfer.html").read_text()
     assert re.findall(r'(?:src|href)="(?!data:image/png;base64,|#|index\.html)', page) == []
     first = re.search(r"<p><b>(.*?)</b></p>", page).group(1)
-    assert f"6 gears never seen, with their healthy references known, {z1['best_method']} errs in" in first
+    assert first.startswith("20 healthy recordings at each operating point identify a gear")
     assert f"in {z1['best_error']:.1f} %" in first
+    assert "6 gears never seen, with their healthy references known, logistic regression on harmonics errs in" in page
     assert page.count("<table>") == page.count('<div class="wide" tabindex="0"><table>')  # nothing wider than a phone
     titles = re.findall(r"<h3>(.*?)</h3>", page)
     assert len(set(titles)) == len(titles) > 12
     assert set(re.findall(r'href="#(\w+)"', page)) == set(re.findall(r'<h2 id="(\w+)"', page))
-    assert "gears of grid=far" in page
+    assert "the same, after the loop has found the effect" in page
     assert f"with 2, logistic regression errs in {content['rezero']['2']['value']:.1f} %" in page
     assert "MLP: CORAL (trained on 5 variants)" in page
     assert "replay (trained on" not in page
@@ -93,7 +106,7 @@ def test_runs_of_the_present_code_replace_older_ones_of_their_study(store):
     assert set(zip(found["study"], found["classifier"], strict=True)) == {
         ("inputs", "cnn"), ("no_reference", "cnn"), ("transfer_map", "rf")
     }  # fmt: skip
-    runs = transfer_runs.Runs({}, {}, {}, keep.store, found)
+    runs = transfer_runs.Runs({}, {}, {}, {}, keep.store, found)
     assert runs.older_code() == ["no_reference", "transfer_map"]
     assert runs.of_study("zero_shot").empty
 
@@ -106,7 +119,7 @@ def test_a_sweep_over_seeds_is_one_method_with_means_and_their_spread(tmp_path):
         keep("transfer", metrics={"test_score": 100 - error}, tables={"specimens": table}, classifier="perceptron",
              features="harmonics", adaptation="replay", seed=seed, **{"classifier.seed": seed})  # fmt: skip
     keep("transfer", classifier="perceptron", features="harmonics", adaptation="coral")
-    runs = transfer_runs.Runs({}, {}, {}, keep.store, transfer_runs.present_runs(keep.store, ["a"]))
+    runs = transfer_runs.Runs({}, {}, {}, {}, keep.store, transfer_runs.present_runs(keep.store, ["a"]))
     methods = transfer_runs.by_method(runs.of_study("transfer"))
     assert list(methods.index) == ["MLP: CORAL", "MLP: replay"]
     assert methods.loc["MLP: replay", ["seeds", "test_score", "spread"]].tolist() == [3, 87.0, 3.0]
@@ -136,13 +149,33 @@ def test_oracle_of_another_data_set_is_refused(data):
     folder, digests = data
     path, judged = folder / "gears-bench-oracle.parquet", predictions(0.1, "any")
     with pytest.raises(ValueError, match=r"another data set .* run 'swg oracle grid=gears condition=bench"):
-        transfer_runs.oracle(path, "other", judged)
+        posteriors(path, "other", judged, OF_ORACLE)
     with pytest.raises(ValueError, match=r"lacks gear 1, which is judged"):
-        transfer_runs.oracle(path, digests["gears-bench"], judged.assign(row=judged["row"] + 10_000))
+        posteriors(path, digests["gears-bench"], judged.assign(row=judged["row"] + 10_000), OF_ORACLE)
     with pytest.raises(ValueError, match=r"no oracle .*: run 'swg oracle"):
-        transfer_runs.oracle(folder / "none-bench-oracle.parquet", digests["gears-bench"], judged)
-    found, known = transfer_runs.oracle(path, storage.digest(folder / "gears-bench.h5"), judged)
+        posteriors(folder / "none-bench-oracle.parquet", digests["gears-bench"], judged, OF_ORACLE)
+    found, known = posteriors(path, storage.digest(folder / "gears-bench.h5"), judged, OF_ORACLE).values()
     assert list(found["row"]) == list(known["row"]) == list(judged["row"])
+
+
+def test_a_twin_without_comparison_has_no_floor(data, tmp_path):
+    folder, digests = data
+    table = pd.read_parquet(folder / "gears-bench-twin.parquet")
+    path = tmp_path / "gears-bench-twin.parquet"
+    table[[name for name in table if "floor" not in name]].to_parquet(path)
+    assert list(posteriors(path, digests["gears-bench"], predictions(0.1, "any"), OF_TWIN)) == [TWIN]
+
+
+def test_a_mistaken_twin_on_the_same_data_counts_on_the_judged_recordings_only(data):
+    folder, digests = data
+    path, judged = folder / "gears-bench-twin.parquet", predictions(0.1, "any")
+    some = judged[judged["gear"] == 1]
+    recordings, units = mismatch(path, some, digests["gears-bench"])
+    assert len(recordings) == len(some)
+    assert set(recordings["gear"]) == {1}
+    assert len(units) == len(some) // 4  # operating points
+    assert len(mismatch(path, some, "another data set")[0]) == len(judged)
+    assert mismatch(folder / "none.parquet", judged, "") is None
 
 
 def test_options_are_those_of_the_first_fold():

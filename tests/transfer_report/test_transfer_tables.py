@@ -1,18 +1,15 @@
 """Tables, sentences and figures of the transfer report follow from the numbers, whatever these are."""
 
 import json
-from dataclasses import replace
 
 import numpy as np
 import pandas as pd
 import pytest
-from fabricated import recordings
 from fabricated_transfer import adapted, predictions
 
 from learn.evaluation.bootstrap import specimens
-from learn.transfer_report import confidence, figures, sentences, studies, tables, transfer_study
+from learn.transfer_report import confidence, detections, figures, sentences, studies, tables, transfer_json, twins
 from learn.transfer_report.runs import method_of
-from swgsim.storage import storage
 from swgsim.storage.labelled_signals import CLASSES
 
 CASES = pd.DataFrame([[90.0] * 3, [80.0] * 3, [100.0, 99.6, 99.4], [100.0, 100.0, 60.0]],
@@ -43,7 +40,7 @@ def few_of(errors, after, before=10.0):
     """Replay errs in `after`, training from scratch in 5 more with five shots and in 0.5 less with ten."""
 
     def table(shots, error):
-        return errors[["gear", "label", "variant"]].assign(shots=shots, error=error, unadapted=before)
+        return errors[["gear", "label", "variant"]].assign(shots=shots, error=error, unit=error / 2, unadapted=before)
 
     scratch = pd.concat([table(5, after + 5), table(10, after - 0.5)])
     both = pd.concat([table(5, after), table(10, after)])
@@ -55,14 +52,10 @@ def test_main_table_compares_with_forest_and_oracle():
     assert tables.best_of(zero) == tables.highest(zero["development"]) == BEST
     assert zero.loc[BEST, "ratio"] == pytest.approx(9.1 / 30.1, abs=1e-3)
     assert zero.loc[BEST, "oracle"] == pytest.approx(9.1 / 5.1, abs=1e-3)
-    text = tables.methods_text(zero, errors)
+    text = tables.methods_text(zero, errors, zero)
     assert text.loc[BEST, "better in gears"] == "6 of 6"
     assert text.loc[BEST, "error on development gears [%]"] == "10.0"
     assert text.loc[tables.FOREST, "p (Holm)"] == text.loc[tables.ORACLE, "p (Holm)"] == "-"
-    wide = tables.representations_text(zero)
-    assert wide.loc["logistic regression", "harmonics"].startswith("9.1 (")
-    assert wide.loc["random forest", "harmonics"] == "-"
-    assert wide.loc["oracle", "all that is known"].startswith("5.1 (")
     with pytest.raises(ValueError, match="classifier=rf features=selection_1"):
         tables.zero_shot(errors.drop(columns=tables.FOREST), pd.Series(dtype=float), pd.Series(dtype=float))
 
@@ -70,9 +63,9 @@ def test_main_table_compares_with_forest_and_oracle():
 def test_few_gears_have_no_interval_in_table_figure_and_json():
     errors, zero = zero_of(9.0, gears=3)
     few = few_of(errors, 5.0)
-    assert tables.methods_text(zero, errors).loc[BEST, "error [%]"] == "9.1"
+    assert tables.methods_text(zero, errors, zero).loc[BEST, "error [%]"] == "9.1"
     inputs = pd.DataFrame({"input": ["raw"], "method": ["cnn"], "efficiency": [True], "value": [12.0]})
-    content = transfer_study.content_of(zero, few, inputs, CASES, 3, 1.0)
+    content = transfer_json.content(zero, zero, few, inputs, CASES, 3, 1.0)
     assert content["z1"]["ci95"] == [None, None]
     assert content["inputs"]["raw"] == {"mlp": None, "cnn": 12.0, "minirocket": None}
     json.dumps(content, allow_nan=False)
@@ -157,12 +150,18 @@ def test_inputs_are_compared_with_and_without():
     assert float(row[2].split()[0]) == pytest.approx(float(row[1]) - float(row[0]), abs=0.11)
 
 
-def test_prediction_sets_reach_their_target(monkeypatch):
-    assert "6 gears are too few" in confidence.sets_text(predictions(0.1, "sets"))
+def test_prediction_sets_reach_their_target_in_every_class(monkeypatch):
+    table = predictions(0.1, "sets")
+    assert "6 gears are too few" in confidence.sets_text(table, "recordings")
     monkeypatch.setattr(confidence, "NOMINAL", 0.8)
-    sets = confidence.conformal(predictions(0.1, "sets"))
-    assert sets["coverage"].mean() >= 0.75
-    assert sets["mean_size"].max() < len(CLASSES)
+    # Tip cracks get a low probability wherever they are, so that one threshold for all classes would leave them out.
+    p = table[list(CLASSES)].to_numpy(copy=True)
+    p[table["label"] == "tip_tooth_crack", -1] /= 5
+    table[list(CLASSES)] = p / p.sum(axis=1, keepdims=True)
+    sets = confidence.conformal(table)
+    assert sets.groupby("label")["covered"].mean().min() >= 0.75
+    assert sets["size"].mean() < len(CLASSES)
+    assert "the true class is in the set of" in confidence.sets_text(table, "units")
 
 
 def test_a_single_gear_has_no_temperature():
@@ -175,38 +174,50 @@ def test_a_single_gear_has_no_temperature():
     assert is_png(figures.confidence(confidence.reliabilities(both), confidence.risk_curves(both)))
 
 
-def test_detection_has_a_size_or_a_reason():
+def test_detection_has_a_size_or_a_reason(monkeypatch):
+    assert detections.detections("recordings", {"any": predictions(0.0, "few")}).empty
+    monkeypatch.setattr(detections, "RATE", 0.05)  # fewer gears are made up than 1 % needs
     table = predictions(0.0, "missed")
     p = table[list(CLASSES)].to_numpy(copy=True)
     small = (table["label"] == "tip_tooth_crack") & (table["severity"] < 0.4) & (table["gear"] % 3 < 2)
     p[small] = np.eye(len(CLASSES))[0]
-    text = confidence.detection_text(table.assign(**dict(zip(CLASSES, p.T, strict=True))))
-    assert text.loc["reduced damping", "detected [%]"] == "100.0"
-    assert "a90: below the smallest size tried" in text.loc["reduced damping", "reason without a size"]
-    assert 0.1 < float(text.loc["tip tooth crack", "a90"]) < 0.9
+    found = detections.detections("recordings", {"any": table.assign(**dict(zip(CLASSES, p.T, strict=True)))})
+    text = detections.detections_text(found)
+    assert text.loc[("any", "recordings"), "reduced damping"] == "100 %; all sizes"
+    json_of = detections.detections_json(found)["any"]["recordings"]
+    assert json_of["reduced_damping"]["reason"].startswith("a90: below the smallest size tried")
+    assert json_of["reduced_damping"]["a90_95"] is None
+    assert 0.1 < json_of["tip_tooth_crack"]["a90"] < 0.9
+    assert json_of["false_alarms"] < 10
 
 
-def gears_with(folder, name, gain, gears=8):
-    """A data set whose signals are scaled."""
-    made = recordings(gears=gears, variants=1, disturbance=1e-3)
-    storage.write(folder / f"{name}.h5", [replace(made, signals=made.signals * np.float32(gain))], len(made))
-    return folder / f"{name}.h5"
+def test_the_claim_has_figure_interval_and_conditions():
+    errors, zero = zero_of(9.0)
+    with_twin = zero.rename(index={BEST: twins.TWIN, tables.ORACLE: twins.FLOOR})
+    ratio = twins.ratio_to_floor(errors.rename(columns={BEST: twins.TWIN, tables.ORACLE: twins.FLOOR}))
+    text = sentences.claim(with_twin, with_twin, ratio, 6, 20)
+    assert text.startswith("20 healthy recordings at each operating point identify a gear")
+    assert "errs in 9.1 % (" in text
+    assert "ratio 1.78 (" in text
+    assert "Conditions: 6 simulated gears never seen" in text
+    assert "ratio" not in sentences.claim(with_twin, with_twin, None, 6, 20)
 
 
-def test_novelty_separates_gears_of_another_population(tmp_path):
-    bench, far = gears_with(tmp_path, "a", 1.0), gears_with(tmp_path, "b", 1.5, gears=3)
-    errors = pd.Series([5.0, 9.0, 7.0], [1, 2, 3])
-    usual, foreign = confidence.novelty(bench, far, errors)
-    assert list(usual.index) == [1, 2, 3]
-    assert (foreign > 3 * usual["novelty"].max()).all()
-    text = confidence.novelty_text((usual, foreign), "any method")
-    assert "the 3 gears of grid=far" in text
-    assert "3 of them exceed" in text
-    assert "(AUROC) of 1.00" in text
-    assert "no comparison" in confidence.novelty_text(confidence.novelty(bench, tmp_path / "none", errors), "any")
-    assert confidence.novelty(far, bench, errors) is None
-    for order, verdict in ((usual["novelty"], " correlates"), (-usual["novelty"], " does not clearly correlate")):
-        assert verdict in confidence.novelty_text((usual.assign(error=order), None), "any method")
+def test_the_picture_has_a_place_for_everything_that_is_known():
+    errors, zero = zero_of(9.0)
+    few = few_of(errors, 4.0)
+    rezero = few.assign(method=f"extra trees{tables.REZERO}", shots=2)
+    nothing = pd.DataFrame({"value": 40.0, "low": 38.0, "high": 42.0, "unit": 30.0, "unit_low": 28, "unit_high": 32},
+                           index=["CNN on raw signals"])  # fmt: skip
+    with_twin = zero.rename(index={tables.ORACLE: twins.TWIN})
+    table = twins.known(with_twin, with_twin, pd.concat([few, rezero]), nothing)
+    learned = table[table["who"] == twins.LEARNED]
+    levels = ["nothing", "references", "references, 2 healthy of the day", "references, 5 of each fault"]
+    assert learned["known"].tolist() == levels
+    np.testing.assert_allclose(learned["value"], [40, 9.1, 3.5, 4], atol=0.1)
+    assert table["who"].tolist()[-1] == twins.TWIN
+    assert is_png(figures.known(table))
+    assert len(twins.known(zero, zero, few, nothing[:0])) == 2  # neither the twin, nor the day, nor nothing
 
 
 def is_png(png):

@@ -74,7 +74,7 @@ def choices(folder, **changes: object) -> dict:
     plain = {
         "recordings": str(folder / "sick"), "commissioning": str(folder / "healthy"), "mapping": None,
         "commissioning_mapping": None, "gear": GEAR, "effects": [], "out": str(folder / "answer"), "prior": {},
-        "false_alarms": 0.01, "searched": SEARCHED, "library": [], "seed": 0,
+        "false_alarms": 0.01, "costs": {}, "searched": SEARCHED, "library": [], "seed": 0,
     }  # fmt: skip
     return plain | changes
 
@@ -113,6 +113,7 @@ def test_the_page_answers_the_questions_of_a_workshop(folder, sick) -> None:
     html = unescape((folder / "answer" / "page.html").read_text(encoding="utf-8"))
     text = re.sub(r"\s+", " ", re.sub(r"<[^>]+>", " ", html))
     assert sick.sentence in text
+    assert re.search(r"What to do\? replace: 1(\.0)?; inspect: 1\.1; leave: 10 \(expected cost", text)
     for question in ("Is it sick? yes : fewer than 0.2 % of healthy", "Of what, and how sure?", "How large?", "Where?"):
         assert question in text
     assert re.search(r"direction from gauge s1, counted with the rotation: 5\d° \(95 %: 5\d to \d\d\)", text)

@@ -14,7 +14,7 @@ from swgsim.effects import Coning
 from swgsim.oracle.model import observations
 from swgsim.storage.labelled_signals import CLASSES
 from swgsim.twin import FittedGear, References, Twin, fit_gear
-from swgsim.twin.twin_study import _diagnosed
+from swgsim.twin.twin_study import _diagnosed, _judged
 
 pytestmark = pytest.mark.end_to_end
 
@@ -70,6 +70,17 @@ def test_confidence_equals_accuracy() -> None:
     assert 0.5 < right.mean() < 0.97
     # Recordings of a gear share what the twin does not know, so they err together: twice the binomial deviation.
     assert abs(right.sum() - confidence.sum()) < 6 * np.sqrt((confidence * (1 - confidence)).sum())
+
+
+def test_the_table_has_what_is_true_of_every_sample() -> None:
+    """So a report judges it without the data set; severity without a prefix is the estimate."""
+    table = _judged(KNOWLEDGE, PLAN, DRAWN, 5, recordings(), False)
+    assert table["row"].tolist() == list(range(5, 5 + len(truth())))
+    assert (table["true:label"] == truth()).all()
+    np.testing.assert_array_equal(table["true:severity"], recordings().samples.table["severity"])
+    sick = (truth() == "eccentric_wave_generator") & (table["eccentric_wave_generator"] > 0.9)
+    np.testing.assert_allclose(table["severity"][sick], table["true:severity"][sick], rtol=0.2)
+    assert table["misfit"].nunique() == 1
 
 
 def test_severities_are_where_their_posterior_says() -> None:

@@ -1,0 +1,157 @@
+"""The claim of the study: the twin of a gear beside its floor, per recording and per unit, and where it is mistaken."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import pandas as pd
+
+from learn.evaluation.bootstrap import SPECIMEN, gear_bootstrap, ratio_to, specimens
+from learn.evaluation.decisions import class_numbers, probabilities
+from learn.evaluation.probability_calibration import expected_calibration_error, reliability
+from learn.evaluation.units import units
+from learn.transfer_report.posteriors import FLOOR, TWIN, units_of
+from learn.transfer_report.tables import (
+    LIMITS,
+    best_adapted,
+    best_rezeroed,
+    finite,
+    in_json,
+    least,
+    named,
+    number,
+    row_of,
+    text_of,
+    with_intervals,
+)
+from swgsim.common.seeds import generator
+
+# Twins, in the words of the page.
+CASES: Mapping[str, str] = {
+    "matched": "it believes what is true",
+    "mesh": "it believes another mesh",
+    "population": "gears of another population",
+    "before": "an effect that it does not know",
+    "after": "the same, after the loop has found the effect",
+}
+# Of the picture: levels, who learns, and numbers of healthy recordings of the day and of specimens of each fault.
+REFERENCES, LEARNED, HEALTHY, SHOTS = "references", "best method that learns from other gears", 2, 5
+Tables = Mapping[str, pd.DataFrame]
+
+
+def of_units(predictions: Tables, joint: Tables) -> dict[str, pd.DataFrame]:
+    """Predictions of units: the twin and its floor take one as a whole, the others multiply their posteriors."""
+    return {
+        name: units_of(joint[name]) if name in joint else units(table)
+        for name, table in predictions.items()
+    }  # fmt: skip
+
+
+def errors(predictions: Tables) -> pd.DataFrame:
+    """Error of every method per row: ``value``, ``low``, ``high`` [%]."""
+    return with_intervals({name: specimens(table) for name, table in predictions.items()}, "errors")
+
+
+def calibration_error(predictions: pd.DataFrame) -> float:
+    """Expected calibration error [-]."""
+    return expected_calibration_error(reliability(probabilities(predictions), class_numbers(predictions))) / 100
+
+
+def ratio_to_floor(errors: pd.DataFrame) -> pd.Series | None:
+    """Error of the twin over that of the floor: ``value``, ``low``, ``high`` [-]; None without a floor."""
+    if FLOOR not in errors:
+        return None
+    both = errors[[*SPECIMEN, TWIN, FLOOR]]
+    return row_of(gear_bootstrap(both, ratio_to(FLOOR), generator("report", "twin and floor")), TWIN)
+
+
+def mismatches(found: Mapping[str, tuple[pd.DataFrame, pd.DataFrame]]) -> pd.DataFrame:
+    """Twins with true and with mistaken beliefs, by case.
+
+    Parameters
+    ----------
+    found : mapping
+        Case to the predictions of recordings and of units (:func:`.posteriors.mismatch`).
+
+    Returns
+    -------
+    DataFrame
+        ``value``, ``low``, ``high`` of recordings and ``unit``, ``unit_low``, ``unit_high`` of units [%];
+        ``calibration_error`` [-], median ``misfit`` of the references [-], ``gears``.
+    """
+    rows = {}
+    for case, (recordings, of_units) in found.items():
+        error, of_unit = (
+            row_of(with_intervals({case: specimens(each)}, f"mismatch {case}"), case) for each in (recordings, of_units)
+        )
+        facts = {
+            "calibration_error": calibration_error(recordings),
+            "misfit": recordings["misfit"].median(),
+            "gears": recordings["gear"].nunique(),
+        }
+        rows[case] = {**error, **named("unit", of_unit.to_frame().T).iloc[0], **facts}
+    return pd.DataFrame.from_dict(rows, orient="index")
+
+
+def mismatches_text(table: pd.DataFrame) -> pd.DataFrame:
+    """Result of :func:`mismatches` in the words of the page."""
+    return pd.DataFrame(
+        {
+            "error [%]": text_of(table),
+            "error of units [%]": text_of(table, "unit"),
+            "calibration error [points]": [number(100 * each) for each in table["calibration_error"]],
+            "median misfit of the references": [f"{each:.2g}" for each in table["misfit"]],
+            "gears": table["gears"].map("{:.0f}".format),
+        }
+    ).set_axis(pd.Index([CASES[case] for case in table.index], name="twin"))
+
+
+def twin_json(zero: pd.DataFrame, ratio: pd.Series | None, cases: pd.DataFrame) -> dict[str, Any]:
+    """The part ``twin`` of ``transfer.json``: errors [%], calibration errors [-]; None for what was not run.
+
+    Parameters
+    ----------
+    zero : DataFrame
+        Result of :func:`.tables.zero_shot`.
+    ratio : Series or None
+        Result of :func:`ratio_to_floor`.
+    cases : DataFrame
+        Result of :func:`mismatches`.
+    """
+    error = {name: in_json(row_of(cases, name)) if name in cases.index else None for name in CASES}
+    mistaken = [cases["calibration_error"][name] for name in ("mesh", "population") if name in cases.index]
+    return {
+        "matched": in_json(row_of(zero, TWIN)),
+        "mesh": error["mesh"],
+        "population": error["population"],
+        "other_authors": None,
+        "undeclared": {"before": error["before"], "after": error["after"]},
+        "floor": None if ratio is None else in_json(row_of(zero, FLOOR)),
+        "ratio_to_floor": None if ratio is None else in_json(ratio),
+        "calibration_error": finite(cases["calibration_error"]["matched"]),
+        "calibration_error_mismatched": finite(max(mistaken)) if mistaken else None,
+    }
+
+
+def known(zero: pd.DataFrame, of_units: pd.DataFrame, few: pd.DataFrame, nothing: pd.DataFrame) -> pd.DataFrame:
+    """Errors over what is known of the gear: ``known``, ``who``, and ``value``, ``low``, ``high`` of recordings and
+    ``unit``, ``unit_low``, ``unit_high`` of units [%].
+
+    Whoever learns is the best method of each level on the judged gears, which favours it.
+
+    Parameters
+    ----------
+    zero, of_units, few : DataFrame
+        Results of :func:`.tables.zero_shot`, :func:`errors` per unit and :func:`.tables.few_shot`.
+    nothing : DataFrame
+        Methods without references, with columns as above; it may be empty.
+    """
+    both = zero[["value", "low", "high"]].join(named("unit", of_units))
+    learned = {
+        "nothing": None if nothing.empty else least(nothing),
+        REFERENCES: least(both.drop(index=[TWIN, *LIMITS], errors="ignore")),
+        f"references, {HEALTHY} healthy of the day": best_rezeroed(few).get(HEALTHY),
+        f"references, {SHOTS} of each fault": best_adapted(few, SHOTS),
+    }
+    rows = [{**row, "known": name, "who": LEARNED} for name, row in learned.items() if row is not None]
+    rows += [{**row_of(both, who), "known": REFERENCES, "who": who} for who in (TWIN, FLOOR) if who in both.index]
+    return pd.DataFrame(rows)[["known", "who", *both]]
