@@ -1,5 +1,7 @@
 """Intervals cover known true values, and resampling has the variance of gears."""
 
+import gc
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -66,8 +68,15 @@ def test_intervals_cover_the_truth():
     assert (hits / 200).max() <= 0.99
 
 
+@pytest.fixture
+def little_garbage():
+    """Statsmodels collects garbage in every correction; what is loaded already need not be searched each time."""
+    gc.freeze()
+
+
 @pytest.mark.end_to_end
 @pytest.mark.slow
+@pytest.mark.usefixtures("little_garbage")
 def test_null_is_rejected_at_most_as_often_as_promised():
     rng = generator("null")
     tables = (errors(rng, variants=1, labels=LABELS[:1], means=(20.0, 20.0, 20.0)) for _ in range(150))
