@@ -1,6 +1,6 @@
 """Form error: how much the lines of an effect may differ from those in the library."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 from jaxtyping import Float
@@ -86,11 +86,10 @@ def allowance(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
     return FORM_TOLERANCE * (open_ - whole @ (weighed.T @ open_) / float((weighed * whole).sum()))
 
 
-def form_directions(fitted: Fitted, added: int) -> Float[np.ndarray, "row direction"]:
-    """Directions of the form error of the effects that were added last, for a form error of 1."""
-    count = len(fitted.model.effects)
+def form_directions(fitted: Fitted, numbers: Iterable[int]) -> Float[np.ndarray, "row direction"]:
+    """Directions of the form error of some of the added effects, for a form error of 1."""
     columns = [np.zeros((len(fitted.residual), 0))]
-    columns += [allowance(fitted, number) for number in range(count - added, count)]
+    columns += [allowance(fitted, fitted.numbers_added[number]) for number in numbers]
     return significant_columns(np.hstack(columns), fitted.errors.variance) / FORM_TOLERANCE
 
 
