@@ -32,11 +32,11 @@ from swgsim.jobs import settings
 PRIORS = {
     "causes": prior.CAUSES,
     "unknown": prior.UNKNOWN,
-    "another_regularity": prior.ANOTHER_REGULARITY,
+    "another": prior.ANOTHER,
     "balanced": [prior.BALANCED, *prior.TIMES_BALANCED],
     "resembling": prior.RESEMBLING,
     "form_errors": prior.FORM_ERRORS,
-    "unknown_forms": prior.UNKNOWN_FORMS,
+    "other_forms": prior.OTHER_FORMS,
     "scales": prior.SCALES,
     "detectable": DETECTABLE,
     "look_alike": judged.LOOK_ALIKE,

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
-from itertools import chain, combinations
+from itertools import combinations, product
 
 import numpy as np
 from jaxtyping import Float
@@ -11,14 +11,8 @@ from scipy.special import logsumexp
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, beyond_nothing, quantities, size_of
-from swgsim.identification.decide.prior import (
-    BALANCED,
-    FORM_ERRORS,
-    SCALES,
-    TIMES_BALANCED,
-    UNKNOWN_FORMS,
-    log_prior,
-)
+from swgsim.identification.decide.forms import Forms
+from swgsim.identification.decide.prior import BALANCED, FORM_ERRORS, OTHER_FORMS, SCALES, TIMES_BALANCED, log_prior
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import extended
 from swgsim.identification.fit.form_error import form_directions, parts
@@ -42,8 +36,10 @@ class Option:
     log_prior : float
     evidences : array (zeros, form_error)
         Log evidence by the factor on the deviation of zeros and by the form error, with the priors of both.
+    forms : Forms
+        Of all effects of the fit.
     resembled : tuple of Effect
-        Effects of the fit that are not there: an unknown cause resembles them.
+        Effects of the fit that are not there: one unknown cause resembles them.
     """
 
     fitted: Fitted
@@ -51,6 +47,7 @@ class Option:
     regularities: tuple[Described, ...]
     log_prior: float
     evidences: Float[np.ndarray, "zeros form_error"]
+    forms: Forms
     resembled: tuple[Effect, ...] = ()
 
     @property
@@ -75,15 +72,10 @@ class Option:
         return bool(self.regularities or self.resembled)
 
     @property
-    def form_errors(self) -> tuple[float, ...]:
-        """The form errors of :attr:`evidences`: those of the effects, or of what resembles others."""
-        return UNKNOWN_FORMS if self.resembled else FORM_ERRORS
-
-    @property
     def form_error(self) -> float:
-        """Posterior mean of the form error of the effects, as a share; 0 without effects, or if it changes nothing."""
+        """Posterior mean of the form error of the effects, as a share; 0 without effects."""
         weights = np.exp(logsumexp(self.evidences, axis=0) - self.log_evidence)
-        return float(weights @ np.array(self.form_errors)) if len(weights) > 1 else 0.0
+        return float(weights @ np.array(FORM_ERRORS)) if self.effects else 0.0
 
     @property
     def log_posterior(self) -> float:
@@ -97,9 +89,8 @@ class Option:
 
     def opened(self, zeros: int, form_error: int) -> Fitted:
         """The fit with a factor of zeros, and with the form of its effects open by a form error (numbers of both)."""
-        numbers = [n for n, each in enumerate(self.fitted.added) if each in (self.resembled or self.effects)]
-        directions = self.form_errors[form_error] * form_directions(self.fitted, numbers)
-        return self.fitted.with_zeros(ZEROS[zeros]).allowing_forms(directions)
+        directions = np.hstack([np.zeros((len(self.fitted.residual), 0)), *form_directions(self.fitted)])
+        return self.fitted.with_zeros(ZEROS[zeros]).allowing_forms(FORM_ERRORS[form_error] * directions)
 
 
 def causes_of(effects: Sequence[Effect], regularities: Sequence[Described]) -> frozenset[object]:
@@ -136,15 +127,15 @@ def option(start: Fitted, effects: Sequence[Effect], regularities: Sequence[Desc
     free = reduce(set_free, regularities, start.without_free)
     fitted = extended(free, effects).closed
     added = fitted.added
-    prior = log_prior(len(added), len(regularities), kinds) - len(regularities) * np.log(SCALES)
+    prior = log_prior(len(added), 0, len(regularities), kinds) - len(regularities) * np.log(SCALES)
     prior += sum(size_correction(fitted, number) for number in range(len(added)))
-    return Option(replace(fitted), added, tuple(regularities), prior, log_evidences(fitted, range(len(added))))
+    return Option(replace(fitted), added, tuple(regularities), prior, *log_evidences(fitted))
 
 
 def resembling(option: Option, kinds: int) -> list[Option]:
-    """The options that an unknown cause only resembles some of the effects of an option, or all of them.
+    """The options that one unknown cause resembles some of the effects of an option, or all of them.
 
-    The form of the other effects is open by the most probable form error of the option.
+    The evidence is the mean over all form errors of what is unknown, those of effects among them.
 
     Parameters
     ----------
@@ -153,17 +144,29 @@ def resembling(option: Option, kinds: int) -> list[Option]:
     kinds : int
         Number of effects in the library.
     """
-    found, every = [], option.effects
-    for effects in chain.from_iterable(combinations(every, many) for many in range(len(every))):
-        known = [number for number, each in enumerate(every) if each in effects]
-        others = [number for number in range(len(every)) if number not in known]
-        forms = option.form_errors[option.likeliest[1]] * form_directions(option.fitted, known)
-        opened = option.fitted.allowing_forms(forms)
-        evidences = log_evidences(opened, others, UNKNOWN_FORMS)
-        more = log_prior(len(every), len(option.regularities), kinds, len(others))
-        prior = option.log_prior + more - log_prior(len(every), len(option.regularities), kinds)
-        resembled = tuple(every[number] for number in others)
-        found.append(Option(opened, effects, option.regularities, prior, evidences, resembled))
+    many, (_, likeliest) = len(option.effects), option.likeliest
+    alike, counts_for = FORM_ERRORS[likeliest], float(np.log(len(FORM_ERRORS)))
+    gains = {errors: option.forms.gain(errors) for errors in product((alike, *OTHER_FORMS), repeat=many)}
+    start = float(logsumexp(option.evidences[:, likeliest])) + counts_for - gains[(alike,) * many]
+    found = []
+    for numbers in (each for n in range(1, many + 1) for each in combinations(range(many), n)):
+        evidences = [option.log_evidence + len(numbers) * counts_for]
+        for errors, gain in gains.items():
+            unlike = [number for number in range(many) if errors[number] != alike]
+            if unlike and set(unlike) <= set(numbers):
+                evidences.append(start + gain + (len(numbers) - len(unlike)) * counts_for)
+        more = logsumexp(evidences) - len(numbers) * np.log(len(FORM_ERRORS) + len(OTHER_FORMS)) - option.log_evidence
+        regular = len(option.regularities)
+        prior = log_prior(many - len(numbers), len(numbers), regular, kinds) - log_prior(many, 0, regular, kinds)
+        found.append(
+            replace(
+                option,
+                effects=tuple(each for number, each in enumerate(option.effects) if number not in numbers),
+                resembled=tuple(option.effects[number] for number in numbers),
+                evidences=option.evidences + more,
+                log_prior=option.log_prior + prior,
+            )
+        )
     return found
 
 
@@ -188,10 +191,8 @@ def size_correction(fitted: Fitted, number: int) -> float:
     return float(-np.log(SCALES * size * (1 + both_signs)) + (position**2 + np.log(2 * np.pi)) / 2)
 
 
-def log_evidences(
-    fitted: Fitted, numbers: Sequence[int], form_errors: Sequence[float] = FORM_ERRORS
-) -> Float[np.ndarray, "zeros form_error"]:
-    """Log evidence of a fit by the factor on the deviation of zeros and by the form error of some added effects.
+def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"], Forms]:
+    """Log evidence of a fit by the factor on the deviation of zeros and by the form error, and the forms of its effects.
 
     The priors of zeros and form error are in it, and all parameters are integrated over their priors (Laplace). The
     form errors gain the same for all factors of zeros.
@@ -202,22 +203,9 @@ def log_evidences(
     balanced = np.log([1 - BALANCED, *[BALANCED / len(TIMES_BALANCED)] * len(TIMES_BALANCED)])
     of_zeros = balanced + [each.log_likelihood(r) for each in wholes]
     best = wholes[int(of_zeros.argmax())]
-    directions = form_directions(fitted, numbers)
-    if not directions.shape[1]:
-        return of_zeros[:, None]
-    gains = _gains(best.whiten(directions), best.whiten(r), form_errors)
-    return of_zeros[:, None] + gains - np.log(len(form_errors))
-
-
-def _gains(
-    white: Float[np.ndarray, "row direction"], residual: Float[np.ndarray, " row"], form_errors: Sequence[float]
-) -> Float[np.ndarray, " form_error"]:
-    """Gain of log-likelihood by every form error, from whitened directions of unit size and the whitened residual."""
-    s2, V = np.linalg.eigh(white.T @ white)
-    s2 = np.maximum(s2, 0.0)
-    along2 = (V.T @ (white.T @ residual)) ** 2
-    g2 = np.square(form_errors)[:, None]
-    return (g2 * along2 / (1 + g2 * s2) - np.log1p(g2 * s2)).sum(axis=1) / 2
+    forms = Forms.of([best.whiten(each) for each in form_directions(fitted)], best.whiten(r))
+    gains = [forms.gain([error] * len(fitted.added)) for error in FORM_ERRORS]
+    return of_zeros[:, None] + gains - np.log(len(FORM_ERRORS)), forms
 
 
 def expected_gain(fitted: Fitted, change: Float[np.ndarray, " row"]) -> float:
@@ -237,6 +225,6 @@ def expected_gain(fitted: Fitted, change: Float[np.ndarray, " row"]) -> float:
     norm = float(np.sqrt(1 + size @ size))
     along = float(size @ r) / norm
     root = size / (norm * (1 + norm))  # (1 + size size')^-1/2 = 1 - root size'
-    forms = white[:, 1:] - np.outer(root, size @ white[:, 1:])
-    gains = _gains(forms, r - root * float(size @ r), FORM_ERRORS)
+    forms = Forms.of([white[:, 1:] - np.outer(root, size @ white[:, 1:])], r - root * float(size @ r))
+    gains = [forms.gain([error]) for error in FORM_ERRORS]
     return along**2 / 2 - np.log(norm * SCALES) + float(logsumexp(gains) - np.log(len(gains)))

@@ -132,8 +132,8 @@ class Search:
 
     def _promises(self, base: Option, log_evidence: float, *, effects: int = 0, regularities: int = 0) -> bool:
         """Whether an option with more causes may be nearly as probable as the best one, by its expected evidence."""
-        now = log_prior(len(base.effects), len(base.regularities), len(self.kinds))
-        then = log_prior(len(base.effects) + effects, len(base.regularities) + regularities, len(self.kinds))
+        now = log_prior(len(base.effects), 0, len(base.regularities), len(self.kinds))
+        then = log_prior(len(base.effects) + effects, 0, len(base.regularities) + regularities, len(self.kinds))
         return bool(log_evidence + base.log_prior + then - now > self._best.log_posterior - NEGLIGIBLE)
 
     def _leading(self, start: Fitted) -> list[tuple[float, Score]]:

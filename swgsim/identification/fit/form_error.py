@@ -1,6 +1,6 @@
 """Form error: how much the lines of an effect may differ from those in the library."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 from jaxtyping import Float
@@ -86,11 +86,10 @@ def allowance(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
     return FORM_TOLERANCE * (open_ - whole @ (weighed.T @ open_) / float((weighed * whole).sum()))
 
 
-def form_directions(fitted: Fitted, numbers: Iterable[int]) -> Float[np.ndarray, "row direction"]:
-    """Directions of the form error of some of the added effects, for a form error of 1."""
-    columns = [np.zeros((len(fitted.residual), 0))]
-    columns += [allowance(fitted, fitted.numbers_added[number]) for number in numbers]
-    return significant_columns(np.hstack(columns), fitted.errors.variance) / FORM_TOLERANCE
+def form_directions(fitted: Fitted) -> list[Float[np.ndarray, "row direction"]]:
+    """Directions of the form error of each added effect, for a form error of 1."""
+    columns = (allowance(fitted, number) for number in fitted.numbers_added)
+    return [significant_columns(each, fitted.errors.variance) / FORM_TOLERANCE for each in columns]
 
 
 def moved_by_forms(fitted: Fitted, form_errors: Mapping[int, float]) -> dict[str, float]:
