@@ -140,7 +140,7 @@ def resembling(option: Option, kinds: int) -> list[Option]:
     Parameters
     ----------
     option : Option
-        With effects of the library.
+        With effects of the library alone.
     kinds : int
         Number of effects in the library.
     """
@@ -156,8 +156,7 @@ def resembling(option: Option, kinds: int) -> list[Option]:
             if unlike and set(unlike) <= set(numbers):
                 evidences.append(start + gain + (len(numbers) - len(unlike)) * counts_for)
         more = logsumexp(evidences) - len(numbers) * np.log(len(FORM_ERRORS) + len(OTHER_FORMS)) - option.log_evidence
-        regular = len(option.regularities)
-        prior = log_prior(many - len(numbers), len(numbers), regular, kinds) - log_prior(many, 0, regular, kinds)
+        prior = log_prior(many - len(numbers), len(numbers), 0, kinds) - log_prior(many, 0, 0, kinds)
         found.append(
             replace(
                 option,

@@ -15,11 +15,11 @@ from swgsim.identification.data.features import ORDERS
 CAUSES = (0.8, 0.16, 0.032, 0.008)
 # Probability that a cause is not in the library, which holds what the literature describes.
 UNKNOWN = 0.1
-# An unknown cause is described by what it shows. One half of what it shows resembles known effects, as it acts on the
-# same machine; the other half are regularities, each being one order, one pattern over the channels and one law.
+# Half of the unknown causes resemble known effects, as they act on the same machine. The others are regularities, each
+# being one order, one pattern over the channels and one law.
 RESEMBLING = 0.5
-# Probability that an unknown cause shows in one thing more. Its further regularities have order, pattern or law in
-# common with the first one.
+# Probability that an unknown cause resembles one more effect, or shows in one more regularity. Further regularities
+# have order, pattern or law in common with the first one.
 ANOTHER = 0.5
 # Probability that bridges were balanced anew between two sessions. The zeros of gauges then lie so many times as far
 # off as declared.
@@ -45,7 +45,7 @@ def log_prior(effects: int, resembled: int, regularities: int, kinds: int) -> fl
     resembled : int
         Further effects that one unknown cause resembles.
     regularities : int
-        Regularities that the same unknown cause shows. The first may be any.
+        Regularities by which one unknown cause is described instead. The first may be any.
     kinds : int
         Number of effects in the library.
 
@@ -54,16 +54,15 @@ def log_prior(effects: int, resembled: int, regularities: int, kinds: int) -> fl
     >>> round(float(np.exp(log_prior(1, 0, 0, 60))), 4)
     0.0024
     """
-    shown = resembled + regularities
-    causes = effects + bool(shown)
+    causes = effects + bool(resembled or regularities)
     if causes >= len(CAUSES):
         return -np.inf
-    known = effects * np.log((1 - UNKNOWN) / kinds) + gammaln(effects + 1)  # in any order
-    if not shown:
-        return float(np.log(CAUSES[causes]) + known)
-    first = (ORDERS + 1) * len(PATTERNS) * len(LAWS)
-    further = ORDERS + len(PATTERNS) + len(LAWS)
-    unknown = np.log(UNKNOWN * (1 - ANOTHER)) + (shown - 1) * np.log(ANOTHER)
-    unknown += resembled * np.log(RESEMBLING / kinds) + gammaln(resembled + 1)
-    unknown += regularities * np.log((1 - RESEMBLING) / further) + bool(regularities) * np.log(further / first)
-    return float(np.log(CAUSES[causes]) + known + unknown)
+    found = np.log(CAUSES[causes]) + effects * np.log((1 - UNKNOWN) / kinds) + gammaln(effects + 1)  # in any order
+    if resembled:
+        found += np.log(UNKNOWN * RESEMBLING * (1 - ANOTHER) / kinds) + gammaln(resembled + 1)
+        found += (resembled - 1) * np.log(ANOTHER / kinds)
+    elif regularities:
+        first = (ORDERS + 1) * len(PATTERNS) * len(LAWS)
+        found += np.log(UNKNOWN * (1 - RESEMBLING) * (1 - ANOTHER) / first)
+        found += (regularities - 1) * np.log(ANOTHER / (ORDERS + len(PATTERNS) + len(LAWS)))
+    return float(found)

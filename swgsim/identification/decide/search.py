@@ -58,7 +58,8 @@ class Search:
         ):
             for each in fresh:
                 self._expand(each)
-        more = [like for each in self._options.values() for like in resembling(each, len(self.kinds))]
+        alone = [each for each in self._options.values() if not each.regularities]
+        more = [like for each in alone for like in resembling(each, len(self.kinds))]
         return sorted([*self._options.values(), *more], key=lambda each: -each.log_posterior)
 
     def described(self, unknown: Option) -> Option:
