@@ -57,7 +57,7 @@ def log_prior(effects: int, resembled: int, regularities: int, kinds: int) -> fl
     causes = effects + bool(resembled or regularities)
     if causes >= len(CAUSES):
         return -np.inf
-    found = np.log(CAUSES[causes]) + effects * np.log((1 - UNKNOWN) / kinds) + gammaln(effects + 1)  # in any order
+    found = np.log(CAUSES[causes]) + gammaln(causes + 1) + effects * np.log((1 - UNKNOWN) / kinds)  # in any order
     if resembled:
         found += np.log(UNKNOWN * RESEMBLING * (1 - ANOTHER) / kinds) + gammaln(resembled + 1)
         found += (resembled - 1) * np.log(ANOTHER / kinds)
