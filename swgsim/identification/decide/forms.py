@@ -20,18 +20,21 @@ class Forms:
         Of the directions with the residual.
     effect : array (direction,)
         Number of the effect that each direction belongs to.
+    misfit : float
+        Sum of squares of the residual beyond its expectation.
     """
 
     products: Float[np.ndarray, "direction direction"]
     along: Float[np.ndarray, " direction"]
     effect: Int[np.ndarray, " direction"]
+    misfit: float
 
     @classmethod
     def of(cls, white: Sequence[Float[np.ndarray, "row _"]], residual: Float[np.ndarray, " row"]) -> "Forms":
         """From the whitened directions of every effect, and the whitened residual."""
         every = np.hstack([np.zeros((len(residual), 0)), *white])
         effect = np.repeat(np.arange(len(white)), [each.shape[1] for each in white])
-        return cls(every.T @ every, every.T @ residual, effect)
+        return cls(every.T @ every, every.T @ residual, effect, float(residual @ residual) - len(residual))
 
     def gain(self, errors: Sequence[float]) -> float:
         """Gain of log-likelihood if the form of every effect is open by its form error."""

@@ -78,6 +78,13 @@ class Option:
         return float(weights @ np.array(FORM_ERRORS)) if self.effects else 0.0
 
     @property
+    def fits_badly(self) -> bool:
+        """Whether it leaves more unexplained than free values of all lines at all operating points would cost."""
+        measured, error = self.fitted.measured, FORM_ERRORS[self.likeliest[1]]
+        misfit = self.forms.misfit - 2 * max(self.forms.gain([error] * len(self.fitted.added)), 0.0)
+        return misfit > len(measured.layout) * len(measured.point_rows())
+
+    @property
     def log_posterior(self) -> float:
         """Up to a constant that all options share."""
         return self.log_prior + self.log_evidence

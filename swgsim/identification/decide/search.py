@@ -135,6 +135,8 @@ class Search:
         """Whether an option with more causes may be nearly as probable as the best one, by its expected evidence."""
         now = log_prior(len(base.effects), 0, len(base.regularities), len(self.kinds))
         then = log_prior(len(base.effects) + effects, 0, len(base.regularities) + regularities, len(self.kinds))
+        if self._best.fits_badly:
+            return bool(then > -np.inf)  # no estimate is worth much beside such a misfit
         return bool(log_evidence + base.log_prior + then - now > self._best.log_posterior - NEGLIGIBLE)
 
     def _leading(self, start: Fitted) -> list[tuple[float, Score]]:
