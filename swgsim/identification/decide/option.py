@@ -198,7 +198,7 @@ def size_correction(fitted: Fitted, number: int) -> float:
 
 
 def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"], Forms]:
-    """Log evidence of a fit by the factor on the deviation of zeros and by the form error, and the forms of its effects.
+    """Log evidence of a fit by the factor on the deviation of zeros and by the form error, and the forms of effects.
 
     The priors of zeros and form error are in it, and all parameters are integrated over their priors (Laplace). The
     form errors gain the same for all factors of zeros.
