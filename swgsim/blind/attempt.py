@@ -58,7 +58,7 @@ def answer_fields(found: Answer, recordings: Sequence[Recording], library: Seque
         "probability": decision.probability,
         "accepted": _names(decision.effects),
         "alternatives": [
-            {"effects": _names(option.effects), "unknown": bool(option.regularities), "probability": probability}
+            {"effects": _names(option.effects), "unknown": option.unknown, "probability": probability}
             for option, probability in decision.credible
         ],
         "nearest": _names(found.nearest[0].effects) if found.nearest else [],

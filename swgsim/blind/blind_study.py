@@ -32,9 +32,11 @@ from swgsim.jobs import settings
 PRIORS = {
     "causes": prior.CAUSES,
     "unknown": prior.OUTSIDE_LIBRARY,
-    "another_regularity": prior.ANOTHER_REGULARITY,
+    "another": prior.ANOTHER,
     "balanced": [prior.BALANCED, *prior.TIMES_BALANCED],
+    "resembling": prior.RESEMBLING,
     "form_errors": prior.FORM_ERRORS,
+    "other_forms": prior.OTHER_FORMS,
     "scales": prior.LOG_SIZE_RANGE,
     "detectable": DETECTABLE,
     "look_alike": scored_case.LOOK_ALIKE,

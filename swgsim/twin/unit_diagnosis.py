@@ -170,7 +170,7 @@ def _without_faults(loop: Identification) -> tuple[Fitted, str | None]:
     answer, decision = loop.answer, loop.answer.decision
     others = tuple(effect for effect in decision.effects if type(effect).name() not in FAULTS)
     explained = any(
-        not option.regularities and all(type(effect).name() in FAULTS for effect in option.effects)
+        not option.unknown and all(type(effect).name() in FAULTS for effect in option.effects)
         for option, _ in decision.credible
     )
     found = answer.lines or answer.unnamed or (not explained and (answer.unknown or set(others) & set(answer.effects)))

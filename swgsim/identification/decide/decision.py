@@ -40,7 +40,9 @@ class Decision:
     before : Fitted
         The model of the unit.
     after : Fitted
-        The model with the effects and regularities of the most probable option.
+        The model with the effects and regularities of the best option.
+    best : Option
+        The most probable option of the most probable answer; something unknown is described by regularities in it.
     options : tuple of Option
         The most probable first.
     probabilities : tuple of float
@@ -51,14 +53,10 @@ class Decision:
 
     before: Fitted
     after: Fitted
+    best: Option
     options: tuple[Option, ...]
     probabilities: tuple[float, ...]
     scores: tuple[Score, ...]
-
-    @property
-    def best(self) -> Option:
-        """The most probable option."""
-        return self.options[0]
 
     @property
     def effects(self) -> tuple[Effect, ...]:
@@ -77,8 +75,8 @@ class Decision:
 
     @property
     def probability(self) -> float:
-        """Of the answer: of all options with the same effects, and with or without regularities as the best one."""
-        return float(sum(p for each, p in self.weighed if _answer(each) == _answer(self.best)))
+        """Of the answer: of all options with the same effects, and with or without something unknown."""
+        return self.answers[0][1]
 
     @property
     def weighed(self) -> list[tuple[Option, float]]:
@@ -88,11 +86,7 @@ class Decision:
     @cached_property
     def answers(self) -> list[tuple[Option, float]]:
         """The best option of every answer with the probability of the answer, the most probable first."""
-        found: dict[object, tuple[Option, float]] = {}
-        for each, probability in self.weighed:
-            first, total = found.get(_answer(each), (each, 0.0))
-            found[_answer(each)] = first, total + probability
-        return sorted(found.values(), key=lambda each: -each[1])
+        return _answers(self.weighed)
 
     @property
     def credible(self) -> list[tuple[Option, float]]:
@@ -106,7 +100,8 @@ class Decision:
 
     def gain_of(self, effect: Effect) -> float:
         """Log evidence of the best option over the best one without effects of this kind."""
-        others = [o.log_evidence for o in self.options if chosen(effect) not in map(chosen, o.effects)]
+        kind = chosen(effect)
+        others = [o.log_evidence for o in self.options if kind not in map(chosen, (*o.effects, *o.resembled))]
         return self.best.log_evidence - max(others, default=-np.inf)
 
     @property
@@ -130,8 +125,13 @@ class Decision:
         return found | {name: float(np.hypot(found[name], by)) for name, by in moved.items() if ": " in name}
 
 
-def _answer(option: Option) -> tuple[frozenset[object], bool]:
-    return frozenset(map(chosen, option.effects)), bool(option.regularities)
+def _answers(weighed: Sequence[tuple[Option, float]]) -> list[tuple[Option, float]]:
+    found: dict[object, tuple[Option, float]] = {}
+    for each, probability in weighed:
+        answer = frozenset(map(chosen, each.effects)), each.unknown
+        first, total = found.get(answer, (each, 0.0))
+        found[answer] = first, total + probability
+    return sorted(found.values(), key=lambda each: -each[1])
 
 
 def decide(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed: int = 0) -> Decision:
@@ -147,12 +147,16 @@ def decide(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, see
         Of the simulated noise from which p-values of the scores are computed.
     """
     first = fit(measured, unit)
-    options = Search(first, kinds).run()
+    search = Search(first, kinds)
+    options = search.run()
     weights = np.array([each.log_posterior for each in options])
-    best = options[0]
+    probabilities = tuple(np.exp(weights - logsumexp(weights)).tolist())
+    best, _ = _answers(list(zip(options, probabilities, strict=True)))[0]
+    if best.resembled:
+        best = search.described(best)
     before = first.with_zeros(best.zeros)
     scores = at_sizes_seen(screened(first, kinds, generator("screen", seed, 0)), at_plausible_parameters(first))
-    return Decision(before, _with(best), tuple(options), tuple(np.exp(weights - logsumexp(weights)).tolist()), scores)
+    return Decision(before, _with(best), best, tuple(options), probabilities, scores)
 
 
 def _with(best: Option) -> Fitted:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
+from itertools import combinations, product
 
 import numpy as np
 from jaxtyping import Float
@@ -10,8 +11,15 @@ from scipy.special import logsumexp
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, beyond_nothing, quantities, size_of
-from swgsim.identification.covariance.low_rank_covariance import as_squares
-from swgsim.identification.decide.prior import BALANCED, FORM_ERRORS, LOG_SIZE_RANGE, TIMES_BALANCED, log_prior
+from swgsim.identification.decide.forms import Forms
+from swgsim.identification.decide.prior import (
+    BALANCED,
+    FORM_ERRORS,
+    LOG_SIZE_RANGE,
+    OTHER_FORMS,
+    TIMES_BALANCED,
+    log_prior,
+)
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import extended
 from swgsim.identification.fit.form_error import form_directions, parts
@@ -35,8 +43,10 @@ class Option:
     log_prior : float
     evidences : array (zeros, form_error)
         Log evidence by the factor on the deviation of zeros and by the form error, with the priors of both.
-    misfit : float
-        Sum of squares of the whitened residual beyond its expectation, with the most probable form error.
+    forms : Forms
+        Of all effects of the fit.
+    resembled : tuple of Effect
+        Effects of the fit that are not there: one unknown cause resembles them.
     """
 
     fitted: Fitted
@@ -44,7 +54,8 @@ class Option:
     regularities: tuple[Described, ...]
     log_prior: float
     evidences: Float[np.ndarray, "zeros form_error"]
-    misfit: float
+    forms: Forms
+    resembled: tuple[Effect, ...] = ()
 
     @property
     def log_evidence(self) -> float:
@@ -63,10 +74,22 @@ class Option:
         return ZEROS[self.likeliest[0]]
 
     @property
+    def unknown(self) -> bool:
+        """Whether something is missing that is not in the library."""
+        return bool(self.regularities or self.resembled)
+
+    @property
     def form_error(self) -> float:
-        """Posterior mean of the form error of the effects, as a share; 0 without effects, or if it changes nothing."""
+        """Posterior mean of the form error of the effects, as a share; 0 without effects."""
         weights = np.exp(logsumexp(self.evidences, axis=0) - self.log_evidence)
-        return float(weights @ np.array(FORM_ERRORS)) if len(weights) == len(FORM_ERRORS) else 0.0
+        return float(weights @ np.array(FORM_ERRORS)) if self.effects else 0.0
+
+    @property
+    def fits_badly(self) -> bool:
+        """Whether it leaves more unexplained than free values of all lines at all operating points would cost."""
+        measured, error = self.fitted.measured, FORM_ERRORS[self.likeliest[1]]
+        misfit = self.forms.misfit - 2 * max(self.forms.gain([error] * len(self.fitted.added)), 0.0)
+        return misfit > len(measured.layout) * len(measured.point_rows())
 
     @property
     def log_posterior(self) -> float:
@@ -80,8 +103,8 @@ class Option:
 
     def opened(self, zeros: int, form_error: int) -> Fitted:
         """The fit with a factor of zeros, and with the form of its effects open by a form error (numbers of both)."""
-        directions = FORM_ERRORS[form_error] * form_directions(self.fitted, len(self.effects))
-        return self.fitted.with_zeros(ZEROS[zeros]).allowing_forms(directions)
+        directions = np.hstack([np.zeros((len(self.fitted.residual), 0)), *form_directions(self.fitted)])
+        return self.fitted.with_zeros(ZEROS[zeros]).allowing_forms(FORM_ERRORS[form_error] * directions)
 
 
 def causes_of(effects: Sequence[Effect], regularities: Sequence[Described]) -> frozenset[object]:
@@ -118,9 +141,46 @@ def option(start: Fitted, effects: Sequence[Effect], regularities: Sequence[Desc
     free = reduce(set_free, regularities, start.without_free)
     fitted = extended(free, effects).closed
     added = fitted.added
-    prior = log_prior(len(added), len(regularities), kinds) - len(regularities) * np.log(LOG_SIZE_RANGE)
+    prior = log_prior(len(added), 0, len(regularities), kinds) - len(regularities) * np.log(LOG_SIZE_RANGE)
     prior += sum(size_correction(fitted, number) for number in range(len(added)))
     return Option(replace(fitted), added, tuple(regularities), prior, *log_evidences(fitted))
+
+
+def resembling(option: Option, kinds: int) -> list[Option]:
+    """The options that one unknown cause resembles some of the effects of an option, or all of them.
+
+    The evidence is the mean over all form errors of what is unknown, those of effects among them.
+
+    Parameters
+    ----------
+    option : Option
+        With effects of the library alone.
+    kinds : int
+        Number of effects in the library.
+    """
+    many, (_, likeliest) = len(option.effects), option.likeliest
+    alike, counts_for = FORM_ERRORS[likeliest], float(np.log(len(FORM_ERRORS)))
+    gains = {errors: option.forms.gain(errors) for errors in product((alike, *OTHER_FORMS), repeat=many)}
+    start = float(logsumexp(option.evidences[:, likeliest])) + counts_for - gains[(alike,) * many]
+    found = []
+    for numbers in (each for n in range(1, many + 1) for each in combinations(range(many), n)):
+        evidences = [option.log_evidence + len(numbers) * counts_for]
+        for errors, gain in gains.items():
+            unlike = [number for number in range(many) if errors[number] != alike]
+            if unlike and set(unlike) <= set(numbers):
+                evidences.append(start + gain + (len(numbers) - len(unlike)) * counts_for)
+        more = logsumexp(evidences) - len(numbers) * np.log(len(FORM_ERRORS) + len(OTHER_FORMS)) - option.log_evidence
+        prior = log_prior(many - len(numbers), len(numbers), 0, kinds) - log_prior(many, 0, 0, kinds)
+        found.append(
+            replace(
+                option,
+                effects=tuple(each for number, each in enumerate(option.effects) if number not in numbers),
+                resembled=tuple(option.effects[number] for number in numbers),
+                evidences=option.evidences + more,
+                log_prior=option.log_prior + prior,
+            )
+        )
+    return found
 
 
 def size_correction(fitted: Fitted, number: int) -> float:
@@ -144,8 +204,8 @@ def size_correction(fitted: Fitted, number: int) -> float:
     return float(-np.log(LOG_SIZE_RANGE * size * (1 + both_signs)) + (position**2 + np.log(2 * np.pi)) / 2)
 
 
-def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"], float]:
-    """Log evidence of a fit by the factor on the deviation of zeros and by the form error, and its misfit.
+def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"], Forms]:
+    """Log evidence of a fit by the factor on the deviation of zeros and by the form error, and the forms of effects.
 
     The priors of zeros and form error are in it, and all parameters are integrated over their priors (Laplace). The
     form errors gain the same for all factors of zeros.
@@ -156,24 +216,9 @@ def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"]
     balanced = np.log([1 - BALANCED, *[BALANCED / len(TIMES_BALANCED)] * len(TIMES_BALANCED)])
     of_zeros = balanced + [each.log_likelihood(r) for each in wholes]
     best = wholes[int(of_zeros.argmax())]
-    white = best.whiten(r)
-    misfit = float(white @ white) - len(r)
-    directions = form_directions(fitted, len(fitted.added))
-    if not directions.shape[1]:
-        return of_zeros[:, None], misfit
-    gains = _gains(best.whiten(directions), white)
-    return of_zeros[:, None] + gains - np.log(len(FORM_ERRORS)), misfit - as_squares(max(float(gains.max()), 0.0))
-
-
-def _gains(
-    white: Float[np.ndarray, "row direction"], residual: Float[np.ndarray, " row"]
-) -> Float[np.ndarray, " form_error"]:
-    """Gain of log-likelihood by every form error, from whitened directions of unit size and the whitened residual."""
-    s2, V = np.linalg.eigh(white.T @ white)
-    s2 = np.maximum(s2, 0.0)
-    along2 = (V.T @ (white.T @ residual)) ** 2
-    g2 = np.square(FORM_ERRORS)[:, None]
-    return (g2 * along2 / (1 + g2 * s2) - np.log1p(g2 * s2)).sum(axis=1) / 2
+    forms = Forms.of([best.whiten(each) for each in form_directions(fitted)], best.whiten(r))
+    gains = [forms.gain([error] * len(fitted.added)) for error in FORM_ERRORS]
+    return of_zeros[:, None] + gains - np.log(len(FORM_ERRORS)), forms
 
 
 def expected_gain(fitted: Fitted, change: Float[np.ndarray, " row"]) -> float:
@@ -193,6 +238,6 @@ def expected_gain(fitted: Fitted, change: Float[np.ndarray, " row"]) -> float:
     norm = float(np.sqrt(1 + size @ size))
     along = float(size @ r) / norm
     root = size / (norm * (1 + norm))  # (1 + size size')^-1/2 = 1 - root size'
-    forms = white[:, 1:] - np.outer(root, size @ white[:, 1:])
-    gains = _gains(forms, r - root * float(size @ r))
+    forms = Forms.of([white[:, 1:] - np.outer(root, size @ white[:, 1:])], r - root * float(size @ r))
+    gains = [forms.gain([error]) for error in FORM_ERRORS]
     return along**2 / 2 - np.log(norm * LOG_SIZE_RANGE) + float(logsumexp(gains) - np.log(len(gains)))

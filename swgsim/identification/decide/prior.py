@@ -5,6 +5,7 @@ change only for a reason from physics or from the practice of test benches.
 """
 
 import numpy as np
+from scipy.special import gammaln
 
 from swgsim.effects.regularity import LAWS, PATTERNS
 from swgsim.identification.data.features import ORDERS
@@ -14,42 +15,54 @@ from swgsim.identification.data.features import ORDERS
 CAUSES = (0.8, 0.16, 0.032, 0.008)
 # Probability that a cause is not in the library, which holds what the literature describes.
 OUTSIDE_LIBRARY = 0.1
-# Probability that an unknown cause shows in one more regularity. A regularity is one order, one pattern over the
-# channels and one law; a real cause shows in several, which have one of the three in common.
-ANOTHER_REGULARITY = 0.5
+# Half of the unknown causes resemble known effects, as they act on the same machine. The others are regularities, each
+# being one order, one pattern over the channels and one law.
+RESEMBLING = 0.5
+# Probability that an unknown cause resembles one more effect, or shows in one more regularity. Further regularities
+# have order, pattern or law in common with the first one.
+ANOTHER = 0.5
 # Probability that bridges were balanced anew between two sessions. The zeros of gauges then lie so many times as far
 # off as declared.
 BALANCED, TIMES_BALANCED = 0.05, (2.0, 4.0, 8.0, 16.0)
 # A real effect never has exactly the form that the library gives it. The lines of its signature differ by one of these
 # shares (standard deviation), all being equally probable: from the mesh of the truss to the model of another author.
 FORM_ERRORS = (0.01, 0.02, 0.05, 0.1, 0.2)
+# What resembles an effect may look just like it, or have little more than channels, orders and law in common: its lines
+# differ by one of these shares, or by one of those above, all being equally probable.
+OTHER_FORMS = (0.5, 1.0)
 # Sizes of effects and amplitudes of regularities are known to a factor only: their logarithm is uniform over so many
 # factors of e, a ratio of 3000.
 LOG_SIZE_RANGE = 8.0
 
 
-def log_prior(effects: int, regularities: int, kinds: int) -> float:
+def log_prior(effects: int, resembled: int, regularities: int, kinds: int) -> float:
     """Logarithm of the prior probability of an option.
 
     Parameters
     ----------
     effects : int
         Effects of the library; each is as probable as any other one.
+    resembled : int
+        Further effects that one unknown cause resembles.
     regularities : int
-        Together they are one unknown cause. The first may be any; further ones have order, pattern or law in common.
+        Regularities by which one unknown cause is described instead. The first may be any.
     kinds : int
         Number of effects in the library.
 
-    >>> round(float(np.exp(log_prior(0, 0, 60))), 3)
+    >>> round(float(np.exp(log_prior(0, 0, 0, 60))), 3)
     0.8
-    >>> round(float(np.exp(log_prior(1, 0, 60))), 4)
+    >>> round(float(np.exp(log_prior(1, 0, 0, 60))), 4)
     0.0024
     """
-    causes = effects + bool(regularities)
+    causes = effects + bool(resembled or regularities)
     if causes >= len(CAUSES):
         return -np.inf
-    known = effects * np.log((1 - OUTSIDE_LIBRARY) / kinds) + np.log(np.arange(1, effects + 1)).sum()  # in any order
-    first = OUTSIDE_LIBRARY * (1 - ANOTHER_REGULARITY) / ((ORDERS + 1) * len(PATTERNS) * len(LAWS))
-    further = ANOTHER_REGULARITY / (ORDERS + len(PATTERNS) + len(LAWS))
-    unknown = np.log(first) + (regularities - 1) * np.log(further) if regularities else 0.0
-    return float(np.log(CAUSES[causes]) + known + unknown)
+    found = np.log(CAUSES[causes]) + gammaln(causes + 1) + effects * np.log((1 - OUTSIDE_LIBRARY) / kinds)
+    if resembled:
+        found += np.log(OUTSIDE_LIBRARY * RESEMBLING * (1 - ANOTHER) / kinds) + gammaln(resembled + 1)
+        found += (resembled - 1) * np.log(ANOTHER / kinds)
+    elif regularities:
+        first = (ORDERS + 1) * len(PATTERNS) * len(LAWS)
+        found += np.log(OUTSIDE_LIBRARY * (1 - RESEMBLING) * (1 - ANOTHER) / first)
+        found += (regularities - 1) * np.log(ANOTHER / (ORDERS + len(PATTERNS) + len(LAWS)))
+    return float(found)

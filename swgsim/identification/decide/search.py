@@ -15,8 +15,7 @@ from jaxtyping import Float
 from swgsim.chain import NoSteadyState
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities
-from swgsim.identification.decide.formless import formless, ill_fitting
-from swgsim.identification.decide.option import Option, causes_of, expected_gain, option
+from swgsim.identification.decide.option import Option, causes_of, expected_gain, option, resembling
 from swgsim.identification.decide.prior import CAUSES, LOG_SIZE_RANGE, log_prior
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import at_plausible_parameters
@@ -59,16 +58,23 @@ class Search:
         ):
             for each in fresh:
                 self._expand(each)
-        more = [formless(each, len(self.kinds)) for each in self._ill_fitting()]
+        alone = [each for each in self._options.values() if not each.regularities]
+        more = [like for each in alone for like in resembling(each, len(self.kinds))]
         return sorted([*self._options.values(), *more], key=lambda each: -each.log_posterior)
 
-    def _ill_fitting(self) -> list[Option]:
-        """Where the best option fits badly: the best options with effects alone, and that without any."""
-        if not ill_fitting(self._best):
-            return []
-        alone = [each for each in self._options.values() if not each.regularities and ill_fitting(each)]
-        best = sorted(alone, key=lambda each: (bool(each.effects), -each.log_posterior))
-        return best[: 1 + EFFECTS_TRIED]
+    def described(self, unknown: Option) -> Option:
+        """An option with regularities for something unknown that resembles an effect, and with the same effects."""
+        alone = causes_of(unknown.effects, ())
+        fitted = [each for each in self._options.values() if causes_of(each.effects, ()) == alone]
+        fitted = fitted or [option(self.null.with_zeros(unknown.zeros), unknown.effects, (), len(self.kinds))]
+        best = max(fitted, key=lambda each: (bool(each.regularities), each.log_posterior))
+        while len(best.regularities) < MOST_REGULARITIES:
+            opened = best.opened(*best.likeliest)
+            more = option(opened, (), (*best.regularities, _strongest(opened)), len(self.kinds))
+            if best.regularities and more.log_posterior < best.log_posterior:
+                break
+            best = more
+        return best
 
     @property
     def _best(self) -> Option:
@@ -120,17 +126,16 @@ class Search:
                 if self._promises(base, evidence + gain, effects=1):
                     self._fit(start, (zoom(score, start),), base.regularities)
             if len(base.regularities) < MOST_REGULARITIES and causes + (not base.regularities) < len(CAUSES):
-                first, *others = describe(opened)
+                first = _strongest(opened)
                 gain = (first.gain - first.freedom * np.log1p(first.gain / first.freedom)) / 2 - np.log(LOG_SIZE_RANGE)
                 if self._promises(base, evidence + gain, regularities=1):
-                    named = replace(first, rivals=other_laws(first, others))
-                    self._fit(opened, (), (*base.regularities, named))
+                    self._fit(opened, (), (*base.regularities, first))
 
     def _promises(self, base: Option, log_evidence: float, *, effects: int = 0, regularities: int = 0) -> bool:
         """Whether an option with more causes may be nearly as probable as the best one, by its expected evidence."""
-        now = log_prior(len(base.effects), len(base.regularities), len(self.kinds))
-        then = log_prior(len(base.effects) + effects, len(base.regularities) + regularities, len(self.kinds))
-        if ill_fitting(self._best):
+        now = log_prior(len(base.effects), 0, len(base.regularities), len(self.kinds))
+        then = log_prior(len(base.effects) + effects, 0, len(base.regularities) + regularities, len(self.kinds))
+        if self._best.fits_badly:
             return bool(then > -np.inf)  # no estimate is worth much beside such a misfit
         return bool(log_evidence + base.log_prior + then - now > self._best.log_posterior - LOG_POSTERIOR_MARGIN)
 
@@ -153,6 +158,12 @@ class Search:
         start = at_plausible_parameters(self.null)
         every = list(hypotheses(self.kinds, start.unit.of_another_structure))
         return every, signatures(every, start.model, start.measured)
+
+
+def _strongest(fitted: Fitted) -> Described:
+    """The most significant regularity, with the laws that fit as well."""
+    first, *others = describe(fitted)
+    return replace(first, rivals=other_laws(first, others))
 
 
 def estimated(score: Score, signature: Float[np.ndarray, "row column"]) -> Float[np.ndarray, " row"]:

@@ -86,12 +86,10 @@ def allowance(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
     return FORM_TOLERANCE * (open_ - whole @ (weighed.T @ open_) / float((weighed * whole).sum()))
 
 
-def form_directions(fitted: Fitted, added: int) -> Float[np.ndarray, "row direction"]:
-    """Directions of the form error of the effects that were added last, for a form error of 1."""
-    count = len(fitted.model.effects)
-    columns = [np.zeros((len(fitted.residual), 0))]
-    columns += [allowance(fitted, number) for number in range(count - added, count)]
-    return significant_columns(np.hstack(columns), fitted.errors.variance) / FORM_TOLERANCE
+def form_directions(fitted: Fitted) -> list[Float[np.ndarray, "row direction"]]:
+    """Directions of the form error of each added effect, for a form error of 1."""
+    columns = (allowance(fitted, number) for number in fitted.numbers_added)
+    return [significant_columns(each, fitted.errors.variance) / FORM_TOLERANCE for each in columns]
 
 
 def moved_by_forms(fitted: Fitted, form_errors: Mapping[int, float]) -> dict[str, float]:

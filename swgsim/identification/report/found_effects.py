@@ -121,7 +121,7 @@ def alternatives(answer: Answer) -> list[dict[str, Any]]:
         {
             "words": in_words(option),
             "effects": [_at_fit(effect) for effect in option.effects],
-            "unknown": bool(option.regularities),
+            "unknown": option.unknown,
             "probability": number(p),
         }
         for option, p in answer.decision.credible
@@ -137,7 +137,7 @@ def small(answer: Answer) -> list[dict[str, Any]]:
 def in_words(option: Option) -> str:
     """What an option says is missing."""
     words = [names_in_words(option.effects)] if option.effects else []
-    words += ["something unknown"] if option.regularities else []
+    words += ["something unknown"] if option.unknown else []
     return " and ".join(words) or "nothing"
 
 
