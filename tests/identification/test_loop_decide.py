@@ -11,7 +11,7 @@ from loop_fixtures import drawn, fitted_to, holding
 from scipy.special import logsumexp
 from scipy.stats import binom, multivariate_normal
 
-from swgsim.common.outcome import FOUND, NOTHING, OUTSIDE_LIBRARY
+from swgsim.common.outcome import FOUND, NOTHING, UNKNOWN
 from swgsim.effects.regularity import LAWS, PATTERNS
 from swgsim.identification.covariance.low_rank_covariance import Covariance
 from swgsim.identification.covariance.recording_covariance import RecordingCovariance
@@ -134,7 +134,7 @@ def test_an_unknown_cause_with_the_lines_of_an_effect_is_called_unknown(null, ch
     """Half of the lines of a bump the wrong way round: no bump, and too many lines for a few regularities."""
     sign = np.where(np.arange(len(null.residual)) % 2, -1.0, 1.0)
     found, said = answered(null, changes, {}, 17, 20 * sign * changes[Bump].ravel())
-    assert found.verdict == OUTSIDE_LIBRARY
+    assert found.verdict == UNKNOWN
     assert found.decision.best.regularities
     assert "not in the library" in said
     found, _ = answered(null, changes, {Bump: 20.0}, 17)
@@ -365,7 +365,7 @@ def test_nothing_and_something_unknown_have_probabilities_too(null, changes):
         "words": "nothing", "effects": [], "unknown": False, "probability": pytest.approx(found.decision.probability),
     }  # fmt: skip
     found, said = answered(null, changes, {}, 16, 3 * columns(STRAY, null)[:, 0])
-    assert found.verdict == OUTSIDE_LIBRARY
+    assert found.verdict == UNKNOWN
     assert [each.atom for each in found.unknown] == [STRAY]
     assert "not in the library: order 5, in s1 alone, constant" in said
     assert said.endswith(f": probability {probability_text(found.decision.probability)}.")
