@@ -41,6 +41,7 @@ from swgsim.identification.data.features import COMPARED, Layout, features
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model, predict
 from swgsim.identification.decide.decision import Decision
+from swgsim.identification.decide.option import option
 from swgsim.identification.fit import map_fit as calibration
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import fit
@@ -463,7 +464,7 @@ def test_angles_are_judged_of_what_was_chosen_alike(fitted: Fitted, order: int) 
     """The phase of another order is another thing."""
     found = LIBRARY["cam_form"](order, 2.1e-6, 0.9)
     after = replace(fitted, calibrated=replace(fitted.calibrated, model=fitted.model.plus(found)))
-    decision = Decision(fitted, after, (), (), ())
+    decision = Decision(fitted, after, option(fitted, (), (), 1), (), (), ())
     decision.__dict__["deviation"] = {"cam form 1: amplitude": 1e-7, "cam form 1: phase": 0.2}
     sizes, angles = attempt._intervals(Answer(decision, (), (), (), (), ()), HIDDEN)
     assert sizes == [{"name": "cam_form", "true": 2e-6, "found": 2.1e-6, "deviation": 1e-7}]
@@ -474,7 +475,7 @@ def test_the_true_model_is_likelier_than_an_answer_that_names_nothing() -> None:
     hidden = replace(SHORT, effects=(LIBRARY["cam_form"](3, 2e-5, 1.0),), strengths=(3e5,))
     unit = Unit(Model(GEAR))
     before = fit(Measured.of(in_question(hidden, SETTING, hidden.acting)), unit)
-    answer = Answer(Decision(before, before, (), (), ()), (), (), (), (), ())
+    answer = Answer(Decision(before, before, option(before, (), (), 1), (), (), ()), (), (), (), (), ())
     said = attempt._against_truth(answer, unit, hidden, SETTING)
     likely = said["log_likelihood"]
     assert likely["before"] == likely["after"] == before.log_likelihood

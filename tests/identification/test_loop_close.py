@@ -213,12 +213,14 @@ def test_a_sick_gear_is_told_its_sickness_with_size_and_place(unit, fault):
 def test_two_effects_at_once_are_found_with_what_one_of_them_may_be_as_well(unit):
     """Warm grease and reduced damping both lower the viscous friction."""
     decision = decide(recorded((ECCENTRIC, WARM), seed=2), unit, SEARCHED[:3])
-    answers = [{type(effect).name() for effect in option.effects} for option, _ in decision.credible]
+    answers = [
+        {type(effect).name() for effect in option.effects} for option, _ in decision.credible if not option.unknown
+    ]
     assert sorted(answers, key=sorted) == [
         {"eccentric_wave_generator", "reduced_damping"},
         {"eccentric_wave_generator", "warm_grease"},
     ]
-    assert decision.probability_of(ECCENTRIC) > CREDIBLE
+    assert decision.probability_of(ECCENTRIC) > 0.9  # an unknown cause may look like both
     assert 0.05 < decision.probability_of(WARM) < CREDIBLE
     assert decision.after.log_likelihood - decision.before.log_likelihood > 6
 
