@@ -26,6 +26,8 @@ class Outcome:
     fit : Fit
     before, after : mapping
         The tables under the values of grid=paper and under those that were found, all cells.
+    unreduced : mapping
+        The tables under all values of the best trial, most of which are not needed.
     claims_before, claims_after : mapping
         C1 to C18 to whether they hold.
     held : mapping
@@ -41,6 +43,7 @@ class Outcome:
     fit: Fit
     before: Tables
     after: Tables
+    unreduced: Tables
     claims_before: Mapping[str, bool]
     claims_after: Mapping[str, bool]
     held: Mapping[str, Held]
@@ -52,6 +55,7 @@ class Outcome:
         return {
             "before": errors(self.before),
             "after": errors(self.after),
+            "unreduced": errors(self.unreduced),
             "rank_correlation": round(rank_correlation(self.after), 3),
             "choices": {
                 each.name: {"value": self.fit.values[each.name], "interval": list(self.fit.intervals[each.name])}

@@ -65,7 +65,12 @@ class Trial:
 
 def objective(scored: Tables, choices: Sequence[Choice], values: Values, prior_weight: float) -> float:
     """What the fit minimises [points]: :func:`fitted_error`, and what the values cost by their priors."""
-    return fitted_error(scored) + prior_weight * sum(each.cost(values[each.name]) for each in choices if each.fitted)
+    return fitted_error(scored) + prior_weight * cost(choices, values)
+
+
+def cost(choices: Sequence[Choice], values: Values) -> float:
+    """How much less plausible than the usual values they are, as :meth:`Choice.cost`."""
+    return sum(each.cost(values[each.name]) for each in choices if each.fitted)
 
 
 def fitted_error(scored: Tables) -> float:
