@@ -37,6 +37,7 @@ def outcome(**values):
         Fit(best, best.values, (5.1, 0.1), intervals, 3),
         tables(10),
         tables(4),
+        tables(3),
         CLAIMS,
         CLAIMS,
         held,
@@ -47,7 +48,7 @@ def outcome(**values):
 
 def test_the_file_has_the_fields_that_are_asked_for():
     fields = outcome(load_inertia=0.02).fields()
-    assert list(fields) == ["before", "after", "rank_correlation", "choices", "claims"]
+    assert list(fields) == ["before", "after", "unreduced", "rank_correlation", "choices", "claims"]
     assert fields["before"] == dict.fromkeys(PROTOCOLS, 10.0)
     assert fields["after"] == dict.fromkeys(PROTOCOLS, 4.0)
     assert fields["rank_correlation"] == 1
@@ -80,10 +81,10 @@ def test_claims_are_read_by_how_they_hold():
 
 
 def test_the_page_opens_with_the_answer_and_says_what_was_reached():
-    found = outcome(load_inertia=0.02)
-    text = page.page(found)
+    text = page.page(outcome(load_inertia=0.02), CONFIG["prior_weight"])
     lead = text.split("<nav>")[0]
-    assert lead.index("The paper's chain has what ours lacks".replace("'", "&#39;")) < lead.index("never seen")
+    conclusions, found = "Hold on every plausible choice", "The paper's chain has what ours lacks".replace("'", "&#39;")
+    assert lead.index(conclusions) < lead.index(found) < lead.index("never seen")
     assert text.count("reached</span>") == 5
     assert re.findall(r'(?:src|href)="(?!data:image/png;base64,|#)', text) == []
 
