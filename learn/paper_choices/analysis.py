@@ -1,6 +1,6 @@
 """What the trials say: which choice moves which cell, what else fits as well, and on what each claim depends."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,9 +23,8 @@ class Fit:
 
     Attributes
     ----------
-    best : Trial
     values : mapping
-        Those of the best trial for the few choices that are needed; the usual value of all others (:func:`reduced`).
+        Fitted values of the few choices that are needed; the usual value of all others (:func:`reduced`).
     scatter : (mean, standard deviation)
         Of the objective under the best values [points]. The deviation is that over other folds and forests, and the
         difference between the few variants of a trial and all of them.
@@ -35,7 +34,6 @@ class Fit:
         Number of those trials.
     """
 
-    best: Trial
     values: Values
     scatter: tuple[float, float]
     intervals: Mapping[str, tuple[float, float]]
@@ -117,11 +115,11 @@ def reduced(
     return values, tried
 
 
-def fit(best: Trial, values: Values, trials: Sequence[Trial], scattered: tuple[float, float]) -> Fit:
-    """The values that were found, and the intervals of all trials that fit as well as the best."""
+def fit(best: Trial, trials: Sequence[Trial], scattered: tuple[float, float]) -> Fit:
+    """The best trial, and the intervals of all trials that fit as well."""
     near = [trial for trial in trials if trial.objective <= limit(best, scattered)]
     columns = {name: [trial.values[name] for trial in near] for name in best.values}
-    return Fit(best, values, scattered, {name: (min(c), max(c)) for name, c in columns.items()}, len(near))
+    return Fit(best.values, scattered, {name: (min(c), max(c)) for name, c in columns.items()}, len(near))
 
 
 def limit(best: Trial, scattered: tuple[float, float]) -> float:
@@ -129,10 +127,14 @@ def limit(best: Trial, scattered: tuple[float, float]) -> float:
     return max(scattered[0] + 2 * scattered[1], best.objective)
 
 
-def best_of(trials: Sequence[Trial], choices: Sequence[Choice]) -> Trial:
-    """The trial with the least objective; what the fit does not see has its usual value."""
-    best = min(trials, key=lambda trial: trial.objective)
-    usual = {each.name: each.usual for each in choices if not each.fitted}
+def best_of(trials: Sequence[Trial], choices: Sequence[Choice], fixed: Collection[str] = ()) -> Trial:
+    """The trial with the least objective in which the fixed choices have their usual values.
+
+    What the fit does not see is put back to its usual value, too.
+    """
+    usual = {each.name: each.usual for each in choices if each.name in fixed or not each.fitted}
+    allowed = [trial for trial in trials if all(np.isclose(trial.values[name], usual[name]) for name in fixed)]
+    best = min(allowed, key=lambda trial: trial.objective)
     return replace(best, values={**best.values, **usual})
 
 

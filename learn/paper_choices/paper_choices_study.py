@@ -1,6 +1,6 @@
 """The study of ``swg paper-choices``: trials, the best of them judged on all tables, and the report."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -29,31 +29,39 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
         If a choice has no valid range or prior.
     """
     choices = [Choice(name=name, **options) for name, options in config["choices"].items()]
-    done = trials(config, choices)
-    best = best_of(done, choices)
     usual = {each.name: each.usual for each in choices}
     judged = merged(config, config["judged"])
     pool = joblib.Parallel(config["workers"] or joblib.cpu_count())
     memory = joblib.Memory(config["study"], verbose=0)  # an interrupted study goes on after the trials, too
     error, whole = memory.cache(_error), memory.cache(_judged)
 
-    def objectives(tried: list[tuple[Mapping[str, Any], Values, int]]) -> list[float]:
+    def objectives(tried: Sequence[tuple[Mapping[str, Any], Values, int]]) -> list[float]:
         errors = pool(joblib.delayed(error)(*each) for each in tried)
         return [
             each + config["prior_weight"] * cost(choices, values)
             for each, (_, values, _) in zip(errors, tried, strict=True)
         ]
 
-    repeats = [(config, best.values, seed) for seed in range(1, config["repeats"] + 1)]
-    *others, on_all_variants = objectives([*repeats, (judged, best.values, 0)])
-    scattered = scatter(others, on_all_variants)
+    def scattered(values: Values) -> tuple[float, float]:
+        repeats = [(config, values, seed) for seed in range(1, config["repeats"] + 1)]
+        *others, on_all_variants = objectives([*repeats, (judged, values, 0)])
+        return scatter(others, on_all_variants)
+
+    every = best_of(trials(config, choices), choices)
     values, tried = reduced(
-        best.values, choices, lambda sets: objectives([(config, each, 0) for each in sets]), limit(best, scattered)
+        every.values,
+        choices,
+        lambda sets: objectives([(config, each, 0) for each in sets]),
+        limit(every, scattered(every.values)),
     )
-    found = fit(best, values, [*done, *tried], scattered)
-    before, after, unreduced = pool(joblib.delayed(whole)(judged, each) for each in (usual, values, best.values))
+    fixed = [name for name in usual if values[name] == usual[name]]
+    again = {"starts": [*config["starts"], values], "fitted": config["fitted"] + config["fitted_again"]}
+    done = trials({**config, **again}, choices, fixed)
+    best = best_of([*done, *tried], choices, fixed)
+    found = fit(best, [*done, *tried], scattered(best.values))
+    before, after, of_all = pool(joblib.delayed(whole)(judged, each) for each in (usual, best.values, every.values))
     outcome = Outcome(
-        choices, done, found, before[0], after[0], unreduced[0], before[1], after[1], held(done, choices),
+        choices, done, found, before[0], after[0], of_all[0], before[1], after[1], held(done, choices),
         effects(done, choices), parts_held(done),
     )  # fmt: skip
     write(outcome, config, Path(config["out"]))
