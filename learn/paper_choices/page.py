@@ -69,7 +69,7 @@ def page(outcome: Outcome, prior_weight: float) -> str:
         Picture(
             "Cells before and after",
             "Each point is a cell of a table. On the grey line our score equals the paper's. The fit saw the cells of "
-            "Tables VII and IX without those of the MLP.",
+            "Tables VII and IX.",
             png(figures.before_and_after(outcome.before, outcome.after)),
         ),
         Picture(

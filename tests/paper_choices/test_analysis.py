@@ -1,5 +1,7 @@
 """Statistics of the study on trials whose causes are known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -51,7 +53,7 @@ def test_what_fits_as_well_is_within_the_scatter_of_the_best():
     made = trials()
     best = best_of(made, CHOICES)
     near, wide = (
-        fit(best, best.values, made, scatter([best.objective, best.objective + 0.2], best.objective + judged))
+        fit(best, made, scatter([best.objective, best.objective + 0.2], best.objective + judged))
         for judged in (0.1, 0.5)
     )
     low, high = near.intervals["cause"]
@@ -78,3 +80,9 @@ def test_choices_are_put_back_together_as_long_as_the_rest_fits():
 
 def test_what_the_fit_does_not_see_keeps_its_usual_value():
     assert best_of(trials(), CHOICES).values["unseen"] == 1.0
+
+
+def test_the_best_of_few_choices_is_among_trials_with_the_others_as_usual():
+    made = trials()
+    usual = replace(made[0], values=made[0].values | {"other": 1.0 + 1e-12}, objective=99.0)
+    assert best_of([*made, usual], CHOICES, ["other"]).values["cause"] == made[0].values["cause"]
