@@ -8,7 +8,7 @@ import yaml
 
 from learn.paper.paper_page import ROMAN, unbroken
 from learn.paper_choices import figures
-from learn.paper_choices.outcome import Outcome, cells, errors, rank_correlation, reading
+from learn.paper_choices.outcome import WORDS, Outcome, cells, errors, rank_correlation, reading
 from learn.paper_choices.preset import changes
 from swgsim.common.files import write_json, write_text
 from swgsim.common.html import environment
@@ -87,6 +87,7 @@ def page(outcome: Outcome, prior_weight: float) -> str:
         unreduced=errors(outcome.unreduced),
         ranks=[rank_correlation(tables) for tables in presets],
         reading=reading(outcome.held, outcome.parts),
+        claims=WORDS,
         roman=ROMAN,
         pictures=pictures,
         samples=sum(trial.sampled for trial in outcome.trials),

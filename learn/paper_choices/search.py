@@ -9,7 +9,6 @@ import warnings
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import joblib
 import numpy as np
@@ -54,7 +53,7 @@ class Trial:
     sampled: bool
     values: Values
     objective: float
-    scores: Mapping[str, Sequence[float | None]]
+    scores: Mapping[str, Sequence[float]]
     claims: Mapping[str, bool]
 
     @property
@@ -113,7 +112,7 @@ def _work(config: Config, choices: Sequence[Choice], worker: int, count: int, fi
             scored = tables(made, config["classifiers"], SAMPLED if sampled else SEARCHED)
         except ValueError as error:
             raise optuna.TrialPruned(str(error)) from error
-        scores = {name: _plain(table.cells["ours"]) for name, table in scored.items()}
+        scores = {name: table.cells["ours"].round(3).tolist() for name, table in scored.items()}
         trial.set_user_attr("scores", scores)
         if sampled:
             trial.set_user_attr("claims", claims(made, scored, values["disturbance"]))
@@ -145,13 +144,9 @@ def _study(config: Config, sampler: BaseSampler | None = None) -> optuna.Study:
     return optuna.create_study(storage=storage, sampler=sampler, study_name=name, load_if_exists=True)
 
 
-def _plain(scores: Any) -> list[float | None]:
-    return [None if np.isnan(score) else round(float(score), 3) for score in scores]
-
-
-def tables_of(scores: Mapping[str, Sequence[float | None]]) -> dict[str, Comparison]:
+def tables_of(scores: Mapping[str, Sequence[float]]) -> dict[str, Comparison]:
     """Tables from their scores."""
-    return {name: Comparison(paper_table(name).assign(ours=np.array(ours, float))) for name, ours in scores.items()}
+    return {name: Comparison(paper_table(name).assign(ours=ours)) for name, ours in scores.items()}
 
 
 def _trial(found: FrozenTrial, choices: Sequence[Choice], prior_weight: float) -> Trial:
