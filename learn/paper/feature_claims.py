@@ -10,12 +10,10 @@ from jaxtyping import Float
 from learn.inputs.features import Selection, signal_quantities
 from learn.inputs.references import healthy_reference
 from swgsim.storage.labelled_signals import LabelledSignals
+from swgsim.studies.claims import RESOLUTION
 from swgsim.studies.finding import Finding, percent
 
 SPECTRUM = Selection("spectrum of differences", statistics=False, spectrum="differences", efficiency="eta_rel")
-
-# Three times the noise of a DFT line of 600 samples, 3e-5 mV/V (noise of an amplifier: 5e-4 mV/V).
-RESOLUTION = 1e-4
 SEPARATE = ("eccentric_wave_generator", "root_tooth_crack", "tip_tooth_crack")
 ALIKE = ("reduced_damping", "reduced_stiffness")
 

@@ -1,6 +1,6 @@
 """What the trials say: which choice moves which cell, what else fits as well, and on what each claim depends."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,9 +23,8 @@ class Fit:
 
     Attributes
     ----------
-    best : Trial
     values : mapping
-        Those of the best trial for choices whose interval leaves out the usual value; the usual value of all others.
+        Fitted values of the few choices that are needed; the usual value of all others (:func:`reduced`).
     scatter : (mean, standard deviation)
         Of the objective under the best values [points]. The deviation is that over other folds and forests, and the
         difference between the few variants of a trial and all of them.
@@ -35,7 +34,6 @@ class Fit:
         Number of those trials.
     """
 
-    best: Trial
     values: Values
     scatter: tuple[float, float]
     intervals: Mapping[str, tuple[float, float]]
@@ -63,42 +61,80 @@ class Held:
         return "mostly" if self.share > 0.5 else "seldom"
 
 
-def fit(
-    best: Trial, choices: Sequence[Choice], trials: Sequence[Trial], repeats: Sequence[float], judged: float
-) -> Fit:
-    """The best trial and all that fit as well: within two standard deviations of its own mean.
+def scatter(repeats: Sequence[float], judged: float) -> tuple[float, float]:
+    """Mean and standard deviation of the objective of the best values [points].
 
-    A trial sees few variants, so the difference of its objective to that on all variants is an uncertainty of it. A
-    choice of which the usual value fits as well is put back to it: few numbers explain the scores.
+    A trial sees few variants, so the difference of its objective to that on all variants is an uncertainty of it.
 
     Parameters
     ----------
-    best : Trial
-    choices : sequence of Choice
-    trials : sequence of Trial
     repeats : sequence of float
-        Objective of the best trial's values with other seeds [points].
+        Objective of the best values with other seeds [points].
     judged : float
         The same with all variants [points].
+
+    >>> scatter([5.0, 5.2], judged=5.1)[0]
+    5.1
     """
     mean = float(np.mean(repeats))
-    deviation = float(np.hypot(np.std(repeats, ddof=1), judged - mean))
-    limit = max(mean + 2 * deviation, best.objective)
-    near = [trial for trial in trials if trial.objective <= limit]
+    return mean, float(np.hypot(np.std(repeats, ddof=1), judged - mean))
+
+
+def reduced(
+    values: Values, choices: Sequence[Choice], objectives: Callable[[Sequence[Values]], list[float]], limit: float
+) -> tuple[Values, list[Trial]]:
+    """Put choices back to their usual values, those that cost least alone first, as long as the rest fits as well.
+
+    Parameters
+    ----------
+    values : mapping
+        Those of the best trial.
+    choices : sequence of Choice
+    objectives : callable
+        From sets of values to their objectives [points].
+    limit : float
+        Largest objective that fits as well [points].
+
+    Returns
+    -------
+    values : mapping
+        Those of the best trial for the few choices that are needed; the usual value of all others.
+    trials : list of Trial
+        All that were tried.
+    """
+    usual = {each.name: each.usual for each in choices if values[each.name] != each.usual}
+    alone = [{**values, name: usual[name]} for name in usual]
+    costs = objectives(alone)
+    tried = [Trial(False, *each, {}, {}) for each in zip(alone, costs, strict=True)]
+    for name, _ in sorted(zip(usual, costs, strict=True), key=lambda each: each[1]):
+        fewer = {**values, name: usual[name]}
+        (found,) = objectives([fewer])
+        tried.append(Trial(False, fewer, found, {}, {}))
+        if found <= limit:
+            values = fewer
+    return values, tried
+
+
+def fit(best: Trial, trials: Sequence[Trial], scattered: tuple[float, float]) -> Fit:
+    """The best trial, and the intervals of all trials that fit as well."""
+    near = [trial for trial in trials if trial.objective <= limit(best, scattered)]
     columns = {name: [trial.values[name] for trial in near] for name in best.values}
-    intervals = {name: (min(column), max(column)) for name, column in columns.items()}
-    values = dict(best.values)
-    for each in choices:
-        low, high = intervals[each.name]
-        if low <= each.usual <= high:
-            values[each.name] = each.usual
-    return Fit(best, values, (mean, deviation), intervals, len(near))
+    return Fit(best.values, scattered, {name: (min(c), max(c)) for name, c in columns.items()}, len(near))
 
 
-def best_of(trials: Sequence[Trial], choices: Sequence[Choice]) -> Trial:
-    """The trial with the least objective; what the fit does not see has its usual value."""
-    best = min(trials, key=lambda trial: trial.objective)
-    usual = {each.name: each.usual for each in choices if not each.fitted}
+def limit(best: Trial, scattered: tuple[float, float]) -> float:
+    """Largest objective that fits as well [points]: two standard deviations above the mean of the best values."""
+    return max(scattered[0] + 2 * scattered[1], best.objective)
+
+
+def best_of(trials: Sequence[Trial], choices: Sequence[Choice], fixed: Collection[str] = ()) -> Trial:
+    """The trial with the least objective in which the fixed choices have their usual values.
+
+    What the fit does not see is put back to its usual value, too.
+    """
+    usual = {each.name: each.usual for each in choices if each.name in fixed or not each.fitted}
+    allowed = [trial for trial in trials if all(np.isclose(trial.values[name], usual[name]) for name in fixed)]
+    best = min(allowed, key=lambda trial: trial.objective)
     return replace(best, values={**best.values, **usual})
 
 

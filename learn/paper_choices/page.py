@@ -8,7 +8,7 @@ import yaml
 
 from learn.paper.paper_page import ROMAN, unbroken
 from learn.paper_choices import figures
-from learn.paper_choices.outcome import Outcome, cells, errors, rank_correlation, reading
+from learn.paper_choices.outcome import WORDS, Outcome, cells, errors, rank_correlation, reading
 from learn.paper_choices.preset import changes
 from swgsim.common.files import write_json, write_text
 from swgsim.common.html import environment
@@ -20,7 +20,7 @@ COMMAND = "make paper-choices"
 def write(outcome: Outcome, config: Mapping[str, Any], folder: Path) -> None:
     """Write ``paper_choices.json`` and ``.html``, and in ``paper_choices/`` what a release keeps; print the answer."""
     write_json(folder / "paper_choices.json", outcome.fields())
-    write_text(folder / "paper_choices.html", page(outcome))
+    write_text(folder / "paper_choices.html", page(outcome, config["prior_weight"]))
     write_json(folder / "paper_choices" / "paper_choices.json", kept(outcome))
     write_text(folder / "paper_choices" / "paper_fitted.yaml", preset(outcome, config))
     print(f"{folder / 'paper_choices.html'}: {outcome.answer}")
@@ -61,7 +61,7 @@ def preset(outcome: Outcome, config: Mapping[str, Any]) -> str:
     )
 
 
-def page(outcome: Outcome) -> str:
+def page(outcome: Outcome, prior_weight: float) -> str:
     """The page."""
     templates = environment("learn")
     templates.filters["words"] = words
@@ -69,7 +69,7 @@ def page(outcome: Outcome) -> str:
         Picture(
             "Cells before and after",
             "Each point is a cell of a table. On the grey line our score equals the paper's. The fit saw the cells of "
-            "Tables VII and IX without those of the MLP.",
+            "Tables VII and IX.",
             png(figures.before_and_after(outcome.before, outcome.after)),
         ),
         Picture(
@@ -79,16 +79,20 @@ def page(outcome: Outcome) -> str:
             png(figures.effects(outcome.effects, outcome.choices)),
         ),
     ]
+    presets = (outcome.before, outcome.after, outcome.unreduced)
     text = templates.get_template("paper_choices/paper_choices_page.html.jinja").render(
         outcome=outcome,
         before=errors(outcome.before),
         after=errors(outcome.after),
-        ranks=[rank_correlation(tables) for tables in (outcome.before, outcome.after)],
+        unreduced=errors(outcome.unreduced),
+        ranks=[rank_correlation(tables) for tables in presets],
         reading=reading(outcome.held, outcome.parts),
+        claims=WORDS,
         roman=ROMAN,
         pictures=pictures,
         samples=sum(trial.sampled for trial in outcome.trials),
         trials=len(outcome.trials),
+        prior_weight=prior_weight,
         command=COMMAND,
     )
     return unbroken(text)

@@ -6,10 +6,9 @@ Trials are kept in a file, so an interrupted study goes on. The optimiser is Opt
 import hashlib
 import json
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import joblib
 import numpy as np
@@ -24,7 +23,7 @@ from scipy.stats import qmc
 
 from learn.paper.published_tables import Comparison, paper_table
 from learn.paper_choices.choice import Choice
-from learn.paper_choices.evaluation import COSTLY, FITTED, SAMPLED, SEARCHED, Tables, claims, recordings, tables
+from learn.paper_choices.evaluation import FITTED, SAMPLED, SEARCHED, Tables, claims, recordings, tables
 from learn.paper_choices.preset import Config, Values
 
 # What a trial depends on.
@@ -46,7 +45,7 @@ class Trial:
     objective : float
         As of :func:`objective` [points].
     scores : mapping
-        Table to scores in the order of its cells; None where nothing was computed.
+        Table to scores in the order of its cells.
     claims : mapping
         C1 to C18 to whether they hold; empty for trials of the optimiser.
     """
@@ -54,7 +53,7 @@ class Trial:
     sampled: bool
     values: Values
     objective: float
-    scores: Mapping[str, Sequence[float | None]]
+    scores: Mapping[str, Sequence[float]]
     claims: Mapping[str, bool]
 
     @property
@@ -65,40 +64,44 @@ class Trial:
 
 def objective(scored: Tables, choices: Sequence[Choice], values: Values, prior_weight: float) -> float:
     """What the fit minimises [points]: :func:`fitted_error`, and what the values cost by their priors."""
-    return fitted_error(scored) + prior_weight * sum(each.cost(values[each.name]) for each in choices if each.fitted)
+    return fitted_error(scored) + prior_weight * cost(choices, values)
+
+
+def cost(choices: Sequence[Choice], values: Values) -> float:
+    """How much less plausible than the usual values they are, as :meth:`Choice.cost`."""
+    return sum(each.cost(values[each.name]) for each in choices if each.fitted)
 
 
 def fitted_error(scored: Tables) -> float:
-    """Mean of the errors of Tables VII and IX without the perceptron's cells [points]."""
-    errors = []
-    for table in FITTED:
-        cells = scored[table].cells
-        differences = (cells["ours"] - cells["paper"]).abs()
-        errors.append(differences[cells["classifier"] != COSTLY].mean())
-    return float(np.mean(errors))
+    """Mean of the errors of Tables VII and IX [points]."""
+    return float(np.mean([scored[table].mean_absolute_difference for table in FITTED]))
 
 
-def trials(config: Config, choices: Sequence[Choice]) -> list[Trial]:
-    """Do the trials that are missing, and return all, as a resolved conf/paper_choices.yaml says."""
+def trials(config: Config, choices: Sequence[Choice], fixed: Collection[str] = ()) -> list[Trial]:
+    """Do the trials that are missing, and return all, as a resolved conf/paper_choices.yaml says.
+
+    The optimiser leaves the usual values to the choices in `fixed`, and to those that the fit cannot see.
+    """
     sampled, fitted, workers = config["sampled"], config["fitted"], config["workers"] or joblib.cpu_count()
     study = _study(config)
-    for left in study.get_trials(states=(TrialState.RUNNING, TrialState.WAITING)):
+    for left in study.get_trials(states=(TrialState.RUNNING,)):
         study.tell(left.number, state=TrialState.FAIL)  # of a killed run
-    ended = [t.user_attrs for t in study.get_trials(states=ENDED)]
+    known = [t.user_attrs for t in study.get_trials(states=(*ENDED, TrialState.WAITING))]
     shares = qmc.Sobol(len(choices), rng=config["seed"]).random(sampled)
-    for number in sorted(set(range(sampled)) - {each.get("sample") for each in ended}):
+    for number in sorted(set(range(sampled)) - {each.get("sample") for each in known}):
         place = dict(zip([each.name for each in choices], shares[number].tolist(), strict=True))
         study.enqueue_trial(place, user_attrs={"sample": number})
-    for number in sorted(set(range(len(config["starts"]))) - {each.get("start") for each in ended}):
+    for number in sorted(set(range(len(config["starts"]))) - {each.get("start") for each in known}):
         start = config["starts"][number]
         place = {each.name: each.share(start.get(each.name, each.usual)) for each in choices}
         study.enqueue_trial(place, user_attrs={"start": number})
     pool = joblib.Parallel(workers)
-    pool(joblib.delayed(_work)(config, choices, number, sampled + fitted) for number in range(workers))
-    return [_trial(each, choices, config["prior_weight"]) for each in study.get_trials(states=(TrialState.COMPLETE,))]
+    pool(joblib.delayed(_work)(config, choices, number, sampled + fitted, fixed) for number in range(workers))
+    counted = study.get_trials(states=ENDED)[: sampled + fitted]  # later ones are of a study that went on
+    return [_trial(each, choices, config["prior_weight"]) for each in counted if each.state == TrialState.COMPLETE]
 
 
-def _work(config: Config, choices: Sequence[Choice], worker: int, count: int) -> None:
+def _work(config: Config, choices: Sequence[Choice], worker: int, count: int, fixed: Collection[str]) -> None:
     """One process: trials until ``count`` have ended."""
 
     def one(trial: optuna.Trial) -> float:
@@ -109,19 +112,19 @@ def _work(config: Config, choices: Sequence[Choice], worker: int, count: int) ->
             scored = tables(made, config["classifiers"], SAMPLED if sampled else SEARCHED)
         except ValueError as error:
             raise optuna.TrialPruned(str(error)) from error
-        scores = {name: _plain(table.cells["ours"]) for name, table in scored.items()}
+        scores = {name: table.cells["ours"].round(3).tolist() for name, table in scored.items()}
         trial.set_user_attr("scores", scores)
         if sampled:
             trial.set_user_attr("claims", claims(made, scored, values["disturbance"]))
         return objective(scored, choices, values, config["prior_weight"])
 
-    study = _study(config, _sampler(choices, config["seed"] + worker))
+    study = _study(config, _sampler(choices, config["seed"] + worker, fixed))
     if len(study.get_trials(states=ENDED, deepcopy=False)) < count:
         study.optimize(one, callbacks=[MaxTrialsCallback(count, ENDED)])
 
 
-def _sampler(choices: Sequence[Choice], seed: int) -> BaseSampler:
-    usual = {each.name: each.share(each.usual) for each in choices if not each.fitted}
+def _sampler(choices: Sequence[Choice], seed: int, fixed: Collection[str]) -> BaseSampler:
+    usual = {each.name: each.share(each.usual) for each in choices if each.name in fixed or not each.fitted}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ExperimentalWarning)
         return PartialFixedSampler(
@@ -141,13 +144,9 @@ def _study(config: Config, sampler: BaseSampler | None = None) -> optuna.Study:
     return optuna.create_study(storage=storage, sampler=sampler, study_name=name, load_if_exists=True)
 
 
-def _plain(scores: Any) -> list[float | None]:
-    return [None if np.isnan(score) else round(float(score), 3) for score in scores]
-
-
-def tables_of(scores: Mapping[str, Sequence[float | None]]) -> dict[str, Comparison]:
+def tables_of(scores: Mapping[str, Sequence[float]]) -> dict[str, Comparison]:
     """Tables from their scores."""
-    return {name: Comparison(paper_table(name).assign(ours=np.array(ours, float))) for name, ours in scores.items()}
+    return {name: Comparison(paper_table(name).assign(ours=ours)) for name, ours in scores.items()}
 
 
 def _trial(found: FrozenTrial, choices: Sequence[Choice], prior_weight: float) -> Trial:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from paper_choices.study_configuration import CONFIG, USUAL
 
-from learn.paper_choices.evaluation import COSTLY, SAMPLED, SEARCHED, claims, recordings, tables
+from learn.paper_choices.evaluation import SAMPLED, SEARCHED, claims, recordings, tables
 
 pytestmark = pytest.mark.end_to_end
 SMALL = {**CONFIG, "grid": {**CONFIG["grid"], "variants": 6, "positions": 2}, "mesh": {"sectors": 40}}
@@ -22,16 +22,15 @@ def made():
 def test_draws_fill_all_cells_and_decide_all_claims(made):
     scored = tables(made, CLASSIFIERS, SAMPLED)
     assert not any(table.cells["ours"].isna().any() for table in scored.values())
-    left_out = scored["table9"].cells.query("classifier == @COSTLY and features == 'selection_1'")
+    left_out = scored["table9"].cells.query("classifier == 'mlp' and features == 'selection_1'")
     assert left_out["ours"].nunique() == 1  # trained once, for the gear in the middle
     assert list(claims(made, scored, USUAL["disturbance"])) == [f"C{n}" for n in range(1, 19)]
 
 
-def test_the_search_leaves_out_the_perceptron_and_the_disturbed_tables(made):
+def test_the_search_leaves_out_the_disturbed_tables_alone(made):
     scored = tables(made, CLASSIFIERS, SEARCHED)
     assert list(scored) == ["table7", "table9"]
-    missing = scored["table9"].cells.query("ours != ours")
-    assert set(missing["classifier"]) == {COSTLY}
+    assert not any(table.cells["ours"].isna().any() for table in scored.values())
 
 
 def test_bins_of_a_broken_number_of_revolutions_leak_and_order_lines_do_not(made):
