@@ -34,7 +34,7 @@ def outcome(**values):
     return Outcome(
         CHOICES,
         [drawn, best],
-        Fit(best.values, (5.1, 0.1), intervals, 3),
+        Fit(best.values, 0.1, intervals, 3),
         tables(10),
         tables(4),
         tables(3),
