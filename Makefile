@@ -72,7 +72,7 @@ paper: $(READY)  ## data sets, runs and report of the paper's tables (SMALL=1: a
 	    $(SWG) report grid=$(GRID) started=$$started
 	@echo "open report/$(if $(SMALL),small/)index.html; 'make ui' shows the runs"
 
-paper-choices: $(READY)  ## the choices that the paper leaves open, fitted to its tables, report/paper_choices.html (SMALL=1: half a minute)
+paper-choices: $(READY)  ## the choices that the paper leaves open, fitted to its tables, report/paper_choices.html (SMALL=1: a minute)
 	OMP_NUM_THREADS=1 $(SWG) paper-choices $(if $(SMALL),$(FEW_TRIALS))
 
 transfer: data  ## beyond the paper: networks, transfer to gears never seen, report/transfer.html (SMALL=1: a few minutes)
