@@ -1,6 +1,6 @@
 """What the trials say: which choice moves which cell, what else fits as well, and on what each claim depends."""
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -25,9 +25,8 @@ class Fit:
     ----------
     values : mapping
         Fitted values of the few choices that are needed; the usual value of all others (:func:`reduced`).
-    scatter : (mean, standard deviation)
-        Of the objective under the best values [points]. The deviation is that over other folds and forests, and the
-        difference between the few variants of a trial and all of them.
+    deviation : float
+        Of the difference between the objectives of two sets of values, over folds and forests [points].
     intervals : mapping
         Choice to the least and the largest value among the trials that fit as well.
     as_well : int
@@ -35,7 +34,7 @@ class Fit:
     """
 
     values: Values
-    scatter: tuple[float, float]
+    deviation: float
     intervals: Mapping[str, tuple[float, float]]
     as_well: int
 
@@ -61,80 +60,55 @@ class Held:
         return "mostly" if self.share > 0.5 else "seldom"
 
 
-def scatter(repeats: Sequence[float], judged: float) -> tuple[float, float]:
-    """Mean and standard deviation of the objective of the best values [points].
-
-    A trial sees few variants, so the difference of its objective to that on all variants is an uncertainty of it.
-
-    Parameters
-    ----------
-    repeats : sequence of float
-        Objective of the best values with other seeds [points].
-    judged : float
-        The same with all variants [points].
-
-    >>> scatter([5.0, 5.2], judged=5.1)[0]
-    5.1
-    """
-    mean = float(np.mean(repeats))
-    return mean, float(np.hypot(np.std(repeats, ddof=1), judged - mean))
-
-
 def reduced(
-    values: Values, choices: Sequence[Choice], objectives: Callable[[Sequence[Values]], list[float]], limit: float
-) -> tuple[Values, list[Trial]]:
+    values: Values, choices: Sequence[Choice], alone: Callable[[Sequence[Values]], list[float]],
+    repeated: Callable[[Values], Float[np.ndarray, " seed"]],
+) -> tuple[Values, float]:  # fmt: skip
     """Put choices back to their usual values, those that cost least alone first, as long as the rest fits as well.
+
+    Values fit as well if their objective is at most two standard errors above that of the given values, with the same
+    seeds: folds and forests scatter more than the difference.
 
     Parameters
     ----------
     values : mapping
         Those of the best trial.
     choices : sequence of Choice
-    objectives : callable
-        From sets of values to their objectives [points].
-    limit : float
-        Largest objective that fits as well [points].
+    alone : callable
+        From sets of values to their objectives with one seed [points].
+    repeated : callable
+        From values to their objectives with several seeds [points].
 
     Returns
     -------
     values : mapping
-        Those of the best trial for the few choices that are needed; the usual value of all others.
-    trials : list of Trial
-        All that were tried.
+        Those given for the few choices that are needed; the usual value of all others.
+    deviation : float
+        Standard deviation over the seeds of a difference between two sets of values [points].
     """
     usual = {each.name: each.usual for each in choices if values[each.name] != each.usual}
-    alone = [{**values, name: usual[name]} for name in usual]
-    costs = objectives(alone)
-    tried = [Trial(False, *each, {}, {}) for each in zip(alone, costs, strict=True)]
-    for name, _ in sorted(zip(usual, costs, strict=True), key=lambda each: each[1]):
+    costs = dict(zip(usual, alone([{**values, name: usual[name]} for name in usual]), strict=True))
+    best, variances = repeated(values), []
+    for name in sorted(costs, key=lambda name: costs[name]):
         fewer = {**values, name: usual[name]}
-        (found,) = objectives([fewer])
-        tried.append(Trial(False, fewer, found, {}, {}))
-        if found <= limit:
+        excess = repeated(fewer) - best
+        variances.append(excess.var(ddof=1))
+        if excess.mean() <= 2 * np.sqrt(variances[-1] / len(excess)):
             values = fewer
-    return values, tried
+    return values, float(np.sqrt(np.mean(variances)))
 
 
-def fit(best: Trial, trials: Sequence[Trial], scattered: tuple[float, float]) -> Fit:
-    """The best trial, and the intervals of all trials that fit as well."""
-    near = [trial for trial in trials if trial.objective <= limit(best, scattered)]
-    columns = {name: [trial.values[name] for trial in near] for name in best.values}
-    return Fit(best.values, scattered, {name: (min(c), max(c)) for name, c in columns.items()}, len(near))
+def fit(best: Trial, values: Values, trials: Sequence[Trial], deviation: float) -> Fit:
+    """The values that were found, and the intervals of all trials within two standard deviations of the best one."""
+    near = [trial for trial in trials if trial.objective <= best.objective + 2 * deviation]
+    columns = {name: [trial.values[name] for trial in near] for name in values}
+    return Fit(values, deviation, {name: (min(c), max(c)) for name, c in columns.items()}, len(near))
 
 
-def limit(best: Trial, scattered: tuple[float, float]) -> float:
-    """Largest objective that fits as well [points]: two standard deviations above the mean of the best values."""
-    return max(scattered[0] + 2 * scattered[1], best.objective)
-
-
-def best_of(trials: Sequence[Trial], choices: Sequence[Choice], fixed: Collection[str] = ()) -> Trial:
-    """The trial with the least objective in which the fixed choices have their usual values.
-
-    What the fit does not see is put back to its usual value, too.
-    """
-    usual = {each.name: each.usual for each in choices if each.name in fixed or not each.fitted}
-    allowed = [trial for trial in trials if all(np.isclose(trial.values[name], usual[name]) for name in fixed)]
-    best = min(allowed, key=lambda trial: trial.objective)
+def best_of(trials: Sequence[Trial], choices: Sequence[Choice]) -> Trial:
+    """The trial with the least objective; what the fit does not see has its usual value."""
+    best = min(trials, key=lambda trial: trial.objective)
+    usual = {each.name: each.usual for each in choices if not each.fitted}
     return replace(best, values={**best.values, **usual})
 
 

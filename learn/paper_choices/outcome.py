@@ -99,7 +99,12 @@ class Outcome:
         """What the paper's chain has that ours lacks, in a sentence."""
         if not self.found:
             return "No choice that the paper leaves open is known to differ from ours: our values fit as well."
-        return "The paper's chain has what ours lacks: " + "; ".join(self.text(each) for each in self.found) + "."
+        found = "The paper's chain has what ours lacks: " + "; ".join(self.text(each) for each in self.found) + "."
+        ends = [(each.usual, *self.fit.intervals[each.name]) for each in self.found]
+        open_ones = sum(low <= usual <= high for usual, low, high in ends)
+        if not open_ones:
+            return found
+        return f"{found} Of these intervals {open_ones} hold our value, so other choices can take the place of those."
 
     def text(self, choice: Choice) -> str:
         """A choice with the value that was found and its interval."""
@@ -135,7 +140,7 @@ class Outcome:
 
 def errors(tables: Tables) -> dict[str, float]:
     """Mean absolute difference of each table to the paper's [points]."""
-    return {name: round(table.mean_absolute_difference, 2) for name, table in tables.items()}
+    return {name: round(table.mean_absolute_difference, 3) for name, table in tables.items()}
 
 
 def rank_correlation(tables: Tables) -> float:

@@ -5,8 +5,10 @@ from pathlib import Path
 from typing import Any
 
 import joblib
+import numpy as np
+from jaxtyping import Float
 
-from learn.paper_choices.analysis import best_of, effects, fit, held, limit, parts_held, reduced, scatter
+from learn.paper_choices.analysis import best_of, effects, fit, held, parts_held, reduced
 from learn.paper_choices.choice import Choice
 from learn.paper_choices.evaluation import JUDGED, SEARCHED, Tables, claims, recordings, tables
 from learn.paper_choices.outcome import Outcome
@@ -35,31 +37,20 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
     memory = joblib.Memory(config["study"], verbose=0)  # an interrupted study goes on after the trials, too
     error, whole = memory.cache(_error), memory.cache(_judged)
 
-    def objectives(tried: Sequence[tuple[Mapping[str, Any], Values, int]]) -> list[float]:
-        errors = pool(joblib.delayed(error)(*each) for each in tried)
-        return [
-            each + config["prior_weight"] * cost(choices, values)
-            for each, (_, values, _) in zip(errors, tried, strict=True)
-        ]
+    def objectives(sets: Sequence[Values], seeds: Sequence[int] = (0,)) -> list[float]:
+        each = [(values, seed) for values in sets for seed in seeds]
+        errors = pool(joblib.delayed(error)(config, *one) for one in each)
+        costs = [config["prior_weight"] * cost(choices, values) for values, _ in each]
+        return np.add(errors, costs).tolist()
 
-    def scattered(values: Values) -> tuple[float, float]:
-        repeats = [(config, values, seed) for seed in range(1, config["repeats"] + 1)]
-        *others, on_all_variants = objectives([*repeats, (judged, values, 0)])
-        return scatter(others, on_all_variants)
+    def repeated(values: Values) -> Float[np.ndarray, " seed"]:
+        return np.array(objectives([values], range(1, config["repeats"] + 1)))
 
-    every = best_of(trials(config, choices), choices)
-    values, tried = reduced(
-        every.values,
-        choices,
-        lambda sets: objectives([(config, each, 0) for each in sets]),
-        limit(every, scattered(every.values)),
-    )
-    fixed = [name for name in usual if values[name] == usual[name]]
-    again = {"starts": [*config["starts"], values], "fitted": config["fitted"] + config["fitted_again"]}
-    done = trials({**config, **again}, choices, fixed)
-    best = best_of([*done, *tried], choices, fixed)
-    found = fit(best, [*done, *tried], scattered(best.values))
-    before, after, of_all = pool(joblib.delayed(whole)(judged, each) for each in (usual, best.values, every.values))
+    done = trials(config, choices)
+    best = best_of(done, choices)
+    values, deviation = reduced(best.values, choices, objectives, repeated)
+    found = fit(best, values, done, deviation)
+    before, after, of_all = pool(joblib.delayed(whole)(judged, each) for each in (usual, values, best.values))
     outcome = Outcome(
         choices, done, found, before[0], after[0], of_all[0], before[1], after[1], held(done, choices),
         effects(done, choices), parts_held(done),

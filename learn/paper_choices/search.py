@@ -6,7 +6,7 @@ Trials are kept in a file, so an interrupted study goes on. The optimiser is Opt
 import hashlib
 import json
 import warnings
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -77,11 +77,8 @@ def fitted_error(scored: Tables) -> float:
     return float(np.mean([scored[table].mean_absolute_difference for table in FITTED]))
 
 
-def trials(config: Config, choices: Sequence[Choice], fixed: Collection[str] = ()) -> list[Trial]:
-    """Do the trials that are missing, and return all, as a resolved conf/paper_choices.yaml says.
-
-    The optimiser leaves the usual values to the choices in `fixed`, and to those that the fit cannot see.
-    """
+def trials(config: Config, choices: Sequence[Choice]) -> list[Trial]:
+    """Do the trials that are missing, and return all, as a resolved conf/paper_choices.yaml says."""
     sampled, fitted, workers = config["sampled"], config["fitted"], config["workers"] or joblib.cpu_count()
     study = _study(config)
     for left in study.get_trials(states=(TrialState.RUNNING,)):
@@ -96,12 +93,11 @@ def trials(config: Config, choices: Sequence[Choice], fixed: Collection[str] = (
         place = {each.name: each.share(start.get(each.name, each.usual)) for each in choices}
         study.enqueue_trial(place, user_attrs={"start": number})
     pool = joblib.Parallel(workers)
-    pool(joblib.delayed(_work)(config, choices, number, sampled + fitted, fixed) for number in range(workers))
-    counted = study.get_trials(states=ENDED)[: sampled + fitted]  # later ones are of a study that went on
-    return [_trial(each, choices, config["prior_weight"]) for each in counted if each.state == TrialState.COMPLETE]
+    pool(joblib.delayed(_work)(config, choices, number, sampled + fitted) for number in range(workers))
+    return [_trial(each, choices, config["prior_weight"]) for each in study.get_trials(states=(TrialState.COMPLETE,))]
 
 
-def _work(config: Config, choices: Sequence[Choice], worker: int, count: int, fixed: Collection[str]) -> None:
+def _work(config: Config, choices: Sequence[Choice], worker: int, count: int) -> None:
     """One process: trials until ``count`` have ended."""
 
     def one(trial: optuna.Trial) -> float:
@@ -118,13 +114,13 @@ def _work(config: Config, choices: Sequence[Choice], worker: int, count: int, fi
             trial.set_user_attr("claims", claims(made, scored, values["disturbance"]))
         return objective(scored, choices, values, config["prior_weight"])
 
-    study = _study(config, _sampler(choices, config["seed"] + worker, fixed))
+    study = _study(config, _sampler(choices, config["seed"] + worker))
     if len(study.get_trials(states=ENDED, deepcopy=False)) < count:
         study.optimize(one, callbacks=[MaxTrialsCallback(count, ENDED)])
 
 
-def _sampler(choices: Sequence[Choice], seed: int, fixed: Collection[str]) -> BaseSampler:
-    usual = {each.name: each.share(each.usual) for each in choices if each.name in fixed or not each.fitted}
+def _sampler(choices: Sequence[Choice], seed: int) -> BaseSampler:
+    usual = {each.name: each.share(each.usual) for each in choices if not each.fitted}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ExperimentalWarning)
         return PartialFixedSampler(

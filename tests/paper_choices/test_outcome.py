@@ -34,7 +34,7 @@ def outcome(**values):
     return Outcome(
         CHOICES,
         [drawn, best],
-        Fit(best.values, (5.1, 0.1), intervals, 3),
+        Fit(best.values, 0.1, intervals, 3),
         tables(10),
         tables(4),
         tables(3),
@@ -64,6 +64,8 @@ def test_the_answer_names_what_is_not_as_usual_and_nothing_else():
     assert found.answer.startswith("The paper's chain has what ours lacks: inertia of output and load J_out 0.02 kg m²")
     assert found.answer.count("ours") == 2  # lacks, and one value
     assert "our values fit as well" in outcome().answer
+    assert "other choices" not in found.answer
+    assert "Of these intervals 1 hold our value" in outcome(load_inertia=0.95).answer
 
 
 def test_a_table_that_the_fit_never_saw_may_contradict_it():

@@ -64,13 +64,6 @@ def test_the_optimiser_comes_nearer_to_the_cause_and_leaves_alone_what_it_cannot
     assert [trial.values["disturbance"] for trial in tried] == pytest.approx([1.0] * 30)
 
 
-def test_the_optimiser_goes_on_with_a_start_and_fixed_choices(made, tmp_path):
-    first = search.trials(config(tmp_path, fitted=2), CHOICES)
-    again = search.trials(config(tmp_path, fitted=6, starts=[{"cause": 3.0}]), CHOICES, fixed=["cause"])
-    assert [trial.values for trial in again[: len(first)]] == [trial.values for trial in first]
-    assert sorted(trial.values["cause"] for trial in again[len(first) :]) == pytest.approx([1.0] * 3 + [3.0])
-
-
 def test_only_draws_are_judged_on_all_tables(made, tmp_path):
     found = search.trials(config(tmp_path, fitted=1), CHOICES)
     assert [set(trial.scores) for trial in found] == [set(PROTOCOLS)] * 4 + [{"table7", "table9"}]
