@@ -6,6 +6,7 @@ from pathlib import Path
 from swgsim.tables import binary
 from swgsim.tables.file_defect import FileDefect, shown
 from swgsim.tables.formats.spreadsheet import is_spreadsheet
+from swgsim.tables.layout import Layout
 from swgsim.tables.path_pattern import groups_in
 from swgsim.tables.table_map import TableMap
 from swgsim.tables.text import start_of
@@ -40,8 +41,14 @@ def head_facts(path: Path, name: str, table: TableMap) -> dict[str, str]:
         if groups is None:
             raise FileDefect(name, f"nothing like {shown(pattern)} in rows 1 to {rows}", "what 'head' of the map says")
         found |= groups
-    # A number is written here with the decimal sign of its table.
-    return {
-        fact: said if number_of(said, table.layout) is None else said.replace(table.layout.decimal, ".")
-        for fact, said in found.items()
-    }
+    return {fact: _with_point(said, table.layout) for fact, said in found.items()}
+
+
+def _with_point(said: str, layout: Layout) -> str:
+    """A number as it is written with a decimal point and without separators of thousands; other text as it is.
+
+    >>> _with_point("1.024,5", Layout(decimal=",", thousands=".")), _with_point("007", Layout())
+    ('1024.5', '007')
+    """
+    value = number_of(said, layout)
+    return said if value is None or value == number_of(said, Layout()) else f"{value:.15g}"

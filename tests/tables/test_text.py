@@ -200,6 +200,9 @@ def test_lines_before_the_numbers_give_facts(tmp_path: Path) -> None:
         head_facts(path, "a.txt", replace(table, head=("(?P<repeat>0;1)",)))
     with pytest.raises(FileDefect, match=r"no lines of text before the numbers"):
         head_facts(path.with_suffix(".mat"), "a.mat", table)
+    path.write_text(HEADED.replace("2000", "2.000"), encoding="utf-8")
+    dotted = replace(table, layout=replace(table.layout, thousands="."), head=(r"Speed: (?P<n_in_rpm>[\d.]+) rpm",))
+    assert head_facts(path, "a.txt", dotted) == {"n_in_rpm": "2000"}
 
 
 def test_bare_numbers_are_one_column_of_whole_numbers(tmp_path: Path) -> None:
