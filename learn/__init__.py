@@ -1,6 +1,6 @@
 """Classifiers for the condition of strain wave gears: inputs, methods, protocols, transfer and their evaluation.
 
-``import learn`` is the front door:
+``import learn`` is the public interface:
 
 - :func:`load`: a data set of ``swg generate`` as features and a table of facts;
 - :func:`classifier`: an untrained classifier by its name in ``conf/classifier``;

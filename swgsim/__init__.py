@@ -1,18 +1,18 @@
 """Simulation and identification of strain wave gears whose flex spline carries strain gauges.
 
-``import swgsim as swg`` is the front door:
+``import swgsim as swg`` is the public interface:
 
 - :class:`Gear`, :class:`OperatingPoint`, :mod:`effects`: what is simulated. ``Gear.load("mine.yaml")`` reads a gear.
 - :func:`simulate`: one run of the chain; the result plots itself and becomes a table or a recording.
 - :func:`read_recordings`: a folder of measurements. :func:`recordings_of`: the logs of a robot joint.
-- :func:`draft_map`: a first map of files of others, by looking at them; it is then corrected by hand.
+- :func:`draft_map`: a first map of files in other formats, by looking at them; it is then corrected by hand.
 - :func:`commission`, :func:`identify`: what the healthy gear is like, and which physical effect a model of it lacks.
   ``unit.save("gear7.unit.h5")`` and ``Unit.load("gear7.unit.h5")`` keep what was learned.
-- :func:`diagnose`: whether a gear is sick, of what, how large and where, from recordings and healthy ones before.
+- :func:`diagnose`: whether a gear has a fault, which one, how large and where, from recordings and healthy ones before.
 - :func:`record`, :func:`generate`: recordings of a virtual test bench, and labelled data sets for :mod:`learn`.
 - :class:`Run`, :func:`simulate_runs`: many runs at once, for studies of one's own.
 
-Everything else may change. Rooms and what they import: docs/architecture.md.
+Everything else may change. Subpackages and what they import: docs/architecture.md.
 
 Examples
 --------

@@ -2,9 +2,9 @@
 An effect of one's own
 ======================
 
-The library has more than seventy physical effects, one class each. A new one says where it acts and what it changes;
-the chain, the loop and the files know it from then on. Here a voltage is induced in the cable of gauge s1:
-the signal gains a part in proportion to the speed of the input.
+Each physical effect of the library is one class, which says where it acts and what it changes. A class of your own is
+simulated like them, and ``swg close-loop`` with ``library=[my_module:CableDrag]`` searches for it as well. Here a voltage
+is induced in the cable of gauge s1: the signal gains a part in proportion to the speed of the input.
 """
 
 from dataclasses import dataclass
@@ -26,7 +26,8 @@ class CableDrag(swg.effects.Effect):
         Signal per speed [mV/V per rad/s].
     """
 
-    gain: float = size(unit="mV/V", low=-1e-3, high=1e-3, typical=1e-5)
+    place = "gauge"
+    gain: float = size(unit="mV/V per rad/s", low=-1e-3, high=1e-3, typical=1e-5)
 
     def gauge(self, signals: Signals, scene: Scene) -> Signals:
         """Act on the signals of the gauges s0 to s4, array (5, time)."""

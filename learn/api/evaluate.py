@@ -68,7 +68,7 @@ def evaluate(
     seed: int = 0,
     **options: Any,
 ) -> Scores:
-    """Train on every split of a protocol and judge the other side.
+    """Train on every split of a protocol and test on the other part.
 
     Parameters
     ----------

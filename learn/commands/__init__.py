@@ -1,4 +1,4 @@
-"""Commands that need more than one room: ``train``, ``close-loop``, ``ui``, ``server``, ``upload``, ``benchmark``.
+"""Commands of more than one subpackage: ``train``, ``close-loop``, ``ui``, ``server``, ``upload``, ``benchmark``.
 
-Each is one module with a function ``run``; pyproject.toml lists them. The room exports nothing.
+Each is one module with a function ``run``; pyproject.toml lists them. The subpackage exports nothing.
 """

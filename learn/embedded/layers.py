@@ -82,6 +82,8 @@ def _network(network: "Network", kind: str) -> Layers:
     if kind == "perceptron":
         hidden = [name.removesuffix(".weight") for name in state if name.startswith("body") and name.endswith("weight")]
         return Layers(centre, spread, (*(dense(name, True) for name in hidden), head))
+    if kind != "convolutional":
+        raise ValueError(f"a {kind} network has no form in C: give a perceptron or a convolutional network")
     body: Any = network.body
     if "body.side.0.weight" not in state or body.blocks[0].padding_mode != "circular":
         raise ValueError("this convolutional network has no front end in C: train it with features=residual")

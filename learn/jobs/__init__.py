@@ -1,5 +1,5 @@
 """Configuration meets code: one job trains and judges one choice; a sweep keeps every job as a run.
 
 ``settings`` makes the objects of a configuration; ``train_job`` is one job, ``identity`` what distinguishes it from
-others. The room exports nothing.
+others. The subpackage exports nothing.
 """

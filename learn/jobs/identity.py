@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from learn.methods.contract import own_source_digests
-from swgsim.common.version import code_version as version_of_rooms
+from swgsim.common.version import code_version as version_of_subpackages
 from swgsim.storage import orders
 
 # Parts of a configuration that do not change a result.
 WHEREABOUTS = ("data", "models", "tracking", "workers", "compute", "scheduler")
-# The rooms that the score of a job depends on.
-DECISIVE_ROOMS = ("adaptation", "evaluation", "inputs", "jobs", "methods", "protocols")
+# The subpackages that the score of a job depends on.
+DECISIVE = ("adaptation", "evaluation", "inputs", "jobs", "methods", "protocols")
 
 
 def decisive(config: Mapping[str, Any]) -> dict[str, Any]:
@@ -31,9 +31,9 @@ def job_key(config: Mapping[str, Any], data_digest: str) -> str:
 
 
 def _physics(config: Mapping[str, Any]) -> list[str]:
-    """Digest of the rooms of swgsim that a twin needs, as it simulates; empty for all other classifiers."""
+    """Digest of the subpackages of swgsim that a twin needs, as it simulates; empty for all other classifiers."""
     is_twin = config.get("classifier", {}).get("name") == "twin"
-    return [version_of_rooms("identification", "oracle", "twin")] if is_twin else []
+    return [version_of_subpackages("identification", "oracle", "twin")] if is_twin else []
 
 
 @cache
@@ -43,7 +43,7 @@ def code_version() -> str:
     for library in ("numpy", "scipy", "pandas", "scikit-learn", "torch"):
         digest.update(f"{library} {version(library)}".encode())
     folder = Path(__file__).parents[1]
-    sources = (source for room in DECISIVE_ROOMS for source in sorted((folder / room).rglob("*.py")))
+    sources = (source for subpackage in DECISIVE for source in sorted((folder / subpackage).rglob("*.py")))
     # A module of swgsim that only learning uses; the data set's own version covers the others.
     for source in [*sources, Path(orders.__file__)]:
         digest.update(source.read_bytes())

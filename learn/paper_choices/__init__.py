@@ -1,4 +1,4 @@
 """Choices that the paper leaves open, fitted to its tables: what its chain has that ours lacks.
 
-Imports ``paper`` and rooms below it.
+Imports ``paper`` and subpackages below it.
 """

@@ -1,7 +1,7 @@
 """The report of the transfer study: ``report/transfer.html`` and ``transfer.json`` from finished runs in MLflow.
 
 ``runs`` collects the runs; ``tables``, ``studies``, ``confidence`` and ``importance`` compute; ``figures`` draws;
-``sentences`` words the first lines; ``transfer_study`` writes both files. The room exports nothing.
+``sentences`` words the first lines; ``transfer_study`` writes both files. The subpackage exports nothing.
 
 A new section takes four steps:
 

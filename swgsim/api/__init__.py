@@ -1,4 +1,4 @@
-"""The front door: the verbs of ``import swgsim as swg``, for one gear or one folder at a time."""
+"""The public interface: the functions of ``import swgsim as swg``, for one gear or one folder at a time."""
 
 from swgsim.api.data_set import generate, record
 from swgsim.api.identify import identify

@@ -56,7 +56,7 @@ class SimulatedRun:
     def table(self) -> pd.DataFrame:
         """One row per sample: time and all channels under the column names of recordings, such as ``s1_mv_v``."""
         columns = {CHANNELS[name].column: values for name, values in self.channels.items()}
-        return pd.DataFrame({"time_s": self.time, **columns})
+        return pd.DataFrame({"t_s": self.time, **columns})
 
     def recording(self, name: str = "simulated", *, session: str = "1", repeat: int = 1) -> Recording:
         """The run as a recording, which :func:`swgsim.commission` and :func:`swgsim.identify` take."""

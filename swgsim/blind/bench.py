@@ -1,4 +1,4 @@
-"""The bench of a case: the unit, its commissioning, the recordings in question, and the truth at unseen points."""
+"""The bench of a case: the unit, its commissioning, the recordings to examine, and the truth at unseen points."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -30,7 +30,7 @@ SERIES = Population(
 )  # fmt: skip
 # Kinematic error of a unit about the nominal one, in spreads that the loop declares.
 KINEMATIC = 0.7
-# Session of the recordings in question.
+# Session of the recordings to examine.
 QUESTION = "question"
 # Where nothing was recorded: speed and load between those that were, warm and late in the session.
 UNSEEN = tuple(Situation(OperatingPoint(3000.0, T), Conditions(28.0, 1800.0)) for T in (20.0, 55.0))

@@ -89,7 +89,7 @@ def draw(plan: Plan, setting: Setting) -> Sealed:
 
 
 def unit_known(case: Sealed, setting: Setting) -> Unit:
-    """The unit before the recordings in question."""
+    """The unit before the recordings to examine."""
     nominal = Unit(Model(setting.gear))
     return learn_unit(Measured.of(commissioning(case, setting)), nominal) if case.commissioned else nominal
 

@@ -199,7 +199,8 @@ class Drive:
         """Friction torque at the flank, eq. (5) [N m].
 
         T_fric = b0 + b1 phi_b' + b2 phi_b'^3 + b3 sin(theta_b - phi_out) + mu F_n; the terms without phi_b' have its
-        sign. The massless tooth is in equilibrium on the driving flank, T_stiff = F_n sin(alpha_tooth) + T_fric
+        sign, which is smooth near standstill. The paper has sin(phi_out + theta_b), as its phi_out has the other sign.
+        The massless tooth is in equilibrium on the driving flank, T_stiff = F_n sin(alpha_tooth) + T_fric
         cos(alpha_tooth), which gives the normal force F_n [N m].
 
         Parameters

@@ -1,7 +1,7 @@
 """The command line: ``swg NAME choice=value``, one command for each file of ``conf/`` that has a function.
 
-The functions are entry points of the group ``swg.commands`` in pyproject.toml, so that this room imports no job and
-knows nothing of ``learn``.
+The functions are entry points of the group ``swg.commands`` in pyproject.toml, so that this subpackage imports no job
+and knows nothing of ``learn``.
 """
 
 from swgsim.commands.command import command

@@ -47,7 +47,7 @@ def config_name(name: str) -> str:
 def command(name: str, arguments: list[str] | None = None) -> None:
     """Run a command with choices in Hydra's syntax, those of the command line if none are given.
 
-    Errors that a user can mend end the process with a sentence and status 1 (:mod:`swgsim.commands.mistakes`).
+    Errors that a user can correct end the process with a sentence and status 1 (:mod:`swgsim.commands.mistakes`).
 
     Parameters
     ----------

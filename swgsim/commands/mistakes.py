@@ -24,7 +24,7 @@ from swgsim.common.configured import conf_folder
 
 # Hydra's variable that asks for tracebacks, by the value 1.
 FULL = "HYDRA_FULL_ERROR"
-# Errors that a user can mend; all others are defects of the code and keep their traceback.
+# Errors that a user can correct; all others are defects of the code and keep their traceback.
 MENDABLE = (CompactHydraException, ValueError, OSError)
 
 

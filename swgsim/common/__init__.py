@@ -1,4 +1,4 @@
-"""What every room uses: checked input, whole files, seeds, number formats, page style, engines for many tasks."""
+"""What every subpackage uses: checked input, whole files, seeds, number formats, page style, engines for many tasks."""
 
 import lazy_loader
 

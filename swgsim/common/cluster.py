@@ -11,7 +11,7 @@ from importlib.metadata import version
 from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from swgsim.common.version import code_version, rooms
+from swgsim.common.version import code_version, subpackages
 
 if TYPE_CHECKING:
     from distributed import Client, Future, Worker
@@ -31,7 +31,7 @@ class Place(NamedTuple):
 def own_place(further: Callable[[], str]) -> Place:
     """Place of this process; ``further`` gives the version of code besides this package."""
     libraries = ", ".join(f"{name} {version(name)}" for name in ("numpy", "scipy", "h5py"))
-    code = code_version(*rooms())
+    code = code_version(*subpackages())
     installed = f"swgsim {code}, Python {platform.python_version()}, {libraries} {further()}"
     return Place(installed.rstrip(), os.getcwd())
 

@@ -7,36 +7,36 @@ from pathlib import Path
 
 from swgsim.common.checks import require_known
 
-# The rooms on which recordings depend.
+# The subpackages on which recordings depend.
 MAKING = ("bench", "chain", "common", "dataset", "effects", "flexspline", "gear", "storage")
 
 
 PACKAGE = Path(__file__).parents[1]
 
 
-def rooms() -> list[str]:
-    """The names of the rooms, the subpackages of swgsim."""
+def subpackages() -> list[str]:
+    """The names of the subpackages of swgsim."""
     return sorted(path.parent.name for path in PACKAGE.glob("*/__init__.py"))
 
 
 @cache
 def code_version(*also: str) -> str:
-    """Version of the package, with a digest of the sources that recordings depend on, and of other rooms.
+    """Version of the package, with a digest of the sources that recordings depend on, and of other subpackages.
 
     Parameters
     ----------
     also : str
-        Further rooms of swgsim, such as "identification".
+        Further subpackages of swgsim, such as "identification".
 
     Raises
     ------
     ValueError
-        If a room is unknown; the message lists the choices.
+        If a subpackage is unknown; the message lists the choices.
     """
-    require_known("code_version", also, rooms())
+    require_known("code_version", also, subpackages())
     digest = hashlib.sha256()
-    for room in sorted({*MAKING, *also}):
-        for source in sorted((PACKAGE / room).rglob("*.py")):
+    for subpackage in sorted({*MAKING, *also}):
+        for source in sorted((PACKAGE / subpackage).rglob("*.py")):
             digest.update(source.read_bytes())
     return f"{version('swg-workbench')}+{digest.hexdigest()[:12]}"
 

@@ -57,7 +57,7 @@ def folder_contents(paths: Sequence[Path]) -> FolderContents:
     path, named = paths[0], len(paths) > 1 or not paths[0].is_dir()
     folder, names = _named(paths) if named else (path, files_of(path))
     if NAME in names:
-        raise FileDefect(str(path), NAME, "files of others: recordings with a manifest need no map")
+        raise FileDefect(str(path), NAME, "files without a manifest: recordings with a manifest need no map")
     chosen = [name for name in names if is_data(name) or named]
     chosen = chosen or [name for name in names if name.lower().endswith(NOTES)]
     if not chosen:

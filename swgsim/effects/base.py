@@ -39,7 +39,8 @@ PLACES = ("gear", "drive", "wave generator", "mesh", "structure", "gauge", "acqu
 class Crack:
     """A root tooth crack: bars of the toothed band that cross from one sector to the next have less stiffness.
 
-    :func:`swgsim.chain.influence.change_by_cracks` applies it to the truss.
+    :func:`swgsim.chain.influence.change_by_cracks`
+    computes the change of the signals; the truss stays as it is.
 
     Attributes
     ----------

@@ -10,7 +10,8 @@ class RootToothCrack(Effect):
 
     This is a fault of Table I (section II-B). All bars of the toothed band that cross the gap lose stiffness, also the
     diagonal ones. If only the circumferential bars did, as in the paper, the gauges would hardly notice
-    (docs/chain.md). :func:`swgsim.chain.influence.change_by_cracks` applies it to the truss.
+    (docs/chain.md). :func:`swgsim.chain.influence.change_by_cracks`
+    computes the change of the signals; the truss stays as it is.
 
     Signature: a local hinge in the rim. Even orders of all gauges change in amplitude and phase, depending on the
     position of the crack.

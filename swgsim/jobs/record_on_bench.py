@@ -22,7 +22,7 @@ from swgsim.jobs import settings
 
 
 def run(config: Mapping[str, Any]) -> dict[str, Any]:
-    """Record the folder ``out`` (docs/recording.md).
+    """Record the folder ``out`` (docs/virtual_bench.md).
 
     Beside the recordings it holds what may be known of the gear: ``gear.yaml``, the nominal one, and ``effects.yaml``,
     the declared effects. Hidden effects, the unit and the seeds are in ``<out>.truth.json`` only, which is sealed.

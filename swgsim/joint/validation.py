@@ -103,7 +103,7 @@ class Validation:
         ----------
         fit : Fit
         slowly : bool
-            Whether errors above the frequency SLOW are forgiven: ripples and noise, which the textbook does not have.
+            Whether errors above the frequency SLOW are ignored: ripples and noise, which the textbook does not have.
         """
         missed = fit.missed(self.heldout)
         errors, variance = (slow(self.heldout, missed) if slowly else missed) ** 2, self.scatter**2

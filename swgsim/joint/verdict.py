@@ -16,7 +16,7 @@ from swgsim.joint.validation import Validation
 # these.
 NOT_CONFIRMED, FAILS = "not_confirmed", "textbook_fails"
 # Share of the variance of the held-out signal that a model explains at least: it leaves less than it explains. Errors
-# above the frequency SLOW are forgiven, as they are not the textbook's.
+# above the frequency SLOW are ignored, as they are not the textbook's.
 LEAST_EXPLAINED = 0.5
 # Sessions that a sentence names.
 NAMED_SESSIONS = 4

@@ -49,7 +49,7 @@ def report_of(
     of_healthy : sequence of Effect or None
         What the loop found in the healthy gear, if it was asked.
     loop : Identification
-        What it found in the recordings in question.
+        What it found in the recordings to examine.
     false_alarms : float
         Share of healthy gears that may be called faulty.
     costs : mapping
@@ -121,10 +121,10 @@ def _verdict(found: Mapping[str, Any]) -> tuple[str, str]:
         verdict = SOMETHING_ELSE if found["something_else"] else HEALTHY
         said = f"No fault is seen: healthy with a probability of {p}"
     if found["something_else"]:
-        said += f". Something else is: {found['something_else'].rstrip('.')}"
+        said += f". Other finding: {found['something_else'].rstrip('.')}"
     if found["lack_of_fit_healthy"]["chance"] < limit:
         lack = significant(found["lack_of_fit_healthy"]["value"])
-        said += f". I do not know this gear (lack of fit of its healthy recordings {lack}; 1 is expected)"
+        said += f". The model does not fit this gear (lack of fit of its healthy recordings {lack}; 1 is expected)"
     return verdict, f"{said}."
 
 

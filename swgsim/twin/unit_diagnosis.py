@@ -95,7 +95,7 @@ def diagnose(
     seed: int = 0,
     progress: Progress | None = None,
 ) -> Diagnosis:
-    """Whether a gear is sick, of what, how large and where.
+    """Whether a gear has a fault, which one, how large and where.
 
     The loop looks for what the model lacks, in the healthy recordings and in the new ones. What explains the
     healthy gear is declared, and the gear is commissioned with it: this is the twin, on which Bayes' rule judges.
@@ -103,7 +103,7 @@ def diagnose(
     Parameters
     ----------
     recordings : iterable of Recording
-        The recordings in question, of one gear.
+        Those to examine, of one gear.
     healthy : iterable of Recording, or Unit
         Recordings of the same gear when it was healthy; or its unit, which is taken as it is.
     gear : Gear, optional

@@ -1,4 +1,4 @@
-"""The front door of learn gives what jobs give, by the same names, without Hydra and MLflow."""
+"""The public interface of learn gives what jobs give, by the same names, without Hydra and MLflow."""
 
 from pathlib import Path
 

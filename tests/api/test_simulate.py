@@ -1,4 +1,4 @@
-"""The front door gives what the chain gives, and results that show, tabulate and save themselves."""
+"""The public interface gives what the chain gives, and results that show, tabulate and save themselves."""
 
 import subprocess
 import sys

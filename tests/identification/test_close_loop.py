@@ -223,8 +223,8 @@ def test_the_answer_is_kept_as_a_run(folders, sick, tmp_path):
 @pytest.mark.slow
 @pytest.mark.usefixtures("_no_pictures")
 def test_an_effect_of_a_user_is_found_and_may_then_be_declared(unit, tmp_path, monkeypatch):
-    """The one that docs/recording.md shows, hidden and searched by its import path."""
-    docs = (CONF.parent / "docs" / "recording.md").read_text(encoding="utf-8")
+    """The one that docs/virtual_bench.md shows, hidden and searched by its import path."""
+    docs = (CONF.parent / "docs" / "virtual_bench.md").read_text(encoding="utf-8")
     shown = re.search(r"```python\n# my_bench\.py\n(.*?)```", docs, re.DOTALL)
     assert shown is not None
     (tmp_path / "my_bench.py").write_text(shown[1])
@@ -260,7 +260,7 @@ def test_nothing_is_missing_in_a_healthy_gear(healthy):
     said, printed = found.report, job.lines(found.report)
     assert (said["verdict"], said["effects"], said["unknown"]) == (NOTHING, [], None)
     assert printed[0].startswith("Nothing is missing")
-    names = ["error before", "error after", "noise floor", "would be seen"]
+    names = ["error before", "error after", "noise floor", "detected from"]
     assert [line.split("  ")[0] for line in printed[1:]] == names
     assert re.search(r"eccentric wave generator \(\S+ µm\)", printed[-1])
     assert said["detectable"]["eccentric_wave_generator"]["value"] < HIDDEN.r

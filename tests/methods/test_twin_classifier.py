@@ -113,7 +113,7 @@ def test_other_inputs_are_refused(classifier: TwinClassifier) -> None:
 def test_the_key_of_a_job_covers_the_physics_of_a_twin_only(monkeypatch: pytest.MonkeyPatch) -> None:
     twin, forest = ({"classifier": {"name": name}} for name in ("twin", "rf"))
     before = [identity.job_key(config, "digest") for config in (twin, forest)]
-    monkeypatch.setattr(identity, "version_of_rooms", lambda *_: "another")
+    monkeypatch.setattr(identity, "version_of_subpackages", lambda *_: "another")
     after = [identity.job_key(config, "digest") for config in (twin, forest)]
     assert before[0] != after[0]
     assert before[1] == after[1]

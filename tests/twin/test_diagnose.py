@@ -116,7 +116,7 @@ def test_the_page_answers_the_questions_of_a_workshop(folder, sick) -> None:
     assert re.search(r"What to do\? replace: 1(\.0)?; inspect: 1\.1; leave: 10 \(expected cost", text)
     for question in ("Is it sick? yes : fewer than 0.2 % of healthy", "Of what, and how sure?", "How large?", "Where?"):
         assert question in text
-    assert re.search(r"direction from gauge s1, counted with the rotation: 5\d° \(95 %: 5\d to \d\d\)", text)
+    assert re.search(r"direction from gauge s1, in the sense of rotation: 5\d° \(95 %: 5\d to \d\d\)", text)
     assert "What would settle it Check the wave generator: measure run-out" in text
     assert "None" not in text
     assert (folder / "answer" / "loop" / "page.html").is_file()
@@ -131,7 +131,7 @@ def test_a_healthy_gear_is_healthy_and_something_else_is_no_fault(unit) -> None:
     assert healthy.report["of_healthy"] is None
     gain = swg.diagnose(recorded(GaugeGain(1, 0.03), seed=3), unit, effects=kinds)
     assert gain.report["verdict"] == "something_else"
-    assert "Something else is: The model lacks a gauge gain of s1" in gain.sentence
+    assert "Other finding: The model lacks a gauge gain of s1" in gain.sentence
 
 
 def test_mistakes_are_named(folder, unit) -> None:

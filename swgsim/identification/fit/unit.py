@@ -37,7 +37,7 @@ UNHEARD = 1e8
 
 @dataclass(frozen=True, eq=False)
 class Unit:
-    """A unit before the recordings in question.
+    """A unit before the recordings to examine.
 
     Attributes
     ----------

@@ -103,7 +103,7 @@ def lines(report: Mapping[str, Any]) -> list[str]:
     ]
     shown += [f"effect found   {effect_text(each['name'], each['parameters'])}" for each in report["effects"]]
     if report["verdict"] == NOTHING:
-        shown.append(f"would be seen  {_detection_limits(report['detectable'])}; all others are in the report")
+        shown.append(f"detected from  {_detection_limits(report['detectable'])}; all others are in the report")
     if "hidden" in report:
         shown.append(f"effect hidden  {report['hidden']}")
     return shown

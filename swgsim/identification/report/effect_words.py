@@ -12,12 +12,12 @@ from swgsim.identification.report.engineering_units import Estimate, interval_te
 
 # Sentences that say more than name and value; {parameter} stands for the value with its unit.
 PHRASES = {
-    "eccentric_wave_generator": "{r} off centre, towards {theta} from gauge s1 (counted with the rotation)",
+    "eccentric_wave_generator": "{r} off centre, towards {theta} from gauge s1, in the sense of rotation",
     "rotating_eccentricity": "{e} off centre, turning with the wave generator, {phase} ahead of the major axis",
-    "tilted_wave_generator": "{tilt}, the open end towards {theta} from gauge s1 (counted with the rotation)",
-    "tilting_moment": "{strain} towards {theta} from gauge s1 (counted with the rotation)",
-    "root_tooth_crack": "{stiffness_ratio} of the stiffness remain, {theta} from gauge s1 (counted with the rotation)",
-    "tip_tooth_crack": "{force_loss} of the tooth force are lost, {theta} from gauge s1 (counted with the rotation)",
+    "tilted_wave_generator": "{tilt}, the open end towards {theta} from gauge s1, in the sense of rotation",
+    "tilting_moment": "{strain} towards {theta} from gauge s1, in the sense of rotation",
+    "root_tooth_crack": "{stiffness_ratio} of the stiffness remain, {theta} from gauge s1, in the sense of rotation",
+    "tip_tooth_crack": "{force_loss} of the tooth force are lost, {theta} from gauge s1, in the sense of rotation",
     "worn_wave_generator": "{loss} of the deflection are lost",
     "cam_form": "{n} lobes with an amplitude of {amplitude}",
     "out_of_round": "{n} lobes with an amplitude of {amplitude}",

@@ -1,4 +1,4 @@
-"""What a command is given: recordings in question, and the healthy gear as recordings or as the file of a unit."""
+"""What a command is given: recordings to examine, and the healthy gear as recordings or as the file of a unit."""
 
 import sys
 from collections.abc import Mapping
@@ -93,7 +93,7 @@ def _read(path: str, what: str, mapping: str | None) -> RecordingSet:
 
 
 def _comparable(recordings: RecordingSet, healthy: RecordingSet) -> tuple[Recording, ...]:
-    """Recordings of the commissioning, with the channels that the recordings in question have too.
+    """Recordings of the commissioning, with the channels that the recordings to examine have too.
 
     Raises
     ------
