@@ -167,7 +167,7 @@ def closed(
     shown = {
         **{each: fields[each] for each in ("verdict", "sentence", "error")},
         "found": text.entries(found.effects),
-        "rivals": [effect.name() for option, _ in found.decision.rivals for effect in option.effects],
+        "rivals": [effect.name() for option, _ in found.decision.credible[1:] for effect in option.effects],
         "absorbed": [each["name"] for each in fields["absorbed"]],
     }
     return found.effects, shown

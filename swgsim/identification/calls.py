@@ -18,13 +18,13 @@ from swgsim.identification.data.features import COMPARED
 from swgsim.identification.data.gauge_order import order_defects
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model
-from swgsim.identification.decide.interest import INTEREST
 from swgsim.identification.fit.unit import Unit
 from swgsim.identification.interharmonics.interharmonic_spectrum import gauge_spectra
 from swgsim.identification.interharmonics.line_search import all_cleaned, search
 from swgsim.identification.interharmonics.named_interharmonics import has_sidelines
 from swgsim.identification.report.answer import answer
 from swgsim.identification.report.identification import Identification
+from swgsim.identification.report.interest import INTEREST
 from swgsim.identification.report.next_experiment import next_experiments
 from swgsim.identification.report.report_fields import report
 from swgsim.identification.search.shortlist import ALPHA

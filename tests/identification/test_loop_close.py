@@ -176,8 +176,8 @@ def test_an_eccentric_wave_generator_is_found_with_its_size(unit):
     assert decision.deviation[name] < 4e-6
     assert found.theta == pytest.approx(1.0, abs=0.1)
     assert decision.probability > CREDIBLE
-    assert decision.rivals == ()
-    assert decision.unknown == ()
+    assert decision.credible[1:] == ()
+    assert decision.best.regularities == ()
 
 
 def test_a_healthy_gear_lacks_nothing(unit):
@@ -263,7 +263,7 @@ def test_a_ripple_that_is_none_of_the_gear_is_not_listened_to():
 @pytest.mark.parametrize("hidden", [(ECCENTRIC,), ()], ids=["eccentric", "nothing"])
 def test_a_disturbance_neither_hides_an_effect_nor_gets_a_name(unit, hidden):
     decision = decide(recorded((*hidden, STRAY), seed=2), unit, SEARCHED)
-    assert [(each.atom.order, each.atom.pattern) for each in decision.unknown] == [(7, "in s2 alone")]
+    assert [(each.atom.order, each.atom.pattern) for each in decision.best.regularities] == [(7, "in s2 alone")]
     assert [type(effect) for effect in decision.effects] == [type(effect) for effect in hidden]
     for found in decision.effects:
         assert found.r == pytest.approx(10e-6, rel=0.3)
@@ -273,7 +273,7 @@ def test_parameters_that_a_disturbance_had_bent_come_back():
     """A joint that gives way under load looks like a gauge of another gain, in another place and another direction."""
     gives_way = Regularity(0, 0.05, 0.0, "in s2 alone", "with the root of the load")
     decision = decide(recorded((gives_way,), seed=2), Unit(Model(GEAR)), [LIBRARY["eccentric_wave_generator"]])
-    (found,) = decision.unknown
+    (found,) = decision.best.regularities
     assert (found.atom.order, found.atom.pattern, found.atom.law) == (0, gives_way.pattern, gives_way.law)
     of_s2 = [name for name in decision.before.parameters if name.endswith("of s2")]
     off, left = ([abs(each.calibrated.position[name]) for name in of_s2] for each in (decision.before, decision.after))

@@ -17,7 +17,7 @@ from swgsim.identification.covariance.low_rank_covariance import Covariance
 from swgsim.identification.covariance.recording_covariance import RecordingCovariance
 from swgsim.identification.data.features import ORDERS, Layout
 from swgsim.identification.decide.decision import CREDIBLE, decide
-from swgsim.identification.decide.option import ZEROS, expected_gain, option, resembling
+from swgsim.identification.decide.option import ZEROS, expected_gain, option, prior_ratio, resembling
 from swgsim.identification.decide.prior import (
     BALANCED,
     CAUSES,
@@ -106,7 +106,7 @@ def test_evidence_of_an_effect_is_the_mean_over_the_form_errors(null, changes):
     found = option(held, (Bump(4.0),), (), len(KINDS))
     fitted, (D,) = found.fitted, form_directions(found.fitted)
     by_error = [density(fitted, fitted.from_start, fitted.J, each * D) for each in FORM_ERRORS]
-    expected = np.log(1 - BALANCED) + logsumexp(by_error) - np.log(len(FORM_ERRORS))
+    expected = np.log(1 - BALANCED) + logsumexp(by_error) - np.log(len(FORM_ERRORS)) + prior_ratio(fitted, 0)
     assert found.zeros == 1
     assert logsumexp(found.evidences[0]) == pytest.approx(expected, abs=1e-4)
     weights = np.exp(by_error - logsumexp(by_error))
@@ -115,15 +115,17 @@ def test_evidence_of_an_effect_is_the_mean_over_the_form_errors(null, changes):
 
 @pytest.mark.usefixtures("_chain")
 def test_evidence_of_what_resembles_an_effect_is_the_mean_over_all_form_errors(null, changes):
-    """Beside another effect, whose form is open by its most probable form error."""
+    """Beside another effect, whose form error is one of those of effects."""
     found = option(recorded(null, changes, {Bump: 5.0, Dip: 2.0}, 5), (Bump(4.0), Dip(1.0)), (), len(KINDS))
     of_bump, of_dip, of_both = resembling(found, len(KINDS))
     assert [[type(e) for e in each.effects] for each in (of_bump, of_dip, of_both)] == [[Dip], [Bump], []]
     assert [type(e) for e in of_dip.resembled] == [Dip]
-    fitted, known = found.fitted, FORM_ERRORS[found.likeliest[1]]
+    fitted = found.fitted
     B, D = form_directions(fitted)
-    by_error = [density(fitted, fitted.from_start, fitted.J, known * B, each * D) for each in (known, *OTHER_FORMS)]
-    of_dip_alone = logsumexp(by_error[1:]) + np.log(1 - BALANCED) - np.log(len(FORM_ERRORS) + len(OTHER_FORMS))
+    forms = product(FORM_ERRORS, OTHER_FORMS)
+    by_error = [density(fitted, fitted.from_start, fitted.J, known * B, unlike * D) for known, unlike in forms]
+    of_dip_alone = logsumexp(by_error) - np.log(len(FORM_ERRORS) * (len(FORM_ERRORS) + len(OTHER_FORMS)))
+    of_dip_alone += np.log(1 - BALANCED) + prior_ratio(fitted, 0) + prior_ratio(fitted, 1)
     similar = found.log_evidence + np.log(len(FORM_ERRORS) / (len(FORM_ERRORS) + len(OTHER_FORMS)))
     assert of_dip.log_evidence == pytest.approx(np.logaddexp(similar, of_dip_alone), abs=1e-4)
     assert of_both.log_prior - found.log_prior == pytest.approx(log_prior(0, 2, 0, 4) - log_prior(2, 0, 0, 4))
@@ -192,17 +194,15 @@ def test_expected_evidence_is_near_that_of_the_fit(null, changes):
 
 @pytest.mark.parametrize("kinds", [2, 10, 60])
 def test_priors_of_all_options_sum_to_at_most_one(kinds):
-    """Regularities that go on have order, pattern or law in common with the last one."""
-    total = 0.0
+    total, atoms = 0.0, (ORDERS + 1) * len(PATTERNS) * len(LAWS)
     for effects in range(min(kinds, len(CAUSES) - 1) + 1):
-        sets, options_ = comb(kinds, effects), (ORDERS + 1) * len(PATTERNS) * len(LAWS)
+        sets = comb(kinds, effects)
         total += sets * np.exp(log_prior(effects, 0, 0, kinds))
         for resembled in range(1, effects + 1):
             split = comb(effects, resembled) * sets
             total += split * np.exp(log_prior(effects - resembled, resembled, 0, kinds))
         for regularities in range(1, 30):
-            total += sets * options_ * np.exp(log_prior(effects, 0, regularities, kinds))
-            options_ *= ORDERS + len(PATTERNS) + len(LAWS)
+            total += sets * comb(atoms, regularities) * np.exp(log_prior(effects, 0, regularities, kinds))
     assert 0.85 < total <= 1 + 1e-9
 
 
@@ -350,7 +350,7 @@ def test_what_looks_alike_is_an_alternative_in_report_and_sentence(null, changes
     assert {each["words"] for each in alternatives(found)} == {"a bump", "a mimic"}
     assert all(each["probability"] == pytest.approx(0.5, abs=0.05) for each in alternatives(found))
     assert sum(each["probability"] for each in alternatives(found)) >= CREDIBLE
-    ((rival, probability),) = found.decision.rivals
+    ((rival, probability),) = found.decision.credible[1:]
     words = {"Bump": "a bump", "Mimic": "a mimic"}[type(rival.effects[0]).__name__]
     assert f": probability {probability_text(found.decision.probability)}; else {words} ({probability:.2f})." in said
     assert not any(each["unknown"] for each in alternatives(found))
@@ -376,7 +376,7 @@ def test_nothing_and_something_unknown_have_probabilities_too(null, changes):
 @pytest.mark.usefixtures("_chain")
 def test_what_is_too_small_to_matter_is_seen_but_no_verdict(null, changes):
     found, _ = answered(null, changes, {Dip: 3.0}, 13)
-    (far,) = found.decision.shares_of_spread
+    (far,) = found.shares_of_spread
     assert answered(null, changes, {Dip: 3.0}, 13, interest=0.9 * far)[0].verdict == FOUND
     found, said = answered(null, changes, {Dip: 3.0}, 13, interest=1.1 * far)
     assert found.verdict == NOTHING

@@ -24,10 +24,10 @@ from swgsim.identification.commissioning.commissioning import learn_unit
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model
 from swgsim.identification.decide.decision import decide
-from swgsim.identification.decide.interest import INTEREST
 from swgsim.identification.fit.unit import STRUCTURE, Unit
 from swgsim.identification.interharmonics.interharmonic_spectrum import gauge_spectra
 from swgsim.identification.interharmonics.line_search import search
+from swgsim.identification.report.interest import INTEREST, shares_of_spread
 from swgsim.recordings.read import read_recordings
 
 pytestmark = [pytest.mark.end_to_end, pytest.mark.slow]
@@ -59,7 +59,7 @@ def measured(folder: Path) -> Measured:
 def found(folder: Path, unit: Unit) -> list[Found]:
     """All effects that are large enough to matter."""
     decision = decide(measured(folder), unit, SEARCHED)
-    shares = zip(decision.effects, decision.shares_of_spread, strict=False)  # those of regularities follow
+    shares = zip(decision.effects, shares_of_spread(decision.after), strict=False)  # those of regularities follow
     return [effect for effect, share in shares if share >= INTEREST]
 
 

@@ -11,7 +11,6 @@ from swgsim.common.seeds import generator
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import beyond_nothing, size_of
 from swgsim.identification.data.measured import Measured
-from swgsim.identification.decide.interest import shares_of_spread
 from swgsim.identification.decide.option import Option, chosen
 from swgsim.identification.decide.search import Search
 from swgsim.identification.fit.fitted import Fitted
@@ -21,7 +20,6 @@ from swgsim.identification.fit.priors import name_of
 from swgsim.identification.fit.shape_marginal import over_shapes
 from swgsim.identification.fit.unit import Unit
 from swgsim.identification.search.detection_limit import at_sizes_seen
-from swgsim.identification.search.regularities import Described
 from swgsim.identification.search.screening import Score
 from swgsim.identification.search.shortlist import screened
 
@@ -43,10 +41,10 @@ class Decision:
         The model with the effects and regularities of the best option.
     best : Option
         The most probable option of the most probable answer; something unknown is described by regularities in it.
-    options : tuple of Option
-        The most probable first.
-    probabilities : tuple of float
-        Of every option.
+    weighed : tuple of (Option, float)
+        All options with their probabilities, the most probable first.
+    answers : tuple of (Option, float)
+        The best option of every answer with the probability of the answer, the most probable first.
     scores : tuple of Score
         Of the first screening, best hypothesis of each effect, with p-values.
     """
@@ -54,8 +52,8 @@ class Decision:
     before: Fitted
     after: Fitted
     best: Option
-    options: tuple[Option, ...]
-    probabilities: tuple[float, ...]
+    weighed: tuple[tuple[Option, float], ...]
+    answers: tuple[tuple[Option, float], ...]
     scores: tuple[Score, ...]
 
     @property
@@ -64,32 +62,12 @@ class Decision:
         return self.after.added[: len(self.best.effects)]
 
     @property
-    def unknown(self) -> tuple[Described, ...]:
-        """The regularities of the best option."""
-        return self.best.regularities
-
-    @cached_property
-    def shares_of_spread(self) -> list[float]:
-        """Of each effect, then of each regularity: its largest change of a line (:func:`shares_of_spread`)."""
-        return shares_of_spread(self.after)
-
-    @property
     def probability(self) -> float:
         """Of the answer: of all options with the same effects, and with or without something unknown."""
         return self.answers[0][1]
 
     @property
-    def weighed(self) -> list[tuple[Option, float]]:
-        """Options with their probabilities."""
-        return list(zip(self.options, self.probabilities, strict=True))
-
-    @cached_property
-    def answers(self) -> list[tuple[Option, float]]:
-        """The best option of every answer with the probability of the answer, the most probable first."""
-        return _answers(self.weighed)
-
-    @property
-    def credible(self) -> list[tuple[Option, float]]:
+    def credible(self) -> tuple[tuple[Option, float], ...]:
         """The fewest answers that have a probability of 95 % together."""
         totals = np.cumsum([probability for _, probability in self.answers])
         return self.answers[: int(np.searchsorted(totals, CREDIBLE)) + 1]
@@ -101,13 +79,8 @@ class Decision:
     def gain_of(self, effect: Effect) -> float:
         """Log evidence of the best option over the best one without effects of this kind."""
         kind = chosen(effect)
-        others = [o.log_evidence for o in self.options if kind not in map(chosen, (*o.effects, *o.resembled))]
+        others = [o.log_evidence for o, _ in self.weighed if kind not in map(chosen, (*o.effects, *o.resembled))]
         return self.best.log_evidence - max(others, default=-np.inf)
-
-    @property
-    def rivals(self) -> tuple[tuple[Option, float], ...]:
-        """The other answers of the credible set."""
-        return tuple(self.credible[1:])
 
     @cached_property
     def deviation(self) -> dict[str, float]:
@@ -123,15 +96,6 @@ class Decision:
             name = name_of(effect, number, size_of(type(effect)))
             moved[name] = float(np.hypot(moved[name], EXACT * abs(beyond_nothing(effect))))
         return found | {name: float(np.hypot(found[name], by)) for name, by in moved.items() if ": " in name}
-
-
-def _answers(weighed: Sequence[tuple[Option, float]]) -> list[tuple[Option, float]]:
-    found: dict[object, tuple[Option, float]] = {}
-    for each, probability in weighed:
-        answer = frozenset(map(chosen, each.effects)), each.unknown
-        first, total = found.get(answer, (each, 0.0))
-        found[answer] = first, total + probability
-    return sorted(found.values(), key=lambda each: -each[1])
 
 
 def decide(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, seed: int = 0) -> Decision:
@@ -150,13 +114,14 @@ def decide(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, see
     search = Search(first, kinds)
     options = search.run()
     weights = np.array([each.log_posterior for each in options])
-    probabilities = tuple(np.exp(weights - logsumexp(weights)).tolist())
-    best, _ = _answers(list(zip(options, probabilities, strict=True)))[0]
+    weighed = tuple(zip(options, np.exp(weights - logsumexp(weights)).tolist(), strict=True))
+    answers = _answers(weighed)
+    best, _ = answers[0]
     if best.resembled:
         best = search.described(best)
     before = first.with_zeros(best.zeros)
     scores = at_sizes_seen(screened(first, kinds, generator("screen", seed, 0)), at_plausible_parameters(first))
-    return Decision(before, _with(best), best, tuple(options), probabilities, scores)
+    return Decision(before, _with(best), best, weighed, answers, scores)
 
 
 def _with(best: Option) -> Fitted:
@@ -164,3 +129,13 @@ def _with(best: Option) -> Fitted:
     fitted = best.fitted.with_zeros(best.zeros).strict
     regular = [each.effect for each in best.regularities]
     return extended(fitted, regular) if regular else fitted
+
+
+def _answers(weighed: Sequence[tuple[Option, float]]) -> tuple[tuple[Option, float], ...]:
+    """Options with the same effects, and with or without something unknown, are one answer."""
+    found: dict[object, tuple[Option, float]] = {}
+    for each, probability in weighed:
+        answer = frozenset(map(chosen, each.effects)), each.unknown
+        first, total = found.get(answer, (each, 0.0))
+        found[answer] = first, total + probability
+    return tuple(sorted(found.values(), key=lambda each: -each[1]))

@@ -10,7 +10,7 @@ from jaxtyping import Float
 from scipy.special import logsumexp
 
 from swgsim.effects.base import Effect
-from swgsim.effects.quantity import Role, beyond_nothing, quantities, size_of
+from swgsim.effects.quantity import Role, quantities
 from swgsim.identification.decide.forms import Forms
 from swgsim.identification.decide.prior import (
     BALANCED,
@@ -18,6 +18,8 @@ from swgsim.identification.decide.prior import (
     LOG_SIZE_RANGE,
     OTHER_FORMS,
     TIMES_BALANCED,
+    log_choices,
+    log_density,
     log_prior,
 )
 from swgsim.identification.fit.fitted import Fitted
@@ -141,9 +143,11 @@ def option(start: Fitted, effects: Sequence[Effect], regularities: Sequence[Desc
     free = reduce(set_free, regularities, start.without_free)
     fitted = extended(free, effects).closed
     added = fitted.added
-    prior = log_prior(len(added), 0, len(regularities), kinds) - len(regularities) * np.log(LOG_SIZE_RANGE)
-    prior += sum(size_correction(fitted, number) for number in range(len(added)))
-    return Option(replace(fitted), added, tuple(regularities), prior, *log_evidences(fitted))
+    evidences, forms = log_evidences(fitted)
+    evidences += sum(prior_ratio(fitted, number) for number in range(len(added)))
+    evidences -= len(regularities) * np.log(LOG_SIZE_RANGE)
+    prior = log_prior(len(added), 0, len(regularities), kinds)
+    return Option(replace(fitted), added, tuple(regularities), prior, evidences, forms)
 
 
 def resembling(option: Option, kinds: int) -> list[Option]:
@@ -158,36 +162,39 @@ def resembling(option: Option, kinds: int) -> list[Option]:
     kinds : int
         Number of effects in the library.
     """
-    many, (_, likeliest) = len(option.effects), option.likeliest
-    alike, counts_for = FORM_ERRORS[likeliest], float(np.log(len(FORM_ERRORS)))
-    gains = {errors: option.forms.gain(errors) for errors in product((alike, *OTHER_FORMS), repeat=many)}
-    start = float(logsumexp(option.evidences[:, likeliest])) + counts_for - gains[(alike,) * many]
+    many, counts_for = len(option.effects), np.log(len(FORM_ERRORS))
+    of_fit = logsumexp(option.evidences[:, 0]) + counts_for - option.forms.gain([FORM_ERRORS[0]] * many)
+    # By what is unlike an effect, and how much; all other effects share a form error.
+    evidences = {}
+    for unlike in product((0.0, *OTHER_FORMS), repeat=many):
+        gains = [option.forms.gain([own or shared for own in unlike]) for shared in FORM_ERRORS]
+        evidences[unlike] = of_fit + logsumexp(gains) - counts_for
     found = []
     for numbers in (each for n in range(1, many + 1) for each in combinations(range(many), n)):
-        evidences = [option.log_evidence + len(numbers) * counts_for]
-        for errors, gain in gains.items():
-            unlike = [number for number in range(many) if errors[number] != alike]
-            if unlike and set(unlike) <= set(numbers):
-                evidences.append(start + gain + (len(numbers) - len(unlike)) * counts_for)
-        more = logsumexp(evidences) - len(numbers) * np.log(len(FORM_ERRORS) + len(OTHER_FORMS)) - option.log_evidence
+        of_these = [
+            evidence + (len(numbers) - np.count_nonzero(unlike)) * counts_for
+            for unlike, evidence in evidences.items()
+            if set(np.flatnonzero(unlike)) <= set(numbers)
+        ]
+        evidence = logsumexp(of_these) - len(numbers) * np.log(len(FORM_ERRORS) + len(OTHER_FORMS))
         prior = log_prior(many - len(numbers), len(numbers), 0, kinds) - log_prior(many, 0, 0, kinds)
         found.append(
             replace(
                 option,
                 effects=tuple(each for number, each in enumerate(option.effects) if number not in numbers),
                 resembled=tuple(option.effects[number] for number in numbers),
-                evidences=option.evidences + more,
+                evidences=option.evidences + evidence - option.log_evidence,
                 log_prior=option.log_prior + prior,
             )
         )
     return found
 
 
-def size_correction(fitted: Fitted, number: int) -> float:
-    """Logarithm of the prior density of the size of an added effect over that of the fit, at the size found.
+def prior_ratio(fitted: Fitted, number: int) -> float:
+    """Logarithm of the prior density of the parameters of an added effect over that of the fit, where it found them.
 
-    The fit has a normal prior about where it began. The prior of the decision is uniform in the logarithm of the size,
-    down to the standard deviation of the size, below which all sizes look alike.
+    The fit has a normal prior about where each parameter began. A parameter that the recordings do not tell has the
+    ratio 1: its prior, whatever it is, integrates to 1.
 
     Parameters
     ----------
@@ -197,11 +204,17 @@ def size_correction(fitted: Fitted, number: int) -> float:
     """
     number += len(fitted.unit.model.effects)
     effect = fitted.model.effects[number]
-    q, name = quantities(type(effect))[size_of(type(effect))], name_of(effect, number, size_of(type(effect)))
-    sd, position = fitted.parameters[name].sd, fitted.calibrated.position[name]
-    size = max(abs(beyond_nothing(effect)), fitted.deviation[name]) / sd
-    both_signs = q.low < q.nothing < q.high
-    return float(-np.log(LOG_SIZE_RANGE * size * (1 + both_signs)) + (position**2 + np.log(2 * np.pi)) / 2)
+    found = -log_choices(type(effect))
+    for name, q in quantities(type(effect)).items():
+        if (key := name_of(effect, number, name)) not in fitted.parameters:
+            continue
+        sd, position, deviation = fitted.parameters[key].sd, fitted.calibrated.position[key], fitted.deviation[key]
+        ratio = log_density(q, getattr(effect, name), deviation) + np.log(2 * np.pi * sd**2) / 2
+        told = 1 - min(deviation / sd, 1.0) ** 2  # share of the variance that the recordings take away
+        if q.role is not Role.SIZE:
+            ratio = min(ratio - np.log(max(told, 1e-12)) / 2, -np.log(deviation / sd))
+        found += ratio + position**2 / 2
+    return float(found)
 
 
 def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"], Forms]:
@@ -224,6 +237,8 @@ def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"]
 def expected_gain(fitted: Fitted, change: Float[np.ndarray, " row"]) -> float:
     """Log evidence that an effect is expected to bring with its prior of the size, without a fit.
 
+    It is relative to an evidence with the prior of one form error, as in :attr:`Option.evidences`.
+
     Parameters
     ----------
     fitted : Fitted
@@ -240,4 +255,4 @@ def expected_gain(fitted: Fitted, change: Float[np.ndarray, " row"]) -> float:
     root = size / (norm * (1 + norm))  # (1 + size size')^-1/2 = 1 - root size'
     forms = Forms.of([white[:, 1:] - np.outer(root, size @ white[:, 1:])], r - root * float(size @ r))
     gains = [forms.gain([error]) for error in FORM_ERRORS]
-    return along**2 / 2 - np.log(norm * LOG_SIZE_RANGE) + float(logsumexp(gains) - np.log(len(gains)))
+    return along**2 / 2 - np.log(norm * LOG_SIZE_RANGE) + float(logsumexp(gains))

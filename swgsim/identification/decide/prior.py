@@ -7,6 +7,8 @@ change only for a reason from physics or from the practice of test benches.
 import numpy as np
 from scipy.special import gammaln
 
+from swgsim.effects.base import Effect
+from swgsim.effects.quantity import Quantity, Role, quantities
 from swgsim.effects.regularity import LAWS, PATTERNS
 from swgsim.identification.data.features import ORDERS
 
@@ -18,8 +20,7 @@ OUTSIDE_LIBRARY = 0.1
 # Half of the unknown causes resemble known effects, as they act on the same machine. The others are regularities, each
 # being one order, one pattern over the channels and one law.
 RESEMBLING = 0.5
-# Probability that an unknown cause resembles one more effect, or shows in one more regularity. Further regularities
-# have order, pattern or law in common with the first one.
+# Probability that an unknown cause resembles one more effect, or shows in one more regularity.
 ANOTHER = 0.5
 # Probability that bridges were balanced anew between two sessions. The zeros of gauges then lie so many times as far
 # off as declared.
@@ -45,7 +46,7 @@ def log_prior(effects: int, resembled: int, regularities: int, kinds: int) -> fl
     resembled : int
         Further effects that one unknown cause resembles.
     regularities : int
-        Regularities by which one unknown cause is described instead. The first may be any.
+        Regularities by which one unknown cause is described instead; each is as probable as any other one.
     kinds : int
         Number of effects in the library.
 
@@ -59,10 +60,43 @@ def log_prior(effects: int, resembled: int, regularities: int, kinds: int) -> fl
         return -np.inf
     found = np.log(CAUSES[causes]) + gammaln(causes + 1) + effects * np.log((1 - OUTSIDE_LIBRARY) / kinds)
     if resembled:
-        found += np.log(OUTSIDE_LIBRARY * RESEMBLING * (1 - ANOTHER) / kinds) + gammaln(resembled + 1)
-        found += (resembled - 1) * np.log(ANOTHER / kinds)
+        found += np.log(OUTSIDE_LIBRARY * RESEMBLING) + _one_or_more(resembled, kinds)
     elif regularities:
-        first = (ORDERS + 1) * len(PATTERNS) * len(LAWS)
-        found += np.log(OUTSIDE_LIBRARY * (1 - RESEMBLING) * (1 - ANOTHER) / first)
-        found += (regularities - 1) * np.log(ANOTHER / (ORDERS + len(PATTERNS) + len(LAWS)))
+        found += np.log(OUTSIDE_LIBRARY * (1 - RESEMBLING))
+        found += _one_or_more(regularities, (ORDERS + 1) * len(PATTERNS) * len(LAWS))
     return float(found)
+
+
+def _one_or_more(number: int, among: int) -> float:
+    """Logarithm of the probability of one set of so many, the number being geometric."""
+    return float(np.log((1 - ANOTHER) / ANOTHER) + number * np.log(ANOTHER / among) + gammaln(number + 1))
+
+
+def log_choices(kind: type[Effect]) -> float:
+    """Logarithm of the number of variants of an effect, such as one for each gauge; all are equally probable.
+
+    >>> from swgsim.effects import GaugeGain
+    >>> round(float(np.exp(log_choices(GaugeGain))))
+    5
+    """
+    return float(sum(np.log(len(q.tried)) for q in quantities(kind).values() if q.role is Role.CHOICE))
+
+
+def log_density(q: Quantity, value: float, deviation: float) -> float:
+    """Logarithm of the prior density of a fitted parameter of an effect.
+
+    A size is uniform in its logarithm, down to its standard deviation, below which all sizes look alike. Every other
+    parameter is uniform within its bounds.
+
+    Parameters
+    ----------
+    q : Quantity
+    value : float
+        The value found, in the unit of the parameter.
+    deviation : float
+        Its standard deviation.
+    """
+    if q.role is Role.SIZE:
+        both_signs = q.low < q.nothing < q.high
+        return -float(np.log(LOG_SIZE_RANGE * max(abs(value - q.nothing), deviation) * (1 + both_signs)))
+    return -float(np.log(q.high - q.low))

@@ -16,7 +16,7 @@ from swgsim.chain import NoSteadyState
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities
 from swgsim.identification.decide.option import Option, causes_of, expected_gain, option, resembling
-from swgsim.identification.decide.prior import CAUSES, LOG_SIZE_RANGE, log_prior
+from swgsim.identification.decide.prior import CAUSES, LOG_SIZE_RANGE, log_choices, log_prior
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import at_plausible_parameters
 from swgsim.identification.fit.form_error import all_show
@@ -149,7 +149,10 @@ class Search:
         scores = best_of_kind(rank([every[n] for n in offered], [changes[n] for n in offered], start))
         of_hypothesis = dict(zip(every, changes, strict=True))
         leading = [score for score in scores[:EFFECTS_LOOKED_AT] if np.isfinite(score.estimate)]
-        gains = [expected_gain(start, estimated(score, of_hypothesis[score.hypothesis])) for score in leading]
+        gains = [
+            expected_gain(start, estimated(each, of_hypothesis[each.hypothesis])) - log_choices(each.hypothesis.kind)
+            for each in leading
+        ]
         return sorted(zip(gains, leading, strict=True), key=lambda each: -each[0])[:EFFECTS_TRIED]
 
     @cached_property

@@ -3,6 +3,7 @@
 import logging
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from swgsim.chain.steady_state_cache import forget
 from swgsim.common.outcome import FOUND, NOTHING, UNKNOWN
@@ -10,13 +11,13 @@ from swgsim.effects.base import Effect
 from swgsim.effects.line_between import LineBetween
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.decide.decision import Decision, decide
-from swgsim.identification.decide.interest import INTEREST
 from swgsim.identification.decide.option import Option
 from swgsim.identification.fit.unit import Unit
 from swgsim.identification.interharmonics.interharmonic_spectrum import gauge_spectra
 from swgsim.identification.interharmonics.line_search import all_cleaned, search
 from swgsim.identification.interharmonics.named_interharmonics import Sideline
 from swgsim.identification.interharmonics.unattributed_lines import Unnamed
+from swgsim.identification.report.interest import INTEREST, shares_of_spread
 from swgsim.identification.search.high_orders import above
 from swgsim.identification.search.regularities import Described
 from swgsim.identification.search.screening import Score
@@ -47,7 +48,7 @@ class Answer:
     absorbed : tuple of Score
         Effects that these recordings cannot test: nuisance parameters absorb their signatures.
     interest : float
-        Smallest change that matters (:data:`swgsim.identification.decide.interest.INTEREST`).
+        Smallest change that matters (:data:`swgsim.identification.report.interest.INTEREST`).
     """
 
     decision: Decision
@@ -63,18 +64,23 @@ class Answer:
         """NOTHING, FOUND or UNKNOWN."""
         return FOUND if self.effects else UNKNOWN if self.unknown or self.unnamed else NOTHING
 
+    @cached_property
+    def shares_of_spread(self) -> list[float]:
+        """Largest change of a line by each effect, then by each regularity (:func:`shares_of_spread`)."""
+        return shares_of_spread(self.decision.after)
+
     @property
     def small(self) -> tuple[Effect, ...]:
         """Effects and regularities that are probable, but too small to matter."""
-        return tuple(
-            e for e, share in zip(self.added, self.decision.shares_of_spread, strict=True) if share < self.interest
-        )
+        return tuple(e for e, share in zip(self.added, self.shares_of_spread, strict=True) if share < self.interest)
 
     @property
     def unknown(self) -> tuple[Described, ...]:
         """Regularities that no effect of the library explains, without small ones."""
-        shares = self.decision.shares_of_spread[len(self.decision.effects) :]
-        large = (each for each, share in zip(self.decision.unknown, shares, strict=True) if share >= self.interest)
+        shares = self.shares_of_spread[len(self.decision.effects) :]
+        large = (
+            each for each, share in zip(self.decision.best.regularities, shares, strict=True) if share >= self.interest
+        )
         return (*large, *self.above)
 
     @property
@@ -131,7 +137,7 @@ def answer(
     known : sequence of Effect
         Declared effects that make interharmonic lines.
     interest : float
-        Smallest change that matters (:data:`swgsim.identification.decide.interest.INTEREST`).
+        Smallest change that matters (:data:`swgsim.identification.report.interest.INTEREST`).
     seed : int
     """
     forget()

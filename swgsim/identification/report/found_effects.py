@@ -130,7 +130,7 @@ def alternatives(answer: Answer) -> list[dict[str, Any]]:
 
 def small(answer: Answer) -> list[dict[str, Any]]:
     """What is probable but too small to matter, with its share of the spread of healthy units."""
-    shares = zip(answer.added, answer.decision.shares_of_spread, strict=True)
+    shares = zip(answer.added, answer.shares_of_spread, strict=True)
     return [{"words": effect_in_words(effect), "share": number(by)} for effect, by in shares if effect in answer.small]
 
 

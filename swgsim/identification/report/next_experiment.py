@@ -87,7 +87,7 @@ def next_experiments(answer: Answer) -> tuple[Experiment, ...]:
     """Recordings that separate the answer from the others of the credible set, and that test every absorbed effect."""
     found = []
     after = answer.decision.after
-    for rival, _ in answer.decision.rivals:
+    for rival, _ in answer.decision.credible[1:]:
         names = (in_words(answer.decision.best), in_words(rival))
         found += _best(rival.opened(*rival.likeliest), [after.model], [names])
     effects = [score.hypothesis.effect() for score in answer.absorbed]

@@ -43,7 +43,7 @@ def _sure(answer: Answer) -> str:
     decision = answer.decision
     if not answer.of_orders and not answer.unknown and (answer.verdict != NOTHING or answer.small):
         return ""  # interharmonic lines alone, which have p-values
-    others = [f"{in_words(option)} ({probability_text(p)})" for option, p in decision.rivals]
+    others = [f"{in_words(option)} ({probability_text(p)})" for option, p in decision.credible[1:]]
     otherwise = f"; else {_listed(others, ', ')}" if others else ""
     return f": probability {probability_text(decision.probability)}{otherwise}"
 
