@@ -97,8 +97,8 @@ loop: $(READY)  ## closing the loop once, from nothing: record, hide an effect, 
 	    truth=loop/recordings.truth.json out=loop/answer
 	@echo "open loop/answer/page.html; 'make ui' shows the run"
 
-blind: $(READY)  ## the loop judged on sealed cases, report/blind.json (SMALL=1: 10 cases, 12 effects)
-	$(SWG) blind $(if $(SMALL),cases=10 seed=4 'sectors=[130$(comma)110]' 'library=[$(FEW_EFFECTS)]' blind=blind/small)
+blind: $(READY)  ## the loop judged on sealed cases, report/blind.json (SMALL=1: 6 cases, 12 effects)
+	$(SWG) blind $(if $(SMALL),cases=6 seed=4 'sectors=[130$(comma)110]' 'library=[$(FEW_EFFECTS)]' blind=blind/small)
 
 other-benches: $(DEV)  ## the loop on gears that other authors simulated, report/other_benches.json (SMALL=1: one gear of each)
 	OMP_NUM_THREADS=1 $(BIN)/python tests/benches benches $(if $(SMALL),--cases 6 --report report/small)
