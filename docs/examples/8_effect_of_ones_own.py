@@ -3,8 +3,8 @@ An effect of one's own
 ======================
 
 Each physical effect of the library is one class, which says where it acts and what it changes. A class of your own is
-simulated like them, and ``swg close-loop`` with ``library=[my_module:CableDrag]`` searches for it as well. Here a voltage
-is induced in the cable of gauge s1: the signal gains a part in proportion to the speed of the input.
+simulated like them, and ``swg close-loop`` with ``library=[my_module:CableDrag]`` searches for it as well. Here a
+voltage is induced in the cable of gauge s1: the signal gains a part in proportion to the speed of the input.
 """
 
 from dataclasses import dataclass
