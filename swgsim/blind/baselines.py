@@ -9,7 +9,7 @@ from jaxtyping import Float
 from swgsim.common.chi2_logsf import surprise
 from swgsim.common.singular import svd
 from swgsim.effects.base import Effect
-from swgsim.identification.decide.prior import CAUSES
+from swgsim.identification.decide.prior import MOST_CAUSES
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.search.hypotheses import Hypothesis, hypotheses, signatures
 from swgsim.identification.search.shortlist import ALPHA
@@ -55,7 +55,7 @@ def bic_forward(task: Task) -> list[str]:
     r = white(task.fitted.from_start)
     left = [white(signature) for signature in task.signatures]
     named = []
-    for _ in range(len(CAUSES) - 1):
+    for _ in range(MOST_CAUSES):
         gains = []
         for columns in left:
             basis = _basis(columns)
@@ -81,7 +81,7 @@ def sparse_regression(task: Task) -> list[str]:
     seen = length > 1e-9 * length.max()
     order = np.random.default_rng(0).permutation(len(r))
     X = (white[:, seen] / length[seen])[order]
-    fitted = OrthogonalMatchingPursuitCV(max_iter=2 * (len(CAUSES) - 1), cv=5, fit_intercept=False).fit(X, r[order])
+    fitted = OrthogonalMatchingPursuitCV(max_iter=2 * MOST_CAUSES, cv=5, fit_intercept=False).fit(X, r[order])
     largest = np.argsort(-np.abs(fitted.coef_))[: np.count_nonzero(fitted.coef_)]
     # The first step is always taken; alone and unable to pay on other rows, it names nothing.
     if len(largest) == 1 and _held_out_reduction(X, r[order], int(largest[0])) <= 0:

@@ -30,7 +30,7 @@ from swgsim.jobs import settings
 
 # The numbers that the decision has: its priors. All others are declared errors or numerical.
 PRIORS = {
-    "causes": prior.CAUSES,
+    "healthy": prior.HEALTHY,
     "unknown": prior.OUTSIDE_LIBRARY,
     "another": prior.ANOTHER,
     "balanced": [prior.BALANCED, *prior.TIMES_BALANCED],

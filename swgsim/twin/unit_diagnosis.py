@@ -16,7 +16,7 @@ from swgsim.effects.base import Effect
 from swgsim.gear.gear import Gear
 from swgsim.identification.calls import Progress, commission, identify, nominal_unit
 from swgsim.identification.data.measured import Measured
-from swgsim.identification.decide.prior import CAUSES
+from swgsim.identification.decide.prior import HEALTHY
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import extended, fit
 from swgsim.identification.fit.unit import Unit
@@ -37,7 +37,7 @@ SIZES: Mapping[str, tuple[float, float]] = {
     "tip_tooth_crack": (0.05, 1.0),
 }
 # Most gears that are examined are healthy; the faults share the rest.
-PRIOR = {"healthy": CAUSES[0], **dict.fromkeys(FAULTS, (1 - CAUSES[0]) / len(FAULTS))}
+PRIOR = {"healthy": HEALTHY, **dict.fromkeys(FAULTS, (1 - HEALTHY) / len(FAULTS))}
 FALSE_ALARMS = 0.01
 # A root crack has more cells, as its change grows with the inverse of the size.
 RESOLUTION = Resolution(nodes=5, severities={**dict.fromkeys(FAULTS, 24), "root_tooth_crack": 72}, finer=4)

@@ -20,9 +20,9 @@ from swgsim.identification.decide.decision import CREDIBLE, decide
 from swgsim.identification.decide.option import ZEROS, expected_gain, option, prior_ratio, resembling
 from swgsim.identification.decide.prior import (
     BALANCED,
-    CAUSES,
     FORM_ERRORS,
     LOG_SIZE_RANGE,
+    MOST_CAUSES,
     OTHER_FORMS,
     TIMES_BALANCED,
     log_prior,
@@ -195,7 +195,7 @@ def test_expected_evidence_is_near_that_of_the_fit(null, changes):
 @pytest.mark.parametrize("kinds", [2, 10, 60])
 def test_priors_of_all_options_sum_to_at_most_one(kinds):
     total, atoms = 0.0, (ORDERS + 1) * len(PATTERNS) * len(LAWS)
-    for effects in range(min(kinds, len(CAUSES) - 1) + 1):
+    for effects in range(min(kinds, MOST_CAUSES) + 1):
         sets = comb(kinds, effects)
         total += sets * np.exp(log_prior(effects, 0, 0, kinds))
         for resembled in range(1, effects + 1):
@@ -214,7 +214,7 @@ def test_more_causes_are_less_probable():
     assert regular == sorted(regular, reverse=True)
     assert log_prior(1, 0, 0, 60) > log_prior(0, 1, 0, 60) > log_prior(0, 0, 1, 60)  # a regularity is one of thousands
     assert log_prior(1, 0, 0, 30) > log_prior(1, 0, 0, 60)
-    assert log_prior(len(CAUSES), 0, 0, 60) == log_prior(len(CAUSES) - 1, 0, 1, 60) == -np.inf
+    assert log_prior(MOST_CAUSES + 1, 0, 0, 60) == log_prior(MOST_CAUSES, 0, 1, 60) == -np.inf
 
 
 @pytest.mark.usefixtures("_chain")
@@ -229,7 +229,7 @@ def test_the_search_finds_the_best_of_all_subsets(null, changes, hidden):
     held = recorded(null, changes, hidden, 8)
     found = Search(held, KINDS).run()
     every = []
-    for many in range(len(CAUSES)):
+    for many in range(MOST_CAUSES + 1):
         for kinds in combinations(KINDS, many):
             every.append(option(held, [kind(hidden.get(kind, 1.0)) for kind in kinds], (), len(KINDS)))
     best = max(every, key=lambda each: each.log_posterior)

@@ -12,9 +12,11 @@ from swgsim.effects.quantity import Quantity, Role, quantities
 from swgsim.effects.regularity import LAWS, PATTERNS
 from swgsim.identification.data.features import ORDERS
 
-# Probability of 0, 1, 2, 3 causes. Most gears that are examined are healthy, and independent causes at once are rare:
-# each further one is five times less probable.
-CAUSES = (0.8, 0.16, 0.032, 0.008)
+# Probability that a gear which is examined is healthy. Causes occur independently of one another, so their number has a
+# Poisson distribution.
+HEALTHY = 0.8
+# Causes of an option at most. More of them have a probability of 1e-4, and take time.
+MOST_CAUSES = 3
 # Probability that a cause is not in the library, which holds what the literature describes.
 OUTSIDE_LIBRARY = 0.1
 # Half of the unknown causes resemble known effects, as they act on the same machine. The others are regularities, each
@@ -53,16 +55,16 @@ def log_prior(effects: int, resembled: int, regularities: int, kinds: int) -> fl
     >>> round(float(np.exp(log_prior(0, 0, 0, 60))), 3)
     0.8
     >>> round(float(np.exp(log_prior(1, 0, 0, 60))), 4)
-    0.0024
+    0.0027
     """
-    causes = effects + bool(resembled or regularities)
-    if causes >= len(CAUSES):
+    if effects + bool(resembled or regularities) > MOST_CAUSES:
         return -np.inf
-    found = np.log(CAUSES[causes]) + gammaln(causes + 1) + effects * np.log((1 - OUTSIDE_LIBRARY) / kinds)
+    rate = -np.log(HEALTHY)
+    found = np.log(HEALTHY) + effects * np.log(rate * (1 - OUTSIDE_LIBRARY) / kinds)
     if resembled:
-        found += np.log(OUTSIDE_LIBRARY * RESEMBLING) + _one_or_more(resembled, kinds)
+        found += np.log(rate * OUTSIDE_LIBRARY * RESEMBLING) + _one_or_more(resembled, kinds)
     elif regularities:
-        found += np.log(OUTSIDE_LIBRARY * (1 - RESEMBLING))
+        found += np.log(rate * OUTSIDE_LIBRARY * (1 - RESEMBLING))
         found += _one_or_more(regularities, (ORDERS + 1) * len(PATTERNS) * len(LAWS))
     return float(found)
 
@@ -73,11 +75,11 @@ def _one_or_more(number: int, among: int) -> float:
 
 
 def log_choices(kind: type[Effect]) -> float:
-    """Logarithm of the number of variants of an effect, such as one for each gauge; all are equally probable.
+    """Logarithm of the number of variants of an effect, such as one for each gauge and one for all; all are equally probable.
 
-    >>> from swgsim.effects import GaugeGain
+    >>> from swgsim.effects.gauge_gain import GaugeGain
     >>> round(float(np.exp(log_choices(GaugeGain))))
-    5
+    6
     """
     return float(sum(np.log(len(q.tried)) for q in quantities(kind).values() if q.role is Role.CHOICE))
 

@@ -16,7 +16,7 @@ from swgsim.chain import NoSteadyState
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities
 from swgsim.identification.decide.option import Option, causes_of, expected_gain, option, resembling
-from swgsim.identification.decide.prior import CAUSES, LOG_SIZE_RANGE, log_choices, log_prior
+from swgsim.identification.decide.prior import LOG_SIZE_RANGE, MOST_CAUSES, log_choices, log_prior
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import at_plausible_parameters
 from swgsim.identification.fit.form_error import all_show
@@ -122,10 +122,10 @@ class Search:
         for setting in dict.fromkeys(((zeros, form_error), (0, form_error), (zeros, 0))):
             opened, evidence = base.opened(*setting), float(base.evidences[setting])
             start = at_plausible_parameters(opened)
-            for gain, score in self._leading(start) if causes + 1 < len(CAUSES) else ():
+            for gain, score in self._leading(start) if causes < MOST_CAUSES else ():
                 if self._promises(base, evidence + gain, effects=1):
                     self._fit(start, (zoom(score, start),), base.regularities)
-            if len(base.regularities) < MOST_REGULARITIES and causes + (not base.regularities) < len(CAUSES):
+            if len(base.regularities) < MOST_REGULARITIES and causes + (not base.regularities) <= MOST_CAUSES:
                 first = _strongest(opened)
                 gain = (first.gain - first.freedom * np.log1p(first.gain / first.freedom)) / 2 - np.log(LOG_SIZE_RANGE)
                 if self._promises(base, evidence + gain, regularities=1):
