@@ -75,7 +75,7 @@ def _one_or_more(number: int, among: int) -> float:
 
 
 def log_choices(kind: type[Effect]) -> float:
-    """Logarithm of the number of variants of an effect, such as one for each gauge and one for all; all are equally probable.
+    """Logarithm of the number of variants of an effect, such as one for each gauge; all are equally probable.
 
     >>> from swgsim.effects.gauge_gain import GaugeGain
     >>> round(float(np.exp(log_choices(GaugeGain))))
