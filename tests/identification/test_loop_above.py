@@ -9,7 +9,7 @@ from loop_fixtures import POINTS, recorded, turning
 
 from swgsim.effects.regularity import Regularity
 from swgsim.identification.data.model import Model
-from swgsim.identification.search.high_orders import above
+from swgsim.identification.search.high_orders import high_order_regularities
 from swgsim.storage.labelled_signals import SENSORS
 
 pytestmark = pytest.mark.end_to_end
@@ -39,7 +39,7 @@ def coupling(size):
 
 
 def test_a_coupling_of_13_teeth_has_its_order_pattern_law_amplitude_and_phase():
-    found = above(bench(np.random.default_rng(1), coupling(5e-3)), (), MODEL, MODEL, LEVEL, 3)
+    found = high_order_regularities(bench(np.random.default_rng(1), coupling(5e-3)), (), MODEL, MODEL, LEVEL, 3)
     assert [(each.atom.order, each.atom.pattern, each.atom.law) for each in found] == [
         (13, "opposite in s1 and s3", "proportional to the load")
     ]
@@ -51,23 +51,23 @@ def test_a_coupling_of_13_teeth_has_its_order_pattern_law_amplitude_and_phase():
 def test_what_the_healthy_gear_has_is_not_missing():
     rng = np.random.default_rng(2)
     asked, healthy = bench(rng, coupling(5e-3)), bench(rng, coupling(5e-3))
-    assert above(asked, healthy, MODEL, MODEL, LEVEL, 3) == ()
+    assert high_order_regularities(asked, healthy, MODEL, MODEL, LEVEL, 3) == ()
     grown = bench(rng, coupling(15e-3))
-    assert above(grown, healthy, MODEL, MODEL, LEVEL, 3)[0].amplitude == pytest.approx(10e-3, rel=0.1)
+    assert high_order_regularities(grown, healthy, MODEL, MODEL, LEVEL, 3)[0].amplitude == pytest.approx(10e-3, rel=0.1)
 
 
 def test_an_index_that_is_off_is_no_new_line():
     rng = np.random.default_rng(3)
     healthy = bench(rng, coupling(5e-3))
     turned = [replace(each, channels={**each.channels, "phi_in": each.channels["phi_in"] + 0.02}) for each in healthy]
-    assert above(turned, healthy, MODEL, MODEL, LEVEL, 3) == ()
+    assert high_order_regularities(turned, healthy, MODEL, MODEL, LEVEL, 3) == ()
 
 
 def test_what_was_found_explains_its_high_orders():
     stray = Regularity(20, 5e-3, 0.3, "in s2 alone", "constant")
     asked = bench(np.random.default_rng(4), lambda phi, point: {"s2": 5e-3 * np.cos(20 * phi - 0.3)})
-    assert [each.effect.order for each in above(asked, (), MODEL, MODEL, LEVEL, 3)] == [20]
-    assert above(asked, (), MODEL, MODEL.plus(stray), LEVEL, 3) == ()
+    assert [each.effect.order for each in high_order_regularities(asked, (), MODEL, MODEL, LEVEL, 3)] == [20]
+    assert high_order_regularities(asked, (), MODEL, MODEL.plus(stray), LEVEL, 3) == ()
 
 
 def test_what_was_found_may_be_sharper_than_the_library_has_it():
@@ -78,14 +78,19 @@ def test_what_was_found_may_be_sharper_than_the_library_has_it():
         return {"s2": 50e-3 * np.cos(2 * phi) + 5e-3 * np.cos(14 * phi)}
 
     asked = bench(np.random.default_rng(8), sharper)
-    assert above(asked, (), MODEL, MODEL.plus(known), LEVEL, 3) == ()
+    assert high_order_regularities(asked, (), MODEL, MODEL.plus(known), LEVEL, 3) == ()
     moved = [replace(each, channels={**each.channels, "s3": each.channels["s2"]}) for each in asked]
-    assert [each.atom.pattern for each in above(moved, (), MODEL, MODEL.plus(known), LEVEL, 3)] == ["in s3 alone"]
+    assert [each.atom.pattern for each in high_order_regularities(moved, (), MODEL, MODEL.plus(known), LEVEL, 3)] == [
+        "in s3 alone"
+    ]
 
 
 @pytest.mark.slow
 def test_noise_is_nothing():
-    told = [above(bench(np.random.default_rng([5, n]), repeats=1), (), MODEL, MODEL, 0.1, 3) for n in range(40)]
+    told = [
+        high_order_regularities(bench(np.random.default_rng([5, n]), repeats=1), (), MODEL, MODEL, 0.1, 3)
+        for n in range(40)
+    ]
     # 4 of 40 are expected; more than 9 in one of a hundred.
     assert sum(map(bool, told)) <= 9
 
@@ -96,4 +101,4 @@ def test_another_phase_in_every_recording_is_no_regularity():
     def hum(phi, point):
         return {"s1": 2e-3 * np.cos(14 * phi + rng.uniform(0, 2 * np.pi))}
 
-    assert above(bench(rng, hum), (), MODEL, MODEL, LEVEL, 3) == ()
+    assert high_order_regularities(bench(rng, hum), (), MODEL, MODEL, LEVEL, 3) == ()

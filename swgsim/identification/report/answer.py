@@ -18,7 +18,7 @@ from swgsim.identification.interharmonics.line_search import all_cleaned, search
 from swgsim.identification.interharmonics.named_interharmonics import Sideline
 from swgsim.identification.interharmonics.unattributed_lines import Unnamed
 from swgsim.identification.report.interest import INTEREST, shares_of_spread
-from swgsim.identification.search.high_orders import above
+from swgsim.identification.search.high_orders import high_order_regularities
 from swgsim.identification.search.regularities import Described
 from swgsim.identification.search.screening import Score
 from swgsim.identification.search.shortlist import ALPHA
@@ -147,7 +147,7 @@ def answer(
     clean = all_cleaned(recordings, lines.effects, N)
     decision = decide(Measured.of(clean), unit, kinds, seed=seed)
     STEPS.info("describing the remainder")
-    high = above(clean, unit.healthy, decision.before.model, decision.after.model, ALPHA, MOST_ABOVE)
+    high = high_order_regularities(clean, unit.healthy, decision.before.model, decision.after.model, ALPHA, MOST_ABOVE)
     return Answer(decision, tuple(known), lines.named, lines.unnamed, high, untestable(decision), interest)
 
 

@@ -89,7 +89,7 @@ class Above:
         return [self.channels.index(channel) for channel in weights], np.array(list(weights.values()))
 
 
-def above(
+def high_order_regularities(
     recordings: Sequence[Recording], healthy: Sequence[Recording], before: Model, after: Model, level: float, most: int
 ) -> tuple[Described, ...]:
     """Regularities that neither a model nor the healthy gear has, the strongest first.
