@@ -137,11 +137,13 @@ class Effect:
             quantity.check(title, name, getattr(self, name))
 
     @classmethod
+    @cache
     def name(cls) -> str:
         """The registered name, such as ``cam_form`` of the class CamForm."""
         return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", cls.__name__).lower()
 
     @classmethod
+    @cache
     def title(cls) -> str:
         """The name in words."""
         return cls.name().replace("_", " ").replace("stribeck", "Stribeck")

@@ -20,7 +20,7 @@ from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model
 from swgsim.identification.fit.unit import Unit
 from swgsim.identification.interharmonics.interharmonic_spectrum import gauge_spectra
-from swgsim.identification.interharmonics.line_search import all_cleaned, search
+from swgsim.identification.interharmonics.line_search import all_cleaned, lines_of_healthy
 from swgsim.identification.interharmonics.named_interharmonics import has_sidelines
 from swgsim.identification.report.answer import answer
 from swgsim.identification.report.identification import Identification
@@ -66,10 +66,7 @@ def commission(
         healthy = from_zero(healthy, unit.zero)
         STEPS.info("searching interharmonic lines in %d recordings", len(healthy))
         N = gear.transmission.N
-        spectra = gauge_spectra(healthy, N)
-        # Compared with themselves, none is news: all are lines of the healthy gear, and leak into its orders. Their
-        # cause does not matter.
-        lines = search(spectra, (), ALPHA, unit.interharmonics, healthy=spectra)
+        lines = lines_of_healthy(gauge_spectra(healthy, N), ALPHA, unit.interharmonics)
         STEPS.info("commissioning on %d recordings", len(healthy))
         learned = learn_unit(Measured.of(all_cleaned(healthy, lines.effects, N)), unit)
         return replace(learned, healthy=healthy, lines=lines.usual_effects)

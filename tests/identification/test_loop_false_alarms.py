@@ -41,7 +41,9 @@ def chances(*, known: bool) -> np.ndarray:
         sd = stated * np.exp(rng.normal(0, np.log(2), len(KINDS)))
         noise = np.sqrt(fitted.measured.variance) * rng.standard_normal(fitted.measured.variance.shape)
         r = np.einsum("rfk,rk->rf", B, sd * rng.standard_normal((len(GROUPS), len(KINDS)))) + noise
-        guess = from_repeats(r, fitted.measured.variance, B, following, GROUPS, Scatter.stated(LAYOUT))
+        guess = from_repeats(
+            r, RecordingCovariance.white(fitted.measured.variance), B, following, GROUPS, Scatter.stated(LAYOUT)
+        )
         if known:
             guess = Scatter(dict(zip(KINDS, sd.tolist(), strict=True)), 1000, np.zeros((len(KINDS), len(KINDS))))
         errors = Covariance(RecordingCovariance(fitted.measured.variance, guess.columns(B)), np.zeros((r.size, 0)))

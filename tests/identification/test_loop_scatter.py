@@ -37,7 +37,7 @@ STATEMENT = Scatter.stated(LAYOUT)
 
 def fabricated(
     seed: int, repeats: list[int], factor: dict[str, float], *, noise: float = 0.3
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, list[object]]:
+) -> tuple[np.ndarray, RecordingCovariance, np.ndarray, np.ndarray, list[object]]:
     """Residuals whose errors of single recordings are `factor` times those stated, on an offset of each group."""
     rng = np.random.default_rng(seed)
     groups = [group for group, number in enumerate(repeats) for _ in range(number)]
@@ -45,8 +45,8 @@ def fabricated(
     B = rng.normal(size=(len(repeats), len(LAYOUT), len(KINDS)))[groups] / np.array([STATED[kind] for kind in KINDS])
     s = np.array([STATED[kind] * factor.get(kind, 1.0) for kind in KINDS])
     errors = np.einsum("rfk,rk->rf", B, s * rng.normal(size=(len(groups), len(KINDS))))
-    variance = np.full((len(groups), len(LAYOUT)), noise**2)
-    return offset[groups] + errors + noise * rng.standard_normal(errors.shape), variance, B, B[..., :0], groups
+    white = RecordingCovariance.white(np.full((len(groups), len(LAYOUT)), noise**2))
+    return offset[groups] + errors + noise * rng.standard_normal(errors.shape), white, B, B[..., :0], groups
 
 
 def ratios(seed: int, repeats: list[int], factor: dict[str, float], noise: float = 0.3) -> np.ndarray:
@@ -84,7 +84,7 @@ def test_repeats_that_are_not_there_tell_nothing():
 @pytest.mark.parametrize("seed", range(6))
 def test_without_repeats_all_recordings_tell_it_beside_what_is_open(seed):
     factor = {"load": 4.0, "trigger": 0.25}
-    residual, variance, B, _, _ = fabricated(seed, [1] * 18, factor)
+    residual, noise, B, _, _ = fabricated(seed, [1] * 18, factor)
     rng = np.random.default_rng(seed + 100)
     open_ = 5.0 * rng.normal(size=(residual.size, 12))
     # Less the offset of every group, which only repeats cancel.
@@ -98,7 +98,7 @@ def test_without_repeats_all_recordings_tell_it_beside_what_is_open(seed):
     unit = {name: B[..., KINDS.index(f"zero of {name}")] * STATED[f"zero of {name}"] for name in ("s0", "s1", "T_out")}
     residual += (COMMON * unit["T_out"] + PER_HOUR * (elapsed / 3600)[:, None] * unit["s0"]).ravel()
     residual += (AT_FULL_LOAD * (loads / 70)[:, None] * unit["s1"]).ravel()
-    found = from_all(residual, Covariance(RecordingCovariance.white(variance), open_), B, common, STATEMENT)
+    found = from_all(residual, Covariance(noise, open_), B, common, STATEMENT)
     share = np.array([found.sd[kind] / STATED[kind] / factor.get(kind, 1.0) for kind in KINDS])
     assert found.repeats == 0
     # Eighteen errors of each kind leave a sixth. Below it, the logarithm has a longer tail.
@@ -111,13 +111,13 @@ def test_what_follows_the_temperature_is_no_error_of_single_recordings(size):
     """A zero that follows it at three times its bound leaves the estimate of its scatter as it is."""
     found = []
     for seed in range(30):
-        residual, variance, B, _, groups = fabricated(seed, [3] * 6, {})
+        residual, noise, B, _, groups = fabricated(seed, [3] * 6, {})
         rng = np.random.default_rng(seed + 100)
         conditions = [Conditions(25 + warmer, 60.0 * i) for i, warmer in enumerate(rng.uniform(0, 8, len(groups)))]
         warming = np.array([each.warmer for each in conditions])[:, None] * B[..., KINDS.index("zero of s0")]
         residual += size * PER_KELVIN * STATED["zero of s0"] * warming
         scatter = from_repeats(
-            residual, variance, B, trends(B, [Situation(POINT, each) for each in conditions], LAYOUT), groups, STATEMENT
+            residual, noise, B, trends(B, [Situation(POINT, each) for each in conditions], LAYOUT), groups, STATEMENT
         )
         found.append(np.log(scatter.sd["zero of s0"] / STATED["zero of s0"]))
     # Twelve contrasts less one each for temperature and time.
@@ -139,11 +139,11 @@ def test_what_recordings_have_in_common_is_no_error_of_single_ones():
 
 
 def test_an_error_that_cannot_be_seen_stays_as_stated():
-    residual, variance, B, none, groups = fabricated(1, [3] * 6, {})
+    residual, noise, B, none, groups = fabricated(1, [3] * 6, {})
     unseen = KINDS.index("dry friction")
     B = B.copy()
     B[:, :, unseen] = 0
-    assert from_repeats(residual, variance, B, none, groups, STATEMENT).sd["dry friction"] == pytest.approx(
+    assert from_repeats(residual, noise, B, none, groups, STATEMENT).sd["dry friction"] == pytest.approx(
         STATED["dry friction"]
     )
 
@@ -155,7 +155,9 @@ def test_two_repeats_weigh_the_statement_with_what_they_show():
     B[:, :rows, KINDS.index("load")] = 1 / STATED["load"]
     residual = np.zeros((2, len(LAYOUT)))
     residual[1, :rows] = size * np.sqrt(2)
-    scatter = from_repeats(residual, np.full(residual.shape, 1.0), B, B[..., :0], [0, 0], STATEMENT)
+    scatter = from_repeats(
+        residual, RecordingCovariance.white(np.ones(residual.shape)), B, B[..., :0], [0, 0], STATEMENT
+    )
     found = np.log(scatter.sd["load"] / STATED["load"])
     # Derivative of the logarithm of the posterior: size^2 / s^2 - 1 - log(s) / DOUBT^2 = 0.
     assert size**2 * np.exp(-2 * found) - 1 - found / DOUBT**2 == pytest.approx(0, abs=0.03)

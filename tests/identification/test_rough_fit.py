@@ -1,4 +1,4 @@
-"""A first fit takes from repeats the variance that no error of single recordings explains, and nothing else."""
+"""A first fit takes from repeats the noise that no error of single recordings explains, and nothing else."""
 
 from dataclasses import replace
 
@@ -8,6 +8,7 @@ from bench_fixtures import GEAR, good
 
 from swgsim.common.seeds import generator
 from swgsim.identification.commissioning.rough_fit import roughly_fitted
+from swgsim.identification.covariance.narrow_band import columns
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model
 from swgsim.identification.fit.fitting import fit
@@ -37,21 +38,23 @@ def varying(measured: Measured, channel: str, order: int, times: float) -> Measu
 
 
 def test_a_line_that_varies_between_repeats_gets_its_variance_and_no_other_line_does(measured):
-    found = roughly_fitted(varying(measured, "s2", 7, 30.0), UNIT, ripple(measured)).unit.inflation
+    fitted = roughly_fitted(varying(measured, "s2", 7, 30.0), UNIT, ripple(measured))
+    points = [each.point for each in measured.recordings]
+    added = (columns(fitted.unit.bands, points, measured.layout, measured.variance) ** 2).sum(axis=-1)
     line = (measured.layout.channel == "s2") & (measured.layout.order == 7)
-    # The mean of 2 numbers in each of few repeats; 901 are the noise and what was added.
-    assert found[line] == pytest.approx(901, rel=0.6)
-    assert (found[~line] == 1).all()
+    assert (added / measured.variance)[:, line] == pytest.approx(900, rel=0.6)
+    # A few of what other gauges had by chance count as shared with it.
+    assert ((added / measured.variance)[:, ~line] < 3).all()
 
 
 def test_what_all_repeats_have_in_common_is_no_variance(measured):
     line = (measured.layout.channel == "s2") & (measured.layout.order == 7)
     moved = replace(measured, values=measured.values + 30 * np.sqrt(measured.variance.mean(axis=0)) * line)
-    assert (roughly_fitted(moved, UNIT, ripple(measured)).unit.inflation == 1).all()
+    assert not roughly_fitted(moved, UNIT, ripple(measured)).unit.bands
 
 
 def test_without_repeats_it_is_an_ordinary_fit():
     once = Measured.of(good(repeats=1))
     rough, plain = roughly_fitted(once, UNIT, ripple(once)), fit(once, UNIT)
-    assert rough.unit.inflation is None
+    assert not rough.unit.bands
     assert rough.calibrated.position == plain.calibrated.position

@@ -86,8 +86,10 @@ def _with_usable_ripple(measured: Measured, unit: Unit) -> Fitted:
 
 
 def _with_inflated_variance(fitted: Fitted) -> Measured:
-    """The recordings with the variance that the fit has for their lines."""
-    return replace(fitted.measured, variance=fitted.unit.inflated(fitted.measured.variance))
+    """The recordings with the variance that the fit has for their lines, narrow bands of noise among it."""
+    alone = fitted.errors.alone
+    narrow = (alone.C[..., len(fitted.scatter.sd) :] ** 2).sum(axis=-1)
+    return replace(fitted.measured, variance=alone.variance + narrow)
 
 
 def _with_learned_lines(measured: Measured, unit: Unit, drive: Fitted | None) -> Fitted:
@@ -101,9 +103,7 @@ def _with_learned_lines(measured: Measured, unit: Unit, drive: Fitted | None) ->
     held: list[str] = []
     of_drive = np.zeros(len(measured.layout))
     if drive is not None:
-        inflation = unit.inflated(np.ones(len(measured.layout)))
-        inflation[measured.layout.of_drive] = drive.unit.inflated(np.ones(len(drive.measured.layout)))
-        unit = replace(unit, inflation=inflation)
+        unit = replace(unit, bands=drive.unit.bands)
         position, held = drive.calibrated.position, _well_determined(drive)
         if drive.unit.learned is not None:
             of_drive[measured.layout.of_drive] = drive.unit.learned

@@ -4,6 +4,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 from scipy.stats import chi2, false_discovery_control
 
+from swgsim.identification.covariance.narrow_band import FALSE_DISCOVERIES
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.fit.fitting import MISFIT
 from swgsim.storage.labelled_signals import SENSORS
@@ -12,8 +13,6 @@ from swgsim.storage.labelled_signals import SENSORS
 # does not belong to this gear if the mean square of one of its lines is also above MISFIT. If none is, the ripple is
 # hardly more than noise, and a large share of it says nothing.
 UNEXPLAINED_SHARE = 0.1
-# False discovery rate of lines with lack of fit.
-FALSE_DISCOVERIES = 0.05
 
 
 def beyond_noise(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> Float[np.ndarray, " feature"]:

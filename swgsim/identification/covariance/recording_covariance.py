@@ -27,6 +27,10 @@ class RecordingCovariance:
         """Independent errors only."""
         return cls(variance, np.zeros((*variance.shape, 0)))
 
+    def beside(self, C: Float[np.ndarray, "recording feature kind"]) -> "RecordingCovariance":
+        """The same with more errors, which become the first ones."""
+        return RecordingCovariance(self.variance, np.concatenate([C, self.C], axis=-1))
+
     @cached_property
     def _shares(self) -> tuple[Float[np.ndarray, "recording feature kind"], Float[np.ndarray, "recording kind 1"]]:
         """Q and r for which diag(1 / variance) - Q Q' is the inverse, and, with both sides in units of the independent

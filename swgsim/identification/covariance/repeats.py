@@ -36,7 +36,7 @@ class Statistics(NamedTuple):
 
 def from_repeats(
     residual: Float[np.ndarray, "recording feature"],
-    variance: Float[np.ndarray, "recording feature"],
+    noise: RecordingCovariance,
     directions: Float[np.ndarray, "recording feature kind"],
     trends: Float[np.ndarray, "recording feature column"],
     groups: Sequence[object],
@@ -51,8 +51,8 @@ def from_repeats(
     ----------
     residual : array (recording, feature)
         Measured minus predicted.
-    variance : array (recording, feature)
-        Of the white noise.
+    noise : RecordingCovariance
+        All other errors of single recordings; alike in repeats, except for the size of its variance.
     directions : array (recording, feature, kind)
     trends : array (recording, feature, column)
         Errors that recordings share, one standard deviation each.
@@ -63,11 +63,12 @@ def from_repeats(
     contrasts, of_recording = _helmert(groups)
     if not len(contrasts):
         return known
-    columns = np.concatenate([trends, residual[..., None]], axis=-1)
-    statistics = _statistics(
-        directions[of_recording], np.tensordot(contrasts, columns, axes=1), contrasts**2 @ variance
-    )
-    return _likeliest(statistics, known, len(contrasts))
+    columns = np.tensordot(contrasts, np.concatenate([trends, residual[..., None]], axis=-1), axes=1)
+    of_contrasts = RecordingCovariance(contrasts**2 @ noise.variance, noise.C[of_recording])
+    white = of_contrasts.whiten(np.vstack(np.concatenate([directions[of_recording], columns], axis=-1)))
+    split = white.reshape(*columns.shape[:2], -1)
+    kinds = directions.shape[-1]
+    return _likeliest(_statistics(split[..., :kinds], split[..., kinds:]), known, len(contrasts))
 
 
 def _helmert(groups: Sequence[object]) -> tuple[Float[np.ndarray, "contrast recording"], list[int]]:
@@ -110,20 +111,13 @@ def from_all(
     """
     common = common.with_columns(trends.reshape(len(residual), -1))
     B = common.whiten(RecordingCovariance(common.alone.variance, directions).dense)
-    return _likeliest(
-        _statistics(B[None], common.whiten(residual)[None, :, None], np.ones((1, len(residual)))), known, 0
-    )
+    return _likeliest(_statistics(B[None], common.whiten(residual)[None, :, None]), known, 0)
 
 
-def _statistics(
-    B: Float[np.ndarray, "part row error"], X: Float[np.ndarray, "part row column"],
-    variance: Float[np.ndarray, "part row"],
-) -> Statistics:  # fmt: skip
-    """Sufficient statistics of data with independent noise."""
-    weighted, across = X / variance[..., None], B.transpose(0, 2, 1)
-    return Statistics(
-        across @ (B / variance[..., None]), across @ weighted, np.tensordot(X, weighted, ((0, 1), (0, 1)))
-    )
+def _statistics(B: Float[np.ndarray, "part row error"], X: Float[np.ndarray, "part row column"]) -> Statistics:
+    """Sufficient statistics of whitened data."""
+    across = B.transpose(0, 2, 1)
+    return Statistics(across @ B, across @ X, np.tensordot(X, X, ((0, 1), (0, 1))))
 
 
 def _likeliest(statistics: Statistics, known: Scatter, contrasts: int) -> Scatter:

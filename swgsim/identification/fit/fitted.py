@@ -162,7 +162,9 @@ class Fitted:
 
     def scattering(self, scatter: Scatter) -> "Fitted":
         """The same with other errors of single recordings."""
-        ratio = np.array(list(scatter.sd.values())) / np.array(list(self.scatter.sd.values()))
+        kinds = len(scatter.sd)
+        ratio = np.ones(self.errors.alone.C.shape[-1])
+        ratio[:kinds] = np.array(list(scatter.sd.values())) / np.array(list(self.scatter.sd.values()))
         alone = replace(self.errors.alone, C=self.errors.alone.C * ratio)
         return replace(self, scatter=scatter, errors=replace(self.errors, base=alone))
 
@@ -275,9 +277,10 @@ class Fitted:
         alone, G = self.whole.alone, self.whole.columns
         deviation = np.sqrt(self.whole.variance)[:, None]
         while True:
-            factors = np.tile(self.scatter.drawn(rng, draws), (len(self.measured), 1))
+            factors = np.ones((len(self.measured), alone.C.shape[-1], draws))
+            factors[:, : len(self.scatter.sd)] = self.scatter.drawn(rng, draws)
             noise = deviation * rng.standard_normal((len(G), draws))
-            single = alone.made(factors * rng.standard_normal(factors.shape))
+            single = alone.made((factors * rng.standard_normal(factors.shape)).reshape(-1, draws))
             yield self.whole.weigh(noise + single + G @ rng.standard_normal((G.shape[1], draws)))
 
     @cached_property

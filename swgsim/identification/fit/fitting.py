@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.effects.base import Effect
-from swgsim.identification.covariance import repeats, scatter
+from swgsim.identification.covariance import narrow_band, repeats, scatter
 from swgsim.identification.covariance.low_rank_covariance import Covariance
 from swgsim.identification.covariance.recording_covariance import RecordingCovariance
 from swgsim.identification.covariance.scatter import Scatter
@@ -106,7 +106,10 @@ def _turn(fixed: _Fixed, begin: Mapping[str, float], assumed: Scatter | None) ->
         The assumed errors.
     """
     measured, unit, here = fixed.measured, fixed.unit, at(fixed.start, fixed.parameters, begin)
-    noise = unit.inflated(measured.variance)
+    narrow = narrow_band.columns(
+        unit.bands, [each.point for each in measured.recordings], measured.layout, measured.variance
+    )
+    noise = RecordingCovariance(unit.inflated(measured.variance), narrow)
     moves = scatter.of_recordings(here, measured)
     unsure = unit.left_open(here, measured.situations, measured.layout)
     offset, left = measured.rows(unsure.shift), measured.rows(unsure.columns)
@@ -123,7 +126,7 @@ def _turn(fixed: _Fixed, begin: Mapping[str, float], assumed: Scatter | None) ->
         assumed = by_repeats(unsure.predicted) if fixed.has_repeats else fixed.known
     calibrated = calibrate(
         fixed.start, fixed.parameters, values,
-        Covariance(RecordingCovariance(noise, assumed.columns(moves)), of_sessions).with_columns(more),
+        Covariance(noise.beside(assumed.columns(moves)), of_sessions).with_columns(more),
         measured.situations, measured.of_recording, measured.layout, begin,
     )  # fmt: skip
     if fixed.has_repeats:
@@ -131,10 +134,10 @@ def _turn(fixed: _Fixed, begin: Mapping[str, float], assumed: Scatter | None) ->
     else:
         residual = measured.values.ravel() - offset - measured.rows(calibrated.predicted)
         J = measured.rows(calibrated.J).reshape(residual.size, -1)
-        common = Covariance(RecordingCovariance.white(noise), np.hstack([of_sessions, more, J]))
+        common = Covariance(noise, np.hstack([of_sessions, more, J]))
         from_start = residual + J @ np.array(list(calibrated.position.values()))
         estimated = fixed.completed(repeats.from_all(from_start, common, moves, trends, fixed.known))
-    errors = Covariance(RecordingCovariance(noise, estimated.columns(moves)), of_sessions)
+    errors = Covariance(noise.beside(estimated.columns(moves)), of_sessions)
     fitted = Fitted(
         measured, unit, fixed.parameters, calibrated, estimated,
         errors=errors, open=left, offset=offset, allowed=fixed.allowed,

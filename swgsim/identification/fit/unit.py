@@ -17,6 +17,7 @@ from swgsim.identification.covariance.influence_map_error import (
     largest_lines,
     sizes_of,
 )
+from swgsim.identification.covariance.narrow_band import NarrowBand
 from swgsim.identification.covariance.scatter import Scatter
 from swgsim.identification.data.features import Layout, layout_of
 from swgsim.identification.data.model import Model, Situation, predict
@@ -68,6 +69,8 @@ class Unit:
         all others.
     inflation : array (feature,) or None
         After commissioning, factor on the noise variance of each line, from the lack of fit of the healthy gear.
+    bands : tuple of NarrowBand
+        Noise in narrow bands found by commissioning.
     healthy : tuple of Recording
         Recordings of the commissioning, with their angle counted from the zero of the model.
     zero : float
@@ -90,6 +93,7 @@ class Unit:
     largest: Mapping[str, float] | None = None
     learned: Float[np.ndarray, " feature"] | None = None
     inflation: Float[np.ndarray, " feature"] | None = None
+    bands: tuple[NarrowBand, ...] = ()
     healthy: tuple[Recording, ...] = ()
     zero: float = 0.0
     interharmonics: tuple[Effect, ...] = ()

@@ -10,17 +10,14 @@ from jaxtyping import Bool, Complex, Float
 from scipy.ndimage import maximum_filter1d
 from scipy.stats import f
 
-from swgsim.common.singular import svd
 from swgsim.effects.base import Effect, Scene
 from swgsim.identification.data.features import FITTED, Layout
 from swgsim.identification.data.noise import GUARD, Floor, floors, step_of
+from swgsim.identification.interharmonics.seen_lines import LEAST_SHARE, SeenLines, orthonormal
 from swgsim.identification.interharmonics.signal_shapes import ordinary, scene_of, shapes
 from swgsim.recordings.recording import Recording
 from swgsim.storage.labelled_signals import SENSORS
 
-# Share of a pattern that must lie between the orders; less is rounding. And share of a pattern's largest direction that
-# any other direction must have.
-LEAST_SHARE = 1e-3
 # Samples per revolution at which patterns are computed; more than twice the orders that are fitted.
 SAMPLES_PER_TURN = 48
 # Number of spectral lines on either side from which the noise next to a line is estimated.
@@ -77,7 +74,8 @@ class GaugeSpectrum:
     clear : array (line,)
         Lines that no integer order leaks into.
     left : array (number,)
-        Real and imaginary parts of all spectral lines after the orders were removed; 0 where the orders leak.
+        Real and imaginary parts of all spectral lines after the orders were removed, gauge by gauge; 0 where the orders
+        leak.
     taken : array (number, direction)
         Orthonormal directions that were projected out: ends of slow noise, and lines that were found.
     """
@@ -123,7 +121,8 @@ class GaugeSpectrum:
         whole = scene_of(recording)
         signals = [np.array([recording.channels[gauge] for gauge in gauges]), *_ends(whole, noise)]
         remainder = _without(np.array(signals), np.linalg.qr(ordinary(whole, N))[0])
-        left, *ends = bare._numbers(bare._lines(remainder[..., :length]))
+        spectra = _spectrum(remainder[..., :length])[..., : len(lines)] * scale
+        left, *ends = bare._numbers(spectra).reshape(len(spectra), -1)
         # Each is of another gauge, in units of its own noise.
         return replace(bare, left=left)._taking(np.transpose([end / np.linalg.norm(end) for end in ends]))
 
@@ -136,22 +135,31 @@ class GaugeSpectrum:
     @property
     def power(self) -> Float[np.ndarray, "gauge line"]:
         """Sum of squares of every line; of noise, 2 on average where it is clear."""
-        return (self.left**2).reshape(2, *self.scale.shape).sum(axis=0)
+        return (self.left**2).reshape(len(self.gauges), 2, -1).sum(axis=1)
 
     def pattern(self, effect: Effect) -> Float[np.ndarray, "column number"]:
         """What an effect can look like, whatever its random phases; a direction that the orders took is left out."""
-        return self._patterns([effect])[0]
+        return self._patterns([effect])
 
-    def _patterns(self, effects: Sequence[Effect]) -> Float[np.ndarray, "effect column number"]:
-        """The same of effects of one kind."""
-        seen = np.concatenate([shapes(effect, self.scene, self.gauges) for effect in effects])
-        lines = self._lines(seen)
-        between = self._numbers(lines - (seen @ self.orders) @ self._of_orders * self.scale)
-        between = between - (between @ self.taken) @ self.taken.T
-        whole = np.linalg.norm(lines, axis=(-2, -1)).reshape(len(effects), -1).max(axis=1)
-        between = between.reshape(len(effects), -1, between.shape[-1])
-        shown = np.linalg.norm(between, axis=-1).max(axis=1) > LEAST_SHARE * whole
-        return between * shown[:, None, None]
+    def _patterns(self, effects: Sequence[Effect], apart: Sequence[str] = ()) -> Float[np.ndarray, "column number"]:
+        """The same of several effects, one after the other."""
+        seen = self._seen(effects, apart)
+        between = seen.dense(len(self.gauges)) - seen.along(self._by_gauge(self.taken)) @ self.taken.T
+        return between * seen.shows((between**2).sum(axis=1))[:, None]
+
+    def _seen(self, effects: Sequence[Effect], apart: Sequence[str] = ()) -> SeenLines:
+        """What effects can put between the orders, before anything else is taken out."""
+        made = [shapes(effect, self.scene, self.gauges) for effect in effects]
+        effect, signals = np.repeat(np.arange(len(made)), [len(each) for each in made]), np.concatenate(made)
+        column, gauge = np.nonzero(signals.any(axis=-1))
+        loud, scale = signals[column, gauge], self.scale[gauge]
+        lines = _spectrum(loud)[:, : scale.shape[1]] * scale
+        numbers = self._numbers(lines - (loud @ self.orders) @ self._of_orders * scale)
+        seen = SeenLines(effect, column, gauge, numbers, np.linalg.norm(lines, axis=-1))
+        return seen.apart([self.gauges.index(name) for name in apart]) if apart else seen
+
+    def _by_gauge(self, numbers: Float[np.ndarray, "number column"]) -> Float[np.ndarray, "gauge one column"]:
+        return numbers.reshape(len(self.gauges), -1, numbers.shape[1])
 
     def explained(self, effects: Sequence[Effect]) -> Explained:
         """What each of some effects of one kind explains of this recording."""
@@ -159,7 +167,7 @@ class GaugeSpectrum:
         return Explained(*np.concatenate(parts, axis=1))
 
     def _explained(self, effects: Sequence[Effect]) -> Explained:
-        patterns = self._patterns(effects)
+        patterns = self._patterns(effects).reshape(len(effects), -1, len(self.left))
         # Orthonormal directions, from the few products of the columns: the columns are long. Products so small are
         # slower where threads share them.
         power, axes = np.linalg.eigh(np.einsum("ecn,edn->ecd", patterns, patterns))
@@ -176,17 +184,19 @@ class GaugeSpectrum:
         own_gain = (patterns[:, 0] ** 2).sum(axis=1)
         return Explained((along**2).sum(axis=1), used.sum(axis=1), own_gain, rest, count)
 
-    def held(self, effects: Sequence[Effect]) -> float:
-        """Sum of squares of what these effects may have put there."""
-        along = self._span(effects).T @ self.left
-        return float(along @ along)
+    def held(self, effects: Sequence[Effect], apart: Sequence[str] = ()) -> float:
+        """Sum of squares of what these effects may have put there, in each of some gauges apart if any are given."""
+        seen = self._seen(effects, apart)
+        along, by_taken = (seen.along(self._by_gauge(each)) for each in (self.left[:, None], self.taken))
+        products = seen.products() - by_taken @ by_taken.T
+        shown = seen.shows(np.diag(products))
+        axes = orthonormal(products * np.outer(shown, shown))
+        return float(((axes.T @ (along[:, 0] * shown)) ** 2).sum())
 
-    def without(self, effects: Sequence[Effect]) -> "GaugeSpectrum":
-        """The spectrum without anything that these effects may have put there."""
-        return self._taking(self._span(effects))
-
-    def _span(self, effects: Sequence[Effect]) -> Float[np.ndarray, "number rank"]:
-        return _directions(np.concatenate([self.pattern(effect) for effect in effects]))
+    def without(self, effects: Sequence[Effect], apart: Sequence[str] = ()) -> "GaugeSpectrum":
+        """The spectrum without anything that these effects may have put there; ``apart`` as of :meth:`held`."""
+        patterns = self._patterns(effects, apart)
+        return self._taking(patterns.T @ orthonormal(patterns @ patterns.T))
 
     def _taking(self, U: Float[np.ndarray, "number direction"]) -> "GaugeSpectrum":
         return replace(self, left=self.left - U @ (U.T @ self.left), taken=np.hstack([self.taken, U]))
@@ -196,17 +206,10 @@ class GaugeSpectrum:
         """Spectrum of the basis of the orders: to take them out of a spectrum costs less than another transform."""
         return _spectrum(self.orders.T)[:, : self.scale.shape[1]]
 
-    def _numbers(self, lines: Complex[np.ndarray, "column gauge line"]) -> Float[np.ndarray, "column number"]:
-        """Clear lines of a spectrum in units of the noise, real parts before imaginary ones."""
-        flat = (lines * self.clear).reshape(len(lines), -1)
-        return np.concatenate([flat.real, flat.imag], axis=-1)
-
-    def _lines(self, signals: Float[np.ndarray, "column gauge time"]) -> Complex[np.ndarray, "column gauge line"]:
-        """The spectrum of signals in units of the noise; a gauge that is silent costs nothing."""
-        lines = np.zeros((*signals.shape[:2], self.scale.shape[1]), complex)
-        loud = signals.any(axis=(0, 2))
-        lines[:, loud] = _spectrum(signals[:, loud])[..., : lines.shape[2]] * self.scale[loud]
-        return lines
+    def _numbers(self, lines: Complex[np.ndarray, "*any line"]) -> Float[np.ndarray, "*any number"]:
+        """Clear lines of the spectrum of a gauge in units of the noise, real parts before imaginary ones."""
+        clear = lines * self.clear
+        return np.concatenate([clear.real, clear.imag], axis=-1)
 
 
 def gauge_spectra(recordings: Sequence[Recording], N: int | None = None) -> list[GaugeSpectrum]:
@@ -257,9 +260,3 @@ def _rounding(values: Float[np.ndarray, " time"], noise: Floor) -> float:
     """Variance of the lines that rounding by a converter makes, of half a step at most; noise makes it noise too."""
     step = step_of(values)
     return step**2 / 32 if np.sqrt(noise.white) < step / 2 else 0.0
-
-
-def _directions(pattern: Float[np.ndarray, "column number"]) -> Float[np.ndarray, "number rank"]:
-    """Orthonormal directions of a pattern."""
-    U, s, _ = svd(pattern.T)
-    return U[:, s > LEAST_SHARE * s[0]] if s[0] > 0 else U[:, :0]

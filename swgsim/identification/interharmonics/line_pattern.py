@@ -72,8 +72,9 @@ def distinct_patterns(gauges: Sequence[str]) -> list[str]:
 
 def _alone(gauge: str, line: Callable[[str], LineBetween], spectra: Sequence[GaugeSpectrum]) -> "_Shown":
     """The line in one gauge, without the lines of the other gauges in the noise."""
-    others = [line(f"in {other} alone") for other in spectra[0].gauges if other != gauge]
-    return _Shown.of(line(f"in {gauge} alone"), [each.without(others) for each in spectra] if others else spectra)
+    others = [other for other in spectra[0].gauges if other != gauge]
+    left = [each.without([line(LineBetween.pattern)], apart=others) for each in spectra] if others else spectra
+    return _Shown.of(line(f"in {gauge} alone"), left)
 
 
 @dataclass(frozen=True, eq=False)

@@ -42,7 +42,7 @@ class LinesBetween:
     healthy : tuple of GaugeSpectrum
         Those of the healthy gear without it.
     usual : tuple of Sideline or Unnamed
-        Lines that the healthy gear shows as well.
+        Lines that the healthy gear shows as well; of its own they have parts.
     """
 
     named: tuple[Sideline, ...]
@@ -61,9 +61,11 @@ class LinesBetween:
             for effect in ((line.effect,) if isinstance(line, Sideline) else (part.effect for part in line.parts))
         )
 
-    def taking_out(self, effects: Sequence[Effect]) -> "LinesBetween":
-        """The same without what these effects may have put there."""
-        left, healthy = (tuple(each.without(effects) for each in spectra) for spectra in (self.left, self.healthy))
+    def taking_out(self, effects: Sequence[Effect], apart: Sequence[str] = ()) -> "LinesBetween":
+        """The same without what these effects may have put there, in each of some gauges apart if any are given."""
+        left, healthy = (
+            tuple(each.without(effects, apart) for each in spectra) for spectra in (self.left, self.healthy)
+        )
         return replace(self, left=left, healthy=healthy, effects=(*self.effects, *effects))
 
     def with_named(self, line: Sideline, level: float) -> "LinesBetween":
@@ -73,11 +75,13 @@ class LinesBetween:
             return replace(self, named=(*self.named, line))
         return replace(self, usual=(*self.usual, line))
 
-    def with_unnamed(self, line: Unnamed, level: float) -> "LinesBetween":
-        """The same with one more line without a name, which is news or not."""
-        if self._is_news(line.alone(self.left[0].gauges), level):
-            return replace(self, unnamed=(*self.unnamed, line))
-        return replace(self, usual=(*self.usual, line))
+    def without_line(self, line: Unnamed) -> "LinesBetween":
+        """The same without anything that a line without a name may have put there."""
+        return self.taking_out(line.effects, apart=self.left[0].gauges)
+
+    def is_news(self, line: Unnamed, level: float) -> bool:
+        """Whether the healthy gear does not show a line as well, in no gauge as much."""
+        return self._is_news(line.alone(self.left[0].gauges), level)
 
     def _is_news(self, parts: Sequence[Effect], level: float) -> bool:
         """Whether a line of the healthy gear would show so much with a probability below this level only."""
@@ -105,14 +109,15 @@ def search(
     healthy : sequence of GaugeSpectrum
         Of the recordings of the healthy gear, if there are any.
     """
-    found = LinesBetween((), (), tuple(spectra), (), tuple(healthy))
-    for effect in known if spectra else ():
-        found = found.taking_out(nearby(effect, spectra))
+    found = _without_known(LinesBetween((), (), tuple(spectra), (), tuple(healthy)), known)
     sought = list(kinds)
     while len(found.named) + len(found.unnamed) < MOST_LINES:
+        bare = unnamed(found.left, level)
+        if bare and not found.is_news(bare, level):  # it needs no name, and to look for one takes long
+            found = replace(found, usual=(*found.usual, bare)).without_line(bare)
+            continue
         likely = ranked(found.left, sought)
         best = next((line for line in likely[:1] if line.chance <= level and line.holds), None)
-        bare = unnamed(found.left, level)
         if bare and (best is None or bare.explained > (1 + OUTDONE_SHARE) * best.explained + OUTDONE):
             coupled = (line for line in likely if line.chance <= level and line.holds and _in_parts(line))
             best = next((line for line in coupled if _explains(line, bare, found.left)), None)
@@ -120,9 +125,28 @@ def search(
             found = found.with_named(best, level).taking_out(_near(best, spectra))
             sought = [kind for kind in sought if _in_parts(best) or kind is not type(best.effect)]
         elif bare:
-            found = found.with_unnamed(bare, level).taking_out(bare.effects(spectra[0].gauges))
+            bare = bare.with_parts(found.left, level)
+            found = replace(found, unnamed=(*found.unnamed, bare)).without_line(bare)
         else:
             break
+    return found
+
+
+def lines_of_healthy(spectra: Sequence[GaugeSpectrum], level: float, known: Sequence[Effect] = ()) -> LinesBetween:
+    """All significant interharmonic lines of the healthy gear: none is news, and their causes do not matter.
+
+    They leak into its orders. Parameters as of :func:`search`.
+    """
+    found = _without_known(LinesBetween((), (), tuple(spectra), ()), known)
+    while line := unnamed(found.left, level):
+        found = replace(found, usual=(*found.usual, line.with_parts(found.left, level))).without_line(line)
+    return found
+
+
+def _without_known(found: LinesBetween, known: Sequence[Effect]) -> LinesBetween:
+    """The same without declared effects."""
+    for effect in known if found.left else ():
+        found = found.taking_out(nearby(effect, found.left))
     return found
 
 

@@ -49,14 +49,15 @@ class Unnamed:
     noise: float
     parts: tuple[Part, ...] = ()
 
-    def effects(self, gauges: Sequence[str]) -> list[LineBetween]:
-        """Possible lines in these gauges within the uncertainty of its place."""
+    @property
+    def effects(self) -> list[LineBetween]:
+        """Possible lines in every gauge within the uncertainty of its place."""
         places = self.at + self.reach * np.array([-1.0, 0.0, 1.0])
-        return [line for place in places.tolist() for line in self._in(gauges, place)]
+        return [_line(self.kind, place) for place in places.tolist()]
 
     def alone(self, gauges: Sequence[str]) -> list[LineBetween]:
         """The line in each of these gauges."""
-        return self._in(gauges, self.at)
+        return [_line(self.kind, self.at, f"in {gauge} alone") for gauge in gauges]
 
     def with_parts(self, spectra: Sequence[GaugeSpectrum], level: float) -> "Unnamed":
         """The line with its parts; a gauge is a false one with this probability."""
@@ -72,12 +73,8 @@ class Unnamed:
         return found
 
     def _at(self, place: float, spectra: Sequence[GaugeSpectrum]) -> "Unnamed":
-        held = sum(each.held(self._in(each.gauges, place)) for each in spectra)
+        held = sum(each.held([_line(self.kind, place)], apart=each.gauges) for each in spectra)
         return replace(self, at=place, explained=float(held - self.noise))
-
-    def _in(self, gauges: Sequence[str], place: float) -> list[LineBetween]:
-        """The line at a place, of its own in each of these gauges."""
-        return [_line(self.kind, place, f"in {gauge} alone") for gauge in gauges]
 
     def __str__(self) -> str:
         where = f"order {self.at:.2f}" if self.kind == "order" else f"{self.at:.1f} Hz"
@@ -92,7 +89,7 @@ class Unnamed:
         return f", {first}; smaller, and in no simple pattern with it, {further}"
 
 
-def _line(kind: str, place: float, pattern: str) -> LineBetween:
+def _line(kind: str, place: float, pattern: str = LineBetween.pattern) -> LineBetween:
     """A line of a size far above rounding."""
     if kind == "order":
         return FractionalOrder(1.0, pattern=pattern, order=place)
@@ -100,7 +97,7 @@ def _line(kind: str, place: float, pattern: str) -> LineBetween:
 
 
 def unnamed(spectra: Sequence[GaugeSpectrum], level: float) -> Unnamed | None:
-    """The significant line with the largest explained sum of squares, or None.
+    """The significant line with the largest explained sum of squares, without its parts, or None.
 
     Parameters
     ----------
@@ -111,7 +108,7 @@ def unnamed(spectra: Sequence[GaugeSpectrum], level: float) -> Unnamed | None:
     """
     found = [line for kind in KINDS for line in _best(spectra, kind, level)] if spectra else []
     best = max(found, key=lambda line: line.explained, default=None)
-    return best.refined(spectra).with_parts(spectra, level) if best else None
+    return best.refined(spectra) if best else None
 
 
 def _best(spectra: Sequence[GaugeSpectrum], kind: str, level: float) -> list[Unnamed]:

@@ -14,7 +14,7 @@ from scipy.linalg import solve_triangular
 from swgsim.common.numbers import significant
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import OperatingPoint
-from swgsim.identification.covariance import scatter
+from swgsim.identification.covariance import narrow_band, scatter
 from swgsim.identification.covariance.low_rank_covariance import significant_columns
 from swgsim.identification.data.model import Model, Situation, predict
 from swgsim.identification.fit.fitted import Fitted
@@ -175,10 +175,13 @@ class _PlannedRecordings:
         shared.append(posterior.T.reshape(*at_candidates.shape, -1))
         spread = [columns @ columns.T for columns in np.concatenate(shared, axis=-1)]
         single = scatter.directions(fitted.model, candidates, measured.layout)
-        noise = np.median(fitted.unit.inflated(measured.variance), axis=0)
+        noise = np.tile(np.median(measured.variance, axis=0), (len(candidates), 1))
+        points = [each.point for each in candidates]
+        narrow = narrow_band.columns(fitted.unit.bands, points, measured.layout, noise)
         return cls(
             candidates, (d**2).sum(axis=0) - (fitted_part**2).sum(axis=0), left.reshape(differences[count:].shape),
-            np.array(spread), noise, fitted.scatter.columns(single),
+            np.array(spread), fitted.unit.inflated(noise[0]),
+            np.concatenate([fitted.scatter.columns(single), narrow], axis=-1),
         )  # fmt: skip
 
     def separations(self, recordings: int) -> Float[np.ndarray, "candidate truth"]:
