@@ -111,10 +111,10 @@ class Option:
 
 def causes_of(effects: Sequence[Effect], regularities: Sequence[Described]) -> frozenset[object]:
     """What identifies a set of causes: the kinds of effects with their choices, and the regularities."""
-    return frozenset(map(chosen, effects)) | frozenset(each.atom for each in regularities)
+    return frozenset(map(kind_and_choices, effects)) | frozenset(each.atom for each in regularities)
 
 
-def chosen(effect: Effect) -> tuple[object, ...]:
+def kind_and_choices(effect: Effect) -> tuple[object, ...]:
     """The kind of an effect, and its parameters that are chosen from a list."""
     declared = quantities(type(effect))
     return type(effect), *(getattr(effect, name) for name, q in declared.items() if q.role is Role.CHOICE)
@@ -147,6 +147,7 @@ def option(start: Fitted, effects: Sequence[Effect], regularities: Sequence[Desc
     evidences += sum(prior_ratio(fitted, number) for number in range(len(added)))
     evidences -= len(regularities) * np.log(LOG_SIZE_RANGE)
     prior = log_prior(len(added), 0, len(regularities), kinds)
+    # A copy without what the fit has cached, which would fill the memory.
     return Option(replace(fitted), added, tuple(regularities), prior, evidences, forms)
 
 

@@ -62,7 +62,7 @@ class Search:
         more = [like for each in alone for like in resembling(each, len(self.kinds))]
         return sorted([*self._options.values(), *more], key=lambda each: -each.log_posterior)
 
-    def described(self, unknown: Option) -> Option:
+    def with_regularities(self, unknown: Option) -> Option:
         """An option with regularities for something unknown that resembles an effect, and with the same effects."""
         alone = causes_of(unknown.effects, ())
         fitted = [each for each in self._options.values() if causes_of(each.effects, ()) == alone]
