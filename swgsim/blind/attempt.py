@@ -17,7 +17,7 @@ from swgsim.common.numbers import number
 from swgsim.effects import text
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities, size_of
-from swgsim.identification.decide.option import chosen
+from swgsim.identification.decide.option import kind_of
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import fit
 from swgsim.identification.fit.form_error import signature
@@ -112,7 +112,7 @@ def _intervals(answer_: Answer, case: Sealed) -> tuple[list[dict[str, Any]], lis
             found = {"name": true.name(), "found": float(getattr(effect, name)), "deviation": float(deviation)}
             if q.role is Role.SIZE:
                 sizes.append(found | {"true": float(_acted(true, case, after, number))})
-            elif q.role in (Role.PHASE, Role.ANGLE) and chosen(effect) == chosen(true):
+            elif q.role in (Role.PHASE, Role.ANGLE) and kind_of(effect) == kind_of(true):
                 angles.append(found | {"true": float(getattr(true, name))})
     return sizes, angles
 
@@ -123,7 +123,10 @@ def _found_as(true: Effect, effects: Sequence[Effect]) -> int | None:
     A second effect of that class, such as another order, counts as a false effect.
     """
     alike = [number for number, effect in enumerate(effects) if type(effect) is type(true)]
-    return next((number for number in alike if chosen(effects[number]) == chosen(true)), alike[0] if alike else None)
+    return next(
+        (number for number in alike if kind_of(effects[number]) == kind_of(true)),
+        alike[0] if alike else None,
+    )
 
 
 def _acted(true: Effect, case: Sealed, after: Fitted, number: int) -> float:

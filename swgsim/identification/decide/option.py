@@ -111,10 +111,10 @@ class Option:
 
 def causes_of(effects: Sequence[Effect], regularities: Sequence[Described]) -> frozenset[object]:
     """What identifies a set of causes: the kinds of effects with their choices, and the regularities."""
-    return frozenset(map(kind_and_choices, effects)) | frozenset(each.atom for each in regularities)
+    return frozenset(map(kind_of, effects)) | frozenset(each.atom for each in regularities)
 
 
-def kind_and_choices(effect: Effect) -> tuple[object, ...]:
+def kind_of(effect: Effect) -> tuple[object, ...]:
     """The kind of an effect, and its parameters that are chosen from a list."""
     declared = quantities(type(effect))
     return type(effect), *(getattr(effect, name) for name, q in declared.items() if q.role is Role.CHOICE)
