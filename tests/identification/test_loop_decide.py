@@ -32,7 +32,7 @@ from swgsim.identification.fit.form_error import all_show, form_directions, part
 from swgsim.identification.report.answer import Answer
 from swgsim.identification.report.found_effects import alternatives, found_effects, options, probability_text, small
 from swgsim.identification.report.sentence import sentence
-from swgsim.identification.search.regularities import Atom, columns
+from swgsim.identification.search.regularities import Atom, columns, describe
 
 LAYOUT = Layout(("T_in", "s1"))
 STRAY = Atom(5, "in s1 alone", "constant")
@@ -386,3 +386,11 @@ def test_what_is_too_small_to_matter_is_seen_but_no_verdict(null, changes):
     assert "seen, but too small to matter: a dip" in said
     assert "probability" not in said
     assert found_effects(found) == []
+
+
+@pytest.mark.usefixtures("_chain")
+def test_a_regularity_of_high_orders_alone_has_not_the_probability_of_the_order_lines(null, changes):
+    held = recorded(null, changes, {}, 15)
+    found = Answer(decided(held), (), (), (), (describe(held)[0],), ())
+    assert found.verdict == UNKNOWN
+    assert "probability" not in sentence(found, [])

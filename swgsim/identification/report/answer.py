@@ -77,11 +77,14 @@ class Answer:
     @property
     def unknown(self) -> tuple[Described, ...]:
         """Regularities that no effect of the library explains, without small ones."""
+        return (*self.unknown_of_orders, *self.above)
+
+    @property
+    def unknown_of_orders(self) -> tuple[Described, ...]:
+        """Those of the order lines of the model."""
         shares = self.shares_of_spread[len(self.decision.effects) :]
-        large = (
-            each for each, share in zip(self.decision.best.regularities, shares, strict=True) if share >= self.interest
-        )
-        return (*large, *self.above)
+        regularities = zip(self.decision.best.regularities, shares, strict=True)
+        return tuple(each for each, share in regularities if share >= self.interest)
 
     @property
     def added(self) -> tuple[Effect, ...]:

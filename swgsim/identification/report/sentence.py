@@ -41,8 +41,8 @@ def _small(answer: Answer) -> str:
 def _sure(answer: Answer) -> str:
     """Probability of the answer of the order lines, and the other answers of the credible set."""
     decision = answer.decision
-    if not answer.of_orders and not answer.unknown and (answer.verdict != NOTHING or answer.small):
-        return ""  # interharmonic lines alone, which have p-values
+    if not answer.of_orders and not answer.unknown_of_orders and (answer.verdict != NOTHING or answer.small):
+        return ""  # interharmonic lines or high orders alone, which have p-values
     others = [f"{in_words(option)} ({probability_text(p)})" for option, p in decision.credible[1:]]
     otherwise = f"; else {_listed(others, ', ')}" if others else ""
     return f": probability {probability_text(decision.probability)}{otherwise}"
