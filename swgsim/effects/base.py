@@ -137,13 +137,11 @@ class Effect:
             quantity.check(title, name, getattr(self, name))
 
     @classmethod
-    @cache
     def name(cls) -> str:
         """The registered name, such as ``cam_form`` of the class CamForm."""
-        return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", cls.__name__).lower()
+        return _in_snake_case(cls.__name__)
 
     @classmethod
-    @cache
     def title(cls) -> str:
         """The name in words."""
         return cls.name().replace("_", " ").replace("stribeck", "Stribeck")
@@ -196,6 +194,11 @@ class Effect:
     def acquisition(self, channels: Channels, scene: Scene) -> Channels:
         """Every recorded channel by its name (:data:`swgsim.recordings.recording.CHANNELS`), in its unit."""
         return channels
+
+
+@cache  # a search makes very many effects
+def _in_snake_case(name: str) -> str:
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()
 
 
 def overrides(effect: Effect, *methods: str) -> bool:

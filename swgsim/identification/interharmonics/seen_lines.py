@@ -42,9 +42,10 @@ class SeenLines(NamedTuple):
     def shows(self, square: Float[np.ndarray, " column"]) -> Bool[np.ndarray, " column"]:
         """Whether the effects of columns with these sums of squares are more than rounding."""
         whole = np.bincount(self.column, self.norm**2, len(self.effect))
-        most = np.zeros((2, int(self.effect.max(initial=-1)) + 1))
-        np.maximum.at(most, (slice(None), self.effect), [square, LEAST_SHARE**2 * whole])
-        return (most[0] > most[1])[self.effect]
+        most, least = np.zeros((2, int(self.effect.max(initial=-1)) + 1))
+        np.maximum.at(most, self.effect, square)
+        np.maximum.at(least, self.effect, LEAST_SHARE**2 * whole)
+        return np.asarray(most > least)[self.effect]
 
     def along(self, directions: Float[np.ndarray, "gauge number direction"]) -> Float[np.ndarray, "column direction"]:
         """Products of the columns with directions."""
