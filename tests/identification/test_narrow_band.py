@@ -8,11 +8,12 @@ from loop_fixtures import fitted_to
 
 from swgsim.common.seeds import generator
 from swgsim.gear.gear import OperatingPoint
-from swgsim.identification.covariance.narrow_band import NarrowBand, columns, narrow_bands
+from swgsim.identification.covariance.narrow_band import NarrowBand, columns, frequencies, narrow_bands
 from swgsim.identification.covariance.recording_covariance import RecordingCovariance
 from swgsim.identification.covariance.repeats import from_repeats
 from swgsim.identification.covariance.scatter import Scatter
-from swgsim.identification.data.features import Layout
+from swgsim.identification.data.features import ORDERS, Layout
+from swgsim.identification.data.repeated import freedom
 
 LAYOUT = Layout(("T_in", "s1", "s2", "s3", "s4"))
 GAUGES = LAYOUT.channels[1:]
@@ -32,8 +33,8 @@ def repeated(repeats: int, bands: tuple[NarrowBand, ...], seed: int) -> np.ndarr
 
 
 def found(repeats: int, bands: tuple[NarrowBand, ...], seed: int) -> tuple[NarrowBand, ...]:
-    freedom = np.full(repeats * len(POINTS), 1 - 1 / repeats)
-    return narrow_bands(repeated(repeats, bands, seed), freedom, POINTS * repeats, LAYOUT)
+    lines = LAYOUT.lines(repeated(repeats, bands, seed))[..., 1:]
+    return narrow_bands(lines, frequencies(POINTS * repeats, 1, ORDERS), freedom(POINTS * repeats), LAYOUT.channels)
 
 
 def test_it_lies_at_its_frequency_at_every_speed():

@@ -6,8 +6,10 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Bool
 
-from swgsim.identification.covariance.narrow_band import NarrowBand, narrow_bands
+from swgsim.identification.covariance.narrow_band import NarrowBand, frequencies, narrow_bands
+from swgsim.identification.data.features import ORDERS
 from swgsim.identification.data.measured import Measured
+from swgsim.identification.data.repeated import freedom
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import SAME_SCATTER, fit
 from swgsim.identification.fit.unit import Unit
@@ -64,5 +66,6 @@ def _between_repeats(fitted: Fitted, unit: Unit) -> tuple[NarrowBand, ...]:
     C = alone.C[..., :kinds]
     others = C.swapaxes(1, 2) @ alone.weigh(residual.ravel()).reshape(*residual.shape, 1)
     missed = (residual - (C @ others)[..., 0]) / np.sqrt(measured.variance)
-    freedom = np.array([1 - 1 / measured.repeats.count(each) for each in measured.repeats])
-    return narrow_bands(missed, freedom, [each.point for each in measured.recordings], measured.layout)
+    layout, points = measured.layout, [each.point for each in measured.recordings]
+    lines = layout.lines(missed)[..., 1:]
+    return narrow_bands(lines, frequencies(points, 1, ORDERS), freedom(measured.repeats), layout.channels)

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Complex, Float
 from scipy.stats import chi2, false_discovery_control
 
 from swgsim.gear.gear import OperatingPoint
@@ -37,6 +37,11 @@ class NarrowBand:
     frequency: float
     channels: tuple[str, ...]
     root: Float[np.ndarray, "channel source"]
+
+    @property
+    def largest(self) -> float:
+        """Variance of the strongest source with the smooth noise, in units of this noise."""
+        return 1 + float((self.root**2).sum(axis=0).max(initial=0.0))
 
     def directions(self, speed: float, layout: Layout) -> Float[np.ndarray, "feature column"]:
         """Errors of a recording at a speed [rpm], in standard deviations of the smooth noise; no columns if none of its
@@ -79,11 +84,17 @@ def columns(
     return np.sqrt(variance)[..., None] * np.array([padded[point.n_in_rpm] for point in points])
 
 
+def frequencies(points: Sequence[OperatingPoint], lowest: int, highest: int) -> Float[np.ndarray, "recording order"]:
+    """Frequencies of orders at operating points [Hz], equal where they differ by rounding alone."""
+    speeds = np.array([point.n_in_rpm for point in points])
+    return np.round(np.outer(speeds, np.arange(lowest, highest + 1)) / 60, 6)
+
+
 def narrow_bands(
-    missed: Float[np.ndarray, "recording feature"],
+    lines: Complex[np.ndarray, "recording channel order"],
+    frequency: Float[np.ndarray, "recording order"],
     freedom: Float[np.ndarray, " recording"],
-    points: Sequence[OperatingPoint],
-    layout: Layout,
+    channels: Sequence[str],
 ) -> tuple[NarrowBand, ...]:
     """The narrow bands in which repeats differ by more than the smooth noise makes them.
 
@@ -94,37 +105,32 @@ def narrow_bands(
 
     Parameters
     ----------
-    missed : array (recording, feature)
+    lines : array (recording, channel, order)
         By how much each repeat differs from the mean of all, in standard deviations of the smooth noise.
+    frequency : array (recording, order)
+        As of :func:`frequencies`.
     freedom : array (recording,)
-        Degrees of freedom that each repeat adds to those of its group; 0 where nothing was repeated.
-    points : sequence of OperatingPoint
-    layout : Layout
+        Degrees of freedom that each repeat adds; 0 where nothing was repeated.
+    channels : sequence of str
     """
-    lines = missed.reshape(len(points), -1, 2 * ORDERS + 1)[..., 1:].reshape(len(points), -1, 2, ORDERS)
-    speeds = np.array([point.n_in_rpm for point in points])
-    frequency = np.round(np.outer(speeds, np.arange(1, ORDERS + 1)) / 60, 6)
     found, chances = [], []
-    for names in _sharing(layout):
-        own = [layout.channels.index(name) for name in names]
-        for at in np.unique(frequency):
+    for names in _sharing(channels):
+        own = [channels.index(name) for name in names]
+        for at in np.unique(frequency[freedom > 0]):
             recordings, orders = np.nonzero((frequency == at) & (freedom[:, None] > 0))
-            repeats = 2 * float(freedom[recordings].sum())
-            if not repeats:
-                continue
-            z = lines[recordings[:, None], own, :, orders[:, None]].swapaxes(0, 1).reshape(len(own), -1)
-            square = z @ z.T
-            chances.append(chi2.sf(np.trace(square), repeats * len(own)))
-            values, vectors = np.linalg.eigh((np.eye(len(own)) + square) / (1 + repeats))
+            parts = lines[recordings[:, None], own, orders[:, None]]
+            z, repeats = np.concatenate([parts.real, parts.imag]).T, 2 * float(freedom[recordings].sum())
+            chances.append(chi2.sf((z**2).sum(), repeats * len(own)))
+            values, vectors = np.linalg.eigh((np.eye(len(own)) + z @ z.T) / (1 + repeats))
             more = values > 1
             found.append(NarrowBand(float(at), names, vectors[:, more] * np.sqrt(values[more] - 1)))
     significant = false_discovery_control(chances) < FALSE_DISCOVERIES if chances else []
     return tuple(band for band, more in zip(found, significant, strict=True) if more)
 
 
-def _sharing(layout: Layout) -> Iterator[tuple[str, ...]]:
+def _sharing(channels: Sequence[str]) -> Iterator[tuple[str, ...]]:
     """Channels that share noise: all gauges, while speed and torques come from instruments of their own."""
-    gauges = tuple(name for name in layout.channels if name in SENSORS)
+    gauges = tuple(name for name in channels if name in SENSORS)
     if gauges:
         yield gauges
-    yield from ((name,) for name in layout.channels if name not in SENSORS)
+    yield from ((name,) for name in channels if name not in SENSORS)

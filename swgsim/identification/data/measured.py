@@ -10,6 +10,7 @@ from jaxtyping import Bool, Float
 from swgsim.identification.data.features import Layout, features, layout_of
 from swgsim.identification.data.model import Situation
 from swgsim.identification.data.noise import floors, variance
+from swgsim.identification.data.repeated import about_mean, groups_of
 from swgsim.recordings.recording import Recording
 from swgsim.storage.labelled_signals import SENSORS
 
@@ -106,7 +107,7 @@ class Measured:
     @property
     def repeats(self) -> list[object]:
         """Session and operating point of each recording: those with the same ones are repeats of each other."""
-        return [(r.session, r.point) for r in self.recordings]
+        return groups_of(self.recordings)
 
     @property
     def spare(self) -> int:
@@ -115,9 +116,7 @@ class Measured:
 
     def about_repeats(self, values: Float[np.ndarray, "recording feature"]) -> Float[np.ndarray, "recording feature"]:
         """Values less their mean over the repeats of each recording."""
-        groups = [self.repeats.index(each) for each in self.repeats]
-        means = {group: values[np.equal(groups, group)].mean(axis=0) for group in groups}
-        return values - np.array([means[group] for group in groups])
+        return about_mean(values, self.repeats)
 
     def rows(self, of_situation: Float[np.ndarray, "situation feature *column"]) -> np.ndarray:
         """Values of situations as rows (recording, feature), one below the other."""

@@ -13,9 +13,11 @@ from jaxtyping import Complex, Float
 from swgsim.chain.chain import distinct, simulate_turns
 from swgsim.common.singular import svd
 from swgsim.effects.regularity import HIGHEST_ORDER, LAWS, PATTERNS
+from swgsim.identification.covariance.narrow_band import frequencies, narrow_bands
 from swgsim.identification.data.features import ORDERS, Layout, basis, layout_of, samples_per_turn
 from swgsim.identification.data.model import Model, Situation
 from swgsim.identification.data.noise import RESOLVED, floors
+from swgsim.identification.data.repeated import about_mean, freedom, groups_of
 from swgsim.identification.data.unit_lines import laws
 from swgsim.identification.fit.form_error import FORM_TOLERANCE
 from swgsim.identification.interharmonics.interharmonic_spectrum import f_test
@@ -125,10 +127,12 @@ def residual_lines(recordings: Sequence[Recording], healthy: Sequence[Recording]
     changed[:, :count] = np.abs(now - known[..., :count])[1:].max(axis=0)
     modelled = np.concatenate([now, known[..., count:]], axis=-1)
     left = (_lines(every, channels, highest) - modelled)[ORDERS + 1 :]
+    noise = _variance(every, channels, highest)[ORDERS + 1 :]
+    noise = noise * _narrow_bands(left[..., count:] / np.sqrt(noise[..., count:]), every, count, channels, highest)
     followed = np.array([laws(np.array(each.point.T_out), each.point.n_in_rpm) for each in every])
     own = left[..., count:] @ (followed @ np.linalg.pinv(followed[count:])).T if healthy else np.zeros(left.shape)
     doubt = LINE_TOLERANCE * (np.abs(modelled[ORDERS + 1 :]) + np.abs(own)) + FORM_TOLERANCE * changed
-    scale = 1 / np.sqrt(_variance(every, channels, highest)[ORDERS + 1 :] + doubt**2)
+    scale = 1 / np.sqrt(noise + doubt**2)
     # Healthy recordings do not contain the effect; they show the normal dependence of the gear on load and speed.
     sought = np.array([[law(each.point, each.conditions) for law in LAWS.values()] for each in every])
     sought[count:] = 0.0
@@ -138,6 +142,28 @@ def residual_lines(recordings: Sequence[Recording], healthy: Sequence[Recording]
     return Above(
         channels, _without(anyway, lines)[..., 0], _without(anyway, asked_for), len(every) - anyway.shape[-1]
     )  # fmt: skip
+
+
+def _narrow_bands(
+    healthy: Complex[np.ndarray, "order channel healthy"], every: Sequence[Recording], count: int,
+    channels: Sequence[str], highest: int,
+) -> Float[np.ndarray, "order channel recording"]:  # fmt: skip
+    """Factors on the variance of lines in narrow bands: as of the pattern over the gauges that has most of it.
+
+    Parameters
+    ----------
+    healthy : array (order, channel, healthy)
+        Lines in standard deviations of the smooth noise.
+    every : sequence of Recording
+        All recordings, those of the healthy gear after so many others.
+    """
+    frequency = frequencies([each.point for each in every], ORDERS + 1, highest)
+    factors, groups = np.ones((frequency.shape[1], len(channels), len(every))), groups_of(every[count:])
+    lines = about_mean(healthy.transpose(2, 1, 0), groups)
+    for band in narrow_bands(lines, frequency[count:], freedom(groups), channels):
+        recordings, orders = np.nonzero(frequency == band.frequency)
+        factors[orders[:, None], [channels.index(name) for name in band.channels], recordings[:, None]] = band.largest
+    return factors
 
 
 def _without(Q: Float[np.ndarray, "*batch row direction"], columns: np.ndarray) -> np.ndarray:
