@@ -33,8 +33,8 @@ class DirectSolver:
         truss = sector.truss()
         stiffness = truss.stiffness.reshape(sector.count, -1).copy()
         crossing = sector.band[sector.bars[:, 0]] & sector.band[sector.bars[:, 1]] & (sector.bars[:, 2] == 1)
-        for crack in (crack for effect in effects for crack in effect.cracks()):
-            stiffness[sector.gap(crack.angle), crossing] *= remaining_stiffness(crack, flex)
+        cracks = [crack for effect in effects for crack in effect.cracks()]
+        stiffness[:, crossing] *= remaining_stiffness(cracks, flex)[:, None]
         turn = self._to_cylindrical()
         matrix = turn @ Truss(truss.nodes, truss.bars, stiffness.ravel()).matrix @ turn.T
         self.factorised = Factorised(matrix.tocsc(), np.tile(prescribed(sector), sector.count))

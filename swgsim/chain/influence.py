@@ -229,9 +229,9 @@ def change_by_cracks(
 ) -> Complex[np.ndarray, "order 5 2"]:
     """Change of the response to both loads by root tooth cracks (reduced k_bar, section II-B).
 
-    A crack removes the stiffness D [N/m] between the columns of nodes on its two sides. C [m/N] is the compliance
+    Cracks remove the stiffness D [N/m] between the columns of nodes on their two sides. C [m/N] is the compliance
     between these nodes, and u0 [m] their displacement in the sound structure. Then u = (1 - C D)^-1 u0, and the forces
-    D u on the sound structure replace the crack (Woodbury), so no new factorisation is needed. With the signals S per
+    D u on the sound structure replace the cracks (Woodbury), so no new factorisation is needed. With the signals S per
     force the change is S D (1 - C D)^-1 u0. The factors before u0 belong to the gauges, and u0 is linear in each
     circumferential order of the load, so the crack changes the response to that order.
 
@@ -243,11 +243,11 @@ def change_by_cracks(
     cracks : sequence of Crack
     """
     sector = flex.sector
-    columns = np.array([(gap, gap + 1) for gap in (sector.gap(crack.angle) for crack in cracks)]).ravel()
+    gaps = np.unique([sector.gap(crack.angle) for crack in cracks])
+    columns = np.stack([gaps, gaps + 1], axis=1).ravel()
     turns = np.exp(1j * sector.pitch * np.outer(orders(sector.count), columns))
-    lost_stiffness = linalg.block_diag(
-        *[(1 - remaining_stiffness(crack, flex)) * flex.crossing_stiffness for crack in cracks]
-    )
+    lost = 1 - remaining_stiffness(cracks, flex)[gaps]
+    lost_stiffness = linalg.block_diag(*[share * flex.crossing_stiffness for share in lost])
     compliance = np.block([[flex.band_compliance[(i - j) % sector.count] for j in columns] for i in columns])
     signal = np.fft.irfft(response[:, :, BAND:], sector.count, axis=0)[-columns % sector.count]  # (column, 5, dof)
     per_force = signal.swapaxes(1, 2).reshape(len(lost_stiffness), -1)
@@ -259,7 +259,12 @@ def change_by_cracks(
     return around.reshape(len(turns), fields.shape[1], -1).swapaxes(1, 2) @ fields
 
 
-def remaining_stiffness(crack: Crack, flex: FlexSpline) -> float:
-    """Remaining stiffness of the bars across a crack, of which one tooth pitch of the length is weakened [-]."""
-    tooth_pitch = 2 * np.pi / flex.sector.hat.teeth
-    return flex.sector.pitch / (flex.sector.pitch + (1 / crack.stiffness_ratio - 1) * tooth_pitch)
+def remaining_stiffness(cracks: Sequence[Crack], flex: FlexSpline) -> Float[np.ndarray, " sector"]:
+    """Remaining stiffness of the bars from each sector to the next [-].
+
+    A crack weakens one tooth pitch of their length, and the compliances of neighbouring cracks add.
+    """
+    tooth_pitch, longer = 2 * np.pi / flex.sector.hat.teeth, np.zeros(flex.sector.count)
+    for crack in cracks:
+        longer[flex.sector.gap(crack.angle)] += (1 / crack.stiffness_ratio - 1) * tooth_pitch
+    return flex.sector.pitch / (flex.sector.pitch + longer)

@@ -1,7 +1,7 @@
-"""The five fault classes of Table I as effects, and their variants (Table V) as declared severities and positions."""
+"""The five fault classes of Table I as effects, and their variants: severities, positions, width of cracks."""
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from swgsim.effects import (
     RootToothCrack,
     TipToothCrack,
 )
+from swgsim.effects.tip_tooth_crack import TOOTH
 from swgsim.storage.labelled_signals import CLASSES
 
 # The effect of each class (Table I) at a severity and a position from gauge s1 [rad].
@@ -25,6 +26,22 @@ FAULTS: Mapping[str, Callable[[float, float], Effect]] = {
     "tip_tooth_crack": TipToothCrack,
 }
 WITHOUT_POSITION = ("reduced_damping", "reduced_stiffness")
+
+
+def widened(effect: Effect, teeth: int | None) -> tuple[Effect, ...]:
+    """A crack that takes several teeth of 200, as one at a node of a coarse truss does; others stay as they are.
+
+    A tip crack takes the force of so many teeth; a root crack is one at each of them. None leaves both as they are:
+    four teeth and one.
+
+    >>> [round(each.theta / TOOTH, 1) for each in widened(RootToothCrack(0.1, 0.0), 3)]
+    [-1.0, 0.0, 1.0]
+    """
+    if teeth and isinstance(effect, TipToothCrack):
+        return (replace(effect, width=teeth * TOOTH),)
+    if teeth and isinstance(effect, RootToothCrack):
+        return tuple(replace(effect, theta=effect.theta + TOOTH * (n - (teeth - 1) / 2)) for n in range(teeth))
+    return (effect,)
 
 
 @dataclass(frozen=True)
@@ -63,16 +80,21 @@ class Variants:
         Severities of each class. Classes without a position have ``count`` even values from the first to the last.
     drawn : bool
         Whether severities (between the extremes) and positions are drawn continuously instead.
+    crack_teeth : int or None
+        Teeth that a crack takes, from 1 to 10; None for those of its effect (:func:`widened`).
     """
 
     count: int
     positions: int
     severities: Mapping[str, tuple[float, ...]]
     drawn: bool = False
+    crack_teeth: int | None = None
 
     def __post_init__(self) -> None:
         require_integer("the grid", "variants", self.count, low=1, high=1_000_000)
         require_integer("the grid", "positions", self.positions, low=1, high=100_000)
+        if self.crack_teeth is not None:
+            require_integer("the grid", "crack_teeth", self.crack_teeth, low=1, high=10)
         if not isinstance(self.drawn, bool):
             raise ValueError(f"drawn of the grid is {self.drawn!r}, must be true or false")
         unknown = set(self.severities) ^ set(FAULTS)
@@ -113,5 +135,5 @@ class Variants:
                 position = 2 * np.pi * (number % self.positions) / self.positions
             else:
                 severity, position = np.linspace(levels[0], levels[-1], self.count)[number], np.nan
-            effect = FAULTS[label](float(severity), float(position))
-            yield Variant(label, number, float(severity), float(position) if located else np.nan, (effect,))
+            effects = widened(FAULTS[label](float(severity), float(position)), self.crack_teeth)
+            yield Variant(label, number, float(severity), float(position) if located else np.nan, effects)

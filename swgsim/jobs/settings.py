@@ -32,6 +32,7 @@ GRID = (
     "positions",
     "severities",
     "drawn",
+    "crack_teeth",
     "references",
     "scatter",
     "seed",
@@ -56,7 +57,7 @@ def grid(config: Config) -> Grid:
         if not isinstance(levels, list):
             raise ValueError(f"severities of {label} are {levels!r}, must be a list such as [{levels}]")
     severities = {label: tuple(levels) for label, levels in config["severities"].items()}
-    variants = Variants(config["variants"], config["positions"], severities, config["drawn"])
+    variants = Variants(config["variants"], config["positions"], severities, config["drawn"], config.get("crack_teeth"))
     return Grid(
         points, variants, tuple(config["classes"]), config["references"], config["scatter"], seed=config["seed"]
     )

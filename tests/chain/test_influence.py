@@ -6,6 +6,7 @@ from chain_fixtures import GEAR, amplitude, flex_spline, map_of
 
 from swgsim.chain.direct import DirectSolver
 from swgsim.chain.influence import boundary_conditions, ellipse, fine_angles
+from swgsim.dataset.faults import widened
 from swgsim.effects import CamForm, EccentricWaveGenerator, Effect, RootToothCrack, TipToothCrack
 from swgsim.studies.convergence import study
 
@@ -16,6 +17,7 @@ FAULTS = [
     (RootToothCrack(0.02, 2.3),),
     (TipToothCrack(1.0, 0.3),),
     (RootToothCrack(0.1, 1.0), RootToothCrack(0.05, 4.0), CamForm(3, 2e-6, 0.4)),
+    widened(RootToothCrack(0.05, 1.0), 5),
 ]
 
 
@@ -49,6 +51,21 @@ def test_a_crack_one_gauge_pitch_further_permutes_the_gauges(make: object) -> No
             before, after = first(PSI), turned(PSI + np.pi / 2)
             for now, then in ((2, 1), (3, 2), (4, 3), (1, 4), (0, 0)):
                 np.testing.assert_allclose(after[:, now], before[:, then], atol=1e-9 * np.abs(before).max())
+
+
+def test_compliances_of_cracks_in_the_same_gap_add() -> None:
+    """The bars are weakened over two tooth pitches instead of one."""
+    twice, once = map_of(*[RootToothCrack(0.1, 1.0)] * 2), map_of(RootToothCrack(1 / 19, 1.0))
+    np.testing.assert_allclose(twice(PSI), once(PSI))
+
+
+@pytest.mark.parametrize("sectors", [60, 160])
+def test_a_crack_over_ten_teeth_changes_order_2_equally_on_any_mesh(sectors: int) -> None:
+    changes = []
+    for mesh in (sectors, 100):
+        sound, cracked = (map_of(*e, sectors=mesh) for e in ((), widened(RootToothCrack(0.03, 0.3), 10)))
+        changes.append(np.abs(cracked.coefficients - sound.coefficients)[0, 1:, 2].max())
+    assert changes[0] == pytest.approx(changes[1], rel=0.1)
 
 
 def test_torque_adds_up_and_shifts_superpose() -> None:

@@ -111,6 +111,18 @@ def test_damping_and_stiffness_take_even_steps_without_position() -> None:
     assert all(np.isnan(v.position) for v in variants)
 
 
+def test_cracks_take_as_many_teeth_as_a_node_of_a_coarse_truss() -> None:
+    variants = Variants(40, 20, SEVERITIES, crack_teeth=10)
+    rng = np.random.default_rng(0)
+    (tip,) = next(variants.of("tip_tooth_crack", rng)).effects
+    roots = next(variants.of("root_tooth_crack", rng)).effects
+    assert tip.width == pytest.approx(2 * np.pi / 20)
+    np.testing.assert_allclose([root.theta for root in roots], 2 * np.pi / 200 * (np.arange(10) - 4.5))
+    assert len(next(variants.of("eccentric_wave_generator", rng)).effects) == 1
+    with pytest.raises(ValueError, match="crack_teeth of the grid is 11, must be an integer from 1 to 10"):
+        Variants(40, 20, SEVERITIES, crack_teeth=11)
+
+
 def test_bad_variants_are_refused() -> None:
     with pytest.raises(ValueError, match="2 severities x 20 positions do not make 60 variants"):
         Variants(60, 20, SEVERITIES)
