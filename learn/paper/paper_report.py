@@ -95,7 +95,7 @@ def report_of(config: Mapping[str, Any], began: float) -> report.Report:
     tables = {name: report.complete(compare(name, runs), name, command) for name in PROTOCOLS}
     configuration, made = sets.configurations["clean"], sets.made["clean"]
     plan = chain_settings.plan(configuration)
-    subject = Subject(plan.gears, window=plan.window, sectors=plan.sectors)
+    subject = Subject.of(plan)
     blocks = list(storage.blocks(sets.paths["clean"], BLOCK))
     features = features_of(blocks)
     findings = [

@@ -134,8 +134,8 @@ def claims(made: Recordings, scored: Tables, disturbance: float) -> dict[str, bo
     spectrum = made.selections["selection_3"]
     options = {name: getattr(spectrum, name) for name in ("orders", "floor", "whole_revolutions")}
     features = features_of(made.blocks["clean"], Selection(**(vars(SPECTRUM) | options)))
-    subject = Subject(made.plan.gears, window=made.plan.window, sectors=made.plan.sectors)
-    findings = [*chain_claims(subject), *feature_claims(features), *table_claims(scored, features, disturbance)]
+    of_chain = chain_claims(Subject.of(made.plan))
+    findings = [*of_chain, *feature_claims(features), *table_claims(scored, features, disturbance)]
     return {finding.key: finding.holds for finding in findings}
 
 

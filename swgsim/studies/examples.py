@@ -9,7 +9,8 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.chain.chain import SECTORS, Run, Simulation, simulate
-from swgsim.dataset.faults import FAULTS
+from swgsim.dataset.faults import FAULTS, widened
+from swgsim.dataset.plan import Plan
 from swgsim.effects import Effect
 from swgsim.gear.acquisition import Window
 from swgsim.gear.gear import Gear, OperatingPoint
@@ -44,20 +45,34 @@ class Subject:
         The paper's by default, whatever grid the data set has.
     window : Window
     sectors : int
+    crack_teeth : int or None
+        Teeth that a crack takes, as in :func:`~swgsim.dataset.faults.widened`.
+    effects : tuple of Effect
+        Physics of the healthy gear and of the faulty one alike.
     """
 
     gears: tuple[Gear, ...]
     points: tuple[OperatingPoint, ...] = PAPER_POINTS
     window: Window = field(default_factory=Window)
     sectors: int = SECTORS
+    crack_teeth: int | None = None
+    effects: tuple[Effect, ...] = ()
+
+    @classmethod
+    def of(cls, plan: Plan) -> "Subject":
+        """Gears, window, mesh, cracks and declared effects of a data set."""
+        teeth = plan.grid.variants.crack_teeth
+        return cls(plan.gears, window=plan.window, sectors=plan.sectors, crack_teeth=teeth, effects=plan.effects)
 
     def simulate(self, *effects: Effect) -> Simulation:
         """The first gear with some effects at all operating points."""
-        return simulate([Run(self.gears[0], point, effects) for point in self.points], self.window, self.sectors)
+        runs = [Run(self.gears[0], point, (*self.effects, *effects)) for point in self.points]
+        return simulate(runs, self.window, self.sectors)
 
     def variants(self, effects: Sequence[Effect]) -> Float[np.ndarray, "effect 5 time"]:
         """Signals of the first gear with one effect after the other at the figures' operating point [mV/V]."""
-        runs = [Run(self.gears[0], FIGURE_POINT, (effect,)) for effect in effects]
+        faults = [(*self.effects, *widened(effect, self.crack_teeth)) for effect in effects]
+        runs = [Run(self.gears[0], FIGURE_POINT, fault) for fault in faults]
         return simulate(runs, self.window, self.sectors).signals
 
     @cached_property
@@ -68,5 +83,5 @@ class Subject:
     @cached_property
     def examples(self) -> Mapping[str, Float[np.ndarray, "5 time"]]:
         """Signals [mV/V] of the healthy gear and of every example fault at the figures' operating point."""
-        healthy = simulate([Run(self.gears[0], FIGURE_POINT)], self.window, self.sectors).signals
+        healthy = simulate([Run(self.gears[0], FIGURE_POINT, self.effects)], self.window, self.sectors).signals
         return {"healthy": healthy[0], **dict(zip(EXAMPLES, self.variants(tuple(EXAMPLES.values())), strict=True))}
