@@ -20,8 +20,10 @@ class Fitted:
         What the paper's chain has that ours lacks.
     judgement : str
         Whether the tables that the fit never saw support it.
-    reading : str
-        Which conclusions of the paper hold on which choices.
+    reading : mapping
+        How claims of the paper hold over the choices to those that do, in words.
+    remains : list of str
+        By what the tables stay away from the paper's.
     samples : int
         Number of sets of choices behind the reading.
     errors : mapping
@@ -33,7 +35,8 @@ class Fitted:
     command: str
     answer: str
     judgement: str
-    reading: str
+    reading: Mapping[str, str]
+    remains: list[str]
     samples: int
     errors: Mapping[str, float]
     scores: Mapping[Cell, float]
@@ -43,5 +46,5 @@ def fitted() -> Fitted:
     """The kept result."""
     kept = json.loads((files("learn.paper") / "tables" / "paper_choices.json").read_text(encoding="utf-8"))
     scores = {(cell["table"], cell["row"], cell["classifier"]): cell["after"] for cell in kept["cells"]}
-    texts = {name: kept[name] for name in ("command", "answer", "judgement", "reading", "samples")}
+    texts = {name: kept[name] for name in ("command", "answer", "judgement", "reading", "remains", "samples")}
     return Fitted(**texts, errors=kept["after"], scores=scores)

@@ -10,6 +10,7 @@ from learn.paper.paper_page import ROMAN, unbroken
 from learn.paper_choices import figures
 from learn.paper_choices.outcome import WORDS, Outcome, cells, errors, rank_correlation, reading
 from learn.paper_choices.preset import changes
+from learn.paper_choices.remains import rests, sentences
 from swgsim.common.files import write_json, write_text
 from swgsim.common.html import environment
 from swgsim.common.style import Picture, png, words
@@ -21,7 +22,7 @@ def write(outcome: Outcome, config: Mapping[str, Any], folder: Path) -> None:
     """Write ``paper_choices.json`` and ``.html``, and in ``paper_choices/`` what a release keeps; print the answer."""
     write_json(folder / "paper_choices.json", outcome.fields())
     write_text(folder / "paper_choices.html", page(outcome, config["prior_weight"]))
-    write_json(folder / "paper_choices" / "paper_choices.json", kept(outcome))
+    write_json(folder / "paper_choices" / "paper_choices.json", kept(outcome, config["prior_weight"]))
     write_text(folder / "paper_choices" / "paper_fitted.yaml", preset(outcome, config))
     print(f"{folder / 'paper_choices.html'}: {outcome.answer}")
     print(f"error before: {in_words(errors(outcome.before))}; after: {in_words(errors(outcome.after))}")
@@ -36,7 +37,7 @@ def in_words(errors: Mapping[str, float]) -> str:
     return ", ".join(f"{ROMAN[name]} {error:.1f}" for name, error in errors.items()) + " points"
 
 
-def kept(outcome: Outcome) -> dict[str, Any]:
+def kept(outcome: Outcome, prior_weight: float) -> dict[str, Any]:
     """The result that ``make paper`` shows next to its own."""
     return {
         "command": COMMAND,
@@ -44,6 +45,7 @@ def kept(outcome: Outcome) -> dict[str, Any]:
         "answer": outcome.answer,
         "judgement": outcome.judgement,
         "reading": reading(outcome.held, outcome.parts),
+        "remains": sentences(outcome, rests(outcome, prior_weight)),
         "samples": sum(trial.sampled for trial in outcome.trials),
         "cells": cells(outcome.before, outcome.after),
     }
@@ -79,6 +81,7 @@ def page(outcome: Outcome, prior_weight: float) -> str:
             png(figures.effects(outcome.effects, outcome.choices)),
         ),
     ]
+    found = rests(outcome, prior_weight)
     presets = (outcome.before, outcome.after, outcome.unreduced)
     text = templates.get_template("paper_choices/paper_choices_page.html.jinja").render(
         outcome=outcome,
@@ -87,6 +90,8 @@ def page(outcome: Outcome, prior_weight: float) -> str:
         unreduced=errors(outcome.unreduced),
         ranks=[rank_correlation(tables) for tables in presets],
         reading=reading(outcome.held, outcome.parts),
+        remains=sentences(outcome, found),
+        rests=found.head(12).to_dict("records"),
         claims=WORDS,
         roman=ROMAN,
         pictures=pictures,

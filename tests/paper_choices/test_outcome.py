@@ -8,10 +8,11 @@ import pandas as pd
 import pytest
 from paper_choices.study_configuration import CHOICES, CONFIG, USUAL
 
-from learn.paper.published_tables import PROTOCOLS, Comparison, paper_table
+from learn.paper.published_tables import CELL, PROTOCOLS, Comparison, paper_table
 from learn.paper_choices import page
 from learn.paper_choices.analysis import Fit, Held
 from learn.paper_choices.outcome import Outcome, reading
+from learn.paper_choices.remains import rests, sentences
 from learn.paper_choices.search import Trial
 
 CLAIMS = {f"C{n}": n != 3 for n in range(1, 19)}
@@ -25,12 +26,9 @@ def outcome(**values):
     best = Trial(False, USUAL | values, 5.0, {}, {})
     intervals = {name: (0.9 * value, 1.1 * value) for name, value in best.values.items()}
     held = {key: Held(float(holds), ()) for key, holds in CLAIMS.items()} | {"C2": Held(0.4, ("window", "floor"))}
-    index = pd.MultiIndex.from_tuples(
-        [("table7", "selection_1", "test", "rf"), ("table9", "selection_3", "1,2->3", "nb")],
-        names=["table", "features", "row", "classifier"],
-    )
-    slopes = pd.DataFrame(1.0, index=index, columns=[each.name for each in CHOICES])
-    drawn = Trial(True, USUAL, 9.0, {}, CLAIMS)
+    cells = pd.concat({name: paper_table(name).set_index(CELL) for name in PROTOCOLS}, names=["table"]).index
+    slopes = pd.DataFrame(0.0, cells, [each.name for each in CHOICES]).assign(window=1.0)
+    drawn = Trial(True, USUAL, 9.0, {name: list(table.cells["ours"]) for name, table in tables(12).items()}, CLAIMS)
     return Outcome(
         CHOICES,
         [drawn, best],
@@ -61,7 +59,9 @@ def test_the_file_has_the_fields_that_are_asked_for():
 
 def test_the_answer_names_what_is_not_as_usual_and_nothing_else():
     found = outcome(load_inertia=0.02)
-    assert found.answer.startswith("The paper's chain has what ours lacks: inertia of output and load J_out 0.02 kg m²")
+    assert found.answer.startswith(
+        "The paper's chain has what ours lacks: inertia of output and load J_out: 0.02 kg m²"
+    )
     assert found.answer.count("ours") == 2  # lacks, and one value
     assert "our values fit as well" in outcome().answer
     assert "other choices" not in found.answer
@@ -70,24 +70,42 @@ def test_the_answer_names_what_is_not_as_usual_and_nothing_else():
 
 def test_a_table_that_the_fit_never_saw_may_contradict_it():
     found = outcome(load_inertia=0.02)
-    assert found.judgement.endswith("they support the fit.")
+    assert found.judgement.endswith("So they support the fit, yet they are no blind test.")
     worse = replace(found, after={**tables(4), "table10": tables(13.5)["table10"]})
     assert worse.judgement.startswith("Further away than before: Table X (+3.5 points).")
 
 
 def test_claims_are_read_by_how_they_hold():
-    text = reading(outcome().held, {"C3": {"one": 0.9, "two": 0.2}})
-    assert text.startswith("Hold on every plausible choice: C1 (damping hardly shows in the signals), C4 (")
-    assert "depend on a choice that the paper does not state: C2 (stiffness shows in s0 alone: window)" in text
-    assert text.endswith("do not come out on any: C3 (eccentricity distorts s1 and s3, 1 of 2 parts on most).")
+    groups = reading(outcome().held, {"C3": {"one": 0.9, "two": 0.2}})
+    assert groups["Hold on every plausible choice"].startswith("damping hardly shows in the signals (C1); a root crack")
+    assert groups["Depend on a choice that the paper does not state"] == "stiffness shows in s0 alone (C2: window)"
+    assert groups["Do not come out on any"] == "eccentricity distorts s1 and s3 (C3, 1 of 2 parts hold on most)"
+    assert len(groups) == 3
+
+
+def test_what_remains_names_the_choice_that_takes_most_and_what_it_costs():
+    """All scores are 4 too low; a longer window lifts them by 1 for a standard deviation, two to the range's end."""
+    found = rests(outcome(load_inertia=0.02), prior_weight=0.25)
+    assert set(found["choice"]) == {"length of the window"}
+    assert found["difference"].to_numpy() == pytest.approx(-4)
+    assert found.loc[found["table"] == "table9", "adds"].sum() == pytest.approx(4)
+    # The prior costs 0.25 * 2^2 / 2, and all cells come nearer by 2.
+    assert set(found["why"]) == {"takes 2 points at an end of its range, and makes the fit 1.5 points better"}
+
+
+def test_what_remains_is_said_of_each_table_that_stays_away():
+    of_ix, of_x, order = sentences(outcome(load_inertia=0.02), rests(outcome(load_inertia=0.02), 0.25))
+    assert of_ix.startswith("Table IX is 4.0 points off")
+    assert of_x.endswith("The nearest of 1 sets of choices has VII 12.0, VIII 12.0, IX 12.0, X 12.0 points off.")
+    assert order.startswith("The order of the classifiers agrees by 1.00")
 
 
 def test_the_page_opens_with_the_answer_and_says_what_was_reached():
     text = page.page(outcome(load_inertia=0.02), CONFIG["prior_weight"])
     lead = text.split("<nav>")[0]
     conclusions, found = "Hold on every plausible choice", "The paper's chain has what ours lacks".replace("'", "&#39;")
-    assert lead.index(conclusions) < lead.index(found) < lead.index("never seen")
-    assert text.count("reached</span>") == 5
+    assert lead.index(conclusions) < lead.index(found) < lead.index("no blind test")
+    assert lead.index("blind test") < text.index("of them on Selection 1") < text.index('id="pictures"')
     assert re.findall(r'(?:src|href)="(?!data:image/png;base64,|#)', text) == []
 
 
