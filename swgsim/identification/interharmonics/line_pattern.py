@@ -48,7 +48,7 @@ def line_parts(line: Callable[[str], LineBetween], spectra: Sequence[GaugeSpectr
         Probability of a false gauge.
     """
     gauges = spectra[0].gauges
-    patterns = [_Shown.of(line(name), spectra) for name in distinct_patterns(gauges)]
+    patterns = _Shown.of([line(name) for name in distinct_patterns(gauges)], spectra)
     best = max(patterns, key=lambda each: each.explained)
     alone = {gauge: _alone(gauge, line, spectra) for gauge in gauges}
     within = [gauge for gauge in gauges if gauge in GAUGE_PATTERNS[best.line.pattern]]
@@ -74,7 +74,8 @@ def _alone(gauge: str, line: Callable[[str], LineBetween], spectra: Sequence[Gau
     """The line in one gauge, without the lines of the other gauges in the noise."""
     others = [other for other in spectra[0].gauges if other != gauge]
     left = [each.without([line(LineBetween.pattern)], apart=others) for each in spectra] if others else spectra
-    return _Shown.of(line(f"in {gauge} alone"), left)
+    (shown,) = _Shown.of([line(f"in {gauge} alone")], left)
+    return shown
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,12 +93,15 @@ class _Shown:
     chance: float
 
     @classmethod
-    def of(cls, line: LineBetween, spectra: Sequence[GaugeSpectrum]) -> "_Shown":
-        """Of a line whose law is constant."""
-        gain, freedom, size, rest, count = np.array([each.explained([line]) for each in spectra])[..., 0].T
-        noise, chance = f_test(gain.sum(), max(freedom.sum(), 1.0), rest.sum(), count.sum())
-        explained = float(gain.sum() - noise * freedom.sum())
-        return cls(line, spectra, gain / noise, freedom, size / noise, explained, float(chance))
+    def of(cls, lines: Sequence[LineBetween], spectra: Sequence[GaugeSpectrum]) -> "list[_Shown]":
+        """Of each of some lines whose law is constant."""
+        found = []
+        every = np.array([each.explained(lines) for each in spectra]).transpose(2, 1, 0)
+        for line, (gain, freedom, size, rest, count) in zip(lines, every, strict=True):
+            noise, chance = f_test(gain.sum(), max(freedom.sum(), 1.0), rest.sum(), count.sum())
+            explained = float(gain.sum() - noise * freedom.sum())
+            found.append(cls(line, spectra, gain / noise, freedom, size / noise, explained, float(chance)))
+        return found
 
     def part(self) -> Part:
         """The line by the simplest of the laws that explain it best."""
