@@ -46,7 +46,7 @@ BENCHES = {
     "other_bench": Bench(HERE.parent, False),
     "shell_bench": Bench(HERE, False),
     "ring_bench": Bench(HERE, False),
-    "frame_bench": Bench(HERE, True),
+    "frame_bench": Bench(HERE, False),
     "ritz_bench": Bench(HERE, True),
 }
 GEARS = 20
