@@ -16,14 +16,14 @@ pytestmark = pytest.mark.end_to_end
 MODEL, NOISE, LEVEL, RATE = Model(GEAR), 1e-3, 0.005, 10_000.0
 
 
-def bench(rng, add=lambda phi, point: {}, points=POINTS, repeats=3, rate=RATE):
+def bench(rng, add=lambda phi, point: {}, points=POINTS, repeats=3, rate=RATE, noise=NOISE):
     """Gauges of noise, with what is added to some of them at an operating point."""
     found = []
     for point in points:
         for _ in range(repeats):
             phi = turning(point, 12, rate)
             more = add(phi, point)
-            gauges = {name: rng.normal(0, NOISE, len(phi)) + more.get(name, 0.0) for name in SENSORS}
+            gauges = {name: rng.normal(0, noise, len(phi)) + more.get(name, 0.0) for name in SENSORS}
             found.append(recorded({"phi_in": phi, **gauges}, point, rate))
     return found
 
@@ -79,6 +79,12 @@ def test_lines_in_a_narrow_band_are_as_uncertain_as_their_pattern():
     square = (np.abs(in_pattern) ** 2).mean(axis=-1) / 2
     # The healthy gear's laws take three of eighteen complex numbers, and 36 numbers are good to 24 %.
     assert square == pytest.approx([1, 1], abs=0.6)
+
+
+def test_a_bench_that_is_noisier_than_in_commissioning_shows_nothing_new():
+    rng = np.random.default_rng(6)
+    sessions = [(bench(rng, repeats=1, noise=3 * NOISE), bench(rng)) for _ in range(10)]
+    assert not any(high_order_regularities(*each, MODEL, MODEL, LEVEL, 3) for each in sessions)
 
 
 def test_an_index_that_is_off_is_no_new_line():

@@ -117,7 +117,7 @@ def high_order_regularities(
 
 
 def residual_lines(recordings: Sequence[Recording], healthy: Sequence[Recording], before: Model, after: Model) -> Above:
-    """The remainder of the lines; parameters as of :func:`above`."""
+    """The remainder of the lines; parameters as of :func:`high_order_regularities`."""
     every, count = (*recordings, *healthy), len(recordings)
     channels, highest = layout_of(every).channels, min(HIGHEST_ORDER, int(min(map(samples_per_turn, every)) / 2) - 1)
     known = _modelled(before, every, channels, highest)
@@ -127,7 +127,9 @@ def residual_lines(recordings: Sequence[Recording], healthy: Sequence[Recording]
     changed[:, :count] = np.abs(now - known[..., :count])[1:].max(axis=0)
     modelled = np.concatenate([now, known[..., count:]], axis=-1)
     left = (_lines(every, channels, highest) - modelled)[ORDERS + 1 :]
-    noise = _variance(every, channels, highest)[ORDERS + 1 :]
+    # The bench may be noisier than it was in commissioning.
+    sessions = [_variance(each, channels, highest) for each in (recordings, healthy) if each]
+    noise = np.concatenate(sessions, axis=-1)[ORDERS + 1 :]
     noise = noise * _narrow_bands(left[..., count:] / np.sqrt(noise[..., count:]), every, count, channels, highest)
     followed = np.array([laws(np.array(each.point.T_out), each.point.n_in_rpm) for each in every])
     own = left[..., count:] @ (followed @ np.linalg.pinv(followed[count:])).T if healthy else np.zeros(left.shape)
