@@ -14,13 +14,13 @@ from swgsim.effects.quantity import Role, quantities
 from swgsim.identification.decide.forms import Forms
 from swgsim.identification.decide.prior import (
     BALANCED,
-    FORM_ERRORS,
     LOG_SIZE_RANGE,
-    OTHER_FORMS,
     TIMES_BALANCED,
+    form_errors,
     log_choices,
     log_density,
     log_prior,
+    other_forms,
 )
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import extended
@@ -81,15 +81,20 @@ class Option:
         return bool(self.regularities or self.resembled)
 
     @property
+    def form_errors(self) -> tuple[float, ...]:
+        """Those that effects may have on this gear."""
+        return form_errors(self.fitted.unit.structure)
+
+    @property
     def form_error(self) -> float:
         """Posterior mean of the form error of the effects, as a share; 0 without effects."""
         weights = np.exp(logsumexp(self.evidences, axis=0) - self.log_evidence)
-        return float(weights @ np.array(FORM_ERRORS)) if self.effects else 0.0
+        return float(weights @ np.array(self.form_errors)) if self.effects else 0.0
 
     @property
     def fits_badly(self) -> bool:
         """Whether it leaves more unexplained than free values of all lines at all operating points would cost."""
-        measured, error = self.fitted.measured, FORM_ERRORS[self.likeliest[1]]
+        measured, error = self.fitted.measured, self.form_errors[self.likeliest[1]]
         misfit = self.forms.misfit - 2 * max(self.forms.gain([error] * len(self.fitted.added)), 0.0)
         return misfit > len(measured.layout) * len(measured.point_rows())
 
@@ -106,7 +111,7 @@ class Option:
     def opened(self, zeros: int, form_error: int) -> Fitted:
         """The fit with a factor of zeros, and with the form of its effects open by a form error (numbers of both)."""
         directions = np.hstack([np.zeros((len(self.fitted.residual), 0)), *form_directions(self.fitted)])
-        return self.fitted.with_zeros(ZEROS[zeros]).allowing_forms(FORM_ERRORS[form_error] * directions)
+        return self.fitted.with_zeros(ZEROS[zeros]).allowing_forms(self.form_errors[form_error] * directions)
 
 
 def causes_of(effects: Sequence[Effect], regularities: Sequence[Described]) -> frozenset[object]:
@@ -163,12 +168,13 @@ def resembling(option: Option, kinds: int) -> list[Option]:
     kinds : int
         Number of effects in the library.
     """
-    many, counts_for = len(option.effects), np.log(len(FORM_ERRORS))
-    of_fit = logsumexp(option.evidences[:, 0]) + counts_for - option.forms.gain([FORM_ERRORS[0]] * many)
+    of_effects, others = option.form_errors, other_forms(option.fitted.unit.structure)
+    many, counts_for = len(option.effects), np.log(len(of_effects))
+    of_fit = logsumexp(option.evidences[:, 0]) + counts_for - option.forms.gain([of_effects[0]] * many)
     # By what is unlike an effect, and how much; all other effects share a form error.
     evidences = {}
-    for unlike in product((0.0, *OTHER_FORMS), repeat=many):
-        gains = [option.forms.gain([own or shared for own in unlike]) for shared in FORM_ERRORS]
+    for unlike in product((0.0, *others), repeat=many):
+        gains = [option.forms.gain([own or shared for own in unlike]) for shared in of_effects]
         evidences[unlike] = of_fit + logsumexp(gains) - counts_for
     found = []
     for numbers in (each for n in range(1, many + 1) for each in combinations(range(many), n)):
@@ -177,7 +183,7 @@ def resembling(option: Option, kinds: int) -> list[Option]:
             for unlike, evidence in evidences.items()
             if set(np.flatnonzero(unlike)) <= set(numbers)
         ]
-        evidence = logsumexp(of_these) - len(numbers) * np.log(len(FORM_ERRORS) + len(OTHER_FORMS))
+        evidence = logsumexp(of_these) - len(numbers) * np.log(len(of_effects) + len(others))
         prior = log_prior(many - len(numbers), len(numbers), 0, kinds) - log_prior(many, 0, 0, kinds)
         found.append(
             replace(
@@ -231,8 +237,8 @@ def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"]
     of_zeros = balanced + [each.log_likelihood(r) for each in wholes]
     best = wholes[int(of_zeros.argmax())]
     forms = Forms.of([best.whiten(each) for each in form_directions(fitted)], best.whiten(r))
-    gains = [forms.gain([error] * len(fitted.added)) for error in FORM_ERRORS]
-    return of_zeros[:, None] + gains - np.log(len(FORM_ERRORS)), forms
+    gains = [forms.gain([error] * len(fitted.added)) for error in form_errors(fitted.unit.structure)]
+    return of_zeros[:, None] + gains - np.log(len(gains)), forms
 
 
 def expected_gain(fitted: Fitted, change: Float[np.ndarray, " row"]) -> float:
@@ -255,5 +261,5 @@ def expected_gain(fitted: Fitted, change: Float[np.ndarray, " row"]) -> float:
     along = float(size @ r) / norm
     root = size / (norm * (1 + norm))  # (1 + size size')^-1/2 = 1 - root size'
     forms = Forms.of([white[:, 1:] - np.outer(root, size @ white[:, 1:])], r - root * float(size @ r))
-    gains = [forms.gain([error]) for error in FORM_ERRORS]
+    gains = [forms.gain([error]) for error in form_errors(fitted.unit.structure)]
     return along**2 / 2 - np.log(norm * LOG_SIZE_RANGE) + float(logsumexp(gains))

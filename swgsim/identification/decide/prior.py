@@ -38,6 +38,22 @@ OTHER_FORMS = (0.5, 1.0)
 LOG_SIZE_RANGE = 8.0
 
 
+def form_errors(structure: float) -> tuple[float, ...]:
+    """Form errors of effects, on a gear whose structure differs from the truss by so much (standard deviation).
+
+    An effect acts by the structure, so that its form may differ by as much.
+
+    >>> form_errors(0.01), form_errors(0.5)
+    ((0.01, 0.02, 0.05, 0.1, 0.2), (0.01, 0.02, 0.05, 0.1, 0.2, 0.5))
+    """
+    return (*FORM_ERRORS, structure) if structure > FORM_ERRORS[-1] else FORM_ERRORS
+
+
+def other_forms(structure: float) -> tuple[float, ...]:
+    """Further form errors of what resembles an effect on such a gear."""
+    return tuple(each for each in OTHER_FORMS if each > structure)
+
+
 def log_prior(effects: int, resembled: int, regularities: int, kinds: int) -> float:
     """Logarithm of the prior probability of an option.
 
