@@ -16,6 +16,7 @@ from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import Gear, OperatingPoint
 from swgsim.gear.population import Population
 from swgsim.recordings.checks.across import session_defects
+from swgsim.recordings.checks.channel import plateau, runs
 from swgsim.recordings.checks.defect import summary
 from swgsim.recordings.checks.inspection import inspect
 from swgsim.recordings.recording import Recording
@@ -175,6 +176,17 @@ def stuck_from(name: str, start: int, length: int) -> Spoil:
         return with_channel(each, name, values)
 
     return of_first(stick)
+
+
+def test_noise_that_hits_one_level_four_times_is_not_clipped() -> None:
+    """A peak of the speed with noise of three steps [rpm]."""
+    values = np.array([
+        2998.79, 2998.91, 2999.04, 2999.27, 2999.34, 2999.45, 2999.62, 2999.72, 2999.79, 2999.87, 2999.89, 3000.02,
+        3000.05, 3000.05, 3000.05, 3000.05, 3000.04, 2999.99, 3000.00, 2999.98, 2999.81, 2999.70, 2999.67, 2999.48,
+    ])  # fmt: skip
+    assert plateau(values, *runs(values)) is None
+    cut = np.minimum(values, 2999.9)
+    assert plateau(cut, *runs(cut)) == 11
 
 
 def clipped_at(name: str, share: float) -> Spoil:

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 from jaxtyping import Float
+from scipy.stats import median_abs_deviation
 
 from swgsim.recordings.checks.defect import Defect
 from swgsim.recordings.checks.thresholds import CLIPPED_EDGE, CLIPPED_REFUSES, CLIPPED_RUN, STUCK_RUN, STUCK_TURN
@@ -22,15 +23,15 @@ def channel_defects(recording: Recording) -> Iterator[Defect]:
         if name == "phi_in":
             continue
         starts, lengths = runs(values)
-        plateau = [row for sign in (1, -1) if (row := _plateau(sign * values, starts, lengths)) is not None]
-        if plateau:
-            share = float(np.isin(values, values[plateau]).mean())
+        cut = [row for sign in (1, -1) if (row := plateau(sign * values, starts, lengths)) is not None]
+        if cut:
+            share = float(np.isin(values, values[cut]).mean())
             mild = name in SENSORS and share < CLIPPED_REFUSES  # The library has an effect of it.
             yield Defect(
                 "clipped", "warn" if mild else "refuse", recording.name, name,
-                f"{values[plateau[0]]:.5g} in a row between steep flanks, {100 * share:.2g} % of the samples cut",
+                f"{values[cut[0]]:.5g} in a row between steep flanks, {100 * share:.2g} % of the samples cut",
                 "a signal within the range of the amplifier", "lower the gain or widen the range, and record again",
-                plateau[0] + FIRST_ROW,
+                cut[0] + FIRST_ROW,
             )  # fmt: skip
         elif name in SENSORS[1:] and lengths.max() > max(STUCK_RUN, STUCK_TURN * turn):
             row = int(starts[np.argmax(lengths)])
@@ -63,12 +64,13 @@ def runs(values: Float[np.ndarray, " time"]) -> tuple[np.ndarray, np.ndarray]:
     return starts, np.diff(starts, append=len(values))
 
 
-def _plateau(values: Float[np.ndarray, " time"], starts: np.ndarray, lengths: np.ndarray) -> int | None:
+def plateau(values: Float[np.ndarray, " time"], starts: np.ndarray, lengths: np.ndarray) -> int | None:
     """First sample of the longest run at the maximum, if the signal is clipped there.
 
-    The peak of a digitised signal is flat too, within one step of the converter. Let a parabola be cut at a plateau.
-    Its hidden height is a third of its fall from the edge of the plateau to twice the distance from the middle. For a
-    clipped peak, this height exceeds the step to the next lower level.
+    The peak of a digitised signal is flat too, within one step of the converter, and noise may hit the same level by
+    chance. Let a parabola be cut at a plateau. Its hidden height is a third of its fall from the edge of the plateau to
+    twice the distance from the middle. For a clipped peak, this height exceeds the step to the next lower level, and
+    the noise.
     """
     top = lengths * (values[starts] == values.max())
     start, length = int(starts[np.argmax(top)]), int(top.max())
@@ -78,4 +80,9 @@ def _plateau(values: Float[np.ndarray, " time"], starts: np.ndarray, lengths: np
     edges = [i for i in (start - aside, start + length - 1 + aside) if 0 <= i < len(values)]
     fall = float(np.mean(values.max() - values[edges])) if edges else 0.0
     step = float(values.max() - values[values < values.max()].max())
-    return start if fall / 3 > CLIPPED_EDGE * step else None
+    return start if fall / 3 > CLIPPED_EDGE * max(step, _noise(values)) else None
+
+
+def _noise(values: Float[np.ndarray, " time"]) -> float:
+    """Standard deviation of white noise, from fourth differences, which a smooth signal hardly has."""
+    return float(median_abs_deviation(np.diff(values, 4), scale="normal") / np.sqrt(70)) if len(values) > 4 else 0.0
