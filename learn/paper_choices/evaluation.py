@@ -155,4 +155,5 @@ def _scores(data: LearningSet, table: str, classifier: Config, effort: Effort, s
 def _score(scores: Mapping[str, SplitScore], row: str) -> float:
     if row in ("train", "test"):
         return float(getattr(scores["fold 1"], row))
-    return scores.get(row, scores.get(MIDDLE, next(iter(scores.values())))).test
+    # The perceptron that was trained for one gear alone stands for all.
+    return (scores[MIDDLE] if set(scores) == {MIDDLE} else scores[row]).test

@@ -7,7 +7,7 @@ from paper_choices.study_configuration import CONFIG, USUAL
 from learn.paper_choices.evaluation import SAMPLED, SEARCHED, claims, recordings, tables
 
 pytestmark = pytest.mark.end_to_end
-SMALL = {**CONFIG, "grid": {**CONFIG["grid"], "variants": 6, "positions": 2}, "mesh": {"sectors": 40}}
+SMALL = {**CONFIG, "grid": {**CONFIG["grid"], "variants": 6, "positions": 2, "references": 1}, "mesh": {"sectors": 40}}
 CLASSIFIERS = CONFIG["classifiers"] | {
     "mlp": CONFIG["classifiers"]["mlp"] | {"iterations": 2},
     "rf": CONFIG["classifiers"]["rf"] | {"trees": 5},
