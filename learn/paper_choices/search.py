@@ -4,6 +4,7 @@ Trials are kept in a file, so an interrupted study goes on. The optimiser is Opt
 """
 
 import hashlib
+import inspect
 import json
 import warnings
 from collections.abc import Mapping, Sequence
@@ -21,15 +22,22 @@ from optuna.study import MaxTrialsCallback
 from optuna.trial import FrozenTrial, TrialState
 from scipy.stats import qmc
 
+import learn.paper.claims
+import learn.paper.feature_claims
+import learn.paper_choices.evaluation
+import learn.paper_choices.preset
+from learn.jobs import identity
 from learn.paper.published_tables import Comparison, paper_table
 from learn.paper_choices.choice import Choice
 from learn.paper_choices.evaluation import FITTED, SAMPLED, SEARCHED, Tables, claims, recordings, tables
 from learn.paper_choices.preset import Config, Values
+from swgsim.common.version import code_version
 
 # What a trial depends on.
 PRIOR = ("usual", "low", "high", "scale")
+SOURCES = (learn.paper.claims, learn.paper.feature_claims, learn.paper_choices.evaluation, learn.paper_choices.preset)
 DECISIVE = ("grid", "window", "mesh", "gears", "selections", "classifiers", "prior_weight", "seed")
-# A trial whose values allow no steady motion is pruned; one that was interrupted has failed and is done again.
+# A trial under whose values the chain or the features fail is pruned; one that was interrupted is done again.
 ENDED = (TrialState.COMPLETE, TrialState.PRUNED)
 
 
@@ -94,7 +102,17 @@ def trials(config: Config, choices: Sequence[Choice]) -> list[Trial]:
         study.enqueue_trial(place, user_attrs={"start": number})
     pool = joblib.Parallel(workers)
     pool(joblib.delayed(_work)(config, choices, number, sampled + fitted) for number in range(workers))
+    lost = [each.user_attrs for each in study.get_trials(states=(TrialState.PRUNED,))]
+    if lost:
+        draws = sum("sample" in each for each in lost)
+        print(f"{len(lost)} trials have no result and count nowhere, {draws} of them draws. First: {lost[0]['reason']}")
     return [_trial(each, choices, config["prior_weight"]) for each in study.get_trials(states=(TrialState.COMPLETE,))]
+
+
+def code() -> str:
+    """Digest of the code on which trials depend: the chain, the classifiers, the claims and the presets."""
+    parts = [code_version("studies"), identity.code_version(), *(inspect.getsource(each) for each in SOURCES)]
+    return hashlib.sha256("".join(parts).encode()).hexdigest()[:12]
 
 
 def _work(config: Config, choices: Sequence[Choice], worker: int, count: int) -> None:
@@ -107,7 +125,8 @@ def _work(config: Config, choices: Sequence[Choice], worker: int, count: int) ->
             made = recordings(config, values)
             scored = tables(made, config["classifiers"], SAMPLED if sampled else SEARCHED)
         except ValueError as error:
-            raise optuna.TrialPruned(str(error)) from error
+            trial.set_user_attr("reason", str(error))
+            raise optuna.TrialPruned from error
         scores = {name: table.cells["ours"].round(3).tolist() for name, table in scored.items()}
         trial.set_user_attr("scores", scores)
         if sampled:
@@ -129,9 +148,9 @@ def _sampler(choices: Sequence[Choice], seed: int) -> BaseSampler:
 
 
 def _study(config: Config, sampler: BaseSampler | None = None) -> optuna.Study:
-    """The study of a configuration; other choices, data or seeds make another one, more trials do not."""
+    """The study of a configuration; other choices, data, seeds or code make another one, more trials do not."""
     priors = {name: {key: each.get(key) for key in PRIOR} for name, each in config["choices"].items()}
-    decisive = [priors, *(config[key] for key in DECISIVE)]
+    decisive = [code(), priors, *(config[key] for key in DECISIVE)]
     name = hashlib.sha256(json.dumps(decisive, sort_keys=True).encode()).hexdigest()[:12]
     folder = Path(config["study"])
     folder.mkdir(parents=True, exist_ok=True)

@@ -28,6 +28,8 @@ def made(monkeypatch):
     def recordings(config, values):
         if len(done) == config.get("killed_after"):
             raise KeyboardInterrupt
+        if values["cause"] > config.get("steady_below", np.inf):
+            raise ValueError("no steady motion")
         done.append(values)
         return values
 
@@ -78,6 +80,20 @@ def test_an_interrupted_study_goes_on(made, tmp_path):
     again = search.trials(config(tmp_path), CHOICES)
     assert len(made) == 10
     assert [trial.values for trial in again] == [trial.values for trial in whole]
+
+
+def test_draws_without_a_result_are_counted_aloud(made, tmp_path, capsys):
+    found = search.trials(config(tmp_path, sampled=8, fitted=0, steady_below=1.0), CHOICES)
+    assert len(found) == 4
+    lost = "4 trials have no result and count nowhere, 4 of them draws. First: no steady motion"
+    assert lost in capsys.readouterr().out
+
+
+def test_other_code_makes_another_study(made, tmp_path, monkeypatch):
+    search.trials(config(tmp_path), CHOICES)
+    monkeypatch.setattr(search, "code", lambda: "another chain")
+    search.trials(config(tmp_path), CHOICES)
+    assert len(made) == 20
 
 
 def test_an_unusual_value_must_gain_what_its_prior_costs():
