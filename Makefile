@@ -24,7 +24,7 @@ FEW_EFFECTS := reduced_damping,warm_grease,flank_friction,input_unbalance,eccent
                )root_tooth_crack,tilting_moment,gauge_gain,channel_skew,mains_hum
 LEFT_OUT := tilting_moment strong_tilting_moment channel_skew coning load_sharing stiffening_spring axial_thrust bridge_nonlinearity
 # A few trials of the open choices on a small grid.
-FEW_TRIALS := sampled=4 fitted=1 'starts=[]' repeats=2 grid.variants=6 grid.positions=2 grid.references=4 judged.grid.variants=6 judged.grid.positions=2 \
+FEW_TRIALS := sampled=4 fitted=1 'starts=[]' repeats=2 grid.variants=6 grid.positions=2 grid.references=1 judged.grid.variants=6 judged.grid.positions=2 \
               classifiers.mlp.iterations=20 classifiers.rf.trees=20 judged.classifiers.mlp.iterations=20 judged.classifiers.rf.trees=20 out=report/small
 # Methods on microcontrollers that the small form leaves out.
 LARGER := paper_forest paper_forest_selection_3 forest_20 extra_trees_10 extra_trees_30 paper_mlp mlp_32 mlp_128 cnn_16

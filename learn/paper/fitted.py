@@ -1,9 +1,10 @@
 """The kept result of ``make paper-choices``, which the report shows beside that of ``grid=paper``."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
+from typing import Any
 
 Cell = tuple[str, str, str]  # table, row and classifier
 
@@ -19,13 +20,17 @@ class Fitted:
     answer : str
         What the paper's chain has that ours lacks.
     judgement : str
-        Whether the tables that the fit never saw support it.
-    reading : mapping
-        How claims of the paper hold over the choices to those that do, in words.
+        Which tables come nearer by the fit.
+    conclusions : mapping
+        How often conclusions of the paper hold over the choices, to those that do, in words.
     remains : list of str
         By what the tables stay away from the paper's.
     samples : int
-        Number of sets of choices behind the reading.
+        Number of sets of choices behind the conclusions.
+    claims : mapping
+        C1 to C18 to ``share`` of the sets, its ``interval``, and ``reading``.
+    found : list of str
+        The choices that differ from those of grid=paper.
     errors : mapping
         Table to its mean absolute difference with the fitted choices [points].
     scores : mapping
@@ -35,16 +40,28 @@ class Fitted:
     command: str
     answer: str
     judgement: str
-    reading: Mapping[str, str]
+    conclusions: Mapping[str, Sequence[str]]
     remains: list[str]
     samples: int
+    claims: Mapping[str, Mapping[str, Any]]
+    found: list[str]
     errors: Mapping[str, float]
     scores: Mapping[Cell, float]
+
+    def words(self, claim: str) -> str:
+        """How often a claim holds over the choices.
+
+        >>> fitted().words("C2")
+        '0 % (0 to 11), never'
+        """
+        kept = self.claims[claim]
+        share, low, high = (round(100 * each) for each in (kept["share"], *kept["interval"]))
+        return f"{share} % ({low} to {high}), {kept['reading'].replace('_', ' ')}"
 
 
 def fitted() -> Fitted:
     """The kept result."""
     kept = json.loads((files("learn.paper") / "tables" / "paper_choices.json").read_text(encoding="utf-8"))
     scores = {(cell["table"], cell["row"], cell["classifier"]): cell["after"] for cell in kept["cells"]}
-    texts = {name: kept[name] for name in ("command", "answer", "judgement", "reading", "remains", "samples")}
-    return Fitted(**texts, errors=kept["after"], scores=scores)
+    names = ("command", "answer", "judgement", "conclusions", "remains", "samples", "claims", "found")
+    return Fitted(**{name: kept[name] for name in names}, errors=kept["after"], scores=scores)

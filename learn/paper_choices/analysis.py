@@ -28,7 +28,7 @@ class Fit:
     deviation : float
         Of the difference between the objectives of two sets of values, over folds and forests [points].
     intervals : mapping
-        Choice to the least and the largest value among the trials that fit as well.
+        Choice that the fit sees to its least and largest value among the trials that fit as well.
     as_well : int
         Number of those trials.
     """
@@ -84,11 +84,13 @@ def reduced(
     values : mapping
         Those given for the few choices that are needed; the usual value of all others.
     deviation : float
-        Standard deviation over the seeds of a difference between two sets of values [points].
+        Standard deviation over the seeds of a difference between two sets of values [points]; if all values are usual,
+        that of two independent objectives.
     """
     usual = {each.name: each.usual for each in choices if values[each.name] != each.usual}
     costs = dict(zip(usual, alone([{**values, name: usual[name]} for name in usual]), strict=True))
-    best, variances = repeated(values), []
+    best = repeated(values)
+    variances = [] if costs else [2 * best.var(ddof=1)]
     for name in sorted(costs, key=lambda name: costs[name]):
         fewer = {**values, name: usual[name]}
         excess = repeated(fewer) - best
@@ -98,10 +100,10 @@ def reduced(
     return values, float(np.sqrt(np.mean(variances)))
 
 
-def fit(best: Trial, values: Values, trials: Sequence[Trial], deviation: float) -> Fit:
+def fit(best: Trial, values: Values, trials: Sequence[Trial], deviation: float, choices: Sequence[Choice]) -> Fit:
     """The values that were found, and the intervals of all trials within two standard deviations of the best one."""
     near = [trial for trial in trials if trial.objective <= best.objective + 2 * deviation]
-    columns = {name: [trial.values[name] for trial in near] for name in values}
+    columns = {each.name: [trial.values[each.name] for trial in near] for each in choices if each.fitted}
     return Fit(values, deviation, {name: (min(c), max(c)) for name, c in columns.items()}, len(near))
 
 
@@ -114,6 +116,8 @@ def best_of(trials: Sequence[Trial], choices: Sequence[Choice]) -> Trial:
 
 def effects(trials: Sequence[Trial], choices: Sequence[Choice]) -> pd.DataFrame:
     """Change of each cell for one standard deviation of each choice's prior [points], over the drawn trials.
+
+    Each slope is that over one choice alone, so chance correlations of the choices in few draws enter.
 
     Returns
     -------
@@ -155,6 +159,19 @@ def held(trials: Sequence[Trial], choices: Sequence[Choice]) -> dict[str, Held]:
             }
         result[key] = Held(float(holds.mean()), tuple(sorted(decisive, key=lambda name: decisive[name])))
     return result
+
+
+def interval(share: float, draws: int) -> tuple[float, float]:
+    """The 95 % interval of a share of independent draws (Clopper and Pearson).
+
+    >>> low, high = interval(29 / 32, 32)
+    >>> round(low, 2), round(high, 2)
+    (0.75, 0.98)
+    """
+    from scipy.stats import binomtest
+
+    ends = binomtest(round(share * draws), draws).proportion_ci()
+    return float(ends.low), float(ends.high)
 
 
 def parts_held(trials: Sequence[Trial]) -> dict[str, dict[str, float]]:

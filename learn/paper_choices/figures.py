@@ -24,7 +24,7 @@ def before_and_after(before: Tables, after: Tables) -> Figure:
             for classifier, cells in comparison.figures.groupby("classifier"):
                 key = str(classifier)
                 axes.plot(cells["paper"], cells["ours"], "o", color=COLOURS[key], markersize=4.5, label=key.upper())
-            role = "fitted" if table in FITTED else "never seen by the fit"
+            role = "fitted" if table in FITTED else "not seen by this fit"
             error = f"{comparison.mean_absolute_difference:.1f} points"
             style.label(axes, "", "", f"Table {ROMAN[table]} ({role})\n{name}: {error}")
         row[0].set_ylabel("our score [%]")

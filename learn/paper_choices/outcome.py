@@ -9,40 +9,11 @@ import pandas as pd
 
 from learn.paper.paper_page import ROMAN
 from learn.paper.published_tables import row_label
-from learn.paper_choices.analysis import Fit, Held
+from learn.paper_choices.analysis import Fit, Held, interval
 from learn.paper_choices.choice import Choice
-from learn.paper_choices.evaluation import FITTED, Tables
+from learn.paper_choices.evaluation import Tables
+from learn.paper_choices.reading import word
 from learn.paper_choices.search import Trial
-
-WORDS = {
-    "C1": "damping hardly shows in the signals",
-    "C2": "stiffness shows in s0 alone",
-    "C3": "eccentricity distorts s1 and s3",
-    "C4": "a root crack changes all amplitudes",
-    "C5": "a tip crack shows shortly in s1 and s3",
-    "C6": "less damping, higher efficiency",
-    "C7": "run-in",
-    "C8": "opposite gauges are alike",
-    "C9": "three faults separate in the DFT of differences",
-    "C10": "the fourth root separates small changes",
-    "C11": "RF and KNN are best on the same gears",
-    "C12": "MLP is good on Selection 3 alone",
-    "C13": "NB is good on Selection 1 alone, SVM is last",
-    "C14": "Selection 2 does not improve the scores",
-    "C15": "the scores of Table VIII, disturbed",
-    "C16": "the scores of Table IX, another gear",
-    "C17": "the scores of Table X, another gear and disturbed",
-    "C18": "RF is most robust, yet not good enough",
-}
-
-# How a claim holds over the drawn choices (:attr:`~learn.paper_choices.analysis.Held.words`), in the order of a reader.
-GROUPS = {
-    "always": "Hold on every plausible choice",
-    "depends": "Depend on a choice that the paper does not state",
-    "mostly": "Hold on most sets of choices, and no single choice decides",
-    "seldom": "Hold on few sets of choices, and no single choice decides",
-    "never": "Do not come out on any",
-}
 
 
 @dataclass(frozen=True)
@@ -87,15 +58,32 @@ class Outcome:
             "after": errors(self.after),
             "unreduced": errors(self.unreduced),
             "rank_correlation": round(rank_correlation(self.after), 3),
+            "rank_correlations": {
+                name: round(rank_correlation(tables), 3)
+                for name, tables in (("before", self.before), ("after", self.after), ("unreduced", self.unreduced))
+            },
             "choices": {
-                each.name: {"value": self.fit.values[each.name], "interval": list(self.fit.intervals[each.name])}
+                each.name: {
+                    "value": self.fit.values[each.name],
+                    "interval": list(self.fit.intervals[each.name]) if each.fitted else None,
+                }
                 for each in self.choices
             },
             "claims": {
-                key: {"share": round(held.share, 3), "depends_on": list(held.depends_on)}
+                key: {
+                    "share": round(held.share, 3),
+                    "interval": [round(end, 3) for end in interval(held.share, self.draws)],
+                    "depends_on": list(held.depends_on),
+                    "reading": word(key, held),
+                }
                 for key, held in self.held.items()
             },
         }
+
+    @property
+    def draws(self) -> int:
+        """Number of sets of choices that were drawn from the priors."""
+        return sum(trial.sampled for trial in self.trials)
 
     @property
     def found(self) -> list[Choice]:
@@ -105,15 +93,24 @@ class Outcome:
 
     @property
     def answer(self) -> str:
-        """What the paper's chain has that ours lacks, in a sentence."""
+        """What the paper's chain has that ours lacks, as far as the intervals show it."""
         if not self.found:
             return "No choice that the paper leaves open is known to differ from ours: our values fit as well."
-        found = "The paper's chain has what ours lacks: " + "; ".join(self.text(each) for each in self.found) + "."
-        ends = [(each.usual, *self.fit.intervals[each.name]) for each in self.found]
-        open_ones = sum(low <= usual <= high for usual, low, high in ends)
-        if not open_ones:
-            return found
-        return f"{found} Of these intervals {open_ones} hold our value, so other choices can take the place of those."
+        shown = [each for each in self.found if not self._holds_ours(each)]
+        other = [each for each in self.found if self._holds_ours(each)]
+        lacks = f"The paper's chain has what ours lacks: {self._texts(shown)}." if shown else ""
+        fits = (
+            f"{'Also' if shown else 'These values'} fit better, but our values are within the intervals, so nothing is "
+            f"shown to be missing: {self._texts(other)}."
+        )
+        return f"{lacks} {fits}".strip() if other else lacks
+
+    def _holds_ours(self, choice: Choice) -> bool:
+        low, high = self.fit.intervals[choice.name]
+        return low <= choice.usual <= high
+
+    def _texts(self, choices: Sequence[Choice]) -> str:
+        return "; ".join(self.text(each) for each in choices)
 
     def text(self, choice: Choice) -> str:
         """A choice with the value that was found and its interval."""
@@ -125,19 +122,28 @@ class Outcome:
 
     @property
     def judgement(self) -> str:
-        """Whether the tables that the fit never saw come nearer as well."""
-        worse = [name for name in self.after if name not in FITTED and self._change(name) > 0]
-        if not worse:
-            return (
-                "Tables VIII and X come nearer, too. The fit never saw them, but its authors did: earlier forms of the "
-                "study had been judged on them before its method was changed. So they support the fit, yet they are no "
-                "blind test."
+        """Which tables come nearer by more than the scatter of their cells."""
+        changes = {ROMAN[name]: self._change(name) for name in self.after}
+        nearer = [name for name, (mean, error) in changes.items() if mean < -2 * error]
+        further = [name for name, (mean, error) in changes.items() if mean > 2 * error]
+        rest = [name for name in changes if name not in nearer + further]
+        words = [
+            f"{text}: {', '.join(names)}."
+            for text, names in (
+                ("Clearly nearer than before", nearer),
+                ("Clearly further away", further),
+                ("Changed by less than two standard errors", rest),
             )
-        names = " and ".join(f"Table {ROMAN[name]} ({self._change(name):+.1f} points)" for name in worse)
-        return f"Further away than before: {names}. So part of what was found is not what the paper did."
+            if names
+        ]
+        figures = ", ".join(f"{name} {mean:+.1f} ± {error:.1f}" for name, (mean, error) in changes.items())
+        return f"{' '.join(words)} Mean change and its standard error over the cells: {figures} points."
 
-    def _change(self, name: str) -> float:
-        return self.after[name].mean_absolute_difference - self.before[name].mean_absolute_difference
+    def _change(self, name: str) -> tuple[float, float]:
+        """Mean change of the differences to the paper, and its standard error over the cells [points]."""
+        now, then = (tables[name].figures for tables in (self.after, self.before))
+        changes = (now["ours"] - now["paper"]).abs() - (then["ours"] - then["paper"]).abs()
+        return float(changes.mean()), float(changes.std() / np.sqrt(len(changes)))
 
 
 def errors(tables: Tables) -> dict[str, float]:
@@ -150,34 +156,16 @@ def rank_correlation(tables: Tables) -> float:
     return float(np.nanmean([rho for table in tables.values() for rho in table.rank_correlation.values()]))
 
 
-def reading(held: Mapping[str, Held], parts: Mapping[str, Mapping[str, float]]) -> dict[str, str]:
-    """Which claims of the paper hold on any plausible choice, which on some, and which on none, group by group.
-
-    Of a claim that seldom holds as a whole, the parts that hold on most draws are counted.
-    """
-    groups: dict[str, list[str]] = {words: [] for words in GROUPS}
-    for key, each in held.items():
-        groups[each.words if each.words in groups else "depends"].append(_in_words(key, each, parts.get(key, {})))
-    return {GROUPS[words]: "; ".join(texts) for words, texts in groups.items() if texts}
-
-
-def _in_words(key: str, held: Held, parts: Mapping[str, float]) -> str:
-    shares = list(parts.values())
-    few = held.share <= 0.5 and len(shares) > 1
-    robust = f", {sum(share > 0.5 for share in shares)} of {len(shares)} parts hold on most" if few else ""
-    choice = f": {held.depends_on[0].replace('_', ' ')}" if held.depends_on else ""
-    return f"{WORDS[key]} ({key}{choice}{robust})"
-
-
-def cells(before: Tables, after: Tables) -> list[dict[str, Any]]:
-    """All cells of the tables: paper, before and after."""
+def cells(before: Tables, after: Tables, unreduced: Tables) -> list[dict[str, Any]]:
+    """All cells of the tables: the paper's, and ours under three sets of values."""
     rows = []
     for table, comparison in after.items():
-        ours_before = before[table].cells["ours"]
-        for cell, earlier in zip(comparison.cells.to_dict("records"), ours_before, strict=True):
+        others = (before[table].cells["ours"], unreduced[table].cells["ours"])
+        for cell, earlier, whole in zip(comparison.cells.to_dict("records"), *others, strict=True):
             row = row_label(cell["features"], cell["row"])
             rows.append({
                 "table": table, "row": row, "classifier": cell["classifier"], "relation": cell["relation"],
                 "paper": cell["paper"], "before": round(earlier, 2), "after": round(cell["ours"], 2),
+                "unreduced": round(whole, 2),
             })  # fmt: skip
     return rows

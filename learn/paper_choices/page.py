@@ -8,8 +8,9 @@ import yaml
 
 from learn.paper.paper_page import ROMAN, unbroken
 from learn.paper_choices import figures
-from learn.paper_choices.outcome import WORDS, Outcome, cells, errors, rank_correlation, reading
+from learn.paper_choices.outcome import Outcome, cells, errors
 from learn.paper_choices.preset import changes
+from learn.paper_choices.reading import WORDS, conclusions, reading
 from learn.paper_choices.remains import rests, sentences
 from swgsim.common.files import write_json, write_text
 from swgsim.common.html import environment
@@ -21,8 +22,8 @@ COMMAND = "make paper-choices"
 def write(outcome: Outcome, config: Mapping[str, Any], folder: Path) -> None:
     """Write ``paper_choices.json`` and ``.html``, and in ``paper_choices/`` what a release keeps; print the answer."""
     write_json(folder / "paper_choices.json", outcome.fields())
-    write_text(folder / "paper_choices.html", page(outcome, config["prior_weight"]))
-    write_json(folder / "paper_choices" / "paper_choices.json", kept(outcome, config["prior_weight"]))
+    write_text(folder / "paper_choices.html", page(outcome, config))
+    write_json(folder / "paper_choices" / "paper_choices.json", kept(outcome))
     write_text(folder / "paper_choices" / "paper_fitted.yaml", preset(outcome, config))
     print(f"{folder / 'paper_choices.html'}: {outcome.answer}")
     print(f"error before: {in_words(errors(outcome.before))}; after: {in_words(errors(outcome.after))}")
@@ -37,17 +38,19 @@ def in_words(errors: Mapping[str, float]) -> str:
     return ", ".join(f"{ROMAN[name]} {error:.1f}" for name, error in errors.items()) + " points"
 
 
-def kept(outcome: Outcome, prior_weight: float) -> dict[str, Any]:
+def kept(outcome: Outcome) -> dict[str, Any]:
     """The result that ``make paper`` shows next to its own."""
     return {
         "command": COMMAND,
         **outcome.fields(),
         "answer": outcome.answer,
         "judgement": outcome.judgement,
-        "reading": reading(outcome.held, outcome.parts),
-        "remains": sentences(outcome, rests(outcome, prior_weight)),
-        "samples": sum(trial.sampled for trial in outcome.trials),
-        "cells": cells(outcome.before, outcome.after),
+        "conclusions": conclusions(outcome.parts, outcome.draws),
+        "remains": sentences(outcome, rests(outcome)),
+        "samples": outcome.draws,
+        "found": [each.name for each in outcome.found],
+        "parts": {key: {name: round(share, 3) for name, share in of.items()} for key, of in outcome.parts.items()},
+        "cells": cells(outcome.before, outcome.after, outcome.unreduced),
     }
 
 
@@ -59,11 +62,11 @@ def preset(outcome: Outcome, config: Mapping[str, Any]) -> str:
     return (
         "# @package _global_\n"
         f"# Made by '{COMMAND}': choices that the paper leaves open, FITTED to the scores of its Tables VII and IX.\n"
-        "# grid=paper has physics alone. Intervals and sources: report/paper_choices.html.\n" + text
+        "# grid=paper is not fitted to these. Intervals and sources: report/paper_choices.html.\n" + text
     )
 
 
-def page(outcome: Outcome, prior_weight: float) -> str:
+def page(outcome: Outcome, config: Mapping[str, Any]) -> str:
     """The page."""
     templates = environment("learn")
     templates.filters["words"] = words
@@ -81,23 +84,23 @@ def page(outcome: Outcome, prior_weight: float) -> str:
             png(figures.effects(outcome.effects, outcome.choices)),
         ),
     ]
-    found = rests(outcome, prior_weight)
-    presets = (outcome.before, outcome.after, outcome.unreduced)
+    found = rests(outcome)
     text = templates.get_template("paper_choices/paper_choices_page.html.jinja").render(
         outcome=outcome,
         before=errors(outcome.before),
         after=errors(outcome.after),
         unreduced=errors(outcome.unreduced),
-        ranks=[rank_correlation(tables) for tables in presets],
-        reading=reading(outcome.held, outcome.parts),
+        fields=outcome.fields(),
+        conclusions=conclusions(outcome.parts, outcome.draws),
+        reading=reading(outcome.held),
         remains=sentences(outcome, found),
         rests=found.head(12).to_dict("records"),
         claims=WORDS,
         roman=ROMAN,
         pictures=pictures,
-        samples=sum(trial.sampled for trial in outcome.trials),
+        samples=outcome.draws,
         trials=len(outcome.trials),
-        prior_weight=prior_weight,
+        config=config,
         command=COMMAND,
     )
     return unbroken(text)

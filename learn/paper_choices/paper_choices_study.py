@@ -14,7 +14,7 @@ from learn.paper_choices.evaluation import JUDGED, SEARCHED, Tables, claims, rec
 from learn.paper_choices.outcome import Outcome
 from learn.paper_choices.page import write
 from learn.paper_choices.preset import Values, merged
-from learn.paper_choices.search import cost, fitted_error, trials
+from learn.paper_choices.search import code, cost, fitted_error, trials
 
 
 def run(config: Mapping[str, Any]) -> dict[str, float]:
@@ -34,7 +34,7 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
     usual = {each.name: each.usual for each in choices}
     judged = merged(config, config["judged"])
     pool = joblib.Parallel(config["workers"] or joblib.cpu_count())
-    memory = joblib.Memory(config["study"], verbose=0)  # an interrupted study goes on after the trials, too
+    memory = joblib.Memory(Path(config["study"]) / code(), verbose=0)  # an interrupted study goes on after the trials
     error, whole = memory.cache(_error), memory.cache(_judged)
 
     def objectives(sets: Sequence[Values], seeds: Sequence[int] = (0,)) -> list[float]:
@@ -49,7 +49,7 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
     done = trials(config, choices)
     best = best_of(done, choices)
     values, deviation = reduced(best.values, choices, objectives, repeated)
-    found = fit(best, values, done, deviation)
+    found = fit(best, values, done, deviation, choices)
     before, after, of_all = pool(joblib.delayed(whole)(judged, each) for each in (usual, values, best.values))
     outcome = Outcome(
         choices, done, found, before[0], after[0], of_all[0], before[1], after[1], held(done, choices),

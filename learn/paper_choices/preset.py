@@ -14,6 +14,8 @@ Values = Mapping[str, float]
 def changes(values: Values, base: Config) -> dict[str, Any]:
     """What the values change in a configuration.
 
+    Gauge errors and differences of kinematic errors keep one pattern each, which the values scale.
+
     Parameters
     ----------
     values : mapping

@@ -1,55 +1,42 @@
-"""What the fitted values leave of the differences to the paper, and why no choice takes it away."""
+"""What the fitted values leave of the differences to the paper, and how near any set of choices comes."""
 
-import numpy as np
 import pandas as pd
 
 from learn.paper.paper_page import ROMAN
 from learn.paper.published_tables import CELL
-from learn.paper_choices.choice import Choice
-from learn.paper_choices.evaluation import FITTED, Tables
+from learn.paper_choices.evaluation import Tables
 from learn.paper_choices.outcome import Outcome, rank_correlation
 
 GROUP = ["table", "features", "classifier"]
 
 
-def rests(outcome: Outcome, prior_weight: float) -> pd.DataFrame:
-    """The mean difference of each classifier on each selection, and the choice that takes most of it.
+def rests(outcome: Outcome) -> pd.DataFrame:
+    """The mean difference of each classifier on each selection.
 
     Returns
     -------
     DataFrame
         Of each ``table``, ``features`` and ``classifier``, the largest first. ``difference``: mean of ours - paper;
-        ``adds``: to the mean absolute difference of the table (both in points). ``choice``: what takes most at an end
-        of its range, by its slopes over the draws; ``why``: how much, and why it does not.
+        ``adds``: to the mean absolute difference of the table; ``nearest``: the mean difference that is nearest to zero
+        among all trials (all in points).
     """
-    cells = pd.concat({name: table.figures.set_index(CELL) for name, table in outcome.after.items()}, names=["table"])
-    difference, slopes = cells["ours"] - cells["paper"], outcome.effects.reindex(cells.index)
-    now = outcome.fit.values
-    ways = {
-        (each, end): each.deviation(end) - each.deviation(now[each.name])
-        for each in outcome.choices
-        for end in (each.low, each.high)
-    }
-    rows = []
-    for group, own in difference.groupby(GROUP):
-        slope = slopes.loc[own.index].mean()
-        left = {key: abs(own.mean() + way * slope[key[0].name]) for key, way in ways.items()}
-        choice, end = min(left, key=lambda key: left[key])
-        moved = (difference + ways[choice, end] * slopes[choice.name]).abs() - difference.abs()
-        cost = prior_weight * (choice.cost(end) - choice.cost(now[choice.name]))
-        cost += float(np.mean([moved.loc[table].mean() for table in FITTED]))
-        adds = own.abs().sum() / len(difference.loc[own.index[0][0]])
-        why = _why(choice, abs(own.mean()) - left[choice, end], cost)
-        rows.append((*group, own.mean(), adds, choice.meaning, why))
-    found = pd.DataFrame(rows, columns=[*GROUP, "difference", "adds", "choice", "why"])
-    return found.sort_values("difference", key=lambda column: -column.abs())
+    now = _differences(outcome.after)
+    tried = pd.concat({
+        number: _differences(trial.tables).groupby(GROUP).mean() for number, trial in enumerate(outcome.trials)
+    }, axis=1)  # fmt: skip
+    number_of_cells = now.groupby("table").transform("size")
+    found = pd.DataFrame({
+        "difference": now.groupby(GROUP).mean(),
+        "adds": (now.abs() / number_of_cells).groupby(GROUP).sum(),
+        "nearest": tried.apply(lambda row: min(row.dropna(), key=abs), axis=1),
+    })  # fmt: skip
+    return found.sort_values("difference", key=lambda column: -column.abs()).reset_index()
 
 
-def _why(choice: Choice, taken: float, cost: float) -> str:
-    if not choice.fitted:
-        return "is not fitted: Tables VIII and X alone depend on it, and they judge"
-    worse = f"{abs(cost):.1f} points {'worse' if cost > 0 else 'better'}"
-    return f"takes {taken:.0f} points at an end of its range, and makes the fit {worse}"
+def _differences(tables: Tables) -> pd.Series:
+    """Ours less the paper's of every cell [points]."""
+    cells = pd.concat({name: table.figures.set_index(CELL) for name, table in tables.items()}, names=["table"])
+    return cells["ours"] - cells["paper"]
 
 
 def sentences(outcome: Outcome, found: pd.DataFrame) -> list[str]:
@@ -70,7 +57,7 @@ def sentences(outcome: Outcome, found: pd.DataFrame) -> list[str]:
 
 
 def _of_table(table: str, outcome: Outcome, found: pd.DataFrame) -> str:
-    """Where its error is, what could take it, and what the nearest of all sets of choices does to the other tables."""
+    """Where its error is, and what the nearest of all sets of choices does to the other tables."""
     own = found[found["table"] == table]
     adds = own.groupby("features")["adds"].sum()
     there = own[own["features"] == adds.idxmax()].to_dict("records")
@@ -79,10 +66,10 @@ def _of_table(table: str, outcome: Outcome, found: pd.DataFrame) -> str:
     nearest = min(known, key=lambda tables: tables[table].mean_absolute_difference)
     first, off = there[0], outcome.after[table].mean_absolute_difference
     return (
-        f"Table {ROMAN[table]} is {off:.1f} points off, {adds.max():.1f} of them on "
-        f"{first['features'].replace('_', ' ').capitalize()}: {ours} points. The choice that moves the first of these "
-        f"most, {first['choice']}, {first['why']}. The nearest of {len(known)} sets of choices has {_errors(nearest)} "
-        "points off."
+        f"Table {ROMAN[table]} stays {off:.1f} points off, {adds.max():.1f} of them on "
+        f"{first['features'].replace('_', ' ').capitalize()}: {ours} points. Of {len(known)} sets of choices, the "
+        f"best leaves {round(first['nearest']) + 0:+} of the first of these; the one nearest to the whole table has "
+        f"{_errors(nearest)} points off."
     )
 
 

@@ -81,7 +81,7 @@ def test_first_lines_say_what_holds_and_what_does_not():
     assert re.search(r"Not reproduced:</b> C3\.", lead)
     assert re.search(r"Table\sVII 2\.5 points\s+\(30 cells; fitted choices: [\d.]+\)", lead)
     assert "small grid" not in lead
-    assert lead.index("plausible sets of the choices") < lead.index("17 of 18 claims")
+    assert lead.index("RF is best on Selections 1 and 2") < lead.index("17 of 18 claims")
     assert "This is the small grid" in written("small").html()
 
 

@@ -50,12 +50,13 @@ def test_a_claim_that_holds_by_chance_depends_on_nothing_but_rarely():
 def test_what_fits_as_well_is_within_the_scatter_of_the_best():
     made = trials()
     best = best_of(made, CHOICES)
-    near, wide = (fit(best, best.values, made, deviation) for deviation in (0.1, 0.5))
+    near, wide = (fit(best, best.values, made, deviation, CHOICES) for deviation in (0.1, 0.5))
     low, high = near.intervals["cause"]
     assert low <= best.values["cause"] <= high
     assert near.as_well < wide.as_well
     assert wide.intervals["cause"][0] <= low
     assert low > 1  # the scores want more of the cause than is usual
+    assert "unseen" not in near.intervals  # the scores say nothing of it
 
 
 def test_choices_are_put_back_together_as_long_as_the_rest_fits():
@@ -74,6 +75,13 @@ def test_choices_are_put_back_together_as_long_as_the_rest_fits():
     found, deviation = reduced(values, CHOICES, alone, repeated)
     assert found == {"cause": 4.0, "other": 3.0, "unseen": 1.0}
     assert deviation == pytest.approx(0.3, rel=0.3)
+
+
+def test_a_best_trial_with_usual_values_alone_has_the_scatter_of_independent_seeds():
+    usual = {each.name: each.usual for each in CHOICES}
+    found, deviation = reduced(usual, CHOICES, lambda sets: [], lambda _: np.array([4.0, 5.0, 6.0]))
+    assert found == usual
+    assert deviation == pytest.approx(np.sqrt(2))
 
 
 def test_what_the_fit_does_not_see_keeps_its_usual_value():
