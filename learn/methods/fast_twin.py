@@ -183,7 +183,9 @@ class FastTwin:
             network = self._untrained(len(state["centre"]))
             network.load_state_dict(state)
         except Exception as error:  # PyTorch raises many kinds
-            raise ValueError(f"{self.path} is no network of these choices, or damaged: remove it to train anew") from error
+            raise ValueError(
+                f"{self.path} is no network of these choices, or damaged: remove it to train anew"
+            ) from error
         return network.eval()
 
     def _outputs_of(self, X: Inputs) -> Float["Tensor", "row output"]:
@@ -194,8 +196,10 @@ class FastTwin:
         from learn.methods.training import one_thread
         from swgsim.common.build import build
         from swgsim.gear.acquisition import Window
+        from swgsim.jobs import settings
 
-        inputs = ReferenceLines(build(Window, json.loads(self._believed)["window"]))
+        believed = json.loads(self._believed)
+        inputs = ReferenceLines(build(Window, believed["window"]), settings.grid(believed["grid"]).points)
         with torch.inference_mode(), one_thread():
             made = [torch.from_numpy(inputs(rows).astype(np.float32)) for rows in chunks(X)]
             return torch.cat([self.network_(rows) for rows in made])

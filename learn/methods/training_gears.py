@@ -53,4 +53,4 @@ def gear_rows(
     """Inputs and targets of the samples of the only gear of a plan."""
     with threadpool_limits(1):
         made = Referenced("training").learning_set([record(plan, list(plan.grid.cases(*plan.gears)))])
-        return ReferenceLines(plan.window)(np.asarray(made.features)), outputs.targets(made.table)
+        return ReferenceLines(plan.window, plan.grid.points)(np.asarray(made.features)), outputs.targets(made.table)
