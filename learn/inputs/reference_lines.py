@@ -13,7 +13,7 @@ from jaxtyping import Complex, Float
 from learn.inputs.auxiliary_inputs import AuxiliaryInputs
 from learn.inputs.harmonics import Harmonics
 from learn.inputs.lines import ResidualLines
-from learn.inputs.residuals import ERRORS, HealthyLines, residual
+from learn.inputs.residuals import HealthyLines, residual
 from swgsim.gear.acquisition import Window
 from swgsim.gear.gear import OperatingPoint
 from swgsim.oracle.model import ORDERS

@@ -183,9 +183,7 @@ class FastTwin:
             network = self._untrained(len(state["centre"]))
             network.load_state_dict(state)
         except Exception as error:  # PyTorch raises many kinds
-            raise ValueError(
-                f"{self.path} is no network of these choices, or damaged: remove it to train anew"
-            ) from error
+            raise ValueError(f"{self.path} is no such network, or damaged: remove it to train anew") from error
         return network.eval()
 
     def _outputs_of(self, X: Inputs) -> Float["Tensor", "row output"]:

@@ -1,7 +1,7 @@
 """Outputs of a network as a posterior over class, size and position of a fault.
 
-The loss is the mean negative logarithm of the posterior density of what is true, so that no network has a lower expected
-loss than Bayes' rule. Sizes have a truncated normal distribution, positions one of von Mises.
+The loss is the mean negative logarithm of the posterior density of what is true: no network has a lower expected loss
+than Bayes' rule. Sizes have a truncated normal distribution, positions one of von Mises.
 """
 
 from collections.abc import Mapping
@@ -74,7 +74,7 @@ class FaultOutputs:
         return np.asarray(self._parts(outputs)[0].double().softmax(dim=1).numpy())
 
     def diagnosis(self, outputs: Float[Tensor, "row output"]) -> pd.DataFrame:
-        """Probabilities, and severity and position of the likeliest class as :func:`swgsim.oracle.diagnosis.diagnosis`."""
+        """Probabilities, and severity and position of the likeliest class (:mod:`swgsim.oracle.diagnosis`)."""
         probabilities = self.probabilities(outputs)
         table = pd.DataFrame(probabilities, columns=list(self.classes))
         table[list(FOUND)] = np.nan

@@ -43,7 +43,7 @@ class Recipe:
 
 
 def train(
-    network: Network, X: Float[Tensor, "row column"] | Rows, y: Shaped[Tensor, "row *target"], recipe: Recipe, seed: int,
+    network: Network, X: Float[Tensor, "row column"] | Rows, y: Shaped[Tensor, "*row"], recipe: Recipe, seed: int,
     *, parameters: Iterable[nn.Parameter] | None = None, penalty: Callable[[Network], Tensor] | None = None,
     frozen_statistics: bool = False, loss_of: Callable[[Tensor, Tensor], Tensor] = nn.functional.cross_entropy,
 ) -> None:  # fmt: skip

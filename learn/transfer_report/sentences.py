@@ -76,8 +76,8 @@ def fast_twin(zero: pd.DataFrame, methods: pd.DataFrame) -> list[str]:
         return []
     time = number(row_of(methods, FAST_TWIN)["milliseconds"], digits=2, unit=" ms")
     return [
-        "The fast twin, one network that is given the references of the judged gear and was trained on other, simulated "
-        f"gears of the series, errs in {of_row(row_of(zero, FAST_TWIN))} of the recordings and takes {time} for each."
+        "The fast twin, one network that is given the references of the judged gear and was trained on other gears of "
+        f"its series, errs in {of_row(row_of(zero, FAST_TWIN))} of the recordings and takes {time} for each."
     ]
 
 

@@ -83,7 +83,7 @@ def test_the_seed_decides_every_byte_and_a_file_is_read_again(trained: FastTwin,
     assert again.path.name == trained.path.name
     assert again.path.read_bytes() == kept
     again.path.write_bytes(kept[:-100])
-    with pytest.raises(ValueError, match=r"is no network of these choices, or damaged: remove it"):
+    with pytest.raises(ValueError, match=r"is no such network, or damaged: remove it"):
         again.fit(ROWS.features[:6], LABELS[:6])
     trained.fit(ROWS.features[:6], LABELS[:6])
     assert trained.path.read_bytes() == kept
@@ -138,4 +138,4 @@ def test_weights_are_read_without_running_code(trained: FastTwin) -> None:
     state = torch.load(trained.path, weights_only=True)
     assert set(state) == set(trained.network_.state_dict())
     assert len(state["head.bias"]) == len(trained.outputs)
-    assert POINTS == trained.plan.grid.points
+    assert trained.plan.grid.points == POINTS
