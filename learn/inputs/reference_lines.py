@@ -1,18 +1,17 @@
 """Inputs of a network that is told which gear it judges: the residual of a recording, and the references of its gear.
 
-They are computed from rows of ``features=referenced``. References weigh little in themselves: they say how a fault of
-this gear would look, and how far its healthy efficiency lies off the mean of the references.
+They are computed from rows of ``features=referenced``. References say how a fault would look on this gear, and how far
+its healthy efficiency lies off the mean of its references, each of which has the bias of a session.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
 from jaxtyping import Complex, Float
 
 from learn.inputs.auxiliary_inputs import AuxiliaryInputs
-from learn.inputs.harmonics import Harmonics
-from learn.inputs.lines import ResidualLines
+from learn.inputs.harmonics import RIPPLE_ORDERS, SMALLEST_RIPPLE, Harmonics
 from learn.inputs.residuals import HealthyLines, residual
 from swgsim.gear.acquisition import Window
 from swgsim.gear.gear import OperatingPoint
@@ -23,6 +22,12 @@ from swgsim.storage.orders import whole_revolutions
 
 # Columns of a row before its observation, and those of a reference before the mean observation.
 POINT, BEFORE = 2, 3
+# Orders that faults change under an elliptic wave generator, and the first one, of an eccentric one.
+SHOWN = [1, *range(2, ORDERS + 1, 2)]
+# Turns of a gear after which its gauges s1 to s4 stand where others stood.
+QUARTERS = 4
+# Lines of a torque ripple: of s0, and of the mean of the other gauges.
+RIPPLES = (slice(0, 1), slice(1, None))
 
 
 @dataclass(frozen=True)
@@ -40,8 +45,14 @@ class ReferenceLines:
     window: Window
     points: tuple[OperatingPoint, ...]
 
-    def __call__(self, rows: Float[np.ndarray, "row column"]) -> Float[np.ndarray, "row input"]:
+    def __call__(self, rows: Float[np.ndarray, "row column"], quarters: int = 0) -> Float[np.ndarray, "row input"]:
         """Inputs of rows of ``features=referenced``.
+
+        Parameters
+        ----------
+        rows : array (row, column)
+        quarters : int
+            Turns by which the gear shall stand further (:func:`turned`); faults then have so much larger positions.
 
         Raises
         ------
@@ -55,11 +66,13 @@ class ReferenceLines:
             raise ValueError(f"no reference at {speed:g} rpm and {load:g} N m: record the healthy gear there")
         healthy = self._healthy(rows[:, :POINT], x, said, here.argmax(axis=1))
         lines, errors = residual(healthy)
-        columns = ResidualLines("").line_columns(lines, healthy) | Harmonics("").line_columns(lines, healthy)
-        columns |= AuxiliaryInputs().columns(healthy)
-        of_gear = ResidualLines("").line_columns(healthy.reference, healthy).values()
-        levels = said[:, :, [EFFICIENCY, TEMPERATURE]].reshape(len(rows), -1)
-        return np.column_stack([*columns.values(), errors, here, *of_gear, levels])
+        lines, healthy = turned(lines, quarters), replace(healthy, reference=turned(healthy.reference, quarters))
+        columns = Harmonics("").line_columns(lines, healthy) | AuxiliaryInputs().columns(healthy)
+        ripples = [_ripple(lines[:, each].mean(axis=1), healthy.reference[:, each].mean(axis=1)) for each in RIPPLES]
+        # In this form the friction of a gear is proportional to b1 at every operating point.
+        loss = (np.exp(-said[:, :, EFFICIENCY]) - 1) * self._sorted[:, 1] / (self._sorted[:, 0] * np.pi / 30)
+        of_gear = [_parts(healthy.reference), loss, said[:, :, TEMPERATURE]]
+        return np.column_stack([_parts(lines), *columns.values(), errors, *ripples, here, *of_gear])
 
     def _healthy(
         self,
@@ -106,6 +119,34 @@ class ReferenceLines:
     def _sorted(self) -> Float[np.ndarray, "point 2"]:
         """Speed [rpm] and load [N m] of the operating points, in the order of the rows."""
         return np.array(sorted((point.n_in_rpm, point.T_out) for point in self.points))
+
+
+def _parts(lines: Complex[np.ndarray, "row sensor order"]) -> Float[np.ndarray, "row part"]:
+    """Means, and real and imaginary parts of the orders that show faults."""
+    shown = lines[:, :, SHOWN]
+    return np.concatenate([lines[:, :, :1].real, shown.real, shown.imag], axis=2).reshape(len(lines), -1)
+
+
+def _ripple(
+    line: Complex[np.ndarray, "row order"], healthy: Complex[np.ndarray, "row order"]
+) -> Float[np.ndarray, "row input"]:
+    """Change of a ripple along the healthy one, which a change of stiffness multiplies; and the size of the ripple."""
+    line, healthy = line[:, RIPPLE_ORDERS], healthy[:, RIPPLE_ORDERS]
+    size = np.maximum(np.abs(healthy), SMALLEST_RIPPLE)
+    along, whole = line * healthy.conj(), np.sqrt((size**2).sum(axis=1, keepdims=True))
+    change = along.real.sum(axis=1, keepdims=True)
+    each = along / size
+    return np.hstack([each.real, each.imag, change / whole, change / whole**2, np.log(size), np.log(whole)])
+
+
+def turned(lines: Complex[np.ndarray, "row sensor order"], quarters: int) -> Complex[np.ndarray, "row sensor order"]:
+    """Lines as if the gear with its fault, gauges and trigger stood some quarter turns further.
+
+    The gauges s1 to s4 are a quarter turn apart. In a series no direction is preferred, so that these are lines of
+    another gear of it. They must be free of errors of the speed, which leak into each other from the trigger on.
+    """
+    found = lines * (-1j) ** (quarters * np.arange(ORDERS + 1))
+    return np.concatenate([found[:, :1], np.roll(found[:, 1:], quarters, axis=1)], axis=1)
 
 
 def _lines(x: Float[np.ndarray, "*row feature"]) -> Complex[np.ndarray, "*row sensor order"]:

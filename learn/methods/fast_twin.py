@@ -186,7 +186,7 @@ class FastTwin:
             raise ValueError(f"{self.path} is no such network, or damaged: remove it to train anew") from error
         return network.eval()
 
-    def _outputs_of(self, X: Inputs) -> Float["Tensor", "row output"]:
+    def _outputs_of(self, X: Inputs) -> "Tensor":
         """Outputs of the network."""
         import torch
 

@@ -9,7 +9,7 @@ from jaxtyping import Float
 from threadpoolctl import threadpool_limits
 from tqdm import tqdm
 
-from learn.inputs.reference_lines import ReferenceLines
+from learn.inputs.reference_lines import QUARTERS, ReferenceLines
 from learn.inputs.referenced import Referenced
 from learn.inputs.rows import Rows, on_disk
 from learn.methods.fault_outputs import FaultOutputs
@@ -50,7 +50,11 @@ def training_gears(
 def gear_rows(
     plan: Plan, outputs: FaultOutputs
 ) -> tuple[Float[np.ndarray, "sample input"], Float[np.ndarray, "sample 3"]]:
-    """Inputs and targets of the samples of the only gear of a plan."""
+    """Inputs and targets of the samples of the only gear of a plan, in every direction that it may have."""
     with threadpool_limits(1):
         made = Referenced("training").learning_set([record(plan, list(plan.grid.cases(*plan.gears)))])
-        return ReferenceLines(plan.window, plan.grid.points)(np.asarray(made.features)), outputs.targets(made.table)
+        rows, targets = np.asarray(made.features), outputs.targets(made.table)
+        inputs = ReferenceLines(plan.window, plan.grid.points)
+        turns = [inputs(rows, quarters) for quarters in range(QUARTERS)]
+        further = [targets + np.array([0, 0, quarters * 2 * np.pi / QUARTERS]) for quarters in range(QUARTERS)]
+        return np.concatenate(turns), np.concatenate(further)

@@ -13,8 +13,6 @@ from hydra import compose, initialize_config_dir
 from omegaconf import OmegaConf
 from twin_fixtures import PLAN, POINTS, SMALL, recordings
 
-from learn.inputs.lines import ResidualLines
-from learn.inputs.reference_lines import ReferenceLines
 from learn.inputs.referenced import Referenced
 from learn.inputs.rows import Rows
 from learn.jobs import settings
@@ -99,20 +97,6 @@ def test_other_rows_and_unknown_classes_are_refused(trained: FastTwin, tmp_path:
         trained.diagnosis(np.asarray(ROWS.features)[:, : 2 + 127 + 130])
     with pytest.raises(ValueError, match=r"grid=sampled has no population"):
         untrained(tmp_path, grid={"name": "sampled", "population": None})
-
-
-def test_inputs_begin_with_the_residual_lines_of_the_recording() -> None:
-    made = ReferenceLines(PLAN.window, POINTS)(np.asarray(ROWS.features))
-    known = ResidualLines("lines", efficiency=False, operating_point=False).learning_set([recordings()])
-    lines = np.asarray(known.features)[:, :-3]  # and the fitted errors
-    np.testing.assert_allclose(made[:, : lines.shape[1]], lines, atol=1e-9)
-
-
-def test_inputs_of_a_recording_without_reference_are_refused() -> None:
-    rows = np.array(ROWS.features)[:3]
-    rows[1, 1] = 33.0
-    with pytest.raises(ValueError, match=r"no reference at 4000 rpm and 33 N m"):
-        ReferenceLines(PLAN.window, POINTS)(rows)
 
 
 def test_memory_does_not_grow_with_the_number_of_gears(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
