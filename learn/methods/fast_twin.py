@@ -42,7 +42,7 @@ class FastTwin:
         What is believed, as ``conf/generate.yaml`` has it: the nominal gear; the population, severities, operating
         points and references; the bench; sampling; the mesh.
     gears, variants : int
-        Number of gears in training, and of variants of every class of each.
+        Number of gears in training, and of variants of every class of each; every gear stands in four directions.
     layers, neurons : int
         As in :func:`learn.methods.networks.perceptron`.
     epochs, batch, rate, decay
@@ -62,11 +62,11 @@ class FastTwin:
         condition: Mapping[str, Any],
         window: Mapping[str, Any],
         mesh: Mapping[str, Any],
-        gears: int = 1000,
+        gears: int = 1200,
         variants: int = 8,
         layers: int = 3,
         neurons: int = 256,
-        epochs: int = 20,
+        epochs: int = 4,
         batch: int = 512,
         rate: float = 2e-3,
         decay: float = 1e-2,
@@ -81,8 +81,8 @@ class FastTwin:
         grid = {**grid, "population": population, "variants": variants, "seed": seed_hash("fast twin", seed) >> 1}
         believed = {"gears": {"nominal": gear}, "grid": grid, "condition": condition, "window": window, "mesh": mesh}
         self._believed = json.dumps(believed, sort_keys=True)
-        self._options = {"layers": layers, "neurons": neurons, "dropout": 0.0}
-        self._recipe = {"epochs": epochs, "batch": batch, "rate": rate, "decay": decay}
+        self._options: dict[str, int | float] = {"layers": layers, "neurons": neurons, "dropout": 0.0}
+        self._recipe = epochs, batch, rate, decay
         self.seed, self.models, self.workers = seed, Path(models), workers
 
     def fit(self, X: Inputs, y: np.ndarray) -> "FastTwin":
@@ -170,7 +170,7 @@ class FastTwin:
         # Healthy recordings show the noise of every input, by which small faults are measured.
         network.set_scaling(np.asarray(X[np.flatnonzero(y[:, 0] == 0)[:SCALED]]))
         targets = torch.from_numpy(y.astype(np.float32))
-        train(network, X, targets, Recipe(**self._recipe), self.seed, loss_of=self.outputs.loss)
+        train(network, X, targets, Recipe(*self._recipe), self.seed, loss_of=self.outputs.loss)
         with replacing(self.path) as aside, aside.open("wb") as raw:
             torch.save(network.state_dict(), raw)
 

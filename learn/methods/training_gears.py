@@ -23,8 +23,8 @@ def training_gears(
 ) -> tuple[Rows, Float[np.ndarray, "row 3"]]:
     """Inputs and targets of the samples of all gears of a plan.
 
-    No recording is kept: inputs are in a file without a name in the folder, 2.5 kB for each sample at six operating
-    points, and gear by gear they are the same for any number of processes.
+    No recording is kept: inputs are in a file without a name in the folder, 1.2 MB for each gear of 288 samples in
+    four directions, and they are the same for any number of processes.
 
     Parameters
     ----------
@@ -57,4 +57,4 @@ def gear_rows(
         inputs = ReferenceLines(plan.window, plan.grid.points)
         turns = [inputs(rows, quarters) for quarters in range(QUARTERS)]
         further = [targets + np.array([0, 0, quarters * 2 * np.pi / QUARTERS]) for quarters in range(QUARTERS)]
-        return np.concatenate(turns), np.concatenate(further)
+        return np.concatenate(turns).astype(np.float32), np.concatenate(further)

@@ -46,11 +46,16 @@ def lines_of_turned(quarters: int) -> np.ndarray:
 
 
 def test_a_turned_gear_is_a_gear_of_the_series() -> None:
-    """Gear, crack, gauges and trigger a quarter turn further: the chain gives the lines that turning gives."""
+    """Gear, crack, gauges and trigger a quarter turn further: the chain gives the lines that turning gives.
+
+    But for the ripple of the speed, in which the trigger then comes some milliradians earlier or later.
+    """
     still = lines_of_turned(0)
+    size = np.abs(still).max(axis=1, keepdims=True)
     for quarters in range(1, QUARTERS):
-        np.testing.assert_allclose(turned(still, quarters), lines_of_turned(quarters), atol=1e-6)
-    assert np.abs(still - lines_of_turned(1)).max() > 1e-2
+        again = lines_of_turned(quarters)
+        assert (np.abs(turned(still, quarters) - again) / size).max() < 0.02
+        assert (np.abs(still - again) / size).max() > 0.5
 
 
 def test_inputs_without_a_direction_stay_when_the_gear_is_turned() -> None:

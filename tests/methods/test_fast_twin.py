@@ -36,7 +36,7 @@ def untrained(models: Path, **options: object) -> FastTwin:
         config = OmegaConf.to_container(compose("train", choices).classifier, resolve=True)
     config["grid"]["severities"] = {label: list(levels) for label, levels in SMALL.items()}
     config["gear"] = {"number": GEAR.number}
-    config |= {"gears": 12, "variants": 4, "neurons": 32, "epochs": 20, "batch": 64, "models": str(models)} | options
+    config |= {"gears": 12, "variants": 4, "neurons": 32, "epochs": 10, "batch": 64, "models": str(models)} | options
     return settings.classifier(config)()
 
 
