@@ -41,6 +41,10 @@ class FastTwin:
     gear, grid, condition, window, mesh : mapping
         What is believed, as ``conf/generate.yaml`` has it: the nominal gear; the population, severities, operating
         points and references; the bench; sampling; the mesh.
+    models : str
+        Folder of the file.
+    workers : int or None
+        Processes that simulate; None: one per core.
     gears, variants : int
         Number of gears in training, and of variants of every class of each; every gear stands in four directions.
     layers, neurons : int
@@ -49,10 +53,6 @@ class FastTwin:
         As in :class:`learn.methods.training.Recipe`.
     seed : int
         Of the gears, the initial weights and the training.
-    models : str
-        Folder of the file.
-    workers : int or None
-        Processes that simulate; None: one per core.
     """
 
     def __init__(
@@ -62,6 +62,8 @@ class FastTwin:
         condition: Mapping[str, Any],
         window: Mapping[str, Any],
         mesh: Mapping[str, Any],
+        models: str,
+        workers: int | None,
         gears: int = 1200,
         variants: int = 8,
         layers: int = 3,
@@ -71,8 +73,6 @@ class FastTwin:
         rate: float = 2e-3,
         decay: float = 1e-2,
         seed: int = 0,
-        models: str = "models",
-        workers: int | None = None,
     ):
         require_integer("the fast twin", "gears", gears, low=2, high=100_000)
         if not grid.get("population"):
