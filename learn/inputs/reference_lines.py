@@ -71,7 +71,7 @@ class ReferenceLines:
         ripples = [_ripple(lines[:, each].mean(axis=1), healthy.reference[:, each].mean(axis=1)) for each in RIPPLES]
         # In this form the friction of a gear is proportional to b1 at every operating point.
         loss = (np.exp(-said[:, :, EFFICIENCY]) - 1) * self._sorted[:, 1] / (self._sorted[:, 0] * np.pi / 30)
-        of_gear = [_parts(healthy.reference), loss, said[:, :, TEMPERATURE]]
+        of_gear = [_parts(healthy.reference), loss, np.nan_to_num(said[:, :, TEMPERATURE])]
         return np.column_stack([_parts(lines), *columns.values(), errors, *ripples, here, *of_gear])
 
     def _healthy(

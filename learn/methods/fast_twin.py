@@ -39,8 +39,8 @@ class FastTwin:
     Parameters
     ----------
     gear, grid, condition, window, mesh : mapping
-        What is believed, as ``conf/generate.yaml`` has it: the nominal gear; the population, severities, operating
-        points and references; the bench; sampling; the mesh.
+        What is believed, as ``conf/generate.yaml`` has it: the nominal gear; the population, extremes of severities,
+        operating points and references; the bench; sampling; the mesh.
     models : str
         Folder of the file.
     workers : int or None
@@ -75,10 +75,8 @@ class FastTwin:
         seed: int = 0,
     ):
         require_integer("the fast twin", "gears", gears, low=2, high=100_000)
-        if not grid.get("population"):
-            raise ValueError(f"grid={grid.get('name')} has no population to draw gears from: choose one such as gears")
-        population = {**grid["population"], "count": gears}
-        grid = {**grid, "population": population, "variants": variants, "seed": seed_hash("fast twin", seed) >> 1}
+        drawn = {"population": {**(grid["population"] or {}), "count": gears}, "drawn": True}
+        grid = {**grid, **drawn, "variants": variants, "seed": seed_hash("fast twin", seed) >> 1}
         believed = {"gears": {"nominal": gear}, "grid": grid, "condition": condition, "window": window, "mesh": mesh}
         self._believed = json.dumps(believed, sort_keys=True)
         self._options: dict[str, int | float] = {"layers": layers, "neurons": neurons, "dropout": 0.0}

@@ -95,8 +95,6 @@ def test_other_rows_and_unknown_classes_are_refused(trained: FastTwin, tmp_path:
         untrained(tmp_path).fit(np.zeros((1, 40)), np.array(["broken"]))
     with pytest.raises(ValueError, match=r"trained for the operating points \[4000, 20\], \[4000, 60\]"):
         trained.diagnosis(np.asarray(ROWS.features)[:, : 2 + 127 + 130])
-    with pytest.raises(ValueError, match=r"grid=sampled has no population"):
-        untrained(tmp_path, grid={"name": "sampled", "population": None})
 
 
 def test_memory_does_not_grow_with_the_number_of_gears(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
