@@ -15,7 +15,7 @@ from twin_fixtures import PLAN, POINTS, SMALL, recordings
 
 from learn.inputs.referenced import Referenced
 from learn.inputs.rows import Rows
-from learn.jobs import settings
+from learn.jobs import identity, settings
 from learn.methods import training_gears
 from learn.methods.fast_twin import FastTwin
 from learn.methods.fault_outputs import FaultOutputs
@@ -86,6 +86,13 @@ def test_the_seed_decides_every_byte_and_a_file_is_read_again(trained: FastTwin,
     trained.fit(ROWS.features[:6], LABELS[:6])
     assert trained.path.read_bytes() == kept
     assert untrained(tmp_path, seed=1).path != untrained(tmp_path).path != untrained(tmp_path, neurons=16).path
+
+
+def test_folders_and_processes_are_not_in_the_key_of_a_job() -> None:
+    def key(**options: object) -> str:
+        return identity.job_key({"classifier": {"name": "fast_twin", **options}}, "digest")
+
+    assert key(models="here", workers=1) == key(models="there", workers=2) != key(gears=5)
 
 
 def test_other_rows_and_unknown_classes_are_refused(trained: FastTwin, tmp_path: Path) -> None:
