@@ -51,7 +51,17 @@ FEW = [
 
 
 # Enough for a job to run; what an experiment sweeps stays as it is.
-SMALLER = {"trees": 5, "count": 5, "epochs": 1, "iterations": 10, "steps": 5, "neurons": 8, "width": 8, "folds": 2, "gears": 3}
+SMALLER = {
+    "trees": 5,
+    "count": 5,
+    "epochs": 1,
+    "iterations": 10,
+    "steps": 5,
+    "neurons": 8,
+    "width": 8,
+    "folds": 2,
+    "gears": 3,
+}
 
 
 def jobs(params):
