@@ -19,6 +19,8 @@ comma := ,
 JUDGED := $(if $(SMALL),,'gears=[$(subst $() $(),$(comma),$(shell seq 20))]')
 QUICK := $(if $(SMALL),shots=[1$(comma)2] draws=1 protocol.folds=2 protocol.development=0 \
          protocol.labelled=2 protocol.unlabelled=1 protocol.kept_out=1)
+# Gears to train the fast twin on.
+FEW_GEARS := $(if $(SMALL),workers=1 classifier.gears=12 classifier.variants=4 classifier.epochs=10)
 # The small forms of the loop's studies: effects of every place to hide and to search; undeclared effects that are left out.
 FEW_EFFECTS := reduced_damping,warm_grease,flank_friction,input_unbalance,eccentric_wave_generator,cam_form,load_sharing,$(strip \
                )root_tooth_crack,tilting_moment,gauge_gain,channel_skew,mains_hum
@@ -85,6 +87,7 @@ transfer: data  ## beyond the paper: networks, transfer to gears never seen, rep
 	$(SWG) twin grid=$(GEARS) $(JUDGED); \
 	for name in $(ON_PAPER); do $(SWG) train experiment=$$name grid=$(GRID); done; \
 	for name in $(ON_GEARS); do $(SWG) train experiment=$$name grid=$(GEARS) $(QUICK); done; \
+	$(SWG) train experiment=fast_twin grid=$(GEARS) $(QUICK) $(FEW_GEARS); \
 	$(SWG) transfer-report grid=$(GEARS) paper_grid=$(GRID) started=$(STARTED)
 	@echo "open report/transfer.html; 'make ui' shows the runs"
 

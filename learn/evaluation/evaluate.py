@@ -20,12 +20,13 @@ FACTS = [*SPECIMEN, "severity", *OPERATING_POINT]
 
 @dataclass(frozen=True)
 class SplitScore:
-    """Accuracy in training and test [%], time to fit [s], and whether the optimiser converged."""
+    """Accuracy in training and test [%], time to fit [s] and to judge a row [ms]; whether the optimiser converged."""
 
     name: str
     train: float
     test: float
     fit_seconds: float
+    milliseconds: float
     converged: bool
 
 
@@ -79,6 +80,7 @@ class Evaluation:
             "test_score": self.mean_test_score,
             "balanced_accuracy": float(np.mean(list(recall.values()))),
             "fit_seconds": sum(s.fit_seconds for s in self.scores),
+            "milliseconds": float(np.mean([s.milliseconds for s in self.scores])),
             "converged": float(all(s.converged for s in self.scores)),
             **{f"test/{metric_key(s.name)}": s.test for s in self.scores},
             **{f"recall/{name}": value for name, value in recall.items()},
@@ -126,12 +128,14 @@ def evaluate(
         )
         seconds = time.perf_counter() - start
         probabilities = _probabilities(classifier, features[split.test], classes)
+        milliseconds = 1000 * (time.perf_counter() - start - seconds) / max(len(split.test), 1)
         truth = classes.get_indexer(labels[split.test])
         predicted = probabilities.argmax(axis=1)
         np.add.at(confusion, (truth, predicted), 1)
         train_score = np.mean(classifier.predict(features[split.train]) == labels[split.train])
         test_score = np.mean(predicted == truth)
-        scores.append(SplitScore(split.name, 100 * float(train_score), 100 * float(test_score), seconds, converged))
+        found = 100 * float(train_score), 100 * float(test_score), seconds, milliseconds, converged
+        scores.append(SplitScore(split.name, *found))
         tested.append(split.test)
         predictions.append(probabilities)
     return Evaluation(

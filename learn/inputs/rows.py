@@ -35,27 +35,29 @@ class Rows:
     Parameters
     ----------
     file : OpenFile
-        Consecutive rows in double precision.
+        Consecutive rows.
     columns : int
         Number of columns.
     numbers : array (row,)
         Numbers of the rows in the file.
+    dtype : data type
+        Of the numbers in the file.
     """
 
-    ndim, dtype = 2, np.dtype(np.float64)
+    ndim = 2
 
-    def __init__(self, file: OpenFile, columns: int, numbers: Int[np.ndarray, " row"]):
-        self._file, self._numbers = file, numbers
+    def __init__(self, file: OpenFile, columns: int, numbers: Int[np.ndarray, " row"], dtype: np.dtype):
+        self._file, self._numbers, self.dtype = file, numbers, dtype
         self.shape = (len(numbers), columns)
 
     def __len__(self) -> int:
         return len(self._numbers)
 
     def __getitem__(self, chosen: slice | np.ndarray) -> "Rows":
-        return Rows(self._file, self.shape[1], self._numbers[chosen])
+        return Rows(self._file, self.shape[1], self._numbers[chosen], self.dtype)
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
-        table = np.empty(self.shape)
+        table = np.empty(self.shape, self.dtype)
         size = self.shape[1] * self.dtype.itemsize
         for row, number in zip(table, self._numbers.tolist(), strict=True):
             if os.preadv(self._file.descriptor, [row.data], number * size) < size:
@@ -67,14 +69,15 @@ Inputs = Float[np.ndarray, "row feature"] | Rows  # in memory, or in a file
 
 
 def on_disk(parts: Iterable[Float[np.ndarray, "_ column"]], folder: Path) -> Rows:
-    """Write consecutive parts of a table to a file without a name in a folder."""
+    """Write consecutive parts of a table, all of the type of the first, to a file without a name in a folder."""
     with remedied(folder), tempfile.TemporaryFile(dir=folder) as file:
-        rows = columns = 0
+        rows, columns, dtype = 0, 0, np.dtype(np.float64)
         for part in parts:
-            file.write(np.ascontiguousarray(part, dtype=Rows.dtype).data)
+            dtype = part.dtype if not rows else dtype
+            file.write(np.ascontiguousarray(part, dtype=dtype).data)
             rows, columns = rows + len(part), part.shape[1]
         file.flush()
-        return Rows(OpenFile(os.dup(file.fileno())), columns, np.arange(rows))
+        return Rows(OpenFile(os.dup(file.fileno())), columns, np.arange(rows), dtype)
 
 
 def chunks(X: Inputs) -> Iterator[Float[np.ndarray, "chunk column"]]:

@@ -20,7 +20,11 @@ DECISIVE = ("adaptation", "evaluation", "inputs", "jobs", "methods", "protocols"
 
 def decisive(config: Mapping[str, Any]) -> dict[str, Any]:
     """The part of a configuration that results depend on."""
-    return {key: value for key, value in config.items() if key not in WHEREABOUTS}
+    return {
+        key: decisive(value) if isinstance(value, Mapping) else value
+        for key, value in config.items()
+        if key not in WHEREABOUTS
+    }
 
 
 def job_key(config: Mapping[str, Any], data_digest: str) -> str:
@@ -32,7 +36,7 @@ def job_key(config: Mapping[str, Any], data_digest: str) -> str:
 
 def _physics(config: Mapping[str, Any]) -> list[str]:
     """Digest of the subpackages of swgsim that a twin needs, as it simulates; empty for all other classifiers."""
-    is_twin = config.get("classifier", {}).get("name") == "twin"
+    is_twin = config.get("classifier", {}).get("name") in ("twin", "fast_twin")
     return [version_of_subpackages("identification", "oracle", "twin")] if is_twin else []
 
 

@@ -14,6 +14,7 @@ from learn.inputs.lines import ResidualLines
 from learn.inputs.referenced import Referenced
 from learn.inputs.signals import Signals
 from learn.methods import classical, contract, neural, strong
+from learn.methods.fast_twin import FastTwin
 from learn.methods.rocket import MiniRocket
 from learn.methods.twin import TwinClassifier
 from learn.protocols.harder_splits import LeaveOperatingPointOut, LeaveSeverityOut
@@ -49,6 +50,7 @@ CLASSIFIERS: Mapping[str, Callable[..., classical.Classifier]] = {
     "perceptron": neural.neural_perceptron,
     "cnn": neural.convolutional_network,
     "twin": TwinClassifier,
+    "fast_twin": FastTwin,
 }
 PROTOCOLS: Mapping[str, Callable[..., Splitting]] = {
     "random_folds": RandomFolds,

@@ -86,6 +86,7 @@ def run_name(config: Mapping[str, Any], parameters: Mapping[str, Any]) -> str:
     groups = ["protocol", "classifier", "features", "adaptation", "study"]
     if parameters["adaptation"] == "none":
         groups.remove("adaptation")
-    classifier = {k: v for k, v in config["classifier"].items() if k not in ("name", "seed", "trials")}
+    unnamed = ("name", "seed", "trials", *identity.WHEREABOUTS)
+    classifier = {k: v for k, v in config["classifier"].items() if k not in unnamed}
     options = [f"{k}={v}" for k, v in classifier.items() if not isinstance(v, Mapping)]
     return " ".join([*(str(parameters[group]) for group in groups), *options])

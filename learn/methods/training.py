@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import ceil
 
 import torch
-from jaxtyping import Float, Int
+from jaxtyping import Float, Shaped
 from torch import Tensor, nn
 
 from learn.inputs.rows import Rows, as_tensor
@@ -43,11 +43,11 @@ class Recipe:
 
 
 def train(
-    network: Network, X: Float[Tensor, "row column"] | Rows, y: Int[Tensor, " row"], recipe: Recipe, seed: int,
+    network: Network, X: Float[Tensor, "row column"] | Rows, y: Shaped[Tensor, "*row"], recipe: Recipe, seed: int,
     *, parameters: Iterable[nn.Parameter] | None = None, penalty: Callable[[Network], Tensor] | None = None,
-    frozen_statistics: bool = False,
+    frozen_statistics: bool = False, loss_of: Callable[[Tensor, Tensor], Tensor] = nn.functional.cross_entropy,
 ) -> None:  # fmt: skip
-    """Fit a network in place with AdamW on the cross entropy, and leave it in evaluation mode.
+    """Fit a network in place with AdamW, and leave it in evaluation mode.
 
     The number of steps is fixed. Early stopping would need rows of the target gear, or source rows that training lacks.
 
@@ -56,7 +56,8 @@ def train(
     network : Network
         Network on its device.
     X, y : tensor (row, column), tensor (row,)
-        Rows and numbers of their classes, on any device. Rows in a file are read batch by batch.
+        Rows and numbers of their classes, on any device, or targets of another loss. Rows in a file are read batch by
+        batch.
     recipe : Recipe
     seed : int
         Seed of the order of the rows and of dropout.
@@ -66,6 +67,8 @@ def train(
         Term that is added to the loss in each step, such as a distance to the initial weights.
     frozen_statistics : bool
         Whether batch normalisation keeps its mean and variance, which few rows cannot estimate.
+    loss_of : callable
+        Mean loss of outputs and targets; by default the cross entropy.
 
     Raises
     ------
@@ -90,7 +93,7 @@ def train(
         for _ in range(recipe.epochs):
             # Batch sizes differ by at most one row, as batch normalisation needs no small batch.
             for rows in torch.from_numpy(order.permutation(len(X))).to(device).tensor_split(steps):
-                loss = nn.functional.cross_entropy(network(batch(rows)), y.index_select(0, rows))
+                loss = loss_of(network(batch(rows)), y.index_select(0, rows))
                 if penalty is not None:
                     loss = loss + penalty(network)
                 optimiser.zero_grad()

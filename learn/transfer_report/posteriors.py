@@ -11,7 +11,7 @@ from swgsim.storage.labelled_signals import CLASSES
 
 FACTS = ["row", *SPECIMEN, "severity", *OPERATING_POINT]
 ORACLE, ORACLE_OF_SESSION = "oracle", "oracle that knows the session"
-TWIN, FLOOR = "twin on references", "floor of references"
+TWIN, FAST_TWIN, FLOOR = "twin on references", "fast twin on references", "floor of references"
 # Methods of a file to the prefix of their columns. A twin and its floor take a unit as one long observation.
 OF_ORACLE: Mapping[str, str] = {ORACLE: "", ORACLE_OF_SESSION: KNOWN}
 OF_TWIN: Mapping[str, str] = {TWIN: "", FLOOR: "floor:", ORACLE: "oracle:", ORACLE_OF_SESSION: "oracle known:"}

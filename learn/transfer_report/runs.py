@@ -19,7 +19,7 @@ from swgsim.storage import storage
 
 # A study and the experiments that make it: on the gears never seen, and on the paper's grid.
 EXPERIMENTS: Mapping[str, tuple[str, ...]] = {
-    "zero_shot": ("zero_shot", "zero_shot_lines", "zero_shot_signals"),
+    "zero_shot": ("zero_shot", "zero_shot_lines", "zero_shot_signals", "fast_twin"),
     "inputs": ("inputs", "inputs_features"),
     "inputs_operating_point": ("inputs_operating_point",),
     "no_reference": ("no_reference",),
@@ -52,6 +52,7 @@ FEATURES: Mapping[str, str] = {
     "differenced": "differenced signals",
     "residual": "residual signals",
     "lines": "residual lines",
+    "referenced": "references",
 }
 ADAPTATIONS: Mapping[str, str] = {
     "l2_sp": "L2-SP",

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 
 import pandas as pd
 
-from learn.transfer_report.posteriors import FLOOR, TWIN
+from learn.transfer_report.posteriors import FAST_TWIN, FLOOR, TWIN
 from learn.transfer_report.studies import DISTURBED_FOREST, PUBLISHED, best_disturbed
 from learn.transfer_report.tables import (
     FOREST,
@@ -62,9 +62,28 @@ def claim(zero: pd.DataFrame, of_units: pd.DataFrame, ratio: pd.Series | None, g
     )
 
 
+def fast_twin(zero: pd.DataFrame, methods: pd.DataFrame) -> list[str]:
+    """What the network achieves that is given the references; none if it was not run.
+
+    Parameters
+    ----------
+    zero : DataFrame
+        Result of :func:`.tables.zero_shot`.
+    methods : DataFrame
+        Run of every method, with its metrics.
+    """
+    if FAST_TWIN not in zero.index:
+        return []
+    time = number(row_of(methods, FAST_TWIN)["milliseconds"], digits=2, unit=" ms")
+    return [
+        "The fast twin, one network that is given the references of the judged gear and was trained on other gears of "
+        f"its series, errs in {of_row(row_of(zero, FAST_TWIN))} of the recordings and takes {time} for each."
+    ]
+
+
 def headline(zero: pd.DataFrame, gears: int) -> str:
     """The best method that learns from other gears, the paper's forest and the oracle."""
-    best = best_of(zero.drop(index=TWIN, errors="ignore"))
+    best = best_of(zero.drop(index=[TWIN, FAST_TWIN], errors="ignore"))
     ours, forest, oracle = (of_row(row_of(zero, name)) for name in (best, FOREST, ORACLE))
     return (
         f"On bench recordings of {gears} gears never seen, with their healthy references known, {best} errs in {ours} "
@@ -93,7 +112,7 @@ def lead(zero: pd.DataFrame, few: pd.DataFrame, development: pd.Series, cases: p
 
 def choice(zero: pd.DataFrame) -> str:
     """The method that the development gears choose, of those that learn; empty if no method has options."""
-    best, chosen = best_of(zero.drop(index=TWIN, errors="ignore")), highest(zero["development"])
+    best, chosen = best_of(zero.drop(index=[TWIN, FAST_TWIN], errors="ignore")), highest(zero["development"])
     if not chosen:
         return ""
     more = row_of(zero, chosen)["value"] - row_of(zero, best)["value"]

@@ -89,7 +89,7 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
         "grid": runs.grids["bench"],
         "headline": sentences.headline(zero, gears),
         "claim": None,
-        "lead": sentences.lead(zero, few, development_scores(adapting), cases),
+        "lead": [*sentences.fast_twin(zero, methods), *sentences.lead(zero, few, development_scores(adapting), cases)],
         "best": best,
         "errors": figures.errors(zero),
         "methods": tables.methods_text(zero, errors, of_units),
@@ -110,6 +110,7 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
     }
     content = transfer_json.content(zero, of_units, few, of_inputs, cases, gears, seconds)
     content["detection"] = detections.detections_json(found)
+    content["fast_twin"] = twins.fast_twin_json(zero, methods)
     if twins.TWIN in predictions:
         cases = twins.mismatches(every_twin(runs, judged))
         ratio = twins.ratio_to_floor(errors)

@@ -9,7 +9,7 @@ from learn.evaluation.bootstrap import SPECIMEN, gear_bootstrap, ratio_to, speci
 from learn.evaluation.decisions import class_numbers, probabilities
 from learn.evaluation.probability_calibration import expected_calibration_error, reliability
 from learn.evaluation.units import units
-from learn.transfer_report.posteriors import FLOOR, TWIN, units_of
+from learn.transfer_report.posteriors import FAST_TWIN, FLOOR, TWIN, units_of
 from learn.transfer_report.tables import (
     LIMITS,
     best_adapted,
@@ -132,6 +132,22 @@ def twin_json(zero: pd.DataFrame, ratio: pd.Series | None, cases: pd.DataFrame) 
     }
 
 
+def fast_twin_json(zero: pd.DataFrame, methods: pd.DataFrame) -> dict[str, Any] | None:
+    """The part ``fast_twin`` of ``transfer.json``: error [%], and time to judge a recording; None if it was not run.
+
+    Parameters
+    ----------
+    zero : DataFrame
+        Result of :func:`.tables.zero_shot`.
+    methods : DataFrame
+        Run of every method, with its metrics.
+    """
+    if FAST_TWIN not in methods.index:
+        return None
+    milliseconds = float(row_of(methods, FAST_TWIN)["milliseconds"])
+    return {"error": in_json(row_of(zero, FAST_TWIN)), "milliseconds": finite(milliseconds)}
+
+
 def known(zero: pd.DataFrame, of_units: pd.DataFrame, few: pd.DataFrame, nothing: pd.DataFrame) -> pd.DataFrame:
     """Errors over what is known of the gear: ``known``, ``who``, and ``value``, ``low``, ``high`` of recordings and
     ``unit``, ``unit_low``, ``unit_high`` of units [%].
@@ -148,10 +164,11 @@ def known(zero: pd.DataFrame, of_units: pd.DataFrame, few: pd.DataFrame, nothing
     both = zero[["value", "low", "high"]].join(named("unit", of_units))
     learned = {
         "nothing": None if nothing.empty else least(nothing),
-        REFERENCES: least(both.drop(index=[TWIN, *LIMITS], errors="ignore")),
+        REFERENCES: least(both.drop(index=[TWIN, FAST_TWIN, *LIMITS], errors="ignore")),
         f"references, {HEALTHY} healthy of the day": best_rezeroed(few).get(HEALTHY),
         f"references, {SHOTS} of each fault": best_adapted(few, SHOTS),
     }
     rows = [{**row, "known": name, "who": LEARNED} for name, row in learned.items() if row is not None]
-    rows += [{**row_of(both, who), "known": REFERENCES, "who": who} for who in (TWIN, FLOOR) if who in both.index]
+    others = [who for who in (FAST_TWIN, TWIN, FLOOR) if who in both.index]
+    rows += [{**row_of(both, who), "known": REFERENCES, "who": who} for who in others]
     return pd.DataFrame(rows)[["known", "who", *both]]

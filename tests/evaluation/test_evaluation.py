@@ -1,5 +1,7 @@
 """Evaluation gives chance for guesses and 100 % for memorised rows, and keeps test rows out of training."""
 
+import time
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -50,6 +52,17 @@ def test_test_rows_are_not_in_training_and_the_confusion_counts_each_once():
     assert result.confusion.sum(axis=1).tolist() == [200] * 6
     assert result.confusion[:, result.classes.index("healthy")].tolist() == [200] * 6
     assert result.recall()["healthy"] == 100.0
+
+
+def test_the_time_to_judge_is_that_of_one_row():
+    class Slow(Spy):
+        def predict(self, X):
+            time.sleep(0.02)
+            return super().predict(X)
+
+    split = Split("two", np.array([2, 3]), np.array([0, 1]))
+    result = evaluate(np.arange(4.0)[:, None], np.array(["a", "b", "a", "b"]), [split], Slow)
+    assert 10 <= result.metrics()["milliseconds"] < 1000
 
 
 def test_a_class_that_is_not_tested_has_no_recall():

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from fabricated import recordings
+from fabricated import LOADS, recordings
 from hydra import compose, initialize_config_dir
 from omegaconf import OmegaConf
 from prepared_store import prepared, store_in
@@ -57,7 +57,17 @@ FEW = [
 
 
 # Enough for a job to run; what an experiment sweeps stays as it is.
-SMALLER = {"trees": 5, "count": 5, "epochs": 1, "iterations": 10, "steps": 5, "neurons": 8, "width": 8, "folds": 2}
+SMALLER = {
+    "trees": 5,
+    "count": 5,
+    "epochs": 1,
+    "iterations": 10,
+    "steps": 5,
+    "neurons": 8,
+    "width": 8,
+    "folds": 2,
+    "gears": 3,
+}
 
 
 def jobs(params):
@@ -74,6 +84,8 @@ def smaller(config, swept):
             for option, value in SMALLER.items()
             if option in config[group] and f"{group}.{option}" not in swept
         }
+    if config["classifier"]["name"] == "fast_twin":
+        config["classifier"]["grid"]["loads_nm"] = list(LOADS)  # of the made-up recordings
     if config["adaptation"]["name"] == "rezero":  # of the three gears two must be sources
         config["adaptation"]["shots"], config["protocol"]["judged"] = [0, 1], 1
     return config

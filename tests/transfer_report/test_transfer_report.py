@@ -68,6 +68,10 @@ def test_whole_report_from_made_up_runs(data, store, tmp_path):
     assert twin["mesh"] is twin["other_authors"] is twin["undeclared"]["before"] is None  # they were not run
     assert 0 < twin["calibration_error"] < 0.5
     assert twin["calibration_error_mismatched"] is None  # neither mesh nor population
+    fast = content["fast_twin"]
+    assert twin["matched"]["value"] < fast["error"]["value"] < content["z1"]["forest_error"]
+    assert fast["milliseconds"] == 0.25
+    assert "The fast twin, one network" in (out / "transfer.html").read_text()
     assert content["detection"] == {}  # 72 healthy recordings do not show a rate of 1 %
     assert content["inputs"]["raw"]["mlp"] < content["inputs_without_efficiency"]["raw"]["mlp"]
     assert content["inputs"]["residual"] == {"mlp": None, "cnn": None, "minirocket": None}
