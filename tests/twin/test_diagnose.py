@@ -1,4 +1,4 @@
-"""The command and the call from end to end on a small bench: is it sick, of what, how large, where."""
+"""The command and the call from end to end on a small bench: is it faulty, of what, how large, where."""
 
 import json
 import re
@@ -72,7 +72,7 @@ def unit() -> swg.Unit:
 
 def choices(folder, **changes: object) -> dict:
     plain = {
-        "recordings": str(folder / "sick"), "commissioning": str(folder / "healthy"), "mapping": None,
+        "recordings": str(folder / "faulty"), "commissioning": str(folder / "healthy"), "mapping": None,
         "commissioning_mapping": None, "gear": GEAR, "effects": [], "out": str(folder / "answer"), "prior": {},
         "false_alarms": 0.01, "costs": {}, "searched": SEARCHED, "library": [], "seed": 0,
     }  # fmt: skip
@@ -84,43 +84,43 @@ def folder(tmp_path_factory):
     """Recordings of the healthy gear, and of the same gear with a fault."""
     place = tmp_path_factory.mktemp("bench")
     write_folder(place / "healthy", recorded(seed=1))
-    write_folder(place / "sick", recorded(EccentricWaveGenerator(3e-5, 1.0), seed=2))
+    write_folder(place / "faulty", recorded(EccentricWaveGenerator(3e-5, 1.0), seed=2))
     return place
 
 
 @pytest.fixture(scope="module")
-def sick(folder) -> swg.Diagnosis:
+def faulty(folder) -> swg.Diagnosis:
     return diagnose_job.run(choices(folder))
 
 
-def test_a_sick_gear_is_named_with_size_and_position(sick) -> None:
-    r, theta = (sick.report["fault"]["parameters"][name] for name in ("r", "theta"))
-    assert sick.report["verdict"] == "faulty"
-    assert sick.sentence.startswith("Faulty: an eccentric wave generator: ")
-    assert sick.report["probabilities"]["eccentric_wave_generator"] > 0.999
+def test_a_sick_gear_is_named_with_size_and_position(faulty) -> None:
+    r, theta = (faulty.report["fault"]["parameters"][name] for name in ("r", "theta"))
+    assert faulty.report["verdict"] == "faulty"
+    assert faulty.sentence.startswith("Faulty: an eccentric wave generator: ")
+    assert faulty.report["probabilities"]["eccentric_wave_generator"] > 0.999
     assert r["ci95"][0] < 3e-5 < r["ci95"][1]
     assert r["ci95"][1] - r["ci95"][0] < 5e-6
     assert theta["ci95"][0] < 1.0 < theta["ci95"][1]
     assert theta["value"] == pytest.approx(1.0, abs=0.05)
-    assert sick.report["chance"] < 0.002
-    assert sick.report["lack_of_fit"]["chance"] > 0.01
-    assert sick.report["lack_of_fit_healthy"]["chance"] > 0.01
-    assert len(sick.report["recordings"]) == 2 * len(POINTS)
-    assert sum(sick.report["recordings"][0]["probabilities"].values()) == pytest.approx(1)
+    assert faulty.report["chance"] < 0.002
+    assert faulty.report["lack_of_fit"]["chance"] > 0.01
+    assert faulty.report["lack_of_fit_healthy"]["chance"] > 0.01
+    assert len(faulty.report["recordings"]) == 2 * len(POINTS)
+    assert sum(faulty.report["recordings"][0]["probabilities"].values()) == pytest.approx(1)
 
 
-def test_the_page_answers_the_questions_of_a_workshop(folder, sick) -> None:
+def test_the_page_answers_the_questions_of_a_workshop(folder, faulty) -> None:
     html = unescape((folder / "answer" / "page.html").read_text(encoding="utf-8"))
     text = re.sub(r"\s+", " ", re.sub(r"<[^>]+>", " ", html))
-    assert sick.sentence in text
+    assert faulty.sentence in text
     assert re.search(r"What to do\? replace: 1(\.0)?; inspect: 1\.1; leave: 10 \(expected cost", text)
-    for question in ("Is it sick? yes : fewer than 0.2 % of healthy", "Of what, and how sure?", "How large?", "Where?"):
+    for question in ("Is it faulty? yes : fewer than 0.2 % of healthy", "Of what, and how sure?", "How large?", "Where?"):
         assert question in text
     assert re.search(r"direction from gauge s1, in the sense of rotation: 5\d° \(95 %: 5\d to \d\d\)", text)
     assert "What would settle it Check the wave generator: measure run-out" in text
     assert "None" not in text
     assert (folder / "answer" / "loop" / "page.html").is_file()
-    assert json.loads((folder / "answer" / "diagnosis.json").read_text())["sentence"] == sick.sentence
+    assert json.loads((folder / "answer" / "diagnosis.json").read_text())["sentence"] == faulty.sentence
 
 
 def test_a_healthy_gear_is_healthy_and_something_else_is_no_fault(unit) -> None:
