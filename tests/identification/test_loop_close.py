@@ -195,7 +195,7 @@ def test_an_effect_of_a_hundredth_of_its_bounds_is_found(unit):
 
 
 @pytest.mark.parametrize("fault", [FAULTS[n] for n in (0, 3, 4)], ids=lambda fault: type(fault).name())
-def test_a_sick_gear_is_told_its_sickness_with_size_and_place(unit, fault):
+def test_a_fault_is_found_with_size_and_place(unit, fault):
     """Of the paper's five, at sizes that its variants have; two others are below."""
     decision = decide(recorded((fault,), seed=2), unit, list(map(type, FAULTS)))
     (found,) = decision.effects

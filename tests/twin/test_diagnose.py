@@ -93,7 +93,7 @@ def faulty(folder) -> swg.Diagnosis:
     return diagnose_job.run(choices(folder))
 
 
-def test_a_sick_gear_is_named_with_size_and_position(faulty) -> None:
+def test_a_faulty_gear_is_named_with_size_and_position(faulty) -> None:
     r, theta = (faulty.report["fault"]["parameters"][name] for name in ("r", "theta"))
     assert faulty.report["verdict"] == "faulty"
     assert faulty.sentence.startswith("Faulty: an eccentric wave generator: ")
@@ -114,7 +114,8 @@ def test_the_page_answers_the_questions_of_a_workshop(folder, faulty) -> None:
     text = re.sub(r"\s+", " ", re.sub(r"<[^>]+>", " ", html))
     assert faulty.sentence in text
     assert re.search(r"What to do\? replace: 1(\.0)?; inspect: 1\.1; leave: 10 \(expected cost", text)
-    for question in ("Is it faulty? yes : fewer than 0.2 % of healthy", "Of what, and how sure?", "How large?", "Where?"):
+    asked = ("Is it faulty? yes : fewer than 0.2 % of healthy", "Of what, and how sure?", "How large?", "Where?")
+    for question in asked:
         assert question in text
     assert re.search(r"direction from gauge s1, in the sense of rotation: 5\d° \(95 %: 5\d to \d\d\)", text)
     assert "What would settle it Check the wave generator: measure run-out" in text
