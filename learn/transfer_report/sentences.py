@@ -52,7 +52,8 @@ def claim(zero: pd.DataFrame, of_units: pd.DataFrame, ratio: pd.Series | None, g
     floor = ""
     if ratio is not None:
         times = number(ratio["value"], ratio["low"], ratio["high"], digits=2)
-        floor = f"; who knows all of the gear but its friction errs in {of_row(row_of(zero, FLOOR))}: ratio {times}"
+        least = of_row(row_of(zero, FLOOR))
+        floor = f"; a classifier that knows all parameters but friction errs in {least}: ratio {times}"
     return (
         f"{references} healthy recordings at each operating point identify a gear, and its twin names faults that "
         f"nobody has recorded, without any training gear or label: it errs in {of_row(row_of(zero, TWIN))} of the "
