@@ -1,4 +1,4 @@
-"""Inputs of a network that is told which gear it judges: the residual of a recording, and the references of its gear.
+"""Inputs of a network for any gear of a series: the residual of a recording, and the references of the same gear.
 
 They are computed from rows of ``features=referenced``. References say how a fault would look on this gear, and how far
 its healthy efficiency lies off the mean of its references, each of which has the bias of a session.

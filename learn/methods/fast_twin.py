@@ -33,8 +33,8 @@ class FastTwin:
     """A network that is trained on simulated gears, and given the references of the gear that it judges.
 
     It takes rows of ``features=referenced``. ``fit`` learns nothing from its rows but the names of the classes: it
-    reads the network of these choices, or trains it if there is none. Gears of the training have other seeds than those
-    of data sets.
+    reads the network of these choices, or trains it if there is none. Training gears have other seeds than
+    data sets.
 
     Parameters
     ----------

@@ -23,7 +23,7 @@ def training_gears(
 ) -> tuple[Rows, Float[np.ndarray, "row 3"]]:
     """Inputs and targets of the samples of all gears of a plan.
 
-    No recording is kept: inputs are in a file without a name in the folder, 1.2 MB for each gear of 288 samples in
+    No recording is kept: inputs are in a temporary file in the folder, 1.2 MB for each gear of 288 samples in
     four directions, and they are the same for any number of processes.
 
     Parameters

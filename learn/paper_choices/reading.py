@@ -52,7 +52,7 @@ BY_CONSTRUCTION = {
     "C7": "by construction: run-in was set to it",
     "C10": "by construction: its limits allow every gap from 0.01 to 23 % of the axis",
 }
-# Claims that the width of a crack decides. It is none of the choices; docs/paper_choices.md has what it does.
+# Claims that depend on the width of a crack, which is not among the choices (docs/paper_choices.md).
 BY_WIDTH = ("C4", "C5", "C9")
 WIDTH = "depends on how many teeth a crack takes"
 # How a claim holds, in the order of a reader.
