@@ -9,15 +9,23 @@ import pytest
 from linear_chain import KINDS, Bump, Dip, Mimic, Step, patch_chain, signatures_of
 from loop_fixtures import drawn, fitted_to, holding
 from scipy.special import logsumexp
-from scipy.stats import binom, multivariate_normal
+from scipy.stats import binom, multivariate_normal, norm
 
 from swgsim.common.outcome import FOUND, NOTHING, UNKNOWN
+from swgsim.effects.quantity import Quantity, Role
 from swgsim.effects.regularity import LAWS, PATTERNS
 from swgsim.identification.covariance.low_rank_covariance import Covariance
 from swgsim.identification.covariance.recording_covariance import RecordingCovariance
 from swgsim.identification.data.features import ORDERS, Layout
 from swgsim.identification.decide.decision import CREDIBLE, decide
-from swgsim.identification.decide.option import ZEROS, expected_gain, option, prior_ratio, resembling
+from swgsim.identification.decide.option import (
+    ZEROS,
+    expected_gain,
+    option,
+    prior_ratio,
+    ratio_of_parameter,
+    resembling,
+)
 from swgsim.identification.decide.prior import (
     BALANCED,
     FORM_ERRORS,
@@ -179,6 +187,20 @@ def test_a_size_is_integrated_over_its_logarithm_wherever_the_fit_began(null, ch
     integral = np.trapezoid(densities / (2 * LOG_SIZE_RANGE * np.abs(sizes)), sizes)
     expected = np.log(1 - BALANCED) + np.log(integral) + logsumexp(found.evidences[0]) + log_prior(1, 0, 0, len(KINDS))
     assert found.log_prior + logsumexp(found.evidences[0]) == pytest.approx(expected, abs=0.05)
+
+
+@pytest.mark.parametrize("width", [0.01, 0.05, np.inf])
+def test_a_shape_is_integrated_over_its_range_wherever_the_fit_began(width):
+    """Numerically, with a normal likelihood of this width; infinite: the recordings do not tell the shape."""
+    q, sd, began, peak = Quantity(Role.SHAPE, "-", 0.0, 2.0, 1.0), 0.1, 1.0, 1.02
+    grid = np.linspace(0, 2, 40001)
+    likelihood = np.exp(-((grid - peak) ** 2) / (2 * width**2))
+    of_fit = np.trapezoid(likelihood * norm.pdf(grid, began, sd), grid)
+    expected = np.trapezoid(likelihood / (q.high - q.low), grid)
+    deviation = 1 / np.sqrt(width**-2 + sd**-2)
+    value = began + (peak - began) * (deviation / width) ** 2
+    ratio = ratio_of_parameter(q, value, deviation, sd, (value - began) / sd)
+    assert np.log(of_fit) + ratio == pytest.approx(np.log(expected), abs=0.05)
 
 
 @pytest.mark.usefixtures("_chain")

@@ -10,7 +10,7 @@ from jaxtyping import Float
 from scipy.special import logsumexp
 
 from swgsim.effects.base import Effect
-from swgsim.effects.quantity import Role, quantities
+from swgsim.effects.quantity import Quantity, Role, quantities
 from swgsim.identification.decide.forms import Forms
 from swgsim.identification.decide.prior import (
     BALANCED,
@@ -215,13 +215,20 @@ def prior_ratio(fitted: Fitted, number: int) -> float:
     for name, q in quantities(type(effect)).items():
         if (key := name_of(effect, number, name)) not in fitted.parameters:
             continue
-        sd, position, deviation = fitted.parameters[key].sd, fitted.calibrated.position[key], fitted.deviation[key]
-        ratio = log_density(q, getattr(effect, name), deviation) + np.log(2 * np.pi * sd**2) / 2
-        told = 1 - min(deviation / sd, 1.0) ** 2  # share of the variance that the recordings take away
-        if q.role is not Role.SIZE:
-            ratio = min(ratio - np.log(max(told, 1e-12)) / 2, -np.log(deviation / sd))
-        found += ratio + position**2 / 2
+        position, value = fitted.calibrated.position[key], float(getattr(effect, name))
+        found += ratio_of_parameter(q, value, fitted.deviation[key], fitted.parameters[key].sd, position)
     return float(found)
+
+
+def ratio_of_parameter(q: Quantity, value: float, deviation: float, sd: float, position: float) -> float:
+    """The same of one parameter: found with a standard deviation, by a fit whose prior has another one (``sd``), so
+    many of which it lies from where it began.
+    """
+    ratio = log_density(q, value, deviation) + np.log(2 * np.pi * sd**2) / 2
+    told = 1 - min(deviation / sd, 1.0) ** 2  # share of the variance that the recordings take away
+    if q.role is not Role.SIZE:
+        ratio = min(ratio - np.log(max(told, 1e-12)) / 2, -np.log(deviation / sd))
+    return float(ratio + position**2 / 2)
 
 
 def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"], Forms]:
