@@ -11,7 +11,7 @@ from pathlib import Path
 
 import swgsim as swg
 
-few = ["sessions.repeats=2", "mesh=default"]  # two recordings of each operating point, on the mesh of the model
+few = ["sessions.repeats=2", "loads_nm=[7,70]", "mesh=default"]  # twice at four points, on the mesh of the model
 swg.record("bench/healthy", seed=1, choices=[*few, "sessions.name=commissioning"])
 swg.record("bench/today", swg.effects.EccentricWaveGenerator(r=10e-6, theta=1.0), seed=2, choices=few)
 

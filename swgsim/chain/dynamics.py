@@ -147,12 +147,12 @@ class Drive:
 
         An error e at the output is e / tan(alpha_tooth) as a twist.
         """
-        error, slope = np.zeros_like(phi_in), np.zeros_like(phi_in)
+        error = slope = np.zeros(phi_in.shape)
         turns = {1: np.exp(1j * phi_in)}
         for order, amplitude in self.error.items():
             term = amplitude * _power(turns, order)
-            error += term.imag
-            slope += order * term.real
+            error = error + term.imag
+            slope = slope + order * term.real
         return error, slope
 
     def twist(self, phi_in: np.ndarray, phi_out: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

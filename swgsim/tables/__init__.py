@@ -4,9 +4,7 @@ A :class:`Layout` says how a file is written, and a :class:`MeasuredColumn` what
 has both. Nothing is guessed.
 """
 
-from swgsim.tables.file_defect import FileDefect
-from swgsim.tables.layout import Layout
-from swgsim.tables.measured_column import MeasuredColumn
-from swgsim.tables.table_map import TableMap
+import lazy_loader
 
-__all__ = ["FileDefect", "Layout", "MeasuredColumn", "TableMap"]
+# A name is imported when it is used: the child process that reads a file needs no pandas.
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

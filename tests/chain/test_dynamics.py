@@ -21,11 +21,13 @@ POINTS = tuple(OperatingPoint(n, T) for n in (2000, 4000) for T in (7, 39, 70))
 FRICTIONLESS = replace(NOMINAL, b0=0, b1=0, b2=0, b3=0, mu=0)
 
 
+@pytest.mark.end_to_end
 def test_without_friction_the_efficiency_is_one() -> None:
     drive = Drive([FRICTIONLESS] * 6, POINTS)
     assert run(drive, steady_state(drive), 1e-4, 600).efficiency == pytest.approx(1, abs=1e-6)
 
 
+@pytest.mark.end_to_end
 def test_efficiency_of_uniform_rotation_in_closed_form() -> None:
     """With no kinematic error, eta = T / (T + T_fric / sin a), T_fric = (B + mu T / cos a) / (1 - mu tan a)."""
     t = replace(NOMINAL, kinematic_error=(), b3=0.0)
@@ -80,6 +82,7 @@ def test_a_flange_feels_no_more_of_an_inertia_than_lies_before_it(
     np.testing.assert_array_equal(rates[0], rates[2])
 
 
+@pytest.mark.end_to_end
 def test_the_rotor_changes_the_ripple_of_the_input_flange_and_not_its_mean() -> None:
     drives = [Drive([replace(NOMINAL, rotor_share=share)], [POINTS[1]]) for share in (0.0, 1.0)]
     state = steady_state(drives[0])
@@ -129,6 +132,7 @@ def test_integrator_agrees_with_solve_ivp() -> None:
     assert integrator_vs_solve_ivp([NOMINAL] * 20, POINTS[:2])["max_relative_error"] < 1e-6
 
 
+@pytest.mark.end_to_end
 def test_integrator_converges_at_fourth_order() -> None:
     drive = Drive([NOMINAL], [POINTS[4]])
     start = steady_state(drive)
@@ -141,6 +145,7 @@ def test_integrator_converges_at_fourth_order() -> None:
     assert np.log2(abs(ends[0] - ends[1]) / abs(ends[1] - ends[2])) == pytest.approx(4, abs=0.4)
 
 
+@pytest.mark.end_to_end
 def test_b1_is_set_to_claim_c6() -> None:
     """One third less b1 raises the efficiency by 7 %, relative, in the mean over the paper's operating points."""
     less = replace(NOMINAL, b1=2 / 3 * NOMINAL.b1)
@@ -149,6 +154,7 @@ def test_b1_is_set_to_claim_c6() -> None:
     assert np.mean(reduced / healthy - 1) == pytest.approx(0.07, abs=5e-4)
 
 
+@pytest.mark.end_to_end
 def test_speed_is_controlled_to_the_set_point() -> None:
     drive = Drive([NOMINAL] * 6, POINTS)
     motion = run(drive, steady_state(drive), 1e-4, 600)
@@ -180,6 +186,7 @@ def test_steady_state_repeats_at_any_speed(n_in_rpm: float) -> None:
     assert abs(state[OMEGA_OUT, 0] - start[OMEGA_OUT, 0]) < 1e-4 * np.ptp(speeds)
 
 
+@pytest.mark.end_to_end
 def test_a_large_start_angle_is_reached_along_the_motion() -> None:
     drive = Drive([replace(NOMINAL, b3=0.0)], [POINTS[4]])
     whole = run(drive, steady_state(drive), 1e-4, 600)

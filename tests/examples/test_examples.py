@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from prepared_store import prepared
 
 EXAMPLES = Path(__file__).parents[2] / "docs" / "examples"
 pytestmark = [pytest.mark.end_to_end, pytest.mark.slow]
@@ -27,7 +28,7 @@ HOLDS: dict[str, Callable[[dict[str, Any]], bool]] = {
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """One folder for all, as the examples share a data set."""
-    return tmp_path_factory.mktemp("examples")
+    return prepared(tmp_path_factory.mktemp("examples") / "mlruns").parent
 
 
 def test_every_example_is_here() -> None:

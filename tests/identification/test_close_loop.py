@@ -11,15 +11,14 @@ from pathlib import Path
 import matplotlib.figure
 import numpy as np
 import pytest
+import small_bench
 import yaml
+from prepared_store import prepared
+from small_bench import POINTS, coarse_model
 
 from learn import tracking
 from learn.commands.close_loop import record
-from swgsim.bench.scatter import Bench
-from swgsim.bench.virtual_bench import Instruments, Sessions, record_sessions
-from swgsim.chain.chain import simulate_turns
 from swgsim.common.outcome import NOTHING, Outcome
-from swgsim.effects.base import Effect
 from swgsim.effects.eccentric_wave_generator import EccentricWaveGenerator
 from swgsim.effects.gauge_gain import GaugeGain
 from swgsim.effects.library import SEARCHED as LIBRARY_SEARCHED
@@ -29,12 +28,9 @@ from swgsim.effects.load_sharing import LoadSharing
 from swgsim.effects.reduced_damping import ReducedDamping
 from swgsim.effects.text import from_text
 from swgsim.effects.thermal_growth import ThermalGrowth
-from swgsim.gear.acquisition import Window
 from swgsim.gear.conditions import Conditions
-from swgsim.gear.gear import OperatingPoint
 from swgsim.identification import Unit, commission, identify
 from swgsim.identification.calls import require_comparable, require_same_gear
-from swgsim.identification.data import model
 from swgsim.identification.fit.unit import UNHEARD
 from swgsim.identification.interharmonics.line_pattern import Part
 from swgsim.identification.interharmonics.unattributed_lines import Unnamed
@@ -56,8 +52,7 @@ from swgsim.recordings.recording_set import RecordingSet
 pytestmark = pytest.mark.end_to_end
 CONF = Path(__file__).parents[2] / "conf"
 GEAR = yaml.safe_load((CONF / "gear" / "gear1.yaml").read_text())
-SECTORS = 40
-POINTS = tuple(OperatingPoint(n, T) for n in (2000.0, 4000.0) for T in (10.0, 70.0))
+recorded = partial(small_bench.recorded, gear(GEAR))
 SEARCHED = ["eccentric_wave_generator", "cam_form", "reduced_damping", "gauge_gain", "channel_skew", "sub_orders"]
 HIDDEN = EccentricWaveGenerator(3e-5, 1.0)
 PARTS = (
@@ -74,20 +69,8 @@ KEYS = {
 
 @pytest.fixture(scope="module", autouse=True)
 def _small_mesh():
-    """The model on the mesh of the bench, which is a small one here."""
-    with pytest.MonkeyPatch.context() as patch:
-        coarse = partial(simulate_turns, sectors=SECTORS)
-        patch.setattr(model, "simulate_turns", lambda runs, revolutions, points, **_: coarse(runs, revolutions, points))
+    with coarse_model():
         yield
-
-
-def recorded(*effects: Effect, seed: int, points: tuple[OperatingPoint, ...] = POINTS) -> tuple[Recording, ...]:
-    plan = Sessions(points, repeats=2, revolutions=5)
-    # With five revolutions, slow noise of an amplifier could not be separated from interharmonic lines.
-    still = Instruments(wander=0.0)
-    return record_sessions(
-        gear(GEAR), effects, plan, Bench(), seed=seed, window=Window(), sectors=SECTORS, name="A", instruments=still
-    )
 
 
 @pytest.fixture(scope="module")
@@ -205,7 +188,8 @@ def test_effects_are_given_back_as_they_were_found(folders, sick):
 
 def test_the_answer_is_kept_as_a_run(folders, sick, tmp_path):
     sick = replace(sick, figures=dict(list(sick.figures.items())[:2]))
-    record(choices(folders, "sick") | {"source": None, "tracking": {"name": "local", "folder": str(tmp_path)}}, sick)
+    runs = {"name": "local", "folder": str(prepared(tmp_path))}
+    record(choices(folders, "sick") | {"source": None, "tracking": runs}, sick)
     store = tracking.local_store(str(tmp_path), "loop")
     (run,) = store.client.search_runs([store.experiment_id])
     said, kept = sick.report, run.data
@@ -259,6 +243,7 @@ def test_nothing_is_missing_in_a_healthy_gear(healthy):
     found, steps = healthy
     said, printed = found.report, job.lines(found.report)
     assert (said["verdict"], said["effects"], said["unknown"]) == (NOTHING, [], None)
+    assert said["probability"] > 0.9
     assert printed[0].startswith("Nothing is missing")
     names = ["error before", "error after", "noise floor", "detected from"]
     assert [line.split("  ")[0] for line in printed[1:]] == names

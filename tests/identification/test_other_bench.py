@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from chain_fixtures import GEAR
+from other_bench import schedule
 from other_bench.bench import record
 from other_bench.circle import STEP
 from other_bench.effects import Drawn, Effect
@@ -37,28 +38,31 @@ SEARCHED = [LIBRARY[name] for name in ("eccentric_wave_generator", "reduced_damp
 DRAWN = Drawn(theta=2.0, phase=1.0, channel=3)
 
 
+def recorded(out: Path, seed: int, effect: Effect) -> None:
+    """Two recordings of each set point, without the middle load, to save time."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(schedule, "LOADS", (7.0, 70.0))
+        patch.setattr(schedule, "REPEATS", 2)
+        record(out, seed, effect, SPECIMEN)
+
+
 @pytest.fixture(scope="module")
 def healthy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Two sessions of a healthy unit."""
     out = tmp_path_factory.mktemp("healthy")
-    record(out, 1, Effect("none", 0.0, DRAWN), SPECIMEN)
+    recorded(out, 1, Effect("none", 0.0, DRAWN))
     return out
 
 
 @pytest.fixture(scope="module")
 def unit(healthy: Path) -> Unit:
     """That unit as commissioned on the first of them."""
-    return learn_unit(measured(healthy / "commissioning"), Unit(Model(GEAR)))
-
-
-def measured(folder: Path) -> Measured:
-    """Two recordings of each set point as the loop sees them, without the middle load, to save time."""
-    return Measured.of([each for each in read_recordings(folder) if each.repeat < 3 and each.point.T_out != 39])
+    return learn_unit(Measured.of(read_recordings(healthy / "commissioning")), Unit(Model(GEAR)))
 
 
 def found(folder: Path, unit: Unit) -> list[Found]:
     """All effects that are large enough to matter."""
-    decision = decide(measured(folder), unit, SEARCHED)
+    decision = decide(Measured.of(read_recordings(folder)), unit, SEARCHED)
     shares = zip(decision.effects, shares_of_spread(decision.after), strict=False)  # those of regularities follow
     return [effect for effect, share in shares if share >= INTEREST]
 
@@ -88,7 +92,7 @@ def test_what_single_recordings_of_other_code_hold_between_the_orders_is_no_line
 
 
 def test_an_eccentric_wave_generator_of_other_code_is_found_alone(unit, tmp_path):
-    record(tmp_path, 2, Effect("eccentric_wave_generator", 15e-6, DRAWN), SPECIMEN)
+    recorded(tmp_path, 2, Effect("eccentric_wave_generator", 15e-6, DRAWN))
     (eccentric,) = found(tmp_path / "recordings", unit)
     assert eccentric.name() == "eccentric_wave_generator"
     assert eccentric.theta == pytest.approx(DRAWN.theta, abs=0.1)

@@ -9,32 +9,28 @@ from pathlib import Path
 
 import h5py
 import pytest
+import small_bench
 import yaml
 from recording_fixtures import sealed
+from small_bench import coarse_model
 
-from swgsim.bench.scatter import Bench
-from swgsim.bench.virtual_bench import Instruments, Sessions, record_sessions
-from swgsim.chain.chain import simulate_turns
 from swgsim.effects import EccentricWaveGenerator, Effect, FlankFriction
 from swgsim.effects.line_between import FixedFrequency
 from swgsim.effects.quantity import size
-from swgsim.gear.acquisition import Window
 from swgsim.gear.gear import OperatingPoint
 from swgsim.identification import Unit, commission, commission_job, identify
-from swgsim.identification.data import model
 from swgsim.identification.fit.unit_file import is_unit_file
 from swgsim.identification.report import close_loop as job
 from swgsim.jobs.settings import gear
 from swgsim.recordings import write_folder
-from swgsim.recordings.recording import Recording
 from swgsim.storage.attributes import set_attributes
 from swgsim.storage.storage import SEAL_SIZE, seal
 
 pytestmark = pytest.mark.end_to_end
 
 GEAR = yaml.safe_load((Path(__file__).parents[2] / "conf" / "gear" / "gear1.yaml").read_text())
-SECTORS = 40
 POINTS = tuple(OperatingPoint(n, T) for n in (2000.0, 4000.0) for T in (7.0, 39.0))
+recorded = partial(small_bench.recorded, gear(GEAR), points=POINTS)
 DECLARED = (FlankFriction(1.3), FixedFrequency(1e-3, phase=0.1, pattern="in s1 alone", frequency=50.1))
 
 
@@ -47,19 +43,8 @@ class Kink(Effect):
 
 @pytest.fixture(scope="module", autouse=True)
 def _small_mesh():
-    """The model on the mesh of the bench, which is a small one here."""
-    with pytest.MonkeyPatch.context() as patch:
-        coarse = partial(simulate_turns, sectors=SECTORS)
-        patch.setattr(model, "simulate_turns", lambda runs, revolutions, points, **_: coarse(runs, revolutions, points))
+    with coarse_model():
         yield
-
-
-def recorded(*effects: Effect, seed: int) -> tuple[Recording, ...]:
-    plan = Sessions(POINTS, repeats=2, revolutions=5)
-    return record_sessions(
-        gear(GEAR), effects, plan, Bench(), seed=seed, window=Window(), sectors=SECTORS, name="A",
-        instruments=Instruments(wander=0.0),
-    )  # fmt: skip
 
 
 @pytest.fixture(scope="module")

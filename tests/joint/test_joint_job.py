@@ -1,18 +1,19 @@
 """Identification of a robot joint from end to end: files and a source in, the answer out."""
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 import yaml
+from hydra import compose, initialize_config_dir
 from joint_fixtures import Hidden, trajectories
 from prepared_store import prepared
 
 from learn import tracking
+from learn.commands import close_loop
+from swgsim.common.configured import conf_folder, plain
 from swgsim.effects.text import from_text
 from swgsim.joint import JointAnswer, JointRecordings, cases, identify_joint, recordings_of
 from swgsim.joint import close_joint_loop as job
@@ -241,18 +242,14 @@ def test_configurations_are_refused_before_anything_is_computed(files, tmp_path)
         job.run(config(files, holdout=str(files / "logs"), out=str(tmp_path)), lambda _: None)
 
 
-@pytest.mark.slow
-def test_the_command_keeps_the_answer_as_a_run(files, tmp_path):
-    command = [sys.executable, "-m", "swgsim", "close-loop"]
+@pytest.mark.end_to_end
+def test_the_command_keeps_the_answer_as_a_run(files, tmp_path, capsys):
     choices = [f"recordings={files / 'logs'}", f"source={files / 'source.yaml'}", "holdout=day4"]
-    choices += [
-        "searched=[stribeck_friction]",
-        f"out={tmp_path / 'answer'}",
-        f"tracking.folder={prepared(tmp_path / 'runs')}",
-    ]
-    done = subprocess.run([*command, *choices], capture_output=True, text=True, cwd=tmp_path, check=False)
-    assert done.returncode == 0, done.stderr
-    assert "effects found" in done.stdout
+    choices += ["searched=[stribeck_friction]", f"out={tmp_path / 'answer'}"]
+    choices += [f"tracking.folder={prepared(tmp_path / 'runs')}"]
+    with initialize_config_dir(str(conf_folder()), version_base="1.3"):
+        close_loop.run(plain(compose("close_loop", choices)))
+    assert "effects found" in capsys.readouterr().out
     store = tracking.local_store(str(tmp_path / "runs"), "loop")
     (run,) = store.client.search_runs([store.experiment_id])
     assert run.info.status == "FINISHED"

@@ -8,35 +8,30 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import small_bench
 import yaml
 from diagnosis_calibration import calibration
 from scipy.stats import binom, kstest
+from small_bench import POINTS, SECTORS, coarse_model
 
 import swgsim as swg
-from swgsim.bench.scatter import Bench
-from swgsim.bench.virtual_bench import Instruments, Sessions, record_sessions
-from swgsim.chain.chain import simulate_turns
 from swgsim.dataset.faults import FAULTS
 from swgsim.effects import EccentricWaveGenerator, GaugeGain
-from swgsim.effects.base import Effect
 from swgsim.effects.library import named
-from swgsim.gear.acquisition import Window
-from swgsim.gear.gear import Gear, OperatingPoint
-from swgsim.identification.data import model
+from swgsim.gear.gear import Gear
+from swgsim.identification import commission
 from swgsim.identification.data.angle_zero import from_zero
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.fit.fitting import fit
 from swgsim.oracle.cells import Resolution
 from swgsim.recordings.files.folder import write_folder
-from swgsim.recordings.recording import Recording
 from swgsim.storage.labelled_signals import CLASSES
 from swgsim.twin import diagnose_job, unit_diagnosis
 from swgsim.twin.fault_posterior import Suspected
 
 GEAR = yaml.safe_load((Path(__file__).parents[2] / "conf" / "gear" / "gear1.yaml").read_text())
 pytestmark = pytest.mark.end_to_end
-SECTORS = 40
-POINTS = tuple(OperatingPoint(n, T) for n in (2000.0, 4000.0) for T in (10.0, 70.0))
+recorded = cache(partial(small_bench.recorded, Gear()))
 SEARCHED = ["eccentric_wave_generator", "gauge_gain", "reduced_damping"]
 COARSE = Resolution(
     nodes=5,
@@ -48,26 +43,12 @@ COARSE = Resolution(
 
 @pytest.fixture(scope="module", autouse=True)
 def _small():
-    """The model on the mesh of the bench, which is a small one here, and fewer cells."""
-    with pytest.MonkeyPatch.context() as patch:
-        coarse = partial(simulate_turns, sectors=SECTORS)
-        patch.setattr(model, "simulate_turns", lambda runs, revolutions, points, **_: coarse(runs, revolutions, points))
+    """Fewer cells, and no pictures of the loop."""
+    with coarse_model() as patch:
+        patch.setattr("swgsim.identification.report.answer_figures.pictures", lambda *_: {})
         patch.setattr(unit_diagnosis, "SECTORS", SECTORS)
         patch.setattr(unit_diagnosis, "RESOLUTION", COARSE)
         yield
-
-
-@cache
-def recorded(*effects: Effect, seed: int) -> tuple[Recording, ...]:
-    plan, still = Sessions(POINTS, repeats=2, revolutions=5), Instruments(wander=0.0)
-    return record_sessions(
-        Gear(), effects, plan, Bench(), seed=seed, window=Window(), sectors=SECTORS, name="A", instruments=still
-    )
-
-
-@pytest.fixture(scope="module")
-def unit() -> swg.Unit:
-    return swg.commission(recorded(seed=1), Gear())
 
 
 def choices(folder, **changes: object) -> dict:
@@ -89,8 +70,23 @@ def folder(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def faulty(folder) -> swg.Diagnosis:
-    return diagnose_job.run(choices(folder))
+def faulty_and_unit(folder) -> tuple[swg.Diagnosis, swg.Unit]:
+    """The diagnosis of the command, and the unit that it commissioned."""
+    units: list[swg.Unit] = []
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(unit_diagnosis, "commission", lambda *of, **how: units.append(commission(*of, **how)) or units[0])
+        found = diagnose_job.run(choices(folder))
+    return found, units[0]
+
+
+@pytest.fixture(scope="module")
+def faulty(faulty_and_unit) -> swg.Diagnosis:
+    return faulty_and_unit[0]
+
+
+@pytest.fixture(scope="module")
+def unit(faulty_and_unit) -> swg.Unit:
+    return faulty_and_unit[1]
 
 
 def test_a_faulty_gear_is_named_with_size_and_position(faulty) -> None:
