@@ -11,9 +11,6 @@ from swgsim.identification.fit.fitted import Fitted
 
 # Least gain of log-likelihood by which one explanation counts as better than another.
 LEAST_GAIN = 3.0
-# A regularity replaces an effect only if it explains more than the effect does. The excess must be above the first
-# number, a sum of squares, plus the second number times what the effect explains.
-OUTDONE, OUTDONE_SHARE = 17.0, 0.05
 # Typical share by which the parts of a real cause differ from the library's form (standard deviation).
 FORM_TOLERANCE = 0.2
 # Load below which a power of it is that of this one [N m].

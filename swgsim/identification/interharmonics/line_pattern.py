@@ -9,9 +9,13 @@ from jaxtyping import Float
 from swgsim.effects.line_between import GAUGE_PATTERNS, LineBetween
 from swgsim.effects.quantity import quantities
 from swgsim.effects.regularity import LAWS
-from swgsim.identification.fit.form_error import LEAST_GAIN, OUTDONE, OUTDONE_SHARE
+from swgsim.identification.fit.form_error import LEAST_GAIN
 from swgsim.identification.interharmonics.interharmonic_spectrum import GaugeSpectrum, f_test
 from swgsim.identification.interharmonics.named_interharmonics import by_law
+
+# A description with more numbers replaces another one only if it explains more. The excess must be above the first
+# number, a sum of squares, plus the second number times what the other one explains (estimates).
+OUTDONE, OUTDONE_SHARE = 17.0, 0.05
 
 
 @dataclass(frozen=True)
@@ -52,11 +56,15 @@ def line_parts(line: Callable[[str], LineBetween], spectra: Sequence[GaugeSpectr
     best = max(patterns, key=lambda each: each.explained)
     alone = {gauge: _alone(gauge, line, spectra) for gauge in gauges}
     within = [gauge for gauge in gauges if gauge in GAUGE_PATTERNS[best.line.pattern]]
-    apart = sum(alone[gauge].explained for gauge in within)
-    together = apart <= (1 + OUTDONE_SHARE) * best.explained + OUTDONE
+    together = not outdoes(sum(alone[gauge].explained for gauge in within), best.explained)
     further = [each for gauge, each in alone.items() if each.chance <= level and not (together and gauge in within)]
     found = [best, *further] if together or not further else further
     return tuple(each.part() for each in sorted(found, key=lambda each: -each.explained))
+
+
+def outdoes(more: float, explained: float) -> bool:
+    """Whether a description with more numbers explains clearly more than another one, as sums of squares."""
+    return more > (1 + OUTDONE_SHARE) * explained + OUTDONE
 
 
 def distinct_patterns(gauges: Sequence[str]) -> list[str]:

@@ -12,9 +12,9 @@ from jaxtyping import Float
 
 from swgsim.common.singular import svd
 from swgsim.effects.base import Effect
-from swgsim.identification.fit.form_error import OUTDONE, OUTDONE_SHARE
 from swgsim.identification.interharmonics.interharmonic_spectrum import GaugeSpectrum
 from swgsim.identification.interharmonics.line_growth import chance_of_growth
+from swgsim.identification.interharmonics.line_pattern import outdoes
 from swgsim.identification.interharmonics.named_interharmonics import Sideline, nearby, ranked
 from swgsim.identification.interharmonics.signal_shapes import ordinary, scene_of, shapes
 from swgsim.identification.interharmonics.unattributed_lines import Unnamed, unnamed
@@ -118,7 +118,7 @@ def search(
             continue
         likely = ranked(found.left, sought)
         best = next((line for line in likely[:1] if line.chance <= level and line.holds), None)
-        if bare and (best is None or bare.explained > (1 + OUTDONE_SHARE) * best.explained + OUTDONE):
+        if bare and (best is None or outdoes(bare.explained, best.explained)):
             coupled = (line for line in likely if line.chance <= level and line.holds and _in_parts(line))
             best = next((line for line in coupled if _explains(line, bare, found.left)), None)
         if best:
@@ -158,7 +158,7 @@ def _in_parts(line: Sideline) -> bool:
 def _explains(line: Sideline, bare: Unnamed, left: Sequence[GaugeSpectrum]) -> bool:
     """Whether the parts of an effect, each of any size, explain what a line without a name does."""
     explained = sum(each.held(_near(line, left)) for each in left) - bare.noise
-    return bare.explained <= (1 + OUTDONE_SHARE) * explained + OUTDONE
+    return not outdoes(bare.explained, explained)
 
 
 def _near(line: Sideline, spectra: Sequence[GaugeSpectrum]) -> list[Effect]:
