@@ -140,8 +140,8 @@ lint: $(DEV)  ## style and types
 scale: $(DEV)  ## data sets larger than the memory: 15 minutes, 12 GiB (docs/scale.md)
 	$(BIN)/python scripts/large.py
 
-benchmark: $(READY)  ## the chain against the obvious ways of doing the same
-	$(SWG) benchmark
+benchmark: $(READY)  ## the chain against the obvious ways of doing the same (SMALL=1: a network trained on fewer recordings)
+	$(SWG) benchmark $(if $(SMALL),trained=720)
 
 convergence: $(READY)  ## gauge signals against the mesh of the flex spline
 	$(BIN)/python -m swgsim.studies.convergence
