@@ -7,6 +7,8 @@ DEV := $(VENV)/ready-dev
 SWG := $(BIN)/swg
 GRID := $(if $(SMALL),small,paper)
 TABLES := table7 table8 table9 table10
+# A small form is one process: further ones would take longer to start than their share of the work.
+ALONE := $(if $(SMALL),workers=1)
 # The study of transfer: gears to judge, experiments in the order of the report; the small form leaves some out.
 STARTED := $(shell date +%s)
 GEARS := $(if $(SMALL),gears_small,gears)
@@ -19,14 +21,16 @@ comma := ,
 JUDGED := $(if $(SMALL),,'gears=[$(subst $() $(),$(comma),$(shell seq 20))]')
 QUICK := $(if $(SMALL),shots=[1$(comma)2] draws=1 protocol.folds=2 protocol.development=0 \
          protocol.labelled=2 protocol.unlabelled=1 protocol.kept_out=1)
-# Gears to train the fast twin on.
-FEW_GEARS := $(if $(SMALL),workers=1 classifier.gears=12 classifier.variants=4 classifier.epochs=10)
+# Severities and positions at which the twin simulates faults, and gears to train the fast twin on.
+FEW_NODES := $(if $(SMALL),resolution.draws=60 resolution.nodes=3 resolution.positions.eccentric_wave_generator=12 resolution.positions.tip_tooth_crack=12)
+FEW_GEARS := $(if $(SMALL),classifier.gears=12 classifier.variants=4 classifier.epochs=10)
 # The small forms of the loop's studies: effects of every place to hide and to search; undeclared effects that are left out.
 FEW_EFFECTS := reduced_damping,warm_grease,flank_friction,input_unbalance,eccentric_wave_generator,cam_form,load_sharing,$(strip \
                )root_tooth_crack,tilting_moment,gauge_gain,channel_skew,mains_hum
 LEFT_OUT := tilting_moment strong_tilting_moment channel_skew coning load_sharing stiffening_spring axial_thrust bridge_nonlinearity
-# A few trials of the open choices on a small grid.
-FEW_TRIALS := sampled=4 fitted=1 'starts=[]' repeats=2 grid.variants=6 grid.positions=2 grid.references=1 judged.grid.variants=6 judged.grid.positions=2 \
+# A few trials of the open choices on a small grid. Unusual values cost so much that a start with a single one is the best trial.
+FEW_TRIALS := sampled=4 fitted=1 'starts=[{window: 75}]' prior_weight=10 repeats=2 \
+              grid.variants=6 grid.positions=2 grid.references=1 'grid.loads_nm=[7$(comma)70]' judged.grid.variants=6 judged.grid.positions=2 \
               classifiers.mlp.iterations=20 classifiers.rf.trees=20 judged.classifiers.mlp.iterations=20 judged.classifiers.rf.trees=20 out=report/small
 # Methods on microcontrollers that the small form leaves out.
 LARGER := paper_forest paper_forest_selection_3 forest_20 extra_trees_10 extra_trees_30 paper_mlp mlp_32 mlp_128 cnn_16
@@ -61,8 +65,8 @@ install: $(READY)  ## virtual environment with what the commands need
 install-dev: $(DEV)  ## the same with tests, linters, documentation and all extras
 
 data: $(READY)  ## the clean and the disturbed data set
-	$(SWG) generate grid=$(GRID) condition=clean
-	$(SWG) generate grid=$(GRID) condition=disturbed
+	$(SWG) generate grid=$(GRID) condition=clean $(ALONE)
+	$(SWG) generate grid=$(GRID) condition=disturbed $(ALONE)
 
 experiments: data  ## the paper's Tables VII to X, every job a run in MLflow
 	@$(MAKE) --no-print-directory --jobs=$(CORES) $(TABLES)
@@ -79,15 +83,15 @@ paper: $(READY)  ## data sets, runs and report of the paper's tables (SMALL=1: a
 	@echo "open report/$(if $(SMALL),small/)index.html; 'make ui' shows the runs"
 
 paper-choices: $(READY)  ## the choices that the paper leaves open, fitted to its tables, report/paper_choices.html (SMALL=1: a minute)
-	OMP_NUM_THREADS=1 $(SWG) paper-choices $(if $(SMALL),$(FEW_TRIALS))
+	OMP_NUM_THREADS=1 $(SWG) paper-choices $(if $(SMALL),$(FEW_TRIALS)) $(ALONE)
 
 transfer: data  ## beyond the paper: networks, transfer to gears never seen, report/transfer.html (SMALL=1: a few minutes)
 	@set -e; \
-	for set in $(GEARS)-bench $(FOREIGN); do $(SWG) generate grid=$${set%-*} condition=$${set##*-}; done; \
-	$(SWG) twin grid=$(GEARS) $(JUDGED); \
-	for name in $(ON_PAPER); do $(SWG) train experiment=$$name grid=$(GRID); done; \
-	for name in $(ON_GEARS); do $(SWG) train experiment=$$name grid=$(GEARS) $(QUICK); done; \
-	$(SWG) train experiment=fast_twin grid=$(GEARS) $(QUICK) $(FEW_GEARS); \
+	for set in $(GEARS)-bench $(FOREIGN); do $(SWG) generate grid=$${set%-*} condition=$${set##*-} $(ALONE); done; \
+	$(SWG) twin grid=$(GEARS) $(JUDGED) $(FEW_NODES) $(ALONE); \
+	for name in $(ON_PAPER); do $(SWG) train experiment=$$name grid=$(GRID) $(ALONE); done; \
+	for name in $(ON_GEARS); do $(SWG) train experiment=$$name grid=$(GEARS) $(QUICK) $(ALONE); done; \
+	$(SWG) train experiment=fast_twin grid=$(GEARS) $(QUICK) $(FEW_GEARS) $(ALONE); \
 	$(SWG) transfer-report grid=$(GEARS) paper_grid=$(GRID) started=$(STARTED)
 	@echo "open report/transfer.html; 'make ui' shows the runs"
 
@@ -101,7 +105,7 @@ loop: $(READY)  ## closing the loop once, from nothing: record, hide an effect, 
 	@echo "open loop/answer/page.html; 'make ui' shows the run"
 
 blind: $(READY)  ## the loop judged on sealed cases, report/blind.json (SMALL=1: 6 cases, 12 effects)
-	$(SWG) blind $(if $(SMALL),cases=6 seed=4 'sectors=[130$(comma)110]' 'library=[$(FEW_EFFECTS)]' blind=blind/small)
+	$(SWG) blind $(if $(SMALL),cases=6 seed=4 'sectors=[130$(comma)110]' 'library=[$(FEW_EFFECTS)]' blind=blind/small) $(ALONE)
 
 other-benches: $(DEV)  ## the loop on gears that other authors simulated, report/other_benches.json (SMALL=1: one gear of each)
 	OMP_NUM_THREADS=1 $(BIN)/python tests/benches benches $(if $(SMALL),--cases 6 --report report/small)
@@ -110,17 +114,17 @@ robots: $(DEV)  ## the loop on virtual robot joints of other physics: false effe
 	OMP_NUM_THREADS=1 $(BIN)/python tests/robots robots $(if $(SMALL),--count 6 --foreign 1 --report report/small)
 
 sim-to-real: $(READY)  ## classifiers before and after the loop found an undeclared effect, report/sim_to_real.html (SMALL=1: one effect)
-	$(SWG) sim-to-real $(if $(SMALL),grid.variants=4 $(addprefix ~undeclared.,$(LEFT_OUT)))
+	$(SWG) sim-to-real $(if $(SMALL),grid.variants=4 $(addprefix ~undeclared.,$(LEFT_OUT))) $(ALONE)
 
 joints: $(READY)  ## real robot joints (files: docs/joint_recordings.md), report/joints.html (SMALL=1: one joint)
 	$(SWG) joints $(if $(MEASURED),folder=$(MEASURED)) $(if $(SMALL),'only=*joint 1')
 	@echo "open report/joints.html, and joints/*/page.html for every case"
 
 embedded: $(DEV)  ## classifiers as C on microcontrollers, report/embedded.md; flash and instructions after scripts/install_arm.sh (SMALL=1: three of them)
-	$(SWG) generate grid=$(GEARS) condition=bench
-	$(SWG) generate grid=$(GRID) condition=disturbed
+	$(SWG) generate grid=$(GEARS) condition=bench $(ALONE)
+	$(SWG) generate grid=$(GRID) condition=disturbed $(ALONE)
 	$(SWG) embedded unseen=$(GEARS)-bench disturbed=$(GRID)-disturbed \
-	    $(if $(SMALL),judged=2 proof=72 counted=4 $(addprefix ~methods.,$(LARGER)))
+	    $(if $(SMALL),judged=2 proof=72 counted=4 $(addprefix ~methods.,$(LARGER))) $(ALONE)
 	$(SWG) export grid=$(GEARS) target=c numbers=int16
 	$(SWG) export grid=$(GEARS) target=onnx
 
@@ -136,8 +140,8 @@ lint: $(DEV)  ## style and types
 scale: $(DEV)  ## data sets larger than the memory: 15 minutes, 12 GiB (docs/scale.md)
 	$(BIN)/python scripts/large.py
 
-benchmark: $(READY)  ## the chain against the obvious ways of doing the same
-	$(SWG) benchmark
+benchmark: $(READY)  ## the chain against the obvious ways of doing the same (SMALL=1: a network trained on fewer recordings)
+	$(SWG) benchmark $(if $(SMALL),trained=720)
 
 convergence: $(READY)  ## gauge signals against the mesh of the flex spline
 	$(BIN)/python -m swgsim.studies.convergence

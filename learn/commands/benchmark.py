@@ -16,7 +16,7 @@ from swgsim.studies import benchmark
 def run(config: Mapping[str, Any]) -> None:
     """Print the ratios and keep them as <report>/benchmark.json."""
     config = dict(config)
-    report = Path(config.pop("report"))
+    report, trained = Path(config.pop("report")), config.pop("trained")
     plan = settings.plan(config)
     nominal = plan.gears[0].transmission
     stiffnesses = [replace(nominal, k1=ratio * nominal.k1) for ratio in np.linspace(0.8, 1.0, 120)]
@@ -32,7 +32,7 @@ def run(config: Mapping[str, Any]) -> None:
         "further_errors_vs_anew": benchmark.further_errors_vs_anew(),
     }
     chain, integrator, balance, errors, further = result.values()
-    result["training"] = training = training_benchmark.measure()
+    result["training"] = training = training_benchmark.measure(trained)
     print(
         f"chain against one sparse solve per sample: {chain['ratio']:,.0f} times faster, "
         f"largest difference {chain['max_relative_difference']:.1e} of the signal"

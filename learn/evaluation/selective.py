@@ -98,17 +98,3 @@ def class_thresholds(
     """
     of_class = (y == number for number in range(probabilities.shape[1]))
     return np.array([conformal_threshold(probabilities[r], y[r], gears[r], nominal) for r in of_class])
-
-
-def set_figures(sets: Bool[np.ndarray, "row class"], y: Int[np.ndarray, " row"], gears: np.ndarray) -> pd.DataFrame:
-    """Coverage and size of the prediction sets of each gear.
-
-    Returns
-    -------
-    DataFrame
-        ``coverage`` (share of sets with the true class), ``mean_size`` and ``empty`` (share of empty sets). The nominal
-        coverage applies to the mean over gears; single gears may have much less.
-    """
-    sizes = sets.sum(axis=1)
-    rows = pd.DataFrame({"coverage": sets[np.arange(len(y)), y], "mean_size": sizes, "empty": sizes == 0})
-    return rows.groupby(pd.Index(gears, name="gear")).mean()

@@ -9,7 +9,6 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from jaxtyping import Float
-from scipy.signal import lfilter
 
 from swgsim.bench.scatter import Bench, Session
 from swgsim.chain.chain import Run, channels_of, simulate
@@ -275,6 +274,8 @@ def _wander(
     instruments: Instruments, rate: float, samples: int, rng: np.random.Generator
 ) -> Float[np.ndarray, "sensor time"]:
     """Slow noise of every gauge amplifier, stationary from the first sample."""
+    from scipy.signal import lfilter  # takes half a second to import, and every command imports this module
+
     kept = np.exp(-1 / (rate * instruments.memory))
     steps = rng.standard_normal((len(SENSORS), samples))
     steps[:, 1:] *= np.sqrt(1 - kept**2)

@@ -68,23 +68,23 @@ class Setting:
         return tuple(kind for kind in self.library if kind.name() not in case.taken_out)
 
 
-def unit_of(case: Sealed, setting: Setting) -> Gear:
+def unit_of(seed: int, setting: Setting) -> Gear:
     """The unit of a case before it ran in."""
-    gear = SERIES.draw(setting.gear, case.seed)[0]
+    gear = SERIES.draw(setting.gear, seed)[0]
     nominal = setting.gear.transmission.kinematic_error
     gear = replace(gear, transmission=replace(gear.transmission, kinematic_error=nominal))
-    model, rng = Model(gear), generator("kinematic error of a unit", case.seed)
+    model, rng = Model(gear), generator("kinematic error of a unit", seed)
     for name, declared in of_unit(setting.gear).items():
         if name.startswith("kinematic error"):
             model = declared.at(model, declared.value(model) + KINEMATIC * declared.sd * rng.standard_normal())
     return model.gear
 
 
-def commissioning(case: Sealed, setting: Setting) -> tuple[Recording, ...]:
+def commissioning(seed: int, sectors: int, setting: Setting) -> tuple[Recording, ...]:
     """Recordings of the unit in its healthy state."""
     plan = Sessions(FULL.points, FULL.repeats, revolutions=setting.revolutions, name="commissioning")
     return record_sessions(
-        unit_of(case, setting), (), plan, setting.bench, seed=case.seed, window=setting.window, sectors=case.sectors
+        unit_of(seed, setting), (), plan, setting.bench, seed=seed, window=setting.window, sectors=sectors
     )
 
 
@@ -106,7 +106,7 @@ def in_question(case: Sealed, setting: Setting, effects: Sequence[Effect]) -> tu
         instruments = replace(instruments, wander=2 * instruments.wander)
         plan = replace(plan, warming=rng.uniform(8, 15), pause=120.0)
     return record_sessions(
-        _run_in(unit_of(case, setting), case), effects, plan, bench, seed=case.seed + 1, window=setting.window,
+        _run_in(unit_of(case.seed, setting), case), effects, plan, bench, seed=case.seed + 1, window=setting.window,
         sectors=case.sectors, instruments=instruments,
     )  # fmt: skip
 
@@ -115,7 +115,7 @@ def unseen(case: Sealed, setting: Setting, layout: Layout) -> Float[np.ndarray, 
     """What the bench would record where nothing was recorded, in the session in question and without any noise, over
     all positions of the output.
     """
-    gear = _run_in(unit_of(case, setting), case)
+    gear = _run_in(unit_of(case.seed, setting), case)
     positions = (OutputPosition(0.0), OutputPosition(np.pi))
     runs = [Run(gear, s.point, (*case.acting, p), conditions=s.conditions) for s in UNSEEN for p in positions]
     recordings = simulate_turns(runs, 1, SAMPLES_PER_TURN, case.sectors)

@@ -193,37 +193,48 @@ class Drive:
         """
         return omega_out / self.sin_t
 
+    def unloaded_friction(
+        self, sliding: np.ndarray, phi_out: np.ndarray, added: np.ndarray | float = 0.0
+    ) -> np.ndarray:
+        """The terms of eq. (5) that do not depend on the load, with the friction torque of effects [N m].
+
+        b0 + b1 phi_b' + b2 phi_b'^3 + b3 sin(theta_b - phi_out); the terms without phi_b' have its sign, which is
+        smooth near standstill. The paper has sin(phi_out + theta_b), as its phi_out has the other sign.
+
+        Parameters
+        ----------
+        sliding : array
+            phi_b' [rad/s]; b1 is in N m s/rad, b2 in N m s^3/rad^3, b0 and b3 in N m.
+        phi_out : array
+            Angle of the output [rad]; theta_b is in rad.
+        added : array or float
+            Friction torque of effects [N m].
+        """
+        p = self.p
+        friction = (p["b1"] + p["b2"] * sliding * sliding) * sliding
+        friction += sense(sliding) * (p["b0"] + p["b3"] * np.sin(p["theta_b"] - phi_out)) + added
+        return friction
+
     def friction_torque(
         self, sliding: np.ndarray, phi_out: np.ndarray, T_stiff: np.ndarray, added: np.ndarray | float
     ) -> np.ndarray:
         """Friction torque at the flank, eq. (5) [N m].
 
-        T_fric = b0 + b1 phi_b' + b2 phi_b'^3 + b3 sin(theta_b - phi_out) + mu F_n; the terms without phi_b' have its
-        sign, which is smooth near standstill. The paper has sin(phi_out + theta_b), as its phi_out has the other sign.
-        The massless tooth is in equilibrium on the driving flank, T_stiff = F_n sin(alpha_tooth) + T_fric
-        cos(alpha_tooth), which gives the normal force F_n [N m].
+        T_fric = :meth:`unloaded_friction` + mu F_n, in which mu has no unit. The massless tooth is in equilibrium on
+        the driving flank, T_stiff = F_n sin(alpha_tooth) + T_fric cos(alpha_tooth), which gives the normal force F_n
+        [N m].
 
         Parameters
         ----------
-        sliding : array
-            phi_b' [rad/s]; b1 is in N m s/rad, b2 in N m s^3/rad^3, b0 and b3 in N m, mu has no unit.
-        phi_out : array
-            Angle of the output [rad]; theta_b is in rad.
+        sliding, phi_out, added
+            As of :meth:`unloaded_friction`.
         T_stiff : array
             Eq. (2), with effects [N m].
-        added : array or float
-            Friction torque of effects [N m].
-
-        Notes
-        -----
-        :func:`swgsim.chain.equilibrium.uniform_rotation` has the same formula solved for a given load, without effects.
-        A change of eq. (5) belongs in both.
         """
-        p, sign = self.p, sense(sliding)
-        friction = (p["b1"] + p["b2"] * sliding * sliding) * sliding
-        friction += sign * (p["b0"] + p["b3"] * np.sin(p["theta_b"] - phi_out)) + added
-        F_n = np.abs(T_stiff - friction * self.cos_t) / (self.sin_t + p["mu"] * sign * self.cos_t)
-        return friction + p["mu"] * sign * F_n
+        mu, sign = self.p["mu"], sense(sliding)
+        friction = self.unloaded_friction(sliding, phi_out, added)
+        F_n = np.abs(T_stiff - friction * self.cos_t) / (self.sin_t + mu * sign * self.cos_t)
+        return friction + mu * sign * F_n
 
     def torques(self, state: State) -> Torques:
         """All torques of a state: eqs. (2), (3), (5), (6), the effects and the speed control."""

@@ -14,13 +14,12 @@ def uniform_rotation(drive: Drive) -> State:
 
     Notes
     -----
-    Eq. (5) as in :meth:`swgsim.chain.dynamics.Drive.friction_torque`, at phi_out = 0 and for a positive sliding speed.
-    A change of one belongs in the other too. There T_stiff is known; here the load is known, and in equilibrium with it
-    F_n = T_load / cos(alpha_tooth) + T_fric tan(alpha_tooth). Then eq. (5) is solved for T_fric.
+    The load is known, and in equilibrium with it F_n = T_load / cos(alpha_tooth) + T_fric tan(alpha_tooth). Then
+    eq. (5) is solved for T_fric, at phi_out = 0.
     """
     p, speed = drive.p, drive.omega / (drive.p["N"] + 1)
     sliding = drive.sliding_speed(speed)
-    friction = (p["b1"] + p["b2"] * sliding**2) * sliding + p["b0"] + p["b3"] * np.sin(p["theta_b"])
+    friction = drive.unloaded_friction(sliding, np.zeros_like(sliding))
     T_fric = (friction + p["mu"] * drive.T_load / drive.cos_t) / (1 - p["mu"] * drive.tan_t)
     T_stiff = drive.tan_t * (drive.T_load + T_fric / drive.sin_t)
     twist = T_stiff / p["k1"]

@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
-from scipy.signal import resample
 
 from swgsim.effects.base import Effect, Scene
 from swgsim.storage.labelled_signals import SENSORS
@@ -64,6 +63,8 @@ def all_as_seen(turns: Sequence[Ideal]) -> list[Mapping[str, Float[np.ndarray, "
 
 def _filtered(turns: Sequence[Ideal]) -> Iterator[Mapping[str, Float[np.ndarray, " time"]]]:
     """The channels of runs with corners, from oversampled and filtered signals."""
+    from scipy.signal import resample  # takes half a second to import, and few runs have corners
+
     names, samples = list(turns[0].channels), len(turns[0].scene.time)
     time = np.array([ideal.scene.time for ideal in turns])
     dense = np.arange(DENSER * samples) / DENSER * time[:, 1:2]

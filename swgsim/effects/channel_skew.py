@@ -1,11 +1,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicSpline, PPoly
 
 from swgsim.effects.base import Channels, Effect, Samples, Scene
 from swgsim.effects.quantity import size
 from swgsim.effects.turns import on_gauges
+from swgsim.storage.labelled_signals import SENSORS
 
 
 @dataclass(frozen=True)
@@ -30,11 +31,13 @@ class ChannelSkew(Effect):
     def acquisition(self, channels: Channels, scene: Scene) -> Channels:
         """The channels with each gauge delayed."""
         turn = 2 * np.pi / scene.point.omega_in
+        # One spline for all gauges, which takes no longer to make than one for a single gauge.
+        spline = CubicSpline(scene.time, [channels[name] for name in SENSORS], axis=1)
 
-        def delayed(sensor: int, signal: Samples) -> Samples:
+        def delayed(sensor: int, _: Samples) -> Samples:
             then = scene.time - sensor * self.delay
             then = np.where(then < scene.time[0], then + turn, then)
             then = np.where(then > scene.time[-1], then - turn, then)
-            return CubicSpline(scene.time, signal)(then)
+            return PPoly(spline.c[:, :, sensor], spline.x)(then)
 
         return on_gauges(channels, delayed)

@@ -212,7 +212,7 @@ def test_the_truth_comes_back_from_json() -> None:
 def test_units_lie_within_what_the_loop_declares() -> None:
     nominal, deviations = of_unit(GEAR), []
     for seed in range(12):
-        unit = Model(unit_of(replace(CASE, seed=seed), SETTING))
+        unit = Model(unit_of(seed, SETTING))
         deviations.append([(p.value(unit) - p.value(Model(GEAR))) / p.sd for p in nominal.values()])
     assert 0.3 < np.std(deviations) < 1.0
     assert (np.std(deviations, axis=0) < 1.5).all()

@@ -86,6 +86,7 @@ def smaller(config, swept):
         }
     if config["classifier"]["name"] == "fast_twin":
         config["classifier"]["grid"]["loads_nm"] = list(LOADS)  # of the made-up recordings
+        config["classifier"] |= {"variants": 2, "mesh": {**config["classifier"]["mesh"], "sectors": 40}}
     if config["adaptation"]["name"] == "rezero":  # of the three gears two must be sources
         config["adaptation"]["shots"], config["protocol"]["judged"] = [0, 1], 1
     return config

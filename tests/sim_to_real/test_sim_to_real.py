@@ -37,7 +37,7 @@ def config(tmp_path_factory):
     small = [
         f"data={place / 'data'}", f"out={place / 'report'}", f"tracking.folder={prepared(place / 'runs')}", "workers=1",
         f"mesh.sectors={SECTORS}", f"bench_mesh.sectors={SECTORS}", "grid.variants=6", "grid.references=3",
-        "grid.loads_nm=[10,70]",
+        "grid.speeds_rpm=[4000]", "grid.loads_nm=[10,70]",
         "sessions.repeats=2", "sessions.revolutions=4",
         "searched=[warm_grease,channel_skew]",
         "methods.extra_trees_on_harmonics.classifier.trees=20",

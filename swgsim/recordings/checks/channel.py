@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 import numpy as np
 from jaxtyping import Float
-from scipy.stats import median_abs_deviation
 
 from swgsim.recordings.checks.defect import Defect
 from swgsim.recordings.checks.thresholds import CLIPPED_EDGE, CLIPPED_REFUSES, CLIPPED_RUN, STUCK_RUN, STUCK_TURN
@@ -85,4 +84,6 @@ def plateau(values: Float[np.ndarray, " time"], starts: np.ndarray, lengths: np.
 
 def _noise(values: Float[np.ndarray, " time"]) -> float:
     """Standard deviation of white noise, from fourth differences, which a smooth signal hardly has."""
+    from scipy.stats import median_abs_deviation  # takes half a second, and simulations import this module
+
     return float(median_abs_deviation(np.diff(values, 4), scale="normal") / np.sqrt(70)) if len(values) > 4 else 0.0
