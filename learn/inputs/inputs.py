@@ -61,12 +61,12 @@ class LearningSet:
 
 def with_foreign_gears(data: LearningSet, foreign: LearningSet) -> LearningSet:
     """Both data sets as one; the foreign gears come first, with numbers below 1; raises like :func:`_joined`."""
-    return _joined(_renumbered(foreign, -foreign.table["gear"].max()), data)
+    return _joined(_renumbered(foreign, -int(foreign.table["gear"].max())), data)
 
 
 def with_training_gears(data: LearningSet, training: LearningSet) -> LearningSet:
     """Both data sets as one; the training gears come last, with the highest numbers; raises like :func:`_joined`."""
-    return _joined(data, _renumbered(training, data.table["gear"].max()))
+    return _joined(data, _renumbered(training, int(data.table["gear"].max())))
 
 
 def _renumbered(data: LearningSet, by: int) -> LearningSet:

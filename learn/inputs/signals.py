@@ -51,7 +51,9 @@ class Signals:
     def __post_init__(self) -> None:
         require_known("the signals", [self.name], CHANNELS)
         if self.name in RELATIVE and not self.reference:
-            raise ValueError(f"features={self.name} is relative to a healthy reference: reference=true, or features=raw")
+            raise ValueError(
+                f"features={self.name} is relative to a healthy reference: reference=true, or features=raw"
+            )
         require_integer(self.name, "points", self.points, low=8, high=4096)
         require_integer(self.name, "orders", self.orders, low=1, high=self.points // 2 - 1)
         require_acquisitions(self.name, self.acquisitions)

@@ -127,7 +127,9 @@ def neural_perceptron(
 
     signal = {"channels": channels, "points": points, "periodic": periodic}
     options = {**signal, "layers": layers, "neurons": neurons, "dropout": dropout}
-    return NeuralClassifier(Architecture("perceptron", options), Recipe(epochs, batch, rate, decay, steps), seed, device)
+    return NeuralClassifier(
+        Architecture("perceptron", options), Recipe(epochs, batch, rate, decay, steps), seed, device
+    )
 
 
 def convolutional_network(
