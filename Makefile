@@ -23,7 +23,7 @@ QUICK := $(if $(SMALL),shots=[1$(comma)2] draws=1 protocol.folds=2 protocol.deve
 # Gears to train the fast twin on.
 FEW_GEARS := $(if $(SMALL),workers=1 classifier.gears=12 classifier.variants=4 classifier.epochs=10)
 # Steps and gears of the networks that are trained on simulated gears.
-FEW_STEPS := $(if $(SMALL),workers=1 classifier.steps=40 protocol.sources=4 protocol.judged=4 features=raw$(comma)residual)
+FEW_STEPS := $(if $(SMALL),workers=1 classifier=perceptron$(comma)resnet classifier.steps=40 features=residual protocol.sources=4 protocol.judged=4)
 # The small forms of the loop's studies: effects of every place to hide and to search; undeclared effects that are left out.
 FEW_EFFECTS := reduced_damping,warm_grease,flank_friction,input_unbalance,eccentric_wave_generator,cam_form,load_sharing,$(strip \
                )root_tooth_crack,tilting_moment,gauge_gain,channel_skew,mains_hum
