@@ -17,6 +17,7 @@ INPUTS: Mapping[str, str] = {
     "residual": "residual",
 }
 NETWORKS: Mapping[str, str] = {"perceptron": "mlp", "cnn": "cnn", "resnet": "resnet", "minirocket": "minirocket"}
+GEARS = 100  # of which transfer.json speaks
 
 
 def over_gears(runs: pd.DataFrame, errors: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
@@ -59,10 +60,11 @@ def over_gears_text(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def over_gears_json(table: pd.DataFrame | None) -> dict[str, dict[str, Any]]:
-    """Input to network to error [%] with its interval, of the largest number of gears; None for what was not run."""
+    """Input to network to error [%] with its interval, of about :data:`GEARS` gears; None for what was not run."""
     found: dict[str, dict[str, Any]] = {kind: dict.fromkeys(NETWORKS.values()) for kind in INPUTS}
     if table is not None:
-        for _, row in table[table["gears"] == table["gears"].max()].iterrows():
+        distance = (table["gears"] - GEARS).abs()
+        for _, row in table.loc[distance.groupby([table["input"], table["method"]]).idxmin()].iterrows():
             found[row["input"]][NETWORKS[row["method"]]] = in_json(row) | {"gears": int(row["gears"])}
     return found
 
@@ -71,12 +73,12 @@ def over_gears_figure(table: pd.DataFrame) -> bytes:
     """Errors of :func:`over_gears` over the number of gears, a panel for each network; dashed in training."""
     networks = [name for name in NETWORKS if name in set(table["method"])]
     picture = style.figure(WIDTH, 0.8 + 2.5 * len(networks))
-    panels = picture.subplots(len(networks), sharex=True, squeeze=False)[:, 0]
+    panels = picture.subplots(len(networks), sharex=True, sharey=True, squeeze=False)[:, 0]
     for axes, name in zip(panels, networks, strict=True):
-        for number_, (kind, text) in enumerate(INPUTS.items()):
+        for place, (kind, text) in enumerate(INPUTS.items()):
             rows = table[(table["method"] == name) & (table["input"] == kind)].sort_values("gears")
-            look = {"color": COLOURS[number_], "marker": MARKERS[number_], "markersize": 5}
-            axes.vlines(rows["gears"], rows["low"], rows["high"], color=COLOURS[number_], linewidth=1.1)
+            look = {"color": COLOURS[place], "marker": MARKERS[place], "markersize": 5}
+            axes.vlines(rows["gears"], rows["low"], rows["high"], color=COLOURS[place], linewidth=1.1)
             axes.plot(rows["gears"], rows["value"], label=text, **look)
             axes.plot(rows["gears"], rows["training"], linestyle="--", markerfacecolor="white", **look)
         axes.set_xscale("log")

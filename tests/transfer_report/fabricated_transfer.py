@@ -96,7 +96,7 @@ def keep_required(keep, data):
             table = predictions(wrong, (classifier, efficiency))
             keep("inputs", tables={"predictions": table}, classifier=classifier, features="raw",
                  **{"features.efficiency": efficiency})  # fmt: skip
-    for sources, wrong in ((20, 0.4), (100, 0.2)):
+    for sources, wrong in ((20, 0.4), (100, 0.2), (500, 0.1)):
         keep("inputs_gears", "joined", {"train_score": 90.0}, {"predictions": predictions(wrong, sources)},
              classifier="perceptron", features="residual", **{"protocol.sources": sources})  # fmt: skip
     keep("no_reference", tables={"predictions": predictions(0.7, "Z0")}, classifier="cnn", features="raw")

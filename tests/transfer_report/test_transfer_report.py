@@ -99,7 +99,9 @@ def test_whole_report_from_made_up_runs(data, store, tmp_path):
     assert "MLP: CORAL (trained on 5 variants)" in page
     assert "replay (trained on" not in page
     assert "experiment=inputs_operating_point grid=gears" in page  # the command of a study without runs
-    assert re.search(r"studies with runs of older code</td>\s*<td[^>]*>zero_shot, inputs, inputs_gears, no_reference", page)
+    assert re.search(
+        r"studies with runs of older code</td>\s*<td[^>]*>zero_shot, inputs, inputs_gears, no_reference", page
+    )
     assert re.search(r"protocol.folds</td>\s*<td[^>]*>2<", page)
 
 
