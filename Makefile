@@ -12,8 +12,9 @@ ALONE := $(if $(SMALL),workers=1)
 # The study of transfer: gears to judge, experiments in the order of the report; the small form leaves some out.
 STARTED := $(shell date +%s)
 GEARS := $(if $(SMALL),gears_small,gears)
+TRAINING := $(if $(SMALL),training_small,training)
 FOREIGN := $(if $(SMALL),,far-bench few-bench few-noisy few-other_day)
-ON_GEARS := zero_shot $(if $(SMALL),inputs_small,inputs inputs_features) transfer_network transfer_forest \
+ON_GEARS := zero_shot $(if $(SMALL),inputs_small,inputs inputs_features inputs_gears_rocket) transfer_network transfer_forest \
             $(if $(SMALL),,zero_shot_lines zero_shot_signals inputs_operating_point no_reference) \
             $(if $(SMALL),,transfer_extra_trees transfer_cnn transfer_rezero transfer_map transfer_map_foreign)
 ON_PAPER := zero_shot_disturbed
@@ -24,6 +25,8 @@ QUICK := $(if $(SMALL),shots=[1$(comma)2] draws=1 protocol.folds=2 protocol.deve
 # Severities and positions at which the twin simulates faults, and gears to train the fast twin on.
 FEW_NODES := $(if $(SMALL),resolution.draws=60 resolution.nodes=3 resolution.positions.eccentric_wave_generator=12 resolution.positions.tip_tooth_crack=12)
 FEW_GEARS := $(if $(SMALL),classifier.gears=12 classifier.variants=4 classifier.epochs=10)
+# Steps and gears of the networks that are trained on simulated gears.
+FEW_STEPS := $(if $(SMALL),classifier=perceptron$(comma)resnet classifier.steps=40 features=residual protocol.sources=4 protocol.judged=4)
 # The small forms of the loop's studies: effects of every place to hide and to search; undeclared effects that are left out.
 FEW_EFFECTS := reduced_damping,warm_grease,flank_friction,input_unbalance,eccentric_wave_generator,cam_form,load_sharing,$(strip \
                )root_tooth_crack,tilting_moment,gauge_gain,channel_skew,mains_hum
@@ -87,10 +90,11 @@ paper-choices: $(READY)  ## the choices that the paper leaves open, fitted to it
 
 transfer: data  ## beyond the paper: networks, transfer to gears never seen, report/transfer.html (SMALL=1: a few minutes)
 	@set -e; \
-	for set in $(GEARS)-bench $(FOREIGN); do $(SWG) generate grid=$${set%-*} condition=$${set##*-} $(ALONE); done; \
+	for set in $(GEARS)-bench $(TRAINING)-bench $(FOREIGN); do $(SWG) generate grid=$${set%-*} condition=$${set##*-} $(ALONE); done; \
 	$(SWG) twin grid=$(GEARS) $(JUDGED) $(FEW_NODES) $(ALONE); \
 	for name in $(ON_PAPER); do $(SWG) train experiment=$$name grid=$(GRID) $(ALONE); done; \
 	for name in $(ON_GEARS); do $(SWG) train experiment=$$name grid=$(GEARS) $(QUICK) $(ALONE); done; \
+	$(SWG) train experiment=inputs_gears grid=$(GEARS) training=$(TRAINING)-bench $(QUICK) $(FEW_STEPS) $(ALONE); \
 	$(SWG) train experiment=fast_twin grid=$(GEARS) $(QUICK) $(FEW_GEARS) $(ALONE); \
 	$(SWG) transfer-report grid=$(GEARS) paper_grid=$(GRID) started=$(STARTED)
 	@echo "open report/transfer.html; 'make ui' shows the runs"

@@ -60,21 +60,27 @@ class LearningSet:
 
 
 def with_foreign_gears(data: LearningSet, foreign: LearningSet) -> LearningSet:
-    """Both data sets as one; the foreign gears come first, with numbers below 1.
+    """Both data sets as one; the foreign gears come first, with numbers below 1; raises like :func:`_joined`."""
+    return _joined(_renumbered(foreign, -int(foreign.table["gear"].max())), data)
 
-    Raises
-    ------
-    ValueError
-        If the two have different inputs.
-    """
-    if data.names != foreign.names:
-        raise ValueError(f"{len(data.names)} and {len(foreign.names)} inputs that differ: take the same ones of both")
-    table = foreign.table.assign(gear=foreign.table["gear"] - foreign.table["gear"].max())
-    return LearningSet(
-        np.concatenate([foreign.features, data.features]),
-        pd.concat([table, data.table], ignore_index=True),
-        data.names,
-        data.layout,
+
+def with_training_gears(data: LearningSet, training: LearningSet) -> LearningSet:
+    """Both data sets as one; the training gears come last, with the highest numbers; raises like :func:`_joined`."""
+    return _joined(data, _renumbered(training, int(data.table["gear"].max())))
+
+
+def _renumbered(data: LearningSet, by: int) -> LearningSet:
+    return replace(data, table=data.table.assign(gear=data.table["gear"] + by))
+
+
+def _joined(first: LearningSet, second: LearningSet) -> LearningSet:
+    """Both data sets as one; raises a ValueError if they have different inputs."""
+    if first.names != second.names:
+        raise ValueError(f"{len(second.names)} and {len(first.names)} inputs that differ: take the same ones of both")
+    return replace(
+        first,
+        features=np.concatenate([first.features, second.features]),
+        table=pd.concat([first.table, second.table], ignore_index=True),
     )
 
 

@@ -12,7 +12,8 @@ from swgsim.common.checks import require_integer, require_known
 from swgsim.storage.labelled_signals import SENSORS, LabelledSignals
 from swgsim.storage.orders import revolution
 
-CHANNELS = {"raw": SENSORS, "differenced": ("ds13", "ds24"), "residual": SENSORS}
+CHANNELS = {"raw": SENSORS, "template": SENSORS, "differenced": ("ds13", "ds24"), "residual": SENSORS}
+RELATIVE = ("template", "residual")  # to the healthy reference
 
 
 @dataclass(frozen=True)
@@ -21,9 +22,9 @@ class Signals:
 
     Attributes
     ----------
-    name : {"raw", "differenced", "residual"}
-        Five gauges; the gauge differences of eq. (8); or the residual of the five gauges
-        (:func:`learn.inputs.residuals.residual`).
+    name : {"raw", "template", "differenced", "residual"}
+        Five gauges; the five gauges minus the healthy reference at the operating point; the gauge differences of
+        eq. (8); or the residual of the five gauges (:func:`learn.inputs.residuals.residual`).
     points : int
         Number of angles.
     orders : int
@@ -49,8 +50,10 @@ class Signals:
 
     def __post_init__(self) -> None:
         require_known("the signals", [self.name], CHANNELS)
-        if self.name == "residual" and not self.reference:
-            raise ValueError("features=residual is relative to a healthy reference: reference=true, or features=raw")
+        if self.name in RELATIVE and not self.reference:
+            raise ValueError(
+                f"features={self.name} is relative to a healthy reference: reference=true, or features=raw"
+            )
         require_integer(self.name, "points", self.points, low=8, high=4096)
         require_integer(self.name, "orders", self.orders, low=1, high=self.points // 2 - 1)
         require_acquisitions(self.name, self.acquisitions)
@@ -62,6 +65,8 @@ class Signals:
         lines = healthy.lines
         if self.name == "differenced":
             lines = lines[:, 1:3] - lines[:, 3:5]  # eq. 8
+        elif self.name == "template":
+            lines = lines - healthy.reference
         elif self.name == "residual":
             lines, errors = residual(healthy)
             auxiliary |= dict(zip(ERRORS, errors.T, strict=True))

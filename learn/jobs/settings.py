@@ -12,7 +12,7 @@ from learn.inputs.harmonics import Harmonics
 from learn.inputs.inputs import NO_SIGNAL, Layout, Representation
 from learn.inputs.lines import ResidualLines
 from learn.inputs.referenced import Referenced
-from learn.inputs.signals import Signals
+from learn.inputs.signals import CHANNELS, Signals
 from learn.methods import classical, contract, neural, strong
 from learn.methods.fast_twin import FastTwin
 from learn.methods.rocket import MiniRocket
@@ -32,7 +32,7 @@ T = TypeVar("T")
 Config = Mapping[str, Any]
 
 REPRESENTATIONS: Mapping[str, Callable[..., Representation]] = {
-    **dict.fromkeys(("raw", "differenced", "residual"), Signals),
+    **dict.fromkeys(CHANNELS, Signals),
     "lines": ResidualLines,
     "harmonics": Harmonics,
     "referenced": Referenced,
@@ -49,6 +49,7 @@ CLASSIFIERS: Mapping[str, Callable[..., classical.Classifier]] = {
     "minirocket": MiniRocket,
     "perceptron": neural.neural_perceptron,
     "cnn": neural.convolutional_network,
+    "resnet": neural.residual_network,
     "twin": TwinClassifier,
     "fast_twin": FastTwin,
 }

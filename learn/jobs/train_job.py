@@ -10,7 +10,7 @@ from threadpoolctl import threadpool_limits
 from tqdm import tqdm
 
 from learn import tracking
-from learn.inputs.inputs import LearningSet, Representation, gear_by_gear, with_foreign_gears
+from learn.inputs.inputs import LearningSet, Representation, gear_by_gear, with_foreign_gears, with_training_gears
 from learn.jobs import few_shot, identity, settings, zero_shot
 from swgsim.storage import storage
 
@@ -18,6 +18,8 @@ log = logging.getLogger(__name__)
 
 BLOCK = 1024  # recordings in memory at a time
 LARGE = 100_000  # number of recordings from which on the inputs are in a file
+# Options that name a further data set, and how its gears join.
+JOINING = {"target": with_foreign_gears, "training": with_training_gears}
 
 
 @lru_cache(maxsize=4)
@@ -53,11 +55,13 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
     if config["adaptation"]["name"] != "none":
         settings.adaptation(config["adaptation"])
     paths = [settings.data_set(config)]
-    if config["target"]:
-        grid, _, condition = config["target"].rpartition("-")
-        paths.append(settings.data_set({**config, "grid": grid, "condition": condition}))
+    joining = [join for name, join in JOINING.items() if config[name]]
+    for name in JOINING:
+        if config[name]:
+            grid, _, condition = config[name].rpartition("-")
+            paths.append(settings.data_set({**config, "grid": grid, "condition": condition}))
     digests = [storage.digest(path) for path in paths]
-    digest = digests[0] if len(digests) == 1 else "+".join(digests)
+    digest = "+".join(digests)
     store = settings.store(config["tracking"])
 
     parameters = identity.flat(identity.decisive(config))
@@ -71,9 +75,9 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
     tags = {"data_digest": digest, "code_version": identity.code_version()}
     # One thread per job: jobs run in parallel, and their threads would wait for each other.
     with threadpool_limits(1), tracking.job_run(store, name, key, parameters, config, tags) as record:
-        data, *foreign = [learning_set_of(*each, representation) for each in zip(paths, digests, strict=True)]
-        for gears in foreign:
-            data = with_foreign_gears(data, gears)
+        data, *further = [learning_set_of(*each, representation) for each in zip(paths, digests, strict=True)]
+        for join, gears in zip(joining, further, strict=True):
+            data = join(data, gears)
         judge = zero_shot if config["adaptation"]["name"] == "none" else few_shot
         metrics, figures, tables = judge.results(config, data)
         record.record(metrics, figures, tables)

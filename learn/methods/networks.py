@@ -6,14 +6,16 @@ The state dict holds everything that depends on the source gears, including the 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
-from typing import Literal, cast
+from typing import cast
 
 import numpy as np
 import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
+from learn.methods.convolutions import FEATURES, STRIDE, Convolutions
 from swgsim.common.checks import require, require_integer, require_known
 from swgsim.common.seeds import seed_hash
 
@@ -21,9 +23,6 @@ from swgsim.common.seeds import seed_hash
 QUARTILES, DEVIATION = 1 / 1.349, 1.4826
 # A column that varies by less than this share of its typical value contains rounding errors only.
 LEAST_SPREAD = 1e-6
-# Three blocks halve the number of points.
-STRIDE = 8
-FEATURES = 64  # at the output of the convolutional body
 
 
 class Network(nn.Module):
@@ -98,38 +97,6 @@ def _positive(
     return np.where(scale > least, scale, 1.0)
 
 
-class Convolutions(nn.Module):
-    """Convolutions over the revolution, pooled over the angle, and joined with the auxiliary columns.
-
-    A periodic signal is padded circularly, another one with zeros. With strides of 2 in three blocks, circular shifts
-    of a periodic signal by multiples of 8 points do not change the output; other shifts do.
-    """
-
-    def __init__(self, channels: int, points: int, side: int, width: int, dropout: float, periodic: bool) -> None:
-        super().__init__()
-        self.channels, self.points = channels, points
-        mode: Literal["circular", "zeros"] = "circular" if periodic else "zeros"
-        self.blocks = nn.Sequential(
-            *_block(channels, width, 9, mode),
-            *_block(width, 2 * width, 5, mode),
-            *_block(2 * width, 2 * width, 5, mode),
-        )
-        self.side = nn.Sequential(nn.Linear(side, 32), nn.ReLU()) if side else nn.Identity()
-        joined = 4 * width + (32 if side else 0)
-        self.joined = nn.Sequential(nn.Dropout(dropout), nn.Linear(joined, FEATURES), nn.ReLU())
-
-    def forward(self, X: Float[Tensor, "row column"]) -> Float[Tensor, "row width"]:
-        """Features of scaled rows."""
-        end = self.channels * self.points
-        angle = self.blocks(X[:, :end].unflatten(1, (self.channels, self.points)))  # (row, 2 width, points / 8)
-        return cast(Tensor, self.joined(torch.cat([angle.mean(2), angle.amax(2), self.side(X[:, end:])], dim=1)))
-
-
-def _block(channels: int, width: int, kernel: int, mode: Literal["circular", "zeros"]) -> list[nn.Module]:
-    convolution = nn.Conv1d(channels, width, kernel, 2, kernel // 2, bias=False, padding_mode=mode)
-    return [convolution, nn.BatchNorm1d(width), nn.ReLU()]
-
-
 def perceptron(
     columns: int, classes: int, layers: int = 2, neurons: int = 256, dropout: float = 0.3,
     *, channels: int = 0, points: int = 0, periodic: bool = True, seed: int = 0,
@@ -165,7 +132,7 @@ def perceptron(
 
 def convolutional(
     channels: int, points: int, columns: int, classes: int, width: int = 32, dropout: float = 0.2,
-    *, periodic: bool = True, seed: int = 0,
+    *, residual: bool = False, periodic: bool = True, seed: int = 0,
 ) -> Network:  # fmt: skip
     """Three blocks of convolutions over the angle, pooled; see :class:`Convolutions`.
 
@@ -175,10 +142,8 @@ def convolutional(
         Size of the signal; a periodic one has a multiple of 8 points.
     columns, classes : int
         Numbers of columns of the input, signal included, and of classes.
-    width : int
-        Number of filters of the first block; the other two have twice as many.
-    dropout : float
-        Share of the pooled features that each training step leaves out.
+    width, dropout, residual : int, float, bool
+        As in :class:`Convolutions`.
     periodic : bool
         Whether the points are angles of a revolution. Otherwise they are features, each with a separate scale.
     seed : int
@@ -193,7 +158,7 @@ def convolutional(
         )
     require_integer(owner, "width", width, low=1, high=1024)
     with seeded(seed_hash("initial weights", seed)):
-        body = Convolutions(channels, points, columns - channels * points, width, dropout, periodic)
+        body = Convolutions(channels, points, columns - channels * points, width, dropout, periodic, residual)
         return Network(body, FEATURES, classes, columns, channels * periodic, points * periodic)
 
 
@@ -210,7 +175,11 @@ def _require_common(owner: str, columns: int, classes: int, channels: int, point
         )
 
 
-ARCHITECTURES: Mapping[str, Callable[..., Network]] = {"perceptron": perceptron, "convolutional": convolutional}
+ARCHITECTURES: Mapping[str, Callable[..., Network]] = {
+    "perceptron": perceptron,
+    "convolutional": convolutional,
+    "residual": partial(convolutional, residual=True),
+}
 
 
 @dataclass(frozen=True)

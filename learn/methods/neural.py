@@ -5,6 +5,7 @@ PyTorch is imported inside the functions, because all commands import this modul
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -117,8 +118,8 @@ class NeuralClassifier:
 
 def neural_perceptron(
     channels: int = 0, points: int = 0, periodic: bool = True, layers: int = 2, neurons: int = 256,
-    dropout: float = 0.4, epochs: int = 20, batch: int = 256, rate: float = 2e-3, decay: float = 0.1, seed: int = 0,
-    device: str = "auto",
+    dropout: float = 0.4, epochs: int = 20, batch: int = 256, rate: float = 2e-3, decay: float = 0.1, steps: int = 0,
+    seed: int = 0, device: str = "auto",
 ) -> NeuralClassifier:  # fmt: skip
     """A perceptron; see :func:`learn.methods.networks.perceptron` and :class:`learn.methods.training.Recipe`."""
     from learn.methods.networks import Architecture
@@ -126,12 +127,15 @@ def neural_perceptron(
 
     signal = {"channels": channels, "points": points, "periodic": periodic}
     options = {**signal, "layers": layers, "neurons": neurons, "dropout": dropout}
-    return NeuralClassifier(Architecture("perceptron", options), Recipe(epochs, batch, rate, decay), seed, device)
+    return NeuralClassifier(
+        Architecture("perceptron", options), Recipe(epochs, batch, rate, decay, steps), seed, device
+    )
 
 
 def convolutional_network(
-    channels: int, points: int, periodic: bool = True, width: int = 32, dropout: float = 0.3,
-    epochs: int = 15, batch: int = 256, rate: float = 3e-3, decay: float = 1e-2, seed: int = 0, device: str = "auto",
+    channels: int, points: int, periodic: bool = True, width: int = 32, dropout: float = 0.3, epochs: int = 15,
+    batch: int = 256, rate: float = 3e-3, decay: float = 1e-2, steps: int = 0, seed: int = 0, device: str = "auto",
+    kind: str = "convolutional",
 ) -> NeuralClassifier:  # fmt: skip
     """Convolutions over the angle; see :func:`networks.convolutional` and :class:`training.Recipe`."""
     from learn.methods.networks import Architecture
@@ -139,7 +143,10 @@ def convolutional_network(
 
     signal = {"channels": channels, "points": points, "periodic": periodic}
     options = {**signal, "width": width, "dropout": dropout}
-    return NeuralClassifier(Architecture("convolutional", options), Recipe(epochs, batch, rate, decay), seed, device)
+    return NeuralClassifier(Architecture(kind, options), Recipe(epochs, batch, rate, decay, steps), seed, device)
+
+
+residual_network = partial(convolutional_network, kind="residual")
 
 
 def save(model: NeuralClassifier, path: Path) -> None:

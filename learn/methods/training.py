@@ -27,12 +27,15 @@ class Recipe:
         Largest number of rows in a step.
     rate, decay : float
         Highest learning rate of the cycle, and weight decay of AdamW.
+    steps : int
+        Least number of steps. Few rows have few steps in an epoch, and are passed through more often.
     """
 
     epochs: int = 15
     batch: int = 256
     rate: float = 3e-3
     decay: float = 1e-2
+    steps: int = 0
 
     def __post_init__(self) -> None:
         owner = "the recipe"
@@ -40,6 +43,7 @@ class Recipe:
         require_integer(owner, "batch", self.batch, low=2, high=1_000_000)
         require(owner, "rate", self.rate, low=1e-9, high=10)
         require(owner, "decay", self.decay, low=0, high=10)
+        require_integer(owner, "steps", self.steps, low=0, high=10_000_000)
 
 
 def train(
@@ -81,8 +85,9 @@ def train(
     batch, y = _reader(X, device), y.to(device)
     trained = list(network.parameters() if parameters is None else parameters)
     steps = ceil(len(X) / recipe.batch)
+    epochs = max(recipe.epochs, ceil(recipe.steps / steps))
     optimiser = torch.optim.AdamW(trained, lr=recipe.rate, weight_decay=recipe.decay, fused=True)
-    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, recipe.rate, total_steps=recipe.epochs * steps)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, recipe.rate, total_steps=epochs * steps)
     order = generator("order of the rows", seed)
     network.train()
     if frozen_statistics:
@@ -90,7 +95,7 @@ def train(
             if isinstance(module, nn.modules.batchnorm._BatchNorm):
                 module.eval()
     with one_thread(), seeded(seed_hash("training", seed), device):
-        for _ in range(recipe.epochs):
+        for _ in range(epochs):
             # Batch sizes differ by at most one row, as batch normalisation needs no small batch.
             for rows in torch.from_numpy(order.permutation(len(X))).to(device).tensor_split(steps):
                 loss = loss_of(network(batch(rows)), y.index_select(0, rows))

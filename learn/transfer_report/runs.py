@@ -21,6 +21,7 @@ from swgsim.storage import storage
 EXPERIMENTS: Mapping[str, tuple[str, ...]] = {
     "zero_shot": ("zero_shot", "zero_shot_lines", "zero_shot_signals", "fast_twin"),
     "inputs": ("inputs", "inputs_features"),
+    "inputs_gears": ("inputs_gears", "inputs_gears_rocket"),
     "inputs_operating_point": ("inputs_operating_point",),
     "no_reference": ("no_reference",),
     "transfer": (
@@ -41,6 +42,7 @@ CLASSIFIERS: Mapping[str, str] = {
     "mlp": "MLP of the paper",
     "perceptron": "MLP",
     "cnn": "CNN",
+    "resnet": "ResNet",
     "minirocket": "MiniRocket",
 }
 FEATURES: Mapping[str, str] = {
@@ -49,6 +51,7 @@ FEATURES: Mapping[str, str] = {
     "selection_3": "Selection 3",
     "selection_all": "the paper's features",
     "raw": "raw signals",
+    "template": "signals minus the healthy reference",
     "differenced": "differenced signals",
     "residual": "residual signals",
     "lines": "residual lines",

@@ -64,7 +64,7 @@ def content(
         "oracle_error": finite(row_of(zero, ORACLE)["value"]),
         "oracle_session_error": finite(row_of(zero, ORACLE_OF_SESSION)["value"]),
         "gears": gears,
-        "inputs": studies.nested_inputs(inputs, efficiency=True),
+        "inputs_with_efficiency": studies.nested_inputs(inputs, efficiency=True),
         "inputs_without_efficiency": studies.nested_inputs(inputs, efficiency=False),
         "disturbed": {
             "z1": row_of(cases, solved).round(3).tolist(),

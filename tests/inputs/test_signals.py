@@ -38,7 +38,12 @@ def with_facts(data, samples=None, references=None):
 
 @pytest.mark.parametrize(
     ("signal", "channels", "more"),
-    [("raw", 5, ()), ("differenced", 2, ()), ("residual", 5, ("load error", "angle error", "speed error"))],
+    [
+        ("raw", 5, ()),
+        ("template", 5, ()),
+        ("differenced", 2, ()),
+        ("residual", 5, ("load error", "angle error", "speed error")),
+    ],
 )
 def test_signals_precede_auxiliary_inputs_channel_by_channel(signal, channels, more):
     data = recordings(gears=2, variants=2)
@@ -59,8 +64,8 @@ def test_signals_are_waveforms_over_the_angle():
     np.testing.assert_allclose(raw[0, [0, 2, 4]], 0, atol=1e-12)
     differenced, _ = of(data, signals("differenced"))
     np.testing.assert_allclose(differenced[0], [s1 - s3, 0 * ANGLE], atol=1e-12)
-    residual_to_zero, _ = of(data, signals("residual"))
-    np.testing.assert_allclose(residual_to_zero, raw, atol=1e-12)
+    for relative_to_zero in ("template", "residual"):
+        np.testing.assert_allclose(of(data, signals(relative_to_zero))[0], raw, atol=1e-12)
 
 
 @pytest.mark.parametrize(

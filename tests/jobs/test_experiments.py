@@ -28,7 +28,7 @@ def data(tmp_path_factory):
     for condition, disturbance in (("clean", 0.0), ("disturbed", 0.002), ("bench", 0.001)):
         made = recordings(variants=4, disturbance=disturbance)
         storage.write(folder / f"small-{condition}.h5", [made], len(made))
-    for foreign in ("few-bench", "far-bench", "few-noisy", "few-other_day"):
+    for foreign in ("few-bench", "far-bench", "training-bench", "few-noisy", "few-other_day"):
         shutil.copy(folder / "small-bench.h5", folder / f"{foreign}.h5")
     return folder
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import torch
 
-from learn.methods.networks import Architecture, Network, convolutional, perceptron
+from learn.methods.networks import ARCHITECTURES, Architecture, Network, convolutional, perceptron
 
 CHANNELS, POINTS, SIDE = 2, 32, 3
 COLUMNS = CHANNELS * POINTS + SIDE
@@ -14,17 +14,17 @@ def rows(count: int = 40) -> np.ndarray:
     return np.random.default_rng(0).standard_normal((count, COLUMNS))
 
 
-def network(seed: int = 0) -> Network:
+def network(residual: bool = False) -> Network:
     """Convolutional, in evaluation, with scaling that differs from column to column."""
-    made = convolutional(CHANNELS, POINTS, COLUMNS, classes=4, width=8, seed=seed)
+    made = convolutional(CHANNELS, POINTS, COLUMNS, classes=4, width=8, residual=residual)
     made.set_scaling(rows() + np.linspace(0, 1, COLUMNS))
     return made.eval()
 
 
 @torch.inference_mode()
-def change_by_shift(shift: int, one_channel: bool = False) -> float:
+def change_by_shift(shift: int, residual: bool, one_channel: bool = False) -> float:
     """Largest change of a logit when the deviations from the centre are turned by some points."""
-    made, X = network(), torch.as_tensor(rows(), dtype=torch.float32)
+    made, X = network(residual), torch.as_tensor(rows(), dtype=torch.float32)
     deviation = X - made.centre
     end = CHANNELS * POINTS
     turned = deviation[:, :end].unflatten(1, (CHANNELS, POINTS)).roll(shift, dims=2)
@@ -34,10 +34,11 @@ def change_by_shift(shift: int, one_channel: bool = False) -> float:
     return float((made(moved) - made(X)).abs().max())
 
 
-def test_circular_shifts_of_all_channels_by_multiples_of_8_points_and_no_others_change_nothing():
-    assert all(change_by_shift(shift) < 1e-5 for shift in (8, 16, 24, -8))
-    assert all(change_by_shift(shift) > 1e-3 for shift in (1, 2, 4, 12))
-    assert change_by_shift(8, one_channel=True) > 1e-3
+@pytest.mark.parametrize("residual", [False, True])
+def test_circular_shifts_of_all_channels_by_multiples_of_8_points_and_no_others_change_nothing(residual):
+    assert all(change_by_shift(shift, residual) < 1e-5 for shift in (8, 16, 24, -8))
+    assert all(change_by_shift(shift, residual) > 1e-3 for shift in (1, 2, 4, 12))
+    assert change_by_shift(8, residual, one_channel=True) > 1e-3
 
 
 def test_scaling_is_one_number_per_channel_and_the_quartiles_of_a_side_column():
@@ -71,7 +72,7 @@ def test_large_values_are_compressed_and_small_ones_are_not():
     assert large == pytest.approx(np.arcsinh(100.0))
 
 
-@pytest.mark.parametrize("kind", ["perceptron", "convolutional"])
+@pytest.mark.parametrize("kind", list(ARCHITECTURES))
 def test_initial_weights_depend_on_the_seed_and_on_nothing_else(kind):
     architecture = Architecture(kind, {"channels": CHANNELS, "points": POINTS})
     torch.manual_seed(1)

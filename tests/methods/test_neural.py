@@ -10,8 +10,12 @@ from learn.methods.networks import convolutional
 CHANNELS, POINTS, SIDE = 2, 16, 2
 COLUMNS = CHANNELS * POINTS + SIDE
 NAMES = np.array(["tip", "healthy", "root"])
-SMALL = {"perceptron": {"neurons": 32}, "convolutional": {"width": 8}}
-FACTORIES = {"perceptron": neural.neural_perceptron, "convolutional": neural.convolutional_network}
+SMALL = {"perceptron": {"neurons": 32}, "convolutional": {"width": 8}, "residual": {"width": 8}}
+FACTORIES = {
+    "perceptron": neural.neural_perceptron,
+    "convolutional": neural.convolutional_network,
+    "residual": neural.residual_network,
+}
 
 both = pytest.mark.parametrize("kind", list(FACTORIES))
 

@@ -75,6 +75,8 @@ def test_all_rows_are_seen_in_every_epoch_in_batches_of_one_size():
     for epoch in (seen[:3], seen[3:]):
         assert torch.equal(torch.cat(epoch).sort(dim=0).values, X.sort(dim=0).values)
     assert not torch.equal(torch.cat(seen[:3]), torch.cat(seen[3:]))
+    train(made, X, y, Recipe(epochs=2, batch=10, steps=8), 0)
+    assert len(seen) == 6 + 9  # whole epochs of 3 steps
     made, (X, y) = network(), task(6)  # fewer rows than a batch
     train(made, X, y, Recipe(epochs=60, batch=256), 0)
     with torch.inference_mode():

@@ -96,6 +96,9 @@ def keep_required(keep, data):
             table = predictions(wrong, (classifier, efficiency))
             keep("inputs", tables={"predictions": table}, classifier=classifier, features="raw",
                  **{"features.efficiency": efficiency})  # fmt: skip
+    for sources, wrong in ((20, 0.4), (100, 0.2), (500, 0.1)):
+        keep("inputs_gears", "joined", {"train_score": 90.0}, {"predictions": predictions(wrong, sources)},
+             classifier="perceptron", features="residual", **{"protocol.sources": sources})  # fmt: skip
     keep("no_reference", tables={"predictions": predictions(0.7, "Z0")}, classifier="cnn", features="raw")
     for adaptation, after, shots in (
         ("replay", 0.1, (1, 2, 5)),
@@ -131,6 +134,7 @@ def write_data(folder):
         storage.write(folder / f"{name}.h5", [made], len(made))
         (folder / f"{name}.json").write_text(json.dumps({"seconds": 1.0, "cores": 2, "recordings": len(made)}))
         digests[name] = storage.digest(folder / f"{name}.h5")
+    digests["joined"] = f"{digests['gears-bench']}+{digests['far-bench']}"
     p = predictions(0.05, "oracle")
     oracle = p[["row", *CLASSES]].join(p[list(CLASSES)].add_prefix(KNOWN))
     oracle.attrs = {"data": digests["gears-bench"]}

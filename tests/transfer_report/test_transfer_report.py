@@ -2,6 +2,7 @@
 
 import json
 import re
+from unittest.mock import ANY
 
 import pandas as pd
 import pytest
@@ -73,8 +74,12 @@ def test_whole_report_from_made_up_runs(data, store, tmp_path):
     assert fast["milliseconds"] == 0.25
     assert "The fast twin, one network" in (out / "transfer.html").read_text()
     assert content["detection"] == {}  # 72 healthy recordings do not show a rate of 1 %
-    assert content["inputs"]["raw"]["mlp"] < content["inputs_without_efficiency"]["raw"]["mlp"]
-    assert content["inputs"]["residual"] == {"mlp": None, "cnn": None, "minirocket": None}
+    assert content["inputs_with_efficiency"]["raw"]["mlp"] < content["inputs_without_efficiency"]["raw"]["mlp"]
+    assert content["inputs_with_efficiency"]["residual"] == {"mlp": None, "cnn": None, "minirocket": None}
+    assert content["inputs"]["residual"] == {
+        "mlp": {"value": pytest.approx(100 / 6, abs=3), "ci95": [ANY, ANY], "gears": 100},
+        "cnn": None, "resnet": None, "minirocket": None,
+    }  # fmt: skip
     assert content["disturbed"]["z1"] == [99.7, 99.8, 99.9]
     assert content["disturbed"]["forest_in_the_paper"] == [90.09, 86.2, 92.31]
     assert 0 < content["oracle_error"] < z1["best_error"]
@@ -94,7 +99,9 @@ def test_whole_report_from_made_up_runs(data, store, tmp_path):
     assert "MLP: CORAL (trained on 5 variants)" in page
     assert "replay (trained on" not in page
     assert "experiment=inputs_operating_point grid=gears" in page  # the command of a study without runs
-    assert re.search(r"studies with runs of older code</td>\s*<td[^>]*>zero_shot, inputs, no_reference", page)
+    assert re.search(
+        r"studies with runs of older code</td>\s*<td[^>]*>zero_shot, inputs, inputs_gears, no_reference", page
+    )
     assert re.search(r"protocol.folds</td>\s*<td[^>]*>2<", page)
 
 

@@ -67,7 +67,7 @@ def test_few_gears_have_no_interval_in_table_figure_and_json():
     inputs = pd.DataFrame({"input": ["raw"], "method": ["cnn"], "efficiency": [True], "value": [12.0]})
     content = transfer_json.content(zero, zero, few, inputs, CASES, 3, 1.0)
     assert content["z1"]["ci95"] == [None, None]
-    assert content["inputs"]["raw"] == {"mlp": None, "cnn": 12.0, "minirocket": None}
+    assert content["inputs_with_efficiency"]["raw"] == {"mlp": None, "cnn": 12.0, "minirocket": None}
     json.dumps(content, allow_nan=False)
     assert is_png(figures.errors(zero))
     assert is_png(figures.shots(few, dict.fromkeys(("forest", "best", "oracle"), 30.0)))
