@@ -54,7 +54,8 @@ def _at_its_size(score: Score, quantity: Quantity, fitted: Fitted) -> Effect:
 
     r = fitted.whole.whiten(fitted.from_start)
     estimated = effects([score.estimate])
-    if float(r @ r) - _left(fitted, estimated)[0] > LEAST_KEPT_GAIN * score.gain:
+    # A size that changes nothing has no gain, and rounding would make a fall of it.
+    if 0 < LEAST_KEPT_GAIN * score.gain < float(r @ r) - _left(fitted, estimated)[0]:
         return estimated[0]
     spaced = np.geomspace if quantity.low > 0 else np.linspace
     least = LEAST_SIZE * (quantity.high - quantity.low)
