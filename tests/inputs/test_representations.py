@@ -57,7 +57,7 @@ def test_missing_references_and_impossible_efficiencies_are_named(representation
         (SELECTION, {"floor": 0.0}, "floor of selection.* is 0.0, must be a finite number above 0"),
         (HARMONICS, {"orders": 3}, "orders of harmonics is 3, must be an integer from 4"),
         (LINES, {"orders": 0}, "orders of lines is 0, must be an integer from 1"),
-        (SIGNALS, {"name": "sum"}, "unknown choice 'sum' of the signals; choose from raw, template, differenced, residual"),
+        (SIGNALS, {"name": "sum"}, "unknown choice 'sum' of the signals; choose from raw, template, differenced"),
         (SIGNALS, {"reference": False}, "is relative to a healthy reference: reference=true, or features=raw"),
         (SIGNALS, {"points": 7}, "points of residual is 7, must be an integer from 8 to 4096"),
         (SIGNALS, {"points": 5000}, "points of residual is 5000, must be an integer from 8 to 4096"),
