@@ -14,10 +14,10 @@ from learn.transfer_report import (
     confidence,
     detections,
     figures,
+    inputs_over_gears,
     sentences,
     studies,
     tables,
-    training_gears,
     transfer_json,
     twins,
 )
@@ -80,7 +80,7 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
     input_errors = runs.errors(inputs)
     of_inputs = studies.inputs(inputs, input_errors)
     trained = runs.of_study("inputs_gears")
-    over_gears = training_gears.over_gears(trained, runs.errors(trained)) if len(trained) else None
+    over_gears = inputs_over_gears.over_gears(trained, runs.errors(trained)) if len(trained) else None
     best, gears = best_of(zero), int(errors["gear"].nunique())
     found = pd.concat(
         detections.detections(of, {name: each[name] for name in compared(best, each)})
@@ -116,15 +116,15 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
         "worst": detections.worst_text(predictions[best]),
         **practice(runs, methods, predictions, units, best),
         "disturbed": cases.map("{:.1f}".format),
-        "over_gears": None if over_gears is None else training_gears.over_gears_text(over_gears),
-        "over_gears_figure": None if over_gears is None else training_gears.over_gears_figure(over_gears),
+        "over_gears": None if over_gears is None else inputs_over_gears.over_gears_text(over_gears),
+        "over_gears_figure": None if over_gears is None else inputs_over_gears.over_gears_figure(over_gears),
         "studies": studies_of(runs, inputs, input_errors),
         "command": runs.command,
         "facts": facts(runs, adapting.iloc[0], [*trials(methods), *trials(adapting)], f"{seconds:.0f} ({kind})"),
     }
     content = transfer_json.content(zero, of_units, few, of_inputs, cases, gears, seconds)
     content["detection"] = detections.detections_json(found)
-    content["inputs"] = training_gears.over_gears_json(over_gears)
+    content["inputs"] = inputs_over_gears.over_gears_json(over_gears)
     content["fast_twin"] = twins.fast_twin_json(zero, methods)
     if twins.TWIN in predictions:
         cases = twins.mismatches(every_twin(runs, judged))

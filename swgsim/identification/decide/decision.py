@@ -63,7 +63,7 @@ class Decision:
 
     @property
     def probability(self) -> float:
-        """Of the answer: of all options with the same effects, and with or without something unknown."""
+        """Of the answer: of all options that agree in their effects and in whether something unknown is missing."""
         return self.answers[0][1]
 
     @property
@@ -132,7 +132,7 @@ def _with(best: Option) -> Fitted:
 
 
 def _answers(weighed: Sequence[tuple[Option, float]]) -> tuple[tuple[Option, float], ...]:
-    """Options with the same effects, and with or without something unknown, are one answer."""
+    """Options that agree in their effects and in whether something unknown is missing are one answer."""
     found: dict[object, tuple[Option, float]] = {}
     for each, probability in weighed:
         answer = frozenset(map(kind_of, each.effects)), each.unknown

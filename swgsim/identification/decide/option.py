@@ -156,25 +156,25 @@ def option(start: Fitted, effects: Sequence[Effect], regularities: Sequence[Desc
     return Option(replace(fitted), added, tuple(regularities), prior, evidences, forms)
 
 
-def resembling(option: Option, kinds: int) -> list[Option]:
+def resembling(known: Option, kinds: int) -> list[Option]:
     """The options that one unknown cause resembles some of the effects of an option, or all of them.
 
     The evidence is the mean over all form errors of what is unknown, those of effects among them.
 
     Parameters
     ----------
-    option : Option
+    known : Option
         With effects of the library alone.
     kinds : int
         Number of effects in the library.
     """
-    of_effects, others = option.form_errors, other_forms(option.fitted.unit.structure)
-    many, counts_for = len(option.effects), np.log(len(of_effects))
-    of_fit = logsumexp(option.evidences[:, 0]) + counts_for - option.forms.gain([of_effects[0]] * many)
+    of_effects, others = known.form_errors, other_forms(known.fitted.unit.structure)
+    many, counts_for = len(known.effects), np.log(len(of_effects))
+    of_fit = logsumexp(known.evidences[:, 0]) + counts_for - known.forms.gain([of_effects[0]] * many)
     # By what is unlike an effect, and how much; all other effects share a form error.
     evidences = {}
     for unlike in product((0.0, *others), repeat=many):
-        gains = [option.forms.gain([own or shared for own in unlike]) for shared in of_effects]
+        gains = [known.forms.gain([own or shared for own in unlike]) for shared in of_effects]
         evidences[unlike] = of_fit + logsumexp(gains) - counts_for
     found = []
     for numbers in (each for n in range(1, many + 1) for each in combinations(range(many), n)):
@@ -187,11 +187,11 @@ def resembling(option: Option, kinds: int) -> list[Option]:
         prior = log_prior(many - len(numbers), len(numbers), 0, kinds) - log_prior(many, 0, 0, kinds)
         found.append(
             replace(
-                option,
-                effects=tuple(each for number, each in enumerate(option.effects) if number not in numbers),
-                resembled=tuple(option.effects[number] for number in numbers),
-                evidences=option.evidences + evidence - option.log_evidence,
-                log_prior=option.log_prior + prior,
+                known,
+                effects=tuple(each for number, each in enumerate(known.effects) if number not in numbers),
+                resembled=tuple(known.effects[number] for number in numbers),
+                evidences=known.evidences + evidence - known.log_evidence,
+                log_prior=known.log_prior + prior,
             )
         )
     return found

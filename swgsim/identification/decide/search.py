@@ -58,6 +58,8 @@ class Search:
         ):
             for each in fresh:
                 self._expand(each)
+        if self._fits >= MOST_FITS:
+            STEPS.info("the search ends after %d fits", MOST_FITS)
         alone = [each for each in self._options.values() if not each.regularities]
         more = [like for each in alone for like in resembling(each, len(self.kinds))]
         return sorted([*self._options.values(), *more], key=lambda each: -each.log_posterior)
@@ -84,18 +86,20 @@ class Search:
         """The best option, and the same without each of its causes."""
         best = self._best
         yield best
-        for effect in best.effects:
-            yield from self._known(best, [e for e in best.effects if e is not effect], best.regularities)
-        for each in best.regularities:
-            yield from self._known(best, best.effects, [r for r in best.regularities if r is not each])
+        fewer: list[tuple[Sequence[Effect], Sequence[Described]]] = [
+            *(([e for e in best.effects if e is not effect], best.regularities) for effect in best.effects),
+            *((best.effects, [r for r in best.regularities if r is not each]) for each in best.regularities),
+        ]
+        for effects, regularities in fewer:
+            if found := self._known(best, effects, regularities):
+                yield found
 
-    def _known(self, like: Option, effects: Sequence[Effect], regularities: Sequence[Described]) -> Iterator[Option]:
-        """An option that was fitted, or is fitted now."""
+    def _known(self, like: Option, effects: Sequence[Effect], regularities: Sequence[Described]) -> Option | None:
+        """An option that was fitted, or is fitted now; None if that cannot be."""
         causes = causes_of(effects, regularities)
         if causes not in self._options:
             self._fit(self.null.with_zeros(like.zeros), effects, regularities)
-        if causes in self._options:
-            yield self._options[causes]
+        return self._options.get(causes)
 
     def _fit(self, start: Fitted, effects: Sequence[Effect], regularities: Sequence[Described]) -> None:
         if self._fits >= MOST_FITS:
@@ -105,7 +109,8 @@ class Search:
         STEPS.info("fitting %s", " with ".join(names) or "the model as it is")
         try:
             found = option(start, effects, regularities, len(self.kinds))
-        except NoSteadyState:  # no gear with it turns steadily
+        except NoSteadyState:
+            STEPS.info("no gear with it turns steadily")
             return
         if not all_show(found.fitted):
             return
