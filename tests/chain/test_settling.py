@@ -116,6 +116,7 @@ def test_where_teeth_lift_the_motion_is_that_of_solve_ivp(case: Case) -> None:
     np.testing.assert_allclose(after[OMEGA_IN], found.start[OMEGA_IN], rtol=1e-3)
 
 
+@pytest.mark.slow
 def test_from_uniform_rotation_solve_ivp_settles_at_the_motion_that_was_found() -> None:
     drive = Drive(*zip(*LIFTING, strict=True))
     found = steady_revolution(drive, np.zeros(len(LIFTING)), 256)

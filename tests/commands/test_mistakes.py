@@ -35,10 +35,12 @@ def test_a_name_that_is_a_number_is_a_name() -> None:
     assert {**names, "seed": 3, "mapping": None}.items() <= found.items()
 
 
+@pytest.mark.slow
 def test_a_name_that_looks_like_a_number_is_as_it_was_written() -> None:
     assert "recordings=2024_10_05: found nothing" in given("recordings=2024_10_05").stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("words", [(), ("--multirun", "seed=1,2")])
 def test_a_mistake_ends_with_a_sentence_and_not_with_a_traceback(words: tuple[str, ...]) -> None:
     answer = given(*words)
@@ -49,6 +51,7 @@ def test_a_mistake_ends_with_a_sentence_and_not_with_a_traceback(words: tuple[st
     assert "Traceback" not in answer.stderr
 
 
+@pytest.mark.slow
 def test_the_traceback_is_there_for_who_asks() -> None:
     answer = given(**{FULL: "1"})
     assert answer.returncode == 1

@@ -49,7 +49,7 @@ from swgsim.recordings.files.folder import write_folder
 from swgsim.recordings.recording import Recording
 from swgsim.recordings.recording_set import RecordingSet
 
-pytestmark = pytest.mark.end_to_end
+pytestmark = [pytest.mark.end_to_end, pytest.mark.slow]
 CONF = Path(__file__).parents[2] / "conf"
 GEAR = yaml.safe_load((CONF / "gear" / "gear1.yaml").read_text())
 recorded = partial(small_bench.recorded, gear(GEAR))

@@ -278,6 +278,7 @@ def drawn_size(rng):
     return rng.uniform() if rng.uniform() < 1 / (1 + LOG_SIZE_RANGE) else np.exp(rng.uniform(0, LOG_SIZE_RANGE))
 
 
+@pytest.mark.slow
 @pytest.mark.end_to_end
 def test_probabilities_are_true(monkeypatch):
     """Effects drawn from the prior, with form errors: of answers given with a probability, that share is right."""

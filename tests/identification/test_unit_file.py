@@ -26,7 +26,7 @@ from swgsim.recordings import write_folder
 from swgsim.storage.attributes import set_attributes
 from swgsim.storage.storage import SEAL_SIZE, seal
 
-pytestmark = pytest.mark.end_to_end
+pytestmark = [pytest.mark.end_to_end, pytest.mark.slow]
 
 GEAR = yaml.safe_load((Path(__file__).parents[2] / "conf" / "gear" / "gear1.yaml").read_text())
 POINTS = tuple(OperatingPoint(n, T) for n in (2000.0, 4000.0) for T in (7.0, 39.0))

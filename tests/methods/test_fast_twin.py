@@ -45,6 +45,7 @@ def trained(tmp_path_factory: pytest.TempPathFactory) -> FastTwin:
     return untrained(tmp_path_factory.mktemp("models")).fit(ROWS.features, LABELS)
 
 
+@pytest.mark.slow
 def test_a_short_training_on_other_gears_beats_the_prior(trained: FastTwin) -> None:
     said = trained.predict_proba(ROWS.features)
     np.testing.assert_allclose(said.sum(axis=1), 1)

@@ -30,7 +30,7 @@ from swgsim.twin import diagnose_job, unit_diagnosis
 from swgsim.twin.fault_posterior import Suspected
 
 GEAR = yaml.safe_load((Path(__file__).parents[2] / "conf" / "gear" / "gear1.yaml").read_text())
-pytestmark = pytest.mark.end_to_end
+pytestmark = [pytest.mark.end_to_end, pytest.mark.slow]
 recorded = cache(partial(small_bench.recorded, Gear()))
 SEARCHED = ["eccentric_wave_generator", "gauge_gain", "reduced_damping"]
 COARSE = Resolution(
