@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from learn.transfer_report.figures import COLOURS, MARKERS, WIDTH
@@ -74,6 +75,7 @@ def over_gears_figure(table: pd.DataFrame) -> bytes:
     networks = [name for name in NETWORKS if name in set(table["method"])]
     picture = style.figure(WIDTH, 0.8 + 2.5 * len(networks))
     panels = picture.subplots(len(networks), sharex=True, sharey=True, squeeze=False)[:, 0]
+    highest = float(np.nanmax(table[["value", "high", "training"]].to_numpy(dtype=float)))
     for axes, name in zip(panels, networks, strict=True):
         for place, (kind, text) in enumerate(INPUTS.items()):
             rows = table[(table["method"] == name) & (table["input"] == kind)].sort_values("gears")
@@ -82,7 +84,7 @@ def over_gears_figure(table: pd.DataFrame) -> bytes:
             axes.plot(rows["gears"], rows["value"], label=text, **look)
             axes.plot(rows["gears"], rows["training"], linestyle="--", markerfacecolor="white", **look)
         axes.set_xscale("log")
-        axes.set_ylim(0, None)
+        axes.set_ylim(0, 1.08 * highest)
         style.label(axes, "", "error [%]", CLASSIFIERS[name])
     gears = sorted(set(table["gears"]))
     panels[-1].set_xticks(gears, [str(each) for each in gears], minor=False)
