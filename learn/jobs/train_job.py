@@ -54,12 +54,8 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
     settings.classifier(config["classifier"])
     if config["adaptation"]["name"] != "none":
         settings.adaptation(config["adaptation"])
-    paths = [settings.data_set(config)]
-    joining = [join for name, join in JOINING.items() if config[name]]
-    for name in JOINING:
-        if config[name]:
-            grid, _, condition = config[name].rpartition("-")
-            paths.append(settings.data_set({**config, "grid": grid, "condition": condition}))
+    joining = {name: join for name, join in JOINING.items() if config[name]}
+    paths = [settings.data_set(config), *(_further(config, name) for name in joining)]
     digests = [storage.digest(path) for path in paths]
     digest = "+".join(digests)
     store = settings.store(config["tracking"])
@@ -76,13 +72,19 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
     # One thread per job: jobs run in parallel, and their threads would wait for each other.
     with threadpool_limits(1), tracking.job_run(store, name, key, parameters, config, tags) as record:
         data, *further = [learning_set_of(*each, representation) for each in zip(paths, digests, strict=True)]
-        for join, gears in zip(joining, further, strict=True):
+        for join, gears in zip(joining.values(), further, strict=True):
             data = join(data, gears)
         judge = zero_shot if config["adaptation"]["name"] == "none" else few_shot
         metrics, figures, tables = judge.results(config, data)
         record.record(metrics, figures, tables)
     log.info("%s: test score %.2f %%", name, metrics["test_score"])
     return metrics
+
+
+def _further(config: Mapping[str, Any], name: str) -> Path:
+    """The data set that an option of :data:`JOINING` names as ``<grid>-<condition>``."""
+    grid, _, condition = config[name].rpartition("-")
+    return settings.data_set({**config, "grid": grid, "condition": condition})
 
 
 def run_name(config: Mapping[str, Any], parameters: Mapping[str, Any]) -> str:

@@ -67,6 +67,21 @@ class Classifier(Protocol):
         ...
 
 
+def believed_classes(y: np.ndarray, believed: Sequence[str]) -> np.ndarray:
+    """Sorted names of the classes in y, for a classifier that simulates the faults of a grid.
+
+    Raises
+    ------
+    ValueError
+        If a class is not among those of the grid.
+    """
+    classes = np.unique(y)
+    unknown = sorted(set(classes) - set(believed))
+    if unknown:
+        raise ValueError(f"class {str(unknown[0])!r} is not among the classes of the believed grid: add it there")
+    return classes
+
+
 def is_import_path(name: str) -> bool:
     """Whether a name is an import path ``module:Class`` and not a built-in classifier."""
     return ":" in name

@@ -15,6 +15,7 @@ import pandas as pd
 from jaxtyping import Float
 
 from learn.inputs.rows import Inputs, chunks
+from learn.methods.contract import believed_classes
 from swgsim.common.checks import require_integer
 from swgsim.common.files import replacing, sole_maker
 from swgsim.common.seeds import seed_hash
@@ -91,10 +92,7 @@ class FastTwin:
         ValueError
             If a class is not among those that are believed, or the file is damaged.
         """
-        self.classes_ = np.unique(y)
-        unknown = sorted(set(self.classes_) - set(self.outputs.classes))
-        if unknown:
-            raise ValueError(f"class {str(unknown[0])!r} is not among the classes of the believed grid: add it there")
+        self.classes_ = believed_classes(y, self.outputs.classes)
         # Jobs of a sweep with the same network start together; the first one trains it.
         with sole_maker(self.path, wait=True):
             if not self.path.exists():

@@ -11,6 +11,7 @@ import pandas as pd
 from jaxtyping import Float
 
 from learn.inputs.rows import Inputs
+from learn.methods.contract import believed_classes
 
 if TYPE_CHECKING:
     from swgsim.gear.gear import OperatingPoint
@@ -66,10 +67,7 @@ class TwinClassifier:
         ValueError
             If a class is not among those that are believed.
         """
-        self.classes_ = np.unique(y)
-        unknown = sorted(set(self.classes_) - set(self.classes))
-        if unknown:
-            raise ValueError(f"class {str(unknown[0])!r} is not among the classes of the believed grid: add it there")
+        self.classes_ = believed_classes(y, self.classes)
         return self
 
     def predict(self, X: Inputs) -> np.ndarray:

@@ -92,9 +92,7 @@ class Drive:
         effects: Sequence[tuple[Effect, ...]] = (),
     ) -> None:
         if not transmissions or len(transmissions) != len(points):
-            raise ValueError(
-                f"{len(transmissions)} gears and {len(points)} operating points: expected one each per run"
-            )
+            raise ValueError(f"{len(transmissions)} gears and {len(points)} operating points: expected one per run")
         self.transmissions, self.points = tuple(transmissions), tuple(points)
         numbers = [f.name for f in fields(Transmission) if f.name != "kinematic_error"]
         self.p = p = {name: np.array([getattr(t, name) for t in transmissions], float) for name in numbers}
@@ -199,7 +197,20 @@ class Drive:
         """The terms of eq. (5) that do not depend on the load, with the friction torque of effects [N m].
 
         b0 + b1 phi_b' + b2 phi_b'^3 + b3 sin(theta_b - phi_out); the terms without phi_b' have its sign, which is
-        smooth near standstill. The paper has sin(phi_out + theta_b), as its phi_out has the other sign.
+        smooth near standstill. The paper has sin(phi_out + theta_b), as its phi_out has the other sign. Parameters are
+        those of :meth:`friction_torque`.
+        """
+        p = self.p
+        against = sense(sliding) * (p["b0"] + p["b3"] * np.sin(p["theta_b"] - phi_out))
+        return (p["b1"] + p["b2"] * sliding * sliding) * sliding + (against + added)
+
+    def friction_torque(
+        self, sliding: np.ndarray, phi_out: np.ndarray, T_stiff: np.ndarray, added: np.ndarray | float
+    ) -> np.ndarray:
+        """Friction torque at the flank, eq. (5) [N m].
+
+        T_fric = :meth:`unloaded_friction` + mu F_n; mu has no unit. The massless tooth is in equilibrium on the
+        driving flank, T_stiff = F_n sin(alpha_tooth) + T_fric cos(alpha_tooth), which gives the normal force F_n [N m].
 
         Parameters
         ----------
@@ -207,29 +218,10 @@ class Drive:
             phi_b' [rad/s]; b1 is in N m s/rad, b2 in N m s^3/rad^3, b0 and b3 in N m.
         phi_out : array
             Angle of the output [rad]; theta_b is in rad.
-        added : array or float
-            Friction torque of effects [N m].
-        """
-        p = self.p
-        friction = (p["b1"] + p["b2"] * sliding * sliding) * sliding
-        friction += sense(sliding) * (p["b0"] + p["b3"] * np.sin(p["theta_b"] - phi_out)) + added
-        return friction
-
-    def friction_torque(
-        self, sliding: np.ndarray, phi_out: np.ndarray, T_stiff: np.ndarray, added: np.ndarray | float
-    ) -> np.ndarray:
-        """Friction torque at the flank, eq. (5) [N m].
-
-        T_fric = :meth:`unloaded_friction` + mu F_n, in which mu has no unit. The massless tooth is in equilibrium on
-        the driving flank, T_stiff = F_n sin(alpha_tooth) + T_fric cos(alpha_tooth), which gives the normal force F_n
-        [N m].
-
-        Parameters
-        ----------
-        sliding, phi_out, added
-            As of :meth:`unloaded_friction`.
         T_stiff : array
             Eq. (2), with effects [N m].
+        added : array or float
+            Friction torque of effects [N m].
         """
         mu, sign = self.p["mu"], sense(sliding)
         friction = self.unloaded_friction(sliding, phi_out, added)
