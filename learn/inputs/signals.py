@@ -12,8 +12,16 @@ from swgsim.common.checks import require_integer, require_known
 from swgsim.storage.labelled_signals import SENSORS, LabelledSignals
 from swgsim.storage.orders import revolution
 
-CHANNELS = {"raw": SENSORS, "template": SENSORS, "differenced": ("ds13", "ds24"), "residual": SENSORS}
-RELATIVE = ("template", "residual")  # to the healthy reference
+WITH_REFERENCE = "residual_with_reference"
+CHANNELS = {
+    "raw": SENSORS,
+    "template": SENSORS,
+    "differenced": ("ds13", "ds24"),
+    "residual": SENSORS,
+    WITH_REFERENCE: (*SENSORS, *(f"healthy {sensor}" for sensor in SENSORS)),
+}
+RESIDUAL = ("residual", WITH_REFERENCE)
+RELATIVE = ("template", *RESIDUAL)  # to the healthy reference
 
 
 @dataclass(frozen=True)
@@ -22,9 +30,11 @@ class Signals:
 
     Attributes
     ----------
-    name : {"raw", "template", "differenced", "residual"}
+    name : {"raw", "template", "differenced", "residual", "residual_with_reference"}
         Five gauges; the five gauges minus the healthy reference at the operating point; the gauge differences of
-        eq. (8); or the residual of the five gauges (:func:`learn.inputs.residuals.residual`).
+        eq. (8); the residual of the five gauges (:func:`learn.inputs.residuals.residual`); or this residual and the
+        healthy reference of the five gauges without its mean over the revolution (order 0). The reference shows
+        parameters of the gear that the residual lacks. Its mean shows the load instead, and a zero.
     points : int
         Number of angles.
     orders : int
@@ -67,9 +77,13 @@ class Signals:
             lines = lines[:, 1:3] - lines[:, 3:5]  # eq. 8
         elif self.name == "template":
             lines = lines - healthy.reference
-        elif self.name == "residual":
+        elif self.name in RESIDUAL:
             lines, errors = residual(healthy)
             auxiliary |= dict(zip(ERRORS, errors.T, strict=True))
+        if self.name == WITH_REFERENCE:
+            # One scale holds for a whole channel. With the mean, which the load changes most, it would be more than ten
+            # times as large and hide the differences between gears.
+            lines = np.concatenate([lines, np.where(np.arange(self.orders + 1), healthy.reference, 0)], axis=1)
         signal = revolution(lines, self.points)
         names = [f"{channel}({point}/{self.points})" for channel in CHANNELS[self.name] for point in range(self.points)]
         features = np.column_stack([signal.reshape(len(signal), -1), *auxiliary.values()])

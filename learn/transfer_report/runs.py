@@ -54,6 +54,7 @@ FEATURES: Mapping[str, str] = {
     "template": "signals minus the healthy reference",
     "differenced": "differenced signals",
     "residual": "residual signals",
+    "residual_with_reference": "residual and reference signals",
     "lines": "residual lines",
     "referenced": "references",
 }

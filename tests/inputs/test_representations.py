@@ -14,7 +14,10 @@ from learn.inputs.signals import Signals
 
 SELECTION = Selection("selection_2", statistics=True, spectrum="gauges", efficiency="eta_rel")
 HARMONICS, LINES, SIGNALS = Harmonics("harmonics", 6), ResidualLines("lines", 6), Signals("residual", 16, 6)
-all_of_them = pytest.mark.parametrize("representation", [SELECTION, HARMONICS, LINES, SIGNALS], ids=lambda r: r.name)
+BOTH = Signals("residual_with_reference", 16, 6)
+all_of_them = pytest.mark.parametrize(
+    "representation", [SELECTION, HARMONICS, LINES, SIGNALS, BOTH], ids=lambda r: r.name
+)
 
 
 @all_of_them

@@ -43,6 +43,7 @@ def with_facts(data, samples=None, references=None):
         ("template", 5, ()),
         ("differenced", 2, ()),
         ("residual", 5, ("load error", "angle error", "speed error")),
+        ("residual_with_reference", 10, ("load error", "angle error", "speed error")),
     ],
 )
 def test_signals_precede_auxiliary_inputs_channel_by_channel(signal, channels, more):
@@ -121,3 +122,16 @@ def test_healthy_samples_that_equal_their_reference_give_no_residual():
     assert np.abs(residual[healthy]).max() < 1e-12
     assert all(np.abs(side[name][healthy]).max() < 1e-12 for name in (*AUXILIARY[:3], "angle error"))
     assert np.abs(residual[~healthy]).max() > 1e-3
+
+
+def test_the_reference_stands_beside_an_unchanged_residual():
+    data = recordings(gears=2, disturbance=0.01)
+    residual, side = of(data, signals("residual"))
+    both, same_side = of(data, signals("residual_with_reference"))
+    np.testing.assert_array_equal(both[:, :5], residual)
+    assert all(np.array_equal(side[name], same_side[name]) for name in side)
+    # A raw signal minus the template is the reference; its mean is the load's and not the gear's.
+    reference = of(data, signals("raw"))[0] - of(data, signals("template"))[0]
+    np.testing.assert_allclose(both[:, 5:], reference - reference.mean(axis=2, keepdims=True), atol=1e-12)
+    of_point = data.samples.table.groupby(["gear", "n_in_rpm", "T_out_nm"]).indices.values()
+    assert all(np.ptp(both[rows, 5:], axis=0).max() == 0 for rows in of_point)
