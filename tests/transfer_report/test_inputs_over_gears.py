@@ -7,47 +7,79 @@ import pandas as pd
 import pytest
 
 from learn.transfer_report import inputs_over_gears
-from learn.transfer_report.inputs_over_gears import over_gears, over_gears_figure, over_gears_json, over_gears_text
+from learn.transfer_report.inputs_over_gears import (
+    over_gears,
+    over_gears_figure,
+    over_gears_json,
+    over_gears_text,
+    unusual_options,
+)
+from learn.transfer_report.seeds import averaged
 
-# Input, network, training gears, error on gears never seen and in training [%]; the newest first.
+# Input, network, training gears, filters or neurons, seed, error on gears never seen and in training [%]; newest first.
 RUNS = [
-    ("residual", "perceptron", 100, 17.0, 13.0),
-    ("residual", "perceptron", 20, 19.0, 5.0),
-    ("raw", "cnn", 500, 43.0, 35.0),
-    ("residual", "perceptron", 100, 90.0, 90.0),
+    ("residual", "perceptron", 100, "256", "1", 18.0, 14.0),
+    ("residual", "perceptron", 100, "256", "0", 16.0, 12.0),
+    ("residual", "perceptron", 20, "256", "0", 19.0, 5.0),
+    ("raw", "cnn", 500, "32", "0", 43.0, 35.0),
+    ("residual", "perceptron", 100, "8", "0", 60.0, 60.0),
+    ("template", "perceptron", 100, "256", "0", 21.0, 17.0),
 ]
 
 
 @pytest.fixture(scope="module")
-def table():
-    runs = pd.DataFrame(
-        {
-            "features": [each[0] for each in RUNS],
-            "classifier": [each[1] for each in RUNS],
-            "protocol.sources": [str(each[2]) for each in RUNS],
-            "train_score": [100 - each[4] for each in RUNS],
-            "seeds": 1,
-        }
-    )
+def runs():
+    columns = ["features", "classifier", "protocol.sources", "size", "seed", "error", "training"]
+    frame = pd.DataFrame(RUNS, columns=columns).astype({"protocol.sources": str})
+    for name, of in (("classifier.neurons", "perceptron"), ("classifier.width", "cnn")):
+        frame[name] = frame["size"].where(frame["classifier"] == of)
+    frame = frame.assign(train_score=100 - frame.pop("training"), test_score=100 - frame.pop("error"))
+    frame = frame.drop(columns="size").assign(run_id=frame.index.astype(str))
+    return averaged(frame.assign(**{"classifier.seed": frame["seed"], "training": "training-bench"}))
+
+
+@pytest.fixture(scope="module")
+def table(runs):
     specimens = pd.DataFrame(
         [(gear, "healthy", variant) for gear in range(6) for variant in range(2)], columns=["gear", "label", "variant"]
     )
     spread = np.linspace(-0.5, 0.5, len(specimens))
-    return over_gears(runs, {str(n): specimens.assign(error=each[3] + spread) for n, each in enumerate(RUNS)})
+    errors = {str(key): specimens.assign(error=100 - score + spread) for key, score in runs["test_score"].items()}
+    return over_gears(runs, errors)
 
 
-def test_the_newest_run_of_each_input_network_and_number_counts(table):
-    found = table.set_index(["input", "method", "gears"])
-    assert len(found) == 3
-    assert found.loc[("residual", "perceptron", 100), "value"] == pytest.approx(17.0)
-    assert found.loc[("residual", "perceptron", 100), "training"] == pytest.approx(13.0)
+def test_seeds_are_averaged_and_runs_with_other_options_stay_apart(table):
+    found = table.set_index(["input", "method", "gears", "options"])
+    assert len(found) == len(RUNS) - 1
+    usual = found.loc[("residual", "perceptron", 100, "")]
+    assert usual[["value", "training", "seeds"]].tolist() == pytest.approx([17.0, 13.0, 2])
+    assert found.loc[("residual", "perceptron", 100, "classifier.neurons=8"), "value"] == pytest.approx(60.0)
     assert (found["low"] < found["value"]).all()
     assert (found["value"] < found["high"]).all()
 
 
+def test_options_are_those_that_most_runs_of_a_network_with_as_many_gears_lack():
+    runs = pd.DataFrame(
+        {
+            "classifier": ["cnn", "cnn", "cnn", "cnn", "cnn", "perceptron"],
+            "protocol.sources": ["100", "100", "100", "500", "500", "100"],
+            "training": ["training-bench"] * 3 + ["wide-bench", "training500-bench", "training-bench"],
+            "classifier.steps": ["2000", "9000", "2000", "9000", "9000", "50"],
+            "features.reference": [None, None, "False", "True", "True", None],
+        }
+    )
+    assert list(unusual_options(runs)) == ["", "classifier.steps=9000", "", "", "training=training500-bench", ""]
+
+
 def test_rows_are_inputs_and_gears_and_a_cell_has_both_errors(table):
     text = over_gears_text(table)
-    assert list(text.index) == [("raw", "500"), ("residual", "20"), ("residual", "100")]
+    assert list(text.index) == [
+        ("raw", "500"),
+        ("raw minus the healthy reference", "100"),
+        ("residual", "20"),
+        ("residual", "100"),
+        ("residual, classifier.neurons=8", "100"),
+    ]
     assert text.loc[("residual", "20"), "MLP"].endswith("; 5.0")
     assert text.loc[("residual", "20"), "MLP"].startswith("19.0")
     assert text.loc[("residual", "20"), "CNN"] == "-"
