@@ -30,7 +30,8 @@ def over_gears(runs: pd.DataFrame, errors: Mapping[str, pd.DataFrame]) -> pd.Dat
     Parameters
     ----------
     runs : DataFrame
-        Runs of the study ``inputs_gears``, newest first, one for all its seeds (:func:`.seeds.averaged`).
+        Runs of the study ``inputs_gears``, newest first, one for all its seeds (:func:`.seeds.averaged`). Those of
+        inputs and networks other than :data:`INPUTS` and :data:`NETWORKS` are left out.
     errors : mapping
         Index of a run to its errors of specimens.
 
@@ -40,6 +41,7 @@ def over_gears(runs: pd.DataFrame, errors: Mapping[str, pd.DataFrame]) -> pd.Dat
         ``input``, ``method``, ``gears``, ``options`` (:func:`unusual_options`); ``training``, the error on the rows of
         the training [%]; ``seeds``; and on gears never seen ``value``, ``low``, ``high`` [%].
     """
+    runs = runs[runs["features"].isin(list(INPUTS)) & runs["classifier"].isin(list(NETWORKS))]
     facts = pd.DataFrame(
         {
             "input": runs["features"],
