@@ -185,7 +185,7 @@ def _gauge_signals(
     runs: Sequence[Run], motion: Motion, of_run: np.ndarray, samples: int, sectors: int, along: Along
 ) -> Float[np.ndarray, "run 5 time"]:
     """The bridge signals of every run along its motion [mV/V]."""
-    structures, structure_of_run = distinct([Structure.of(r.affected_gear, r.acting) for r in runs])
+    structures, structure_of_run = distinct([Structure.of(r.affected_gear, r.acting, r.point.T_out) for r in runs])
     maps = [map_of(structure, sectors) for structure in structures]
     signals = np.empty((len(runs), 5, samples))
     for m in range(len(motion.phi_in)):

@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy import sparse
 
+from swgsim.chain.contact import pressed
 from swgsim.chain.influence import boundary_conditions, ellipse, fine_angles, remaining_stiffness
 from swgsim.effects.base import Effect
 from swgsim.flexspline.flexspline import FlexSpline, prescribed, tooth_forces
@@ -21,7 +22,7 @@ class DirectSolver:
     Parameters
     ----------
     flex : FlexSpline
-        Gives the mesh; its solution is not used.
+        Gives the mesh, and the compliance where the wave generator only presses; else its solution is not used.
     gear : Gear
     effects : sequence of Effect
         Effects on wave generator, mesh or structure.
@@ -65,10 +66,15 @@ class DirectSolver:
         count, dof = self.flex.sector.count, 3 * len(self.flex.sector.nodes)
         ideal = ellipse(self.gear.wave_generator, self.flex.sector.hat.radius, psi, fine_angles(count))
         displacement, force = boundary_conditions(self.flex, ideal, self.effects, psi)
+        force = T_out[:, None] * force
+        if self.gear.wave_generator.presses_only:
+            asked = np.fft.rfft(displacement + self.gear.wave_generator.interference, axis=1) / count
+            lifted = pressed(self.flex, self.gear.factors, asked, np.fft.rfft(force, axis=1) / count, psi)
+            displacement = np.fft.irfft(lifted * count, count, axis=1)
         signals = np.empty((5, len(psi)))
         for i in range(len(psi)):
             moved = np.zeros((count, dof))
             moved[:, self.touching] = displacement[i, :, None]
-            loads = T_out[i] * force[i, :, None] * self.unit_force
+            loads = force[i, :, None] * self.unit_force
             signals[:, i] = self.rows @ self.factorised.solve(loads.ravel(), moved.ravel())
         return signals + offsets(self.gear.gauges)[:, None]

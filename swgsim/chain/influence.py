@@ -17,6 +17,7 @@ import numpy as np
 from jaxtyping import Complex, Float, Int
 from scipy import linalg
 
+from swgsim.chain.contact import pressed
 from swgsim.effects.base import Crack, Effect, overrides
 from swgsim.flexspline.cyclic import order_weights, orders
 from swgsim.flexspline.flexspline import BAND, TEETH, WAVE_GENERATOR, FlexSpline, gauge_response
@@ -30,6 +31,10 @@ ANGLES = 256
 PSI = 2 * np.pi / ANGLES * np.arange(ANGLES)
 # Angles of a map between which long recordings are interpolated; 17 to a wave of the highest order.
 FINE_ANGLES = 2048
+
+# A wave generator that only presses touches another part of the sleeve under another load, so its maps are chords over
+# a step of the load [N m]. Its contact is found at every so many of the angles.
+LOAD_STEP, EVERY = 3.5, 8
 
 # Points per sector at which the tooth forces are sampled; odd, so that one is at the node.
 SUBDIVISION = 5
@@ -182,7 +187,7 @@ def _loads(
 
 def influence_map(
     flex: FlexSpline, wave_generator: WaveGenerator, gauges: GaugeSet, effects: Sequence[Effect] = (),
-    factors: StructureFactors = EXACT_STRUCTURE,
+    factors: StructureFactors = EXACT_STRUCTURE, load: float = 0.0,
 ) -> InfluenceMap:  # fmt: skip
     """The influence map of one structure.
 
@@ -195,33 +200,45 @@ def influence_map(
         Effects on wave generator, mesh or structure.
     factors : StructureFactors
         By which the structure differs from the truss; cracks are those of the truss.
+    load : float
+        Output torque [N m] about which the map holds, if the wave generator only presses; else it holds for all.
     """
     loading = tuple(effect for effect in effects if overrides(effect, "wave_generator", "engaged", "mesh", "carried"))
-    amplitudes = _load_amplitudes(flex, wave_generator, loading)
+    softening = StructureFactors(compliance=factors.compliance)
+    amplitudes = load_amplitudes(flex, wave_generator, loading, softening, load)
     response = gauge_response(flex, gauges, factors)
     cracks = [crack for effect in effects for crack in effect.cracks()]
     of_loads = response[:, :, [WAVE_GENERATOR, TEETH]]
     if cracks:
         of_loads = of_loads + change_by_cracks(flex, response, cracks)
-    values = (amplitudes @ np.moveaxis(of_loads, 2, 0)).real
+    values = (amplitudes @ np.moveaxis(of_loads, 2, 0)).real.sum(axis=1)
     values[0] += offsets(gauges)
     coefficients = np.fft.rfft(values, axis=1)[:, : MAP_ORDERS + 1] / ANGLES
     coefficients[:, 1:] *= 2
     return InfluenceMap(np.swapaxes(coefficients, 1, 2))
 
 
-@lru_cache(maxsize=64)
-def _load_amplitudes(
-    flex: FlexSpline, wave_generator: WaveGenerator, effects: tuple[Effect, ...]
-) -> Complex[np.ndarray, "2 psi order"]:
-    """Circumferential orders of the imposed displacement [m] and of the tooth force per output torque [N/(N m)].
+@lru_cache(maxsize=256)
+def load_amplitudes(
+    flex: FlexSpline, wave_generator: WaveGenerator, effects: tuple[Effect, ...], factors: StructureFactors, load: float
+) -> Complex[np.ndarray, "2 2 psi order"]:
+    """Circumferential orders of the radial displacement [m] and of the tooth forces [N], at no load and per N m of it.
 
     Gears that differ in their gauges only share them.
     """
     sectors = flex.sector.count
     deforming = tuple(effect for effect in effects if overrides(effect, "wave_generator"))
     loads = _loads(flex, _displacement(wave_generator, flex.sector.hat.radius, sectors, deforming), effects, PSI)
-    return np.stack([np.fft.rfft(load, axis=1) for load in loads]) / sectors * order_weights(sectors)
+    asked, per_torque = (np.fft.rfft(load, axis=1) / sectors for load in loads)
+    amplitudes = np.zeros((2, 2, *asked.shape), complex)
+    amplitudes[0, WAVE_GENERATOR], amplitudes[1, TEETH] = asked, per_torque
+    if wave_generator.presses_only:
+        asked[:, 0] += wave_generator.interference
+        torques = load - LOAD_STEP / 2, load + LOAD_STEP / 2
+        low, high = (pressed(flex, factors, asked, torque * per_torque, PSI, EVERY) for torque in torques)
+        amplitudes[1, WAVE_GENERATOR] = (high - low) / LOAD_STEP
+        amplitudes[0, WAVE_GENERATOR] = (low + high) / 2 - load * amplitudes[1, WAVE_GENERATOR]
+    return amplitudes * order_weights(sectors)
 
 
 def change_by_cracks(

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import BarycentricInterpolator
 
-from swgsim.chain.influence import InfluenceMap, influence_map
+from swgsim.chain.influence import LOAD_STEP, InfluenceMap, influence_map
 from swgsim.effects.base import Effect, overrides
 from swgsim.effects.frozen import ScaledDisplacement
 from swgsim.effects.quantity import quantities
@@ -35,14 +35,16 @@ class Structure(NamedTuple):
     gauges: GaugeSet
     effects: tuple[Effect, ...]
     factors: StructureFactors
+    load: float
 
     @classmethod
-    def of(cls, gear: Gear, effects: Sequence[Effect]) -> "Structure":
-        """The structure of a gear, with the effects that act on it."""
+    def of(cls, gear: Gear, effects: Sequence[Effect], T_out: float) -> "Structure":
+        """The structure of a gear, with the effects that act on it, about an output torque [N m]."""
         places = ("wave_generator", "engaged", "mesh", "carried", "cracks")
         touching = tuple(effect for effect in effects if overrides(effect, *places))
         alpha_tooth = gear.transmission.alpha_tooth
-        return cls(gear.flex_spline, alpha_tooth, gear.wave_generator, gear.gauges, touching, gear.factors)
+        load = round(T_out / LOAD_STEP) * LOAD_STEP if gear.wave_generator.presses_only else 0.0
+        return cls(gear.flex_spline, alpha_tooth, gear.wave_generator, gear.gauges, touching, gear.factors, load)
 
 
 def map_of(structure: Structure, sectors: int) -> InfluenceMap:
@@ -64,4 +66,6 @@ def map_of(structure: Structure, sectors: int) -> InfluenceMap:
 @lru_cache(maxsize=512)
 def _computed(structure: Structure, sectors: int) -> InfluenceMap:
     flex = solve_flex_spline(structure.hat, structure.alpha_tooth, sectors)
-    return influence_map(flex, structure.wave_generator, structure.gauges, structure.effects, structure.factors)
+    return influence_map(
+        flex, structure.wave_generator, structure.gauges, structure.effects, structure.factors, structure.load
+    )

@@ -31,10 +31,13 @@ class FlexSpline:
         Displacements for load 0, unit radial displacement of the wave generator [m/m]; load 1, unit tangential tooth
         force with its radial part [m/N]; loads 2 and on, a unit force on each degree of freedom of the toothed band,
         where cracks act [m/N].
+    alpha_tooth : float
+        Gear-tooth angle [rad].
     """
 
     sector: Sector
     fields: Complex[np.ndarray, "order dof load"]
+    alpha_tooth: float
 
     @property
     def band(self) -> Int[np.ndarray, " band"]:
@@ -67,6 +70,20 @@ class FlexSpline:
     def band_compliance(self) -> Float[np.ndarray, "sector band band"]:
         """Displacement [m/N] of a band's degrees of freedom under unit forces on a band some sectors before."""
         return np.fft.irfft(self.fields[:, self.band, BAND:], self.sector.count, axis=0)
+
+    @cached_property
+    def compliance(self) -> Complex[np.ndarray, "order 2"]:
+        """Mean radial displacement of the band's inside, which nothing holds here, per unit force on each sector [m/N].
+
+        Of a radial force from inside that is even over the width of the band, and of the tooth force.
+        """
+        inner = self.sector.band & self.sector.layer(INNER)
+        forces = np.zeros((3 * len(self.sector.nodes), 2))
+        forces[0::3, WAVE_GENERATOR] = inner / inner.sum()
+        forces[:, TEETH] = tooth_forces(self.sector, self.alpha_tooth)
+        clamped = np.repeat(self.sector.clamped, 3)
+        fields = cyclic.solve(self.sector, clamped, forces, np.zeros_like(forces))
+        return fields[:, 0::3][:, inner].mean(axis=1)
 
     def displacement(
         self, amplitudes: Complex[np.ndarray, "order load"], weights: Float[np.ndarray, " order"]
@@ -143,4 +160,4 @@ def solve_flex_spline(hat: SilkHat, alpha_tooth: float, count: int) -> FlexSplin
     forces = np.zeros_like(moved)
     forces[:, TEETH] = tooth_forces(piece, alpha_tooth)
     forces[band, BAND + np.arange(len(band))] = 1
-    return FlexSpline(piece, cyclic.solve(piece, given, forces, moved))
+    return FlexSpline(piece, cyclic.solve(piece, given, forces, moved), alpha_tooth)

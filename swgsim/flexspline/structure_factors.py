@@ -23,7 +23,7 @@ SEEN_BY_S0 = (0, 4, 8, 12)
 
 @dataclass(frozen=True)
 class StructureFactors:
-    """Natural logarithms of the amplitudes for n = 0 .. WAVES - 1, then as many phases [rad].
+    """Natural logarithms of the amplitudes for n = 0 .. WAVES - 1, then as many phases [rad] except for the compliance.
 
     An empty tuple stands for factors of 1. The bridge s0 has its own arms, so it has factors of its own.
 
@@ -33,18 +33,22 @@ class StructureFactors:
         On what s1 to s4 show of the imposed displacement, and of the tooth forces.
     wave_generator_s0, teeth_s0 : tuple of float
         The same of s0.
+    compliance : tuple of float
+        On how far radial and tooth forces displace the sleeve; it matters where the wave generator only presses.
     """
 
     wave_generator: tuple[float, ...] = ()
     teeth: tuple[float, ...] = ()
     wave_generator_s0: tuple[float, ...] = ()
     teeth_s0: tuple[float, ...] = ()
+    compliance: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         for name, values in vars(self).items():
-            if len(values) not in (0, 2 * WAVES) or not np.all(np.isfinite(values)):
+            count = WAVES if name == "compliance" else 2 * WAVES
+            if len(values) not in (0, count) or not np.all(np.isfinite(values)):
                 raise ValueError(
-                    f"factors of the structure: {name} has {values}, must have none or {2 * WAVES} finite values"
+                    f"factors of the structure: {name} has {values}, must have none or {count} finite values"
                 )
 
     def applied(self, response: Complex[np.ndarray, "order 5 load"]) -> Complex[np.ndarray, "order 5 load"]:
@@ -57,6 +61,13 @@ class StructureFactors:
                 changed[:WAVES, 0, load] *= _complex(of_s0)
             if of_others:
                 changed[:WAVES, 1:, load] *= _complex(of_others)[:, None]
+        return changed
+
+    def softened(self, compliance: Complex[np.ndarray, "order load"]) -> Complex[np.ndarray, "order load"]:
+        """The compliance of the sleeve multiplied by the factors on it."""
+        changed = compliance.copy()
+        if self.compliance:
+            changed[:WAVES] *= np.exp(self.compliance)[:, None]
         return changed
 
 

@@ -16,6 +16,8 @@ from swgsim.gear.gear_file import gear_values
 
 # Strokes of wave generators of this size [m].
 W0_LIMITS = (1e-5, 1e-3)
+# Interference of wave generator and sleeve, mean radius to mean radius [m].
+INTERFERENCE_LIMITS = (-1e-4, 1e-4)
 
 
 @dataclass(frozen=True)
@@ -113,12 +115,21 @@ class WaveGenerator:
     ----------
     w0 : float
         Radial deflection of the sleeve at the major axis [m]; nominal value is the module.
+    presses_only : bool
+        Whether the sleeve may lift off (:mod:`swgsim.chain.contact`). In the paper's chain it follows the wave
+        generator all around.
+    interference : float
+        By how much the mean radius of the wave generator is larger than the bore of the sleeve [m]; negative with
+        clearance. It matters only where the sleeve may lift off.
     """
 
     w0: float = 0.2159e-3
+    presses_only: bool = False
+    interference: float = 0.0
 
     def __post_init__(self) -> None:
         require("the wave generator", "w0", self.w0, *W0_LIMITS)
+        require("the wave generator", "interference", self.interference, *INTERFERENCE_LIMITS)
 
 
 @dataclass(frozen=True)

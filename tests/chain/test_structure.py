@@ -14,7 +14,7 @@ BESIDE = [(), (EccentricWaveGenerator(1e-5, 0.3),), (RootToothCrack(0.05, 2.3),)
 def scaled(factors, beside=()):
     """Influence map of the gear with displacements scaled, beside other effects."""
     effects = (*map(ScaledDisplacement, factors), *beside)
-    return structure.map_of(structure.Structure.of(GEAR, effects), SECTORS)
+    return structure.map_of(structure.Structure.of(GEAR, effects, 0.0), SECTORS)
 
 
 @pytest.mark.parametrize("beside", BESIDE)
@@ -40,5 +40,5 @@ def test_scales_near_or_beyond_a_bound_are_computed(factors):
 
 def test_scales_with_another_displacement_between_them_are_computed():
     effects = (ScaledDisplacement(1.01), EccentricWaveGenerator(1e-5, 0.3), ScaledDisplacement(1.02))
-    found = structure.map_of(structure.Structure.of(GEAR, effects), SECTORS)
+    found = structure.map_of(structure.Structure.of(GEAR, effects, 0.0), SECTORS)
     np.testing.assert_array_equal(found.coefficients, map_of(*effects).coefficients)

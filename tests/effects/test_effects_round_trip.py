@@ -35,7 +35,7 @@ def predicted(model: Model) -> np.ndarray:
     """Features (situation, feature) for which nothing is remembered but the ellipse that all structures begin with."""
     forget()
     structure._computed.cache_clear()
-    influence._load_amplitudes.cache_clear()
+    influence.load_amplitudes.cache_clear()
     [found] = predict([model], SITUATIONS, LAYOUT, SECTORS)
     return found
 

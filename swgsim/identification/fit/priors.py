@@ -11,7 +11,7 @@ from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities
 from swgsim.flexspline.gauges import LIMITS
 from swgsim.flexspline.structure_factors import SEEN_BY_S0, WAVES, smooth_modes
-from swgsim.gear.gear import W0_LIMITS, Gear, KinematicError
+from swgsim.gear.gear import INTERFERENCE_LIMITS, W0_LIMITS, Gear, KinematicError
 from swgsim.identification.data.model import Model
 
 # Relative prior standard deviations of the bench: inertias, and speed control (each drive has its own); estimates.
@@ -25,6 +25,8 @@ SERIES, ANY_FRICTION = 0.1, 0.5
 STRAINED = 0.01
 # Of each part of the kinematic error [rad], of a gauge's zero [mV/V], of its position and direction [rad]; estimates.
 ERROR_PART, ZERO, PLACED = 0.3e-4, 0.02, 0.01
+# Of the interference of wave generator and sleeve [m]; an estimate.
+FIT = 1e-5
 # Spread of the factors of s0 relative to those of the other gauges: of waves that its arms nearly cancel, what is left
 # depends on where they are; an estimate.
 S0_ARMS = 3.0
@@ -137,20 +139,26 @@ def _with_phasor(order: int, part: str, gear: Gear, to: float) -> Gear:
     return replace(gear, transmission=replace(gear.transmission, kinematic_error=(*others, term)))
 
 
-def of_structure(spread: float) -> dict[str, Declared]:
+def of_structure(spread: float, presses_only: bool = False) -> dict[str, Declared]:
     """The factors of another structure, as independent modes of their course over the wave number.
 
     Parameters
     ----------
     spread : float
         Standard deviation of the logarithm of a factor, and of its phase [rad]; 0 for a structure that is known.
+    presses_only : bool
+        Whether the wave generator only presses, so that the compliance of the sleeve matters.
     """
     if not spread:
         return {}
     smooth, single = smooth_modes(COURSE, LEAST_MODE), S0_ARMS * np.eye(WAVES)[list(SEEN_BY_S0)]
     kinds = {"wave_generator": smooth, "teeth": smooth, "wave_generator_s0": single, "teeth_s0": single}
     nothing = np.zeros(WAVES)
-    return {
+    softer = {
+        f"compliance {number}": _of_factors("compliance", [mode], "-", spread)
+        for number, mode in enumerate(smooth if presses_only else [], 1)
+    }
+    return softer | {
         f"response to {kind.replace('_', ' ')}, {part} {number}": _of_factors(kind, parts, unit, spread)
         for kind, modes in kinds.items()
         for number, mode in enumerate(modes, 1)
@@ -212,6 +220,14 @@ def of_unit(
             W0_LIMITS[1],
         ),
     }
+    if gear.wave_generator.presses_only:
+        found["interference"] = _of_gear(
+            "m",
+            FIT,
+            lambda each: each.wave_generator.interference,
+            lambda each, to: replace(each, wave_generator=replace(each.wave_generator, interference=to)),
+            *INTERFERENCE_LIMITS,
+        )
     for term in t.kinematic_error:
         for part in ("sine", "cosine"):
             found[f"kinematic error {term.order} {part}"] = _of_kinematic_error(term.order, part, ERROR_PART)
@@ -220,7 +236,7 @@ def of_unit(
         found[f"zero of s{sensor}"] = _of_gauge("offset", sensor, "mV/V", ZERO)
         found[f"position of s{sensor}"] = _of_gauge("position", sensor, "rad", of_gauges * PLACED)
         found[f"grid angle of s{sensor}"] = _of_gauge("grid_angle", sensor, "rad", of_gauges * PLACED)
-    return found | of_structure(structure)
+    return found | of_structure(structure, gear.wave_generator.presses_only)
 
 
 def of_effects(model: Model, another_structure: bool = False) -> dict[str, Declared]:
