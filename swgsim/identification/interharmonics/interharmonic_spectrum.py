@@ -166,8 +166,8 @@ class GaugeSpectrum:
         seen = SeenLines(effect, column, gauge, numbers, np.linalg.norm(lines, axis=-1))
         return seen.apart([self.gauges.index(name) for name in apart]) if apart else seen
 
-    def _by_gauge(self, numbers: Float[np.ndarray, "number *any"]) -> Float[np.ndarray, "gauge one *any"]:
-        return numbers.reshape(len(self.gauges), len(numbers) // len(self.gauges), *numbers.shape[1:])
+    def _by_gauge(self, numbers: Float[np.ndarray, "number column"]) -> Float[np.ndarray, "gauge one column"]:
+        return numbers.reshape(len(self.gauges), len(numbers) // len(self.gauges), numbers.shape[1])
 
     @cached_property
     def _spare(self) -> Float[np.ndarray, " number"]:
@@ -240,7 +240,7 @@ class GaugeSpectrum:
         return self._taking_alone(columns @ orthonormal(columns.swapaxes(1, 2) @ columns))
 
     def _taking_alone(self, U: Float[np.ndarray, "gauge one direction"]) -> "GaugeSpectrum":
-        left = self._by_gauge(self.left)[..., None]
+        left = self._by_gauge(self.left[:, None])
         left = left - U @ (U.swapaxes(1, 2) @ left)
         return replace(self, left=left.ravel(), alone=np.concatenate([self.alone, U], axis=-1))
 
