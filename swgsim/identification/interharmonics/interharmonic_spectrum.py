@@ -119,9 +119,9 @@ class GaugeSpectrum:
             np.linalg.qr(ordinary(scene, N))[0],
             revolutions,
             clear,
-            np.zeros(2 * scale.size),
-            np.empty((2 * scale.size, 0)),
-            np.empty((len(gauges), 2 * len(lines), 0)),
+            left=np.zeros(2 * scale.size),
+            taken=np.empty((2 * scale.size, 0)),
+            alone=np.empty((len(gauges), 2 * len(lines), 0)),
         )
         whole = scene_of(recording)
         signals = [np.array([recording.channels[gauge] for gauge in gauges]), *_ends(whole, noise)]
@@ -135,8 +135,7 @@ class GaugeSpectrum:
     @property
     def step(self) -> float:
         """Distance of two lines of the spectrum [Hz]."""
-        time = self.scene.time
-        return 1 / (len(time) * (time[1] - time[0]))
+        return 1 / (len(self.scene.time) * (self.scene.time[1] - self.scene.time[0]))
 
     @property
     def power(self) -> Float[np.ndarray, "gauge line"]:
@@ -176,19 +175,17 @@ class GaugeSpectrum:
 
     def explained(self, effects: Sequence[Effect]) -> Explained:
         """What each of some effects of one kind explains of this recording."""
-        parts = [self._explained(effects[i : i + AT_ONCE]) for i in range(0, len(effects), AT_ONCE)]
-        return Explained(*np.concatenate(parts, axis=1))
-
-    def _explained(self, effects: Sequence[Effect]) -> Explained:
-        patterns = self._patterns(effects).reshape(len(effects), -1, len(self.left))
-        return self._explained_by(patterns, self.left, self._spare)
+        some = (effects[i : i + AT_ONCE] for i in range(0, len(effects), AT_ONCE))
+        patterns = (self._patterns(each).reshape(len(each), -1, len(self.left)) for each in some)
+        found = [self._explained_by(each, self.left, self._spare) for each in patterns]
+        return Explained(*np.concatenate(found, axis=1))
 
     def explained_beside(self, effects: Sequence[Effect]) -> Explained:
         """What each of some effects explains where the others may be too; else these pass for noise beside it."""
         seen = self._seen(effects)
         between = _without(seen.dense(len(self.gauges)), self.taken)
         patterns = (between * seen.shows((between**2).sum(axis=1))[:, None]).reshape(len(effects), -1, len(self.left))
-        others = [np.delete(patterns, i, axis=0).reshape(-1, len(self.left)) for i in range(len(effects))]
+        others = (np.delete(patterns, i, axis=0).reshape(-1, len(self.left)) for i in range(len(effects)))
         taken = [each.T @ orthonormal(each @ each.T) for each in others]
         alone = np.concatenate([_without(each, U) for each, U in zip(patterns, taken, strict=True)])
         alone = (alone * seen.shows((alone**2).sum(axis=1))[:, None]).reshape(patterns.shape)
@@ -199,11 +196,9 @@ class GaugeSpectrum:
         return Explained(*np.concatenate(found, axis=1))
 
     def _explained_by(
-        self,
-        patterns: Float[np.ndarray, "effect column number"],
-        left: Float[np.ndarray, " number"],
+        self, patterns: Float[np.ndarray, "effect column number"], left: Float[np.ndarray, " number"],
         spare: Float[np.ndarray, " number"],
-    ) -> Explained:
+    ) -> Explained:  # fmt: skip
         """What patterns explain of numbers that are left, of which each has so many degrees of freedom."""
         # Orthonormal directions, from the few products of the columns: the columns are long. Products so small are
         # slower where threads share them.
@@ -262,7 +257,7 @@ def gauge_spectra(recordings: Sequence[Recording], N: int | None = None) -> list
     ----------
     recordings : sequence of Recording
     N : int, optional
-        Ratio of their gear, whose circular spline beats with its flex spline; None: nothing does.
+        Ratio of their gear, whose circular spline beats with its flex spline.
     """
     gauges = tuple(sensor for sensor in SENSORS if recordings and all(sensor in r.channels for r in recordings))
     noise = floors(recordings, Layout(gauges)) if gauges else []
