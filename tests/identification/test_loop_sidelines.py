@@ -165,8 +165,8 @@ def test_a_pattern_is_what_the_orders_leave_of_the_signals(name):
     signals, Q = shapes(effect, seen.scene, seen.gauges), np.linalg.qr(ordinary(seen.scene))[0]
     lines = np.fft.rfft(signals - (signals @ Q) @ Q.T)[..., 1 : seen.scale.shape[1] + 1] / signals.shape[-1]
     clear = lines * seen.scale * seen.clear
-    expected = np.concatenate([clear.real, clear.imag], axis=-1).reshape(len(signals), -1)
-    expected = expected - (expected @ seen.taken) @ seen.taken.T
+    expected = np.concatenate([clear.real, clear.imag], axis=-1)[..., None]
+    expected = (expected - seen.alone @ (seen.alone.swapaxes(1, 2) @ expected)).reshape(len(signals), -1)
     np.testing.assert_allclose(seen.pattern(effect), expected, atol=1e-9 * np.abs(expected).max())
 
 

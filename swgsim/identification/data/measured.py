@@ -170,9 +170,17 @@ class Measured:
         """What zeros of gauges so many times as far off as declared, no nearer than now, have beyond those of
         :meth:`session_columns`.
         """
-        zeros, walks = self._zeros(self)
+        return np.hstack([by * each for by, each in zip(self.beyond_zeros(times), self.free_zeros, strict=True)])
+
+    def beyond_zeros(self, times: float) -> tuple[float, float]:
+        """The same as factors on both of :attr:`free_zeros`."""
         wandering = _wandering(times) ** 2 - _wandering(self.zeros) ** 2
-        return np.hstack([np.sqrt(times**2 - self.zeros**2) * zeros, np.sqrt(wandering) * walks])
+        return float(np.sqrt(times**2 - self.zeros**2)), float(np.sqrt(wandering))
+
+    @property
+    def free_zeros(self) -> tuple[Float[np.ndarray, "row zero"], Float[np.ndarray, "row path"]]:
+        """Zeros of gauges in every session, and the paths by which they wander, as far as declared."""
+        return self._zeros(self)
 
     def _zeros(self, known: "Measured") -> tuple[Float[np.ndarray, "row zero"], Float[np.ndarray, "row path"]]:
         """Zeros of gauges in every session, and the paths by which they wander, one standard deviation each."""

@@ -77,12 +77,11 @@ def predict(
 
     Without ``search``, a motion that is not found at once is an error (NoSteadyState).
     """
-    runs = [m.run(s) for m in models for s in situations]
-    _, row = distinct([_key(run) for run in runs])
+    pairs = [(m, s) for m in models for s in situations]
+    _, row = distinct([_key(*each) for each in pairs])
     _, first = np.unique(row, return_index=True)
-    recordings = simulate_turns(
-        [runs[i] for i in first], revolutions=1, points=SAMPLES_PER_TURN, sectors=sectors, search=search
-    )
+    runs = [m.run(s) for m, s in (pairs[i] for i in first)]
+    recordings = simulate_turns(runs, revolutions=1, points=SAMPLES_PER_TURN, sectors=sectors, search=search)
     some = (recordings[i : i + AT_ONCE] for i in range(0, len(recordings), AT_ONCE))
     found = np.concatenate([layout.of(each) for each in some])
     return found[row].reshape(len(models), len(situations), len(layout))
@@ -110,8 +109,11 @@ def predict_with_others(
     return known, beside
 
 
-def _key(run: Run) -> tuple:
-    """All that a run of the chain depends on; the conditions only where an effect looks at them while recording."""
-    acting = run.acting
-    seeing = any(overrides(e, "gauge", "acquisition") for e in acting if not isinstance(e, OwnLines))
-    return run.gear, acting, run.point, run.conditions if seeing else None
+def _key(model: Model, situation: Situation) -> tuple:
+    """All that a run of the chain depends on; the conditions only where an effect looks at them while recording.
+
+    Models count as different: to compare their gears takes longer than it saves.
+    """
+    acting = tuple(effect.at(situation.point, situation.conditions) for effect in model.effects)
+    seeing = any(overrides(effect, "gauge", "acquisition") for effect in acting)
+    return id(model), acting, situation.point, situation.conditions if seeing else None

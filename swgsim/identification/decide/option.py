@@ -238,12 +238,14 @@ def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"]
     form errors gain the same for all factors of zeros.
     """
     fitted = fitted.with_zeros(1.0)
-    r, whole = fitted.from_start, fitted.whole
-    wholes = [whole, *(whole.with_columns(fitted.measured.further_zeros(times)) for times in TIMES_BALANCED)]
+    measured, whole = fitted.measured, fitted.whole
+    # Further zeros open like forms, each kind by a factor of its own.
+    zeros = Forms.of([whole.whiten(each) for each in measured.free_zeros], fitted.white)
     balanced = np.log([1 - BALANCED, *[BALANCED / len(TIMES_BALANCED)] * len(TIMES_BALANCED)])
-    of_zeros = balanced + [each.log_likelihood(r) for each in wholes]
-    best = wholes[int(of_zeros.argmax())]
-    forms = Forms.of([best.whiten(each) for each in form_directions(fitted)], best.whiten(r))
+    of_zeros = balanced + fitted.log_likelihood + [zeros.gain(measured.beyond_zeros(times)) for times in ZEROS]
+    likeliest = ZEROS[int(of_zeros.argmax())]
+    best = whole.with_columns(measured.further_zeros(likeliest)) if likeliest > 1 else whole
+    forms = Forms.of([best.whiten(each) for each in form_directions(fitted)], best.whiten(fitted.from_start))
     gains = [forms.gain([error] * len(fitted.added)) for error in form_errors(fitted.unit.structure)]
     return of_zeros[:, None] + gains - np.log(len(gains)), forms
 
@@ -261,7 +263,7 @@ def expected_gain(fitted: Fitted, change: Float[np.ndarray, " row"]) -> float:
         What the effect changes at its estimated size, which stands for the standard deviation of its prior.
     """
     whole = fitted.whole
-    white, r = whole.whiten(np.column_stack([change, parts(fitted, change)])), whole.whiten(fitted.from_start)
+    white, r = whole.whiten(np.column_stack([change, parts(fitted, change)])), fitted.white
     size = white[:, 0]
     # The size is projected out of the residual and of the forms, which then are no size.
     norm = float(np.sqrt(1 + size @ size))

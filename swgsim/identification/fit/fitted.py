@@ -264,6 +264,11 @@ class Fitted:
         return {name: s * p.sd for (name, p), s in zip(self.parameters.items(), spread, strict=True)}
 
     @cached_property
+    def white(self) -> Float[np.ndarray, " row"]:
+        """Residual of the linearised model, whitened by its covariance."""
+        return self.whole.whiten(self.from_start)
+
+    @cached_property
     def weighed(self) -> Float[np.ndarray, " row"]:
         """Residual of the linearised model, weighed by the inverse of its covariance."""
         return self.whole.weigh(self.from_start)
@@ -286,4 +291,4 @@ class Fitted:
     @cached_property
     def log_likelihood(self) -> float:
         """Of all recordings together, everything that is not known exactly being open within its spread."""
-        return self.whole.log_likelihood(self.from_start)
+        return -0.5 * (float(self.white @ self.white) + self.whole.log_determinant)

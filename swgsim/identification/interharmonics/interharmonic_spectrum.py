@@ -77,7 +77,10 @@ class GaugeSpectrum:
         Real and imaginary parts of all spectral lines after the orders were removed, gauge by gauge; 0 where the orders
         leak.
     taken : array (number, direction)
-        Orthonormal directions that were projected out: ends of slow noise, and lines that were found.
+        Orthonormal directions over several gauges that were projected out: lines that were found.
+    alone : array (gauge, one, own)
+        The same within each gauge: ends of slow noise, and lines that may be in every gauge by themselves. Each gauge
+        has as many, some being 0.
     """
 
     scene: Scene
@@ -88,6 +91,7 @@ class GaugeSpectrum:
     clear: Bool[np.ndarray, " line"]
     left: Float[np.ndarray, " number"]
     taken: Float[np.ndarray, "number direction"]
+    alone: Float[np.ndarray, "gauge one own"]
 
     @classmethod
     def of(
@@ -115,22 +119,23 @@ class GaugeSpectrum:
             np.linalg.qr(ordinary(scene, N))[0],
             revolutions,
             clear,
-            np.zeros(2 * scale.size),
-            np.empty((2 * scale.size, 0)),
+            left=np.zeros(2 * scale.size),
+            taken=np.empty((2 * scale.size, 0)),
+            alone=np.empty((len(gauges), 2 * len(lines), 0)),
         )
         whole = scene_of(recording)
         signals = [np.array([recording.channels[gauge] for gauge in gauges]), *_ends(whole, noise)]
         remainder = _without(np.array(signals), np.linalg.qr(ordinary(whole, N))[0])
         spectra = _spectrum(remainder[..., :length])[..., : len(lines)] * scale
-        left, *ends = bare._numbers(spectra).reshape(len(spectra), -1)
+        left, *ends = bare._numbers(spectra)
         # Each is of another gauge, in units of its own noise.
-        return replace(bare, left=left)._taking(np.transpose([end / np.linalg.norm(end) for end in ends]))
+        alone = np.array([end[i] / np.linalg.norm(end[i]) for i, end in enumerate(ends)])[..., None]
+        return replace(bare, left=left.ravel())._taking_alone(alone)
 
     @property
     def step(self) -> float:
         """Distance of two lines of the spectrum [Hz]."""
-        time = self.scene.time
-        return 1 / (len(time) * (time[1] - time[0]))
+        return 1 / (len(self.scene.time) * (self.scene.time[1] - self.scene.time[0]))
 
     @property
     def power(self) -> Float[np.ndarray, "gauge line"]:
@@ -144,43 +149,70 @@ class GaugeSpectrum:
     def _patterns(self, effects: Sequence[Effect], apart: Sequence[str] = ()) -> Float[np.ndarray, "column number"]:
         """The same of several effects, one after the other."""
         seen = self._seen(effects, apart)
-        between = seen.dense(len(self.gauges)) - seen.along(self._by_gauge(self.taken)) @ self.taken.T
+        between = _without(seen.dense(len(self.gauges)), self.taken)
         return between * seen.shows((between**2).sum(axis=1))[:, None]
 
     def _seen(self, effects: Sequence[Effect], apart: Sequence[str] = ()) -> SeenLines:
-        """What effects can put between the orders, before anything else is taken out."""
+        """What effects can put between the orders, without what was taken out of single gauges."""
         made = [shapes(effect, self.scene, self.gauges) for effect in effects]
         effect, signals = np.repeat(np.arange(len(made)), [len(each) for each in made]), np.concatenate(made)
         column, gauge = np.nonzero(signals.any(axis=-1))
         loud, scale = signals[column, gauge], self.scale[gauge]
         lines = _spectrum(loud)[:, : scale.shape[1]] * scale
         numbers = self._numbers(lines - (loud @ self.orders) @ self._of_orders * scale)
+        for number, taken in enumerate(self.alone):
+            numbers[gauge == number] = _without(numbers[gauge == number], taken)
         seen = SeenLines(effect, column, gauge, numbers, np.linalg.norm(lines, axis=-1))
         return seen.apart([self.gauges.index(name) for name in apart]) if apart else seen
 
     def _by_gauge(self, numbers: Float[np.ndarray, "number column"]) -> Float[np.ndarray, "gauge one column"]:
-        return numbers.reshape(len(self.gauges), -1, numbers.shape[1])
+        return numbers.reshape(len(self.gauges), len(numbers) // len(self.gauges), numbers.shape[1])
+
+    @cached_property
+    def _spare(self) -> Float[np.ndarray, " number"]:
+        """Degrees of freedom that what was taken leaves of every number."""
+        return 1.0 - (self.taken**2).sum(axis=1) - (self.alone**2).sum(axis=-1).ravel()
 
     def explained(self, effects: Sequence[Effect]) -> Explained:
         """What each of some effects of one kind explains of this recording."""
-        parts = [self._explained(effects[i : i + AT_ONCE]) for i in range(0, len(effects), AT_ONCE)]
-        return Explained(*np.concatenate(parts, axis=1))
+        some = (effects[i : i + AT_ONCE] for i in range(0, len(effects), AT_ONCE))
+        patterns = (self._patterns(each).reshape(len(each), -1, len(self.left)) for each in some)
+        found = [self._explained_by(each, self.left, self._spare) for each in patterns]
+        return Explained(*np.concatenate(found, axis=1))
 
-    def _explained(self, effects: Sequence[Effect]) -> Explained:
-        patterns = self._patterns(effects).reshape(len(effects), -1, len(self.left))
+    def explained_beside(self, effects: Sequence[Effect]) -> Explained:
+        """What each of some effects explains where the others may be too; else these pass for noise beside it."""
+        seen = self._seen(effects)
+        between = _without(seen.dense(len(self.gauges)), self.taken)
+        patterns = (between * seen.shows((between**2).sum(axis=1))[:, None]).reshape(len(effects), -1, len(self.left))
+        others = (np.delete(patterns, i, axis=0).reshape(-1, len(self.left)) for i in range(len(effects)))
+        taken = [each.T @ orthonormal(each @ each.T) for each in others]
+        alone = np.concatenate([_without(each, U) for each, U in zip(patterns, taken, strict=True)])
+        alone = (alone * seen.shows((alone**2).sum(axis=1))[:, None]).reshape(patterns.shape)
+        found = [
+            self._explained_by(each[None], _without(self.left, U), self._spare - (U**2).sum(axis=1))
+            for each, U in zip(alone, taken, strict=True)
+        ]
+        return Explained(*np.concatenate(found, axis=1))
+
+    def _explained_by(
+        self, patterns: Float[np.ndarray, "effect column number"], left: Float[np.ndarray, " number"],
+        spare: Float[np.ndarray, " number"],
+    ) -> Explained:  # fmt: skip
+        """What patterns explain of numbers that are left, of which each has so many degrees of freedom."""
         # Orthonormal directions, from the few products of the columns: the columns are long. Products so small are
         # slower where threads share them.
         power, axes = np.linalg.eigh(np.einsum("ecn,edn->ecd", patterns, patterns))
         used = power > LEAST_SHARE**2 * np.maximum(power[:, -1:], 1e-300)
         turned = axes * (used / np.sqrt(np.where(used, power, 1.0)))[:, None]
         U = np.einsum("edc,edn->ecn", turned, patterns)
-        along = np.einsum("ecn,n->ec", U, self.left)
+        along = np.einsum("ecn,n->ec", U, left)
         square = (U**2).sum(axis=1)
-        holds = square.reshape(len(effects), -1, self.scale.shape[1]).sum(axis=1) > LEAST_PROJECTION
+        holds = square.reshape(len(patterns), -1, self.scale.shape[1]).sum(axis=1) > LEAST_PROJECTION
         near = maximum_filter1d(holds.astype(np.uint8), 2 * NOISE_LINES + 1, mode="constant") > 0
         neighbours = np.tile(near & self.clear, 2 * len(self.gauges))
-        rest = ((self.left - np.einsum("ec,ecn->en", along, U)) ** 2 * neighbours).sum(axis=1)
-        count = (neighbours * (1.0 - square - (self.taken**2).sum(axis=1))).sum(axis=1)
+        rest = ((left - np.einsum("ec,ecn->en", along, U)) ** 2 * neighbours).sum(axis=1)
+        count = (neighbours * (spare - square)).sum(axis=1)
         own_gain = (patterns[:, 0] ** 2).sum(axis=1)
         return Explained((along**2).sum(axis=1), used.sum(axis=1), own_gain, rest, count)
 
@@ -196,10 +228,16 @@ class GaugeSpectrum:
     def without(self, effects: Sequence[Effect], apart: Sequence[str] = ()) -> "GaugeSpectrum":
         """The spectrum without anything that these effects may have put there; ``apart`` as of :meth:`held`."""
         patterns = self._patterns(effects, apart)
-        return self._taking(patterns.T @ orthonormal(patterns @ patterns.T))
+        if not apart or self.taken.shape[1]:
+            U = patterns.T @ orthonormal(patterns @ patterns.T)
+            return replace(self, left=_without(self.left, U), taken=np.hstack([self.taken, U]))
+        columns = self._by_gauge(patterns.T)
+        return self._taking_alone(columns @ orthonormal(columns.swapaxes(1, 2) @ columns))
 
-    def _taking(self, U: Float[np.ndarray, "number direction"]) -> "GaugeSpectrum":
-        return replace(self, left=self.left - U @ (U.T @ self.left), taken=np.hstack([self.taken, U]))
+    def _taking_alone(self, U: Float[np.ndarray, "gauge one direction"]) -> "GaugeSpectrum":
+        left = self._by_gauge(self.left[:, None])
+        left = left - U @ (U.swapaxes(1, 2) @ left)
+        return replace(self, left=left.ravel(), alone=np.concatenate([self.alone, U], axis=-1))
 
     @cached_property
     def _of_orders(self) -> Complex[np.ndarray, "column line"]:
@@ -219,7 +257,7 @@ def gauge_spectra(recordings: Sequence[Recording], N: int | None = None) -> list
     ----------
     recordings : sequence of Recording
     N : int, optional
-        Ratio of their gear, whose circular spline beats with its flex spline; None: nothing does.
+        Ratio of their gear, whose circular spline beats with its flex spline.
     """
     gauges = tuple(sensor for sensor in SENSORS if recordings and all(sensor in r.channels for r in recordings))
     noise = floors(recordings, Layout(gauges)) if gauges else []

@@ -31,12 +31,11 @@ def chance_of_growth(
 
     It is 0 if the healthy recordings cannot show the line.
     """
-    chances = []
-    for part in parts:
-        # Else the others would pass for noise beside it.
-        others = [other for other in parts if other is not part]
-        now, before = ([each.without(others) for each in some] if others else some for some in (spectra, healthy))
-        chances.append(_chance(part, now, before))
+    now, before = (np.array([each.explained_beside(parts) for each in some]) for some in (spectra, healthy))
+    points = [[each.scene.point for each in some] for some in (spectra, healthy)]
+    chances = [
+        _chance(_Powers.of(points[0], now[..., i]), _Powers.of(points[1], before[..., i])) for i in range(len(parts))
+    ]
     return min(1.0, len(parts) * min(chances))
 
 
@@ -60,14 +59,14 @@ class _Powers:
     size: Float[np.ndarray, " recording"]
 
     @classmethod
-    def of(cls, effect: Effect, spectra: Sequence[GaugeSpectrum]) -> "_Powers":
-        """Of the recordings that can show it: at some speeds a frequency lies on an order."""
-        gain, freedom, size, rest, count = np.array([each.explained([effect]) for each in spectra])[..., 0].T
+    def of(cls, points: Sequence[OperatingPoint], sums: Float[np.ndarray, "recording number"]) -> "_Powers":
+        """By what the line explains of recordings (:class:`Explained`): at some speeds a frequency lies on an order."""
+        gain, freedom, size, rest, count = sums.T
         noise, _ = f_test(gain.sum(), max(freedom.sum(), 1.0), rest.sum(), count.sum())
         shown = (freedom > 0) & (size > 0)
-        points = tuple(each.scene.point for each, there in zip(spectra, shown, strict=True) if there)
+        seen = tuple(each for each, there in zip(points, shown, strict=True) if there)
         gain, freedom, size = gain[shown] / noise, freedom[shown], size[shown] / noise
-        return cls(points, (gain - freedom) / size, freedom, size)
+        return cls(seen, (gain - freedom) / size, freedom, size)
 
     def at(self, point: OperatingPoint) -> "_Powers":
         """Those at one operating point."""
@@ -79,9 +78,8 @@ class _Powers:
         return (2 * self.freedom + 4 * power * self.size) / self.size**2
 
 
-def _chance(effect: Effect, spectra: Sequence[GaugeSpectrum], healthy: Sequence[GaugeSpectrum]) -> float:
+def _chance(now: _Powers, before: _Powers) -> float:
     """The same of one part: a t-test of the sum of the powers over the operating points, averaged over the days."""
-    now, before = _Powers.of(effect, spectra), _Powers.of(effect, healthy)
     if not now.points or not before.points:
         return 0.0
     # Where no operating point is the same, the law of the effect has to do.

@@ -10,7 +10,7 @@ from swgsim.effects.line_between import GAUGE_PATTERNS, LineBetween
 from swgsim.effects.quantity import quantities
 from swgsim.effects.regularity import LAWS
 from swgsim.identification.fit.form_error import LEAST_GAIN
-from swgsim.identification.interharmonics.interharmonic_spectrum import GaugeSpectrum, f_test
+from swgsim.identification.interharmonics.interharmonic_spectrum import Explained, GaugeSpectrum, f_test
 from swgsim.identification.interharmonics.named_interharmonics import by_law
 
 # A description with more numbers replaces another one only if it explains more. The excess must be above the first
@@ -52,9 +52,11 @@ def line_parts(line: Callable[[str], LineBetween], spectra: Sequence[GaugeSpectr
         Probability of a false gauge.
     """
     gauges = spectra[0].gauges
-    patterns = _Shown.of([line(name) for name in distinct_patterns(gauges)], spectra)
+    patterns = _Shown.of([line(name) for name in distinct_patterns(gauges)], spectra, GaugeSpectrum.explained)
     best = max(patterns, key=lambda each: each.explained)
-    alone = {gauge: _alone(gauge, line, spectra) for gauge in gauges}
+    # The lines of the other gauges are no noise.
+    in_gauges = [line(f"in {gauge} alone") for gauge in gauges]
+    alone = dict(zip(gauges, _Shown.of(in_gauges, spectra, GaugeSpectrum.explained_beside), strict=True))
     within = [gauge for gauge in gauges if gauge in GAUGE_PATTERNS[best.line.pattern]]
     together = not outdoes(sum(alone[gauge].explained for gauge in within), best.explained)
     further = [each for gauge, each in alone.items() if each.chance <= level and not (together and gauge in within)]
@@ -78,14 +80,6 @@ def distinct_patterns(gauges: Sequence[str]) -> list[str]:
     return list(found.values())
 
 
-def _alone(gauge: str, line: Callable[[str], LineBetween], spectra: Sequence[GaugeSpectrum]) -> "_Shown":
-    """The line in one gauge, without the lines of the other gauges in the noise."""
-    others = [other for other in spectra[0].gauges if other != gauge]
-    left = [each.without([line(LineBetween.pattern)], apart=others) for each in spectra] if others else spectra
-    (shown,) = _Shown.of([line(f"in {gauge} alone")], left)
-    return shown
-
-
 @dataclass(frozen=True, eq=False)
 class _Shown:
     """What recordings show of a line in one pattern: ``gain`` and ``freedom`` as in
@@ -101,10 +95,15 @@ class _Shown:
     chance: float
 
     @classmethod
-    def of(cls, lines: Sequence[LineBetween], spectra: Sequence[GaugeSpectrum]) -> "list[_Shown]":
+    def of(
+        cls,
+        lines: Sequence[LineBetween],
+        spectra: Sequence[GaugeSpectrum],
+        explained_by: Callable[[GaugeSpectrum, Sequence[LineBetween]], Explained],
+    ) -> "list[_Shown]":
         """Of each of some lines whose law is constant."""
         found = []
-        every = np.array([each.explained(lines) for each in spectra]).transpose(2, 1, 0)
+        every = np.array([explained_by(each, lines) for each in spectra]).transpose(2, 1, 0)
         for line, (gain, freedom, size, rest, count) in zip(lines, every, strict=True):
             noise, chance = f_test(gain.sum(), max(freedom.sum(), 1.0), rest.sum(), count.sum())
             explained = float(gain.sum() - noise * freedom.sum())

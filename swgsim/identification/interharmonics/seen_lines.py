@@ -70,8 +70,11 @@ class SeenLines(NamedTuple):
         return found.reshape(len(found), -1)
 
 
-def orthonormal(products: Float[np.ndarray, "column column"]) -> Float[np.ndarray, "column rank"]:
-    """How columns, of which the products with one another are given, make orthonormal directions."""
+def orthonormal(products: Float[np.ndarray, "*batch column column"]) -> Float[np.ndarray, "*batch column rank"]:
+    """How columns, of which the products with one another are given, make orthonormal directions; or those of each of
+    several batches, of which one may have fewer directions: its first ones are 0.
+    """
     power, axes = np.linalg.eigh(products)
     used = power > LEAST_SHARE**2 * max(float(power.max(initial=0.0)), 1e-300)
-    return axes[:, used] / np.sqrt(power[used])
+    turned = axes * (used / np.sqrt(np.where(used, power, 1.0)))[..., None, :]
+    return turned[..., used.any(axis=tuple(range(used.ndim - 1)))]

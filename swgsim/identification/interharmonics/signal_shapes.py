@@ -1,6 +1,7 @@
 """Shapes over time in the signals of a recording: the orders, and those of an effect with random phases."""
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 from jaxtyping import Float
@@ -34,11 +35,17 @@ def ordinary(scene: Scene, N: int | None = None) -> Float[np.ndarray, "time colu
 
 def shapes(effect: Effect, scene: Scene, gauges: tuple[str, ...]) -> Float[np.ndarray, "variant gauge time"]:
     """What an effect can put on silent gauges: sums of these, whatever its random phases."""
+    return np.array([_alone(each, scene, gauges) for each in _with_phases(effect)])
+
+
+@lru_cache(maxsize=4096)  # the same in all recordings
+def _with_phases(effect: Effect) -> tuple[Effect, ...]:
+    """An effect with the random phases of which all others are sums."""
     random = [name for name, q in quantities(type(effect)).items() if q.role is Role.RANDOM]
     phases = [dict.fromkeys(random, 0.0)]
     phases += [{n: np.pi if n == name else 0.0 for n in random} for name in random[1:]]
     phases += [{n: np.pi / 2 if n == name else 0.0 for n in random} for name in random]
-    return np.array([_alone(replace(effect, **each), scene, gauges) for each in phases])
+    return tuple(replace(effect, **each) for each in phases)
 
 
 def _alone(effect: Effect, scene: Scene, gauges: tuple[str, ...]) -> Float[np.ndarray, "gauge time"]:

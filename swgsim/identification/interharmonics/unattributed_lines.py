@@ -66,15 +66,19 @@ class Unnamed:
 
     def refined(self, spectra: Sequence[GaugeSpectrum]) -> "Unnamed":
         """The line where it explains most, no longer at a place of the grid, between two of which it loses half."""
-        found = self
-        for _ in range(ZOOMS):
-            near = [found._at(float(found.at + found.reach * step), spectra) for step in (-1.0, -0.5, 0.0, 0.5, 1.0)]
-            found = replace(max(near, key=lambda line: line.explained), reach=found.reach / 2)
-        return found
+        tried: dict[float, float] = {}  # by steps from here: places of one zoom are also those of the next one
+        best = 0.0
+        for zoom in range(ZOOMS):
+            near = [best + step / 2**zoom for step in (-1.0, -0.5, 0.0, 0.5, 1.0)]
+            tried |= {steps: self._held(steps, spectra) for steps in near if steps not in tried}
+            best = max(near, key=lambda steps: tried[steps])
+        return replace(
+            self, at=float(self.at + best * self.reach), explained=tried[best] - self.noise, reach=self.reach / 2**ZOOMS
+        )
 
-    def _at(self, place: float, spectra: Sequence[GaugeSpectrum]) -> "Unnamed":
-        held = sum(each.held([_line(self.kind, place)], apart=each.gauges) for each in spectra)
-        return replace(self, at=place, explained=float(held - self.noise))
+    def _held(self, steps: float, spectra: Sequence[GaugeSpectrum]) -> float:
+        line = _line(self.kind, self.at + steps * self.reach)
+        return float(sum(each.held([line], apart=each.gauges) for each in spectra))
 
     def __str__(self) -> str:
         where = f"order {self.at:.2f}" if self.kind == "order" else f"{self.at:.1f} Hz"

@@ -52,7 +52,7 @@ def _at_its_size(score: Score, quantity: Quantity, fitted: Fitted) -> Effect:
         phase = score.phase if np.isfinite(score.phase) else 0.0
         return [score.hypothesis.effect(size, phase) for size in sizes]
 
-    r = fitted.whole.whiten(fitted.from_start)
+    r = fitted.white
     estimated = effects([score.estimate])
     # A size that changes nothing has no gain, and rounding would make a fall of it.
     if 0 < LEAST_KEPT_GAIN * score.gain < float(r @ r) - _left(fitted, estimated)[0]:

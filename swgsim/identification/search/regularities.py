@@ -118,12 +118,13 @@ def describe(fitted: Fitted) -> list[Described]:
     """Regularities by significance, the most significant first; nuisance parameters are projected out."""
     measured, found = fitted.measured, []
     for order, group in groupby(atoms(measured.layout), key=lambda atom: atom.order):
-        rows = np.tile(measured.layout.order == order, len(measured))
-        whole, alone = (errors.precision(rows) for errors in (fitted.whole, fitted.errors))
-        for atom in group:
-            C = columns(atom, fitted)[rows]
-            s2, V = np.linalg.eigh(C.T @ whole @ C)
-            kept = s2 > LEAST_VISIBLE_SHARE * max(float((C * (alone @ C)).sum(axis=0).max()), 1e-300)
+        rows, own = np.tile(measured.layout.order == order, len(measured)), list(group)
+        every = [columns(atom, fitted)[rows] for atom in own]
+        ends, stacked = np.cumsum([C.shape[1] for C in every])[:-1], np.hstack(every)
+        weighed = (np.split(errors.precision(rows) @ stacked, ends, axis=1) for errors in (fitted.whole, fitted.errors))
+        for atom, C, whole, alone in zip(own, every, *weighed, strict=True):
+            s2, V = np.linalg.eigh(C.T @ whole)
+            kept = s2 > LEAST_VISIBLE_SHARE * max(float((C * alone).sum(axis=0).max()), 1e-300)
             # Along each of these directions a weighed residual has a standard deviation of 1.
             weights = V[:, kept] / np.sqrt(s2[kept])
             found.append(_described(atom, weights, (C @ weights).T @ fitted.weighed[rows]))
