@@ -12,7 +12,7 @@ from swgsim.identification.commissioning.structural_spread import OF_GAUGES, WID
 from swgsim.identification.data.features import Layout
 from swgsim.identification.data.model import Model
 from swgsim.identification.fit.map_fit import Calibrated
-from swgsim.identification.fit.priors import COURSE, at, of_structure
+from swgsim.identification.fit.priors import COURSE, at, of_structure, of_unit
 from swgsim.identification.fit.unit import Unit
 
 LAYOUT = Layout(("s0", "s1", "s2"))
@@ -23,8 +23,10 @@ def test_a_unit_without_healthy_recordings_has_the_structure_of_the_truss():
     assert not of_structure(0.0)
 
 
-def test_a_parameter_moves_its_own_mode_of_the_factors_only():
-    parameters, model = of_structure(0.3), Model(GEAR)
+@pytest.mark.parametrize("presses_only", [False, True])
+def test_a_parameter_moves_its_own_mode_of_the_factors_only(presses_only):
+    parameters, model = of_structure(0.3, presses_only), Model(GEAR)
+    assert any(name.startswith("compliance") for name in parameters) == presses_only
     position = dict(zip(parameters, np.random.default_rng(1).standard_normal(len(parameters)).tolist(), strict=True))
     moved = at(model, parameters, position)
     found = {name: parameter.value(moved) / parameter.sd for name, parameter in parameters.items()}
@@ -32,6 +34,15 @@ def test_a_parameter_moves_its_own_mode_of_the_factors_only():
     back = at(moved, parameters, {name: -by for name, by in position.items()})
     assert np.abs(back.gear.factors.teeth).max() < 1e-12
     assert model.gear.factors == EXACT_STRUCTURE
+
+
+def test_interference_matters_only_where_the_sleeve_may_lift_off():
+    pressing = replace(GEAR, wave_generator=replace(GEAR.wave_generator, presses_only=True))
+    assert "interference" not in of_unit(GEAR)
+    parameter = of_unit(pressing)["interference"]
+    moved = parameter.at(Model(pressing), 4e-6)
+    assert moved.gear.wave_generator.interference == parameter.value(moved) == 4e-6
+    assert parameter.value(parameter.at(moved, 1.0)) == parameter.high
 
 
 def test_factors_of_neighbouring_waves_are_alike_within_their_spread():
