@@ -134,11 +134,6 @@ class Covariance:
             else np.concatenate([self.base.common_mean(X - self.G @ mean), mean])
         )
 
-    def single_mean(self, r: Float[np.ndarray, " row"]) -> Float[np.ndarray, "recording kind"]:
-        """Posterior mean of the errors of single recordings, in standard deviations, given a residual."""
-        weighed = self.weigh(r).reshape(self.alone.variance.shape)
-        return np.einsum("rfk,rf->rk", self.alone.C, weighed)
-
     def _mean(self, X: np.ndarray) -> np.ndarray:
         """Posterior mean of the errors in G alone, in standard deviations. The errors of A are unknown too."""
         return cho_solve((self._L, True), self._weighed.T @ X)

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import product
 
 import numpy as np
 from jaxtyping import Float
@@ -93,11 +92,6 @@ class Scatter:
         """Directions scaled to one standard deviation."""
         return directions * np.array(list(self.sd.values()))
 
-    def beats(self, errors: Float[np.ndarray, "recording kind"]) -> Float[np.ndarray, "recording beat"]:
-        """Size of each of :data:`BEATS` [rad], given errors of single recordings in standard deviations."""
-        numbers = [list(self.sd).index(kind) for kind in BEATS]
-        return errors[:, numbers] * np.array([self.sd[kind] for kind in BEATS])
-
 
 def kinds(layout: Layout) -> list[str]:
     """The errors that the channels can show."""
@@ -125,7 +119,9 @@ def directions(
     t = model.gear.transmission
     viscous = model.plus(ParameterScatter(1 + STEP, 1.0))
     dry = replace(model, gear=replace(model.gear, transmission=replace(t, b0=t.b0 * (1 + STEP))))
-    beats = _beating(model)
+    beats = [
+        model.plus(KinematicErrorOrder(order, BEAT_STEP, phase)) for order in BEATING for phase in (np.pi / 2, 0.0)
+    ]
     # All in one go, as the chain takes about as long for many runs as for few.
     every = predict([model, viscous, dry, *beats], [*situations, *shifted("T_out"), *shifted("n_in_rpm")], layout)
     here, loaded, faster = np.split(every, 3, axis=1)
@@ -161,45 +157,11 @@ def of_recordings(model: Model, measured: Measured) -> Float[np.ndarray, "record
     moves[..., names.index("trigger")] = measured.turning
     moves[..., names.index("trigger of gauges")] = measured.turning * layout.of_gauges
     beats = [names.index(kind) for kind in BEATS]
-    moves[..., beats] = _drifted(moves[..., beats], model, measured)
-    return moves
-
-
-def of_beats(
-    models: Sequence[Model], measured: Measured, beats: Float[np.ndarray, "recording kind"]
-) -> Float[np.ndarray, "model recording feature"]:
-    """Change of each recording by its beat, as drives make it.
-
-    Parameters
-    ----------
-    models : sequence of Model
-    measured : Measured
-    beats : array (recording, kind)
-        Size of each of :data:`BEATS` at the output [rad].
-    """
-    every = [each for model in models for each in (model, *_beating(model))]
-    found = predict(every, measured.situations, measured.layout).reshape(
-        len(models), 1 + len(BEATS), -1, len(measured.layout)
-    )
-    still = np.moveaxis(found[:, 1:] - found[:, :1], 1, -1)[:, measured.of_recording] / BEAT_STEP
-    moves = [_drifted(each, model, measured) for each, model in zip(still, models, strict=True)]
-    return np.einsum("mrfk,rk->mrf", moves, beats)
-
-
-def _beating(model: Model) -> list[Model]:
-    """The model with a small one of each of :data:`BEATS`, which does not drift."""
-    waves = product(BEATING, (np.pi / 2, 0.0))
-    return [model.plus(KinematicErrorOrder(order, BEAT_STEP, phase)) for order, phase in waves]
-
-
-def _drifted(
-    still: Float[np.ndarray, "recording feature kind"], model: Model, measured: Measured
-) -> Float[np.ndarray, "recording feature kind"]:
-    """Changes by each of :data:`BEATS`, which drifts over the revolutions of each recording."""
-    waves = still.reshape(len(measured), len(measured.layout.channels), -1, len(BEATING), 2)
+    still = moves[..., beats].reshape(len(measured), len(layout.channels), -1, len(BEATING), 2)
     drift = drifting(measured.recordings, model.gear.transmission.N)
-    drifted = np.einsum("rbij,rcjb->rcib", drift, waves[..., 0] - 1j * waves[..., 1])
-    return np.stack([drifted.real, -drifted.imag], axis=-1).reshape(still.shape)
+    drifted = np.einsum("rbij,rcjb->rcib", drift, still[..., 0] - 1j * still[..., 1])
+    moves[..., beats] = np.stack([drifted.real, -drifted.imag], axis=-1).reshape(len(measured), len(layout), -1)
+    return moves
 
 
 def trends(

@@ -17,6 +17,8 @@ from swgsim.recordings.recording import Recording
 
 # Waves of the kinematic error per revolution of the wave generator (physics.md 1.2).
 BEATING = (1, 2, 4)
+# The two lobes carry the torque past the gauges, which so see a wave at these orders beside its own, too.
+BY_LOBES = (-2, 0, 2)
 
 
 def behind(order: int, N: int) -> float:
@@ -25,13 +27,8 @@ def behind(order: int, N: int) -> float:
 
 
 def beat_orders(N: int) -> list[float]:
-    """Orders of the recorded angle from which the beat of a gear of ratio N is made in torques and gauges.
-
-    Lobes and load multiply it by lines of the gear, and by itself: it lies beside all orders up to twice its own, on
-    both sides, at up to twice its distance. Over a recording, what lies nearer looks like sums of these and the order.
-    """
-    apart = behind(max(BEATING), N)
-    return sorted({abs(order + apart * times) for order in range(2 * max(BEATING) + 1) for times in (-2, -1, 1, 2)})
+    """Orders of the recorded angle at which the beat lies in torques and gauges of a gear of ratio N."""
+    return [abs(order + lobes - behind(order, N)) for order in BEATING for lobes in BY_LOBES]
 
 
 def drifting(recordings: Sequence[Recording], N: int) -> Complex[np.ndarray, "recording beat one one"]:

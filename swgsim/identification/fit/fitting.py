@@ -2,7 +2,6 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +16,7 @@ from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model
 from swgsim.identification.fit.fitted import Allowed, Fitted
 from swgsim.identification.fit.map_fit import Calibrated, calibrate, linearised
-from swgsim.identification.fit.priors import ANSWERING, Declared, at, of_effects
+from swgsim.identification.fit.priors import Declared, at, of_effects
 from swgsim.identification.fit.unit import Unit
 
 # A parameter counts as biased by lack of fit if it lies this many prior standard deviations off, while the mean square
@@ -89,11 +88,6 @@ class _Fixed(NamedTuple):
         """Whether repeats, here or in the commissioning, determine the errors of single recordings."""
         return self.unit.scatter is not None or self.measured.spare > 0
 
-    @property
-    def learns_drive(self) -> bool:
-        """Whether parameters of the drive are fitted."""
-        return not self.parameters.keys().isdisjoint(ANSWERING)
-
     def completed(self, estimated: Scatter) -> Scatter:
         """An estimate with what recordings cannot show."""
         return estimated if self.measured.temperature_recorded else estimated.with_unrecorded_temperature
@@ -130,14 +124,10 @@ def _turn(fixed: _Fixed, begin: Mapping[str, float], assumed: Scatter | None) ->
 
     if assumed is None:
         assumed = by_repeats(unsure.predicted) if fixed.has_repeats else fixed.known
-    assumed_errors = Covariance(noise.beside(assumed.columns(moves)), of_sessions).with_columns(more)
-    beat = None
-    if fixed.learns_drive:
-        before = (values - unsure.predicted[measured.of_recording]).ravel()
-        beat = partial(scatter.of_beats, measured=measured, beats=assumed.beats(assumed_errors.single_mean(before)))
     calibrated = calibrate(
-        fixed.start, fixed.parameters, values, assumed_errors,
-        measured.situations, measured.of_recording, measured.layout, begin, beat=beat,
+        fixed.start, fixed.parameters, values,
+        Covariance(noise.beside(assumed.columns(moves)), of_sessions).with_columns(more),
+        measured.situations, measured.of_recording, measured.layout, begin,
     )  # fmt: skip
     if fixed.has_repeats:
         estimated = by_repeats(calibrated.predicted)

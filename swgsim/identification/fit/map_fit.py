@@ -1,6 +1,6 @@
 """Maximum a posteriori fit of the declared parameters, with Gaussian priors."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +11,7 @@ from swgsim.chain import SECTORS, NoSteadyState
 from swgsim.identification.covariance.low_rank_covariance import Covariance
 from swgsim.identification.data.features import Layout
 from swgsim.identification.data.model import Model, Situation, predict, predict_with_others
-from swgsim.identification.fit.priors import ANSWERING, Declared, at
+from swgsim.identification.fit.priors import Declared, at
 
 # Gauss-Newton: fall of the cost below which it rests, and at most so many steps, each of at most so many spreads.
 SETTLED, MOST_STEPS, LONGEST_STEP = 0.05, 24, 5.0
@@ -19,8 +19,6 @@ SETTLED, MOST_STEPS, LONGEST_STEP = 0.05, 24, 5.0
 # not linear, and twice as long where it fell by more than the second. What makes them shorter is damping, which bends
 # them along curved valleys.
 LITTLE, MUCH = 0.25, 0.75
-# Change of each recording by its beat, as models make it.
-Beat = Callable[[Sequence[Model]], Float[np.ndarray, "model recording feature"]]
 # A line that is no gear's.
 NOWHERE = 1e9
 # Difference for the derivatives, in spreads or scales; small against a nonlinearity, large against rounding.
@@ -90,7 +88,6 @@ def calibrate(
     layout: Layout,
     position: Mapping[str, float] | None = None,
     sectors: int = SECTORS,
-    beat: Beat | None = None,
 ) -> Calibrated:
     """The likeliest parameters of a model.
 
@@ -111,9 +108,6 @@ def calibrate(
         Where to begin, in spreads.
     sectors : int
         Of the flex spline's truss.
-    beat : callable, optional
-        The beat of each recording as estimated where the fit begins. ``errors`` hold its doubt there; how it changes
-        with the drive tells the drive, as the ripple does that is alike in all recordings.
     """
     names = list(parameters)
     if not names:
@@ -127,32 +121,17 @@ def calibrate(
     def missed(
         predicted: Float[np.ndarray, "situation feature"], there: Float[np.ndarray, " parameter"]
     ) -> tuple[Float[np.ndarray, " row"], float]:
-        left = measured - predicted[of_recording]
-        if beat is not None and (predicted != NOWHERE).all():
-            left = left - (beat([model_at(there)])[0] - at_start)
-        r = errors.whiten(left.ravel())
+        r = errors.whiten((measured - predicted[of_recording]).ravel())
         return r, float(r @ r + there @ there)
 
-    def rows(J: Float[np.ndarray, "situation feature parameter"]) -> Float[np.ndarray, "row parameter"]:
-        """Change of the recordings by one spread of each parameter, that of their beat with it."""
-        found = J[of_recording]
-        answering = [number for number, name in enumerate(names) if name in ANSWERING]
-        if beat is not None:
-            steps = np.where(here + DIFFERENCE <= high, DIFFERENCE, -DIFFERENCE)
-            moved = (model_at(here + steps * (np.arange(len(here)) == number)) for number in answering)
-            base, *others = beat([model, *moved])
-            found[..., answering] += np.stack([each - base for each in others], axis=-1) / steps[answering]
-        return found.reshape(-1, len(here))
-
     model = model_at(here)
-    at_start = beat([model])[0] if beat else 0.0
     # A fit that begins where motions are found at once takes no step to where they are not; the search takes long.
     search = bool((_predicted(model, situations, layout, sectors, False) == NOWHERE).any())
     predicted, J = linearised(model, parameters, situations, layout, sectors)
     r, cost = missed(predicted, here)
     length, settled = 1.0, False
     for _ in range(MOST_STEPS):
-        columns = errors.whiten(rows(J))
+        columns = errors.whiten(J[of_recording].reshape(-1, len(here)))
         curvature, slope = columns.T @ columns + np.eye(len(here)), columns.T @ r - here
         little = SETTLED * max(1.0, cost / len(r))
         room = low - here, high - here

@@ -35,11 +35,6 @@ S0_ARMS = 3.0
 COURSE, LEAST_MODE = 2.0, 0.005
 # A position or shape of an effect that is not seen at all stays within its range over this; an estimate.
 UNSEEN_SHARE = 20.0
-# Parameters of :func:`of_unit` that decide how a drive answers a kinematic error.
-ANSWERING = (
-    "k1", "b0", "b1", "mu", "J_in", "J_out", "rotor share", "load share", "error lever", "control frequency",
-    "control damping",
-)  # fmt: skip
 # Below this share of its nominal value, a stiffness, a friction or the stroke of the wave generator is that of no gear;
 # nor is a stiffness, a friction or what belongs to the bench beyond so many times it.
 LEAST_RATIO, MOST_RATIO = 0.05, 5.0
