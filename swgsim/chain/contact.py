@@ -7,8 +7,9 @@ generator asks for, and its force q on a sector,
     u = C q + D F                                          (F: tooth forces; C, D: compliance of the flex spline)
     q >= 0 and u >= d - q / k, one of them with equality   (k: bearing of the wave generator)
 
-C and D act on each circumferential order alone. The set of points that touch is found by iteration: a point with a
-negative force is released, and one that would penetrate is added.
+C and D act on each circumferential order alone; over the width of the band the displacement is even. The set of points
+that touch is found by iteration: a point with a negative force is released, and one that would penetrate is added. The
+compliance is that of a sound sleeve, and the teeth share the load by what the wave generator asks for.
 """
 
 from math import pi
@@ -24,7 +25,7 @@ from swgsim.flexspline.structure_factors import StructureFactors
 BEARING_STIFFNESS = 2e9
 # Points around the circumference at which contact is decided; even.
 POINTS = 96
-# Iterations at most. Points at the ends of the contact that still change then move little.
+# Iterations at most; between two sets of points that follow one another, the force differs at the ends of the contact.
 MOST_ITERATIONS = 20
 
 
@@ -57,7 +58,8 @@ def pressed(
     compliance = factors.softened(flex.compliance[:count])
     by_teeth = compliance[:, TEETH] * forces[:, :count]
     turn = np.exp(1j * np.outer(psi, np.arange(count)))
-    demand = np.fft.irfft((((asked[:, :count] - by_teeth) * turn)[::every]), POINTS, axis=1) * POINTS
+    short = ((asked[:, :count] - by_teeth) * turn)[::every]
+    demand = POINTS * np.fft.irfft(short, POINTS, axis=1)
     of_bearing = flex.sector.count / (BEARING_STIFFNESS * 2 * pi * flex.sector.hat.radius)
     force = _contact_force(compliance[:, WAVE_GENERATOR].real, of_bearing, demand)
     orders = np.fft.rfft(force, axis=1)[:, :count] / POINTS

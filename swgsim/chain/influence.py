@@ -218,7 +218,7 @@ def influence_map(
     return InfluenceMap(np.swapaxes(coefficients, 1, 2))
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=64)
 def load_amplitudes(
     flex: FlexSpline, wave_generator: WaveGenerator, effects: tuple[Effect, ...], factors: StructureFactors, load: float
 ) -> Complex[np.ndarray, "2 2 psi order"]:

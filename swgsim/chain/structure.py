@@ -55,7 +55,8 @@ def map_of(structure: Structure, sectors: int) -> InfluenceMap:
     factor = prod(effect.factor for effect in effects if isinstance(effect, ScaledDisplacement))
     nodes = (np.floor(factor / STEP) + AROUND) * STEP
     bounds = quantities(ScaledDisplacement)["factor"]
-    if not in_a_row or nodes[0] < bounds.low or nodes[-1] > bounds.high:
+    smooth = not structure.wave_generator.presses_only  # else points of the contact come and go
+    if not (in_a_row and smooth) or nodes[0] < bounds.low or nodes[-1] > bounds.high:
         return _computed(structure, sectors)
     before, after = effects[: scaling[0]], effects[scaling[-1] + 1 :]
     scaled = (structure._replace(effects=(*before, ScaledDisplacement(float(node)), *after)) for node in nodes)

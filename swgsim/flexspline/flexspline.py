@@ -31,13 +31,10 @@ class FlexSpline:
         Displacements for load 0, unit radial displacement of the wave generator [m/m]; load 1, unit tangential tooth
         force with its radial part [m/N]; loads 2 and on, a unit force on each degree of freedom of the toothed band,
         where cracks act [m/N].
-    alpha_tooth : float
-        Gear-tooth angle [rad].
     """
 
     sector: Sector
     fields: Complex[np.ndarray, "order dof load"]
-    alpha_tooth: float
 
     @property
     def band(self) -> Int[np.ndarray, " band"]:
@@ -73,17 +70,17 @@ class FlexSpline:
 
     @cached_property
     def compliance(self) -> Complex[np.ndarray, "order 2"]:
-        """Mean radial displacement of the band's inside, which nothing holds here, per unit force on each sector [m/N].
+        """Radial displacement of the band per unit radial force on each sector [m/N], and per unit tooth force.
 
-        Of a radial force from inside that is even over the width of the band, and of the tooth force.
+        The band is displaced evenly over its width, as the wave generator imposes it, and the force is what that needs.
         """
-        inner = self.sector.band & self.sector.layer(INNER)
-        forces = np.zeros((3 * len(self.sector.nodes), 2))
-        forces[0::3, WAVE_GENERATOR] = inner / inner.sum()
-        forces[:, TEETH] = tooth_forces(self.sector, self.alpha_tooth)
-        clamped = np.repeat(self.sector.clamped, 3)
-        fields = cyclic.solve(self.sector, clamped, forces, np.zeros_like(forces))
-        return fields[:, 0::3][:, inner].mean(axis=1)
+        own, ahead = cyclic.stiffness_blocks(self.sector)
+        inside = np.flatnonzero(np.repeat(self.sector.band & self.sector.layer(INNER), 3))[0::3]
+        phase = np.exp(1j * self.sector.pitch * cyclic.orders(self.sector.count))[:, None]
+        fields = self.fields[:, :, [WAVE_GENERATOR, TEETH]]
+        of_own, of_next, of_last = (block[inside].sum(axis=0) @ fields for block in (own, ahead, ahead.T))
+        force = of_own + phase * of_next + np.conj(phase) * of_last
+        return np.stack([1 / force[:, WAVE_GENERATOR], -force[:, TEETH] / force[:, WAVE_GENERATOR]], axis=1)
 
     def displacement(
         self, amplitudes: Complex[np.ndarray, "order load"], weights: Float[np.ndarray, " order"]
@@ -160,4 +157,4 @@ def solve_flex_spline(hat: SilkHat, alpha_tooth: float, count: int) -> FlexSplin
     forces = np.zeros_like(moved)
     forces[:, TEETH] = tooth_forces(piece, alpha_tooth)
     forces[band, BAND + np.arange(len(band))] = 1
-    return FlexSpline(piece, cyclic.solve(piece, given, forces, moved), alpha_tooth)
+    return FlexSpline(piece, cyclic.solve(piece, given, forces, moved))

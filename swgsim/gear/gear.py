@@ -130,6 +130,11 @@ class WaveGenerator:
     def __post_init__(self) -> None:
         require("the wave generator", "w0", self.w0, *W0_LIMITS)
         require("the wave generator", "interference", self.interference, *INTERFERENCE_LIMITS)
+        if self.interference and not self.presses_only:
+            raise ValueError(
+                f"interference of the wave generator is {self.interference:g} m, which matters only where the sleeve "
+                "may lift off: set presses_only to true, or interference to 0"
+            )
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ SHARED = (
     "b0",
     "mu",
     "w0",
+    "interference",
     "J_in",
     "J_out",
     "rotor share",

@@ -26,7 +26,7 @@ STRAINED = 0.01
 # Of each part of the kinematic error [rad], of a gauge's zero [mV/V], of its position and direction [rad]; estimates.
 ERROR_PART, ZERO, PLACED = 0.3e-4, 0.02, 0.01
 # Of the interference of wave generator and sleeve [m]; an estimate.
-FIT = 1e-5
+INTERFERENCE = 1e-5
 # Spread of the factors of s0 relative to those of the other gauges: of waves that its arms nearly cancel, what is left
 # depends on where they are; an estimate.
 S0_ARMS = 3.0
@@ -154,11 +154,11 @@ def of_structure(spread: float, presses_only: bool = False) -> dict[str, Declare
     smooth, single = smooth_modes(COURSE, LEAST_MODE), S0_ARMS * np.eye(WAVES)[list(SEEN_BY_S0)]
     kinds = {"wave_generator": smooth, "teeth": smooth, "wave_generator_s0": single, "teeth_s0": single}
     nothing = np.zeros(WAVES)
-    softer = {
+    of_compliance = {
         f"compliance {number}": _of_factors("compliance", [mode], "-", spread)
         for number, mode in enumerate(smooth if presses_only else [], 1)
     }
-    return softer | {
+    return of_compliance | {
         f"response to {kind.replace('_', ' ')}, {part} {number}": _of_factors(kind, parts, unit, spread)
         for kind, modes in kinds.items()
         for number, mode in enumerate(modes, 1)
@@ -223,7 +223,7 @@ def of_unit(
     if gear.wave_generator.presses_only:
         found["interference"] = _of_gear(
             "m",
-            FIT,
+            INTERFERENCE,
             lambda each: each.wave_generator.interference,
             lambda each, to: replace(each, wave_generator=replace(each.wave_generator, interference=to)),
             *INTERFERENCE_LIMITS,
