@@ -1,7 +1,8 @@
 """Influence maps: gauge signals over the wave-generator angle, s(psi, T_out) = A(psi) + T_out B(psi).
 
-The truss of one structure is linear. Its response to the wave generator (A) and to a unit output torque (B) is computed
-once over the angle; a recording evaluates both along phi_in(t) and T_out(t). Three faults of the paper act here:
+The truss of one structure is linear, unless the wave generator only presses (:mod:`swgsim.chain.contact`). Its response
+to the wave generator (A) and to a unit output torque (B) is computed once over the angle; a recording evaluates both
+along phi_in(t) and T_out(t). Three faults of the paper act here:
 
 - eccentric wave generator: :func:`boundary_conditions` adds u_ecc to the imposed displacement,
 - tip tooth crack: :func:`boundary_conditions` reduces F_tooth,
