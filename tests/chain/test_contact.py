@@ -11,11 +11,11 @@ from swgsim.chain.contact import pressed
 from swgsim.chain.direct import DirectSolver
 from swgsim.chain.influence import LOAD_STEP, PSI, boundary_conditions, ellipse, fine_angles, influence_map
 from swgsim.effects import EccentricWaveGenerator, TipToothCrack
-from swgsim.flexspline.flexspline import TEETH, WAVE_GENERATOR
+from swgsim.flexspline.flexspline import TEETH, WAVE_GENERATOR, FlexSpline
 from swgsim.flexspline.structure_factors import EXACT_STRUCTURE, WAVES, StructureFactors
 from swgsim.gear.gear import Gear, WaveGenerator
 
-SECTORS = 96
+SECTORS = 60
 FLEX = flex_spline(SECTORS)
 LOAD = 10 * LOAD_STEP
 
@@ -24,22 +24,23 @@ def with_fit(interference: float) -> Gear:
     return replace(GEAR, wave_generator=WaveGenerator(presses_only=True, interference=interference))
 
 
-def asked_and_forces(gear: Gear, load: float) -> list[np.ndarray]:
+def asked_and_forces(gear: Gear, load: float, flex: FlexSpline = FLEX) -> list[np.ndarray]:
     """Circumferential orders of the displacement asked for and of the tooth forces, over the angles of a map."""
-    cam = ellipse(gear.wave_generator, GEAR.flex_spline.radius, PSI, fine_angles(SECTORS))
-    displacement, per_torque = boundary_conditions(FLEX, cam, (), PSI)
+    sectors = flex.sector.count
+    cam = ellipse(gear.wave_generator, GEAR.flex_spline.radius, PSI, fine_angles(sectors))
+    displacement, per_torque = boundary_conditions(flex, cam, (), PSI)
     fields = displacement + gear.wave_generator.interference, load * per_torque
-    return [np.fft.rfft(field, axis=1) / SECTORS for field in fields]
+    return [np.fft.rfft(field, axis=1) / sectors for field in fields]
 
 
 def test_the_sleeve_is_touched_and_pressed_or_free_and_further_out() -> None:
-    asked, forces = asked_and_forces(with_fit(0.0), LOAD)
-    displacement = pressed(FLEX, EXACT_STRUCTURE, asked, forces, PSI)
-    count = contact.POINTS // 2
-    compliance = FLEX.compliance[:count]
+    flex, count = flex_spline(contact.POINTS), contact.POINTS // 2
+    asked, forces = asked_and_forces(with_fit(0.0), LOAD, flex)
+    displacement = pressed(flex, EXACT_STRUCTURE, asked, forces, PSI)
+    compliance = flex.compliance[:count]
     force = (displacement[:, :count] - compliance[:, TEETH] * forces[:, :count]) / compliance[:, WAVE_GENERATOR]
     # The displacement lags behind what is asked by what the bearing gives way.
-    bearing = contact.BEARING_STIFFNESS * 2 * np.pi * GEAR.flex_spline.radius / SECTORS
+    bearing = contact.BEARING_STIFFNESS * 2 * np.pi * GEAR.flex_spline.radius / contact.POINTS
     turn = np.exp(1j * np.outer(PSI, np.arange(count)))
     pressing, gap = (
         contact.POINTS * np.fft.irfft(field * turn, contact.POINTS, axis=1)
