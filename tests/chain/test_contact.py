@@ -39,7 +39,7 @@ def test_the_sleeve_is_touched_and_pressed_or_free_and_further_out() -> None:
     displacement = pressed(flex, EXACT_STRUCTURE, asked, forces, PSI)
     compliance = flex.compliance[:count]
     force = (displacement[:, :count] - compliance[:, TEETH] * forces[:, :count]) / compliance[:, WAVE_GENERATOR]
-    # The displacement lags behind what is asked by what the bearing gives way.
+    # The bearing is compressed, so the displacement is smaller than that of the wave generator.
     bearing = contact.BEARING_STIFFNESS * 2 * np.pi * GEAR.flex_spline.radius / contact.POINTS
     turn = np.exp(1j * np.outer(PSI, np.arange(count)))
     pressing, gap = (

@@ -149,8 +149,7 @@ class GaugeSpectrum:
     def _patterns(self, effects: Sequence[Effect], apart: Sequence[str] = ()) -> Float[np.ndarray, "column number"]:
         """The same of several effects, one after the other."""
         seen = self._seen(effects, apart)
-        between = _without(seen.dense(len(self.gauges)), self.taken)
-        return between * seen.shows((between**2).sum(axis=1))[:, None]
+        return seen.shown(_without(seen.dense(len(self.gauges)), self.taken))
 
     def _seen(self, effects: Sequence[Effect], apart: Sequence[str] = ()) -> SeenLines:
         """What effects can put between the orders, without what was taken out of single gauges."""
@@ -181,14 +180,14 @@ class GaugeSpectrum:
         return Explained(*np.concatenate(found, axis=1))
 
     def explained_beside(self, effects: Sequence[Effect]) -> Explained:
-        """What each of some effects explains where the others may be too; else these pass for noise beside it."""
+        """What each effect explains if the other effects are present too; without them, they would count as noise."""
         seen = self._seen(effects)
-        between = _without(seen.dense(len(self.gauges)), self.taken)
-        patterns = (between * seen.shows((between**2).sum(axis=1))[:, None]).reshape(len(effects), -1, len(self.left))
+        patterns = seen.shown(_without(seen.dense(len(self.gauges)), self.taken))
+        patterns = patterns.reshape(len(effects), -1, len(self.left))
         others = (np.delete(patterns, i, axis=0).reshape(-1, len(self.left)) for i in range(len(effects)))
         taken = [each.T @ orthonormal(each @ each.T) for each in others]
         alone = np.concatenate([_without(each, U) for each, U in zip(patterns, taken, strict=True)])
-        alone = (alone * seen.shows((alone**2).sum(axis=1))[:, None]).reshape(patterns.shape)
+        alone = seen.shown(alone).reshape(patterns.shape)
         found = [
             self._explained_by(each[None], _without(self.left, U), self._spare - (U**2).sum(axis=1))
             for each, U in zip(alone, taken, strict=True)

@@ -47,6 +47,10 @@ class SeenLines(NamedTuple):
         np.maximum.at(least, self.effect, LEAST_SHARE**2 * whole)
         return np.asarray(most > least)[self.effect]
 
+    def shown(self, columns: Float[np.ndarray, "column number"]) -> Float[np.ndarray, "column number"]:
+        """Dense columns, 0 where their effect is no more than rounding."""
+        return columns * self.shows((columns**2).sum(axis=1))[:, None]
+
     def along(self, directions: Float[np.ndarray, "gauge number direction"]) -> Float[np.ndarray, "column direction"]:
         """Products of the columns with directions."""
         found = np.zeros((len(self.effect), directions.shape[-1]))
