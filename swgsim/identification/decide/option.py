@@ -24,7 +24,7 @@ from swgsim.identification.decide.prior import (
 )
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import extended
-from swgsim.identification.fit.form_error import form_directions, parts
+from swgsim.identification.fit.form_error import form_directions, open_forms, parts
 from swgsim.identification.fit.priors import name_of
 from swgsim.identification.search.regularities import Described, set_free
 
@@ -159,17 +159,17 @@ def option(start: Fitted, effects: Sequence[Effect], regularities: Sequence[Desc
 def resembling(known: Option, kinds: int) -> list[Option]:
     """The options that one unknown cause resembles some of the effects of an option, or all of them.
 
-    The evidence is the mean over all form errors of what is unknown, those of effects among them.
+    The evidence is the mean over all form errors of what is unknown, those of effects among them. Regularities of the
+    option belong to the same unknown cause.
 
     Parameters
     ----------
     known : Option
-        With effects of the library alone.
     kinds : int
         Number of effects in the library.
     """
     of_effects, others = known.form_errors, other_forms(known.fitted.unit.structure)
-    many, counts_for = len(known.effects), np.log(len(of_effects))
+    many, further, counts_for = len(known.effects), len(known.regularities), np.log(len(of_effects))
     of_fit = logsumexp(known.evidences[:, 0]) + counts_for - known.forms.gain([of_effects[0]] * many)
     # By what is unlike an effect, and how much; all other effects share a form error.
     evidences = {}
@@ -184,7 +184,7 @@ def resembling(known: Option, kinds: int) -> list[Option]:
             if set(np.flatnonzero(unlike)) <= set(numbers)
         ]
         evidence = logsumexp(of_these) - len(numbers) * np.log(len(of_effects) + len(others))
-        prior = log_prior(many - len(numbers), len(numbers), 0, kinds) - log_prior(many, 0, 0, kinds)
+        prior = log_prior(many - len(numbers), len(numbers), further, kinds) - log_prior(many, 0, further, kinds)
         found.append(
             replace(
                 known,
@@ -250,7 +250,7 @@ def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"]
     return of_zeros[:, None] + gains - np.log(len(gains)), forms
 
 
-def expected_gain(fitted: Fitted, change: Float[np.ndarray, " row"]) -> float:
+def expected_gain(fitted: Fitted, change: Float[np.ndarray, " row"], kind: type[Effect]) -> float:
     """Log evidence that an effect is expected to bring with its prior of the size, without a fit.
 
     It is relative to an evidence with the prior of one form error, as in :attr:`Option.evidences`.
@@ -261,9 +261,11 @@ def expected_gain(fitted: Fitted, change: Float[np.ndarray, " row"]) -> float:
         The model without the effect.
     change : array (row,)
         What the effect changes at its estimated size, which stands for the standard deviation of its prior.
+    kind : effect class
     """
     whole = fitted.whole
-    white, r = whole.whiten(np.column_stack([change, parts(fitted, change)])), fitted.white
+    open_ = open_forms(fitted, change, kind) if fitted.unit.opens(kind) else parts(fitted, change)
+    white, r = whole.whiten(np.column_stack([change, open_])), fitted.white
     size = white[:, 0]
     # The size is projected out of the residual and of the forms, which then are no size.
     norm = float(np.sqrt(1 + size @ size))

@@ -5,9 +5,12 @@ from collections.abc import Mapping
 import numpy as np
 from jaxtyping import Float
 
+from swgsim.chain.structure import LOAD_STEP
+from swgsim.effects.base import Effect
 from swgsim.identification.covariance.low_rank_covariance import significant_columns
 from swgsim.identification.data.model import predict
 from swgsim.identification.fit.fitted import Fitted
+from swgsim.storage.labelled_signals import SENSORS
 
 # Least gain of log-likelihood by which one explanation counts as better than another.
 LEAST_GAIN = 3.0
@@ -60,14 +63,28 @@ def powers(fitted: Fitted, whole: Float[np.ndarray, " row"]) -> Float[np.ndarray
     return whole[:, None] * (logs - mean)
 
 
-def allowance(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
-    """What an imperfect form of an effect leaves open; without it the form error would pass for another effect.
+def gauge_lines(fitted: Fitted, whole: Float[np.ndarray, " row"]) -> Float[np.ndarray, "row line"]:
+    """Every line of a gauge at every load, as large as the largest line of all gauges in a signature.
 
-    Every line of every channel of its signature may be larger or smaller, and turned, by the form tolerance, but the
-    whole of it may not: that is its size.
+    Where the sleeve touches the wave generator elsewhere, or the teeth share the load by another law, a signature has
+    lines that the library's hardly has.
     """
     measured, layout = fitted.measured, fitted.measured.layout
-    signed = signature(fitted, number)
+    of_gauges = np.isin(layout.channels, SENSORS)
+    largest = np.abs(layout.lines(whole.reshape(measured.values.shape))[:, of_gauges]).max()
+    loads = np.round([each.point.T_out / LOAD_STEP for each in measured.recordings])
+    lines = np.eye(len(layout))[:, layout.of_gauges]
+    return largest * np.hstack([np.kron((loads == load)[:, None], lines) for load in np.unique(loads)])
+
+
+def open_forms(
+    fitted: Fitted, signed: Float[np.ndarray, " row"], kind: type[Effect]
+) -> Float[np.ndarray, "row direction"]:
+    """Directions in which the signature of an effect is open, for a form error of 1.
+
+    Every line of every channel may be larger or smaller, and turned, but the whole of it may not: that is its size.
+    """
+    measured, layout = fitted.measured, fitted.measured.layout
     if not signed.any():
         return np.zeros((len(signed), 0))
     lines = layout.lines(signed.reshape(measured.values.shape))
@@ -78,15 +95,20 @@ def allowance(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
                 one = np.zeros_like(lines)
                 one[:, channel, order] = turn * lines[:, channel, order]
                 columns.append(layout.vector(one).reshape(-1, 1))
+    if fitted.unit.opens(kind):
+        columns.append(gauge_lines(fitted, signed))
     whole, open_ = signed[:, None], np.hstack(columns)
     weighed = whole / fitted.errors.variance[:, None]
-    return FORM_TOLERANCE * (open_ - whole @ (weighed.T @ open_) / float((weighed * whole).sum()))
+    beside = open_ - whole @ (weighed.T @ open_) / float((weighed * whole).sum())
+    return significant_columns(FORM_TOLERANCE * beside, fitted.errors.variance) / FORM_TOLERANCE
 
 
 def form_directions(fitted: Fitted) -> list[Float[np.ndarray, "row direction"]]:
-    """Directions of the form error of each added effect, for a form error of 1."""
-    columns = (allowance(fitted, number) for number in fitted.numbers_added)
-    return [significant_columns(each, fitted.errors.variance) / FORM_TOLERANCE for each in columns]
+    """The same of each added effect."""
+    return [
+        open_forms(fitted, signature(fitted, number), type(fitted.model.effects[number]))
+        for number in fitted.numbers_added
+    ]
 
 
 def moved_by_forms(fitted: Fitted, form_errors: Mapping[int, float]) -> dict[str, float]:
