@@ -178,15 +178,24 @@ def test_on_another_structure_the_form_of_an_effect_has_lines_that_the_library_h
 
 
 @pytest.mark.usefixtures("_chain")
-def test_regularities_beside_an_effect_may_be_of_the_same_unknown_cause(null, changes):
-    held = recorded(null, changes, {Bump: 5.0}, 5)
-    found = option(held, (Bump(4.0),), (describe(held)[0],), len(KINDS))
+def test_regularities_beside_an_effect_may_be_of_the_same_unknown_cause(null, another, changes):
+    """On another structure, where both show in the gauges alone."""
+    held = recorded(another, changes, {Bump: 5.0}, 5)
+    every = describe(held)
+    of_gauge, of_drive = (
+        next(each for each in every if each.atom.pattern == f"in {name} alone") for name in ("s1", "T_in")
+    )
+    found = option(held, (Bump(4.0),), (of_gauge,), len(KINDS))
     (unknown,) = resembling(found, len(KINDS))
     assert unknown.unknown
     assert not unknown.effects
     one, two = log_prior(0, 1, 1, len(KINDS)), log_prior(1, 0, 1, len(KINDS))
     assert unknown.log_prior - found.log_prior == pytest.approx(one - two)
     assert one > two  # one cause is more probable than two
+    assert not resembling(option(held, (Bump(4.0),), (of_drive,), len(KINDS)), len(KINDS))
+    assert not resembling(option(held, (Dip(4.0),), (of_gauge,), len(KINDS)), len(KINDS))
+    own = recorded(null, changes, {Bump: 5.0}, 5)
+    assert not resembling(option(own, (Bump(4.0),), (of_gauge,), len(KINDS)), len(KINDS))
 
 
 @pytest.mark.usefixtures("_chain")

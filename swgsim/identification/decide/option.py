@@ -11,6 +11,7 @@ from scipy.special import logsumexp
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Quantity, Role, quantities
+from swgsim.effects.regularity import PATTERNS
 from swgsim.identification.decide.forms import Forms
 from swgsim.identification.decide.prior import (
     BALANCED,
@@ -24,9 +25,10 @@ from swgsim.identification.decide.prior import (
 )
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import extended
-from swgsim.identification.fit.form_error import form_directions, open_forms, parts
+from swgsim.identification.fit.form_error import form_directions, open_forms, parts, with_open_lines
 from swgsim.identification.fit.priors import name_of
 from swgsim.identification.search.regularities import Described, set_free
+from swgsim.storage.labelled_signals import SENSORS
 
 ZEROS = (1.0, *TIMES_BALANCED)
 
@@ -98,6 +100,11 @@ class Option:
         misfit = self.forms.misfit - 2 * max(self.forms.gain([error] * len(self.fitted.added)), 0.0)
         return misfit > len(measured.layout) * len(measured.point_rows())
 
+    def shares_lines(self, number: int) -> bool:
+        """Whether all regularities may be lines of one of the effects, as the structure makes them."""
+        of_gauges = all(set(PATTERNS[each.atom.pattern]) <= set(SENSORS) for each in self.regularities)
+        return of_gauges and self.fitted.unit.opens(self.effects[number])
+
     @property
     def log_posterior(self) -> float:
         """Up to a constant that all options share."""
@@ -146,7 +153,7 @@ def option(start: Fitted, effects: Sequence[Effect], regularities: Sequence[Desc
         If no gear with these effects turns steadily.
     """
     free = reduce(set_free, regularities, start.without_free)
-    fitted = extended(free, effects).closed
+    fitted = extended(with_open_lines(free, effects), effects).closed
     added = fitted.added
     evidences, forms = log_evidences(fitted)
     evidences += sum(prior_ratio(fitted, number) for number in range(len(added)))
@@ -159,8 +166,10 @@ def option(start: Fitted, effects: Sequence[Effect], regularities: Sequence[Desc
 def resembling(known: Option, kinds: int) -> list[Option]:
     """The options that one unknown cause resembles some of the effects of an option, or all of them.
 
-    The evidence is the mean over all form errors of what is unknown, those of effects among them. Regularities of the
-    option belong to the same unknown cause.
+    The evidence is the mean over all form errors of what is unknown, those of effects among them.
+
+    Regularities of the gauges beside effects may belong to the same unknown cause, where effects may have lines that
+    their library form has not.
 
     Parameters
     ----------
@@ -178,6 +187,8 @@ def resembling(known: Option, kinds: int) -> list[Option]:
         evidences[unlike] = of_fit + logsumexp(gains) - counts_for
     found = []
     for numbers in (each for n in range(1, many + 1) for each in combinations(range(many), n)):
+        if further and not all(known.shares_lines(number) for number in numbers):
+            continue
         of_these = [
             evidence + (len(numbers) - np.count_nonzero(unlike)) * counts_for
             for unlike, evidence in evidences.items()
@@ -264,7 +275,7 @@ def expected_gain(fitted: Fitted, change: Float[np.ndarray, " row"], kind: type[
     kind : effect class
     """
     whole = fitted.whole
-    open_ = open_forms(fitted, change, kind) if fitted.unit.opens(kind) else parts(fitted, change)
+    open_ = open_forms(fitted, change, kind) if fitted.unit.of_another_structure else parts(fitted, change)
     white, r = whole.whiten(np.column_stack([change, open_])), fitted.white
     size = white[:, 0]
     # The size is projected out of the residual and of the forms, which then are no size.

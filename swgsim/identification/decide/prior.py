@@ -11,6 +11,7 @@ from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Quantity, Role, quantities
 from swgsim.effects.regularity import LAWS, PATTERNS
 from swgsim.identification.data.features import ORDERS
+from swgsim.identification.fit.unit import OF_MESH
 
 # Probability that a gear which is examined is healthy. Causes occur independently of one another, so their number has a
 # Poisson distribution.
@@ -48,9 +49,9 @@ def form_errors(structure: float) -> tuple[float, ...]:
     >>> form_errors(0.01), [round(each, 3) for each in form_errors(0.5)[::4]]
     ((0.01, 0.02, 0.05, 0.1, 0.2), [0.01, 0.041, 0.172])
     """
-    return (
-        FORM_ERRORS if structure <= FORM_ERRORS[-1] else tuple(np.geomspace(FORM_ERRORS[0], structure, DENSE).tolist())
-    )
+    if structure <= OF_MESH:
+        return FORM_ERRORS
+    return tuple(np.geomspace(FORM_ERRORS[0], max(structure, FORM_ERRORS[-1]), DENSE).tolist())
 
 
 def other_forms(structure: float) -> tuple[float, ...]:
@@ -83,6 +84,7 @@ def log_prior(effects: int, resembled: int, regularities: int, kinds: int) -> fl
     found = np.log(HEALTHY) + effects * np.log(rate * (1 - OUTSIDE_LIBRARY) / kinds)
     if resembled:
         found += np.log(rate * OUTSIDE_LIBRARY * RESEMBLING) + _one_or_more(resembled, kinds)
+        found += np.log(1 - ANOTHER) if regularities else 0.0
     elif regularities:
         found += np.log(rate * OUTSIDE_LIBRARY * (1 - RESEMBLING) * (1 - ANOTHER) / ANOTHER)
     atoms = (ORDERS + 1) * len(PATTERNS) * len(LAWS)

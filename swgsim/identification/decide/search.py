@@ -35,13 +35,13 @@ STEPS = logging.getLogger(__name__)
 
 
 class Proposal(NamedTuple):
-    """An effect that may be missing: its expected gain of log evidence, its best hypothesis, and the fit to begin with,
-    in which its form is open where the structure is another one.
+    """An effect that may be missing: its expected gain of log evidence, its best hypothesis, and the fit without it, in
+    which its form is open where the structure is another one.
     """
 
     gain: float
     score: Score
-    start: Fitted
+    without: Fitted
 
 
 class Search:
@@ -71,10 +71,7 @@ class Search:
                 self._expand(each)
         if self._fits >= MOST_FITS:
             STEPS.info("the search ends after %d fits", MOST_FITS)
-        # Where the structure is another one, regularities beside an effect may be its form, and both unknown.
-        another = self.null.unit.of_another_structure
-        one_cause = [each for each in self._options.values() if another or not each.regularities]
-        more = [like for each in one_cause for like in resembling(each, len(self.kinds))]
+        more = [like for each in self._options.values() for like in resembling(each, len(self.kinds))]
         return sorted([*self._options.values(), *more], key=lambda each: -each.log_posterior)
 
     def with_regularities(self, unknown: Option) -> Option:
@@ -140,9 +137,9 @@ class Search:
         for setting in dict.fromkeys(((zeros, form_error), (0, form_error), (zeros, 0))):
             opened, evidence = base.opened(*setting), float(base.evidences[setting])
             start = at_plausible_parameters(opened)
-            for gain, score, with_open_form in self._leading(start) if causes < MOST_CAUSES else ():
+            for gain, score, opened_for_it in self._leading(start) if causes < MOST_CAUSES else ():
                 if self._promises(base, evidence + gain, effects=1):
-                    self._fit(with_open_form, (zoom(score, with_open_form),), base.regularities)
+                    self._fit(start, (zoom(score, opened_for_it),), base.regularities)
             if len(base.regularities) < MOST_REGULARITIES and causes + (not base.regularities) <= MOST_CAUSES:
                 first = _strongest(opened)
                 gain = (first.gain - first.freedom * np.log1p(first.gain / first.freedom)) / 2 - np.log(LOG_SIZE_RANGE)

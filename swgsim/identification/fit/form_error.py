@@ -1,6 +1,6 @@
 """Form error: how much the lines of an effect may differ from those in the library."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from jaxtyping import Float
@@ -71,7 +71,7 @@ def gauge_lines(fitted: Fitted, whole: Float[np.ndarray, " row"]) -> Float[np.nd
     """
     measured, layout = fitted.measured, fitted.measured.layout
     of_gauges = np.isin(layout.channels, SENSORS)
-    largest = np.abs(layout.lines(whole.reshape(measured.values.shape))[:, of_gauges]).max()
+    largest = np.abs(layout.lines(whole.reshape(measured.values.shape))[:, of_gauges]).max(initial=0.0)
     loads = np.round([each.point.T_out / LOAD_STEP for each in measured.recordings])
     lines = np.eye(len(layout))[:, layout.of_gauges]
     return largest * np.hstack([np.kron((loads == load)[:, None], lines) for load in np.unique(loads)])
@@ -104,11 +104,27 @@ def open_forms(
 
 
 def form_directions(fitted: Fitted) -> list[Float[np.ndarray, "row direction"]]:
-    """The same of each added effect."""
+    """Directions in which the form of each added effect is open, for a form error of 1."""
     return [
         open_forms(fitted, signature(fitted, number), type(fitted.model.effects[number]))
         for number in fitted.numbers_added
     ]
+
+
+def with_open_lines(fitted: Fitted, effects: Sequence[Effect]) -> Fitted:
+    """A fit in which further effects may have lines that their library form has not, where the structure allows it.
+
+    A fit of these effects without would end at another phase, as it takes such lines for theirs.
+    """
+    opened = [each for each in effects if fitted.unit.opens(each)]
+    if not opened:
+        return fitted
+    measured, models = fitted.measured, [fitted.model, *map(fitted.model.plus, opened)]
+    now, *then = predict(models, measured.situations, measured.layout)
+    directions = (
+        open_forms(fitted, measured.rows(each - now), type(effect)) for each, effect in zip(then, opened, strict=True)
+    )
+    return fitted.allowing_forms(FORM_TOLERANCE * np.hstack(list(directions)))
 
 
 def moved_by_forms(fitted: Fitted, form_errors: Mapping[int, float]) -> dict[str, float]:
