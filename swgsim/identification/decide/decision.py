@@ -15,7 +15,7 @@ from swgsim.identification.decide.option import Option, kind_of
 from swgsim.identification.decide.search import Search
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import at_plausible_parameters, extended, fit
-from swgsim.identification.fit.form_error import FORM_TOLERANCE, form_directions, moved_by_forms
+from swgsim.identification.fit.form_error import moved_by_forms
 from swgsim.identification.fit.priors import name_of
 from swgsim.identification.fit.shape_marginal import over_shapes
 from swgsim.identification.fit.unit import Unit
@@ -128,13 +128,7 @@ def _with(best: Option) -> Fitted:
     """The model with an option, its regularities being effects too."""
     fitted = best.fitted.with_zeros(best.zeros).strict
     regular = [each.effect for each in best.regularities]
-    if not regular:
-        return fitted
-    if fitted.unit.of_another_structure:
-        fitted = fitted.allowing_forms(
-            FORM_TOLERANCE * np.hstack([np.zeros((len(fitted.residual), 0)), *form_directions(fitted)])
-        )
-    return extended(fitted, regular).strict
+    return extended(fitted, regular) if regular else fitted
 
 
 def _answers(weighed: Sequence[tuple[Option, float]]) -> tuple[tuple[Option, float], ...]:

@@ -11,7 +11,6 @@ from scipy.special import logsumexp
 
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Quantity, Role, quantities
-from swgsim.effects.regularity import PATTERNS
 from swgsim.identification.decide.forms import Forms
 from swgsim.identification.decide.prior import (
     BALANCED,
@@ -25,10 +24,9 @@ from swgsim.identification.decide.prior import (
 )
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import extended
-from swgsim.identification.fit.form_error import form_directions, open_forms, parts, with_open_lines
+from swgsim.identification.fit.form_error import form_directions, parts
 from swgsim.identification.fit.priors import name_of
 from swgsim.identification.search.regularities import Described, set_free
-from swgsim.storage.labelled_signals import SENSORS
 
 ZEROS = (1.0, *TIMES_BALANCED)
 
@@ -100,11 +98,6 @@ class Option:
         misfit = self.forms.misfit - 2 * max(self.forms.gain([error] * len(self.fitted.added)), 0.0)
         return misfit > len(measured.layout) * len(measured.point_rows())
 
-    def shares_lines(self, number: int) -> bool:
-        """Whether all regularities may be lines of one of the effects, as the structure makes them."""
-        of_gauges = all(set(PATTERNS[each.atom.pattern]) <= set(SENSORS) for each in self.regularities)
-        return of_gauges and self.fitted.unit.opens(self.effects[number])
-
     @property
     def log_posterior(self) -> float:
         """Up to a constant that all options share."""
@@ -153,7 +146,7 @@ def option(start: Fitted, effects: Sequence[Effect], regularities: Sequence[Desc
         If no gear with these effects turns steadily.
     """
     free = reduce(set_free, regularities, start.without_free)
-    fitted = extended(with_open_lines(free, effects), effects).closed
+    fitted = extended(free, effects).closed
     added = fitted.added
     evidences, forms = log_evidences(fitted)
     evidences += sum(prior_ratio(fitted, number) for number in range(len(added)))
@@ -168,17 +161,15 @@ def resembling(known: Option, kinds: int) -> list[Option]:
 
     The evidence is the mean over all form errors of what is unknown, those of effects among them.
 
-    Regularities of the gauges beside effects may belong to the same unknown cause, where effects may have lines that
-    their library form has not.
-
     Parameters
     ----------
     known : Option
+        With effects of the library alone.
     kinds : int
         Number of effects in the library.
     """
     of_effects, others = known.form_errors, other_forms(known.fitted.unit.structure)
-    many, further, counts_for = len(known.effects), len(known.regularities), np.log(len(of_effects))
+    many, counts_for = len(known.effects), np.log(len(of_effects))
     of_fit = logsumexp(known.evidences[:, 0]) + counts_for - known.forms.gain([of_effects[0]] * many)
     # By what is unlike an effect, and how much; all other effects share a form error.
     evidences = {}
@@ -187,15 +178,13 @@ def resembling(known: Option, kinds: int) -> list[Option]:
         evidences[unlike] = of_fit + logsumexp(gains) - counts_for
     found = []
     for numbers in (each for n in range(1, many + 1) for each in combinations(range(many), n)):
-        if further and not all(known.shares_lines(number) for number in numbers):
-            continue
         of_these = [
             evidence + (len(numbers) - np.count_nonzero(unlike)) * counts_for
             for unlike, evidence in evidences.items()
             if set(np.flatnonzero(unlike)) <= set(numbers)
         ]
         evidence = logsumexp(of_these) - len(numbers) * np.log(len(of_effects) + len(others))
-        prior = log_prior(many - len(numbers), len(numbers), further, kinds) - log_prior(many, 0, further, kinds)
+        prior = log_prior(many - len(numbers), len(numbers), 0, kinds) - log_prior(many, 0, 0, kinds)
         found.append(
             replace(
                 known,
@@ -261,7 +250,7 @@ def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"]
     return of_zeros[:, None] + gains - np.log(len(gains)), forms
 
 
-def expected_gain(fitted: Fitted, change: Float[np.ndarray, " row"], kind: type[Effect]) -> float:
+def expected_gain(fitted: Fitted, change: Float[np.ndarray, " row"]) -> float:
     """Log evidence that an effect is expected to bring with its prior of the size, without a fit.
 
     It is relative to an evidence with the prior of one form error, as in :attr:`Option.evidences`.
@@ -272,11 +261,9 @@ def expected_gain(fitted: Fitted, change: Float[np.ndarray, " row"], kind: type[
         The model without the effect.
     change : array (row,)
         What the effect changes at its estimated size, which stands for the standard deviation of its prior.
-    kind : effect class
     """
     whole = fitted.whole
-    open_ = open_forms(fitted, change, kind) if fitted.unit.of_another_structure else parts(fitted, change)
-    white, r = whole.whiten(np.column_stack([change, open_])), fitted.white
+    white, r = whole.whiten(np.column_stack([change, parts(fitted, change)])), fitted.white
     size = white[:, 0]
     # The size is projected out of the residual and of the forms, which then are no size.
     norm = float(np.sqrt(1 + size @ size))

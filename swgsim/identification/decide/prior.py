@@ -11,7 +11,6 @@ from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Quantity, Role, quantities
 from swgsim.effects.regularity import LAWS, PATTERNS
 from swgsim.identification.data.features import ORDERS
-from swgsim.identification.fit.unit import OF_MESH
 
 # Probability that a gear which is examined is healthy. Causes occur independently of one another, so their number has a
 # Poisson distribution.
@@ -31,8 +30,6 @@ BALANCED, TIMES_BALANCED = 0.05, (2.0, 4.0, 8.0, 16.0)
 # A real effect never has exactly the form that the library gives it. The lines of its signature differ by one of these
 # shares (standard deviation), all being equally probable: from the mesh of the truss to the model of another author.
 FORM_ERRORS = (0.01, 0.02, 0.05, 0.1, 0.2)
-# So many of them where hundreds of lines are open, whose evidence changes by tens of nats if all are half as large.
-DENSE = 12
 # What resembles an effect may look just like it, or have little more than channels, orders and law in common: its lines
 # differ by one of these shares, or by one of those above, all being equally probable.
 OTHER_FORMS = (0.5, 1.0)
@@ -46,12 +43,10 @@ def form_errors(structure: float) -> tuple[float, ...]:
 
     An effect acts by the structure, so that its form may differ by as much.
 
-    >>> form_errors(0.01), [round(each, 3) for each in form_errors(0.5)[::4]]
-    ((0.01, 0.02, 0.05, 0.1, 0.2), [0.01, 0.041, 0.172])
+    >>> form_errors(0.01), form_errors(0.5)
+    ((0.01, 0.02, 0.05, 0.1, 0.2), (0.01, 0.02, 0.05, 0.1, 0.2, 0.5))
     """
-    if structure <= OF_MESH:
-        return FORM_ERRORS
-    return tuple(np.geomspace(FORM_ERRORS[0], max(structure, FORM_ERRORS[-1]), DENSE).tolist())
+    return (*FORM_ERRORS, structure) if structure > FORM_ERRORS[-1] else FORM_ERRORS
 
 
 def other_forms(structure: float) -> tuple[float, ...]:
@@ -69,7 +64,7 @@ def log_prior(effects: int, resembled: int, regularities: int, kinds: int) -> fl
     resembled : int
         Further effects that one unknown cause resembles.
     regularities : int
-        Regularities by which one unknown cause is described, instead or as well; each is as probable as any other one.
+        Regularities by which one unknown cause is described instead; each is as probable as any other one.
     kinds : int
         Number of effects in the library.
 
@@ -84,11 +79,10 @@ def log_prior(effects: int, resembled: int, regularities: int, kinds: int) -> fl
     found = np.log(HEALTHY) + effects * np.log(rate * (1 - OUTSIDE_LIBRARY) / kinds)
     if resembled:
         found += np.log(rate * OUTSIDE_LIBRARY * RESEMBLING) + _one_or_more(resembled, kinds)
-        found += np.log(1 - ANOTHER) if regularities else 0.0
     elif regularities:
-        found += np.log(rate * OUTSIDE_LIBRARY * (1 - RESEMBLING) * (1 - ANOTHER) / ANOTHER)
-    atoms = (ORDERS + 1) * len(PATTERNS) * len(LAWS)
-    return float(found + regularities * np.log(ANOTHER / atoms) + gammaln(regularities + 1))
+        found += np.log(rate * OUTSIDE_LIBRARY * (1 - RESEMBLING))
+        found += _one_or_more(regularities, (ORDERS + 1) * len(PATTERNS) * len(LAWS))
+    return float(found)
 
 
 def _one_or_more(number: int, among: int) -> float:

@@ -8,7 +8,6 @@ import logging
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
@@ -20,7 +19,7 @@ from swgsim.identification.decide.option import Option, causes_of, expected_gain
 from swgsim.identification.decide.prior import LOG_SIZE_RANGE, MOST_CAUSES, log_choices, log_prior
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import at_plausible_parameters
-from swgsim.identification.fit.form_error import FORM_TOLERANCE, all_show, open_forms
+from swgsim.identification.fit.form_error import all_show
 from swgsim.identification.search.hypotheses import Hypothesis, hypotheses, signatures
 from swgsim.identification.search.refining import zoom
 from swgsim.identification.search.regularities import Described, describe, other_laws
@@ -32,16 +31,6 @@ EFFECTS_LOOKED_AT, EFFECTS_TRIED, MOST_REGULARITIES, MOST_FITS = 15, 5, 3, 20
 # An option is fitted if its posterior, as the score test estimates it, is at most so far below the best one [nat].
 LOG_POSTERIOR_MARGIN = 3.0
 STEPS = logging.getLogger(__name__)
-
-
-class Proposal(NamedTuple):
-    """An effect that may be missing: its expected gain of log evidence, its best hypothesis, and the fit without it, in
-    which its form is open where the structure is another one.
-    """
-
-    gain: float
-    score: Score
-    without: Fitted
 
 
 class Search:
@@ -71,7 +60,8 @@ class Search:
                 self._expand(each)
         if self._fits >= MOST_FITS:
             STEPS.info("the search ends after %d fits", MOST_FITS)
-        more = [like for each in self._options.values() for like in resembling(each, len(self.kinds))]
+        alone = [each for each in self._options.values() if not each.regularities]
+        more = [like for each in alone for like in resembling(each, len(self.kinds))]
         return sorted([*self._options.values(), *more], key=lambda each: -each.log_posterior)
 
     def with_regularities(self, unknown: Option) -> Option:
@@ -137,9 +127,9 @@ class Search:
         for setting in dict.fromkeys(((zeros, form_error), (0, form_error), (zeros, 0))):
             opened, evidence = base.opened(*setting), float(base.evidences[setting])
             start = at_plausible_parameters(opened)
-            for gain, score, opened_for_it in self._leading(start) if causes < MOST_CAUSES else ():
+            for gain, score in self._leading(start) if causes < MOST_CAUSES else ():
                 if self._promises(base, evidence + gain, effects=1):
-                    self._fit(start, (zoom(score, opened_for_it),), base.regularities)
+                    self._fit(start, (zoom(score, start),), base.regularities)
             if len(base.regularities) < MOST_REGULARITIES and causes + (not base.regularities) <= MOST_CAUSES:
                 first = _strongest(opened)
                 gain = (first.gain - first.freedom * np.log1p(first.gain / first.freedom)) / 2 - np.log(LOG_SIZE_RANGE)
@@ -154,8 +144,8 @@ class Search:
             return bool(then > -np.inf)  # no estimate is worth much beside such a misfit
         return bool(log_evidence + base.log_prior + then - now > self._best.log_posterior - LOG_POSTERIOR_MARGIN)
 
-    def _leading(self, start: Fitted) -> list[Proposal]:
-        """The leading effects that are not in the model."""
+    def _leading(self, start: Fitted) -> list[tuple[float, Score]]:
+        """The best hypotheses of the leading effects that are not in the model, with the expected log evidence."""
         every, changes = self._library
         if any(effect.sharp for effect in start.added):  # beyond its threshold other effects look different
             changes = signatures(every, start.model, start.measured)
@@ -164,20 +154,11 @@ class Search:
         scores = best_of_kind(rank([every[n] for n in offered], [changes[n] for n in offered], start))
         of_hypothesis = dict(zip(every, changes, strict=True))
         leading = [score for score in scores[:EFFECTS_LOOKED_AT] if np.isfinite(score.estimate)]
-        found = []
-        for score in leading:
-            kind, opened = score.hypothesis.kind, start
-            if start.unit.opens(kind):
-                # What the form leaves open says little about place and phase.
-                change = estimated(score, of_hypothesis[score.hypothesis])
-                opened = start.allowing_forms(FORM_TOLERANCE * open_forms(start, change, kind))
-                of_kind = [n for n in offered if every[n].kind is kind]
-                score = rank([every[n] for n in of_kind], [changes[n] for n in of_kind], opened)[0]
-                if not np.isfinite(score.estimate):
-                    continue
-            gain = expected_gain(start, estimated(score, of_hypothesis[score.hypothesis]), kind) - log_choices(kind)
-            found.append(Proposal(gain, score, opened))
-        return sorted(found, key=lambda each: -each.gain)[:EFFECTS_TRIED]
+        gains = [
+            expected_gain(start, estimated(each, of_hypothesis[each.hypothesis])) - log_choices(each.hypothesis.kind)
+            for each in leading
+        ]
+        return sorted(zip(gains, leading, strict=True), key=lambda each: -each[0])[:EFFECTS_TRIED]
 
     @cached_property
     def _library(self) -> tuple[list[Hypothesis], list[Float[np.ndarray, "row column"]]]:

@@ -163,13 +163,12 @@ def extended(now: Fitted, added: Sequence[Effect]) -> Fitted:
     """A fit with further effects, which are fitted along; those it has begin where they were found.
 
     What is left open of their form is so only once all have moved without: else it would hold them where they lay
-    without the further ones, which then contradict themselves. On another structure it always is: a fit without would
-    end at another phase.
+    without the further ones, which then contradict themselves.
     """
     model = now.unit.model.plus(*now.added, *added)
     # Parameters of effects are counted from where the effects are, so only the unit's keep their position.
     position = now.position_of_unit
-    if added and now.allowed.forms.any() and not now.unit.of_another_structure:
+    if added and now.allowed.forms.any():
         ahead = fit(now.measured, now.unit, model, position=position, allowed=now.closed.allowed, turns=1)
         position = ahead.calibrated.position
     return fit(now.measured, now.unit, model, position=position, allowed=now.allowed)

@@ -1,16 +1,13 @@
 """Form error: how much the lines of an effect may differ from those in the library."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.chain.structure import LOAD_STEP
-from swgsim.effects.base import Effect
 from swgsim.identification.covariance.low_rank_covariance import significant_columns
 from swgsim.identification.data.model import predict
 from swgsim.identification.fit.fitted import Fitted
-from swgsim.storage.labelled_signals import SENSORS
 
 # Least gain of log-likelihood by which one explanation counts as better than another.
 LEAST_GAIN = 3.0
@@ -63,28 +60,14 @@ def powers(fitted: Fitted, whole: Float[np.ndarray, " row"]) -> Float[np.ndarray
     return whole[:, None] * (logs - mean)
 
 
-def gauge_lines(fitted: Fitted, whole: Float[np.ndarray, " row"]) -> Float[np.ndarray, "row line"]:
-    """Every line of a gauge at every load, as large as the largest line of all gauges in a signature.
+def allowance(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
+    """What an imperfect form of an effect leaves open; without it the form error would pass for another effect.
 
-    Where the sleeve touches the wave generator elsewhere, or the teeth share the load by another law, a signature has
-    lines that the library's hardly has.
+    Every line of every channel of its signature may be larger or smaller, and turned, by the form tolerance, but the
+    whole of it may not: that is its size.
     """
     measured, layout = fitted.measured, fitted.measured.layout
-    of_gauges = np.isin(layout.channels, SENSORS)
-    largest = np.abs(layout.lines(whole.reshape(measured.values.shape))[:, of_gauges]).max(initial=0.0)
-    loads = np.round([each.point.T_out / LOAD_STEP for each in measured.recordings])
-    lines = np.eye(len(layout))[:, layout.of_gauges]
-    return largest * np.hstack([np.kron((loads == load)[:, None], lines) for load in np.unique(loads)])
-
-
-def open_forms(
-    fitted: Fitted, signed: Float[np.ndarray, " row"], kind: type[Effect]
-) -> Float[np.ndarray, "row direction"]:
-    """Directions in which the signature of an effect is open, for a form error of 1.
-
-    Every line of every channel may be larger or smaller, and turned, but the whole of it may not: that is its size.
-    """
-    measured, layout = fitted.measured, fitted.measured.layout
+    signed = signature(fitted, number)
     if not signed.any():
         return np.zeros((len(signed), 0))
     lines = layout.lines(signed.reshape(measured.values.shape))
@@ -95,36 +78,15 @@ def open_forms(
                 one = np.zeros_like(lines)
                 one[:, channel, order] = turn * lines[:, channel, order]
                 columns.append(layout.vector(one).reshape(-1, 1))
-    if fitted.unit.opens(kind):
-        columns.append(gauge_lines(fitted, signed))
     whole, open_ = signed[:, None], np.hstack(columns)
     weighed = whole / fitted.errors.variance[:, None]
-    beside = open_ - whole @ (weighed.T @ open_) / float((weighed * whole).sum())
-    return significant_columns(FORM_TOLERANCE * beside, fitted.errors.variance) / FORM_TOLERANCE
+    return FORM_TOLERANCE * (open_ - whole @ (weighed.T @ open_) / float((weighed * whole).sum()))
 
 
 def form_directions(fitted: Fitted) -> list[Float[np.ndarray, "row direction"]]:
-    """Directions in which the form of each added effect is open, for a form error of 1."""
-    return [
-        open_forms(fitted, signature(fitted, number), type(fitted.model.effects[number]))
-        for number in fitted.numbers_added
-    ]
-
-
-def with_open_lines(fitted: Fitted, effects: Sequence[Effect]) -> Fitted:
-    """A fit in which further effects may have lines that their library form has not, where the structure allows it.
-
-    A fit of these effects without would end at another phase, as it takes such lines for theirs.
-    """
-    opened = [each for each in effects if fitted.unit.opens(each)]
-    if not opened:
-        return fitted
-    measured, models = fitted.measured, [fitted.model, *map(fitted.model.plus, opened)]
-    now, *then = predict(models, measured.situations, measured.layout)
-    directions = (
-        open_forms(fitted, measured.rows(each - now), type(effect)) for each, effect in zip(then, opened, strict=True)
-    )
-    return fitted.allowing_forms(FORM_TOLERANCE * np.hstack(list(directions)))
+    """Directions of the form error of each added effect, for a form error of 1."""
+    columns = (allowance(fitted, number) for number in fitted.numbers_added)
+    return [significant_columns(each, fitted.errors.variance) / FORM_TOLERANCE for each in columns]
 
 
 def moved_by_forms(fitted: Fitted, form_errors: Mapping[int, float]) -> dict[str, float]:

@@ -15,9 +15,10 @@ from swgsim.common.numbers import significant
 from swgsim.gear.conditions import Conditions
 from swgsim.gear.gear import OperatingPoint
 from swgsim.identification.covariance import narrow_band, scatter
+from swgsim.identification.covariance.low_rank_covariance import significant_columns
 from swgsim.identification.data.model import Model, Situation, predict
 from swgsim.identification.fit.fitted import Fitted
-from swgsim.identification.fit.form_error import FORM_TOLERANCE, form_directions
+from swgsim.identification.fit.form_error import FORM_TOLERANCE, allowance
 from swgsim.identification.report.answer import Answer
 from swgsim.identification.report.found_effects import in_words
 
@@ -157,8 +158,8 @@ class _PlannedRecordings:
         differences = np.moveaxis(predict(truths, situations, measured.layout) - predicted, 0, -1)
         # Differences within the form tolerance, or absorbed by free regularities, gave no information so far.
         errors = fitted.errors.with_columns(fitted.allowed.free)
-        for open_form in form_directions(fitted):
-            errors = errors.with_columns(FORM_TOLERANCE * open_form)
+        for number in fitted.numbers_added:
+            errors = errors.with_columns(significant_columns(allowance(fitted, number), errors.variance))
         # The nuisance parameters of the model are fitted to the whitened difference d in the existing recordings. C are
         # their whitened directions. (L L')^-1 is their posterior covariance, and (L L')^-1 C' d their posterior mean.
         C = errors.whiten(measured.rows(directions[:count]))
