@@ -55,14 +55,16 @@ def known(table: pd.DataFrame) -> bytes:
     levels = list(dict.fromkeys(table["known"]))
     picture = style.figure(WIDTH, 4.6)
     axes = picture.add_subplot()
+    middle = (table["who"].nunique() - 1) / 2
     for number, (who, rows) in enumerate(table.groupby("who", sort=False)):
-        colour, places = COLOURS[number], [levels.index(each) + 0.12 * number for each in rows["known"]]
+        colour, places = COLOURS[number], [levels.index(each) + 0.12 * (number - middle) for each in rows["known"]]
         for of, face in (("value", colour), ("unit", "white")):
             ends = ("low", "high") if of == "value" else ("unit_low", "unit_high")
             axes.vlines(places, rows[ends[0]], rows[ends[1]], color=colour, linewidth=1.1)
             text = f"{who}, per {'recording' if of == 'value' else 'unit'}"
             axes.plot(places, rows[of], MARKERS[number], color=colour, markerfacecolor=face, label=text)
     axes.set_xticks(range(len(levels)), [fill(each, 13) for each in levels])
+    axes.set_xlim(-0.5, len(levels) - 0.5)
     axes.set_ylim(0, None)
     style.label(axes, "known of the gear", "error [%]")
     axes.margins(x=0.12)
