@@ -68,6 +68,8 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
         log.info("%s: done before, test score %.2f %%", name, done["test_score"])
         return done
 
+    import sklearn  # noqa: F401 - a limit of threads holds for libraries that are loaded
+
     tags = {"data_digest": digest, "code_version": identity.code_version()}
     # One thread per job: jobs run in parallel, and their threads would wait for each other.
     with threadpool_limits(1), tracking.job_run(store, name, key, parameters, config, tags) as record:
