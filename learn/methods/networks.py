@@ -55,12 +55,16 @@ class Network(nn.Module):
         return cast(Tensor, self.head(self.embed(X)))
 
     def embed(self, X: Float[Tensor, "row column"]) -> Float[Tensor, "row width"]:
-        """Input features of the head.
+        """Input features of the head."""
+        return cast(Tensor, self.body(self.scaled(X)))
+
+    def scaled(self, X: Float[Tensor, "row column"]) -> Float[Tensor, "row column"]:
+        """Input of the body.
 
         A large fault can exceed the noise a hundredfold and would hide the small ones. Rows therefore pass through
         asinh, which is linear up to about one standard deviation and logarithmic beyond.
         """
-        return cast(Tensor, self.body(torch.asinh((X - self.centre) / self.scale)))
+        return torch.asinh((X - self.centre) / self.scale)
 
     def set_scaling(self, X: Float[np.ndarray, "row column"]) -> None:
         """Estimate centre and scale from the rows of the source gears, robustly, as most rows are faults.

@@ -82,7 +82,7 @@ def train(
     if not len(X):
         raise ValueError("there are 0 rows to train on, at least 1 is needed")
     device = network.centre.device
-    batch, y = _reader(X, device), y.to(device)
+    batch, y = _reader(X, network), y.to(device)
     trained = list(network.parameters() if parameters is None else parameters)
     steps = ceil(len(X) / recipe.batch)
     epochs = max(recipe.epochs, ceil(recipe.steps / steps))
@@ -98,7 +98,7 @@ def train(
         for _ in range(epochs):
             # Batch sizes differ by at most one row, as batch normalisation needs no small batch.
             for rows in torch.from_numpy(order.permutation(len(X))).to(device).tensor_split(steps):
-                loss = loss_of(network(batch(rows)), y.index_select(0, rows))
+                loss = loss_of(network.head(network.body(batch(rows))), y.index_select(0, rows))
                 if penalty is not None:
                     loss = loss + penalty(network)
                 optimiser.zero_grad()
@@ -110,11 +110,12 @@ def train(
         raise ValueError(f"training ended with a loss of {loss.item()}: lower the rate, which is {recipe.rate:g}")
 
 
-def _reader(X: Float[Tensor, "row column"] | Rows, device: torch.device) -> Callable[[Tensor], Tensor]:
-    """Function from row numbers to rows on a device."""
+def _reader(X: Float[Tensor, "row column"] | Rows, network: Network) -> Callable[[Tensor], Tensor]:
+    """Function from row numbers to scaled rows on the device of the network."""
+    device = network.centre.device
     if isinstance(X, Rows):
-        return lambda rows: as_tensor(X[rows.cpu().numpy()]).to(device)
-    resident = X.to(device)
+        return lambda rows: network.scaled(as_tensor(X[rows.cpu().numpy()]).to(device))
+    resident = network.scaled(X.to(device))  # once, as asinh takes up to a quarter of a step
     return lambda rows: resident.index_select(0, rows)
 
 

@@ -69,11 +69,11 @@ def test_one_thread_inside_whatever_the_number_outside_and_global_state_is_resto
 def test_all_rows_are_seen_in_every_epoch_in_batches_of_one_size():
     made, (X, y) = network(), task(21)
     seen = []
-    made.register_forward_pre_hook(lambda module, inputs: seen.append(inputs[0]))
+    made.body.register_forward_pre_hook(lambda module, inputs: seen.append(inputs[0]))
     train(made, X, y, Recipe(epochs=2, batch=10), 0)
     assert [len(batch) for batch in seen] == [7] * 6
     for epoch in (seen[:3], seen[3:]):
-        assert torch.equal(torch.cat(epoch).sort(dim=0).values, X.sort(dim=0).values)
+        assert torch.equal(torch.cat(epoch).sort(dim=0).values, made.scaled(X).sort(dim=0).values)
     assert not torch.equal(torch.cat(seen[:3]), torch.cat(seen[3:]))
     train(made, X, y, Recipe(epochs=2, batch=10, steps=8), 0)
     assert len(seen) == 6 + 9  # whole epochs of 3 steps
