@@ -1,4 +1,4 @@
-"""Figures of the report as PNG: errors, error against shots, where transfer pays, and confidence.
+"""Figures of the report as PNG: errors, error against shots, and confidence.
 
 All are narrow, and panels lie below each other, so that they are readable on a phone.
 """
@@ -12,7 +12,6 @@ from matplotlib.axes import Axes
 
 from learn.evaluation.probability_calibration import expected_calibration_error
 from learn.evaluation.selective import coverage_at
-from learn.transfer_report.studies import verdicts
 from learn.transfer_report.tables import FOREST, FROM_SCRATCH, LIMITS, row_of
 from swgsim.common import style
 
@@ -100,24 +99,6 @@ def shots(few: pd.DataFrame, levels: Mapping[str, float]) -> bytes:
         style.label(axes, "labelled variants of each class, K", "error [%]")
         axes.set_ylim(0, None)
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=2, fontsize=9, frameon=False)
-    return style.png(picture)
-
-
-def benefit(table: pd.DataFrame) -> bytes:
-    """Changes of :func:`.studies.transfer_map` with intervals, one panel per scenario."""
-    colours = {"yes": BLUE, "harms": ORANGE, "-": GREY}
-    coloured = table.assign(colour=[colours.get(text, "black") for text in verdicts(table)])
-    groups = list(coloured.groupby("scenario", sort=False))
-    picture = style.figure(WIDTH, 0.5 + 0.75 * len(groups) + 0.22 * len(table))
-    panels = picture.subplots(len(groups), sharex=True, squeeze=False)[:, 0]
-    for axes, (scenario, rows) in zip(panels, groups, strict=True):
-        heights = -np.arange(len(rows))
-        axes.axvline(0, color="black", linewidth=1)
-        intervals(axes, rows, list(rows["colour"]), heights)
-        axes.set_yticks(heights, [f"{m}, K = {k}" for m, k in zip(rows["method"], rows["shots"], strict=True)])
-        axes.set_ylim(0.6 - len(rows), 0.6)
-        style.label(axes, "", "", fill(str(scenario), 50))
-    panels[-1].set_xlabel("change of the error by adapting [points]; left is better")
     return style.png(picture)
 
 

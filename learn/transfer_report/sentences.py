@@ -93,7 +93,13 @@ def headline(zero: pd.DataFrame, gears: int) -> str:
     )
 
 
-def lead(zero: pd.DataFrame, few: pd.DataFrame, development: pd.Series, cases: pd.DataFrame) -> list[str]:
+def lead(
+    zero: pd.DataFrame,
+    few: pd.DataFrame,
+    gears: Mapping[str, pd.DataFrame],
+    development: pd.Series,
+    cases: pd.DataFrame,
+) -> list[str]:
     """Sentences after the first: choice of the method, shots, disturbed data.
 
     Parameters
@@ -102,12 +108,20 @@ def lead(zero: pd.DataFrame, few: pd.DataFrame, development: pd.Series, cases: p
         Result of :func:`.tables.zero_shot`.
     few : DataFrame
         Result of :func:`.tables.few_shot`.
+    gears : mapping
+        Adapted method to its errors of gears.
     development : Series
         Score of each adapted method on development gears [%].
     cases : DataFrame
         Result of :func:`.studies.disturbed_cases`.
     """
-    parts = (choice(zero), rezeroed(few), with_shots(zero, few, development), disturbed(cases))
+    parts = (
+        choice(zero),
+        rezeroed(few),
+        with_shots(zero, few, development),
+        beside_rezero(few, gears),
+        disturbed(cases),
+    )
     return [part for part in parts if part]
 
 
@@ -152,6 +166,20 @@ def with_shots(zero: pd.DataFrame, few: pd.DataFrame, development: pd.Series) ->
     if chosen:
         text += f" The development gears select {chosen}: {of_row(row_of(here, chosen))}."
     return text
+
+
+def beside_rezero(few: pd.DataFrame, gears: Mapping[str, pd.DataFrame]) -> str:
+    """For how many gears labelled faults are worth more than as many healthy specimens; empty if one was not run."""
+    adapted, rezero = best_adapted(few, SHOTS), best_rezeroed(few).get(SHOTS)
+    if adapted is None or rezero is None:
+        return ""
+    tables = (gears[row["method"]] for row in (adapted, rezero))
+    with_faults, healthy = (table[table["shots"] == SHOTS].set_index("gear")["error"] for table in tables)
+    return (
+        f"For {(with_faults < healthy).sum()} of {len(healthy)} gears {adapted['method']} with {SHOTS} labelled "
+        f"variants of each class errs less than {rezero['method'].removesuffix(REZERO)} with {SHOTS} healthy ones "
+        "alone."
+    )
 
 
 def disturbed(cases: pd.DataFrame) -> str:

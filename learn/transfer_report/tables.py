@@ -11,7 +11,6 @@ import pandas as pd
 
 from learn.evaluation.bootstrap import (
     SPECIMEN,
-    difference_to,
     gear_bootstrap,
     mean_error,
     paired_comparison,
@@ -89,13 +88,6 @@ def paired(specimens: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
 def with_intervals(specimens: Mapping[str, pd.DataFrame], purpose: str) -> pd.DataFrame:
     """Mean error of each method: ``value``, ``low``, ``high`` [%]."""
     return gear_bootstrap(paired(specimens), mean_error, generator("report", purpose))
-
-
-def difference(errors: pd.DataFrame, method: str, reference: str) -> pd.Series:
-    """Error of a method minus that of another on the same specimens: ``value``, ``low``, ``high`` [points]."""
-    rng = generator("report", "difference", method, reference)
-    both = errors[[*SPECIMEN, method, reference]]
-    return row_of(gear_bootstrap(both, difference_to(reference), rng), method)
 
 
 def named(prefix: str, table: pd.DataFrame) -> pd.DataFrame:

@@ -18,7 +18,7 @@ from learn.transfer_report.tables import (
     row_of,
 )
 
-SHOTS = (1, 2, 5, 10)
+SHOTS = (1, 2, 5)
 UNIT, VALUES = ["unit", "unit_low", "unit_high"], ["value", "low", "high"]
 
 
@@ -26,7 +26,6 @@ def content(
     zero: pd.DataFrame,
     of_units: pd.DataFrame,
     few: pd.DataFrame,
-    inputs: pd.DataFrame,
     cases: pd.DataFrame,
     gears: int,
     seconds: float,
@@ -64,8 +63,6 @@ def content(
         "oracle_error": finite(row_of(zero, ORACLE)["value"]),
         "oracle_session_error": finite(row_of(zero, ORACLE_OF_SESSION)["value"]),
         "gears": gears,
-        "inputs_with_efficiency": studies.nested_inputs(inputs, efficiency=True),
-        "inputs_without_efficiency": studies.nested_inputs(inputs, efficiency=False),
         "disturbed": {
             "z1": row_of(cases, solved).round(3).tolist(),
             "z1_method": solved,

@@ -75,10 +75,8 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
     predictions |= oracles
     units = twins.of_units(predictions, joint)
     of_units = twins.errors(units)
-    few = tables.few_shot(errors, runs.tables(adapting, "specimens"))
-    inputs, cases = runs.required("inputs"), studies.disturbed_cases(runs.required("zero_shot_disturbed"))
-    input_errors = runs.errors(inputs)
-    of_inputs = studies.inputs(inputs, input_errors)
+    few, of_gears = tables.few_shot(errors, runs.tables(adapting, "specimens")), runs.tables(adapting, "gears")
+    cases, nothing = studies.disturbed_cases(runs.required("zero_shot_disturbed")), without_references(runs)
     trained = runs.of_study("inputs_gears")
     over_gears = inputs_over_gears.over_gears(trained, runs.errors(trained)) if len(trained) else None
     best, gears = best_of(zero), int(errors["gear"].nunique())
@@ -101,28 +99,30 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
         "grid": runs.grids["bench"],
         "headline": sentences.headline(zero, gears),
         "claim": None,
-        "lead": [*sentences.fast_twin(zero, methods), *sentences.lead(zero, few, development_scores(adapting), cases)],
+        "lead": [
+            *sentences.fast_twin(zero, methods),
+            *sentences.lead(zero, few, of_gears, development_scores(adapting), cases),
+        ],
         "best": best,
         "errors": figures.errors(zero),
         "methods": tables.methods_text(zero, errors, of_units),
-        "known": figures.known(twins.known(zero, of_units, few, without_references(runs))),
-        "inputs": studies.inputs_text(of_inputs),
+        "known": figures.known(twins.known(zero, of_units, few, nothing)),
+        "nothing": len(nothing),
         "shots": figures.shots(few, levels) if (few["shots"] > 0).any() else None,
         "few": tables.shots_text(few, "", labelled, marks, adapting),
         "few_units": tables.shots_text(few, "unit", labelled, marks),
         "draws": adapting["draws"].iloc[0],
-        "forgotten": tables.forgetting_text(runs.tables(adapting, "gears")),
+        "forgotten": tables.forgetting_text(of_gears),
         "detection": None if found.empty else detections.detections_text(found),
         "worst": detections.worst_text(predictions[best]),
         **practice(runs, methods, predictions, units, best),
         "disturbed": cases.map("{:.1f}".format),
         "over_gears": None if over_gears is None else inputs_over_gears.over_gears_text(over_gears),
         "over_gears_figure": None if over_gears is None else inputs_over_gears.over_gears_figure(over_gears),
-        "studies": studies_of(runs, inputs, input_errors),
         "command": runs.command,
         "facts": facts(runs, adapting.iloc[0], [*trials(methods), *trials(adapting)], f"{seconds:.0f} ({kind})"),
     }
-    content = transfer_json.content(zero, of_units, few, of_inputs, cases, gears, seconds)
+    content = transfer_json.content(zero, of_units, few, cases, gears, seconds)
     content["detection"] = detections.detections_json(found)
     content["inputs"] = inputs_over_gears.over_gears_json(over_gears)
     content["fast_twin"] = twins.fast_twin_json(zero, methods)
@@ -207,31 +207,6 @@ def practice(
 def compared(best: str, predictions: Mapping[str, pd.DataFrame]) -> list[str]:
     """The methods that are compared in detail."""
     return [name for name in dict.fromkeys([best, *COMPARED]) if name in predictions]
-
-
-def studies_of(runs: Runs, inputs: pd.DataFrame, input_errors: Mapping[str, pd.DataFrame]) -> dict[str, Any]:
-    """Tables and figures of the studies that need not be run, by study; a study without runs is missing."""
-    found: dict[str, Any] = {}
-    bare = runs.of_study("no_reference").rename(index="no reference {}".format)
-    if len(bare):
-        known = inputs[(inputs["features"] == "raw") & studies.with_efficiency(inputs)]
-        found["no_reference"] = studies.without_text(known, bare, {**input_errors, **runs.errors(bare)})
-    points = runs.of_study("inputs_operating_point")
-    if len(points):
-        given = points["features.operating_point"] == "True"
-        found["inputs_operating_point"] = studies.without_text(points[given], points[~given], runs.errors(points))
-    scenarios = runs.of_study("transfer_map")
-    adapts = scenarios[scenarios["adaptation"] != "none"] if len(scenarios) else scenarios
-    if len(adapts):
-        plain = scenarios.drop(index=adapts.index)
-        unadapted = studies.best_unadapted(plain, runs.errors(plain))
-        table = studies.transfer_map(adapts, runs.tables(adapts, "specimens"), unadapted)
-        found["transfer_map"] = {
-            "figure": figures.benefit(table),
-            "table": studies.map_text(table),
-            "sentence": studies.map_sentence(table),
-        }
-    return found
 
 
 def facts(runs: Runs, adapting: pd.Series, tried: list[int], seconds: str) -> dict[str, str]:

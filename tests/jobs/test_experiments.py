@@ -18,8 +18,7 @@ from swgsim.storage import storage
 
 pytestmark = [pytest.mark.end_to_end, pytest.mark.slow]
 ROOT = Path(__file__).parents[2]
-# A small form has jobs of the whole one, which are not run twice.
-EXPERIMENTS = sorted(p.stem for p in (ROOT / "conf" / "experiment").glob("*.yaml") if not p.stem.endswith("_small"))
+EXPERIMENTS = sorted(path.stem for path in (ROOT / "conf" / "experiment").glob("*.yaml"))
 
 
 @pytest.fixture(scope="module")
@@ -28,8 +27,7 @@ def data(tmp_path_factory):
     for condition, disturbance in (("clean", 0.0), ("disturbed", 0.002), ("bench", 0.001)):
         made = recordings(variants=4, disturbance=disturbance)
         storage.write(folder / f"small-{condition}.h5", [made], len(made))
-    for foreign in ("few-bench", "far-bench", "training-bench", "few-noisy", "few-other_day"):
-        shutil.copy(folder / "small-bench.h5", folder / f"{foreign}.h5")
+    shutil.copy(folder / "small-bench.h5", folder / "training-bench.h5")
     return folder
 
 

@@ -91,11 +91,6 @@ def keep_required(keep, data):
     for features, score in (("selection_3", 88.0), ("lines", 99.7)):
         scores = {f"test/{case}": score + i / 10 for i, case in enumerate(CASES)}
         keep("zero_shot_disturbed", "paper-disturbed", scores, classifier="rf", features=features)
-    for classifier in ("perceptron", "cnn"):
-        for efficiency, wrong in (("True", 0.2), ("False", 0.4)):
-            table = predictions(wrong, (classifier, efficiency))
-            keep("inputs", tables={"predictions": table}, classifier=classifier, features="raw",
-                 **{"features.efficiency": efficiency})  # fmt: skip
     for sources, wrong in ((20, 0.4), (100, 0.2), (500, 0.1)):
         keep("inputs_gears", "joined", {"train_score": 90.0}, {"predictions": predictions(wrong, sources)},
              classifier="perceptron", features="residual", **{"protocol.sources": sources})  # fmt: skip
@@ -112,9 +107,6 @@ def keep_required(keep, data):
     specimens, gears = adapted(0.05, 0.15, (0, 1, 2, 5))
     keep("transfer", tables={"specimens": specimens, "gears": gears}, classifier="logistic_regression",
          features="harmonics", adaptation="rezero")  # fmt: skip
-    specimens, _ = adapted(0.1, 0.2, (5, 14))
-    keep("transfer_map", tables={"specimens": specimens}, classifier="perceptron", features="harmonics",
-         adaptation="replay", target="far-bench", **{"protocol.sources": 2, "features.acquisitions": 1})  # fmt: skip
 
 
 def twin_table(wrong):

@@ -74,8 +74,6 @@ def test_whole_report_from_made_up_runs(data, store, tmp_path):
     assert fast["milliseconds"] == 0.25
     assert "The fast twin, one network" in (out / "transfer.html").read_text()
     assert content["detection"] == {}  # 72 healthy recordings do not show a rate of 1 %
-    assert content["inputs_with_efficiency"]["raw"]["mlp"] < content["inputs_without_efficiency"]["raw"]["mlp"]
-    assert content["inputs_with_efficiency"]["residual"] == {"mlp": None, "cnn": None, "minirocket": None}
     assert content["inputs"]["residual"] == {
         "mlp": {"value": pytest.approx(100 / 6, abs=3), "ci95": [ANY, ANY], "gears": 100},
         "cnn": None, "resnet": None, "minirocket": None,
@@ -98,28 +96,25 @@ def test_whole_report_from_made_up_runs(data, store, tmp_path):
     assert f"with 2, logistic regression errs in {content['rezero']['2']['value']:.1f} %" in page
     assert "MLP: CORAL (trained on 5 variants)" in page
     assert "replay (trained on" not in page
-    assert "experiment=inputs_operating_point grid=gears" in page  # the command of a study without runs
-    assert re.search(
-        r"studies with runs of older code</td>\s*<td[^>]*>zero_shot, inputs, inputs_gears, no_reference", page
-    )
+    assert re.search(r"studies with runs of older code</td>\s*<td[^>]*>zero_shot, inputs_gears, no_reference", page)
     assert re.search(r"protocol.folds</td>\s*<td[^>]*>2<", page)
 
 
 def test_runs_of_the_present_code_replace_older_ones_of_their_study(store):
     keep = Keeper(store, {"gears-bench": "a", "foreign": "a+b", "changed": "a+c", "other": "c"})
     for study, on, classifier, code in (
-        ("inputs", "gears-bench", "retired", "1"), ("inputs", "gears-bench", "cnn", code_version()),
-        ("no_reference", "gears-bench", "cnn", "1"), ("transfer_map", "foreign", "rf", "1"),
-        ("transfer_map", "changed", "knn", "1"), ("transfer", "other", "rf", "1"),
+        ("zero_shot", "gears-bench", "retired", "1"), ("zero_shot", "gears-bench", "cnn", code_version()),
+        ("no_reference", "gears-bench", "cnn", "1"), ("inputs_gears", "foreign", "rf", "1"),
+        ("inputs_gears", "changed", "knn", "1"), ("transfer", "other", "rf", "1"),
     ):  # fmt: skip
         keep(study, on, code=code, classifier=classifier, features="harmonics")
     found = transfer_runs.present_runs(keep.store, ["a"], ["a", "b"])
     assert set(zip(found["study"], found["classifier"], strict=True)) == {
-        ("inputs", "cnn"), ("no_reference", "cnn"), ("transfer_map", "rf")
+        ("zero_shot", "cnn"), ("no_reference", "cnn"), ("inputs_gears", "rf")
     }  # fmt: skip
     runs = transfer_runs.Runs({}, {}, {}, {}, keep.store, found)
-    assert runs.older_code() == ["no_reference", "transfer_map"]
-    assert runs.of_study("zero_shot").empty
+    assert runs.older_code() == ["inputs_gears", "no_reference"]
+    assert runs.of_study("transfer").empty
 
 
 def test_a_sweep_over_seeds_is_one_method_with_means_and_their_spread(tmp_path):
@@ -146,7 +141,7 @@ def test_every_experiment_of_a_study_is_among_its_commands():
     found = {study: set() for study in studies}
     for path in (ROOT / "conf" / "experiment").glob("*.yaml"):
         study = yaml.safe_load(path.read_text()).get("study")
-        if study in found and not path.stem.endswith("_small"):
+        if study in found:
             found[study].add(path.stem)
     assert found == {study: set(names) for study, names in studies.items()}
 

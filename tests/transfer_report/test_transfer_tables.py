@@ -5,11 +5,9 @@ import json
 import numpy as np
 import pandas as pd
 import pytest
-from fabricated_transfer import adapted, predictions
+from fabricated_transfer import predictions
 
-from learn.evaluation.bootstrap import specimens
 from learn.transfer_report import confidence, detections, figures, sentences, studies, tables, transfer_json, twins
-from learn.transfer_report.runs import method_of
 from swgsim.storage.labelled_signals import CLASSES
 
 CASES = pd.DataFrame([[90.0] * 3, [80.0] * 3, [100.0, 99.6, 99.4], [100.0, 100.0, 60.0]],
@@ -64,10 +62,8 @@ def test_few_gears_have_no_interval_in_table_figure_and_json():
     errors, zero = zero_of(9.0, gears=3)
     few = few_of(errors, 5.0)
     assert tables.methods_text(zero, errors, zero).loc[BEST, "error [%]"] == "9.1"
-    inputs = pd.DataFrame({"input": ["raw"], "method": ["cnn"], "efficiency": [True], "value": [12.0]})
-    content = transfer_json.content(zero, zero, few, inputs, CASES, 3, 1.0)
+    content = transfer_json.content(zero, zero, few, CASES, 3, 1.0)
     assert content["z1"]["ci95"] == [None, None]
-    assert content["inputs_with_efficiency"]["raw"] == {"mlp": None, "cnn": 12.0, "minirocket": None}
     json.dumps(content, allow_nan=False)
     assert is_png(figures.errors(zero))
     assert is_png(figures.shots(few, dict.fromkeys(("forest", "best", "oracle"), 30.0)))
@@ -81,6 +77,20 @@ def test_sentence_compares_shots_with_no_label():
     assert "The development gears select MLP: replay" in worse
     assert ", below the 9.1 %" in sentences.with_shots(zero, few_of(errors, 4.0), development)
     assert sentences.with_shots(zero, few_of(errors, 4.0).query("shots == 10"), development) == ""
+
+
+def test_sentence_counts_the_gears_for_which_faults_are_worth_more_than_healthy_specimens():
+    errors, _ = zero_of(9.0)
+    few = few_of(errors, 4.0)
+    rezero = f"extra trees{tables.REZERO}"
+    both = pd.concat([few, few.assign(method=rezero)])
+    of_gears = pd.DataFrame({"gear": [1, 2, 3], "shots": 5, "error": [1.0, 4.0, 2.0]})
+    gears = {"MLP: replay": of_gears, rezero: of_gears.assign(error=3.0)}
+    assert sentences.beside_rezero(both, gears) == (
+        "For 2 of 3 gears MLP: replay with 5 labelled variants of each class errs less than extra trees with 5 healthy "
+        "ones alone."
+    )
+    assert sentences.beside_rezero(few, gears) == ""
 
 
 def test_sentence_on_the_choice_gives_its_cost():
@@ -109,45 +119,6 @@ def test_shots_are_columns_and_all_labels_are_z4():
     wide = tables.shots_text(few_of(errors, 4.0), "gain", 10, {"MLP: replay": " (trained on 5 variants)"})
     assert list(wide.columns) == ["source model [%]", "K = 5", "K = 10 (Z4)"]
     assert wide.loc["MLP: replay (trained on 5 variants)", "K = 5"] == "-6.0 (-6.0 to -6.0)"
-
-
-def map_runs(**columns):
-    rows = pd.DataFrame({"classifier": "perceptron", "features": "harmonics", "adaptation": "replay",
-                         "protocol.sources": "2", "features.acquisitions": "1", **columns})  # fmt: skip
-    return rows.assign(method=[method_of(row) for row in rows.to_dict("records")])
-
-
-def test_map_separates_gain_from_harm():
-    gain, harm = adapted(0.05, 0.2, (5,))[0], adapted(1.5, 0.2, (5,))[0]
-    table = studies.transfer_map(map_runs(target=["far-bench", "few-bench"]), {"0": gain, "1": harm}, {})
-    where = ("gears far outside the sources", "other gears of the sources' population")
-    assert list(table["scenario"]) == [f"{target}: 2 source gears, 1 reference acquisition" for target in where]
-    assert list(studies.map_text(table)["pays"]) == studies.verdicts(table) == ["yes", "harms"]
-    assert studies.verdicts(table.assign(method="MLP: from scratch")) == ["-", "-"]
-    assert studies.verdicts(table.assign(low=-1.0, high=1.0)) == ["not clearly"] * 2
-    assert studies.verdicts(table.assign(low=np.nan, high=np.nan)) == ["too few gears"] * 2
-    assert "pays in 1 of 2 cases" in studies.map_sentence(table)
-    assert "was not run in these scenarios" in studies.map_sentence(table)
-    assert is_png(figures.benefit(table))
-
-
-def test_map_names_the_best_method_without_adaptation():
-    plain = map_runs(target="few-bench", classifier=["rf", "extra_trees", "rf"], adaptation="none")
-    wrong = {"0": (0.5, "worse"), "1": (0.0, "better"), "2": (0.0, "outdated")}
-    errors = {key: specimens(predictions(*each)) for key, each in wrong.items()}
-    best = studies.best_unadapted(plain, errors)
-    table = studies.transfer_map(map_runs(target=["few-bench"]), {"0": adapted(0.05, 0.2, (5,))[0]}, best)
-    assert list(table["reference"]) == ["extra trees on harmonics (of 2)"]
-    assert table["best_low"].item() > 0 > table["high"].item()
-    assert "better in 0 of 1 cases and clearly worse in 1." in studies.map_sentence(table)
-
-
-def test_inputs_are_compared_with_and_without():
-    runs = pd.DataFrame({"method": ["MLP on raw signals"] * 2})
-    errors = {"0": specimens(predictions(0.1, "with")), "1": specimens(predictions(0.6, "without"))}
-    (row,) = studies.without_text(runs[:1], runs[1:], errors).to_numpy()
-    assert float(row[0]) < float(row[1])
-    assert float(row[2].split()[0]) == pytest.approx(float(row[1]) - float(row[0]), abs=0.11)
 
 
 def test_prediction_sets_reach_their_target_in_every_class(monkeypatch):
