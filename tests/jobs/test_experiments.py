@@ -1,5 +1,6 @@
 """Every experiment file runs on a small grid, and a parallel sweep neither locks nor loses runs."""
 
+import os
 import shutil
 import subprocess
 import sys
@@ -144,6 +145,30 @@ def test_parallel_sweep_loses_no_run_and_a_finished_job_is_not_done_again(data, 
     config = composed("experiment=table10", *where, "classifier=nb", "protocol=leave_one_gear_out")
     again = job.run(OmegaConf.to_container(config, resolve=True))
     assert again["test_score"] == found.loc["nb", "test_score"]
+
+
+THREADS = """
+import sys
+from hydra import compose, initialize_config_dir
+from omegaconf import OmegaConf
+from threadpoolctl import threadpool_info
+from learn.jobs import train_job
+def results(config, data):
+    import sklearn.ensemble
+    print([each["num_threads"] for each in threadpool_info() if each["user_api"] == "openmp"])
+    return {"test_score": 0.0}, {}, {}
+train_job.zero_shot.results = results
+with initialize_config_dir(sys.argv[1], version_base="1.3"):
+    train_job.run(OmegaConf.to_container(compose("train", sys.argv[2:]), resolve=True))
+"""
+
+
+def test_a_job_has_one_thread_though_scikit_learn_is_loaded_by_it(data, tmp_path):
+    words = ["grid=small", f"data={data}", f"tracking.folder={store_in(tmp_path).folder}"]
+    command = [sys.executable, "-c", THREADS, str(ROOT / "conf"), *words]
+    two = {**os.environ, "OMP_NUM_THREADS": "2"}
+    answer = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, env=two, check=False)
+    assert answer.stdout.split() == ["[1]"], answer.stderr
 
 
 def test_a_sweep_without_an_experiment_is_kept_as_one(tmp_path):
