@@ -12,9 +12,12 @@ from scipy.special import logsumexp
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Quantity, Role, quantities
 from swgsim.identification.decide.forms import Forms
+from swgsim.identification.decide.line_evidence import holding, log_volume, open_lines, opened
 from swgsim.identification.decide.prior import (
     BALANCED,
+    LINE_ERROR,
     LOG_SIZE_RANGE,
+    OTHER_FORMS,
     TIMES_BALANCED,
     form_errors,
     log_choices,
@@ -24,7 +27,7 @@ from swgsim.identification.decide.prior import (
 )
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import extended
-from swgsim.identification.fit.form_error import form_directions, parts
+from swgsim.identification.fit.form_error import form_directions, parts, signature
 from swgsim.identification.fit.priors import name_of
 from swgsim.identification.search.regularities import Described, set_free
 
@@ -81,9 +84,19 @@ class Option:
         return bool(self.regularities or self.resembled)
 
     @property
+    def lines_differ(self) -> bool:
+        """Whether the lines of its effect may differ one by one from the library's."""
+        return self.forms.lines is not None
+
+    @property
     def form_errors(self) -> tuple[float, ...]:
-        """Those that effects may have on this gear."""
-        return form_errors(self.fitted.unit.structure)
+        """Those that its effects may have."""
+        return (LINE_ERROR,) if self.lines_differ else form_errors(self.fitted.unit.structure)
+
+    @property
+    def other_forms(self) -> tuple[float, ...]:
+        """Those that what resembles its effects may have beyond these."""
+        return OTHER_FORMS[-1:] if self.lines_differ else other_forms(self.fitted.unit.structure)
 
     @property
     def form_error(self) -> float:
@@ -110,8 +123,13 @@ class Option:
 
     def opened(self, zeros: int, form_error: int) -> Fitted:
         """The fit with a factor of zeros, and with the form of its effects open by a form error (numbers of both)."""
-        directions = np.hstack([np.zeros((len(self.fitted.residual), 0)), *form_directions(self.fitted)])
-        return self.fitted.with_zeros(ZEROS[zeros]).allowing_forms(self.form_errors[form_error] * directions)
+        error = self.form_errors[form_error]
+        directions = [error * each for each in form_directions(self.fitted)]
+        if self.forms.lines:
+            directions.append(self.forms.lines.opened([error] * len(self.fitted.added)))
+        return self.fitted.with_zeros(ZEROS[zeros]).allowing_forms(
+            np.hstack([np.zeros((len(self.fitted.residual), 0)), *directions])
+        )
 
 
 def causes_of(effects: Sequence[Effect], regularities: Sequence[Described]) -> frozenset[object]:
@@ -146,10 +164,19 @@ def option(start: Fitted, effects: Sequence[Effect], regularities: Sequence[Desc
         If no gear with these effects turns steadily.
     """
     free = reduce(set_free, regularities, start.without_free)
-    fitted = extended(free, effects).closed
+    found = _of_fit(extended(free, effects).closed, regularities, kinds)
+    if not found.forms.lines:
+        return found
+    # The errors of lines are told by what the fit leaves.
+    again = extended(found.opened(*found.likeliest), ())
+    return max(found, _of_fit(again.closed, regularities, kinds), key=lambda each: each.log_posterior)
+
+
+def _of_fit(fitted: Fitted, regularities: Sequence[Described], kinds: int) -> Option:
+    """The option of a fit with its effects and regularities."""
     added = fitted.added
     evidences, forms = log_evidences(fitted)
-    evidences += sum(prior_ratio(fitted, number) for number in range(len(added)))
+    evidences += sum(prior_ratio(fitted, n) for n, each in enumerate(added) if not fitted.unit.opens(each))
     evidences -= len(regularities) * np.log(LOG_SIZE_RANGE)
     prior = log_prior(len(added), 0, len(regularities), kinds)
     # A copy without what the fit has cached, which would fill the memory.
@@ -168,7 +195,7 @@ def resembling(known: Option, kinds: int) -> list[Option]:
     kinds : int
         Number of effects in the library.
     """
-    of_effects, others = known.form_errors, other_forms(known.fitted.unit.structure)
+    of_effects, others = known.form_errors, known.other_forms
     many, counts_for = len(known.effects), np.log(len(of_effects))
     of_fit = logsumexp(known.evidences[:, 0]) + counts_for - known.forms.gain([of_effects[0]] * many)
     # By what is unlike an effect, and how much; all other effects share a form error.
@@ -235,9 +262,12 @@ def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"]
     """Log evidence of a fit by the factor on the deviation of zeros and by the form error, and the forms of effects.
 
     The priors of zeros and form error are in it, and all parameters are integrated over their priors (Laplace). The
-    form errors gain the same for all factors of zeros.
+    form errors gain the same for all factors of zeros. Where lines differ one by one, offsets of gauges are among them,
+    so that zeros do not lie further off.
     """
     fitted = fitted.with_zeros(1.0)
+    if numbers := opened(fitted):
+        return _with_open_lines(fitted, numbers)
     measured, whole = fitted.measured, fitted.whole
     # Further zeros open like forms, each kind by a factor of its own.
     zeros = Forms.of([whole.whiten(each) for each in measured.free_zeros], fitted.white)
@@ -248,6 +278,18 @@ def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"]
     forms = Forms.of([best.whiten(each) for each in form_directions(fitted)], best.whiten(fitted.from_start))
     gains = [forms.gain([error] * len(fitted.added)) for error in form_errors(fitted.unit.structure)]
     return of_zeros[:, None] + gains - np.log(len(gains)), forms
+
+
+def _with_open_lines(fitted: Fitted, numbers: Sequence[int]) -> tuple[Float[np.ndarray, "zeros form_error"], Forms]:
+    """The same of a fit with effects, by their numbers, whose lines differ one by one."""
+    held, first, many = holding(fitted, numbers), fitted.numbers_added.start, len(fitted.added)
+    lines = open_lines(held, {number - first: signature(fitted, number) for number in numbers}, many)
+    forms = Forms.of([held.whole.whiten(each) for each in form_directions(fitted)], held.white, lines)
+    errors = [LINE_ERROR] * many
+    volume = log_volume(fitted, numbers, held.whole.with_columns(lines.opened(errors)))
+    evidences = np.full((len(ZEROS), 1), -np.inf)
+    evidences[0] = np.log(1 - BALANCED) + held.log_likelihood + forms.gain(errors) + volume
+    return evidences, forms
 
 
 def expected_gain(fitted: Fitted, change: Float[np.ndarray, " row"]) -> float:

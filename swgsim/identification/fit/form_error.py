@@ -68,7 +68,7 @@ def allowance(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
     """
     measured, layout = fitted.measured, fitted.measured.layout
     signed = signature(fitted, number)
-    if not signed.any():
+    if not signed.any() or fitted.unit.opens(fitted.model.effects[number]):
         return np.zeros((len(signed), 0))
     lines = layout.lines(signed.reshape(measured.values.shape))
     columns = [forms(fitted, signed)]
