@@ -89,6 +89,11 @@ class Decision:
         found = dict(fitted.deviation)
         first = len(self.before.model.effects)
         numbers = range(first, first + len(self.best.effects))
+        if self.best.lines_differ:
+            # Errors of its lines are known as far as the recordings tell them, so that size and place are as well.
+            opened = self.best.opened(*self.best.likeliest)
+            moved = opened.deviation_under(opened.of_nuisances)
+            return found | {name: by for name, by in moved.items() if ": " in name}
         moved = moved_by_forms(fitted, dict.fromkeys(numbers, self.best.form_error))
         for number in numbers:
             found |= over_shapes(fitted, number)
@@ -128,7 +133,7 @@ def _with(best: Option) -> Fitted:
     """The model with an option, its regularities being effects too."""
     fitted = best.fitted.with_zeros(best.zeros).strict
     regular = [each.effect for each in best.regularities]
-    if regular and best.forms.lines:
+    if regular and best.lines_differ:
         return extended(best.opened(*best.likeliest).without_free, regular).strict
     return extended(fitted, regular) if regular else fitted
 

@@ -20,7 +20,7 @@ class OpenLines:
     along : array (column,)
         What the residual has along their directions.
     largest : array (effect,)
-        Largest line of each effect, in standard deviations of the noise; 0 for one whose lines do not differ one by one.
+        Largest line of each effect, in standard deviations of the noise; 0 if its lines do not differ one by one.
     """
 
     errors: LineErrors

@@ -55,7 +55,7 @@ class Groups(NamedTuple):
         """Number of columns of each group."""
         return np.diff(self.first, append=self.columns.shape[1])
 
-    def largest(self, along: Float[np.ndarray, "*batch column"]) -> Float[np.ndarray, " *batch"]:
+    def largest(self, along: Float[np.ndarray, "*batch column"]) -> Float[np.ndarray, "*batch"]:
         """Root of the mean square of the largest group of lines, in standard deviations of the noise.
 
         Parameters
@@ -150,8 +150,8 @@ class LineErrors:
         return cls(columns, directions, square, found.first)
 
     def gain(
-        self, along: Float[np.ndarray, "*batch column"], largest: Float[np.ndarray, " *batch"]
-    ) -> Float[np.ndarray, " *batch"]:
+        self, along: Float[np.ndarray, "*batch column"], largest: Float[np.ndarray, "*batch"]
+    ) -> Float[np.ndarray, "*batch"]:
         """Gain of log-likelihood by the errors of all groups.
 
         Parameters
@@ -180,12 +180,12 @@ class LineErrors:
         mean = exact + (weights / variance).sum(axis=0)
         return np.sqrt((1 / mean - 1) / np.maximum(self.square, np.finfo(float).tiny))
 
-    def _levels(self, largest: Float[np.ndarray, " *batch"]) -> Float[np.ndarray, "level *batch"]:
+    def _levels(self, largest: Float[np.ndarray, "*batch"]) -> Float[np.ndarray, "level ..."]:
         return np.geomspace(LEAST_ERROR, np.maximum(largest, LEAST_ERROR), LEVELS)
 
     def _gains(
-        self, along: Float[np.ndarray, "*batch column"], largest: Float[np.ndarray, " *batch"]
-    ) -> Float[np.ndarray, "level *batch group"]:
+        self, along: Float[np.ndarray, "*batch column"], largest: Float[np.ndarray, "*batch"]
+    ) -> Float[np.ndarray, "level ... group"]:
         """Gain by each group, for each standard deviation of its errors."""
         more = self._levels(largest)[..., None] ** 2 * self.square
         each = along**2 * more / (1 + more) - np.log1p(more)

@@ -21,9 +21,9 @@ from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.search.hypotheses import Hypothesis, signatures
 from swgsim.identification.search.refining import spacing
 
-# Phases of a wave and sizes that are tried, about the size that explains the largest group of lines; and rounds, each
-# of a quarter of the range of the last one.
-PHASES, SIZES, SIZE_RANGE, ROUNDS = 48, 13, (-1.5, 1.0), 3
+# Phases of a wave and sizes that are tried, these within such logarithms of the one that explains the largest group of
+# lines; and rounds, each in so many times a narrower range.
+PHASES, SIZES, SIZE_RANGE, ROUNDS, NARROWER = 48, 13, (-1.5, 1.0), 3, 4
 # Places and shapes around one that are tried, in spacings of the screening.
 AROUND = (-0.5, -0.25, 0.0, 0.25, 0.5)
 
@@ -48,6 +48,8 @@ class Proposal:
 
 @dataclass(frozen=True)
 class _Found:
+    """A hypothesis at its likeliest size, as a factor on its signature, and phase; 0 or pi is a sign if it has none."""
+
     log_likelihood: float
     hypothesis: Hypothesis
     times: float
@@ -55,8 +57,10 @@ class _Found:
 
     @property
     def size(self) -> float:
+        """In the unit of the effect."""
         q = quantities(self.hypothesis.kind)[self.hypothesis.size]
-        return float(np.clip(q.nothing + self.times * (self.hypothesis.typical - q.nothing), q.low, q.high))
+        signed = self.times if self.hypothesis.phase else self.times * np.cos(self.phase)
+        return float(np.clip(q.nothing + signed * (self.hypothesis.typical - q.nothing), q.low, q.high))
 
 
 class LineSearch:
@@ -96,10 +100,10 @@ class LineSearch:
 
     def _proposal(self, found: _Found) -> Proposal:
         hypothesis = replace(found.hypothesis, reference=found.size)
-        x, along, sizes = self._of_signature(signatures([hypothesis], self._fitted.model, self._fitted.measured)[0])
-        phase = np.array([np.cos(found.phase), np.sin(found.phase)])[: x.shape[1]]
-        error = LINE_ERROR * float(self._groups.largest(sizes @ phase))
-        off = self._errors.deviations(self._along - along @ phase, error)
+        _, along, sizes = self._of_signature(signatures([hypothesis], self._fitted.model, self._fitted.measured)[0])
+        turned = np.array([np.cos(found.phase), np.sin(found.phase)]) if hypothesis.phase else np.ones(1)
+        error = LINE_ERROR * float(self._groups.largest(sizes @ turned))
+        off = self._errors.deviations(self._along - along @ turned, error)
         start = self._fitted.allowing_forms(self._errors.columns * off)
         evidence = self._fitted.log_likelihood + found.log_likelihood - log_choices(hypothesis.kind)
         return Proposal(evidence, hypothesis.effect(found.size, found.phase), start)
@@ -130,46 +134,56 @@ class LineSearch:
     def _likeliest(
         self, every: Sequence[Hypothesis], changes: Sequence[Float[np.ndarray, "row column"]]
     ) -> list[_Found]:
-        """Every hypothesis at its likeliest size and phase; none that explains nothing."""
+        """Every hypothesis that explains something."""
         found = (self._at_its_best(*each) for each in zip(every, changes, strict=True))
         return [each for each in found if each is not None]
 
     def _at_its_best(self, hypothesis: Hypothesis, signature: Float[np.ndarray, "row column"]) -> _Found | None:
-        q = quantities(hypothesis.kind)[hypothesis.size]
-        span = hypothesis.typical - q.nothing
+        """A hypothesis at its likeliest size and phase; none if it explains nothing."""
         x, along, sizes = self._of_signature(signature)
-        if not np.abs(along).max() > 0:
+        if not along.any():
             return None
-        most = max((q.high - q.nothing) / span, (q.low - q.nothing) / span)
-        phases = np.linspace(0, 2 * np.pi, PHASES, endpoint=False) if hypothesis.phase else np.zeros(1)
-        times = None
-        best: tuple[float, float, float] | None = None
+        phases, reach = self._phases(hypothesis), np.linspace(*SIZE_RANGE, SIZES)
+        best = _Found(-np.inf, hypothesis, 0.0, 0.0)
         for number in range(ROUNDS):
             turned = np.stack([np.cos(phases), np.sin(phases)], axis=1)[:, : x.shape[1]]
             by_phase = turned @ along.T
-            if times is None:
-                main = np.add.reduceat(by_phase**2, self._groups.first, axis=1).argmax(axis=1)
-                group = np.repeat(np.arange(len(self._groups.first)), self._groups.sizes)
-                of_main = group == main[:, None]
-                start = (by_phase * self._along * of_main).sum(axis=1) / (by_phase**2 * of_main).sum(axis=1)
-            else:
-                start = np.full(len(phases), times)
-            spread = np.exp(np.linspace(*SIZE_RANGE, SIZES) / 4**number if number else np.linspace(*SIZE_RANGE, SIZES))
-            tried = np.minimum(start[:, None] * spread, most)
-            kept = np.flatnonzero(start > 0)
-            if not len(kept):
-                return None
-            tried, turned, by_phase, phases = tried[kept], turned[kept], by_phase[kept], phases[kept]
-            size = self._groups.largest(turned @ sizes.T)[:, None] * tried
+            times = self._of_main_lines(by_phase) if number == 0 else np.full(len(phases), best.times)
+            tried = np.minimum(np.maximum(times, 0.0)[:, None] * np.exp(reach), self._most(hypothesis))
+            explained = tried * (turned @ (x.T @ self._r))[:, None]
+            explained -= tried**2 * ((turned @ (x.T @ x)) * turned).sum(axis=1)[:, None] / 2
             left = self._along - tried[..., None] * by_phase[:, None]
-            with_x, of_x = turned @ (x.T @ self._r), ((turned @ (x.T @ x)) * turned).sum(axis=1)
-            value = tried * with_x[:, None] - tried**2 * of_x[:, None] / 2
-            value = value + self._errors.gain(left, LINE_ERROR * size)
+            largest = self._groups.largest(turned @ sizes.T)[:, None] * tried
+            value = np.where(tried > 0, explained + self._errors.gain(left, LINE_ERROR * largest), -np.inf)
             i, j = np.unravel_index(value.argmax(), value.shape)
-            if best is None or value[i, j] > best[0]:
-                best = float(value[i, j]), float(tried[i, j]), float(phases[i])
-            times = best[1]
-            step = 2 * np.pi / PHASES / 4**number / 2
-            phases = best[2] + step * np.arange(-2, 3) if hypothesis.phase else np.array([best[2]])
-        assert best is not None
-        return _Found(best[0], hypothesis, best[1], float(best[2] % (2 * np.pi)))
+            if value[i, j] > best.log_likelihood:
+                best = _Found(float(value[i, j]), hypothesis, float(tried[i, j]), float(phases[i]))
+            phases, reach = best.phase + self._finer(hypothesis, number), reach / NARROWER
+        return best if np.isfinite(best.log_likelihood) else None
+
+    def _of_main_lines(self, by_phase: Float[np.ndarray, "try direction"]) -> Float[np.ndarray, " try"]:
+        """Size at which a signature explains its largest group of lines, for each phase."""
+        product, square = (
+            np.add.reduceat(by_phase * each, self._groups.first, axis=1) for each in (self._along, by_phase)
+        )
+        main = square.argmax(axis=1)[:, None]
+        return (np.take_along_axis(product, main, 1) / np.take_along_axis(square, main, 1))[:, 0]
+
+    @staticmethod
+    def _phases(hypothesis: Hypothesis) -> Float[np.ndarray, " try"]:
+        """Phases that are tried; those of an effect without one are its signs."""
+        if hypothesis.phase:
+            return np.linspace(0, 2 * np.pi, PHASES, endpoint=False)
+        q = quantities(hypothesis.kind)[hypothesis.size]
+        return np.array([0.0, np.pi])[: 1 + (q.low < q.nothing < q.high)]
+
+    @staticmethod
+    def _finer(hypothesis: Hypothesis, number: int) -> Float[np.ndarray, " try"]:
+        """Phases about the best one that are tried after so many rounds."""
+        return np.pi / PHASES / NARROWER**number * np.arange(-2, 3) if hypothesis.phase else np.zeros(1)
+
+    @staticmethod
+    def _most(hypothesis: Hypothesis) -> float:
+        """Largest size, in that of the signature."""
+        q = quantities(hypothesis.kind)[hypothesis.size]
+        return max(q.high - q.nothing, q.nothing - q.low) / abs(hypothesis.typical - q.nothing)

@@ -33,9 +33,9 @@ FORM_ERRORS = (0.01, 0.02, 0.05, 0.1, 0.2)
 # What resembles an effect may look just like it, or have little more than channels, orders and law in common: its lines
 # differ by one of these shares, or by one of those above, all being equally probable.
 OTHER_FORMS = (0.5, 1.0)
-# On a gear of another structure, lines differ one by one: each is as in the library with the first probability. Otherwise
-# the logarithm of its error is uniform, from so many standard deviations of the noise to this share of the largest line
-# of the effect, or of what resembles an effect to all of it.
+# On a gear of another structure, lines differ one by one. A group of them is as in the library with the first
+# probability. Otherwise the logarithm of its error is uniform, from so many standard deviations of the noise to this
+# share of the largest line of the effect; of what resembles an effect, to all of it.
 EXACT_LINE, LEAST_ERROR, LINE_ERROR = 0.5, 0.3, 0.3
 # Sizes of effects and amplitudes of regularities are known to a factor only: their logarithm is uniform over so many
 # factors of e, a ratio of 3000.

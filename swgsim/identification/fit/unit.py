@@ -167,7 +167,7 @@ class Unit:
         return self.structure > OF_MESH
 
     def opens(self, effect: Effect | type[Effect]) -> bool:
-        """Whether the lines of an effect may differ one by one from the library's: where the structure is another one."""
+        """Whether the lines of an effect differ one by one from the library's, as the structure is another one."""
         return self.of_another_structure and effect.place in BY_STRUCTURE
 
     @cached_property
