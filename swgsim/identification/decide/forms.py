@@ -7,33 +7,7 @@ import numpy as np
 from jaxtyping import Float, Int
 from scipy.linalg import cholesky, solve_triangular
 
-from swgsim.identification.decide.line_errors import LineErrors
-
-
-@dataclass(frozen=True, eq=False)
-class OpenLines:
-    """Errors of lines that the effects of an option have.
-
-    Attributes
-    ----------
-    errors : LineErrors
-    along : array (column,)
-        What the residual has along their directions.
-    largest : array (effect,)
-        Largest line of each effect, in standard deviations of the noise; 0 if its lines do not differ one by one.
-    """
-
-    errors: LineErrors
-    along: Float[np.ndarray, " column"]
-    largest: Float[np.ndarray, " effect"]
-
-    def gain(self, errors: Sequence[float]) -> float:
-        """Gain of log-likelihood if the lines of every effect may differ by its form error."""
-        return float(self.errors.gain(self.along, np.array((self.largest * errors).max())))
-
-    def opened(self, errors: Sequence[float]) -> Float[np.ndarray, "row column"]:
-        """Errors of lines, one standard deviation each, as the residual tells."""
-        return self.errors.columns * self.errors.deviations(self.along, float((self.largest * errors).max()))
+from swgsim.identification.decide.line_evidence import OpenLines
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +25,7 @@ class Forms:
     misfit : float
         Sum of squares of the residual beyond its expectation.
     lines : OpenLines, optional
-        On a gear of another structure.
+        Of an effect alone whose lines differ one by one.
     """
 
     products: Float[np.ndarray, "direction direction"]
@@ -77,5 +51,5 @@ class Forms:
         scale = np.array(errors)[self.effect]
         L = cholesky(np.eye(len(scale)) + scale[:, None] * self.products * scale, lower=True)
         found = solve_triangular(L, scale * self.along, lower=True)
-        of_lines = self.lines.gain(errors) if self.lines else 0.0
+        of_lines = self.lines.gain(errors[0]) if self.lines else 0.0
         return float(found @ found) / 2 - float(np.log(np.diag(L)).sum()) + of_lines

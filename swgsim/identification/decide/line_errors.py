@@ -161,10 +161,8 @@ class LineErrors:
         largest : array (*batch,)
             Largest standard deviation of an error, in those of the noise.
         """
-        gains = self._gains(along, largest)
-        return np.logaddexp(logsumexp(gains, axis=0) - np.log(LEVELS) + np.log(1 - EXACT_LINE), np.log(EXACT_LINE)).sum(
-            axis=-1
-        )
+        mean = logsumexp(self._gains(along, largest), axis=0) - np.log(LEVELS)
+        return np.logaddexp(np.log(1 - EXACT_LINE) + mean, np.log(EXACT_LINE)).sum(axis=-1)
 
     def deviations(self, along: Float[np.ndarray, " column"], largest: float) -> Float[np.ndarray, " column"]:
         """Standard deviations that stand for those of the errors along each direction: a fit with them raises the

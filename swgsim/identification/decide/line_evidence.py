@@ -1,87 +1,83 @@
-"""Evidence of effects whose lines differ one by one from the library's, on a gear of another structure.
+"""Evidence of an effect whose lines differ one by one from the library's, on a gear of another structure.
 
-The errors of lines are known to a factor only (:mod:`line_errors`), so the residual that such an effect leaves has no
-normal distribution. The evidence is that of the residual at the fitted parameters of the effect, times the volume of
-these: their prior density, and their spread about the fit with the errors of lines open.
+The errors of its lines are known to a factor only (:mod:`line_errors`), so the residual that it leaves has no normal
+distribution. The evidence is the likelihood of that residual at the fitted parameters of the effect, times the volume
+of these: their prior density, and their spread about the fit with the errors of lines open.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
 
 from swgsim.effects.quantity import quantities
 from swgsim.identification.covariance.low_rank_covariance import Covariance
-from swgsim.identification.decide.forms import OpenLines
 from swgsim.identification.decide.line_errors import LineErrors, groups
 from swgsim.identification.decide.prior import log_choices, log_density
 from swgsim.identification.fit.fitted import Fitted
+from swgsim.identification.fit.form_error import signature
 from swgsim.identification.fit.priors import name_of
 
 
-def opened(fitted: Fitted) -> list[int]:
-    """Numbers of the effects of the model whose lines differ one by one."""
-    return [number for number in fitted.numbers_added if fitted.unit.opens(fitted.model.effects[number])]
+@dataclass(frozen=True, eq=False)
+class OpenLines:
+    """Errors of the lines of an effect, and what the residual has along them.
 
-
-def parameters_of(fitted: Fitted, number: int) -> dict[str, str]:
-    """The fitted parameters of an effect, by the name of each in the fit."""
-    effect = fitted.model.effects[number]
-    names = {name_of(effect, number, name): name for name in quantities(type(effect))}
-    return {key: name for key, name in names.items() if key in fitted.parameters}
-
-
-def holding(fitted: Fitted, numbers: Sequence[int]) -> Fitted:
-    """The same fit with the parameters of some effects known."""
-    held = {key for number in numbers for key in parameters_of(fitted, number)}
-    kept = [n for n, name in enumerate(fitted.parameters) if name not in held]
-    position = {name: by for name, by in fitted.calibrated.position.items() if name not in held}
-    return replace(
-        fitted,
-        parameters={name: each for name, each in fitted.parameters.items() if name not in held},
-        calibrated=replace(fitted.calibrated, position=position, J=fitted.calibrated.J[..., kept]),
-    )
-
-
-def open_lines(held: Fitted, changes: Mapping[int, Float[np.ndarray, " row"]], effects: int) -> OpenLines:
-    """What the errors of lines explain of the residual of a fit.
-
-    Parameters
+    Attributes
     ----------
-    held : Fitted
-        With the parameters of these effects known.
-    changes : mapping
-        Signature of each effect whose lines differ, by its number among the added ones.
-    effects : int
-        Number of added effects.
+    errors : LineErrors
+    along : array (column,)
+        What the residual has along their directions.
+    largest : float
+        Largest line of the effect, in standard deviations of the noise.
     """
-    found = groups(held.measured)
-    errors = LineErrors.of(held.whole.whiten(found.columns), found)
-    largest = np.zeros(effects)
-    for number, signature in changes.items():
-        largest[number] = found.largest(found.weights.T @ signature)
-    return OpenLines(errors, errors.directions.T @ held.white, largest)
+
+    errors: LineErrors
+    along: Float[np.ndarray, " column"]
+    largest: float
+
+    @classmethod
+    def of(cls, fitted: Fitted) -> "OpenLines":
+        """Of the effect of a fit."""
+        held, found = with_effect_known(fitted), groups(fitted.measured)
+        errors = LineErrors.of(held.whole.whiten(found.columns), found)
+        (number,) = fitted.numbers_added
+        largest = found.largest(found.weights.T @ signature(fitted, number))
+        return cls(errors, errors.directions.T @ held.white, float(largest))
+
+    def gain(self, error: float) -> float:
+        """Gain of log-likelihood if lines differ by up to a share of the largest one."""
+        return float(self.errors.gain(self.along, np.array(self.largest * error)))
+
+    def opened(self, error: float) -> Float[np.ndarray, "row column"]:
+        """Errors of lines, one standard deviation each, as the residual tells them."""
+        return self.errors.columns * self.errors.deviations(self.along, self.largest * error)
 
 
-def log_volume(fitted: Fitted, numbers: Sequence[int], errors: Covariance) -> float:
-    """Logarithm of the prior probability of a volume that the parameters of effects fill about the fit.
+def with_effect_known(fitted: Fitted) -> Fitted:
+    """The same fit, the parameters of added effects being known."""
+    kept = [n for n, name in enumerate(fitted.parameters) if name in fitted.declared]
+    J = fitted.calibrated.J[..., kept]
+    calibrated = replace(fitted.calibrated, position=fitted.position_of_unit, J=J)
+    return replace(fitted, parameters=fitted.declared, calibrated=calibrated)
+
+
+def log_volume(fitted: Fitted, errors: Covariance) -> float:
+    """Logarithm of the prior probability of a volume that the parameters of the effect fill about the fit.
 
     Parameters
     ----------
     fitted : Fitted
-    numbers : sequence of int
-        Of the effects.
     errors : Covariance
         Of the residual with these parameters known, the errors of lines being open.
     """
-    names = [(number, key, name) for number in numbers for key, name in parameters_of(fitted, number).items()]
-    columns = [list(fitted.parameters).index(key) for _, key, _ in names]
-    white = errors.whiten(fitted.J[:, columns])
-    covariance = np.linalg.inv(white.T @ white + np.eye(len(names)))
-    found = (np.linalg.slogdet(2 * np.pi * covariance)[1]) / 2
-    for (number, key, name), variance in zip(names, np.diag(covariance), strict=True):
-        effect, sd = fitted.model.effects[number], fitted.parameters[key].sd
-        value = float(getattr(effect, name))
-        found += np.log(sd) + log_density(quantities(type(effect))[name], value, float(np.sqrt(variance)) * sd)
-    return float(found - sum(log_choices(type(fitted.model.effects[number])) for number in numbers))
+    (number,), (effect,) = fitted.numbers_added, fitted.added
+    names = {name_of(effect, number, name): name for name in quantities(type(effect))}
+    fitted_here = [key for key in fitted.parameters if key in names]
+    white = errors.whiten(fitted.J[:, [list(fitted.parameters).index(key) for key in fitted_here]])
+    covariance = np.linalg.inv(white.T @ white + np.eye(len(fitted_here)))
+    found = np.linalg.slogdet(2 * np.pi * covariance)[1] / 2 - log_choices(type(effect))
+    for key, variance in zip(fitted_here, np.diag(covariance), strict=True):
+        q, value, sd = quantities(type(effect))[names[key]], getattr(effect, names[key]), fitted.parameters[key].sd
+        found += np.log(sd) + log_density(q, float(value), float(np.sqrt(variance)) * sd)
+    return float(found)

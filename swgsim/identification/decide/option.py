@@ -12,7 +12,7 @@ from scipy.special import logsumexp
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Quantity, Role, quantities
 from swgsim.identification.decide.forms import Forms
-from swgsim.identification.decide.line_evidence import holding, log_volume, open_lines, opened
+from swgsim.identification.decide.line_evidence import OpenLines, log_volume, with_effect_known
 from swgsim.identification.decide.prior import (
     BALANCED,
     LINE_ERROR,
@@ -27,7 +27,7 @@ from swgsim.identification.decide.prior import (
 )
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import extended
-from swgsim.identification.fit.form_error import form_directions, parts, signature
+from swgsim.identification.fit.form_error import form_directions, parts
 from swgsim.identification.fit.priors import name_of
 from swgsim.identification.search.regularities import Described, set_free
 
@@ -124,12 +124,10 @@ class Option:
     def opened(self, zeros: int, form_error: int) -> Fitted:
         """The fit with a factor of zeros, and with the form of its effects open by a form error (numbers of both)."""
         error = self.form_errors[form_error]
-        directions = [error * each for each in form_directions(self.fitted)]
         if self.forms.lines:
-            directions.append(self.forms.lines.opened([error] * len(self.fitted.added)))
-        return self.fitted.with_zeros(ZEROS[zeros]).allowing_forms(
-            np.hstack([np.zeros((len(self.fitted.residual), 0)), *directions])
-        )
+            return self.fitted.allowing_forms(self.forms.lines.opened(error))
+        directions = np.hstack([np.zeros((len(self.fitted.residual), 0)), *form_directions(self.fitted)])
+        return self.fitted.with_zeros(ZEROS[zeros]).allowing_forms(error * directions)
 
 
 def causes_of(effects: Sequence[Effect], regularities: Sequence[Described]) -> frozenset[object]:
@@ -176,7 +174,8 @@ def _of_fit(fitted: Fitted, regularities: Sequence[Described], kinds: int) -> Op
     """The option of a fit with its effects and regularities."""
     added = fitted.added
     evidences, forms = log_evidences(fitted)
-    evidences += sum(prior_ratio(fitted, n) for n, each in enumerate(added) if not fitted.unit.opens(each))
+    if not forms.lines:
+        evidences += sum(prior_ratio(fitted, number) for number in range(len(added)))
     evidences -= len(regularities) * np.log(LOG_SIZE_RANGE)
     prior = log_prior(len(added), 0, len(regularities), kinds)
     # A copy without what the fit has cached, which would fill the memory.
@@ -266,8 +265,8 @@ def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"]
     so that zeros do not lie further off.
     """
     fitted = fitted.with_zeros(1.0)
-    if numbers := opened(fitted):
-        return _with_open_lines(fitted, numbers)
+    if any(map(fitted.unit.opens, fitted.added)):
+        return _with_open_lines(fitted)
     measured, whole = fitted.measured, fitted.whole
     # Further zeros open like forms, each kind by a factor of its own.
     zeros = Forms.of([whole.whiten(each) for each in measured.free_zeros], fitted.white)
@@ -280,15 +279,13 @@ def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"]
     return of_zeros[:, None] + gains - np.log(len(gains)), forms
 
 
-def _with_open_lines(fitted: Fitted, numbers: Sequence[int]) -> tuple[Float[np.ndarray, "zeros form_error"], Forms]:
-    """The same of a fit with effects, by their numbers, whose lines differ one by one."""
-    held, first, many = holding(fitted, numbers), fitted.numbers_added.start, len(fitted.added)
-    lines = open_lines(held, {number - first: signature(fitted, number) for number in numbers}, many)
-    forms = Forms.of([held.whole.whiten(each) for each in form_directions(fitted)], held.white, lines)
-    errors = [LINE_ERROR] * many
-    volume = log_volume(fitted, numbers, held.whole.with_columns(lines.opened(errors)))
+def _with_open_lines(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"], Forms]:
+    """The same of a fit with one effect, whose lines differ one by one."""
+    held, lines = with_effect_known(fitted), OpenLines.of(fitted)
+    forms = Forms.of([np.zeros((len(held.white), 0))], held.white, lines)
+    volume = log_volume(fitted, held.whole.with_columns(lines.opened(LINE_ERROR)))
     evidences = np.full((len(ZEROS), 1), -np.inf)
-    evidences[0] = np.log(1 - BALANCED) + held.log_likelihood + forms.gain(errors) + volume
+    evidences[0] = np.log(1 - BALANCED) + held.log_likelihood + forms.gain([LINE_ERROR]) + volume
     return evidences, forms
 
 

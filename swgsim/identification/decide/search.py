@@ -172,10 +172,9 @@ class Search:
         return sorted(zip(gains, leading, strict=True), key=lambda each: -each[0])[:EFFECTS_TRIED]
 
     def _whose_lines_differ(self, base: Option) -> list[Proposal]:
-        """The leading effects that are not in the model and whose lines differ one by one from the library's."""
+        """The leading effects whose lines differ one by one from the library's."""
         every, changes = self._library
-        opens = self.null.unit.opens
-        offered = [n for n, each in enumerate(every) if opens(each.kind)]
+        offered = [n for n, each in enumerate(every) if self.null.unit.opens(each.kind)]
         STEPS.info("screening %d hypotheses whose lines may differ", len(offered))
         return LineSearch(base).proposals([every[n] for n in offered], [changes[n] for n in offered], EFFECTS_TRIED)
 

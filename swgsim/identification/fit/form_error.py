@@ -84,12 +84,8 @@ def allowance(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
 
 
 def form_directions(fitted: Fitted) -> list[Float[np.ndarray, "row direction"]]:
-    """Directions of the form error of each added effect, for a form error of 1; none if its lines differ one by one."""
-    nothing = np.zeros((len(fitted.residual), 0))
-    columns = (
-        nothing if fitted.unit.opens(fitted.model.effects[number]) else allowance(fitted, number)
-        for number in fitted.numbers_added
-    )
+    """Directions of the form error of each added effect, for a form error of 1."""
+    columns = (allowance(fitted, number) for number in fitted.numbers_added)
     return [significant_columns(each, fitted.errors.variance) / FORM_TOLERANCE for each in columns]
 
 
