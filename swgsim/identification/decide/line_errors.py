@@ -55,13 +55,13 @@ class Groups(NamedTuple):
         """Number of columns of each group."""
         return np.diff(self.first, append=self.columns.shape[1])
 
-    def largest(self, along: Float[np.ndarray, "*batch column"]) -> Float[np.ndarray, "*batch"]:
+    def largest(self, along: Float[np.ndarray, "signature column"]) -> Float[np.ndarray, " signature"]:
         """Root of the mean square of the largest group of lines, in standard deviations of the noise.
 
         Parameters
         ----------
-        along : array (*batch, column)
-            Products of a signature with :attr:`weights`.
+        along : array (signature, column)
+            Products of signatures with :attr:`weights`.
         """
         square = np.add.reduceat(along**2, self.first, axis=-1) / self.sizes
         return np.sqrt(square[..., ~self.of_mean].max(axis=-1))
@@ -150,15 +150,15 @@ class LineErrors:
         return cls(columns, directions, square, found.first)
 
     def gain(
-        self, along: Float[np.ndarray, "*batch column"], largest: Float[np.ndarray, "*batch"]
-    ) -> Float[np.ndarray, "*batch"]:
+        self, along: Float[np.ndarray, "*batch try column"], largest: Float[np.ndarray, "*batch try"]
+    ) -> Float[np.ndarray, "*batch try"]:
         """Gain of log-likelihood by the errors of all groups.
 
         Parameters
         ----------
-        along : array (*batch, column)
+        along : array (*batch, try, column)
             What a whitened residual has along each direction.
-        largest : array (*batch,)
+        largest : array (*batch, try)
             Largest standard deviation of an error, in those of the noise.
         """
         mean = logsumexp(self._gains(along, largest), axis=0) - np.log(LEVELS)

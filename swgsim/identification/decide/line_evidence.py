@@ -42,12 +42,12 @@ class OpenLines:
         held, found = with_effect_known(fitted), groups(fitted.measured)
         errors = LineErrors.of(held.whole.whiten(found.columns), found)
         (number,) = fitted.numbers_added
-        largest = found.largest(found.weights.T @ signature(fitted, number))
-        return cls(errors, errors.directions.T @ held.white, float(largest))
+        (largest,) = found.largest(signature(fitted, number)[None] @ found.weights).tolist()
+        return cls(errors, errors.directions.T @ held.white, largest)
 
     def gain(self, error: float) -> float:
         """Gain of log-likelihood if lines differ by up to a share of the largest one."""
-        return float(self.errors.gain(self.along, np.array(self.largest * error)))
+        return float(self.errors.gain(self.along[None], np.array([self.largest * error]))[0])
 
     def opened(self, error: float) -> Float[np.ndarray, "row column"]:
         """Errors of lines, one standard deviation each, as the residual tells them."""
