@@ -22,6 +22,7 @@ from threadpoolctl import threadpool_limits
 import swgsim as swg
 from swgsim.common.files import write_json
 from swgsim.common.version import code_version
+from swgsim.effects.base import BY_STRUCTURE
 from swgsim.effects.library import LIBRARY
 from swgsim.effects.quantity import quantities, size_of
 
@@ -50,8 +51,6 @@ BENCHES = {
     "ritz_bench": Bench(HERE, True),
 }
 GEARS = 20
-# Places whose effects act on the truss, so that their size is that of a signature.
-
 
 
 def main() -> None:
