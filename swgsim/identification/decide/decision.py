@@ -133,8 +133,6 @@ def _with(best: Option) -> Fitted:
     """The model with an option, its regularities being effects too."""
     fitted = best.fitted.with_zeros(best.zeros).strict
     regular = [each.effect for each in best.regularities]
-    if regular and best.lines_differ:
-        return extended(best.opened(*best.likeliest).without_free, regular).strict
     return extended(fitted, regular) if regular else fitted
 
 

@@ -26,13 +26,13 @@ from swgsim.identification.decide.prior import EXACT_LINE, LEAST_ERROR
 from swgsim.storage.labelled_signals import SENSORS
 
 # Standard deviations at which the integral over that of a group is taken.
-LEVELS = 14
+LEVELS = 30
 # Directions of a group below this part of its largest one are rounding.
 LEAST_DIRECTION = 1e-6
 
 
 class Groups(NamedTuple):
-    """Columns of all groups of lines, orthogonal within each, for an error of one standard deviation of the noise.
+    """Columns of all groups of lines, orthogonal within each, for errors of one standard deviation of the noise.
 
     Attributes
     ----------
@@ -51,40 +51,42 @@ class Groups(NamedTuple):
     of_mean: Bool[np.ndarray, " group"]
 
     @property
-    def sizes(self) -> Int[np.ndarray, " group"]:
+    def counts(self) -> Int[np.ndarray, " group"]:
         """Number of columns of each group."""
         return np.diff(self.first, append=self.columns.shape[1])
 
     def largest(self, along: Float[np.ndarray, "signature column"]) -> Float[np.ndarray, " signature"]:
-        """Root of the mean square of the largest group of lines, in standard deviations of the noise.
+        """Root mean square of the lines of the largest group, in standard deviations of the noise.
 
         Parameters
         ----------
         along : array (signature, column)
             Products of signatures with :attr:`weights`.
         """
-        square = np.add.reduceat(along**2, self.first, axis=-1) / self.sizes
+        square = np.add.reduceat(along**2, self.first, axis=-1) / self.counts
         return np.sqrt(square[..., ~self.of_mean].max(axis=-1))
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=2)
 def groups(measured: Measured) -> Groups:
     """The groups of lines of a set of recordings.
 
     Lines may have another error at every load. In speed and torques these effects have no lines.
     """
-    sigma = np.sqrt(measured.variance.ravel())
+    sigma = np.sqrt(measured.variance.ravel())[:, None]
     loads = np.round([each.point.T_out / LOAD_STEP for each in measured.recordings])
-    found, of_mean = [], []
+    columns, weights, counts, of_mean = [], [], [], []
     for order, patterns in _patterns(measured):
         of_mean.append(order == 0)
-        columns = np.hstack([np.kron((loads == load)[:, None], patterns) for load in np.unique(loads)]) / sigma[:, None]
-        Q, R = np.linalg.qr(columns)
-        size = np.abs(np.diag(R))
-        found.append(Q[:, size > LEAST_DIRECTION * size.max()])
-    first = np.concatenate([[0], np.cumsum([each.shape[1] for each in found])[:-1]])
-    Q = np.hstack(found)
-    return Groups(Q * sigma[:, None], Q / sigma[:, None], first, np.array(of_mean))
+        counts.append(0)
+        for load in np.unique(loads):
+            Q = np.linalg.qr(np.kron((loads == load)[:, None], patterns) / sigma).Q
+            root = np.sqrt((loads == load).sum())  # an error is as large in every recording, however many there are
+            columns.append(Q * sigma * root)
+            weights.append(Q / sigma / root)
+            counts[-1] += Q.shape[1]
+    first = np.concatenate([[0], np.cumsum(counts)[:-1]])
+    return Groups(np.hstack(columns), np.hstack(weights), first, np.array(of_mean))
 
 
 def _patterns(measured: Measured) -> Iterator[tuple[int, Float[np.ndarray, "feature column"]]]:
@@ -115,42 +117,47 @@ def _columns(layout: Layout, quarters: Mapping[str, int], order: int) -> Float[n
 
 @dataclass(frozen=True, eq=False)
 class LineErrors:
-    """Groups of lines, whitened by what else the model does not know, each along its own directions.
+    """Errors of groups of lines, each group along its own directions.
 
     Attributes
     ----------
     columns : array (row, column)
         An error of one standard deviation of the noise along each direction, by its group alone.
-    directions : array (row, column)
-        The same whitened, less what groups before have in common with it, and orthonormal.
     square : array (column,)
-        Square of what an error of one standard deviation of the noise is along each direction, whitened.
+        Square of the same, whitened by what else the model does not know.
     first : array (group,)
         First column of each group.
     """
 
     columns: Float[np.ndarray, "row column"]
-    directions: Float[np.ndarray, "row column"]
     square: Float[np.ndarray, " column"]
     first: Int[np.ndarray, " group"]
 
     @classmethod
-    def of(cls, white: Float[np.ndarray, "row column"], found: Groups) -> "LineErrors":
-        """From the whitened columns of all groups.
+    def of(
+        cls, found: Groups, white: Float[np.ndarray, "row column"]
+    ) -> tuple["LineErrors", Float[np.ndarray, "row column"]]:
+        """Errors, and the directions of a whitened residual that they change: orthonormal.
 
         What a group has in common with one before, as by an error of the load, counts for that one.
+
+        Parameters
+        ----------
+        found : Groups
+        white : array (row, column)
+            Columns of the groups, whitened.
         """
         directions, R = qr(white, mode="economic", check_finite=False)
         columns, square = np.empty_like(white), np.empty(white.shape[1])
-        for first, size in zip(found.first, found.sizes, strict=True):
-            block = slice(first, first + size)
+        for first, count in zip(found.first, found.counts, strict=True):
+            block = slice(first, first + count)
             U, s, Vt = np.linalg.svd(R[block, block])
             directions[:, block], square[block] = directions[:, block] @ U, s**2
             columns[:, block] = found.columns[:, block] @ Vt.T
-        return cls(columns, directions, square, found.first)
+        return cls(columns, square, found.first), directions
 
     def gain(
-        self, along: Float[np.ndarray, "*batch try column"], largest: Float[np.ndarray, "*batch try"]
+        self, along: Float[np.ndarray, "*batch try column"], bound: Float[np.ndarray, "*batch try"]
     ) -> Float[np.ndarray, "*batch try"]:
         """Gain of log-likelihood by the errors of all groups.
 
@@ -158,33 +165,36 @@ class LineErrors:
         ----------
         along : array (*batch, try, column)
             What a whitened residual has along each direction.
-        largest : array (*batch, try)
+        bound : array (*batch, try)
             Largest standard deviation of an error, in those of the noise.
         """
-        mean = logsumexp(self._gains(along, largest), axis=0) - np.log(LEVELS)
+        mean = logsumexp(self._gains(along, bound), axis=0) - np.log(LEVELS)
         return np.logaddexp(np.log(1 - EXACT_LINE) + mean, np.log(EXACT_LINE)).sum(axis=-1)
 
-    def deviations(self, along: Float[np.ndarray, " column"], largest: float) -> Float[np.ndarray, " column"]:
-        """Standard deviations that stand for those of the errors along each direction: a fit with them raises the
-        likelihood (expectation maximisation), as their precision is the mean over the posterior.
+    def deviations(self, along: Float[np.ndarray, " column"], bound: float) -> Float[np.ndarray, " column"]:
+        """Standard deviation that stands for that of the error along each direction.
+
+        Its precision is the mean over the posterior, so that a fit with it raises the likelihood (expectation
+        maximisation).
         """
-        gains = self._gains(along, np.array(largest))
+        gains = self._gains(along, np.array(bound))
         top = np.maximum(gains.max(axis=0), 0.0)
         weights = np.exp(gains - top) * (1 - EXACT_LINE) / LEVELS
         exact = EXACT_LINE * np.exp(-top)
-        sizes = np.diff(self.first, append=len(self.square))
-        weights, exact = (np.repeat(each / (weights.sum(axis=0) + exact), sizes, axis=-1) for each in (weights, exact))
-        variance = 1 + self._levels(np.array(largest))[:, None] ** 2 * self.square
+        counts = np.diff(self.first, append=len(self.square))
+        weights, exact = (np.repeat(each / (weights.sum(axis=0) + exact), counts, axis=-1) for each in (weights, exact))
+        variance = 1 + self._levels(np.array(bound))[:, None] ** 2 * self.square
         mean = exact + (weights / variance).sum(axis=0)
-        return np.sqrt((1 / mean - 1) / np.maximum(self.square, np.finfo(float).tiny))
+        seen = self.square > np.finfo(float).eps
+        return np.sqrt(np.where(seen, 1 / mean - 1, 0.0) / np.where(seen, self.square, 1.0))
 
-    def _levels(self, largest: Float[np.ndarray, "*batch"]) -> Float[np.ndarray, "level ..."]:
-        return np.geomspace(LEAST_ERROR, np.maximum(largest, LEAST_ERROR), LEVELS)
+    def _levels(self, bound: Float[np.ndarray, "*batch"]) -> Float[np.ndarray, "level ..."]:
+        return np.geomspace(LEAST_ERROR, np.maximum(bound, LEAST_ERROR), LEVELS)
 
     def _gains(
-        self, along: Float[np.ndarray, "*batch column"], largest: Float[np.ndarray, "*batch"]
+        self, along: Float[np.ndarray, "*batch column"], bound: Float[np.ndarray, "*batch"]
     ) -> Float[np.ndarray, "level ... group"]:
         """Gain by each group, for each standard deviation of its errors."""
-        more = self._levels(largest)[..., None] ** 2 * self.square
-        each = along**2 * more / (1 + more) - np.log1p(more)
+        variance = self._levels(bound)[..., None] ** 2 * self.square
+        each = along**2 * variance / (1 + variance) - np.log1p(variance)
         return np.add.reduceat(each, self.first, axis=-1) / 2

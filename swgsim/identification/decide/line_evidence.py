@@ -13,7 +13,7 @@ from jaxtyping import Float
 from swgsim.effects.quantity import quantities
 from swgsim.identification.covariance.low_rank_covariance import Covariance
 from swgsim.identification.decide.line_errors import LineErrors, groups
-from swgsim.identification.decide.prior import log_choices, log_density
+from swgsim.identification.decide.prior import log_choices, ratio_of_parameter
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.form_error import signature
 from swgsim.identification.fit.priors import name_of
@@ -29,7 +29,7 @@ class OpenLines:
     along : array (column,)
         What the residual has along their directions.
     largest : float
-        Largest line of the effect, in standard deviations of the noise.
+        Largest lines of the effect, in standard deviations of the noise.
     """
 
     errors: LineErrors
@@ -40,10 +40,10 @@ class OpenLines:
     def of(cls, fitted: Fitted) -> "OpenLines":
         """Of the effect of a fit."""
         held, found = with_effect_known(fitted), groups(fitted.measured)
-        errors = LineErrors.of(held.whole.whiten(found.columns), found)
+        errors, directions = LineErrors.of(found, held.whole.whiten(found.columns))
         (number,) = fitted.numbers_added
         (largest,) = found.largest(signature(fitted, number)[None] @ found.weights).tolist()
-        return cls(errors, errors.directions.T @ held.white, largest)
+        return cls(errors, directions.T @ held.white, largest)
 
     def gain(self, error: float) -> float:
         """Gain of log-likelihood if lines differ by up to a share of the largest one."""
@@ -52,6 +52,11 @@ class OpenLines:
     def opened(self, error: float) -> Float[np.ndarray, "row column"]:
         """Errors of lines, one standard deviation each, as the residual tells them."""
         return self.errors.columns * self.errors.deviations(self.along, self.largest * error)
+
+    def share(self, error: float) -> float:
+        """Root mean square of the errors, as a share of the largest lines."""
+        off = self.errors.deviations(self.along, self.largest * error)
+        return float(np.sqrt((off**2).mean()) / self.largest)
 
 
 def with_effect_known(fitted: Fitted) -> Fitted:
@@ -63,7 +68,7 @@ def with_effect_known(fitted: Fitted) -> Fitted:
 
 
 def log_volume(fitted: Fitted, errors: Covariance) -> float:
-    """Logarithm of the prior probability of a volume that the parameters of the effect fill about the fit.
+    """Logarithm of the prior probability of the volume that the parameters of the effect fill about the fit.
 
     Parameters
     ----------
@@ -73,11 +78,11 @@ def log_volume(fitted: Fitted, errors: Covariance) -> float:
     """
     (number,), (effect,) = fitted.numbers_added, fitted.added
     names = {name_of(effect, number, name): name for name in quantities(type(effect))}
-    fitted_here = [key for key in fitted.parameters if key in names]
-    white = errors.whiten(fitted.J[:, [list(fitted.parameters).index(key) for key in fitted_here]])
-    covariance = np.linalg.inv(white.T @ white + np.eye(len(fitted_here)))
-    found = np.linalg.slogdet(2 * np.pi * covariance)[1] / 2 - log_choices(type(effect))
-    for key, variance in zip(fitted_here, np.diag(covariance), strict=True):
+    moved = [key for key in fitted.parameters if key in names]
+    white = errors.whiten(fitted.J[:, [list(fitted.parameters).index(key) for key in moved]])
+    covariance = np.linalg.inv(white.T @ white + np.eye(len(moved)))
+    found = np.linalg.slogdet(covariance)[1] / 2 - log_choices(type(effect))
+    for key, variance in zip(moved, np.diag(covariance), strict=True):
         q, value, sd = quantities(type(effect))[names[key]], getattr(effect, names[key]), fitted.parameters[key].sd
-        found += np.log(sd) + log_density(q, float(value), float(np.sqrt(variance)) * sd)
+        found += ratio_of_parameter(q, float(value), float(np.sqrt(variance)) * sd, sd, 0.0)
     return float(found)

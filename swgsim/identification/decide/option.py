@@ -9,8 +9,9 @@ import numpy as np
 from jaxtyping import Float
 from scipy.special import logsumexp
 
+from swgsim.chain import NoSteadyState
 from swgsim.effects.base import Effect
-from swgsim.effects.quantity import Quantity, Role, quantities
+from swgsim.effects.quantity import Role, quantities
 from swgsim.identification.decide.forms import Forms
 from swgsim.identification.decide.line_evidence import OpenLines, log_volume, with_effect_known
 from swgsim.identification.decide.prior import (
@@ -21,9 +22,9 @@ from swgsim.identification.decide.prior import (
     TIMES_BALANCED,
     form_errors,
     log_choices,
-    log_density,
     log_prior,
     other_forms,
+    ratio_of_parameter,
 )
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import extended
@@ -101,6 +102,8 @@ class Option:
     @property
     def form_error(self) -> float:
         """Posterior mean of the form error of the effects, as a share; 0 without effects."""
+        if self.forms.lines:
+            return self.forms.lines.share(LINE_ERROR)
         weights = np.exp(logsumexp(self.evidences, axis=0) - self.log_evidence)
         return float(weights @ np.array(self.form_errors)) if self.effects else 0.0
 
@@ -166,7 +169,10 @@ def option(start: Fitted, effects: Sequence[Effect], regularities: Sequence[Desc
     if not found.forms.lines:
         return found
     # The errors of lines are told by what the fit leaves.
-    again = extended(found.opened(*found.likeliest), ())
+    try:
+        again = extended(found.opened(*found.likeliest), ())
+    except NoSteadyState:
+        return found
     return max(found, _of_fit(again.closed, regularities, kinds), key=lambda each: each.log_posterior)
 
 
@@ -244,17 +250,6 @@ def prior_ratio(fitted: Fitted, number: int) -> float:
         position, value = fitted.calibrated.position[key], float(getattr(effect, name))
         found += ratio_of_parameter(q, value, fitted.deviation[key], fitted.parameters[key].sd, position)
     return float(found)
-
-
-def ratio_of_parameter(q: Quantity, value: float, deviation: float, sd: float, position: float) -> float:
-    """The same of one parameter: found with a standard deviation, by a fit whose prior has another one (``sd``), so
-    many of which it lies from where it began.
-    """
-    ratio = log_density(q, value, deviation) + np.log(2 * np.pi * sd**2) / 2
-    told = 1 - min(deviation / sd, 1.0) ** 2  # share of the variance that the recordings take away
-    if q.role is not Role.SIZE:
-        ratio = min(ratio - np.log(max(told, 1e-12)) / 2, -np.log(deviation / sd))
-    return float(ratio + position**2 / 2)
 
 
 def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"], Forms]:

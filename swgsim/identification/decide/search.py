@@ -15,7 +15,7 @@ from jaxtyping import Float
 from swgsim.chain import NoSteadyState
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities
-from swgsim.identification.decide.line_search import LineSearch, Proposal
+from swgsim.identification.decide.line_proposals import LineProposals, Proposal
 from swgsim.identification.decide.option import Option, causes_of, expected_gain, option, resembling
 from swgsim.identification.decide.prior import LOG_SIZE_RANGE, MOST_CAUSES, log_choices, log_prior
 from swgsim.identification.fit.fitted import Fitted
@@ -87,6 +87,8 @@ class Search:
         """The best option, and the same without each of its causes."""
         best = self._best
         yield best
+        if best.lines_differ:  # others may be a pair of causes, neither of which explains much alone
+            yield max((o for o in self._options.values() if not o.lines_differ), key=lambda each: each.log_posterior)
         fewer: list[tuple[Sequence[Effect], Sequence[Described]]] = [
             *(([e for e in best.effects if e is not effect], best.regularities) for effect in best.effects),
             *((best.effects, [r for r in best.regularities if r is not each]) for each in best.regularities),
@@ -174,9 +176,10 @@ class Search:
     def _whose_lines_differ(self, base: Option) -> list[Proposal]:
         """The leading effects whose lines differ one by one from the library's."""
         every, changes = self._library
-        offered = [n for n, each in enumerate(every) if self.null.unit.opens(each.kind)]
+        gauges = self.null.measured.layout.of_gauges.any()
+        offered = [n for n, each in enumerate(every) if gauges and self.null.unit.opens(each.kind)]
         STEPS.info("screening %d hypotheses whose lines may differ", len(offered))
-        return LineSearch(base).proposals([every[n] for n in offered], [changes[n] for n in offered], EFFECTS_TRIED)
+        return LineProposals(base).leading([every[n] for n in offered], [changes[n] for n in offered], EFFECTS_TRIED)
 
     @cached_property
     def _library(self) -> tuple[list[Hypothesis], list[Float[np.ndarray, "row column"]]]:

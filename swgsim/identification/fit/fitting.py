@@ -169,7 +169,7 @@ def extended(now: Fitted, added: Sequence[Effect]) -> Fitted:
     model = now.unit.model.plus(*now.added, *added)
     # Parameters of effects are counted from where the effects are, so only the unit's keep their position.
     position = now.position_of_unit
-    if added and now.allowed.forms.any() and not any(map(now.unit.opens, model.effects)):
+    if added and now.allowed.forms.any() and not any(map(now.unit.opens, (*now.added, *added))):
         ahead = fit(now.measured, now.unit, model, position=position, allowed=now.closed.allowed, turns=1)
         position = ahead.calibrated.position
     return fit(now.measured, now.unit, model, position=position, allowed=now.allowed)

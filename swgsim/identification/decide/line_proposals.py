@@ -16,10 +16,10 @@ from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities
 from swgsim.identification.decide.line_errors import LineErrors, groups
 from swgsim.identification.decide.option import Option
-from swgsim.identification.decide.prior import LINE_ERROR, log_choices
+from swgsim.identification.decide.prior import LINE_ERROR, LOG_SIZE_RANGE, log_choices
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.search.hypotheses import Hypothesis, signatures
-from swgsim.identification.search.refining import spacing
+from swgsim.identification.search.refining import LEAST_SIZE, spacing
 
 # Phases of a wave and sizes that are tried, these within such logarithms of the one that explains the largest group of
 # lines; and rounds, each in so many times a narrower range.
@@ -63,7 +63,7 @@ class _Found:
         return float(np.clip(q.nothing + signed * (self.hypothesis.typical - q.nothing), q.low, q.high))
 
 
-class LineSearch:
+class LineProposals:
     """Effects beside those of an option.
 
     Parameters
@@ -74,11 +74,11 @@ class LineSearch:
     def __init__(self, base: Option) -> None:
         self._fitted = base.fitted.with_zeros(1.0).closed
         self._groups = groups(self._fitted.measured)
-        self._errors = LineErrors.of(self._fitted.whole.whiten(self._groups.columns), self._groups)
+        self._errors, self._directions = LineErrors.of(self._groups, self._fitted.whole.whiten(self._groups.columns))
         self._r = self._fitted.white
-        self._along = self._errors.directions.T @ self._r
+        self._along = self._directions.T @ self._r
 
-    def proposals(
+    def leading(
         self, every: Sequence[Hypothesis], changes: Sequence[Float[np.ndarray, "row column"]], many: int
     ) -> list[Proposal]:
         """The most probable effects, at most so many, the most probable first.
@@ -96,17 +96,22 @@ class LineSearch:
             if known is None or each.log_likelihood > known.log_likelihood:
                 best[each.hypothesis.kind] = each
         leading = sorted(best.values(), key=lambda each: -each.log_likelihood)[:many]
-        return [self._proposal(self._refined(each)) for each in leading]
+        found = [self._proposal(self._refined(each)) for each in leading]
+        return sorted(found, key=lambda each: -each.log_evidence)
 
     def _proposal(self, found: _Found) -> Proposal:
         hypothesis = replace(found.hypothesis, reference=found.size)
-        _, along, sizes = self._of_signature(signatures([hypothesis], self._fitted.model, self._fitted.measured)[0])
+        _, along, lines = self._of_signature(signatures([hypothesis], self._fitted.model, self._fitted.measured)[0])
         turned = np.array([np.cos(found.phase), np.sin(found.phase)]) if hypothesis.phase else np.ones(1)
-        (largest,) = self._groups.largest((sizes @ turned)[None]).tolist()
+        (largest,) = self._groups.largest((lines @ turned)[None]).tolist()
         off = self._errors.deviations(self._along - along @ turned, LINE_ERROR * largest)
         start = self._fitted.allowing_forms(self._errors.columns * off)
-        evidence = self._fitted.log_likelihood + found.log_likelihood - log_choices(hypothesis.kind)
-        return Proposal(evidence, hypothesis.effect(found.size, found.phase), start)
+        prior = -log_choices(hypothesis.kind) - np.log(LOG_SIZE_RANGE)
+        return Proposal(
+            self._fitted.log_likelihood + found.log_likelihood + prior,
+            hypothesis.effect(found.size, found.phase),
+            start,
+        )
 
     def _refined(self, found: _Found) -> _Found:
         """At the likeliest places and shapes around, with the signature at the size found."""
@@ -129,7 +134,7 @@ class LineSearch:
     def _of_signature(self, signature: Float[np.ndarray, "row column"]) -> tuple[Float[np.ndarray, "row column"], ...]:
         """Whitened, along the directions of line errors, and by the weights of groups."""
         x = self._fitted.whole.whiten(signature)
-        return x, self._errors.directions.T @ x, self._groups.weights.T @ signature
+        return x, self._directions.T @ x, self._groups.weights.T @ signature
 
     def _likeliest(
         self, every: Sequence[Hypothesis], changes: Sequence[Float[np.ndarray, "row column"]]
@@ -140,7 +145,7 @@ class LineSearch:
 
     def _at_its_best(self, hypothesis: Hypothesis, signature: Float[np.ndarray, "row column"]) -> _Found | None:
         """A hypothesis at its likeliest size and phase; none if it explains nothing."""
-        x, along, sizes = self._of_signature(signature)
+        x, along, lines = self._of_signature(signature)
         if not along.any():
             return None
         phases, reach = self._phases(hypothesis), np.linspace(*SIZE_RANGE, SIZES)
@@ -153,13 +158,14 @@ class LineSearch:
             explained = tried * (turned @ (x.T @ self._r))[:, None]
             explained -= tried**2 * ((turned @ (x.T @ x)) * turned).sum(axis=1)[:, None] / 2
             left = self._along - tried[..., None] * by_phase[:, None]
-            largest = self._groups.largest(turned @ sizes.T)[:, None] * tried
+            largest = self._groups.largest(turned @ lines.T)[:, None] * tried
             value = np.where(tried > 0, explained + self._errors.gain(left, LINE_ERROR * largest), -np.inf)
             i, j = np.unravel_index(value.argmax(), value.shape)
             if value[i, j] > best.log_likelihood:
                 best = _Found(float(value[i, j]), hypothesis, float(tried[i, j]), float(phases[i]))
             phases, reach = best.phase + self._finer(hypothesis, number), reach / NARROWER
-        return best if np.isfinite(best.log_likelihood) else None
+        q = quantities(hypothesis.kind)[hypothesis.size]
+        return best if abs(best.size - q.nothing) > LEAST_SIZE * (q.high - q.low) else None
 
     def _of_main_lines(self, by_phase: Float[np.ndarray, "try direction"]) -> Float[np.ndarray, " try"]:
         """Size at which a signature explains its largest group of lines, for each phase."""
