@@ -33,6 +33,8 @@ Signals = Float[np.ndarray, "5 time"]
 Channels = Mapping[str, Samples]
 
 PLACES = ("gear", "drive", "wave generator", "mesh", "structure", "gauge", "acquisition")
+# Places whose effects show in the gauges by the structure of the flex spline.
+BY_STRUCTURE = ("wave generator", "mesh", "structure")
 
 
 @dataclass(frozen=True)

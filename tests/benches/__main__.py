@@ -22,6 +22,7 @@ from threadpoolctl import threadpool_limits
 import swgsim as swg
 from swgsim.common.files import write_json
 from swgsim.common.version import code_version
+from swgsim.effects.base import BY_STRUCTURE
 from swgsim.effects.library import LIBRARY
 from swgsim.effects.quantity import quantities, size_of
 
@@ -50,8 +51,6 @@ BENCHES = {
     "ritz_bench": Bench(HERE, True),
 }
 GEARS = 20
-# Places whose effects act on the truss, so that their size is that of a signature.
-STRUCTURAL = ("wave generator", "mesh", "structure")
 
 
 def main() -> None:
@@ -157,7 +156,7 @@ def _covered(answer: Mapping[str, Any]) -> bool | None:
     name, size = answer["truth"]["effect"], answer["truth"]["size"]
     kind = LIBRARY[name]
     unit = quantities(kind)[size_of(kind)].unit
-    if kind.place not in STRUCTURAL or unit not in ("m", "rad"):
+    if kind.place not in BY_STRUCTURE or unit not in ("m", "rad"):
         return None
     (found,) = [effect["parameters"][size_of(kind)] for effect in answer["effects"] if effect["name"] == name][:1]
     return found["ci95"] is not None and bool(found["ci95"][0] <= size <= found["ci95"][1])

@@ -23,7 +23,6 @@ from swgsim.identification.decide.option import (
     expected_gain,
     option,
     prior_ratio,
-    ratio_of_parameter,
     resembling,
 )
 from swgsim.identification.decide.prior import (
@@ -34,6 +33,7 @@ from swgsim.identification.decide.prior import (
     OTHER_FORMS,
     TIMES_BALANCED,
     log_prior,
+    ratio_of_parameter,
 )
 from swgsim.identification.decide.search import Search
 from swgsim.identification.fit.form_error import all_show, form_directions, parts

@@ -89,6 +89,11 @@ class Decision:
         found = dict(fitted.deviation)
         first = len(self.before.model.effects)
         numbers = range(first, first + len(self.best.effects))
+        if self.best.lines_differ:
+            # Errors of its lines are known as far as the recordings tell them, so that size and place are as well.
+            opened = self.best.opened(*self.best.likeliest)
+            moved = opened.deviation_under(opened.of_nuisances)
+            return found | {name: by for name, by in moved.items() if ": " in name}
         moved = moved_by_forms(fitted, dict.fromkeys(numbers, self.best.form_error))
         for number in numbers:
             found |= over_shapes(fitted, number)

@@ -9,18 +9,22 @@ import numpy as np
 from jaxtyping import Float
 from scipy.special import logsumexp
 
+from swgsim.chain import NoSteadyState
 from swgsim.effects.base import Effect
-from swgsim.effects.quantity import Quantity, Role, quantities
+from swgsim.effects.quantity import Role, quantities
 from swgsim.identification.decide.forms import Forms
+from swgsim.identification.decide.line_evidence import OpenLines, log_volume, with_effect_known
 from swgsim.identification.decide.prior import (
     BALANCED,
+    LINE_ERROR,
     LOG_SIZE_RANGE,
+    OTHER_FORMS,
     TIMES_BALANCED,
     form_errors,
     log_choices,
-    log_density,
     log_prior,
     other_forms,
+    ratio_of_parameter,
 )
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import extended
@@ -81,13 +85,25 @@ class Option:
         return bool(self.regularities or self.resembled)
 
     @property
+    def lines_differ(self) -> bool:
+        """Whether the lines of its effect may differ one by one from the library's."""
+        return self.forms.lines is not None
+
+    @property
     def form_errors(self) -> tuple[float, ...]:
-        """Those that effects may have on this gear."""
-        return form_errors(self.fitted.unit.structure)
+        """Those that its effects may have."""
+        return (LINE_ERROR,) if self.lines_differ else form_errors(self.fitted.unit.structure)
+
+    @property
+    def other_forms(self) -> tuple[float, ...]:
+        """Those that what resembles its effects may have beyond these."""
+        return OTHER_FORMS[-1:] if self.lines_differ else other_forms(self.fitted.unit.structure)
 
     @property
     def form_error(self) -> float:
         """Posterior mean of the form error of the effects, as a share; 0 without effects."""
+        if self.forms.lines:
+            return self.forms.lines.share(LINE_ERROR)
         weights = np.exp(logsumexp(self.evidences, axis=0) - self.log_evidence)
         return float(weights @ np.array(self.form_errors)) if self.effects else 0.0
 
@@ -110,8 +126,11 @@ class Option:
 
     def opened(self, zeros: int, form_error: int) -> Fitted:
         """The fit with a factor of zeros, and with the form of its effects open by a form error (numbers of both)."""
+        error = self.form_errors[form_error]
+        if self.forms.lines:
+            return self.fitted.allowing_forms(self.forms.lines.opened(error))
         directions = np.hstack([np.zeros((len(self.fitted.residual), 0)), *form_directions(self.fitted)])
-        return self.fitted.with_zeros(ZEROS[zeros]).allowing_forms(self.form_errors[form_error] * directions)
+        return self.fitted.with_zeros(ZEROS[zeros]).allowing_forms(error * directions)
 
 
 def causes_of(effects: Sequence[Effect], regularities: Sequence[Described]) -> frozenset[object]:
@@ -146,10 +165,23 @@ def option(start: Fitted, effects: Sequence[Effect], regularities: Sequence[Desc
         If no gear with these effects turns steadily.
     """
     free = reduce(set_free, regularities, start.without_free)
-    fitted = extended(free, effects).closed
+    found = _of_fit(extended(free, effects).closed, regularities, kinds)
+    if not found.forms.lines:
+        return found
+    # The errors of lines are told by what the fit leaves.
+    try:
+        again = extended(found.opened(*found.likeliest), ())
+    except NoSteadyState:
+        return found
+    return max(found, _of_fit(again.closed, regularities, kinds), key=lambda each: each.log_posterior)
+
+
+def _of_fit(fitted: Fitted, regularities: Sequence[Described], kinds: int) -> Option:
+    """The option of a fit with its effects and regularities."""
     added = fitted.added
     evidences, forms = log_evidences(fitted)
-    evidences += sum(prior_ratio(fitted, number) for number in range(len(added)))
+    if not forms.lines:
+        evidences += sum(prior_ratio(fitted, number) for number in range(len(added)))
     evidences -= len(regularities) * np.log(LOG_SIZE_RANGE)
     prior = log_prior(len(added), 0, len(regularities), kinds)
     # A copy without what the fit has cached, which would fill the memory.
@@ -168,7 +200,7 @@ def resembling(known: Option, kinds: int) -> list[Option]:
     kinds : int
         Number of effects in the library.
     """
-    of_effects, others = known.form_errors, other_forms(known.fitted.unit.structure)
+    of_effects, others = known.form_errors, known.other_forms
     many, counts_for = len(known.effects), np.log(len(of_effects))
     of_fit = logsumexp(known.evidences[:, 0]) + counts_for - known.forms.gain([of_effects[0]] * many)
     # By what is unlike an effect, and how much; all other effects share a form error.
@@ -220,24 +252,16 @@ def prior_ratio(fitted: Fitted, number: int) -> float:
     return float(found)
 
 
-def ratio_of_parameter(q: Quantity, value: float, deviation: float, sd: float, position: float) -> float:
-    """The same of one parameter: found with a standard deviation, by a fit whose prior has another one (``sd``), so
-    many of which it lies from where it began.
-    """
-    ratio = log_density(q, value, deviation) + np.log(2 * np.pi * sd**2) / 2
-    told = 1 - min(deviation / sd, 1.0) ** 2  # share of the variance that the recordings take away
-    if q.role is not Role.SIZE:
-        ratio = min(ratio - np.log(max(told, 1e-12)) / 2, -np.log(deviation / sd))
-    return float(ratio + position**2 / 2)
-
-
 def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"], Forms]:
     """Log evidence of a fit by the factor on the deviation of zeros and by the form error, and the forms of effects.
 
     The priors of zeros and form error are in it, and all parameters are integrated over their priors (Laplace). The
-    form errors gain the same for all factors of zeros.
+    form errors gain the same for all factors of zeros. Where lines differ one by one, offsets of gauges are among them,
+    so that zeros do not lie further off.
     """
     fitted = fitted.with_zeros(1.0)
+    if any(map(fitted.unit.opens, fitted.added)):
+        return _with_open_lines(fitted)
     measured, whole = fitted.measured, fitted.whole
     # Further zeros open like forms, each kind by a factor of its own.
     zeros = Forms.of([whole.whiten(each) for each in measured.free_zeros], fitted.white)
@@ -248,6 +272,16 @@ def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"]
     forms = Forms.of([best.whiten(each) for each in form_directions(fitted)], best.whiten(fitted.from_start))
     gains = [forms.gain([error] * len(fitted.added)) for error in form_errors(fitted.unit.structure)]
     return of_zeros[:, None] + gains - np.log(len(gains)), forms
+
+
+def _with_open_lines(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"], Forms]:
+    """The same of a fit with one effect, whose lines differ one by one."""
+    held, lines = with_effect_known(fitted), OpenLines.of(fitted)
+    forms = Forms.of([np.zeros((len(held.white), 0))], held.white, lines)
+    volume = log_volume(fitted, held.whole.with_columns(lines.opened(LINE_ERROR)))
+    evidences = np.full((len(ZEROS), 1), -np.inf)
+    evidences[0] = np.log(1 - BALANCED) + held.log_likelihood + forms.gain([LINE_ERROR]) + volume
+    return evidences, forms
 
 
 def expected_gain(fitted: Fitted, change: Float[np.ndarray, " row"]) -> float:

@@ -33,6 +33,10 @@ FORM_ERRORS = (0.01, 0.02, 0.05, 0.1, 0.2)
 # What resembles an effect may look just like it, or have little more than channels, orders and law in common: its lines
 # differ by one of these shares, or by one of those above, all being equally probable.
 OTHER_FORMS = (0.5, 1.0)
+# On a gear of another structure, lines differ one by one. A group of them is as in the library with the first
+# probability. Otherwise the logarithm of its error is uniform, from so many standard deviations of the noise to this
+# share of the largest line of the effect; of what resembles an effect, to all of it.
+EXACT_LINE, LEAST_ERROR, LINE_ERROR = 0.5, 0.1, 0.3
 # Sizes of effects and amplitudes of regularities are known to a factor only: their logarithm is uniform over so many
 # factors of e, a ratio of 3000.
 LOG_SIZE_RANGE = 8.0
@@ -118,3 +122,17 @@ def log_density(q: Quantity, value: float, deviation: float) -> float:
         both_signs = q.low < q.nothing < q.high
         return -float(np.log(LOG_SIZE_RANGE * max(abs(value - q.nothing), deviation) * (1 + both_signs)))
     return -float(np.log(q.high - q.low))
+
+
+def ratio_of_parameter(q: Quantity, value: float, deviation: float, sd: float, position: float) -> float:
+    """Logarithm of the prior density of a fitted parameter over that of the fit, where it was found.
+
+    The fit has a normal prior with the standard deviation ``sd`` about where the parameter began, which lies
+    ``position`` of them away. A parameter that the recordings do not tell has the ratio 1: its prior, whatever it is,
+    integrates to 1.
+    """
+    ratio = log_density(q, value, deviation) + np.log(2 * np.pi * sd**2) / 2
+    told = 1 - min(deviation / sd, 1.0) ** 2  # share of the variance that the recordings take away
+    if q.role is not Role.SIZE:
+        ratio = min(ratio - np.log(max(told, 1e-12)) / 2, -np.log(deviation / sd))
+    return float(ratio + position**2 / 2)

@@ -15,6 +15,7 @@ from jaxtyping import Float
 from swgsim.chain import NoSteadyState
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities
+from swgsim.identification.decide.line_proposals import LineProposals, Proposal
 from swgsim.identification.decide.option import Option, causes_of, expected_gain, option, resembling
 from swgsim.identification.decide.prior import LOG_SIZE_RANGE, MOST_CAUSES, log_choices, log_prior
 from swgsim.identification.fit.fitted import Fitted
@@ -86,6 +87,8 @@ class Search:
         """The best option, and the same without each of its causes."""
         best = self._best
         yield best
+        if best.lines_differ:  # others may be a pair of causes, neither of which explains much alone
+            yield max((o for o in self._options.values() if not o.lines_differ), key=lambda each: each.log_posterior)
         fewer: list[tuple[Sequence[Effect], Sequence[Described]]] = [
             *(([e for e in best.effects if e is not effect], best.regularities) for effect in best.effects),
             *((best.effects, [r for r in best.regularities if r is not each]) for each in best.regularities),
@@ -122,6 +125,12 @@ class Search:
         """Fit an option with one more effect, or with one more regularity."""
         self._expanded.add(base.causes)
         causes = len(base.effects) + bool(base.regularities)
+        if base.lines_differ:
+            return  # what else would be missing cannot be told from the errors of its lines
+        if not base.effects and not base.regularities and self.null.unit.of_another_structure:
+            for each in self._whose_lines_differ(base):
+                if self._promises(base, each.log_evidence, effects=1):
+                    self._fit(each.start, (each.effect,), ())
         # Zeros that may lie far off, and an effect whose form is open, hide the further effect that made them so.
         zeros, form_error = base.likeliest
         for setting in dict.fromkeys(((zeros, form_error), (0, form_error), (zeros, 0))):
@@ -149,7 +158,11 @@ class Search:
         every, changes = self._library
         if any(effect.sharp for effect in start.added):  # beyond its threshold other effects look different
             changes = signatures(every, start.model, start.measured)
-        offered = [n for n, each in enumerate(every) if not any(map(each.repeats, start.added))]
+        offered = [
+            n
+            for n, each in enumerate(every)
+            if not any(map(each.repeats, start.added)) and not start.unit.opens(each.kind)
+        ]
         STEPS.info("screening %d hypotheses", len(offered))
         scores = best_of_kind(rank([every[n] for n in offered], [changes[n] for n in offered], start))
         of_hypothesis = dict(zip(every, changes, strict=True))
@@ -159,6 +172,14 @@ class Search:
             for each in leading
         ]
         return sorted(zip(gains, leading, strict=True), key=lambda each: -each[0])[:EFFECTS_TRIED]
+
+    def _whose_lines_differ(self, base: Option) -> list[Proposal]:
+        """The leading effects whose lines differ one by one from the library's."""
+        every, changes = self._library
+        gauges = self.null.measured.layout.of_gauges.any()
+        offered = [n for n, each in enumerate(every) if gauges and self.null.unit.opens(each.kind)]
+        STEPS.info("screening %d hypotheses whose lines may differ", len(offered))
+        return LineProposals(base).leading([every[n] for n in offered], [changes[n] for n in offered], EFFECTS_TRIED)
 
     @cached_property
     def _library(self) -> tuple[list[Hypothesis], list[Float[np.ndarray, "row column"]]]:

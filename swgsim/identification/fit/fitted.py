@@ -258,7 +258,11 @@ class Fitted:
     def deviation(self) -> dict[str, float]:
         """Standard deviation of each fitted parameter, in its unit."""
         # The form tolerance of an effect is no doubt about its own size.
-        columns = self.of_unit.whiten(self.J)
+        return self.deviation_under(self.of_unit)
+
+    def deviation_under(self, errors: Covariance) -> dict[str, float]:
+        """The same, with errors of the residual that are given."""
+        columns = errors.whiten(self.J)
         covariance = np.linalg.inv(columns.T @ columns + np.eye(columns.shape[1]))
         spread = np.sqrt(np.diag(covariance)).tolist()
         return {name: s * p.sd for (name, p), s in zip(self.parameters.items(), spread, strict=True)}

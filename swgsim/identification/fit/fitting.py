@@ -163,12 +163,13 @@ def extended(now: Fitted, added: Sequence[Effect]) -> Fitted:
     """A fit with further effects, which are fitted along; those it has begin where they were found.
 
     What is left open of their form is so only once all have moved without: else it would hold them where they lay
-    without the further ones, which then contradict themselves.
+    without the further ones, which then contradict themselves. Where lines differ one by one, they always are: without,
+    the fit would follow the lines that the library has not.
     """
     model = now.unit.model.plus(*now.added, *added)
     # Parameters of effects are counted from where the effects are, so only the unit's keep their position.
     position = now.position_of_unit
-    if added and now.allowed.forms.any():
+    if added and now.allowed.forms.any() and not any(map(now.unit.opens, (*now.added, *added))):
         ahead = fit(now.measured, now.unit, model, position=position, allowed=now.closed.allowed, turns=1)
         position = ahead.calibrated.position
     return fit(now.measured, now.unit, model, position=position, allowed=now.allowed)

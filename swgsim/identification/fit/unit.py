@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from swgsim.effects.base import Effect, overrides
+from swgsim.effects.base import BY_STRUCTURE, Effect, overrides
 from swgsim.gear.gear import Gear
 from swgsim.identification.covariance.influence_map_error import (
     Sizes,
@@ -165,6 +165,10 @@ class Unit:
     def of_another_structure(self) -> bool:
         """Whether commissioning found the structure further off than the mesh of the truss makes it."""
         return self.structure > OF_MESH
+
+    def opens(self, effect: Effect | type[Effect]) -> bool:
+        """Whether the lines of an effect differ one by one from the library's, as the structure is another one."""
+        return self.of_another_structure and effect.place in BY_STRUCTURE
 
     @cached_property
     def declared(self) -> dict[str, Declared]:

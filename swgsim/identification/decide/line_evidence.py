@@ -1,0 +1,88 @@
+"""Evidence of an effect whose lines differ one by one from the library's, on a gear of another structure.
+
+The errors of its lines are known to a factor only (:mod:`line_errors`), so the residual that it leaves has no normal
+distribution. The evidence is the likelihood of that residual at the fitted parameters of the effect, times the volume
+of these: their prior density, and their spread about the fit with the errors of lines open.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+
+from swgsim.effects.quantity import quantities
+from swgsim.identification.covariance.low_rank_covariance import Covariance
+from swgsim.identification.decide.line_errors import LineErrors, groups
+from swgsim.identification.decide.prior import log_choices, ratio_of_parameter
+from swgsim.identification.fit.fitted import Fitted
+from swgsim.identification.fit.form_error import signature
+from swgsim.identification.fit.priors import name_of
+
+
+@dataclass(frozen=True, eq=False)
+class OpenLines:
+    """Errors of the lines of an effect, and what the residual has along them.
+
+    Attributes
+    ----------
+    errors : LineErrors
+    along : array (column,)
+        What the residual has along their directions.
+    largest : float
+        Largest lines of the effect, in standard deviations of the noise.
+    """
+
+    errors: LineErrors
+    along: Float[np.ndarray, " column"]
+    largest: float
+
+    @classmethod
+    def of(cls, fitted: Fitted) -> "OpenLines":
+        """Of the effect of a fit."""
+        held, found = with_effect_known(fitted), groups(fitted.measured)
+        errors, directions = LineErrors.of(found, held.whole.whiten(found.columns))
+        (number,) = fitted.numbers_added
+        (largest,) = found.largest(signature(fitted, number)[None] @ found.weights).tolist()
+        return cls(errors, directions.T @ held.white, largest)
+
+    def gain(self, error: float) -> float:
+        """Gain of log-likelihood if lines differ by up to a share of the largest one."""
+        return float(self.errors.gain(self.along[None], np.array([self.largest * error]))[0])
+
+    def opened(self, error: float) -> Float[np.ndarray, "row column"]:
+        """Errors of lines, one standard deviation each, as the residual tells them."""
+        return self.errors.columns * self.errors.deviations(self.along, self.largest * error)
+
+    def share(self, error: float) -> float:
+        """Root mean square of the errors, as a share of the largest lines."""
+        off = self.errors.deviations(self.along, self.largest * error)
+        return float(np.sqrt((off**2).mean()) / self.largest)
+
+
+def with_effect_known(fitted: Fitted) -> Fitted:
+    """The same fit, the parameters of added effects being known."""
+    kept = [n for n, name in enumerate(fitted.parameters) if name in fitted.declared]
+    J = fitted.calibrated.J[..., kept]
+    calibrated = replace(fitted.calibrated, position=fitted.position_of_unit, J=J)
+    return replace(fitted, parameters=fitted.declared, calibrated=calibrated)
+
+
+def log_volume(fitted: Fitted, errors: Covariance) -> float:
+    """Logarithm of the prior probability of the volume that the parameters of the effect fill about the fit.
+
+    Parameters
+    ----------
+    fitted : Fitted
+    errors : Covariance
+        Of the residual with these parameters known, the errors of lines being open.
+    """
+    (number,), (effect,) = fitted.numbers_added, fitted.added
+    names = {name_of(effect, number, name): name for name in quantities(type(effect))}
+    moved = [key for key in fitted.parameters if key in names]
+    white = errors.whiten(fitted.J[:, [list(fitted.parameters).index(key) for key in moved]])
+    covariance = np.linalg.inv(white.T @ white + np.eye(len(moved)))
+    found = np.linalg.slogdet(covariance)[1] / 2 - log_choices(type(effect))
+    for key, variance in zip(moved, np.diag(covariance), strict=True):
+        q, value, sd = quantities(type(effect))[names[key]], getattr(effect, names[key]), fitted.parameters[key].sd
+        found += ratio_of_parameter(q, float(value), float(np.sqrt(variance)) * sd, sd, 0.0)
+    return float(found)
