@@ -18,13 +18,8 @@ from swgsim.identification.covariance.low_rank_covariance import Covariance
 from swgsim.identification.covariance.recording_covariance import RecordingCovariance
 from swgsim.identification.data.features import ORDERS, Layout
 from swgsim.identification.decide.decision import CREDIBLE, decide
-from swgsim.identification.decide.option import (
-    ZEROS,
-    expected_gain,
-    option,
-    prior_ratio,
-    resembling,
-)
+from swgsim.identification.decide.evidence import ZEROS, expected_gain, prior_ratio
+from swgsim.identification.decide.option import option, resembling
 from swgsim.identification.decide.prior import (
     BALANCED,
     FORM_ERRORS,

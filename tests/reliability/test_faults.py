@@ -9,6 +9,7 @@ import resource
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -20,6 +21,7 @@ from fabricated import recordings
 from hydra import compose, initialize_config_dir
 from omegaconf import OmegaConf
 from prepared_store import prepared
+from tqdm import tqdm
 
 from learn import tracking
 from swgsim.dataset import plan as plans
@@ -65,9 +67,15 @@ def made(folder: Path) -> bytes:
 # Kills.
 
 
+def make(config: dict[str, Any]) -> None:
+    """With a lock of its own for the progress bar: processes share it, and one that is killed never releases it."""
+    tqdm.set_lock(threading.RLock())
+    generation.run(config)
+
+
 @pytest.mark.parametrize("finished", [0, 1, PARTS - 1])
 def test_a_killed_data_set_is_continued_to_the_same_bytes(finished: int, tmp_path: Path, undisturbed: bytes) -> None:
-    making = multiprocessing.get_context("fork").Process(target=generation.run, args=[tiny(tmp_path)])
+    making = multiprocessing.get_context("fork").Process(target=make, args=[tiny(tmp_path)])
     making.start()
     while len(list(tmp_path.glob(".small-clean.h5.parts/*.h5"))) < finished:
         assert making.is_alive()

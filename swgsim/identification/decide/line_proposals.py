@@ -15,7 +15,6 @@ from jaxtyping import Float
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities
 from swgsim.identification.decide.line_errors import LineErrors, groups
-from swgsim.identification.decide.option import Option
 from swgsim.identification.decide.prior import LINE_ERROR, LOG_SIZE_RANGE, log_choices
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.search.hypotheses import Hypothesis, signatures
@@ -64,15 +63,16 @@ class _Found:
 
 
 class LineProposals:
-    """Effects beside those of an option.
+    """Effects that explain most of what the model of a unit leaves.
 
     Parameters
     ----------
-    base : Option
+    null : Fitted
+        The model without effects.
     """
 
-    def __init__(self, base: Option) -> None:
-        self._fitted = base.fitted.with_zeros(1.0).closed
+    def __init__(self, null: Fitted) -> None:
+        self._fitted = null.with_zeros(1.0).closed
         self._groups = groups(self._fitted.measured)
         self._errors, self._directions = LineErrors.of(self._groups, self._fitted.whole.whiten(self._groups.columns))
         self._r = self._fitted.white

@@ -12,27 +12,20 @@ from scipy.special import logsumexp
 from swgsim.chain import NoSteadyState
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities
+from swgsim.identification.decide.evidence import ZEROS, log_evidences, prior_ratio
 from swgsim.identification.decide.forms import Forms
-from swgsim.identification.decide.line_evidence import OpenLines, log_volume, with_effect_known
 from swgsim.identification.decide.prior import (
-    BALANCED,
     LINE_ERROR,
     LOG_SIZE_RANGE,
     OTHER_FORMS,
-    TIMES_BALANCED,
     form_errors,
-    log_choices,
     log_prior,
     other_forms,
-    ratio_of_parameter,
 )
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import extended
-from swgsim.identification.fit.form_error import form_directions, parts
-from swgsim.identification.fit.priors import name_of
+from swgsim.identification.fit.form_error import form_directions
 from swgsim.identification.search.regularities import Described, set_free
-
-ZEROS = (1.0, *TIMES_BALANCED)
 
 
 @dataclass(frozen=True, eq=False)
@@ -227,82 +220,3 @@ def resembling(known: Option, kinds: int) -> list[Option]:
             )
         )
     return found
-
-
-def prior_ratio(fitted: Fitted, number: int) -> float:
-    """Logarithm of the prior density of the parameters of an added effect over that of the fit, where it found them.
-
-    The fit has a normal prior about where each parameter began. A parameter that the recordings do not tell has the
-    ratio 1: its prior, whatever it is, integrates to 1.
-
-    Parameters
-    ----------
-    fitted : Fitted
-    number : int
-        Of the effect among the added ones.
-    """
-    number += len(fitted.unit.model.effects)
-    effect = fitted.model.effects[number]
-    found = -log_choices(type(effect))
-    for name, q in quantities(type(effect)).items():
-        if (key := name_of(effect, number, name)) not in fitted.parameters:
-            continue
-        position, value = fitted.calibrated.position[key], float(getattr(effect, name))
-        found += ratio_of_parameter(q, value, fitted.deviation[key], fitted.parameters[key].sd, position)
-    return float(found)
-
-
-def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"], Forms]:
-    """Log evidence of a fit by the factor on the deviation of zeros and by the form error, and the forms of effects.
-
-    The priors of zeros and form error are in it, and all parameters are integrated over their priors (Laplace). The
-    form errors gain the same for all factors of zeros. Where lines differ one by one, offsets of gauges are among them,
-    so that zeros do not lie further off.
-    """
-    fitted = fitted.with_zeros(1.0)
-    if any(map(fitted.unit.opens, fitted.added)):
-        return _with_open_lines(fitted)
-    measured, whole = fitted.measured, fitted.whole
-    # Further zeros open like forms, each kind by a factor of its own.
-    zeros = Forms.of([whole.whiten(each) for each in measured.free_zeros], fitted.white)
-    balanced = np.log([1 - BALANCED, *[BALANCED / len(TIMES_BALANCED)] * len(TIMES_BALANCED)])
-    of_zeros = balanced + fitted.log_likelihood + [zeros.gain(measured.beyond_zeros(times)) for times in ZEROS]
-    likeliest = ZEROS[int(of_zeros.argmax())]
-    best = whole.with_columns(measured.further_zeros(likeliest)) if likeliest > 1 else whole
-    forms = Forms.of([best.whiten(each) for each in form_directions(fitted)], best.whiten(fitted.from_start))
-    gains = [forms.gain([error] * len(fitted.added)) for error in form_errors(fitted.unit.structure)]
-    return of_zeros[:, None] + gains - np.log(len(gains)), forms
-
-
-def _with_open_lines(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"], Forms]:
-    """The same of a fit with one effect, whose lines differ one by one."""
-    held, lines = with_effect_known(fitted), OpenLines.of(fitted)
-    forms = Forms.of([np.zeros((len(held.white), 0))], held.white, lines)
-    volume = log_volume(fitted, held.whole.with_columns(lines.opened(LINE_ERROR)))
-    evidences = np.full((len(ZEROS), 1), -np.inf)
-    evidences[0] = np.log(1 - BALANCED) + held.log_likelihood + forms.gain([LINE_ERROR]) + volume
-    return evidences, forms
-
-
-def expected_gain(fitted: Fitted, change: Float[np.ndarray, " row"]) -> float:
-    """Log evidence that an effect is expected to bring with its prior of the size, without a fit.
-
-    It is relative to an evidence with the prior of one form error, as in :attr:`Option.evidences`.
-
-    Parameters
-    ----------
-    fitted : Fitted
-        The model without the effect.
-    change : array (row,)
-        What the effect changes at its estimated size, which stands for the standard deviation of its prior.
-    """
-    whole = fitted.whole
-    white, r = whole.whiten(np.column_stack([change, parts(fitted, change)])), fitted.white
-    size = white[:, 0]
-    # The size is projected out of the residual and of the forms, which then are no size.
-    norm = float(np.sqrt(1 + size @ size))
-    along = float(size @ r) / norm
-    root = size / (norm * (1 + norm))  # (1 + size size')^-1/2 = 1 - root size'
-    forms = Forms.of([white[:, 1:] - np.outer(root, size @ white[:, 1:])], r - root * float(size @ r))
-    gains = [forms.gain([error]) for error in form_errors(fitted.unit.structure)]
-    return along**2 / 2 - np.log(norm * LOG_SIZE_RANGE) + float(logsumexp(gains))

@@ -15,8 +15,9 @@ from jaxtyping import Float
 from swgsim.chain import NoSteadyState
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import quantities
+from swgsim.identification.decide.evidence import expected_gain
 from swgsim.identification.decide.line_proposals import LineProposals, Proposal
-from swgsim.identification.decide.option import Option, causes_of, expected_gain, option, resembling
+from swgsim.identification.decide.option import Option, causes_of, option, resembling
 from swgsim.identification.decide.prior import LOG_SIZE_RANGE, MOST_CAUSES, log_choices, log_prior
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import at_plausible_parameters
@@ -128,7 +129,7 @@ class Search:
         if base.lines_differ:
             return  # what else would be missing cannot be told from the errors of its lines
         if not base.effects and not base.regularities and self.null.unit.of_another_structure:
-            for each in self._whose_lines_differ(base):
+            for each in self._whose_lines_differ():
                 if self._promises(base, each.log_evidence, effects=1):
                     self._fit(each.start, (each.effect,), ())
         # Zeros that may lie far off, and an effect whose form is open, hide the further effect that made them so.
@@ -173,13 +174,15 @@ class Search:
         ]
         return sorted(zip(gains, leading, strict=True), key=lambda each: -each[0])[:EFFECTS_TRIED]
 
-    def _whose_lines_differ(self, base: Option) -> list[Proposal]:
+    def _whose_lines_differ(self) -> list[Proposal]:
         """The leading effects whose lines differ one by one from the library's."""
         every, changes = self._library
         gauges = self.null.measured.layout.of_gauges.any()
         offered = [n for n, each in enumerate(every) if gauges and self.null.unit.opens(each.kind)]
         STEPS.info("screening %d hypotheses whose lines may differ", len(offered))
-        return LineProposals(base).leading([every[n] for n in offered], [changes[n] for n in offered], EFFECTS_TRIED)
+        return LineProposals(self.null).leading(
+            [every[n] for n in offered], [changes[n] for n in offered], EFFECTS_TRIED
+        )
 
     @cached_property
     def _library(self) -> tuple[list[Hypothesis], list[Float[np.ndarray, "row column"]]]:
