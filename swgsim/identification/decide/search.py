@@ -128,10 +128,6 @@ class Search:
         causes = len(base.effects) + bool(base.regularities)
         if base.lines_differ:
             return  # what else would be missing cannot be told from the errors of its lines
-        if not base.effects and not base.regularities and self.null.unit.of_another_structure:
-            for each in self._whose_lines_differ():
-                if self._promises(base, each.log_evidence, effects=1):
-                    self._fit(each.start, (each.effect,), ())
         # Zeros that may lie far off, and an effect whose form is open, hide the further effect that made them so.
         zeros, form_error = base.likeliest
         for setting in dict.fromkeys(((zeros, form_error), (0, form_error), (zeros, 0))):
@@ -145,6 +141,11 @@ class Search:
                 gain = (first.gain - first.freedom * np.log1p(first.gain / first.freedom)) / 2 - np.log(LOG_SIZE_RANGE)
                 if self._promises(base, evidence + gain, regularities=1):
                     self._fit(opened, (), (*base.regularities, first))
+        # Last, as the expected evidence of those above is too low beside theirs if nothing explains the recordings.
+        if not base.effects and not base.regularities and self.null.unit.of_another_structure:
+            for each in self._whose_lines_differ():
+                if self._promises(base, each.log_evidence, effects=1):
+                    self._fit(each.start, (each.effect,), ())
 
     def _promises(self, base: Option, log_evidence: float, *, effects: int = 0, regularities: int = 0) -> bool:
         """Whether an option with more causes may be nearly as probable as the best one, by its expected evidence."""
