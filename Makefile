@@ -86,7 +86,7 @@ paper-choices: $(READY)  ## the choices that the paper leaves open, fitted to it
 	OMP_NUM_THREADS=1 $(SWG) paper-choices $(if $(SMALL),$(FEW_TRIALS)) $(ALONE)
 
 # The fast twin is trained beside the others: a third of its time, and the end of a sweep, leave a core idle.
-transfer: data  ## beyond the paper: networks, transfer to gears never seen, report/transfer.html, half an hour (SMALL=1: two minutes)
+transfer: data  ## beyond the paper: networks, transfer to gears never seen, report/transfer.html (SMALL=1: two minutes)
 	@set -e; \
 	for grid in $(GEARS) $(TRAINING); do $(SWG) generate grid=$$grid condition=bench $(ALONE); done; \
 	$(SWG) train experiment=fast_twin grid=$(GEARS) $(QUICK) $(FEW_GEARS) $(ALONE) & fast=$$!; \

@@ -4,13 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from loop_fixtures import fitted_to
+from loop_fixtures import fitted_to, holding
 from scipy.special import logsumexp
 from scipy.stats import norm
 
+from swgsim.effects.cam_form import CamForm
 from swgsim.identification.data.features import ORDERS, Layout
+from swgsim.identification.decide import line_proposals
 from swgsim.identification.decide.line_errors import LineErrors, groups
+from swgsim.identification.decide.line_proposals import LineProposals
 from swgsim.identification.decide.prior import EXACT_LINE, LEAST_ERROR
+from swgsim.identification.search.hypotheses import Hypothesis
 
 LAYOUT = Layout(("T_out", "s0", "s1", "s2", "s3", "s4"))
 SINGLE = [2, 3, 4, 5]
@@ -124,3 +128,28 @@ def test_a_fit_with_these_errors_raises_the_likelihood():
         size = (weights * signature) @ recorded / ((weights * signature) @ signature)
     assert (np.diff(gains) > -1e-9).all()
     assert size == pytest.approx(1.0, abs=0.02)
+
+
+def test_size_and_phase_are_those_of_the_lines_that_an_effect_explains(monkeypatch):
+    """Of a cam whose other lines, of the same waves, are 40 times the noise off: least squares would follow them."""
+    rng = np.random.default_rng(3)
+    null = fitted_to(LAYOUT, rng)
+    found = groups(null.measured)
+    main, *others = [slice(first, first + count) for first, count in zip(found.first, found.counts, strict=True)][5:9]
+    signature = 200 * found.columns[:, main] @ rng.normal(size=(main.stop - main.start, 2))
+    for other in others:
+        signature += 10 * found.columns[:, other] @ rng.normal(size=(other.stop - other.start, 2))
+    recorded = 2 * signature @ [np.cos(0.7), np.sin(0.7)] + rng.normal(size=len(signature)) * np.sqrt(
+        null.measured.variance.ravel()
+    )
+    recorded += sum(40 * found.columns[:, each] @ rng.normal(size=each.stop - each.start) for each in others)
+    every = [Hypothesis(CamForm, (("n", 3),), 1)]
+
+    def at_size(asked, *_):
+        return [each.typical / every[0].typical * signature for each in asked]
+
+    monkeypatch.setattr(line_proposals, "signatures", at_size)
+    (proposal,) = LineProposals(holding(null, recorded)).leading(every, [signature], 5)
+    assert proposal.effect.amplitude == pytest.approx(2 * every[0].typical, rel=0.05)
+    assert proposal.effect.phase == pytest.approx(0.7, abs=0.05)
+    assert proposal.start.allowed.forms.any()

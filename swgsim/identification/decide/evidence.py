@@ -51,8 +51,8 @@ def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"]
     """Log evidence of a fit by the factor on the deviation of zeros and by the form error, and the forms of effects.
 
     The priors of zeros and form error are in it, and all parameters are integrated over their priors (Laplace). The
-    form errors gain the same for all factors of zeros. Where lines differ one by one, offsets of gauges are among them,
-    so that zeros do not lie further off.
+    form errors gain the same for all factors of zeros. Where lines differ one by one, bridges count as not balanced
+    anew: their offsets are among the lines.
     """
     fitted = fitted.with_zeros(1.0)
     if any(map(fitted.unit.opens, fitted.added)):

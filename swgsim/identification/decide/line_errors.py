@@ -1,7 +1,7 @@
 """Errors of lines: by how much the lines of an effect may differ on a gear of another structure.
 
 There, no single share says how well the library knows an effect. A line that the library has may be right to 1 %, and
-one that it hardly has may be as large as a fifth of the largest. So every group of lines has an error of its own whose
+one that it hardly has may be a third of the largest. So every group of lines has an error of its own whose
 standard deviation is known to a factor only, from the noise to a share of the largest line of the effect.
 
 What turns with the wave generator passes the gauges one after the other, whatever the structure: a line of order k is a
@@ -95,13 +95,13 @@ def _patterns(measured: Measured) -> Iterator[tuple[int, Float[np.ndarray, "feat
     sensors = [name for name in SENSORS if name in layout.channels]
     single = [name for name in SENSORS[1:] if name in sensors]
     waves = range(len(single)) if len(single) == len(SENSORS) - 1 else ()
+    alone = [name for name in sensors if not waves or name not in single]
     for order in range(int(layout.order.max()) + 1):
         for wave in waves:
             if order or wave < len(waves) - 1:  # a mean does not turn, so that a wave is that against it
                 yield order, _columns(layout, {name: n * (wave - order) for n, name in enumerate(single)}, order)
-        for name in sensors if not waves else SENSORS[:1]:
-            if name in sensors:
-                yield order, _columns(layout, {name: 0}, order)
+        for name in alone:
+            yield order, _columns(layout, {name: 0}, order)
 
 
 def _columns(layout: Layout, quarters: Mapping[str, int], order: int) -> Float[np.ndarray, "feature column"]:

@@ -131,7 +131,11 @@ class LineProposals:
             found = max(self._likeliest(around, changes), key=lambda each: each.log_likelihood, default=found)
         return found
 
-    def _of_signature(self, signature: Float[np.ndarray, "row column"]) -> tuple[Float[np.ndarray, "row column"], ...]:
+    def _of_signature(
+        self, signature: Float[np.ndarray, "row column"]
+    ) -> tuple[
+        Float[np.ndarray, "row column"], Float[np.ndarray, "direction column"], Float[np.ndarray, "direction column"]
+    ]:
         """Whitened, along the directions of line errors, and by the weights of groups."""
         x = self._fitted.whole.whiten(signature)
         return x, self._directions.T @ x, self._groups.weights.T @ signature

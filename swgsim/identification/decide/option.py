@@ -159,9 +159,9 @@ def option(start: Fitted, effects: Sequence[Effect], regularities: Sequence[Desc
     """
     free = reduce(set_free, regularities, start.without_free)
     found = _of_fit(extended(free, effects).closed, regularities, kinds)
-    if not found.forms.lines:
+    if not found.lines_differ:
         return found
-    # The errors of lines are told by what the fit leaves.
+    # The residual of the first fit determines the errors of lines of the second one.
     try:
         again = extended(found.opened(*found.likeliest), ())
     except NoSteadyState:
