@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from linear_chain import KINDS, Bump, patch_chain, signatures_of
 from loop_fixtures import fitted_to, holding
 from scipy.special import logsumexp
 from scipy.stats import norm
@@ -13,7 +14,9 @@ from swgsim.identification.data.features import ORDERS, Layout
 from swgsim.identification.decide import line_proposals
 from swgsim.identification.decide.line_errors import LineErrors, groups
 from swgsim.identification.decide.line_proposals import LineProposals
+from swgsim.identification.decide.option import option, resembling
 from swgsim.identification.decide.prior import EXACT_LINE, LEAST_ERROR
+from swgsim.identification.fit.unit import Unit
 from swgsim.identification.search.hypotheses import Hypothesis
 
 LAYOUT = Layout(("T_out", "s0", "s1", "s2", "s3", "s4"))
@@ -153,3 +156,29 @@ def test_size_and_phase_are_those_of_the_lines_that_an_effect_explains(monkeypat
     assert proposal.effect.amplitude == pytest.approx(2 * every[0].typical, rel=0.05)
     assert proposal.effect.phase == pytest.approx(0.7, abs=0.05)
     assert proposal.start.allowed.forms.any()
+
+
+def test_an_effect_whose_lines_differ_is_weighed_with_their_errors(monkeypatch):
+    """Lines of another group are 30 times the noise off: with errors of lines the effect is found, and its evidence is
+    that of a residual which these explain, less what their errors and its size cost.
+    """
+    rng = np.random.default_rng(4)
+    null = fitted_to(LAYOUT, rng)
+    changes = signatures_of(null, rng)
+    patch_chain(monkeypatch, null, changes)
+    found = groups(null.measured)
+    off = slice(found.first[6], found.first[7])
+    wrong = 30 * found.columns[:, off] @ rng.normal(size=off.stop - off.start)
+    signal = 90 * changes[Bump].ravel()
+    held = holding(null, signal + wrong + rng.normal(size=len(signal)) * np.sqrt(null.measured.variance.ravel()))
+    exact = option(held, (Bump(90.0),), (), len(KINDS))
+    monkeypatch.setattr(Unit, "opens", lambda _, effect: effect is Bump or isinstance(effect, Bump))
+    opened = option(held, (Bump(90.0),), (), len(KINDS))
+    assert not exact.lines_differ
+    assert opened.lines_differ
+    assert opened.log_evidence > exact.log_evidence + 50
+    assert opened.effects[0].height == pytest.approx(90, rel=0.02)
+    assert 0 < opened.form_error < 0.3
+    (unknown,) = resembling(opened, len(KINDS))
+    assert unknown.unknown
+    assert unknown.log_posterior < opened.log_posterior
