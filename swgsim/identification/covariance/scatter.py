@@ -25,6 +25,7 @@ STATED = {
     "trigger of gauges": 0.0017,
     "viscous friction": 0.05,
     "dry friction": 0.02,
+    "flank friction": 0.02,
     **{f"beat of order {order}, {wave}": 2e-6 for order in BEATING for wave in ("cosine", "sine")},
     "zero of n_in": 0.1,
     "zero of T_in": 0.001,
@@ -118,19 +119,21 @@ def directions(
     }
     t = model.gear.transmission
     viscous = model.plus(ParameterScatter(1 + STEP, 1.0))
-    dry = replace(model, gear=replace(model.gear, transmission=replace(t, b0=t.b0 * (1 + STEP))))
+    dry = replace(model, gear=model.gear.with_transmission(b0=t.b0 * (1 + STEP)))
+    flanks = replace(model, gear=model.gear.with_transmission(mu=t.mu * (1 + STEP)))
     beats = [
         model.plus(KinematicErrorOrder(order, BEAT_STEP, phase)) for order in BEATING for phase in (np.pi / 2, 0.0)
     ]
     # All in one go, as the chain takes about as long for many runs as for few.
-    every = predict([model, viscous, dry, *beats], [*situations, *shifted("T_out"), *shifted("n_in_rpm")], layout)
+    everywhere = [*situations, *shifted("T_out"), *shifted("n_in_rpm")]
+    every = predict([model, viscous, dry, flanks, *beats], everywhere, layout)
     here, loaded, faster = np.split(every, 3, axis=1)
     base, *others = here
     slopes = {
         "load": (loaded[0] - base) / steps["T_out"][:, None],
         "speed": (faster[0] - base) / steps["n_in_rpm"][:, None],
     }
-    for kind, there in zip(("viscous friction", "dry friction", *BEATS), others, strict=True):
+    for kind, there in zip(("viscous friction", "dry friction", "flank friction", *BEATS), others, strict=True):
         slopes[kind] = (there - base) / (BEAT_STEP if kind in BEATS else STEP)
     found = []
     for kind in kinds(layout):
