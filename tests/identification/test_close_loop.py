@@ -285,10 +285,11 @@ def found() -> Answer:
 def test_ripple_that_is_not_used_is_reported(found):
     before, layout = found.decision.before, found.decision.before.measured.layout
     inflation = np.where((layout.channel == "T_out") & (layout.order > 0), UNHEARD, 1.0)
-    inflation[(layout.channel == "s1") & (layout.order == 4)] = 5.0
-    unused = replace(before, unit=replace(before.unit, inflation=inflation))
+    discrepancy = np.zeros((1, len(layout.channels), 13))
+    discrepancy[0, layout.channels.index("n_in"), 4] = 0.01
+    unused = replace(before, unit=replace(before.unit, inflation=inflation, discrepancy=discrepancy))
     said = report(replace(found, decision=replace(found.decision, before=unused)), ())
-    assert (said["unheard"], said["less_certain"]) == (["T_out"], {"s1": [4]})
+    assert (said["unheard"], said["less_certain"]) == (["T_out"], {"n_in": [4]})
 
 
 def test_untestable_effects_are_named_where_nothing_is_missing(found):

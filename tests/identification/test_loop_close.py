@@ -135,8 +135,7 @@ def test_what_the_healthy_gear_did_as_well_is_not_missing():
     searched = [*EASY, *map(type, habits)]
     healthy = recorded(habits, seed=1, warming=10.0)
     own = learn_unit(healthy, Unit(Model(GEAR)))
-    lobes = (healthy.layout.channel == "s2") & (healthy.layout.order == 2)
-    assert own.inflated(healthy.variance)[:, lobes] == pytest.approx(healthy.variance[:, lobes])
+    assert own.discrepancy is None
     (found,) = decide(recorded((*habits, ECCENTRIC), seed=2, warming=10.0), own, searched).effects
     assert found.r == pytest.approx(10e-6, rel=0.2)
 

@@ -22,6 +22,9 @@ GAIN_PER_KELVIN, ZERO_PER_KELVIN = 3e-4, 2.5e-4
 MEAN_AT_FULL_SPEED = 1e-3
 # Of friction with the temperature of the grease [1/K] (physics.md DY3).
 FRICTION, FRICTION_PER_KELVIN = ("b0", "b1"), 0.03
+# By how much the grease may be warmer than the recorded temperature, on another day than it was then [K]: a sensor on
+# the housing, an estimate.
+WARMER_GREASE = 0.5
 
 
 def of_gauges(
@@ -59,9 +62,22 @@ def of_friction(
         Change by one spread of each parameter.
     situations : sequence of Situation
     """
+    return _per_kelvin(model, parameters, J) * _warmer(situations)[..., None]
+
+
+def of_grease(
+    model: Model, parameters: Mapping[str, Declared], J: Float[np.ndarray, "situation feature parameter"]
+) -> Float[np.ndarray, "situation feature 1"]:
+    """Friction of a grease that is warmer than recorded, one standard deviation; arguments of :func:`of_friction`."""
+    return WARMER_GREASE * _per_kelvin(model, parameters, J).sum(axis=-1, keepdims=True)
+
+
+def _per_kelvin(
+    model: Model, parameters: Mapping[str, Declared], J: Float[np.ndarray, "situation feature parameter"]
+) -> Float[np.ndarray, "situation feature friction"]:
     numbers = [list(parameters).index(name) for name in FRICTION]
     spreads = [FRICTION_PER_KELVIN * parameters[name].value(model) / parameters[name].sd for name in FRICTION]
-    return J[..., numbers] * np.array(spreads) * _warmer(situations)[..., None]
+    return J[..., numbers] * np.array(spreads)
 
 
 def of_learned(

@@ -17,11 +17,12 @@ from swgsim.identification.covariance.influence_map_error import (
     largest_lines,
     sizes_of,
 )
+from swgsim.identification.covariance.model_discrepancy import Shares, discrepancies
 from swgsim.identification.covariance.narrow_band import NarrowBand
 from swgsim.identification.covariance.scatter import Scatter
 from swgsim.identification.data.features import Layout, layout_of
 from swgsim.identification.data.model import Model, Situation, predict
-from swgsim.identification.fit.healthy_variability import FRICTION, of_friction, of_gauges, of_learned
+from swgsim.identification.fit.healthy_variability import FRICTION, of_friction, of_gauges, of_grease, of_learned
 from swgsim.identification.fit.map_fit import linearised
 from swgsim.identification.fit.priors import ANY_FRICTION, Declared, of_unit
 from swgsim.identification.fit.unit_file import read_unit, write_unit
@@ -68,7 +69,10 @@ class Unit:
         After commissioning, prior standard deviation of the lines that lie far from the model and were learned; 0 for
         all others.
     inflation : array (feature,) or None
-        After commissioning, factor on the noise variance of each line, from the lack of fit of the healthy gear.
+        Factor on the noise variance of each line; UNHEARD for ripple that is not used.
+    discrepancy : array (point, channel, order) or None
+        After commissioning, by which share lines may differ from the model at each operating point of :attr:`healthy`,
+        as a standard deviation (:mod:`~swgsim.identification.covariance.model_discrepancy`).
     bands : tuple of NarrowBand
         Noise in narrow bands found by commissioning.
     healthy : tuple of Recording
@@ -93,6 +97,7 @@ class Unit:
     largest: Mapping[str, float] | None = None
     learned: Float[np.ndarray, " feature"] | None = None
     inflation: Float[np.ndarray, " feature"] | None = None
+    discrepancy: Shares | None = None
     bands: tuple[NarrowBand, ...] = ()
     healthy: tuple[Recording, ...] = ()
     zero: float = 0.0
@@ -210,11 +215,31 @@ class Unit:
             directions += [of_gauges(predicted, situations, layout), of_friction(model, own, of_own, situations)]
         if self.learned is not None:
             directions.append(of_learned(self.learned, situations, layout))
+        known, further = self._discrepancies(situations, predicted, layout)
+        if self.nominal:
+            further = np.concatenate([further, of_grease(model, own, of_own)], axis=-1)
+        directions.append(known)
         torque = predict([_driving(model)], situations, Layout(("T_out",)))[0]
         directions.append(form_columns(self.form(predicted, layout), situations, layout, torque))
         open_ = np.concatenate(directions, axis=-1)
         shift = np.zeros(predicted.shape) if self.shift is None else open_ @ self.shift
-        return LeftOpen(predicted, shift, open_ if self.reach is None else open_ @ self.reach, of_parameters)
+        columns = np.concatenate([open_ if self.reach is None else open_ @ self.reach, further], axis=-1)
+        return LeftOpen(predicted, shift, columns, of_parameters)
+
+    def _discrepancies(
+        self, situations: Sequence[Situation], predicted: Float[np.ndarray, "situation feature"], layout: Layout
+    ) -> tuple[Float[np.ndarray, "situation feature known"], Float[np.ndarray, "situation feature further"]]:
+        """Those at the operating points of the healthy recordings, and those at further ones."""
+        if self.discrepancy is None:
+            nothing = np.zeros((*predicted.shape, 0))
+            return nothing, nothing
+        points = list(dict.fromkeys(recording.point for recording in self.healthy))
+        further = list(dict.fromkeys(each.point for each in situations if each.point not in points))
+        as_elsewhere = np.tile(self.discrepancy.max(axis=0), (len(further), 1, 1))
+        return (
+            discrepancies(self.discrepancy, points, situations, predicted, layout),
+            discrepancies(as_elsewhere, further, situations, predicted, layout),
+        )
 
     def form(self, predicted: Float[np.ndarray, "situation feature"], layout: Layout) -> Sizes:
         """Prior standard deviations of lines, by influence maps and by learning: the last of the directions."""

@@ -51,7 +51,6 @@ def report(
     before, after = answer.decision.before, answer.decision.after
     measured = before.measured
     unheard = _orders(before, before.unit.inflation, UNHEARD / 2)
-    less_certain = _orders(before, before.unit.inflation, 1.0)
     effects = found_effects(answer)
     return {
         "verdict": answer.verdict,
@@ -73,7 +72,7 @@ def report(
         "commissioned": before.unit.commissioned,
         "structure": before.unit.structure,
         "learned": _orders(before, before.unit.learned, 0.0),
-        "less_certain": {name: orders for name, orders in less_certain.items() if name not in unheard},
+        "less_certain": _with_discrepancy(before),
         "unheard": list(unheard),
         "zeros": measured.zeros,
         "channels": {name: CHANNELS[name].unit for name in measured.layout.channels},
@@ -97,6 +96,15 @@ def _orders(fitted: Fitted, values: Float[np.ndarray, " feature"] | None, limit:
     layout, more = fitted.measured.layout, values > limit
     found = {channel: layout.order[more & (layout.channel == channel)] for channel in layout.channels}
     return {channel: np.unique(orders).tolist() for channel, orders in found.items() if len(orders)}
+
+
+def _with_discrepancy(fitted: Fitted) -> dict[str, list[int]]:
+    """Orders of every channel that have a model discrepancy at some operating point."""
+    if fitted.unit.discrepancy is None:
+        return {}
+    channel, order = np.nonzero(fitted.unit.discrepancy.max(axis=0))
+    names = fitted.measured.layout.channels
+    return {names[number]: order[channel == number].tolist() for number in np.unique(channel)}
 
 
 def calibrated(fitted: Fitted) -> dict[str, dict[str, Any]]:

@@ -1,0 +1,105 @@
+"""A healthy gear differs from the model near a resonance, at one operating point and not at another."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from chain_fixtures import GEAR
+from small_bench import SECTORS, coarse_model
+
+from swgsim.bench.scatter import Bench
+from swgsim.bench.virtual_bench import Sessions, record_sessions
+from swgsim.effects.library import LIBRARY
+from swgsim.gear.acquisition import Window
+from swgsim.gear.conditions import Conditions
+from swgsim.gear.gear import OperatingPoint
+from swgsim.identification.commissioning.commissioning import learn_unit
+from swgsim.identification.covariance.model_discrepancy import discrepancies
+from swgsim.identification.data.features import Layout
+from swgsim.identification.data.measured import Measured
+from swgsim.identification.data.model import Model, Situation, predict
+from swgsim.identification.decide.decision import decide
+from swgsim.identification.fit.unit import Unit
+from swgsim.recordings.recording import Recording
+
+POINTS = tuple(OperatingPoint(n, T) for n in (1000.0, 2000.0, 4000.0) for T in (7.0, 70.0))
+LAYOUT = Layout(("T_out", "s1"))
+# Share by which the torque's line of order 2 is off at some operating points, as by a resonance that the model lacks.
+OFF = {POINTS[2]: 0.05, POINTS[3]: -0.04j, POINTS[5]: 0.03j}
+
+
+def test_a_discrepancy_is_a_complex_factor_on_one_line_at_one_operating_point():
+    situations = [Situation(point, Conditions()) for point in POINTS[:2]]
+    predicted = np.random.default_rng(1).normal(size=(2, len(LAYOUT)))
+    shares = np.zeros((2, 2, 13))
+    shares[1, 0, 4] = 0.1
+    real, imaginary = np.moveaxis(discrepancies(shares, POINTS[:2], situations, predicted, LAYOUT), -1, 0)
+    before, after = LAYOUT.lines(predicted), LAYOUT.lines(predicted + 2 * real - 3 * imaginary)
+    factor = np.ones((2, 2, 13), complex)
+    factor[1, 0, 4] = 1 + 0.1 * (2 - 3j)
+    np.testing.assert_allclose(after, before * factor)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _coarse_mesh() -> Iterator[None]:
+    with coarse_model():
+        yield
+
+
+def recorded(seed: int, effects=()) -> Measured:
+    """Recordings of a gear whose torque at the output is off the model."""
+    plan = Sessions(POINTS, repeats=3, revolutions=6, warming=0.0, unsteady=0.0, thermometer=0.0)
+    recordings = record_sessions(GEAR, effects, plan, Bench(), seed=seed, window=Window(), sectors=SECTORS)
+    return Measured.of([_off(replace(each, conditions=Conditions(25.01))) for each in recordings])
+
+
+def _off(recording: Recording) -> Recording:
+    torque, turn = recording.channels["T_out"], np.exp(2j * recording.channels["phi_in"])
+    line = 2 * (torque * turn.conj()).mean()
+    return replace(
+        recording,
+        channels={**recording.channels, "T_out": torque + (OFF.get(recording.point, 0) * line * turn).real},
+    )
+
+
+@pytest.fixture(scope="module")
+def unit(_coarse_mesh) -> Unit:
+    """The gear as commissioned."""
+    return learn_unit(recorded(1), Unit(Model(GEAR)))
+
+
+@pytest.mark.slow
+def test_commissioning_finds_how_large_it_is_and_what_it_is(unit):
+    assert unit.discrepancy is not None
+    assert unit.discrepancy.max() in (0.01, 0.03)
+    situations = [Situation(point, Conditions(25.01)) for point in POINTS]
+    layout = Layout(("n_in", "T_in", "T_out", "s0", "s1", "s2", "s3", "s4"))
+    open_ = unit.left_open(unit.model, situations, layout)
+    off = layout.lines(open_.predicted + open_.shift)[:, 2, 2] / layout.lines(open_.predicted)[:, 2, 2]
+    off /= off[0]  # what all have in common is a parameter's
+    assert off[2:4] == pytest.approx([1 + OFF[POINTS[2]], 1 + OFF[POINTS[3]]], abs=0.02)
+
+
+@pytest.mark.slow
+def test_what_it_was_in_the_healthy_gear_is_no_news(unit):
+    searched = [LIBRARY[name] for name in ("eccentric_wave_generator", "reduced_damping", "load_torque_ripple")]
+    assert not decide(recorded(2), unit, searched).effects
+    (found,) = decide(recorded(3, (searched[0](10e-6, 1.0),)), unit, searched).effects
+    assert found.r == pytest.approx(10e-6, rel=0.2)
+
+
+@pytest.mark.slow
+def test_at_another_operating_point_it_is_as_uncertain_as_before_it_was_found(unit):
+    layout = Layout(("n_in", "T_in", "T_out", "s0", "s1", "s2", "s3", "s4"))
+    line = (layout.channel == "T_out") & (layout.order == 2)
+
+    def spread(point: OperatingPoint) -> float:
+        (columns,) = unit.left_open(unit.model, [Situation(point, Conditions(25.01))], layout).columns
+        return float(np.sqrt((columns[line] ** 2).sum()))
+
+    elsewhere = OperatingPoint(3000.0, 30.0)
+    (predicted,) = predict([unit.model], [Situation(elsewhere, Conditions(25.01))], layout)[0]
+    amplitude = np.hypot(*predicted[line])
+    assert spread(elsewhere) > unit.discrepancy.max() * amplitude
+    assert spread(POINTS[2]) < spread(elsewhere) / 2
