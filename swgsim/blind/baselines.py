@@ -12,7 +12,7 @@ from swgsim.effects.base import Effect
 from swgsim.identification.decide.prior import MOST_CAUSES
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.search.hypotheses import Hypothesis, hypotheses, signatures
-from swgsim.identification.search.shortlist import ALPHA
+from swgsim.identification.search.screening import ALPHA
 
 
 class Task(NamedTuple):

@@ -27,7 +27,7 @@ from swgsim.identification.report.identification import Identification
 from swgsim.identification.report.interest import INTEREST
 from swgsim.identification.report.next_experiment import next_experiments
 from swgsim.identification.report.report_fields import report
-from swgsim.identification.search.shortlist import ALPHA
+from swgsim.identification.search.screening import ALPHA
 from swgsim.recordings.checks.across import session_defects
 from swgsim.recordings.read import require_usable
 from swgsim.recordings.recording import Recording

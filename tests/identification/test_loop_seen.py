@@ -12,8 +12,7 @@ from swgsim.effects.reduced_stiffness import ReducedStiffness
 from swgsim.identification.data.features import Layout
 from swgsim.identification.search import detection_limit as seen
 from swgsim.identification.search.hypotheses import Hypothesis
-from swgsim.identification.search.screening import DEVIATIONS_AT_LIMIT, Score
-from swgsim.identification.search.shortlist import ALPHA
+from swgsim.identification.search.screening import ALPHA, DEVIATIONS_AT_LIMIT, Score
 
 FITTED = fitted_to(Layout(("s1",)), np.random.default_rng(1))
 TYPICAL = 0.2

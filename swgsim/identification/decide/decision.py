@@ -21,7 +21,6 @@ from swgsim.identification.fit.shape_marginal import over_shapes
 from swgsim.identification.fit.unit import Unit
 from swgsim.identification.search.detection_limit import at_sizes_seen
 from swgsim.identification.search.screening import Score
-from swgsim.identification.search.shortlist import screened
 
 # Probability of the set of options that the report shows.
 CREDIBLE = 0.95
@@ -125,7 +124,7 @@ def decide(measured: Measured, unit: Unit, kinds: Sequence[type[Effect]], *, see
     if best.resembled:
         best = search.with_regularities(best)
     before = first.with_zeros(best.zeros)
-    scores = at_sizes_seen(screened(first, kinds, generator("screen", seed, 0)), at_plausible_parameters(first))
+    scores = at_sizes_seen(search.scores(generator("screen", seed, 0)), at_plausible_parameters(first))
     return Decision(before, _with(best), best, weighed, answers, scores)
 
 

@@ -25,7 +25,7 @@ from swgsim.identification.fit.form_error import all_show
 from swgsim.identification.search.hypotheses import Hypothesis, hypotheses, signatures
 from swgsim.identification.search.refining import zoom
 from swgsim.identification.search.regularities import Described, describe, other_laws
-from swgsim.identification.search.screening import Score, best_of_kind, rank
+from swgsim.identification.search.screening import Score, best_of_kind, rank, screen
 
 # Limits of the computing time: effects that are compared without and with a fit from one option, regularities of an
 # option, and fits in all.
@@ -65,6 +65,11 @@ class Search:
         alone = [each for each in self._options.values() if not each.regularities]
         more = [like for each in alone for like in resembling(each, len(self.kinds))]
         return sorted([*self._options.values(), *more], key=lambda each: -each.log_posterior)
+
+    def scores(self, rng: np.random.Generator) -> tuple[Score, ...]:
+        """The best hypothesis of every effect, with p-values from drawn noise."""
+        every, changes = self._library
+        return tuple(best_of_kind(screen(every, changes, at_plausible_parameters(self.null), rng))) if every else ()
 
     def with_regularities(self, unknown: Option) -> Option:
         """An option with regularities for something unknown that resembles an effect, and with the same effects."""

@@ -20,8 +20,7 @@ from swgsim.identification.interharmonics.unattributed_lines import Unnamed
 from swgsim.identification.report.interest import INTEREST, shares_of_spread
 from swgsim.identification.search.high_orders import high_order_regularities
 from swgsim.identification.search.regularities import Described
-from swgsim.identification.search.screening import Score
-from swgsim.identification.search.shortlist import ALPHA
+from swgsim.identification.search.screening import ALPHA, Score
 from swgsim.recordings.recording import Recording
 
 # Largest number of regularities that are described at high orders.

@@ -21,7 +21,7 @@ from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.report.answer import Answer
 from swgsim.identification.report.effect_words import plain_title
 from swgsim.identification.report.prediction_errors import WHAT
-from swgsim.identification.search.shortlist import ALPHA
+from swgsim.identification.search.screening import ALPHA
 from swgsim.recordings.recording import CHANNELS
 from swgsim.storage.labelled_signals import SENSORS
 

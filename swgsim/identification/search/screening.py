@@ -28,7 +28,9 @@ LEAST_DIRECTION = 1e-6
 DRAWS, AT_ONCE, ENOUGH = 1000, 100, 20
 # A logarithm of a probability this many times that of the most unlikely draw is far beyond them.
 FAR = 2.0
-# Standard deviations of a size at its detection limit: 4.31 for the p-value :data:`shortlist.ALPHA` among the 300
+# Probability of a false effect on recordings in which nothing is missing.
+ALPHA = 0.005
+# Standard deviations of a size at its detection limit: 4.31 for the p-value :data:`ALPHA` among the 300
 # hypotheses of the library, and 0.84 for a power of 80 %.
 DEVIATIONS_AT_LIMIT = 5.15
 
