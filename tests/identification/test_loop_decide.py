@@ -18,7 +18,7 @@ from swgsim.identification.covariance.low_rank_covariance import Covariance
 from swgsim.identification.covariance.recording_covariance import RecordingCovariance
 from swgsim.identification.data.features import ORDERS, Layout
 from swgsim.identification.decide.decision import CREDIBLE, decide
-from swgsim.identification.decide.evidence import ZEROS, expected_gain, prior_ratio
+from swgsim.identification.decide.evidence import ZEROS, expected_gain
 from swgsim.identification.decide.option import option, resembling
 from swgsim.identification.decide.prior import (
     BALANCED,
@@ -28,6 +28,7 @@ from swgsim.identification.decide.prior import (
     OTHER_FORMS,
     TIMES_BALANCED,
     log_prior,
+    prior_ratio,
     ratio_of_parameter,
 )
 from swgsim.identification.decide.search import Search
@@ -73,6 +74,11 @@ def density(fitted, residual, *more):
     return multivariate_normal(cov=covariance).logpdf(residual) + len(residual) / 2 * np.log(2 * np.pi)
 
 
+def ratio_of(fitted, number):
+    """Of the priors of an added effect, as the fit left it."""
+    return prior_ratio(fitted, fitted.numbers_added[number], fitted.deviation, fitted.calibrated.position)
+
+
 @pytest.mark.usefixtures("_chain")
 def test_evidence_is_the_marginal_likelihood(null):
     """Of bridges as they were, and balanced anew: zeros so many times as far off."""
@@ -109,7 +115,7 @@ def test_evidence_of_an_effect_is_the_mean_over_the_form_errors(null, changes):
     found = option(held, (Bump(4.0),), (), len(KINDS))
     fitted, (D,) = found.fitted, form_directions(found.fitted)
     by_error = [density(fitted, fitted.from_start, fitted.J, each * D) for each in FORM_ERRORS]
-    expected = np.log(1 - BALANCED) + logsumexp(by_error) - np.log(len(FORM_ERRORS)) + prior_ratio(fitted, 0)
+    expected = np.log(1 - BALANCED) + logsumexp(by_error) - np.log(len(FORM_ERRORS)) + ratio_of(fitted, 0)
     assert found.zeros == 1
     assert logsumexp(found.evidences[0]) == pytest.approx(expected, abs=1e-4)
     weights = np.exp(by_error - logsumexp(by_error))
@@ -128,7 +134,7 @@ def test_evidence_of_what_resembles_an_effect_is_the_mean_over_all_form_errors(n
     forms = product(FORM_ERRORS, OTHER_FORMS)
     by_error = [density(fitted, fitted.from_start, fitted.J, known * B, unlike * D) for known, unlike in forms]
     of_dip_alone = logsumexp(by_error) - np.log(len(FORM_ERRORS) * (len(FORM_ERRORS) + len(OTHER_FORMS)))
-    of_dip_alone += np.log(1 - BALANCED) + prior_ratio(fitted, 0) + prior_ratio(fitted, 1)
+    of_dip_alone += np.log(1 - BALANCED) + ratio_of(fitted, 0) + ratio_of(fitted, 1)
     similar = found.log_evidence + np.log(len(FORM_ERRORS) / (len(FORM_ERRORS) + len(OTHER_FORMS)))
     assert of_dip.log_evidence == pytest.approx(np.logaddexp(similar, of_dip_alone), abs=1e-4)
     assert of_both.log_prior - found.log_prior == pytest.approx(log_prior(0, 2, 0, 4) - log_prior(2, 0, 0, 4))

@@ -4,7 +4,6 @@ import numpy as np
 from jaxtyping import Float
 from scipy.special import logsumexp
 
-from swgsim.effects.quantity import quantities
 from swgsim.identification.decide.forms import Forms
 from swgsim.identification.decide.line_evidence import OpenLines, log_volume, with_effect_known
 from swgsim.identification.decide.prior import (
@@ -13,38 +12,12 @@ from swgsim.identification.decide.prior import (
     LOG_SIZE_RANGE,
     TIMES_BALANCED,
     form_errors,
-    log_choices,
-    ratio_of_parameter,
 )
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.form_error import form_directions, parts
-from swgsim.identification.fit.priors import name_of
 
 # Factors on the deviation of the zeros of gauges.
 ZEROS = (1.0, *TIMES_BALANCED)
-
-
-def prior_ratio(fitted: Fitted, number: int) -> float:
-    """Logarithm of the prior density of the parameters of an added effect over that of the fit, where it found them.
-
-    The fit has a normal prior about where each parameter began. A parameter that the recordings do not tell has the
-    ratio 1: its prior, whatever it is, integrates to 1.
-
-    Parameters
-    ----------
-    fitted : Fitted
-    number : int
-        Of the effect among the added ones.
-    """
-    number += len(fitted.unit.model.effects)
-    effect = fitted.model.effects[number]
-    found = -log_choices(type(effect))
-    for name, q in quantities(type(effect)).items():
-        if (key := name_of(effect, number, name)) not in fitted.parameters:
-            continue
-        position, value = fitted.calibrated.position[key], float(getattr(effect, name))
-        found += ratio_of_parameter(q, value, fitted.deviation[key], fitted.parameters[key].sd, position)
-    return float(found)
 
 
 def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"], Forms]:

@@ -13,7 +13,7 @@ from jaxtyping import Float
 from swgsim.effects.quantity import quantities
 from swgsim.identification.covariance.low_rank_covariance import Covariance
 from swgsim.identification.decide.line_errors import LineErrors, groups
-from swgsim.identification.decide.prior import log_choices, ratio_of_parameter
+from swgsim.identification.decide.prior import prior_ratio
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.form_error import signature
 from swgsim.identification.fit.priors import name_of
@@ -77,12 +77,10 @@ def log_volume(fitted: Fitted, errors: Covariance) -> float:
         Of the residual with these parameters known, the errors of lines being open.
     """
     (number,), (effect,) = fitted.numbers_added, fitted.added
-    names = {name_of(effect, number, name): name for name in quantities(type(effect))}
-    moved = [key for key in fitted.parameters if key in names]
-    white = errors.whiten(fitted.J[:, [list(fitted.parameters).index(key) for key in moved]])
+    its = {name_of(effect, number, each) for each in quantities(type(effect))}
+    moved = [name for name in fitted.parameters if name in its]
+    white = errors.whiten(fitted.J[:, [list(fitted.parameters).index(name) for name in moved]])
     covariance = np.linalg.inv(white.T @ white + np.eye(len(moved)))
-    found = np.linalg.slogdet(covariance)[1] / 2 - log_choices(type(effect))
-    for key, variance in zip(moved, np.diag(covariance), strict=True):
-        q, value, sd = quantities(type(effect))[names[key]], getattr(effect, names[key]), fitted.parameters[key].sd
-        found += ratio_of_parameter(q, float(value), float(np.sqrt(variance)) * sd, sd, 0.0)
-    return float(found)
+    spreads = zip(moved, np.sqrt(np.diag(covariance)), strict=True)
+    deviation = {name: float(spread) * fitted.parameters[name].sd for name, spread in spreads}
+    return float(np.linalg.slogdet(covariance)[1]) / 2 + prior_ratio(fitted, number, deviation)

@@ -12,7 +12,7 @@ from scipy.special import logsumexp
 from swgsim.chain import NoSteadyState
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities
-from swgsim.identification.decide.evidence import ZEROS, log_evidences, prior_ratio
+from swgsim.identification.decide.evidence import ZEROS, log_evidences
 from swgsim.identification.decide.forms import Forms
 from swgsim.identification.decide.prior import (
     LINE_ERROR,
@@ -21,6 +21,7 @@ from swgsim.identification.decide.prior import (
     form_errors,
     log_prior,
     other_forms,
+    prior_ratio,
 )
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import extended
@@ -174,7 +175,8 @@ def _of_fit(fitted: Fitted, regularities: Sequence[Described], kinds: int) -> Op
     added = fitted.added
     evidences, forms = log_evidences(fitted)
     if not forms.lines:
-        evidences += sum(prior_ratio(fitted, number) for number in range(len(added)))
+        deviation, position = fitted.deviation, fitted.calibrated.position
+        evidences += sum(prior_ratio(fitted, number, deviation, position) for number in fitted.numbers_added)
     evidences -= len(regularities) * np.log(LOG_SIZE_RANGE)
     prior = log_prior(len(added), 0, len(regularities), kinds)
     # A copy without what the fit has cached, which would fill the memory.

@@ -4,6 +4,8 @@ An option is a set of causes that the model may lack. All numbers are estimates,
 change only for a reason from physics or from the practice of test benches.
 """
 
+from collections.abc import Mapping
+
 import numpy as np
 from scipy.special import gammaln
 
@@ -11,6 +13,8 @@ from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Quantity, Role, quantities
 from swgsim.effects.regularity import LAWS, PATTERNS
 from swgsim.identification.data.features import ORDERS
+from swgsim.identification.fit.fitted import Fitted
+from swgsim.identification.fit.priors import name_of
 
 # Probability that a gear which is examined is healthy. Causes occur independently of one another, so their number has a
 # Poisson distribution.
@@ -124,13 +128,35 @@ def log_density(q: Quantity, value: float, deviation: float) -> float:
     return -float(np.log(q.high - q.low))
 
 
-def ratio_of_parameter(q: Quantity, value: float, deviation: float, sd: float, position: float) -> float:
-    """Logarithm of the prior density of a fitted parameter over that of the fit, where it was found.
+def prior_ratio(
+    fitted: Fitted, number: int, deviation: Mapping[str, float], position: Mapping[str, float] | None = None
+) -> float:
+    """Logarithm of the prior density of the parameters of an added effect over that of the fit, where it found them.
 
-    The fit has a normal prior with the standard deviation ``sd`` about where the parameter began, which lies
-    ``position`` of them away. A parameter that the recordings do not tell has the ratio 1: its prior, whatever it is,
-    integrates to 1.
+    The fit has a normal prior about where each parameter began. A parameter that the recordings do not tell has the
+    ratio 1: its prior, whatever it is, integrates to 1. The number of variants counts as well.
+
+    Parameters
+    ----------
+    fitted : Fitted
+    number : int
+        Of the effect among those of the model.
+    deviation : mapping
+        Standard deviation of each fitted parameter, in its unit.
+    position : mapping, optional
+        Where the fit found each, in spreads from where it began; by default they are counted from there.
     """
+    effect = fitted.model.effects[number]
+    found = -log_choices(type(effect))
+    for name, q in quantities(type(effect)).items():
+        if (key := name_of(effect, number, name)) in fitted.parameters:
+            value, sd = float(getattr(effect, name)), fitted.parameters[key].sd
+            found += ratio_of_parameter(q, value, deviation[key], sd, position[key] if position else 0.0)
+    return float(found)
+
+
+def ratio_of_parameter(q: Quantity, value: float, deviation: float, sd: float, position: float) -> float:
+    """The same for one parameter; the prior of the fit has the standard deviation ``sd``, ``position`` of them away."""
     ratio = log_density(q, value, deviation) + np.log(2 * np.pi * sd**2) / 2
     told = 1 - min(deviation / sd, 1.0) ** 2  # share of the variance that the recordings take away
     if q.role is not Role.SIZE:
