@@ -38,7 +38,7 @@ def expected(fitted: Fitted) -> Float[np.ndarray, "situation feature"]:
     (session,) = measured.sessions
     situations = (*measured.situations, *UNSEEN)
     unsure = fitted.unit.left_open(fitted.model, situations, measured.layout, fitted.parameters)
-    predicted, shift, left_open, J = (part[-len(UNSEEN) :] for part in unsure)
+    predicted, shift, left_open, _, J = (part[-len(UNSEEN) :] for part in unsure)
     mean = fitted.whole.common_mean(fitted.from_start)
     first = fitted.errors.columns.shape[1]
     found = mean[first : first + left_open.shape[-1]]

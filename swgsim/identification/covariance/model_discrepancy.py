@@ -2,34 +2,74 @@
 
 After Kennedy and O'Hagan, Bayesian calibration of computer models, J. R. Statist. Soc. B 63 (2001). Near a resonance a
 small error of the model changes lines of one operating point, and hardly those of another one. So each line has a
-complex factor 1 + z at each operating point. Recordings of the healthy gear determine z. At an operating point without
-such recordings, it is as uncertain as before them.
+complex factor 1 + z at each operating point. Recordings of the healthy gear determine z where they show the line. The
+z of all other lines and operating points are open: an effect may make a line there that is to be seen.
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from swgsim.gear.gear import OperatingPoint
 from swgsim.identification.data.features import Layout
 from swgsim.identification.data.model import Situation
 
-# Standard deviation of z by operating point and line; 0 where it is nothing beside the noise.
-Shares = Float[np.ndarray, "point channel order"]
 
+@dataclass(frozen=True, eq=False)
+class Discrepancy:
+    """The prior of z, and where healthy recordings determine it.
 
-def discrepancies(
-    shares: Shares,
-    points: Sequence[OperatingPoint],
-    situations: Sequence[Situation],
-    predicted: Float[np.ndarray, "situation feature"],
-    layout: Layout,
-) -> Float[np.ndarray, "situation feature column"]:
-    """Change of the lines by one standard deviation of the real and the imaginary part of each z."""
-    point, channel, order = np.nonzero(shares)
-    there = np.equal.outer([points.index(each.point) if each.point in points else -1 for each in situations], point)
-    of_line = (layout.channel[:, None] == np.array(layout.channels)[channel]) & (layout.order[:, None] == order)
-    by = (there * shares[point, channel, order])[:, None] * of_line
-    a_quarter_later = layout.vector(1j * layout.lines(predicted))
-    return np.concatenate([by * predicted[..., None], by * a_quarter_later[..., None]], axis=-1)
+    Attributes
+    ----------
+    sd : array (channel,)
+        Standard deviation of the real and of the imaginary part of z; 0 for channels that have none.
+    least : array (channel, order)
+        Amplitude of a line below which its z is not seen beside the noise.
+    points : tuple of OperatingPoint
+        Those of the healthy recordings.
+    determined : array (point, channel, order)
+        The lines that these show.
+    """
+
+    sd: Float[np.ndarray, " channel"]
+    least: Float[np.ndarray, "channel order"]
+    points: tuple[OperatingPoint, ...]
+    determined: Bool[np.ndarray, "point channel order"]
+
+    def columns(
+        self, situations: Sequence[Situation], predicted: Float[np.ndarray, "situation feature"], layout: Layout
+    ) -> Float[np.ndarray, "situation feature column"]:
+        """Change of the lines by one standard deviation of each z that healthy recordings determine."""
+        return self._columns(self.determined, self.points, situations, predicted, layout)
+
+    def undetermined(
+        self, situations: Sequence[Situation], predicted: Float[np.ndarray, "situation feature"], layout: Layout
+    ) -> Float[np.ndarray, "situation feature column"]:
+        """The same of all other z that are seen."""
+        points = tuple(dict.fromkeys(each.point for each in situations))
+        lines, of = np.abs(layout.lines(predicted)), [points.index(each.point) for each in situations]
+        seen = np.zeros((len(points), *self.least.shape), bool)
+        np.logical_or.at(seen, of, lines > self.least)
+        for number, point in enumerate(points):
+            if point in self.points:
+                seen[number] &= ~self.determined[self.points.index(point)]
+        return self._columns(seen, points, situations, predicted, layout)
+
+    def _columns(
+        self,
+        chosen: Bool[np.ndarray, "point channel order"],
+        points: Sequence[OperatingPoint],
+        situations: Sequence[Situation],
+        predicted: Float[np.ndarray, "situation feature"],
+        layout: Layout,
+    ) -> Float[np.ndarray, "situation feature column"]:
+        """Real and imaginary part of each z of some lines."""
+        point, channel, order = np.nonzero(chosen)
+        there = np.array([[each.point == points[number] for number in point] for each in situations], dtype=float)
+        of_line = (layout.channel[:, None] == np.array(layout.channels)[channel]) & (layout.order[:, None] == order)
+        by = there[:, None] * (of_line * self.sd[channel])
+        turned = layout.vector(1j * layout.lines(predicted))
+        both = np.stack([by * predicted[..., None], by * turned[..., None]], axis=-1)
+        return both.reshape(*predicted.shape, 2 * len(point))

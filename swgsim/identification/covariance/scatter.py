@@ -81,7 +81,7 @@ class Scatter:
     @property
     def with_unrecorded_temperature(self) -> "Scatter":
         """Friction scatters at least by a warming that was not recorded; repeats in a row do not show it."""
-        least = {name: UNRECORDED if "friction" in name else 0.0 for name in self.sd}
+        least = {name: UNRECORDED if name in ("viscous friction", "dry friction") else 0.0 for name in self.sd}
         return replace(self, sd={name: max(sd, least[name]) for name, sd in self.sd.items()})
 
     def drawn(self, rng: np.random.Generator, draws: int) -> Float[np.ndarray, "kind draw"]:

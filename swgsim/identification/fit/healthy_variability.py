@@ -22,8 +22,8 @@ GAIN_PER_KELVIN, ZERO_PER_KELVIN = 3e-4, 2.5e-4
 MEAN_AT_FULL_SPEED = 1e-3
 # Of friction with the temperature of the grease [1/K] (physics.md DY3).
 FRICTION, FRICTION_PER_KELVIN = ("b0", "b1"), 0.03
-# By how much the grease may be warmer than the recorded temperature, on another day than it was then [K]: a sensor on
-# the housing, an estimate.
+# By how much the grease may be warmer beside the recorded temperature than it was in the commissioning [K]: an estimate
+# for a sensor on the housing. All later recordings share it.
 WARMER_GREASE = 0.5
 
 
@@ -65,11 +65,13 @@ def of_friction(
     return _per_kelvin(model, parameters, J) * _warmer(situations)[..., None]
 
 
-def of_grease(
+def of_another_day(
     model: Model, parameters: Mapping[str, Declared], J: Float[np.ndarray, "situation feature parameter"]
-) -> Float[np.ndarray, "situation feature 1"]:
-    """Friction of a grease that is warmer than recorded, one standard deviation; arguments of :func:`of_friction`."""
-    return WARMER_GREASE * _per_kelvin(model, parameters, J).sum(axis=-1, keepdims=True)
+) -> Float[np.ndarray, "situation feature friction"]:
+    """Friction of a grease that is warmer than recorded, one standard deviation each; arguments of
+    :func:`of_friction`.
+    """
+    return WARMER_GREASE * _per_kelvin(model, parameters, J)
 
 
 def _per_kelvin(

@@ -17,12 +17,12 @@ from swgsim.identification.covariance.influence_map_error import (
     largest_lines,
     sizes_of,
 )
-from swgsim.identification.covariance.model_discrepancy import Shares, discrepancies
+from swgsim.identification.covariance.model_discrepancy import Discrepancy
 from swgsim.identification.covariance.narrow_band import NarrowBand
 from swgsim.identification.covariance.scatter import Scatter
 from swgsim.identification.data.features import Layout, layout_of
 from swgsim.identification.data.model import Model, Situation, predict
-from swgsim.identification.fit.healthy_variability import FRICTION, of_friction, of_gauges, of_grease, of_learned
+from swgsim.identification.fit.healthy_variability import FRICTION, of_another_day, of_friction, of_gauges, of_learned
 from swgsim.identification.fit.map_fit import linearised
 from swgsim.identification.fit.priors import ANY_FRICTION, Declared, of_unit
 from swgsim.identification.fit.unit_file import read_unit, write_unit
@@ -47,7 +47,8 @@ class Unit:
         With nominal parameters, or with commissioned parameters and the unit's own lines.
     reach : array (direction, direction) or None
         Square root of the posterior covariance after commissioning, one column per standard deviation. The directions
-        are declared parameters, healthy variability and deviations of lines. None without commissioning.
+        are declared parameters, healthy variability, model discrepancy and deviations of lines. None without
+        commissioning.
     shift : array (direction,) or None
         Posterior mean of the directions relative to the model, in prior standard deviations. During commissioning,
         lines that are already in the model are subtracted.
@@ -70,9 +71,8 @@ class Unit:
         all others.
     inflation : array (feature,) or None
         Factor on the noise variance of each line; UNHEARD for ripple that is not used.
-    discrepancy : array (point, channel, order) or None
-        After commissioning, by which share lines may differ from the model at each operating point of :attr:`healthy`,
-        as a standard deviation (:mod:`~swgsim.identification.covariance.model_discrepancy`).
+    discrepancy : Discrepancy or None
+        After commissioning, how lines differ from the model at single operating points.
     bands : tuple of NarrowBand
         Noise in narrow bands found by commissioning.
     healthy : tuple of Recording
@@ -97,7 +97,7 @@ class Unit:
     largest: Mapping[str, float] | None = None
     learned: Float[np.ndarray, " feature"] | None = None
     inflation: Float[np.ndarray, " feature"] | None = None
-    discrepancy: Shares | None = None
+    discrepancy: Discrepancy | None = None
     bands: tuple[NarrowBand, ...] = ()
     healthy: tuple[Recording, ...] = ()
     zero: float = 0.0
@@ -215,31 +215,18 @@ class Unit:
             directions += [of_gauges(predicted, situations, layout), of_friction(model, own, of_own, situations)]
         if self.learned is not None:
             directions.append(of_learned(self.learned, situations, layout))
-        known, further = self._discrepancies(situations, predicted, layout)
-        if self.nominal:
-            further = np.concatenate([further, of_grease(model, own, of_own)], axis=-1)
-        directions.append(known)
+        if self.discrepancy:
+            directions.append(self.discrepancy.columns(situations, predicted, layout))
         torque = predict([_driving(model)], situations, Layout(("T_out",)))[0]
         directions.append(form_columns(self.form(predicted, layout), situations, layout, torque))
         open_ = np.concatenate(directions, axis=-1)
         shift = np.zeros(predicted.shape) if self.shift is None else open_ @ self.shift
-        columns = np.concatenate([open_ if self.reach is None else open_ @ self.reach, further], axis=-1)
-        return LeftOpen(predicted, shift, columns, of_parameters)
-
-    def _discrepancies(
-        self, situations: Sequence[Situation], predicted: Float[np.ndarray, "situation feature"], layout: Layout
-    ) -> tuple[Float[np.ndarray, "situation feature known"], Float[np.ndarray, "situation feature further"]]:
-        """Those at the operating points of the healthy recordings, and those at further ones."""
-        if self.discrepancy is None:
-            nothing = np.zeros((*predicted.shape, 0))
-            return nothing, nothing
-        points = list(dict.fromkeys(recording.point for recording in self.healthy))
-        further = list(dict.fromkeys(each.point for each in situations if each.point not in points))
-        as_elsewhere = np.tile(self.discrepancy.max(axis=0), (len(further), 1, 1))
-        return (
-            discrepancies(self.discrepancy, points, situations, predicted, layout),
-            discrepancies(as_elsewhere, further, situations, predicted, layout),
-        )
+        columns, undetermined = open_ if self.reach is None else open_ @ self.reach, np.zeros((*predicted.shape, 0))
+        if self.nominal:
+            columns = np.concatenate([columns, of_another_day(model, own, of_own)], axis=-1)
+            if self.discrepancy:
+                undetermined = self.discrepancy.undetermined(situations, predicted, layout)
+        return LeftOpen(predicted, shift, columns, undetermined, of_parameters)
 
     def form(self, predicted: Float[np.ndarray, "situation feature"], layout: Layout) -> Sizes:
         """Prior standard deviations of lines, by influence maps and by learning: the last of the directions."""
@@ -255,10 +242,12 @@ def _driving(model: Model) -> Model:
 
 class LeftOpen(NamedTuple):
     """Prediction of a model, its shift by commissioning, the nuisance directions of the unit (one standard deviation
-    each), and the change by one prior standard deviation of each fitted parameter.
+    each), those of the model discrepancy that no healthy recording determined, and the change by one prior standard
+    deviation of each fitted parameter.
     """
 
     predicted: Float[np.ndarray, "situation feature"]
     shift: Float[np.ndarray, "situation feature"]
     columns: Float[np.ndarray, "situation feature direction"]
+    undetermined: Float[np.ndarray, "situation feature discrepancy"]
     J: Float[np.ndarray, "situation feature parameter"]

@@ -197,7 +197,7 @@ def _directions(
 ) -> tuple[Float[np.ndarray, "situation feature"], Float[np.ndarray, "situation feature direction"]]:
     """Prediction of a model in any situation, and its nuisance directions, one standard deviation each."""
     unsure = fitted.unit.left_open(fitted.model, situations, fitted.measured.layout, fitted.parameters)
-    return unsure.predicted, np.concatenate([unsure.columns, unsure.J], axis=-1)
+    return unsure.predicted, np.concatenate([unsure.columns, unsure.undetermined, unsure.J], axis=-1)
 
 
 def _tolerance(

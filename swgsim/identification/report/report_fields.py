@@ -72,7 +72,7 @@ def report(
         "commissioned": before.unit.commissioned,
         "structure": before.unit.structure,
         "learned": _orders(before, before.unit.learned, 0.0),
-        "less_certain": _with_discrepancy(before),
+        "discrepancy": _discrepancy(before),
         "unheard": list(unheard),
         "zeros": measured.zeros,
         "channels": {name: CHANNELS[name].unit for name in measured.layout.channels},
@@ -98,13 +98,11 @@ def _orders(fitted: Fitted, values: Float[np.ndarray, " feature"] | None, limit:
     return {channel: np.unique(orders).tolist() for channel, orders in found.items() if len(orders)}
 
 
-def _with_discrepancy(fitted: Fitted) -> dict[str, list[int]]:
-    """Orders of every channel that have a model discrepancy at some operating point."""
-    if fitted.unit.discrepancy is None:
-        return {}
-    channel, order = np.nonzero(fitted.unit.discrepancy.max(axis=0))
-    names = fitted.measured.layout.channels
-    return {names[number]: order[channel == number].tolist() for number in np.unique(channel)}
+def _discrepancy(fitted: Fitted) -> dict[str, float]:
+    """Standard deviation of the model discrepancy of every channel that has one, as a share of its lines."""
+    found = fitted.unit.discrepancy
+    channels = fitted.measured.layout.channels
+    return {name: float(sd) for name, sd in zip(channels, found.sd, strict=True) if sd} if found else {}
 
 
 def calibrated(fitted: Fitted) -> dict[str, dict[str, Any]]:
