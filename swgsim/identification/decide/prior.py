@@ -134,7 +134,7 @@ def prior_ratio(
     """Logarithm of the prior density of the parameters of an added effect over that of the fit, where it found them.
 
     The fit has a normal prior about where each parameter began. A parameter that the recordings do not tell has the
-    ratio 1: its prior, whatever it is, integrates to 1. The number of variants counts as well.
+    ratio 1: its prior, whatever it is, integrates to 1. Variants of an effect share its prior.
 
     Parameters
     ----------
@@ -144,19 +144,31 @@ def prior_ratio(
     deviation : mapping
         Standard deviation of each fitted parameter, in its unit.
     position : mapping, optional
-        Where the fit found each, in spreads from where it began; by default they are counted from there.
+        Where the fit found each, in spreads from the middle of its prior; by default in the middle.
     """
     effect = fitted.model.effects[number]
     found = -log_choices(type(effect))
     for name, q in quantities(type(effect)).items():
         if (key := name_of(effect, number, name)) in fitted.parameters:
             value, sd = float(getattr(effect, name)), fitted.parameters[key].sd
-            found += ratio_of_parameter(q, value, deviation[key], sd, position[key] if position else 0.0)
+            found += ratio_of_parameter(q, value, deviation[key], sd, 0.0 if position is None else position[key])
     return float(found)
 
 
 def ratio_of_parameter(q: Quantity, value: float, deviation: float, sd: float, position: float) -> float:
-    """The same for one parameter; the prior of the fit has the standard deviation ``sd``, ``position`` of them away."""
+    """The same for one parameter, of which the fit has a normal prior with the standard deviation ``sd``.
+
+    Parameters
+    ----------
+    q : Quantity
+    value : float
+        Found by the fit.
+    deviation : float
+        Its posterior standard deviation.
+    sd : float
+    position : float
+        How far the value lies from the middle of that prior, in ``sd``.
+    """
     ratio = log_density(q, value, deviation) + np.log(2 * np.pi * sd**2) / 2
     told = 1 - min(deviation / sd, 1.0) ** 2  # share of the variance that the recordings take away
     if q.role is not Role.SIZE:

@@ -69,6 +69,7 @@ class Search:
     def scores(self, rng: np.random.Generator) -> tuple[Score, ...]:
         """The best hypothesis of every effect, with p-values from drawn noise."""
         every, changes = self._library
+        STEPS.info("p-values of %d hypotheses", len(every))
         return tuple(best_of_kind(screen(every, changes, at_plausible_parameters(self.null), rng))) if every else ()
 
     def with_regularities(self, unknown: Option) -> Option:
