@@ -413,6 +413,22 @@ def test_what_is_too_small_to_matter_is_seen_but_no_verdict(null, changes):
 
 
 @pytest.mark.usefixtures("_chain")
+def test_what_describes_a_cause_is_as_large_as_the_cause(null, changes):
+    """A regularity that is too small to matter is all that is left to describe of a cause that resembles a dip."""
+    large, _ = answered(null, changes, {Dip: 30.0}, 13)
+    like = next(each for each, _ in large.decision.weighed if each.resembled)
+    tiny, _ = answered(null, changes, {}, 16, 3 * columns(STRAY, null)[:, 0])
+    (share,), (of_dip,) = tiny.shares_of_spread, large.shares_of_spread
+    interest = (share + of_dip) / 2
+    assert share < interest < of_dip
+    alone = replace(tiny, interest=interest)
+    assert alone.verdict == NOTHING
+    described = replace(alone, decision=replace(tiny.decision, answers=((like, 1.0),)))
+    assert described.shares_of_spread == pytest.approx([of_dip], rel=1e-3)
+    assert described.verdict == UNKNOWN
+
+
+@pytest.mark.usefixtures("_chain")
 def test_a_regularity_of_high_orders_alone_has_not_the_probability_of_the_order_lines(null, changes):
     held = recorded(null, changes, {}, 15)
     found = Answer(decided(held), (), (), (), (describe(held)[0],), ())
