@@ -251,7 +251,7 @@ def test_nothing_is_missing_in_a_healthy_gear(healthy):
     assert said["detectable"]["eccentric_wave_generator"]["value"] < HIDDEN.r
     assert said["error"]["before"] == said["error"]["after"]
     words = list(dict.fromkeys(step.split()[0] for step in steps))
-    assert words == ["searching", "fitting", "screening", "describing", "report:"]
+    assert words == ["searching", "fitting", "screening", "p-values", "describing", "report:"]
 
 
 def test_results_show_themselves(unit, healthy, sick):
