@@ -17,7 +17,7 @@ from swgsim.identification.interharmonics.interharmonic_spectrum import gauge_sp
 from swgsim.identification.interharmonics.line_search import all_cleaned, search
 from swgsim.identification.interharmonics.named_interharmonics import Sideline
 from swgsim.identification.interharmonics.unattributed_lines import Unnamed
-from swgsim.identification.report.interest import INTEREST, largest_changes, shares_of_spread
+from swgsim.identification.report.interest import INTEREST, shares_of_spread
 from swgsim.identification.search.high_orders import high_order_regularities
 from swgsim.identification.search.regularities import Described
 from swgsim.identification.search.screening import ALPHA, Score
@@ -67,14 +67,14 @@ class Answer:
     def shares_of_spread(self) -> list[float]:
         """Largest change of a line by each effect, then by each regularity (:func:`shares_of_spread`).
 
-        Regularities that describe a cause which resembles effects are parts of it, and as large as it is.
+        Regularities that describe a cause which resembles effects are parts of it, and as large as these would be.
         """
         shares, best, named = (
             shares_of_spread(self.decision.after),
             self.decision.answers[0][0],
             len(self.decision.effects),
         )
-        changes = zip(best.fitted.added, largest_changes(best.fitted) if best.resembled else (), strict=False)
+        changes = zip(best.fitted.added, shares_of_spread(best.fitted) if best.resembled else (), strict=False)
         whole = max((change for effect, change in changes if effect in best.resembled), default=0.0)
         return [*shares[:named], *(max(share, whole) for share in shares[named:])]
 

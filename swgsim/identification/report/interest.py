@@ -16,17 +16,9 @@ INTEREST = 0.2
 def shares_of_spread(fitted: Fitted) -> list[float]:
     """Largest change of an order line by each added effect, in standard deviations of that line.
 
-    The five faults always matter, as they grow: their share is infinite.
-    """
-    faults = [effect.name() in FAULTS for effect in fitted.added]
-    return np.where(faults, np.inf, largest_changes(fitted)).tolist()
-
-
-def largest_changes(fitted: Fitted) -> list[float]:
-    """The same, faults being as large as they are.
-
     The standard deviation is that of a single recording of any healthy unit of the series: by the declared parameters
-    of units, by noise and by the errors of single recordings.
+    of units, by noise and by the errors of single recordings. The five faults always matter, as they grow: their share
+    is infinite.
     """
     measured, unit = fitted.measured, fitted.unit
     numbers = fitted.numbers_added
@@ -36,4 +28,6 @@ def largest_changes(fitted: Fitted) -> list[float]:
     _, J = linearised(unit.model, series, measured.situations, measured.layout)
     alone = fitted.errors.alone
     variance = (measured.rows(J) ** 2).sum(axis=1) + alone.variance.ravel() + (alone.C**2).sum(axis=-1).ravel()
-    return [float(np.abs(signature(fitted, number) / np.sqrt(variance)).max()) for number in numbers]
+    faults = [type(fitted.model.effects[number]).name() in FAULTS for number in numbers]
+    changes = [np.abs(signature(fitted, number) / np.sqrt(variance)).max() for number in numbers]
+    return np.where(faults, np.inf, changes).tolist()
