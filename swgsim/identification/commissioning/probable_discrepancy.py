@@ -4,27 +4,25 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.identification.commissioning.relinearisation import about_its_lines, again
-from swgsim.identification.covariance.model_discrepancy import Discrepancy
+from swgsim.identification.covariance.model_discrepancy import Discrepancy, seen
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.storage.labelled_signals import SENSORS
 
-# Standard deviations that are tried beside none, first for all lines of speed and torques, then for those of gauges.
-# That there is none is as probable as that there is any of them.
+# Standard deviations that are tried, first for all lines of speed and torques, then for those of gauges. The prior
+# probability of no discrepancy is one half, and these share the other half.
 DISCREPANCIES = (0.001, 0.003, 0.01, 0.03)
-# Below so many standard deviations of the noise, the discrepancy of a line is not seen.
-LEAST_SEEN = 0.1
 
 
 def with_probable_discrepancy(fitted: Fitted) -> Fitted:
-    """The fit with the discrepancy that makes the recordings most probable; the same fit if that is none."""
+    """The fit with the most probable discrepancy."""
     found = probable(fitted)
     if not found.sd.any():
         return fitted
-    # The last part of the shift is that of lines; what is new comes before it.
-    new = np.zeros(2 * np.count_nonzero(found.determined))
-    shift = None if fitted.unit.shift is None else np.append(new, fitted.unit.shift)
-    again_fitted = about_its_lines(again(fitted, discrepancy=found, shift=shift))
-    return again_fitted if again_fitted.log_likelihood > fitted.log_likelihood else fitted
+    shift = fitted.unit.shift
+    if shift is not None:  # the directions of the discrepancy are new, and come first
+        shift = np.append(np.zeros(2 * np.count_nonzero(found.determined)), shift)
+    refitted = about_its_lines(again(fitted, discrepancy=found, shift=shift))
+    return refitted if refitted.log_likelihood > fitted.log_likelihood else fitted
 
 
 def probable(fitted: Fitted) -> Discrepancy:
@@ -45,15 +43,9 @@ def _log_likelihood(fitted: Fitted, discrepancy: Discrepancy) -> float:
 
 
 def _discrepancy(fitted: Fitted, sd: Float[np.ndarray, " channel"]) -> Discrepancy:
-    """The discrepancy with a standard deviation in each channel, for all lines but means: these follow load, friction
-    and zeros.
-    """
+    """The discrepancy with a standard deviation in each channel."""
     measured, layout = fitted.measured, fitted.measured.layout
     noise = np.sqrt(layout.lines(fitted.unit.inflated(measured.variance)).real.mean(axis=0))
-    least = np.full(noise.shape, np.finfo(float).max)
-    np.divide(LEAST_SEEN * noise, sd[:, None], out=least, where=sd[:, None] > 0)
-    least[:, 0] = np.finfo(float).max
     points = tuple(dict.fromkeys(each.point for each in measured.recordings))
-    lines = np.abs(layout.lines(fitted.calibrated.predicted))
-    at_points = [lines[[each.point == point for each in measured.situations]].max(axis=0) for point in points]
-    return Discrepancy(sd, least, points, np.array(at_points) > least)
+    lines = layout.lines(fitted.calibrated.predicted)
+    return Discrepancy(sd, noise, points, seen(sd, noise, points, measured.situations, lines))

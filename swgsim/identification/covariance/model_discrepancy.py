@@ -10,11 +10,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Complex, Float
 
 from swgsim.gear.gear import OperatingPoint
 from swgsim.identification.data.features import Layout
 from swgsim.identification.data.model import Situation
+
+# A discrepancy that changes a line by fewer standard deviations of the noise is not seen.
+LEAST_SEEN = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,8 +28,8 @@ class Discrepancy:
     ----------
     sd : array (channel,)
         Standard deviation of the real and of the imaginary part of z; 0 for channels that have none.
-    least : array (channel, order)
-        Amplitude of a line below which its z is not seen beside the noise.
+    noise : array (channel, order)
+        Standard deviation of the noise of a line.
     points : tuple of OperatingPoint
         Those of the healthy recordings.
     determined : array (point, channel, order)
@@ -34,7 +37,7 @@ class Discrepancy:
     """
 
     sd: Float[np.ndarray, " channel"]
-    least: Float[np.ndarray, "channel order"]
+    noise: Float[np.ndarray, "channel order"]
     points: tuple[OperatingPoint, ...]
     determined: Bool[np.ndarray, "point channel order"]
 
@@ -49,13 +52,11 @@ class Discrepancy:
     ) -> Float[np.ndarray, "situation feature column"]:
         """The same of all other z that are seen."""
         points = tuple(dict.fromkeys(each.point for each in situations))
-        lines, of = np.abs(layout.lines(predicted)), [points.index(each.point) for each in situations]
-        seen = np.zeros((len(points), *self.least.shape), bool)
-        np.logical_or.at(seen, of, lines > self.least)
+        chosen = seen(self.sd, self.noise, points, situations, layout.lines(predicted))
         for number, point in enumerate(points):
             if point in self.points:
-                seen[number] &= ~self.determined[self.points.index(point)]
-        return self._columns(seen, points, situations, predicted, layout)
+                chosen[number] &= ~self.determined[self.points.index(point)]
+        return self._columns(chosen, points, situations, predicted, layout)
 
     def _columns(
         self,
@@ -73,3 +74,19 @@ class Discrepancy:
         turned = layout.vector(1j * layout.lines(predicted))
         both = np.stack([by * predicted[..., None], by * turned[..., None]], axis=-1)
         return both.reshape(*predicted.shape, 2 * len(point))
+
+
+def seen(
+    sd: Float[np.ndarray, " channel"],
+    noise: Float[np.ndarray, "channel order"],
+    points: Sequence[OperatingPoint],
+    situations: Sequence[Situation],
+    lines: Complex[np.ndarray, "situation channel order"],
+) -> Bool[np.ndarray, "point channel order"]:
+    """The lines at each operating point whose z is seen beside the noise; means have none, as they follow friction,
+    load and zeros.
+    """
+    at_points = [np.abs(lines[[each.point == point for each in situations]]).max(axis=0) for point in points]
+    found = sd[:, None] * np.array(at_points) > LEAST_SEEN * noise
+    found[..., 0] = False
+    return found

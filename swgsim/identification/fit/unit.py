@@ -221,7 +221,8 @@ class Unit:
         directions.append(form_columns(self.form(predicted, layout), situations, layout, torque))
         open_ = np.concatenate(directions, axis=-1)
         shift = np.zeros(predicted.shape) if self.shift is None else open_ @ self.shift
-        columns, undetermined = open_ if self.reach is None else open_ @ self.reach, np.zeros((*predicted.shape, 0))
+        columns = open_ if self.reach is None else open_ @ self.reach
+        undetermined = np.zeros((*predicted.shape, 0))
         if self.nominal:
             columns = np.concatenate([columns, of_another_day(model, own, of_own)], axis=-1)
             if self.discrepancy:

@@ -69,14 +69,13 @@ class Answer:
 
         Regularities that describe a cause which resembles effects are parts of it, and as large as these would be.
         """
-        shares, best, named = (
-            shares_of_spread(self.decision.after),
-            self.decision.answers[0][0],
-            len(self.decision.effects),
-        )
-        changes = zip(best.fitted.added, shares_of_spread(best.fitted) if best.resembled else (), strict=False)
-        whole = max((change for effect, change in changes if effect in best.resembled), default=0.0)
-        return [*shares[:named], *(max(share, whole) for share in shares[named:])]
+        shares, named = shares_of_spread(self.decision.after), len(self.decision.effects)
+        best, _ = self.decision.answers[0]
+        if not best.resembled:
+            return shares
+        of_fit = zip(best.fitted.added, shares_of_spread(best.fitted), strict=True)
+        cause = max(share for effect, share in of_fit if effect in best.resembled)
+        return [*shares[:named], *(max(share, cause) for share in shares[named:])]
 
     @property
     def small(self) -> tuple[Effect, ...]:
