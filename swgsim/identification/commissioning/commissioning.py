@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from swgsim.chain.steady_state_cache import forget
-from swgsim.identification.commissioning.lack_of_fit import beyond_noise, foreign_ripple, require_own, unexplained
+from swgsim.identification.commissioning.lack_of_fit import foreign_ripple, lack_of_fit, require_own, unexplained
 from swgsim.identification.commissioning.probable_discrepancy import with_probable_discrepancy
 from swgsim.identification.commissioning.relinearisation import (
     about_its_lines,
@@ -48,9 +48,6 @@ def learn_unit(measured: Measured, unit: Unit) -> Unit:
     fitted = _with_usable_ripple(measured, replace(unit, seen_healthy=True))
     require_own(_with_inflated_variance(fitted), fitted.missed)
     fitted = with_probable_discrepancy(fitted)
-    beyond = beyond_noise(measured, fitted.missed)
-    if beyond.max() > 1:
-        fitted = about_its_lines(again(fitted, inflation=fitted.unit.inflated(beyond)))
     # Directions are the fitted parameters, then those of fitted.open. R R' is their posterior covariance.
     R, mean = posterior(fitted)
     # Declared effects keep their values; later fits have parameters for them.
@@ -162,7 +159,7 @@ def _drive_alone(measured: Measured, unit: Unit) -> Fitted | None:
 def _lie_off(fitted: Fitted) -> Float[np.ndarray, " feature"]:
     """Prior standard deviation for the lines with lack of fit, now or before: their deviation from the model."""
     measured, layout = fitted.measured, fitted.measured.layout
-    sought = beyond_noise(measured, fitted.missed) > 1
+    sought = lack_of_fit(measured, fitted.missed)
     if fitted.unit.learned is not None:
         sought |= fitted.unit.learned > 0
     off = np.sqrt((fitted.residual.reshape(measured.values.shape) ** 2).mean(axis=0)) * sought

@@ -1,4 +1,4 @@
-"""Lack of fit to a healthy gear: recordings of another gear are refused, and badly fitted lines become less certain."""
+"""Lack of fit to a healthy gear: lines that the model does not describe, and recordings of another gear."""
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -15,12 +15,10 @@ from swgsim.storage.labelled_signals import SENSORS
 UNEXPLAINED_SHARE = 0.1
 
 
-def beyond_noise(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> Float[np.ndarray, " feature"]:
-    """Factor on the variance of every line by lack of fit; 1 where it is not significant.
+def lack_of_fit(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> Bool[np.ndarray, " feature"]:
+    """Which lines the model misses significantly, in single recordings or in all of them alike.
 
-    What the model misses is nearly the same in all repeats of an operating point. Part of it is the same in all
-    recordings. So the recordings are not independent observations of it, and the factors count it only once. The gauges
-    s1 to s4 have the same position relative to the lobes. So they share one factor for every order.
+    The gauges s1 to s4 have the same position relative to the lobes. So they are tested together, order by order.
 
     Parameters
     ----------
@@ -30,20 +28,13 @@ def beyond_noise(measured: Measured, missed: Float[np.ndarray, "recording featur
     """
     layout = measured.layout
     single, common = missed**2, len(missed) * missed.mean(axis=0) ** 2
-    repeats = len(measured) / len(measured.point_rows())
     alike = np.array(["s1 to s4" if name in SENSORS[1:] else name for name in layout.channel])
     every = dict.fromkeys(zip(alike, layout.order, strict=True))
     lines = [(alike == channel) & (layout.order == order) for channel, order in every]
     by_single = [chi2.sf(single[:, line].sum(), single[:, line].size) for line in lines]
     in_common = [chi2.sf(common[line].sum(), line.sum()) for line in lines]
-    missed_by = false_discovery_control([*by_single, *in_common]).reshape(2, -1) < FALSE_DISCOVERIES
-    beyond = np.ones(len(layout))
-    for line, by_one, by_all in zip(lines, *missed_by, strict=True):
-        if by_one:
-            beyond[line] = 1 + repeats * (single[:, line].mean() - 1)
-        if by_all:
-            beyond[line] = np.maximum(beyond[line], common[line].mean())
-    return beyond
+    significant = false_discovery_control([*by_single, *in_common]).reshape(2, -1) < FALSE_DISCOVERIES
+    return np.array(lines)[significant.any(axis=0)].any(axis=0)
 
 
 def unexplained(measured: Measured, missed: Float[np.ndarray, "recording feature"]) -> dict[str, float]:

@@ -70,8 +70,7 @@ class Unit:
         After commissioning, prior standard deviation of the lines that lie far from the model and were learned; 0 for
         all others.
     inflation : array (feature,) or None
-        Factor on the noise variance of each line, by the lack of fit that remains beside the discrepancy; UNHEARD
-        for ripple that is not used.
+        Factor on the noise variance of each line: 1, or UNHEARD for ripple that is not used.
     discrepancy : Discrepancy or None
         After commissioning, how lines differ from the model at single operating points.
     bands : tuple of NarrowBand

@@ -51,7 +51,6 @@ def report(
     before, after = answer.decision.before, answer.decision.after
     measured = before.measured
     unheard = _orders(before, before.unit.inflation, UNHEARD / 2)
-    less_certain = _orders(before, before.unit.inflation, 1.0)
     effects = found_effects(answer)
     return {
         "verdict": answer.verdict,
@@ -74,7 +73,6 @@ def report(
         "structure": before.unit.structure,
         "learned": _orders(before, before.unit.learned, 0.0),
         "discrepancy": _discrepancy(before),
-        "less_certain": {name: orders for name, orders in less_certain.items() if name not in unheard},
         "unheard": list(unheard),
         "zeros": measured.zeros,
         "channels": {name: CHANNELS[name].unit for name in measured.layout.channels},
