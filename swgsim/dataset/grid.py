@@ -26,12 +26,15 @@ class Case:
         Whether it is a reference recording of the gear.
     seed : int
         Seed of every random draw of this recording.
+    day : int
+        Of the recording, from 0; on each day the torque flanges have other biases.
     """
 
     run: Run
     variant: Variant
     reference: bool
     seed: int
+    day: int = 0
 
 
 @dataclass(frozen=True)
@@ -49,6 +52,8 @@ class Grid:
         Relative standard deviation of b1 and k1 between recordings; 0 in the paper's grid, where all healthy
         recordings of a gear are equal.
     seed : int
+    days : int
+        On which every specimen is recorded at all operating points; references are from a day of their own.
     """
 
     points: tuple[OperatingPoint, ...]
@@ -57,6 +62,7 @@ class Grid:
     references: int = 20
     scatter: float = 0.0
     seed: int = 0
+    days: int = 1
 
     def __post_init__(self) -> None:
         if not self.points or not self.classes:
@@ -67,6 +73,7 @@ class Grid:
                 raise ValueError(f"{name} of the grid repeat: {values}; name each once")
         require_integer("the grid", "references", self.references, low=1, high=10_000)
         require_integer("the grid", "seed", self.seed, low=0, high=2**63)
+        require_integer("the grid", "days", self.days, low=1, high=1000)
         require("the grid", "scatter", self.scatter, low=0, high=0.05)
 
     def cases(self, gear: Gear) -> Iterator[Case]:
@@ -76,18 +83,23 @@ class Grid:
             yield from self._at_all_points(gear, healthy, number, reference=True)
         for label in self.classes:
             for variant in self.variants.of(label, generator("variants", self.seed, gear.number, label)):
-                yield from self._at_all_points(gear, variant, variant.number, reference=False)
+                for day in range(self.days):
+                    yield from self._at_all_points(gear, variant, variant.number, reference=False, day=day)
 
     def count(self) -> int:
         """Recordings per gear."""
-        return len(self.points) * (self.references + len(self.classes) * self.variants.count)
+        return len(self.points) * (self.references + len(self.classes) * self.variants.count * self.days)
 
-    def _at_all_points(self, gear: Gear, variant: Variant, number: int, *, reference: bool) -> Iterator[Case]:
+    def _at_all_points(
+        self, gear: Gear, variant: Variant, number: int, *, reference: bool, day: int = 0
+    ) -> Iterator[Case]:
+        # The first day has the recordings of a grid of one day.
+        further = (day,) if day else ()
         for point in self.points:
             kind = "reference" if reference else variant.label
-            seed = seed_hash("recording", self.seed, gear.number, kind, number, point.n_in_rpm, point.T_out)
+            seed = seed_hash("recording", self.seed, gear.number, kind, number, point.n_in_rpm, point.T_out, *further)
             effects = variant.effects
             if self.scatter:
                 b1_ratio, k1_ratio = np.clip(generator("scatter", seed).normal(1, self.scatter, 2), 0.8, 1.2)
                 effects = (*effects, ParameterScatter(float(b1_ratio), float(k1_ratio)))
-            yield Case(Run(gear, point, effects), variant, reference, seed)
+            yield Case(Run(gear, point, effects), variant, reference, seed, day)

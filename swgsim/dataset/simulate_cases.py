@@ -60,7 +60,10 @@ def _acquire(plan: Plan, cases: list[Case], simulation: Simulation) -> tuple[np.
     for i, (case, ideal, m) in enumerate(zip(cases, simulation.signals, simulation.of_run, strict=True)):
         rng = generator("acquisition", case.seed)
         if plan.bench:
-            session = plan.bench.session(generator("session", plan.grid.seed, case.run.gear.number, case.reference))
+            day = (case.day,) if case.day else ()
+            session = plan.bench.session(
+                generator("session", plan.grid.seed, case.run.gear.number, case.reference, *day)
+            )
             ideal = plan.bench.signals(ideal, rng)
             shaft = Shaft(P_in[m], omega_in[m], omega_out[m], efficiency[i])
             efficiency[i] = plan.bench.efficiency(shaft, session, rng)

@@ -35,6 +35,7 @@ GRID = (
     "crack_teeth",
     "references",
     "scatter",
+    "days",
     "seed",
     "population",
 )
@@ -58,9 +59,8 @@ def grid(config: Config) -> Grid:
             raise ValueError(f"severities of {label} are {levels!r}, must be a list such as [{levels}]")
     severities = {label: tuple(levels) for label, levels in config["severities"].items()}
     variants = Variants(config["variants"], config["positions"], severities, config["drawn"], config.get("crack_teeth"))
-    return Grid(
-        points, variants, tuple(config["classes"]), config["references"], config["scatter"], seed=config["seed"]
-    )
+    numbers = {name: config[name] for name in ("references", "scatter", "seed", "days")}
+    return Grid(points, variants, tuple(config["classes"]), **numbers)
 
 
 def gears(config: Config) -> tuple[Gear, ...]:

@@ -105,7 +105,7 @@ def point_model(plan: Plan, gear: Gear, expected: Expectation, session_known: bo
 
 
 def joint_model(
-    plan: Plan, gear: Gear, expected: Sequence[Expectation], shared: Float[np.ndarray, "row column"]
+    plan: Plan, gear: Gear, expected: Sequence[Expectation], shared: Float[np.ndarray, "row column"], days: int = 1
 ) -> PointModel:
     """The distributions of one recording, or of one recording at each of several operating points together.
 
@@ -117,6 +117,8 @@ def joint_model(
         One for each operating point; the observations follow each other in this order.
     shared : array (row, column)
         Errors that are the same at all these operating points, one standard deviation each.
+    days : int
+        Number of days whose mean is observed.
 
     Raises
     ------
@@ -125,7 +127,7 @@ def joint_model(
     """
     means = [each.healthy.mean(axis=0) for each in expected]
     covariances = [
-        np.cov(each.healthy, rowvar=False) + np.diag(added_variance(plan, gear, each.point, mean[EFFICIENCY]))
+        (np.cov(each.healthy, rowvar=False) + np.diag(added_variance(plan, gear, each.point, mean[EFFICIENCY]))) / days
         for each, mean in zip(expected, means, strict=True)
     ]
     faults = {

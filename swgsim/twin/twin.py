@@ -35,10 +35,12 @@ class Twin:
         plan, gear = knowledge.plan_of(fitted.model.effects), knowledge.whole(fitted.model)
         return cls(knowledge, fitted, expectations(plan, gear, knowledge.resolution))
 
-    def densities(self, points: Sequence[OperatingPoint]) -> PointModel:
+    def densities(self, points: Sequence[OperatingPoint], days: int = 1) -> PointModel:
         """Distributions of the observations of every class: of one recording, or of one at each of several points.
 
-        What is not known of the gear and of the session of the flanges is the same at all points.
+        What is not known of the gear and of the session of the flanges is the same at all points. Of several days the
+        observations are the means, which say all: a fault changes every day alike. The errors of the recordings and of
+        the sessions of the flanges are those of means; what is not known of the gear stays.
         """
         plan, gear = self.knowledge.plan, self.fitted.model.gear
         chosen = [plan.grid.points.index(point) for point in points]
@@ -46,6 +48,8 @@ class Twin:
         session = [
             session_columns(plan, gear, each.point, float(each.healthy[:, EFFICIENCY].mean())) for each in expected
         ]
-        shared = np.hstack([np.concatenate(session), np.concatenate([self.fitted.unsure[i] for i in chosen])])
-        model = joint_model(plan, gear, expected, shared)
+        shared = np.hstack([
+            np.concatenate(session) / np.sqrt(days), np.concatenate([self.fitted.unsure[i] for i in chosen])
+        ])  # fmt: skip
+        model = joint_model(plan, gear, expected, shared, days)
         return replace(model, mean=model.mean + np.concatenate([self.fitted.offset[i] for i in chosen]))

@@ -1,7 +1,7 @@
 """The job of ``swg twin``: the twin of every gear of a data set judges its recordings and its units.
 
-A unit is one specimen: a recording at every operating point. The oracle and the floor of references
-(:mod:`swgsim.twin.floor`) judge the same, for comparison.
+A unit is one specimen: a recording at every operating point, on one day or several. The oracle and the floor of
+references (:mod:`swgsim.twin.floor`) judge the same, for comparison.
 """
 
 import json
@@ -139,14 +139,16 @@ def _observed(
 ) -> Iterator[tuple[PointModel, Float[np.ndarray, "sample feature"], np.ndarray]]:
     """Densities, observations, and the rows (sample, recording) of the observations: by operating point, or of units.
 
-    Recordings of a unit follow each other, one at every operating point, in the order of the plan.
+    Recordings of a unit follow each other, day by day, one at every operating point, in the order of the plan.
     """
-    x, points = observations(samples), twin.knowledge.plan.grid.points
-    rows = np.arange(len(x)).reshape(-1, len(points))
+    x, grid = observations(samples), twin.knowledge.plan.grid
+    points = grid.points
     if of_units:
-        yield twin.densities(points), x.reshape(len(rows), -1), rows
+        of_unit = x.reshape(-1, grid.days, len(points) * x.shape[1])
+        rows = np.arange(len(x)).reshape(len(of_unit), -1)
+        yield twin.densities(points, grid.days), of_unit.mean(axis=1), rows
         return
-    for point, here in zip(points, rows.T, strict=True):
+    for point, here in zip(points, np.arange(len(x)).reshape(-1, len(points)).T, strict=True):
         yield twin.densities([point]), x[here], here[:, None]
 
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 from chain_fixtures import small_plan
 
@@ -307,6 +308,21 @@ def test_drawn_variants_and_scatter_vary_the_healthy_recordings() -> None:
     assert healthy.table["efficiency"].is_unique
     located = recordings.table.dropna(subset="position")
     assert located.groupby("label", observed=True)["position"].nunique().eq(2).all()
+
+
+def test_a_further_day_repeats_every_specimen_with_other_biases() -> None:
+    quiet = ("load", "speed", "temperature", "output_angle", "flange_in", "flange_out", "speed_reading")
+    once = replace(small_plan(), bench=Bench(**dict.fromkeys(quiet, 0.0)))
+    twice = replace(once, grid=replace(once.grid, days=2))
+    first, both = (record(plan, list(plan.grid.cases(plan.gears[0]))) for plan in (once, twice))
+    assert (len(first), len(both)) == (once.grid.count(), twice.grid.count())
+    table = both.samples.table
+    day = np.arange(len(table)) // len(once.grid.points) % 2
+    pd.testing.assert_frame_equal(table[day == 0].reset_index(drop=True), first.samples.table)
+    before, after = (table.loc[day == each, "efficiency"].to_numpy().reshape(-1, 2) for each in (0, 1))
+    change = np.log(after / before)
+    # The biases are the same for all specimens of a day.
+    assert (np.abs(change.mean(axis=0)) > 10 * change.std(axis=0)).all()
 
 
 def test_gears_need_numbers_of_their_own() -> None:

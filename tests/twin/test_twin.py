@@ -11,7 +11,9 @@ from twin_fixtures import DRAWN, KNOWLEDGE, PLAN, POINTS, recordings
 from swgsim.common.seeds import generator
 from swgsim.dataset.simulate_cases import record
 from swgsim.effects import Coning
+from swgsim.oracle.cells import Cells
 from swgsim.oracle.model import observations
+from swgsim.oracle.point import PointModel
 from swgsim.storage.labelled_signals import CLASSES
 from swgsim.twin import FittedGear, References, Twin, fit_gear
 from swgsim.twin.twin_study import _diagnosed, _judged
@@ -105,6 +107,27 @@ def test_a_unit_is_one_long_observation() -> None:
     wrong = both.log_posterior(units).argmax(axis=1) != recordings().samples.table["label"].cat.codes.to_numpy()[::2]
     p = _diagnosed(twin(), recordings().samples, of_units=False)[list(CLASSES)].to_numpy()
     assert wrong.mean() < (np.array(CLASSES)[p.argmax(axis=1)] != truth()).mean()
+
+
+def test_the_mean_of_days_says_all_that_they_say() -> None:
+    plan = replace(PLAN, grid=replace(PLAN.grid, days=2, variants=replace(PLAN.grid.variants, count=3), references=1))
+    samples = record(plan, list(plan.grid.cases(DRAWN))).samples
+    x = observations(samples).reshape(-1, 2, len(POINTS) * observations(samples).shape[1])
+    one, mean_of_two = twin().densities(POINTS), twin().densities(POINTS, days=2)
+    unsure = np.concatenate(list(fitted().unsure))
+    of_gear = unsure @ unsure.T
+    of_day = one.covariance - of_gear
+    np.testing.assert_allclose(mean_of_two.covariance, of_day / 2 + of_gear)
+    one_by_one = PointModel(
+        np.tile(one.mean, 2),
+        np.kron(np.eye(2), of_day) + np.kron(np.ones((2, 2)), of_gear),
+        {name: Cells(np.tile(each.shift, 2), np.tile(each.spread, 2)) for name, each in one.faults.items()},
+    )
+    np.testing.assert_allclose(
+        mean_of_two.log_posterior(x.mean(axis=1)), one_by_one.log_posterior(x.reshape(len(x), -1)), atol=1e-6
+    )
+    single = one.log_posterior(x[:, 0])
+    assert np.exp(mean_of_two.log_posterior(x.mean(axis=1)).max(axis=1)).mean() > np.exp(single.max(axis=1)).mean()
 
 
 def test_another_mesh_is_another_structure() -> None:
