@@ -16,6 +16,7 @@ from jaxtyping import Float, Int
 
 from learn.inputs.auxiliary_inputs import LOG, changes_of_efficiency
 from learn.inputs.inputs import OPERATING_POINT, LearningSet
+from learn.inputs.joint_rows import joint_rows
 from learn.protocols.levels import Episode, Target
 
 
@@ -48,6 +49,11 @@ class Rezero:
         ValueError
             If the inputs lack the efficiency relative to the reference.
         """
+        if data.recordings is not None:
+            count = data.layout.points
+            of_recordings = episode.of_recordings(count)
+            corrected, rows = self.rezeroed(data.recordings, of_recordings, number, draw)
+            return joint_rows(corrected), rows[::count] // count
         if LOG not in data.names:
             raise ValueError(
                 f"rezero corrects the efficiency, and {LOG!r} is not among the inputs: take features=harmonics, "

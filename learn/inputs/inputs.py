@@ -51,12 +51,15 @@ class LearningSet:
         Names of the features.
     layout : Layout
         Columns of the signal.
+    recordings : LearningSet or None
+        Of rows of units (:func:`learn.inputs.joint_rows.joint_rows`), those of their recordings, unit by unit.
     """
 
     features: Inputs
     table: pd.DataFrame
     names: tuple[str, ...]
     layout: Layout = NO_SIGNAL
+    recordings: "LearningSet | None" = None
 
 
 def with_foreign_gears(data: LearningSet, foreign: LearningSet) -> LearningSet:

@@ -50,6 +50,7 @@ CLASSIFIERS: Mapping[str, Callable[..., classical.Classifier]] = {
     "perceptron": neural.neural_perceptron,
     "cnn": neural.convolutional_network,
     "resnet": neural.residual_network,
+    "set_network": neural.set_network,
     "twin": TwinClassifier,
     "fast_twin": FastTwin,
 }

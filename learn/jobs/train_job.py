@@ -11,13 +11,16 @@ from tqdm import tqdm
 
 from learn import tracking
 from learn.inputs.inputs import LearningSet, Representation, gear_by_gear, with_foreign_gears, with_training_gears
+from learn.inputs.joint_rows import joint_rows
 from learn.jobs import few_shot, identity, settings, zero_shot
+from swgsim.common.checks import require_known
 from swgsim.storage import storage
 
 log = logging.getLogger(__name__)
 
 BLOCK = 1024  # recordings in memory at a time
 LARGE = 100_000  # number of recordings from which on the inputs are in a file
+ROWS = ("recording", "unit")
 # Options that name a further data set, and how its gears join.
 JOINING = {"target": with_foreign_gears, "training": with_training_gears}
 
@@ -50,6 +53,7 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
     chosen = {group: config[group]["name"] for group in ("grid", "condition")}  # their content is in the data set
     config = {**config, **chosen, "classifier": settings.on_device(config["classifier"])}
     representation = settings.representation(config["features"])
+    require_known("rows", [config["rows"]], ROWS)
     settings.protocol(config["protocol"])
     settings.classifier(config["classifier"])
     if config["adaptation"]["name"] != "none":
@@ -76,6 +80,8 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
         data, *further = [learning_set_of(*each, representation) for each in zip(paths, digests, strict=True)]
         for join, gears in zip(joining.values(), further, strict=True):
             data = join(data, gears)
+        if config["rows"] == "unit":
+            data = joint_rows(data)
         judge = zero_shot if config["adaptation"]["name"] == "none" else few_shot
         metrics, figures, tables = judge.results(config, data)
         record.record(metrics, figures, tables)

@@ -16,6 +16,7 @@ from jaxtyping import Float
 from torch import Tensor, nn
 
 from learn.methods.convolutions import FEATURES, STRIDE, Convolutions
+from learn.methods.recording_sets import RecordingSets
 from swgsim.common.checks import require, require_integer, require_known
 from swgsim.common.seeds import seed_hash
 
@@ -166,6 +167,34 @@ def convolutional(
         return Network(body, FEATURES, classes, columns, channels * periodic, points * periodic)
 
 
+def of_units(
+    channels: int, points: int, columns: int, classes: int, neurons: int = 128, dropout: float = 0.3,
+    *, periodic: bool = False, seed: int = 0,
+) -> Network:  # fmt: skip
+    """The same layers for every recording of a unit, pooled; see :class:`RecordingSets`.
+
+    Parameters
+    ----------
+    channels, points : int
+        Numbers of features and of recordings of a unit.
+    columns, classes : int
+        Numbers of columns of the input and of classes.
+    neurons, dropout : int, float
+        As in :class:`RecordingSets`.
+    periodic : bool
+        False, as recordings are no angles.
+    seed : int
+        Seed of the initial weights.
+    """
+    owner = "the network of units"
+    _require_common(owner, columns, classes, channels, points, dropout)
+    require_integer(owner, "neurons", neurons, low=1, high=10_000)
+    if periodic or channels * points != columns or not columns:
+        raise ValueError(f"{owner} needs all recordings of a specimen in a row: take rows=unit features=harmonics")
+    with seeded(seed_hash("initial weights", seed)):
+        return Network(RecordingSets(channels, points, neurons, dropout), neurons, classes, columns)
+
+
 def _require_common(owner: str, columns: int, classes: int, channels: int, points: int, dropout: float) -> None:
     require_integer(owner, "columns", columns, low=1, high=1_000_000)
     require_integer(owner, "classes", classes, low=2, high=1000)
@@ -183,6 +212,7 @@ ARCHITECTURES: Mapping[str, Callable[..., Network]] = {
     "perceptron": perceptron,
     "convolutional": convolutional,
     "residual": partial(convolutional, residual=True),
+    "of_units": of_units,
 }
 
 

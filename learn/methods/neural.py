@@ -149,6 +149,19 @@ def convolutional_network(
 residual_network = partial(convolutional_network, kind="residual")
 
 
+def set_network(
+    channels: int = 0, points: int = 0, periodic: bool = False, neurons: int = 128, dropout: float = 0.3,
+    epochs: int = 40, batch: int = 256, rate: float = 2e-3, decay: float = 0.1, steps: int = 0, seed: int = 0,
+    device: str = "auto",
+) -> NeuralClassifier:  # fmt: skip
+    """A network on units; see :func:`learn.methods.networks.of_units` and :class:`learn.methods.training.Recipe`."""
+    from learn.methods.networks import Architecture
+    from learn.methods.training import Recipe
+
+    options = {"channels": channels, "points": points, "periodic": periodic, "neurons": neurons, "dropout": dropout}
+    return NeuralClassifier(Architecture("of_units", options), Recipe(epochs, batch, rate, decay, steps), seed, device)
+
+
 def save(model: NeuralClassifier, path: Path) -> None:
     """Write a trained classifier with weights, scaling and class names."""
     import torch

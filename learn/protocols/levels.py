@@ -87,6 +87,15 @@ class Episode:
     kept_out: Int[np.ndarray, " kept"]
     targets: tuple[Target, ...]
 
+    def of_recordings(self, count: int) -> "Episode":
+        """The same episode in row numbers of recordings, where each row stands for so many in a row."""
+
+        def each(rows: Int[np.ndarray, " row"]) -> Int[np.ndarray, " recording"]:
+            return (rows[:, None] * count + np.arange(count)).ravel()
+
+        targets = (Target(t.gear, each(t.labelled), each(t.unlabelled), each(t.judged)) for t in self.targets)
+        return Episode(self.name, each(self.source), each(self.kept_out), tuple(targets))
+
 
 @dataclass(frozen=True)
 class NewGears:

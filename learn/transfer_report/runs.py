@@ -23,6 +23,7 @@ EXPERIMENTS: Mapping[str, tuple[str, ...]] = {
     "inputs_gears": ("inputs_gears", "inputs_gears_rocket"),
     "no_reference": ("no_reference",),
     "transfer": ("transfer_network", "transfer_rezero"),
+    "units": ("units", "units_rezero"),
 }
 PAPER_EXPERIMENTS: Mapping[str, tuple[str, ...]] = {"zero_shot_disturbed": ("zero_shot_disturbed",)}
 CLASSIFIERS: Mapping[str, str] = {
@@ -35,6 +36,7 @@ CLASSIFIERS: Mapping[str, str] = {
     "cnn": "CNN",
     "resnet": "ResNet",
     "minirocket": "MiniRocket",
+    "set_network": "set network",
 }
 FEATURES: Mapping[str, str] = {
     "selection_1": "Selection 1",
@@ -55,6 +57,7 @@ ADAPTATIONS: Mapping[str, str] = {
     "structure_transfer": "STRUT",
     "rezero": "rezero, healthy recordings only",
 }
+JOINT = ", joint rows"  # after the inputs, of a method that has all recordings of a unit in one row
 
 
 @dataclass(frozen=True)
@@ -194,13 +197,16 @@ def method_of(run: Mapping[str, object]) -> str:
     'random forest on Selection 1'
     >>> method_of({"classifier": "perceptron", "features": "harmonics", "adaptation": "l2_sp"})
     'MLP: L2-SP'
+    >>> method_of({"classifier": "rf", "features": "harmonics", "rows": "unit"})
+    'random forest on harmonics, joint rows'
     """
     classifier, features, adaptation = (str(run.get(key, "none")) for key in ("classifier", "features", "adaptation"))
     model, inputs = CLASSIFIERS.get(classifier, words(classifier)), FEATURES.get(features, words(features))
+    inputs += JOINT if run.get("rows") == "unit" else ""
     if adaptation == "none":
         return f"{model} on {inputs}"
     # Adaptations are compared on harmonics; only another representation is named.
-    model = model if features == "harmonics" else f"{model} on {inputs}"
+    model = model if inputs == "harmonics" else f"{model} on {inputs}"
     return f"{model}: {ADAPTATIONS.get(adaptation, words(adaptation))}"
 
 

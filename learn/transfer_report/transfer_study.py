@@ -15,6 +15,7 @@ from learn.transfer_report import (
     detections,
     figures,
     inputs_over_gears,
+    joint_units,
     sentences,
     studies,
     tables,
@@ -79,6 +80,7 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
     cases, nothing = studies.disturbed_cases(runs.required("zero_shot_disturbed")), without_references(runs)
     trained = runs.of_study("inputs_gears")
     over_gears = inputs_over_gears.over_gears(trained, runs.errors(trained)) if len(trained) else None
+    joint_rows = joint_units.joint_units(runs)
     best, gears = best_of(zero), int(errors["gear"].nunique())
     found = pd.concat(
         detections.detections(of, {name: each[name] for name in compared(best, each)})
@@ -106,6 +108,7 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
         "best": best,
         "errors": figures.errors(zero),
         "methods": tables.methods_text(zero, errors, of_units),
+        "joint": None if joint_rows.empty else joint_units.joint_units_text(joint_rows, of_units),
         "known": figures.known(twins.known(zero, of_units, few, nothing)),
         "nothing": len(nothing),
         "shots": figures.shots(few, levels) if (few["shots"] > 0).any() else None,
@@ -123,6 +126,7 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
         "facts": facts(runs, adapting.iloc[0], [*trials(methods), *trials(adapting)], f"{seconds:.0f} ({kind})"),
     }
     content = transfer_json.content(zero, of_units, few, cases, gears, seconds)
+    content["unit"] |= joint_units.joint_units_json(joint_rows)
     content["detection"] = detections.detections_json(found)
     content["inputs"] = inputs_over_gears.over_gears_json(over_gears)
     content["fast_twin"] = twins.fast_twin_json(zero, methods)

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 from fabricated import recordings
 
@@ -10,6 +11,8 @@ from learn.adaptation.adapting import adapt_and_judge
 from learn.adaptation.rezero import HealthyEfficiency, Rezero
 from learn.inputs.auxiliary_inputs import LOG, changes_of_efficiency
 from learn.inputs.harmonics import Harmonics
+from learn.inputs.inputs import SPECIMEN
+from learn.inputs.joint_rows import joint_rows
 from learn.methods.strong import logistic_regression
 from learn.protocols.levels import NewGears
 from swgsim.common.seeds import generator
@@ -114,6 +117,20 @@ def test_healthy_recordings_of_the_session_lower_the_error_on_new_gears(sound):
     errors = judged.gears.groupby("shots")["error"].mean()
     assert errors[2] < errors[0] - 2
     assert set(judged.specimens["shots"]) == {0, 2}
+
+
+def test_units_in_one_row_are_corrected_as_their_recordings_are(sound):
+    data, _ = biased(sound)
+    units = joint_rows(data)
+    given, trained = Rezero().rezeroed(units, first(units), 2, draw=1)
+    corrected, of_recordings = Rezero().rezeroed(data, first(data), 2, draw=1)
+    expected = joint_rows(corrected)
+    np.testing.assert_allclose(given.features, expected.features, atol=1e-11)
+    specimens = data.table.loc[of_recordings, list(SPECIMEN)].drop_duplicates()
+    pd.testing.assert_frame_equal(
+        units.table.loc[trained, list(SPECIMEN)].sort_values(list(SPECIMEN), ignore_index=True),
+        specimens.sort_values(list(SPECIMEN), ignore_index=True),
+    )
 
 
 def test_inputs_without_the_efficiency_and_a_single_source_gear_are_refused(sound):

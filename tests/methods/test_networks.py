@@ -77,10 +77,11 @@ def test_initial_weights_depend_on_the_seed_and_on_nothing_else(kind):
     architecture = Architecture(kind, {"channels": CHANNELS, "points": POINTS})
     torch.manual_seed(1)
     state = torch.get_rng_state()
-    first = architecture.network(COLUMNS, 3, seed=5).state_dict()
+    columns = CHANNELS * POINTS
+    first = architecture.network(columns, 3, seed=5).state_dict()
     assert torch.equal(torch.get_rng_state(), state)
     torch.manual_seed(2)
-    second, other = (architecture.network(COLUMNS, 3, seed=seed).state_dict() for seed in (5, 6))
+    second, other = (architecture.network(columns, 3, seed=seed).state_dict() for seed in (5, 6))
     assert all(torch.equal(first[name], second[name]) for name in first)
     assert not torch.equal(first["head.weight"], other["head.weight"])
 

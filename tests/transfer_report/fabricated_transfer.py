@@ -104,6 +104,11 @@ def keep_required(keep, data):
         few = {"protocol.variants": 5} if adaptation == "coral" else {}
         keep("transfer", metrics={"trial/1": 90.0 - 10 * after}, tables={"specimens": specimens, "gears": gears},
              classifier="perceptron", features="harmonics", adaptation=adaptation, **few)  # fmt: skip
+    units = predictions(0.1, "units").drop_duplicates(["gear", "label", "variant"])
+    keep("units", tables={"predictions": units}, classifier="logistic_regression", features="harmonics", rows="unit")
+    specimens, gears = adapted(0.04, 0.1, (0, 2))
+    keep("units", tables={"specimens": specimens, "gears": gears}, classifier="logistic_regression",
+         features="harmonics", rows="unit", adaptation="rezero")  # fmt: skip
     specimens, gears = adapted(0.05, 0.15, (0, 1, 2, 5))
     keep("transfer", tables={"specimens": specimens, "gears": gears}, classifier="logistic_regression",
          features="harmonics", adaptation="rezero")  # fmt: skip

@@ -67,6 +67,10 @@ def test_whole_report_from_made_up_runs(data, store, tmp_path):
     of_unit, mistaken = content["unit"]["twin on references"], twin["undeclared"]["after"]
     assert of_unit["value"] < twin["matched"]["value"] < mistaken["value"]
     assert twin["mesh"] is twin["other_authors"] is twin["undeclared"]["before"] is None  # they were not run
+    joint = content["unit"]["logistic regression on harmonics, joint rows"]
+    rezeroed = content["unit"]["logistic regression on harmonics, joint rows: rezero, healthy recordings only (K = 2)"]
+    assert 5 < joint["value"] < 15
+    assert rezeroed["value"] == pytest.approx(100 * 0.04 / 2 + 2.5, abs=1)
     assert 0 < twin["calibration_error"] < 0.5
     assert twin["calibration_error_mismatched"] is None  # neither mesh nor population
     fast = content["fast_twin"]
