@@ -31,4 +31,4 @@ def test_orders_of_the_beat():
 
 def test_a_planned_recording_has_no_drift():
     (drift,) = drifting([recorded({"phi_in": np.zeros(2)})], N)
-    np.testing.assert_array_equal(drift, np.tile(np.eye(25), (3, 1, 1)))
+    np.testing.assert_array_equal(drift, np.tile(np.eye(25), (len(BEATING), 1, 1)))

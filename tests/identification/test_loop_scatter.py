@@ -27,7 +27,7 @@ from swgsim.identification.covariance.scatter import (
 from swgsim.identification.data.beat import BEATING
 from swgsim.identification.data.features import ORDERS, Layout
 from swgsim.identification.data.measured import Measured
-from swgsim.identification.data.model import Model, Situation
+from swgsim.identification.data.model import Model, Situation, predict
 
 POINT = OperatingPoint(2000.0, 35.0)
 LAYOUT = Layout(("T_in", "T_out", "s0", "s1"))
@@ -189,6 +189,14 @@ def test_the_beat_is_an_order_of_the_kinematic_error_in_any_phase(order):
     cosine, sine = (layout.lines(moves[:, kinds(layout).index(kind)])[1] for kind in waves)
     assert sine[order] / cosine[order] == pytest.approx(-1j, abs=0.02)
     assert np.abs(np.delete(cosine, order)).max() < 0.1 * np.abs(cosine[order])
+
+
+def test_kinematic_errors_make_ripples_at_their_orders_and_at_sums_of_two():
+    layout, loaded = Layout(("s0",)), Situation(OperatingPoint(2000.0, 70.0), Conditions())
+    ripple = np.abs(layout.lines(predict([Model(GEAR)], [loaded], layout)[0]))[0, 0]
+    orders = np.arange(1, len(ripple))
+    beating = np.isin(orders, BEATING)
+    assert ripple[orders[beating]].min() > 10 * ripple[orders[~beating]].max()
 
 
 def test_above_the_resonance_the_output_stands_still_against_the_beat():

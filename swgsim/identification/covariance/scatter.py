@@ -10,14 +10,14 @@ from swgsim.effects import ParameterScatter
 from swgsim.effects.frozen import FULL_LOAD
 from swgsim.effects.kinematic_error_order import KinematicErrorOrder
 from swgsim.gear.gear import CATALOGUE_LIMITS
-from swgsim.identification.data.beat import BEATING, drifting
+from swgsim.identification.data.beat import BEATING, WAVES, drifting
 from swgsim.identification.data.features import Layout
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model, Situation, predict
 
 # Standard deviations that a test bench would state (conf/condition/bench.yaml); repeats correct them. Where two devices
 # log the drive and the gauges, the gauges have a trigger of their own: it misses the other by 0.1 degree (an estimate,
-# half the jitter of the index). The size of the beat (data/beat.py) is an estimate too.
+# half the jitter of the index). The sizes of the beats (data/beat.py) are estimates too.
 STATED = {
     "load": 0.005,
     "speed": 0.001,
@@ -26,7 +26,11 @@ STATED = {
     "viscous friction": 0.05,
     "dry friction": 0.02,
     "flank friction": 0.02,
-    **{f"beat of order {order}, {wave}": 2e-6 for order in BEATING for wave in ("cosine", "sine")},
+    **{
+        f"beat of order {order}, {wave}": 2e-6 if order in WAVES else 2e-7
+        for order in BEATING
+        for wave in ("cosine", "sine")
+    },
     "zero of n_in": 0.1,
     "zero of T_in": 0.001,
     "zero of T_out": 0.05,
@@ -124,14 +128,12 @@ def directions(
     beats = [
         model.plus(KinematicErrorOrder(order, BEAT_STEP, phase)) for order in BEATING for phase in (np.pi / 2, 0.0)
     ]
-    # All in one go, as the chain takes about as long for many runs as for few.
     everywhere = [*situations, *shifted("T_out"), *shifted("n_in_rpm")]
-    every = predict([model, viscous, dry, flanks, *beats], everywhere, layout)
-    here, loaded, faster = np.split(every, 3, axis=1)
-    base, *others = here
+    base, loaded, faster = np.split(predict([model], everywhere, layout)[0], 3)
+    others = predict([viscous, dry, flanks, *beats], situations, layout)
     slopes = {
-        "load": (loaded[0] - base) / steps["T_out"][:, None],
-        "speed": (faster[0] - base) / steps["n_in_rpm"][:, None],
+        "load": (loaded - base) / steps["T_out"][:, None],
+        "speed": (faster - base) / steps["n_in_rpm"][:, None],
     }
     for kind, there in zip(("viscous friction", "dry friction", "flank friction", *BEATS), others, strict=True):
         slopes[kind] = (there - base) / (BEAT_STEP if kind in BEATS else STEP)
