@@ -70,6 +70,8 @@ class Runs:
         ``bench`` and ``disturbed`` to the grid, the file and the digest of the data set.
     mistaken : mapping
         Case of a twin with mistaken beliefs to the file of ``swg twin``, which need not exist.
+    other_authors : Path
+        The twin on gears of other authors, which need not exist.
     store : Store
     frame : DataFrame
         One row per configuration, newest first: parameters, metrics (means over its seeds, :func:`.seeds.averaged`) and
@@ -80,6 +82,7 @@ class Runs:
     paths: Mapping[str, Path]
     digests: Mapping[str, str]
     mistaken: Mapping[str, Path]
+    other_authors: Path
     store: Store
     frame: pd.DataFrame
 
@@ -164,7 +167,8 @@ def collected(config: Mapping[str, Any]) -> Runs:
     foreign = [storage.digest(path) for path in Path(config["data"]).glob("*-*.h5")]
     store = settings.store(config["tracking"])
     mistaken = {case: Path(config["data"]) / f"{name}.parquet" for case, name in config["mistaken"].items()}
-    return Runs(grids, paths, digests, mistaken, store, present_runs(store, digests.values(), foreign))
+    others = Path(config["other_authors"])
+    return Runs(grids, paths, digests, mistaken, others, store, present_runs(store, digests.values(), foreign))
 
 
 def present_runs(store: Store, digests: Iterable[str], foreign: Iterable[str] = ()) -> pd.DataFrame:

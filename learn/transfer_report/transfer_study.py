@@ -135,7 +135,9 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
         ratio = twins.ratio_to_floor(errors)
         page["claim"] = sentences.claim(zero, of_units, ratio, gears, references(runs))
         page["twins"] = twins.mismatches_text(cases)
-        content["twin"] = twins.twin_json(zero, ratio, cases)
+        others = twins.other_authors(runs.other_authors)
+        page["other_authors"] = None if others is None else twins.other_authors_text(others)
+        content["twin"] = twins.twin_json(zero, ratio, cases, others)
     return page, content
 
 

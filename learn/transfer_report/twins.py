@@ -1,6 +1,8 @@
 """The claim of the study: the twin of a gear beside its floor, per recording and per unit, and where it is mistaken."""
 
+import json
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import pandas as pd
@@ -105,7 +107,29 @@ def mismatches_text(table: pd.DataFrame) -> pd.DataFrame:
     ).set_axis(pd.Index([CASES[case] for case in table.index], name="twin"))
 
 
-def twin_json(zero: pd.DataFrame, ratio: pd.Series | None, cases: pd.DataFrame) -> dict[str, Any]:
+def other_authors(path: Path) -> dict[str, Any] | None:
+    """Error of the twin on gears that other authors simulated [%], from the file of tests/benches; None without it."""
+    if not path.is_file():
+        return None
+    found = json.loads(path.read_text(encoding="utf-8"))
+    known = ("value", "ci95", "count", "healthy", "healthy_called_faulty")
+    return {name: found[name] for name in known}
+
+
+def other_authors_text(found: Mapping[str, Any]) -> str:
+    """Result of :func:`other_authors` as a sentence of the page."""
+    low, high = found["ci95"]
+    error = number(found["value"], low, high, unit=" %")
+    return (
+        f"Of {found['count']} gears that other authors simulated, by programs that share nothing with the model, swg "
+        f"diagnose names another class than the true one in {error}; {found['healthy_called_faulty']} of "
+        f"{found['healthy']} healthy ones are called faulty."
+    )
+
+
+def twin_json(
+    zero: pd.DataFrame, ratio: pd.Series | None, cases: pd.DataFrame, others: dict[str, Any] | None
+) -> dict[str, Any]:
     """The part ``twin`` of ``transfer.json``: errors [%], calibration errors [-]; None for what was not run.
 
     Parameters
@@ -116,6 +140,8 @@ def twin_json(zero: pd.DataFrame, ratio: pd.Series | None, cases: pd.DataFrame) 
         Result of :func:`ratio_to_floor`.
     cases : DataFrame
         Result of :func:`mismatches`.
+    others : dict or None
+        Result of :func:`other_authors`.
     """
     error = {name: in_json(row_of(cases, name)) if name in cases.index else None for name in CASES}
     mistaken = [cases["calibration_error"][name] for name in ("mesh", "population") if name in cases.index]
@@ -123,7 +149,7 @@ def twin_json(zero: pd.DataFrame, ratio: pd.Series | None, cases: pd.DataFrame) 
         "matched": in_json(row_of(zero, TWIN)),
         "mesh": error["mesh"],
         "population": error["population"],
-        "other_authors": None,
+        "other_authors": others,
         "undeclared": {"before": error["before"], "after": error["after"]},
         "floor": None if ratio is None else in_json(row_of(zero, FLOOR)),
         "ratio_to_floor": None if ratio is None else in_json(ratio),

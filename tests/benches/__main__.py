@@ -1,21 +1,22 @@
 """Ask every bench of another author: python tests/benches [OUT] [--only NAME ...] [--cases K ...] [--seed S].
 
 Each gear is recorded healthy, commissioned, recorded again, and examined with the whole library. An answer is kept in
-OUT as a file, so that an interrupted run continues. The scores go to report/other_benches.json.
+OUT as a file, so that an interrupted run continues. The scores go to report/other_benches.json. With --diagnose, the
+twin is asked instead, on healthy gears and those with one of its faults; its scores go to report/other_authors.json.
 """
 
 import argparse
 import json
-import subprocess
-import sys
 import tempfile
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import product
 from pathlib import Path
 from time import process_time
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
+from diagnoses import diagnosed, errors
+from gears import BENCHES, GEARS, recorded
 from joblib import Parallel, delayed
 from threadpoolctl import threadpool_limits
 
@@ -25,31 +26,6 @@ from swgsim.common.version import code_version
 from swgsim.effects.base import BY_STRUCTURE
 from swgsim.effects.library import LIBRARY
 from swgsim.effects.quantity import quantities, size_of
-
-HERE = Path(__file__).parent
-# Effects that tests/other_bench hides, six healthy gears first; the last two are in no library.
-OF_OTHER_BENCH = (
-    *["none"] * 6, "eccentric_wave_generator", "tilting_moment", "root_tooth_crack", "tip_tooth_crack",
-    "kinematic_error_order", "reduced_damping", "reduced_stiffness", "flank_friction", "gauge_gain", "gauge_position",
-    "zero_offset", "mains_hum", "sticky_bearing", "breathing_case",
-)  # fmt: skip
-
-
-class Bench(NamedTuple):
-    """A bench: the folder that its module is run from, and whether it was asked only once, after all changes."""
-
-    folder: Path
-    asked_once: bool
-
-
-BENCHES = {
-    "other_bench": Bench(HERE.parent, False),
-    "shell_bench": Bench(HERE, False),
-    "ring_bench": Bench(HERE, False),
-    "frame_bench": Bench(HERE, False),
-    "ritz_bench": Bench(HERE, False),
-}
-GEARS = 20
 
 
 def main() -> None:
@@ -61,41 +37,31 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1, help="other gears with the same effects")
     parser.add_argument("--report", type=Path, default=Path("report"))
     parser.add_argument("--jobs", type=int, default=-1)
+    parser.add_argument("--diagnose", action="store_true", help="ask the twin")
     chosen = parser.parse_args()
     jobs = list(product(chosen.only, chosen.cases))
-    answers = Parallel(n_jobs=chosen.jobs, verbose=5)(delayed(kept)(chosen.out, *job, chosen.seed) for job in jobs)
+    out, ask = (chosen.out / "diagnoses", diagnosed) if chosen.diagnose else (chosen.out, asked)
+    answers = Parallel(n_jobs=chosen.jobs, verbose=5)(delayed(kept)(ask, out, *job, chosen.seed) for job in jobs)
+    if chosen.diagnose:
+        write_json(chosen.report / "other_authors.json", found := errors(answers))
+        print(found)
+        return
     scores = [score(name, [a for (of, _), a in zip(jobs, answers, strict=True) if of == name]) for name in chosen.only]
     write_json(chosen.report / "other_benches.json", scores)
     for each in scores:
         print(each)
 
 
-def kept(out: Path, name: str, case: int, seed: int) -> dict[str, Any]:
+def kept(ask: Callable[[Path], dict[str, Any]], out: Path, name: str, case: int, seed: int) -> dict[str, Any]:
     """The answer to one gear; that of the same code is reused."""
-    path, code = out / name / f"{seed}-{case:02d}.json", code_version("identification")
+    path, code = out / name / f"{seed}-{case:02d}.json", code_version("identification", "oracle", "twin")
     if path.exists() and (known := json.loads(path.read_text()))["code"] == code:
         return known
     with tempfile.TemporaryDirectory() as folder, threadpool_limits(1):
         recorded(Path(folder), name, case, seed)
-        found = {"bench": name, "case": case, "seed": seed, "code": code, **asked(Path(folder))}
+        found = {"bench": name, "case": case, "seed": seed, "code": code, **ask(Path(folder))}
     write_json(path, found)
     return found
-
-
-def recorded(folder: Path, name: str, case: int, seed: int) -> None:
-    """Folders ``healthy`` and ``again``, and truth.json."""
-    if name == "other_bench":
-        hidden = ["--seed", str(800 * seed + case), "--effect", OF_OTHER_BENCH[case]]
-    else:
-        hidden = ["--seed", str(seed), "--case", str(case)]
-    subprocess.run([sys.executable, "-m", name, str(folder), *hidden], cwd=BENCHES[name].folder, check=True)
-    if name == "other_bench":
-        (folder / "commissioning").rename(folder / "healthy")
-        (folder / "recordings").rename(folder / "again")
-        effect = json.loads((folder / "truth.json").read_text())["effect"]
-        library = effect["name"] in LIBRARY
-        hidden_name = None if effect["name"] == "none" else effect["name"]
-        write_json(folder / "truth.json", {"effect": hidden_name, "library": library, "size": effect["size"]})
 
 
 def asked(folder: Path) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 import json
 import re
+from pathlib import Path
 from unittest.mock import ANY
 
 import pandas as pd
@@ -39,7 +40,12 @@ def store(tmp_path_factory):
 def test_whole_report_from_made_up_runs(data, store, tmp_path):
     folder, digests = data
     out = tmp_path / "report"
-    config = configured("transfer_report", f"data={folder}", f"tracking.folder={store}", f"out={out}")
+    others = {"value": 12.5, "ci95": [2.2, 47.1], "count": 8, "healthy": 3, "healthy_called_faulty": 1, "gears": []}
+    (tmp_path / "others.json").write_text(json.dumps(others))
+    config = configured(
+        "transfer_report", f"data={folder}", f"tracking.folder={store}", f"out={out}",
+        f"other_authors={tmp_path / 'others.json'}",
+    )  # fmt: skip
     Keeper(store, {"gears-bench": "old"})("zero_shot", classifier="rf", features="selection_1")
     with pytest.raises(ValueError, match=r"study zero_shot on .* 'swg train experiment=zero_shot grid=gears"):
         transfer_study.run(config)
@@ -66,7 +72,8 @@ def test_whole_report_from_made_up_runs(data, store, tmp_path):
     assert low < twin["matched"]["value"] / twin["floor"]["value"] < high
     of_unit, mistaken = content["unit"]["twin on references"], twin["undeclared"]["after"]
     assert of_unit["value"] < twin["matched"]["value"] < mistaken["value"]
-    assert twin["mesh"] is twin["other_authors"] is twin["undeclared"]["before"] is None  # they were not run
+    assert twin["mesh"] is twin["undeclared"]["before"] is None  # they were not run
+    assert twin["other_authors"] == {name: value for name, value in others.items() if name != "gears"}
     joint = content["unit"]["logistic regression on harmonics, joint rows"]
     rezeroed = content["unit"]["logistic regression on harmonics, joint rows: rezero, healthy recordings only (K = 2)"]
     assert 5 < joint["value"] < 15
@@ -97,6 +104,8 @@ def test_whole_report_from_made_up_runs(data, store, tmp_path):
     assert len(set(titles)) == len(titles) > 12
     assert set(re.findall(r'href="#(\w+)"', page)) == set(re.findall(r'<h2 id="(\w+)"', page))
     assert "the same, after the loop has found the effect" in page
+    assert "Of 8 gears that other authors simulated" in page
+    assert "12.5 % (2.2 to 47.1); 1 of 3 healthy ones are called faulty" in page
     assert f"with 2, logistic regression errs in {content['rezero']['2']['value']:.1f} %" in page
     assert "MLP: CORAL (trained on 5 variants)" in page
     assert "replay (trained on" not in page
@@ -116,7 +125,7 @@ def test_runs_of_the_present_code_replace_older_ones_of_their_study(store):
     assert set(zip(found["study"], found["classifier"], strict=True)) == {
         ("zero_shot", "cnn"), ("no_reference", "cnn"), ("inputs_gears", "rf")
     }  # fmt: skip
-    runs = transfer_runs.Runs({}, {}, {}, {}, keep.store, found)
+    runs = transfer_runs.Runs({}, {}, {}, {}, Path(), keep.store, found)
     assert runs.older_code() == ["inputs_gears", "no_reference"]
     assert runs.of_study("transfer").empty
 
@@ -129,7 +138,7 @@ def test_a_sweep_over_seeds_is_one_method_with_means_and_their_spread(tmp_path):
         keep("transfer", metrics={"test_score": 100 - error}, tables={"specimens": table}, classifier="perceptron",
              features="harmonics", adaptation="replay", seed=seed, **{"classifier.seed": seed})  # fmt: skip
     keep("transfer", classifier="perceptron", features="harmonics", adaptation="coral")
-    runs = transfer_runs.Runs({}, {}, {}, {}, keep.store, transfer_runs.present_runs(keep.store, ["a"]))
+    runs = transfer_runs.Runs({}, {}, {}, {}, Path(), keep.store, transfer_runs.present_runs(keep.store, ["a"]))
     methods = transfer_runs.by_method(runs.of_study("transfer"))
     assert list(methods.index) == ["MLP: CORAL", "MLP: replay"]
     assert methods.loc["MLP: replay", ["seeds", "test_score", "spread"]].tolist() == [3, 87.0, 3.0]
