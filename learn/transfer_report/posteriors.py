@@ -12,10 +12,17 @@ from swgsim.storage.labelled_signals import CLASSES
 FACTS = ["row", *SPECIMEN, "severity", *OPERATING_POINT]
 ORACLE, ORACLE_OF_SESSION = "oracle", "oracle that knows the session"
 TWIN, FAST_TWIN, FLOOR = "twin on references", "fast twin on references", "floor of references"
-# Methods of a file to the prefix of their columns. A twin and its floor take a unit as one long observation.
+# Methods of a file to the prefix of their columns. They take a unit as one long observation.
 OF_ORACLE: Mapping[str, str] = {ORACLE: "", ORACLE_OF_SESSION: KNOWN}
 OF_TWIN: Mapping[str, str] = {TWIN: "", FLOOR: "floor:", ORACLE: "oracle:", ORACLE_OF_SESSION: "oracle known:"}
-OF_UNITS: Mapping[str, str] = {TWIN: "unit:", FLOOR: "floor unit:"}
+OF_UNITS: Mapping[str, str] = {
+    TWIN: "unit:",
+    FLOOR: "floor unit:",
+    ORACLE: "oracle unit:",
+    ORACLE_OF_SESSION: "oracle known unit:",
+}
+# The twin that is given healthy specimens of the session as well, of recordings and of units.
+OF_SESSION, UNITS_OF_SESSION = {TWIN: "session:"}, {TWIN: "session unit:"}
 
 
 def posteriors(

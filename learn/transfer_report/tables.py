@@ -50,6 +50,12 @@ def in_json(row: pd.Series, prefix: str = "") -> dict[str, Any]:
     return {"value": value, "ci95": [low, high]}
 
 
+def both_in_json(row: pd.Series) -> dict[str, Any]:
+    """:func:`in_json` of a row that has ``unit``, ``unit_low`` and ``unit_high`` as well."""
+    of_unit = row[["unit", "unit_low", "unit_high"]].set_axis(["value", "low", "high"])
+    return in_json(row) | {"unit": in_json(of_unit)}
+
+
 def row_of(table: pd.DataFrame, name: str) -> pd.Series:
     """The row of a method."""
     return cast(pd.Series, table.loc[name])

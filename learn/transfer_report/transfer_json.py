@@ -12,6 +12,7 @@ from learn.transfer_report.tables import (
     best_adapted,
     best_of,
     best_rezeroed,
+    both_in_json,
     finite,
     highest,
     in_json,
@@ -19,7 +20,6 @@ from learn.transfer_report.tables import (
 )
 
 SHOTS = (1, 2, 5)
-UNIT, VALUES = ["unit", "unit_low", "unit_high"], ["value", "low", "high"]
 
 
 def content(
@@ -55,10 +55,7 @@ def content(
             }
             for shots, row in adapted.items()
         },
-        "rezero": {
-            str(shots): in_json(row) | {"unit": in_json(row[UNIT].set_axis(VALUES))}
-            for shots, row in best_rezeroed(few).items()
-        },
+        "rezero": {str(shots): both_in_json(row) for shots, row in best_rezeroed(few).items()},
         "unit": {name: in_json(row_of(of_units, name)) for name in of_units.index},
         "oracle_error": finite(row_of(zero, ORACLE)["value"]),
         "oracle_session_error": finite(row_of(zero, ORACLE_OF_SESSION)["value"]),

@@ -23,7 +23,15 @@ from learn.transfer_report import (
     twins,
 )
 from learn.transfer_report.importance import importance, importance_text
-from learn.transfer_report.posteriors import OF_ORACLE, OF_TWIN, OF_UNITS, mismatch, posteriors
+from learn.transfer_report.posteriors import (
+    OF_ORACLE,
+    OF_SESSION,
+    OF_TWIN,
+    OF_UNITS,
+    UNITS_OF_SESSION,
+    mismatch,
+    posteriors,
+)
 from learn.transfer_report.runs import Runs, by_method, collected, development_scores, trials
 from learn.transfer_report.tables import FOREST, ORACLE, ORACLE_OF_SESSION, best_of, row_of
 from swgsim.common.files import write_json, write_text
@@ -74,6 +82,7 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
     zero = tables.zero_shot(errors, development_scores(methods), methods["fit_seconds"].astype(float))
     zero = zero.join(methods[["seeds", "spread"]]).fillna({"seeds": 1})
     predictions |= oracles
+    session = of_session(runs, judged)
     units = twins.of_units(predictions, joint)
     of_units = twins.errors(units)
     few, of_gears = tables.few_shot(errors, runs.tables(adapting, "specimens")), runs.tables(adapting, "gears")
@@ -109,7 +118,7 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
         "errors": figures.errors(zero),
         "methods": tables.methods_text(zero, errors, of_units),
         "joint": None if joint_rows.empty else joint_units.joint_units_text(joint_rows, of_units),
-        "known": figures.known(twins.known(zero, of_units, few, nothing)),
+        "known": figures.known(twins.known(zero, of_units, few, nothing, session)),
         "nothing": len(nothing),
         "shots": figures.shots(few, levels) if (few["shots"] > 0).any() else None,
         "few": tables.shots_text(few, "", labelled, marks, adapting),
@@ -137,7 +146,7 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
         page["twins"] = twins.mismatches_text(cases)
         others = twins.other_authors(runs.other_authors)
         page["other_authors"] = None if others is None else twins.other_authors_text(others)
-        content["twin"] = twins.twin_json(zero, ratio, cases, others)
+        content["twin"] = twins.twin_json(zero, ratio, cases, others, session)
     return page, content
 
 
@@ -153,6 +162,15 @@ def not_learned(runs: Runs, judged: pd.DataFrame) -> tuple[dict[str, pd.DataFram
     if ORACLE not in found:
         found |= posteriors(oracle, digest, judged, OF_ORACLE)
     return found, joint
+
+
+def of_session(runs: Runs, judged: pd.DataFrame) -> pd.Series | None:
+    """Errors of the twin that knows healthy specimens of the session; None if ``swg twin`` was not run."""
+    bench, digest = runs.paths["bench"], runs.digests["bench"]
+    path = bench.with_name(f"{bench.stem}-twin.parquet")
+    if not path.is_file():
+        return None
+    return twins.in_session(*(posteriors(path, digest, judged, of) for of in (OF_SESSION, UNITS_OF_SESSION)))
 
 
 def every_twin(runs: Runs, judged: pd.DataFrame) -> dict[str, tuple[pd.DataFrame, pd.DataFrame]]:

@@ -16,6 +16,7 @@ from learn.transfer_report.tables import (
     LIMITS,
     best_adapted,
     best_rezeroed,
+    both_in_json,
     finite,
     in_json,
     least,
@@ -41,7 +42,7 @@ Tables = Mapping[str, pd.DataFrame]
 
 
 def of_units(predictions: Tables, joint: Tables) -> dict[str, pd.DataFrame]:
-    """Predictions of units: the twin and its floor take one as a whole, the others multiply their posteriors."""
+    """Predictions of units: the twin and those who know the gear take one as a whole, others multiply posteriors."""
     return {
         name: units_of(joint[name]) if name in joint else units(table)
         for name, table in predictions.items()
@@ -128,8 +129,9 @@ def other_authors_text(found: Mapping[str, Any]) -> str:
 
 
 def twin_json(
-    zero: pd.DataFrame, ratio: pd.Series | None, cases: pd.DataFrame, others: dict[str, Any] | None
-) -> dict[str, Any]:
+    zero: pd.DataFrame, ratio: pd.Series | None, cases: pd.DataFrame, others: dict[str, Any] | None,
+    session: pd.Series | None,
+) -> dict[str, Any]:  # fmt: skip
     """The part ``twin`` of ``transfer.json``: errors [%], calibration errors [-]; None for what was not run.
 
     Parameters
@@ -142,6 +144,8 @@ def twin_json(
         Result of :func:`mismatches`.
     others : dict or None
         Result of :func:`other_authors`.
+    session : Series or None
+        Result of :func:`in_session`.
     """
     error = {name: in_json(row_of(cases, name)) if name in cases.index else None for name in CASES}
     mistaken = [cases["calibration_error"][name] for name in ("mesh", "population") if name in cases.index]
@@ -150,6 +154,7 @@ def twin_json(
         "mesh": error["mesh"],
         "population": error["population"],
         "other_authors": others,
+        "session": None if session is None else both_in_json(session),
         "undeclared": {"before": error["before"], "after": error["after"]},
         "floor": None if ratio is None else in_json(row_of(zero, FLOOR)),
         "ratio_to_floor": None if ratio is None else in_json(ratio),
@@ -174,7 +179,19 @@ def fast_twin_json(zero: pd.DataFrame, methods: pd.DataFrame) -> dict[str, Any] 
     return {"error": in_json(row_of(zero, FAST_TWIN)), "milliseconds": finite(milliseconds)}
 
 
-def known(zero: pd.DataFrame, of_units: pd.DataFrame, few: pd.DataFrame, nothing: pd.DataFrame) -> pd.DataFrame:
+def in_session(recordings: Tables, of_unit: Tables) -> pd.Series | None:
+    """Errors of the twin that knows healthy specimens of the session: ``value``, ``low``, ``high`` of recordings and
+    ``unit``, ``unit_low``, ``unit_high`` of units [%]; None if it was not asked.
+    """
+    if not recordings:
+        return None
+    units = errors({name: units_of(table) for name, table in of_unit.items()})
+    return row_of(errors(recordings).join(named("unit", units)), TWIN)
+
+
+def known(
+    zero: pd.DataFrame, of_units: pd.DataFrame, few: pd.DataFrame, nothing: pd.DataFrame, session: pd.Series | None
+) -> pd.DataFrame:
     """Errors over what is known of the gear: ``known``, ``who``, and ``value``, ``low``, ``high`` of recordings and
     ``unit``, ``unit_low``, ``unit_high`` of units [%].
 
@@ -186,15 +203,20 @@ def known(zero: pd.DataFrame, of_units: pd.DataFrame, few: pd.DataFrame, nothing
         Results of :func:`.tables.zero_shot`, :func:`errors` per unit and :func:`.tables.few_shot`.
     nothing : DataFrame
         Methods without references, with columns as above; it may be empty.
+    session : Series or None
+        Result of :func:`in_session`.
     """
     both = zero[["value", "low", "high"]].join(named("unit", of_units))
+    of_day = f"references, {HEALTHY} healthy of the day"
     learned = {
         "nothing": None if nothing.empty else least(nothing),
         REFERENCES: least(both.drop(index=[TWIN, FAST_TWIN, *LIMITS], errors="ignore")),
-        f"references, {HEALTHY} healthy of the day": best_rezeroed(few).get(HEALTHY),
+        of_day: best_rezeroed(few).get(HEALTHY),
         f"references, {SHOTS} of each fault": best_adapted(few, SHOTS),
     }
     rows = [{**row, "known": name, "who": LEARNED} for name, row in learned.items() if row is not None]
     others = [who for who in (FAST_TWIN, TWIN, FLOOR) if who in both.index]
     rows += [{**row_of(both, who), "known": REFERENCES, "who": who} for who in others]
+    if session is not None:
+        rows.append({**session, "known": of_day, "who": TWIN})
     return pd.DataFrame(rows)[["known", "who", *both]]

@@ -80,19 +80,20 @@ class Grid:
         """All planned recordings of one gear: the references, then class by class."""
         healthy = Variant("healthy", 0, np.nan, np.nan, ())
         for number in range(self.references):
-            yield from self._at_all_points(gear, healthy, number, reference=True)
+            yield from self.of_specimen(gear, healthy, number, reference=True)
         for label in self.classes:
             for variant in self.variants.of(label, generator("variants", self.seed, gear.number, label)):
                 for day in range(self.days):
-                    yield from self._at_all_points(gear, variant, variant.number, reference=False, day=day)
+                    yield from self.of_specimen(gear, variant, variant.number, day=day)
 
     def count(self) -> int:
         """Recordings per gear."""
         return len(self.points) * (self.references + len(self.classes) * self.variants.count * self.days)
 
-    def _at_all_points(
-        self, gear: Gear, variant: Variant, number: int, *, reference: bool, day: int = 0
+    def of_specimen(
+        self, gear: Gear, variant: Variant, number: int, *, reference: bool = False, day: int = 0
     ) -> Iterator[Case]:
+        """The planned recordings of one specimen on a day, one at every operating point; ``number`` seeds them."""
         # The first day has the recordings of a grid of one day.
         further = (day,) if day else ()
         for point in self.points:

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 from itertools import islice
 from math import ceil
 
-from swgsim.bench.scatter import Bench
+from swgsim.bench.scatter import Bench, Session
 from swgsim.chain.chain import SECTORS
+from swgsim.common.seeds import generator
 from swgsim.common.version import code_version
 from swgsim.dataset.grid import Case, Grid
 from swgsim.effects.base import Effect
@@ -60,6 +61,19 @@ class Plan:
     def attributes(self) -> dict[str, str]:
         """Attributes of the file; a run resumes only from parts with equal attributes."""
         return provenance(self.configuration)
+
+    def session(self, gear: Gear, reference: bool = False, day: int = 0) -> Session:
+        """Biases of the torque flanges in the session of a gear's references, or of its other recordings on a day.
+
+        Raises
+        ------
+        ValueError
+            If the plan has no bench.
+        """
+        if self.bench is None:
+            raise ValueError("the plan has no bench, so there are no biases of flanges: choose condition=bench")
+        further = (day,) if day else ()
+        return self.bench.session(generator("session", self.grid.seed, gear.number, reference, *further))
 
     @property
     def block_count(self) -> int:

@@ -60,10 +60,7 @@ def _acquire(plan: Plan, cases: list[Case], simulation: Simulation) -> tuple[np.
     for i, (case, ideal, m) in enumerate(zip(cases, simulation.signals, simulation.of_run, strict=True)):
         rng = generator("acquisition", case.seed)
         if plan.bench:
-            day = (case.day,) if case.day else ()
-            session = plan.bench.session(
-                generator("session", plan.grid.seed, case.run.gear.number, case.reference, *day)
-            )
+            session = plan.session(case.run.gear, case.reference, case.day)
             ideal = plan.bench.signals(ideal, rng)
             shaft = Shaft(P_in[m], omega_in[m], omega_out[m], efficiency[i])
             efficiency[i] = plan.bench.efficiency(shaft, session, rng)

@@ -9,7 +9,6 @@ import numpy as np
 from jaxtyping import Float
 from scipy.linalg import block_diag
 
-from swgsim.common.seeds import generator
 from swgsim.dataset.plan import Plan
 from swgsim.gear.gear import Gear, OperatingPoint
 from swgsim.oracle.cells import Cells
@@ -75,16 +74,16 @@ def _torques(gear: Gear, point: OperatingPoint, log_efficiency: float) -> tuple[
     return point.T_out / ((gear.transmission.N + 1) * float(np.exp(log_efficiency))), point.T_out
 
 
-def point_model(plan: Plan, gear: Gear, expected: Expectation, session_known: bool) -> PointModel:
-    """The distributions at one operating point: expected observations plus the errors that are added to a recording.
+def known_gear_model(plan: Plan, gear: Gear, expected: Sequence[Expectation], session_known: bool) -> PointModel:
+    """The distributions at one operating point or at several together, of a gear that is known.
 
     Parameters
     ----------
     plan : Plan
         Plan of the data set, with bench, window and seed.
     gear : Gear
-    expected : Expectation
-        Expectation of this gear at the operating point.
+    expected : sequence of Expectation
+        Of this gear, one for each operating point; the observations follow each other in this order.
     session_known : bool
         Whether the oracle also knows the bias of the torque flanges during the session of the gear's samples.
 
@@ -93,14 +92,16 @@ def point_model(plan: Plan, gear: Gear, expected: Expectation, session_known: bo
     ValueError
         As :func:`added_variance`.
     """
-    point = expected.point
-    log_efficiency = float(expected.healthy[:, EFFICIENCY].mean())
+    levels = [float(each.healthy[:, EFFICIENCY].mean()) for each in expected]
     if not session_known:
-        return joint_model(plan, gear, [expected], session_columns(plan, gear, point, log_efficiency))
-    session = bench_of(plan).session(generator("session", plan.grid.seed, gear.number, False))
-    T_in, T_out = _torques(gear, point, log_efficiency)
-    model = joint_model(plan, gear, [expected], np.zeros((FEATURES, 0)))
-    model.mean[EFFICIENCY] += np.log1p(session.T_out / T_out) - np.log1p(session.T_in / T_in)
+        columns = [session_columns(plan, gear, e.point, level) for e, level in zip(expected, levels, strict=True)]
+        return joint_model(plan, gear, expected, np.concatenate(columns))
+    model = joint_model(plan, gear, expected, np.zeros((len(expected) * FEATURES, 0)))
+    session = plan.session(gear)
+    for number, (each, level) in enumerate(zip(expected, levels, strict=True), 1):
+        T_in, T_out = _torques(gear, each.point, level)
+        bias = np.log1p(session.T_out / T_out) - np.log1p(session.T_in / T_in)
+        model.mean[number * FEATURES + EFFICIENCY] += bias
     return model
 
 
@@ -112,7 +113,7 @@ def joint_model(
     Parameters
     ----------
     plan, gear
-        As in :func:`point_model`.
+        As in :func:`known_gear_model`.
     expected : sequence of Expectation
         One for each operating point; the observations follow each other in this order.
     shared : array (row, column)
@@ -158,14 +159,16 @@ def judge(
     samples : LabelledSignals
         Recordings without references.
     session_known : bool
-        As in :func:`point_model`.
+        As in :func:`known_gear_model`.
 
     Raises
     ------
     ValueError
-        If a recording is a reference, or of another gear or operating point.
+        If a recording is a reference, or of another gear or operating point, or the plan has several days.
     """
     table = samples.table
+    if session_known and plan.grid.days > 1:
+        raise ValueError(f"{plan.grid.days} days of every specimen, each a session, and one is known: take days=1")
     if table["reference"].any():
         raise ValueError(
             f"{table['reference'].sum()} of the recordings are references, which are of another session: leave them "
@@ -177,7 +180,7 @@ def judge(
         point = at_point.point
         here = (table["n_in_rpm"] == point.n_in_rpm) & (table["T_out_nm"] == point.T_out)
         rows = np.flatnonzero(here & (table["gear"] == gear.number))
-        found[rows] = np.exp(point_model(plan, gear, at_point, session_known).log_posterior(x[rows]))
+        found[rows] = np.exp(known_gear_model(plan, gear, [at_point], session_known).log_posterior(x[rows]))
     left = np.flatnonzero(np.isnan(found).any(axis=1))
     if len(left):
         number, speed, load = table[["gear", "n_in_rpm", "T_out_nm"]].iloc[left[0]]

@@ -38,4 +38,4 @@ def floor_of(knowledge: Knowledge, true: Model, references: References, expected
     moved = [
         Expectation(each.point, each.healthy + by, each.faults) for each, by in zip(expected, found - was, strict=True)
     ]
-    return Twin(knowledge, fitted, moved)
+    return Twin.of(knowledge, fitted, moved)

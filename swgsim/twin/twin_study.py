@@ -6,7 +6,7 @@ references (:mod:`swgsim.twin.floor`) judge the same, for comparison.
 
 import json
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -19,15 +19,17 @@ from threadpoolctl import threadpool_limits
 from swgsim.common.compute import Engine
 from swgsim.common.seeds import generator
 from swgsim.common.version import code_version
+from swgsim.dataset.faults import Variant
 from swgsim.dataset.plan import Plan
-from swgsim.gear.gear import Gear
+from swgsim.dataset.simulate_cases import record
+from swgsim.gear.gear import Gear, OperatingPoint
 from swgsim.identification.data.model import Model
 from swgsim.jobs import settings
 from swgsim.oracle.by_gear import GearByGear, chosen_gears, configuration_of, data_set, plan_of
 from swgsim.oracle.cells import Partition, Resolution
 from swgsim.oracle.diagnosis import diagnosis
 from swgsim.oracle.model import bench_of, expectations, observations, partitions_of
-from swgsim.oracle.oracle import judge
+from swgsim.oracle.oracle import known_gear_model
 from swgsim.oracle.point import PointModel
 from swgsim.oracle.severity import Severities
 from swgsim.storage import storage
@@ -38,14 +40,20 @@ from swgsim.twin.knowledge import Knowledge
 from swgsim.twin.references import References
 from swgsim.twin.twin import Twin
 
-# Who judges, as prefixes of the columns of probabilities: twin and floor judge recordings and units.
-WHO = ("", "unit:", "floor:", "floor unit:", "oracle:", "oracle known:")
+# Who judges recordings, and units with " unit" before the colon, as prefixes of the columns of probabilities. The twin
+# of the session knows healthy specimens of it, the last oracle its biases.
+WHO = (
+    "", "unit:", "session:", "session unit:",
+    "floor:", "floor unit:", "oracle:", "oracle unit:", "oracle known:", "oracle known unit:",
+)  # fmt: skip
+
+Densities = Callable[[Sequence[OperatingPoint], int], PointModel]  # at operating points, of the mean of some days
 
 # What is known of every sample.
 FACTS = ("gear", "label", "variant", "severity", "n_in_rpm", "T_out_nm")
 
 # Choices of the configuration on which the result depends.
-CHOICES = ("resolution", "believed", "further", "compared")
+CHOICES = ("resolution", "believed", "further", "compared", "healthy")
 
 
 def run(config: Mapping[str, Any]) -> dict[str, float]:
@@ -78,15 +86,28 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
         "code": code_version("identification", "oracle", "twin"),
         "choices": json.dumps([config[each] for each in CHOICES], sort_keys=True),
     }
+    if plan.grid.days > 1 and (config["compared"] or config["healthy"]):
+        raise ValueError(
+            f"{plan.grid.days} days of every specimen, and oracle and healthy specimens know one session: add "
+            "compared=false healthy=0"
+        )
     chosen = chosen_gears(plan, config["gears"])
     path = source.with_name("-".join([source.stem, "twin", *([config["case"]] if config["case"] else [])]) + ".parquet")
     found = GearByGear(plan, source, path, chosen, made_from).table(
         _judged,
-        lambda gear, first, recordings: (knowledge, plan, gear, first, recordings, config["compared"]),
+        lambda gear, first, recordings: (
+            knowledge,
+            plan,
+            gear,
+            first,
+            recordings,
+            config["compared"],
+            config["healthy"],
+        ),
         Engine.of(config),
     )
     result: dict[str, float] = {"samples": len(found)}
-    for who in WHO if config["compared"] else WHO[:2]:
+    for who in [each for each in WHO if each + CLASSES[0] in found]:
         said = np.array(CLASSES)[found[[who + label for label in CLASSES]].to_numpy().argmax(axis=1)]
         name = who.strip(": ").replace(": ", "_").replace(":", "_").replace(" ", "_") or "twin"
         result[f"{name}_accuracy"] = float(np.mean(said == found["true:label"]))
@@ -102,7 +123,7 @@ def _merged(configuration: Mapping[str, Any], believed: Mapping[str, Any]) -> di
 
 
 def _judged(
-    knowledge: Knowledge, plan: Plan, gear: Gear, first: int, recordings: LabelledSignals, compared: bool
+    knowledge: Knowledge, plan: Plan, gear: Gear, first: int, recordings: LabelledSignals, compared: bool, healthy: int
 ) -> pd.DataFrame:
     """What everyone says of one gear's samples."""
     with threadpool_limits(1):
@@ -113,11 +134,25 @@ def _judged(
         twin = Twin.of(knowledge, fitted)
         seconds = time.perf_counter() - began
         tables = [_diagnosed(twin, samples, each).add_prefix(prefix) for each, prefix in ((False, ""), (True, "unit:"))]
+        if healthy:
+            of_session = twin.in_session(_further_healthy(plan, gear, healthy))
+            tables += _probabilities("session", of_session.densities, plan, samples)
         tables += _compared(knowledge, plan, gear, references, samples) if compared else []
     table = pd.concat(tables, axis=1).assign(misfit=fitted.misfit, fit_seconds=fit_seconds, seconds=seconds)
     facts = samples.table[list(FACTS)].astype({"label": str}).add_prefix("true:").reset_index(drop=True)
     facts.insert(0, "row", np.arange(first, first + len(samples)))
     return pd.concat([facts, table], axis=1)
+
+
+def _further_healthy(plan: Plan, gear: Gear, number: int) -> Float[np.ndarray, "specimen point feature"]:
+    """Observations of healthy specimens of the first session that are not in the data set."""
+    known = plan.grid.variants.count
+    cases = [
+        case
+        for specimen in range(known, known + number)
+        for case in plan.grid.of_specimen(gear, Variant("healthy", specimen, np.nan, np.nan, ()), specimen)
+    ]
+    return observations(record(plan, cases)).reshape(number, len(plan.grid.points), -1)
 
 
 def _compared(
@@ -128,43 +163,51 @@ def _compared(
     expected = expectations(plan, gear, knowledge.resolution)
     unit = Model(*bench_of(plan).unit(gear, generator("unit", plan.grid.seed, gear.number)))
     floor = floor_of(own, unit, references, expected)
-    judged = {"floor:": _probabilities(floor, samples, False), "floor unit:": _probabilities(floor, samples, True)}
-    judged["oracle:"] = judge(plan, gear, expected, samples, session_known=False)
-    judged["oracle known:"] = judge(plan, gear, expected, samples, session_known=True)
-    return [pd.DataFrame(p, columns=list(CLASSES)).add_prefix(prefix) for prefix, p in judged.items()]
+    tables = _probabilities("floor", floor.densities, plan, samples)
+    for who, session_known in (("oracle", False), ("oracle known", True)):
+
+        def densities(points: Sequence[OperatingPoint], days: int, known: bool = session_known) -> PointModel:
+            there = [expected[plan.grid.points.index(point)] for point in points]
+            return known_gear_model(plan, gear, there, known)
+
+        tables += _probabilities(who, densities, plan, samples)
+    return tables
 
 
 def _observed(
-    twin: Twin, samples: LabelledSignals, of_units: bool
+    densities: Densities, plan: Plan, samples: LabelledSignals, of_units: bool
 ) -> Iterator[tuple[PointModel, Float[np.ndarray, "sample feature"], np.ndarray]]:
     """Densities, observations, and the rows (sample, recording) of the observations: by operating point, or of units.
 
     Recordings of a unit follow each other, day by day, one at every operating point, in the order of the plan.
     """
-    x, grid = observations(samples), twin.knowledge.plan.grid
+    x, grid = observations(samples), plan.grid
     points = grid.points
     if of_units:
         of_unit = x.reshape(-1, grid.days, len(points) * x.shape[1])
         rows = np.arange(len(x)).reshape(len(of_unit), -1)
-        yield twin.densities(points, grid.days), of_unit.mean(axis=1), rows
+        yield densities(points, grid.days), of_unit.mean(axis=1), rows
         return
     for point, here in zip(points, np.arange(len(x)).reshape(-1, len(points)).T, strict=True):
-        yield twin.densities([point]), x[here], here[:, None]
+        yield densities([point], 1), x[here], here[:, None]
 
 
-def _probabilities(twin: Twin, samples: LabelledSignals, of_units: bool) -> Float[np.ndarray, "sample class"]:
-    """Class probabilities of every recording, by itself or of its unit."""
-    found = np.empty((len(samples), len(CLASSES)))
-    for model, x, rows in _observed(twin, samples, of_units):
-        found[rows] = np.exp(model.log_posterior(x))[:, None]
-    return found
+def _probabilities(who: str, densities: Densities, plan: Plan, samples: LabelledSignals) -> list[pd.DataFrame]:
+    """Class probabilities of every recording, by itself and of its unit."""
+    tables = []
+    for prefix, of_units in ((f"{who}:", False), (f"{who} unit:", True)):
+        found = np.empty((len(samples), len(CLASSES)))
+        for model, x, rows in _observed(densities, plan, samples, of_units):
+            found[rows] = np.exp(model.log_posterior(x))[:, None]
+        tables.append(pd.DataFrame(found, columns=list(CLASSES)).add_prefix(prefix))
+    return tables
 
 
 def _diagnosed(twin: Twin, samples: LabelledSignals, of_units: bool) -> pd.DataFrame:
     """Diagnosis of every recording, by itself or of its unit, and the rank of its true severity."""
     parts = []
     partitions = partitions_of(twin.knowledge.plan, twin.knowledge.resolution)
-    for model, x, rows in _observed(twin, samples, of_units):
+    for model, x, rows in _observed(twin.densities, twin.knowledge.plan, samples, of_units):
         facts = samples.table.iloc[rows[:, 0]]
         found = diagnosis(model, partitions, x).assign(below=_below(model, partitions, x, facts))
         parts += [found.set_index(each) for each in rows.T]

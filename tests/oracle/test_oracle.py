@@ -27,7 +27,7 @@ from swgsim.oracle import by_gear
 from swgsim.oracle import oracle_study as oracle_job
 from swgsim.oracle.cells import Cells, Partition, Resolution
 from swgsim.oracle.model import Expectation, expectations, observations
-from swgsim.oracle.oracle import judge, point_model
+from swgsim.oracle.oracle import judge, known_gear_model
 from swgsim.oracle.point import PointModel
 from swgsim.storage import storage
 from swgsim.storage.labelled_signals import CLASSES, LabelledSignals
@@ -130,7 +130,7 @@ def test_a_class_of_one_severity_has_no_spread_along_it() -> None:
 
 def test_healthy_recordings_spread_as_the_model_says() -> None:
     """In white units the mean square of a healthy recording is 1, of the efficiency and every gauge as well."""
-    model = point_model(PLAN, GEAR, expected()[0], session_known=True)
+    model = known_gear_model(PLAN, GEAR, expected()[:1], session_known=True)
     healthy = observations(samples().where(truth() == 0)) - model.mean
     white = np.linalg.solve(np.linalg.cholesky(model.covariance), healthy.T)
     assert (white**2).mean() == pytest.approx(1, abs=4 * np.sqrt(2 / white.size))
@@ -165,7 +165,7 @@ def test_a_known_session_explains_the_efficiency() -> None:
     plan = plan_of(20, ("healthy", "reduced_damping"), Bench(flange_out_bias=1.0, flange_in_bias=0.0))
     made = samples_of(plan)
     at_point = expectations(plan, GEAR, RESOLUTION)[0]
-    known, unknown = (point_model(plan, GEAR, at_point, session_known) for session_known in (True, False))
+    known, unknown = (known_gear_model(plan, GEAR, [at_point], session_known) for session_known in (True, False))
     healthy = made.where(made.table["label"] == "healthy")
     seen = observations(healthy)[:, -2].mean()
     assert abs(seen - known.mean[-2]) < 0.25 * abs(seen - unknown.mean[-2])

@@ -136,7 +136,9 @@ def write_data(folder):
     oracle = p[["row", *CLASSES]].join(p[list(CLASSES)].add_prefix(KNOWN))
     oracle.attrs = {"data": digests["gears-bench"]}
     oracle.to_parquet(folder / "gears-bench-oracle.parquet")
-    twin = twin_table({"": 0.06, "unit:": 0.02, "floor:": 0.06, "floor unit:": 0.02})
+    twin = twin_table(
+        {"": 0.06, "unit:": 0.02, "session:": 0.05, "session unit:": 0.01, "floor:": 0.06, "floor unit:": 0.02}
+    )
     twin.attrs = {"data": digests["gears-bench"]}
     twin.to_parquet(folder / "gears-bench-twin.parquet")
     twin_table({"": 0.08, "unit:": 0.03}).to_parquet(folder / "coning-bench-twin-after.parquet")

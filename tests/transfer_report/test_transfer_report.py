@@ -74,6 +74,7 @@ def test_whole_report_from_made_up_runs(data, store, tmp_path):
     assert of_unit["value"] < twin["matched"]["value"] < mistaken["value"]
     assert twin["mesh"] is twin["undeclared"]["before"] is None  # they were not run
     assert twin["other_authors"] == {name: value for name, value in others.items() if name != "gears"}
+    assert twin["session"]["unit"]["value"] < twin["session"]["value"] < twin["matched"]["value"] + 2
     joint = content["unit"]["logistic regression on harmonics, joint rows"]
     rezeroed = content["unit"]["logistic regression on harmonics, joint rows: rezero, healthy recordings only (K = 2)"]
     assert 5 < joint["value"] < 15

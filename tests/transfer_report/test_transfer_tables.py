@@ -181,14 +181,17 @@ def test_the_picture_has_a_place_for_everything_that_is_known():
     nothing = pd.DataFrame({"value": 40.0, "low": 38.0, "high": 42.0, "unit": 30.0, "unit_low": 28, "unit_high": 32},
                            index=["CNN on raw signals"])  # fmt: skip
     with_twin = zero.rename(index={tables.ORACLE: twins.TWIN})
-    table = twins.known(with_twin, with_twin, pd.concat([few, rezero]), nothing)
+    session = nothing.iloc[0] / 20
+    table = twins.known(with_twin, with_twin, pd.concat([few, rezero]), nothing, session)
     learned = table[table["who"] == twins.LEARNED]
     levels = ["nothing", "references", "references, 2 healthy of the day", "references, 5 of each fault"]
     assert learned["known"].tolist() == levels
     np.testing.assert_allclose(learned["value"], [40, 9.1, 3.5, 4], atol=0.1)
-    assert table["who"].tolist()[-1] == twins.TWIN
+    of_twin = table[table["who"] == twins.TWIN].set_index("known")
+    assert of_twin.index.tolist() == levels[1:3]
+    assert of_twin.loc[levels[2], "value"] == 2.0
     assert is_png(figures.known(table))
-    assert len(twins.known(zero, zero, few, nothing[:0])) == 2  # neither the twin, nor the day, nor nothing
+    assert len(twins.known(zero, zero, few, nothing[:0], None)) == 2  # neither the twin, nor the day, nor nothing
 
 
 def is_png(png):

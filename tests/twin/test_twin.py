@@ -16,7 +16,7 @@ from swgsim.oracle.model import observations
 from swgsim.oracle.point import PointModel
 from swgsim.storage.labelled_signals import CLASSES
 from swgsim.twin import FittedGear, References, Twin, fit_gear
-from swgsim.twin.twin_study import _diagnosed, _judged
+from swgsim.twin.twin_study import _diagnosed, _further_healthy, _judged
 
 pytestmark = pytest.mark.end_to_end
 
@@ -76,7 +76,7 @@ def test_confidence_equals_accuracy() -> None:
 
 def test_the_table_has_what_is_true_of_every_sample() -> None:
     """So a report judges it without the data set; severity without a prefix is the estimate."""
-    table = _judged(KNOWLEDGE, PLAN, DRAWN, 5, recordings(), False)
+    table = _judged(KNOWLEDGE, PLAN, DRAWN, 5, recordings(), False, 2)
     assert table["row"].tolist() == list(range(5, 5 + len(truth())))
     assert (table["true:label"] == truth()).all()
     np.testing.assert_array_equal(table["true:severity"], recordings().samples.table["severity"])
@@ -128,6 +128,22 @@ def test_the_mean_of_days_says_all_that_they_say() -> None:
     )
     single = one.log_posterior(x[:, 0])
     assert np.exp(mean_of_two.log_posterior(x.mean(axis=1)).max(axis=1)).mean() > np.exp(single.max(axis=1)).mean()
+
+
+def test_healthy_specimens_of_the_session_are_more_observations() -> None:
+    """The twin of the session is the Gaussian distribution of a unit, given healthy specimens with the same errors."""
+    healthy = _further_healthy(PLAN, DRAWN, 3)
+    one = twin().densities(POINTS)
+    shared = np.concatenate(np.concatenate([twin().session, twin().unsure], axis=-1))
+    alone = one.covariance - shared @ shared.T
+    given = alone / 3 + shared @ shared.T
+    gain = shared @ shared.T @ np.linalg.inv(given)
+    known = twin().in_session(healthy).densities(POINTS)
+    np.testing.assert_allclose(known.mean, one.mean + gain @ (healthy.mean(axis=0).ravel() - one.mean), rtol=1e-6)
+    np.testing.assert_allclose(known.covariance, one.covariance - gain @ shared @ shared.T, atol=1e-9)
+    efficiency = len(one.mean) // len(POINTS) - 2
+    assert known.covariance[efficiency, efficiency] < 0.9 * one.covariance[efficiency, efficiency]
+    assert not np.isin(healthy[:, 0, 0], observations(recordings())[:, 0]).any()  # they are not in the data set
 
 
 def test_another_mesh_is_another_structure() -> None:
