@@ -13,7 +13,7 @@ ALONE := $(if $(SMALL),workers=1)
 STARTED := $(shell date +%s)
 GEARS := $(if $(SMALL),gears_small,gears)
 TRAINING := $(if $(SMALL),training_small,training)
-ON_GEARS := zero_shot zero_shot_forest transfer_network $(if $(SMALL),,transfer_rezero no_reference inputs_gears_rocket)
+ON_GEARS := zero_shot zero_shot_forest transfer_network $(if $(SMALL),,transfer_rezero no_reference units units_rezero inputs_gears_rocket)
 ON_PAPER := zero_shot_disturbed
 comma := ,
 JUDGED := $(if $(SMALL),,'gears=[$(subst $() $(),$(comma),$(shell seq 20))]')

@@ -15,7 +15,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from learn.inputs.auxiliary_inputs import LOG, changes_of_efficiency
-from learn.inputs.inputs import OPERATING_POINT, LearningSet
+from learn.inputs.inputs import OPERATING_POINT, SPECIMEN, LearningSet
 from learn.inputs.joint_rows import joint_rows
 from learn.protocols.levels import Episode, Target
 
@@ -47,7 +47,7 @@ class Rezero:
         Raises
         ------
         ValueError
-            If the inputs lack the efficiency relative to the reference.
+            If the inputs lack the efficiency relative to the reference, or specimens were recorded on several days.
         """
         if data.recordings is not None:
             count = data.layout.points
@@ -58,6 +58,11 @@ class Rezero:
             raise ValueError(
                 f"rezero corrects the efficiency, and {LOG!r} is not among the inputs: take features=harmonics, "
                 "lines or residual, with features.efficiency=true"
+            )
+        if data.table.duplicated([*SPECIMEN, *OPERATING_POINT]).any():
+            raise ValueError(
+                "specimens have several recordings at an operating point, of sessions that rezero cannot tell apart: "
+                "take a grid with days=1"
             )
         gear, healthy = data.table["gear"].to_numpy(), (data.table["label"] == "healthy").to_numpy()
         nothing = episode.source[:0]
@@ -107,7 +112,8 @@ class HealthyEfficiency:
         table, change = data.table, np.asarray(data.features)[:, data.names.index(LOG)]
         point = table.groupby(list(OPERATING_POINT)).ngroup().to_numpy()
         cell = table.groupby(["gear", *OPERATING_POINT]).ngroup().to_numpy()[healthy]
-        temperature = np.nan_to_num(table["temperature_c"].to_numpy() - table["temperature_c"].mean())
+        temperature = table["temperature_c"].to_numpy()
+        temperature = np.nan_to_num(temperature - (temperature[healthy].mean()))
         warm, variance = np.zeros(len(change)), np.zeros(len(change))
         within, warmer = (values[healthy] - _means(values[healthy], cell) for values in (change, temperature))
         for each in np.unique(point):

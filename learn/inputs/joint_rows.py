@@ -11,7 +11,7 @@ def joint_rows(data: LearningSet) -> LearningSet:
     """One row for each specimen, with every feature at each of its recordings.
 
     Recordings are in the order of their operating points, and of days at the same point. The layout has the features as
-    channels and the recordings as points. The table has the facts of the specimen, without an operating point.
+    channels and the recordings as points. The table has the facts of the specimen, without those of a recording.
 
     Raises
     ------
@@ -35,7 +35,8 @@ def joint_rows(data: LearningSet) -> LearningSet:
             "and a row has every feature at each of them: take rows=recording, or record the same operating points"
         )
     each = np.asarray(data.features)[order].reshape(len(count), count[0], -1)  # (specimen, recording, feature)
-    facts = table.iloc[order[:: count[0]]].reset_index(drop=True).assign(**dict.fromkeys(OPERATING_POINT, np.nan))
+    of_recording = dict.fromkeys((*OPERATING_POINT, "efficiency", "temperature_c"), np.nan)
+    facts = table.iloc[order[:: count[0]]].reset_index(drop=True).assign(**of_recording)
     ordered = replace(data, features=np.asarray(data.features)[order], table=table.iloc[order].reset_index(drop=True))
     return LearningSet(
         each.swapaxes(1, 2).reshape(len(count), -1),

@@ -21,6 +21,8 @@ log = logging.getLogger(__name__)
 BLOCK = 1024  # recordings in memory at a time
 LARGE = 100_000  # number of recordings from which on the inputs are in a file
 ROWS = ("recording", "unit")
+# Classifiers of signals over the angle, and of a recording with its references.
+OF_RECORDINGS = ("cnn", "resnet", "minirocket", "twin", "fast_twin")
 # Options that name a further data set, and how its gears join.
 JOINING = {"target": with_foreign_gears, "training": with_training_gears}
 
@@ -54,6 +56,8 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
     config = {**config, **chosen, "classifier": settings.on_device(config["classifier"])}
     representation = settings.representation(config["features"])
     require_known("rows", [config["rows"]], ROWS)
+    if config["rows"] == "unit" and config["classifier"]["name"] in OF_RECORDINGS:
+        raise ValueError(f"classifier={config['classifier']['name']} judges recordings, not units: take rows=recording")
     settings.protocol(config["protocol"])
     settings.classifier(config["classifier"])
     if config["adaptation"]["name"] != "none":
@@ -97,9 +101,10 @@ def _further(config: Mapping[str, Any], name: str) -> Path:
 
 def run_name(config: Mapping[str, Any], parameters: Mapping[str, Any]) -> str:
     """Name of a job's run: protocol, classifier and features first, which MLflow's page must not cut off."""
-    groups = ["protocol", "classifier", "features", "adaptation", "study"]
-    if parameters["adaptation"] == "none":
-        groups.remove("adaptation")
+    groups = ["protocol", "classifier", "features", "rows", "adaptation", "study"]
+    for group, usual in (("adaptation", "none"), ("rows", "recording")):
+        if parameters[group] == usual:
+            groups.remove(group)
     unnamed = ("name", "seed", "trials", *identity.WHEREABOUTS)
     classifier = {k: v for k, v in config["classifier"].items() if k not in unnamed}
     options = [f"{k}={v}" for k, v in classifier.items() if not isinstance(v, Mapping)]

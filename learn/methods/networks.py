@@ -167,10 +167,9 @@ def convolutional(
         return Network(body, FEATURES, classes, columns, channels * periodic, points * periodic)
 
 
-def of_units(
-    channels: int, points: int, columns: int, classes: int, neurons: int = 128, dropout: float = 0.3,
-    *, periodic: bool = False, seed: int = 0,
-) -> Network:  # fmt: skip
+def set_network(
+    channels: int, points: int, columns: int, classes: int, neurons: int = 128, dropout: float = 0.3, *, seed: int = 0
+) -> Network:
     """The same layers for every recording of a unit, pooled; see :class:`RecordingSets`.
 
     Parameters
@@ -181,16 +180,14 @@ def of_units(
         Numbers of columns of the input and of classes.
     neurons, dropout : int, float
         As in :class:`RecordingSets`.
-    periodic : bool
-        False, as recordings are no angles.
     seed : int
         Seed of the initial weights.
     """
-    owner = "the network of units"
+    owner = "the set network"
     _require_common(owner, columns, classes, channels, points, dropout)
     require_integer(owner, "neurons", neurons, low=1, high=10_000)
-    if periodic or channels * points != columns or not columns:
-        raise ValueError(f"{owner} needs all recordings of a specimen in a row: take rows=unit features=harmonics")
+    if channels * points != columns:
+        raise ValueError(f"{owner} has {columns} columns for {channels} features of {points} recordings")
     with seeded(seed_hash("initial weights", seed)):
         return Network(RecordingSets(channels, points, neurons, dropout), neurons, classes, columns)
 
@@ -212,7 +209,7 @@ ARCHITECTURES: Mapping[str, Callable[..., Network]] = {
     "perceptron": perceptron,
     "convolutional": convolutional,
     "residual": partial(convolutional, residual=True),
-    "of_units": of_units,
+    "set": set_network,
 }
 
 

@@ -154,12 +154,23 @@ def set_network(
     epochs: int = 40, batch: int = 256, rate: float = 2e-3, decay: float = 0.1, steps: int = 0, seed: int = 0,
     device: str = "auto",
 ) -> NeuralClassifier:  # fmt: skip
-    """A network on units; see :func:`learn.methods.networks.of_units` and :class:`learn.methods.training.Recipe`."""
+    """A network on joint rows; see :func:`learn.methods.networks.set_network` and :class:`.training.Recipe`.
+
+    Raises
+    ------
+    ValueError
+        If the rows are no joint rows.
+    """
+    if periodic or not channels:
+        raise ValueError(
+            "the set network needs all recordings of a specimen in a row: take rows=unit features=harmonics of swg "
+            "train, or learn.inputs.joint_rows"
+        )
     from learn.methods.networks import Architecture
     from learn.methods.training import Recipe
 
-    options = {"channels": channels, "points": points, "periodic": periodic, "neurons": neurons, "dropout": dropout}
-    return NeuralClassifier(Architecture("of_units", options), Recipe(epochs, batch, rate, decay, steps), seed, device)
+    options = {"channels": channels, "points": points, "neurons": neurons, "dropout": dropout}
+    return NeuralClassifier(Architecture("set", options), Recipe(epochs, batch, rate, decay, steps), seed, device)
 
 
 def save(model: NeuralClassifier, path: Path) -> None:

@@ -108,8 +108,8 @@ class LeaveOperatingPointOut:
     Raises
     ------
     ValueError
-        If there are fewer than 2 folds. In ``split``: if there are fewer than 2 operating points, or fewer specimens of
-        a gear and class than folds.
+        If there are fewer than 2 folds. In ``split``: if there are fewer than 2 operating points or none, or fewer
+        specimens of a gear and class than folds.
     """
 
     folds: int = 4
@@ -121,6 +121,8 @@ class LeaveOperatingPointOut:
     def split(self, features: Inputs, table: pd.DataFrame) -> Iterator[Split]:
         """One split per operating point, such as ``2000 rpm, 7 N m``, in ascending order of speed and load."""
         points, point = np.unique(table[list(OPERATING_POINT)].to_numpy(), axis=0, return_inverse=True)
+        if not np.isfinite(points).all():
+            raise ValueError("rows of units have no operating point that could be left out: take rows=recording")
         if len(points) < 2:
             raise ValueError(
                 f"{len(points)} operating point found, leaving one out needs at least 2: take a grid with more"

@@ -87,8 +87,13 @@ class Runs:
     frame: pd.DataFrame
 
     def of_study(self, study: str) -> pd.DataFrame:
-        """The runs of one study, with the parameters and metrics that its runs have; empty if it was not run."""
+        """The runs of one study, with the parameters and metrics that its runs have; empty if it was not run.
+
+        Rows of units are compared in the study ``units`` only, as they are no recordings.
+        """
         runs = self.frame[self.frame["study"] == study]
+        if "rows" in runs:
+            runs = runs[(runs["rows"] == "unit") == (study == "units")]
         unknown = runs.columns[runs.isna().all()].drop("spread", errors="ignore")
         return runs.drop(columns=unknown).reset_index(drop=True)
 

@@ -117,7 +117,7 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
         "best": best,
         "errors": figures.errors(zero),
         "methods": tables.methods_text(zero, errors, of_units),
-        "joint": None if joint_rows.empty else joint_units.joint_units_text(joint_rows, of_units),
+        "joint": None if joint_rows.empty else joint_units.joint_units_text(joint_rows, of_units, few),
         "known": figures.known(twins.known(zero, of_units, few, nothing, session)),
         "nothing": len(nothing),
         "shots": figures.shots(few, levels) if (few["shots"] > 0).any() else None,

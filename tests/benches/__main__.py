@@ -15,7 +15,7 @@ from time import process_time
 from typing import Any
 
 import numpy as np
-from diagnoses import diagnosed, errors
+from diagnoses import code, diagnosed, errors
 from gears import BENCHES, GEARS, recorded
 from joblib import Parallel, delayed
 from threadpoolctl import threadpool_limits
@@ -40,8 +40,10 @@ def main() -> None:
     parser.add_argument("--diagnose", action="store_true", help="ask the twin")
     chosen = parser.parse_args()
     jobs = list(product(chosen.only, chosen.cases))
-    out, ask = (chosen.out / "diagnoses", diagnosed) if chosen.diagnose else (chosen.out, asked)
-    answers = Parallel(n_jobs=chosen.jobs, verbose=5)(delayed(kept)(ask, out, *job, chosen.seed) for job in jobs)
+    out, ask, made = chosen.out, asked, code_version("identification")
+    if chosen.diagnose:
+        out, ask, made = chosen.out / "diagnoses", diagnosed, code()
+    answers = Parallel(n_jobs=chosen.jobs, verbose=5)(delayed(kept)(ask, made, out, *job, chosen.seed) for job in jobs)
     if chosen.diagnose:
         write_json(chosen.report / "other_authors.json", found := errors(answers))
         print(found)
@@ -52,14 +54,16 @@ def main() -> None:
         print(each)
 
 
-def kept(ask: Callable[[Path], dict[str, Any]], out: Path, name: str, case: int, seed: int) -> dict[str, Any]:
+def kept(
+    ask: Callable[[Path], dict[str, Any]], made: str, out: Path, name: str, case: int, seed: int
+) -> dict[str, Any]:
     """The answer to one gear; that of the same code is reused."""
-    path, code = out / name / f"{seed}-{case:02d}.json", code_version("identification", "oracle", "twin")
-    if path.exists() and (known := json.loads(path.read_text()))["code"] == code:
+    path = out / name / f"{seed}-{case:02d}.json"
+    if path.exists() and (known := json.loads(path.read_text()))["code"] == made:
         return known
     with tempfile.TemporaryDirectory() as folder, threadpool_limits(1):
         recorded(Path(folder), name, case, seed)
-        found = {"bench": name, "case": case, "seed": seed, "code": code, **ask(Path(folder))}
+        found = {"bench": name, "case": case, "seed": seed, "code": made, **ask(Path(folder))}
     write_json(path, found)
     return found
 

@@ -6,14 +6,19 @@ from pathlib import Path
 from time import process_time
 from typing import Any
 
-import numpy as np
-from scipy.stats import binomtest
-
 import swgsim as swg
+from swgsim.blind.intervals import rate
+from swgsim.common.version import code_version
 from swgsim.dataset.faults import FAULTS
 
-# A shorter share of the report, which also has every recording.
+# A part of the report, which also has every recording.
 FIELDS = ("verdict", "sentence", "probabilities", "fault", "chance", "lack_of_fit", "lack_of_fit_healthy")
+HEALTHY, FAULTY, UNEXPLAINED, REFUSED = "healthy", "faulty", "something_else", "refused"
+
+
+def code() -> str:
+    """Version of the code on which a diagnosis depends."""
+    return code_version("identification", "oracle", "twin")
 
 
 def diagnosed(folder: Path) -> dict[str, Any]:
@@ -22,33 +27,47 @@ def diagnosed(folder: Path) -> dict[str, Any]:
     if truth["effect"] not in (None, *FAULTS):
         return {"truth": truth, "report": None}
     began = process_time()
-    recordings, healthy = (swg.read_recordings(folder / name) for name in ("again", "healthy"))
-    report = swg.diagnose(recordings, healthy, swg.Gear()).report
+    try:
+        recordings, healthy = (swg.read_recordings(folder / name) for name in ("again", "healthy"))
+        report = swg.diagnose(recordings, healthy, swg.Gear()).report
+    except (ValueError, RuntimeError, ArithmeticError) as error:
+        return {"truth": truth, "report": {"verdict": REFUSED, "sentence": f"{type(error).__name__}: {error}"}}
     return {"truth": truth, "report": {name: report[name] for name in FIELDS}, "seconds": process_time() - began}
 
 
 def errors(answers: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """How many gears are called by another class than theirs [%], with the interval of Wilson, and every gear."""
-    asked = [each for each in answers if each["report"]]
-    gears = [
-        {
-            "bench": each["bench"],
-            "case": each["case"],
-            "label": each["truth"]["effect"] or "healthy",
-            "most_probable": max(each["report"]["probabilities"], key=each["report"]["probabilities"].__getitem__),
-            **{name: each["report"][name] for name in ("verdict", "sentence")},
-            "lack_of_fit_healthy": each["report"]["lack_of_fit_healthy"]["value"],
-            "seconds": each["seconds"],
-        }
-        for each in asked
-    ]
-    wrong = [each["most_probable"] != each["label"] for each in gears]
-    interval = binomtest(sum(wrong), len(wrong)).proportion_ci(method="wilson")
+    """Share of gears whose diagnosis is not the truth [%], with Wilson's interval, and every gear.
+
+    A diagnosis is right if it says healthy of a healthy gear, or faulty with the right class of another one. That no
+    class explains a gear, or that something else is found, is not right; ``something_else`` counts such answers.
+    """
+    gears = [_gear(each) for each in answers if each["report"]]
+    wrong = rate([not each["right"] for each in gears])
+    healthy = [each["verdict"] for each in gears if each["label"] == HEALTHY]
     return {
-        "value": 100 * float(np.mean(wrong)),
-        "ci95": [100 * interval.low, 100 * interval.high],
+        "value": None if wrong["value"] is None else 100 * wrong["value"],
+        "ci95": [None if wrong[end] is None else 100 * wrong[end] for end in ("low", "high")],
         "count": len(gears),
-        "healthy_called_faulty": sum(each["verdict"] == "faulty" for each in gears if each["label"] == "healthy"),
-        "healthy": sum(each["label"] == "healthy" for each in gears),
+        "healthy": len(healthy),
+        "healthy_called_faulty": healthy.count(FAULTY),
+        "something_else": sum(each["verdict"] == UNEXPLAINED for each in gears),
+        "right_class": sum(each["most_probable"] == each["label"] for each in gears),
+        "code": code(),
         "gears": gears,
+    }
+
+
+def _gear(answer: dict[str, Any]) -> dict[str, Any]:
+    report, label = answer["report"], answer["truth"]["effect"] or HEALTHY
+    said = report["fault"]["name"] if report["verdict"] == FAULTY else report["verdict"]
+    p = report.get("probabilities")
+    return {
+        "bench": answer["bench"],
+        "case": answer["case"],
+        "label": label,
+        "right": said == label,
+        "most_probable": None if p is None else max(p, key=p.__getitem__),
+        "verdict": report["verdict"],
+        "sentence": report["sentence"],
+        "seconds": answer.get("seconds"),
     }

@@ -39,7 +39,7 @@ def runs(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def ran():
-    """Protocol, features, classifier and adaptation of the jobs that have run."""
+    """Rows, protocol, features, classifier and adaptation of the jobs that have run."""
     return set()
 
 
@@ -108,7 +108,8 @@ def test_every_experiment_runs_on_a_small_grid(experiment, data, runs, ran):
     for swept in jobs(whole.hydra.sweeper.params):
         overrides = [f"{key}={value}" for key, value in swept.items()]
         config = composed(f"experiment={experiment}", *few, *overrides, *where)
-        parts = tuple(config[group].name for group in ("protocol", "features", "classifier", "adaptation"))
+        groups = ("protocol", "features", "classifier", "adaptation")
+        parts = (config.rows, *(config[group].name for group in groups))
         if run and parts in ran:
             continue
         metrics = job.run(smaller(OmegaConf.to_container(config, resolve=True), swept))

@@ -39,6 +39,7 @@ def test_what_one_recording_shows_is_learned_and_kept(tmp_path):
 
 
 def test_rows_of_recordings_are_refused():
-    X, y = task(30, 0)
     with pytest.raises(ValueError, match="take rows=unit features=harmonics"):
-        set_network(0, 0, periodic=True).fit(X, y)
+        set_network(0, 0, periodic=True)
+    with pytest.raises(ValueError, match="12 columns for 2 features of 4 recordings"):
+        set_network(2, RECORDINGS, device="cpu").fit(*task(30, 0))

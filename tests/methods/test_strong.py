@@ -19,8 +19,9 @@ from learn.methods import classical, rocket, strong
 from learn.protocols.splits import Split
 
 CONF = Path(__file__).parents[2] / "conf" / "classifier"
-# Twins learn nothing from rows (tests/methods/test_twin_classifier.py, test_fast_twin.py).
-NAMES = sorted(path.stem for path in CONF.glob("*.yaml") if path.stem not in ("own", "twin", "fast_twin"))
+# Twins and the set network take other rows (test_twin_classifier.py, test_fast_twin.py, test_recording_sets.py).
+OTHER_ROWS = ("own", "twin", "fast_twin", "set_network")
+NAMES = sorted(path.stem for path in CONF.glob("*.yaml") if path.stem not in OTHER_ROWS)
 # What would take long, and what does not change whether a method learns.
 QUICK = {
     "cnn": {"width": 8, "batch": 16}, "perceptron": {"neurons": 32, "batch": 16}, "minirocket": {"kernels": 84},

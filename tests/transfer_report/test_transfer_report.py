@@ -19,6 +19,7 @@ from learn.protocols.levels import NewGears
 from learn.transfer_report import importance, seeds, tables, transfer_study
 from learn.transfer_report import runs as transfer_runs
 from learn.transfer_report.posteriors import OF_ORACLE, OF_TWIN, TWIN, mismatch, posteriors
+from swgsim.common.version import code_version as version_of
 from swgsim.storage import storage
 
 
@@ -40,8 +41,10 @@ def store(tmp_path_factory):
 def test_whole_report_from_made_up_runs(data, store, tmp_path):
     folder, digests = data
     out = tmp_path / "report"
-    others = {"value": 12.5, "ci95": [2.2, 47.1], "count": 8, "healthy": 3, "healthy_called_faulty": 1, "gears": []}
-    (tmp_path / "others.json").write_text(json.dumps(others))
+    others = {"value": 12.5, "ci95": [2.2, 47.1], "count": 8, "healthy": 3, "healthy_called_faulty": 1,
+              "something_else": 2}  # fmt: skip
+    made = {"code": version_of("identification", "oracle", "twin"), "gears": []}
+    (tmp_path / "others.json").write_text(json.dumps(others | made))
     config = configured(
         "transfer_report", f"data={folder}", f"tracking.folder={store}", f"out={out}",
         f"other_authors={tmp_path / 'others.json'}",
@@ -73,7 +76,7 @@ def test_whole_report_from_made_up_runs(data, store, tmp_path):
     of_unit, mistaken = content["unit"]["twin on references"], twin["undeclared"]["after"]
     assert of_unit["value"] < twin["matched"]["value"] < mistaken["value"]
     assert twin["mesh"] is twin["undeclared"]["before"] is None  # they were not run
-    assert twin["other_authors"] == {name: value for name, value in others.items() if name != "gears"}
+    assert twin["other_authors"] == others
     assert twin["session"]["unit"]["value"] < twin["session"]["value"] < twin["matched"]["value"] + 2
     joint = content["unit"]["logistic regression on harmonics, joint rows"]
     rezeroed = content["unit"]["logistic regression on harmonics, joint rows: rezero, healthy recordings only (K = 2)"]
@@ -106,7 +109,7 @@ def test_whole_report_from_made_up_runs(data, store, tmp_path):
     assert set(re.findall(r'href="#(\w+)"', page)) == set(re.findall(r'<h2 id="(\w+)"', page))
     assert "the same, after the loop has found the effect" in page
     assert "Of 8 gears that other authors simulated" in page
-    assert "12.5 % (2.2 to 47.1); 1 of 3 healthy ones are called faulty" in page
+    assert "12.5 % (2.2 to 47.1): 1 of 3 healthy ones are called faulty, and 2 gears something else" in page
     assert f"with 2, logistic regression errs in {content['rezero']['2']['value']:.1f} %" in page
     assert "MLP: CORAL (trained on 5 variants)" in page
     assert "replay (trained on" not in page

@@ -10,14 +10,15 @@ from swgsim.effects import ParameterScatter
 from swgsim.effects.frozen import FULL_LOAD
 from swgsim.effects.kinematic_error_order import KinematicErrorOrder
 from swgsim.gear.gear import CATALOGUE_LIMITS
-from swgsim.identification.data.beat import BEATING, WAVES, drifting
+from swgsim.identification.data.beat import BEATING, OF_ERROR, drifting
 from swgsim.identification.data.features import Layout
 from swgsim.identification.data.measured import Measured
 from swgsim.identification.data.model import Model, Situation, predict
 
 # Standard deviations that a test bench would state (conf/condition/bench.yaml); repeats correct them. Where two devices
 # log the drive and the gauges, the gauges have a trigger of their own: it misses the other by 0.1 degree (an estimate,
-# half the jitter of the index). The sizes of the beats (data/beat.py) are estimates too.
+# half the jitter of the index). The sizes of the beats (data/beat.py) are estimates too; at sums of
+# two orders, which grow with the load, they are those at half of the rated torque.
 STATED = {
     "load": 0.005,
     "speed": 0.001,
@@ -27,7 +28,7 @@ STATED = {
     "dry friction": 0.02,
     "flank friction": 0.02,
     **{
-        f"beat of order {order}, {wave}": 2e-6 if order in WAVES else 2e-7
+        f"beat of order {order}, {wave}": 2e-6 if order in OF_ERROR else 2e-7
         for order in BEATING
         for wave in ("cosine", "sine")
     },

@@ -16,9 +16,9 @@ from swgsim.identification.data.features import DENSE, FITTED, ORDERS, fitted_co
 from swgsim.recordings.recording import Recording
 
 # Waves of the kinematic error per revolution of the wave generator (physics.md 1.2).
-WAVES = (1, 2, 4)
+OF_ERROR = (1, 2, 4)
 # Flanks and springs are not linear, so two waves also make one at the sum of their orders, which drifts as it would.
-BEATING = tuple(sorted({*WAVES, *(one + other for one in WAVES for other in WAVES)}))
+BEATING = tuple(sorted({*OF_ERROR, *(one + other for one in OF_ERROR for other in OF_ERROR)}))
 # The two lobes carry the torque past the gauges, which so see a wave at these orders beside its own, too.
 BY_LOBES = (-2, 0, 2)
 
@@ -29,8 +29,11 @@ def behind(order: int, N: int) -> float:
 
 
 def beat_orders(N: int) -> list[float]:
-    """Orders of the recorded angle at which the beat lies in torques and gauges of a gear of ratio N."""
-    return [abs(order + lobes - behind(order, N)) for order in WAVES for lobes in BY_LOBES]
+    """Orders of the recorded angle at which the beat lies in torques and gauges of a gear of ratio N.
+
+    Those at sums of orders are left out: beside an order, they are below the noise of one recording.
+    """
+    return [abs(order + lobes - behind(order, N)) for order in OF_ERROR for lobes in BY_LOBES]
 
 
 def drifting(recordings: Sequence[Recording], N: int) -> Complex[np.ndarray, "recording beat one one"]:
