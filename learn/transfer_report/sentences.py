@@ -63,6 +63,25 @@ def claim(zero: pd.DataFrame, of_units: pd.DataFrame, ratio: pd.Series | None, g
     )
 
 
+def in_session(session: pd.Series | None, healthy: int) -> list[str]:
+    """What healthy specimens of the session are worth to the twin; none if it was not asked.
+
+    Parameters
+    ----------
+    session : Series or None
+        Result of :func:`.twins.in_session`.
+    healthy : int
+        Number of specimens.
+    """
+    if session is None:
+        return []
+    of_unit = number(session["unit"], session["unit_low"], session["unit_high"], unit=" %")
+    return [
+        f"Given {healthy} healthy specimens of the session at each operating point as well, the twin errs in "
+        f"{of_row(session)} of the recordings and {of_unit} of the units."
+    ]
+
+
 def fast_twin(zero: pd.DataFrame, methods: pd.DataFrame) -> list[str]:
     """What the network achieves that is given the references; none if it was not run.
 

@@ -1,5 +1,6 @@
 """The report of the transfer study: finds the runs, computes the tables and writes both files."""
 
+import json
 import time
 from collections.abc import Mapping
 from pathlib import Path
@@ -111,6 +112,7 @@ def report(runs: Runs, began: float, started: float | None) -> tuple[dict[str, A
         "headline": sentences.headline(zero, gears),
         "claim": None,
         "lead": [
+            *sentences.in_session(session, twins.HEALTHY),
             *sentences.fast_twin(zero, methods),
             *sentences.lead(zero, few, of_gears, development_scores(adapting), cases),
         ],
@@ -165,10 +167,12 @@ def not_learned(runs: Runs, judged: pd.DataFrame) -> tuple[dict[str, pd.DataFram
 
 
 def of_session(runs: Runs, judged: pd.DataFrame) -> pd.Series | None:
-    """Errors of the twin that knows healthy specimens of the session; None if ``swg twin`` was not run."""
+    """Errors of the twin that knows healthy specimens of the session; None if ``swg twin`` was not asked with as many
+    of them as the other methods.
+    """
     bench, digest = runs.paths["bench"], runs.digests["bench"]
     path = bench.with_name(f"{bench.stem}-twin.parquet")
-    if not path.is_file():
+    if not path.is_file() or json.loads(pd.read_parquet(path).attrs["choices"])["healthy"] != twins.HEALTHY:
         return None
     return twins.in_session(*(posteriors(path, digest, judged, of) for of in (OF_SESSION, UNITS_OF_SESSION)))
 

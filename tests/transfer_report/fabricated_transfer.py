@@ -139,7 +139,7 @@ def write_data(folder):
     twin = twin_table(
         {"": 0.06, "unit:": 0.02, "session:": 0.05, "session unit:": 0.01, "floor:": 0.06, "floor unit:": 0.02}
     )
-    twin.attrs = {"data": digests["gears-bench"]}
+    twin.attrs = {"data": digests["gears-bench"], "choices": '{"healthy": 2}'}
     twin.to_parquet(folder / "gears-bench-twin.parquet")
     twin_table({"": 0.08, "unit:": 0.03}).to_parquet(folder / "coning-bench-twin-after.parquet")
     return digests

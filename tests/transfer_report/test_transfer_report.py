@@ -109,6 +109,7 @@ def test_whole_report_from_made_up_runs(data, store, tmp_path):
     assert set(re.findall(r'href="#(\w+)"', page)) == set(re.findall(r'<h2 id="(\w+)"', page))
     assert "the same, after the loop has found the effect" in page
     assert "Of 8 gears that other authors simulated" in page
+    assert "Given 2 healthy specimens of the session at each operating point as well, the twin errs in" in page
     assert "12.5 % (2.2 to 47.1): 1 of 3 healthy ones are called faulty, and 2 gears something else" in page
     assert f"with 2, logistic regression errs in {content['rezero']['2']['value']:.1f} %" in page
     assert "MLP: CORAL (trained on 5 variants)" in page
