@@ -38,6 +38,7 @@ from learn.transfer_report.tables import FOREST, ORACLE, ORACLE_OF_SESSION, best
 from swgsim.common.files import write_json, write_text
 from swgsim.common.html import environment
 from swgsim.storage import storage
+from swgsim.twin.twin_study import CHOICES
 
 COMPARED = (FOREST, "logistic regression on harmonics", "MLP on harmonics", ORACLE)  # with the best, for calibration
 
@@ -172,7 +173,10 @@ def of_session(runs: Runs, judged: pd.DataFrame) -> pd.Series | None:
     """
     bench, digest = runs.paths["bench"], runs.digests["bench"]
     path = bench.with_name(f"{bench.stem}-twin.parquet")
-    if not path.is_file() or json.loads(pd.read_parquet(path).attrs["choices"])["healthy"] != twins.HEALTHY:
+    if not path.is_file():
+        return None
+    chosen = dict(zip(CHOICES, json.loads(pd.read_parquet(path).attrs["choices"]), strict=True))
+    if chosen["healthy"] != twins.HEALTHY:
         return None
     return twins.in_session(*(posteriors(path, digest, judged, of) for of in (OF_SESSION, UNITS_OF_SESSION)))
 

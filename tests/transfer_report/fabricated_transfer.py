@@ -17,6 +17,7 @@ from swgsim.common.seeds import generator
 from swgsim.oracle.columns import KNOWN
 from swgsim.storage import storage
 from swgsim.storage.labelled_signals import CLASSES
+from swgsim.twin.twin_study import CHOICES
 
 ROOT = Path(__file__).parents[2]
 POOLS = {"folds": 2, "development": 2, "labelled": 2, "unlabelled": 1, "kept_out": 1, "variants": None}
@@ -139,7 +140,7 @@ def write_data(folder):
     twin = twin_table(
         {"": 0.06, "unit:": 0.02, "session:": 0.05, "session unit:": 0.01, "floor:": 0.06, "floor unit:": 0.02}
     )
-    twin.attrs = {"data": digests["gears-bench"], "choices": '{"healthy": 2}'}
+    twin.attrs = {"data": digests["gears-bench"], "choices": json.dumps([{"healthy": 2}.get(each) for each in CHOICES])}
     twin.to_parquet(folder / "gears-bench-twin.parquet")
     twin_table({"": 0.08, "unit:": 0.03}).to_parquet(folder / "coning-bench-twin-after.parquet")
     return digests
