@@ -61,8 +61,8 @@ class Rezero:
             )
         if data.table.duplicated([*SPECIMEN, *OPERATING_POINT]).any():
             raise ValueError(
-                "specimens have several recordings at an operating point, of sessions that rezero cannot tell apart: "
-                "take a grid with days=1"
+                "specimens were recorded several times at an operating point, and rezero finds the biases of one "
+                "session: take a grid with days=1"
             )
         gear, healthy = data.table["gear"].to_numpy(), (data.table["label"] == "healthy").to_numpy()
         nothing = episode.source[:0]
@@ -113,7 +113,7 @@ class HealthyEfficiency:
         point = table.groupby(list(OPERATING_POINT)).ngroup().to_numpy()
         cell = table.groupby(["gear", *OPERATING_POINT]).ngroup().to_numpy()[healthy]
         temperature = table["temperature_c"].to_numpy()
-        temperature = np.nan_to_num(temperature - (temperature[healthy].mean()))
+        temperature = np.nan_to_num(temperature - temperature[healthy].mean())
         warm, variance = np.zeros(len(change)), np.zeros(len(change))
         within, warmer = (values[healthy] - _means(values[healthy], cell) for values in (change, temperature))
         for each in np.unique(point):

@@ -34,10 +34,11 @@ def joint_rows(data: LearningSet) -> LearningSet:
             f"specimens have {count.min()} to {count.max()} recordings, not all of them at the same operating points, "
             "and a row has every feature at each of them: take rows=recording, or record the same operating points"
         )
-    each = np.asarray(data.features)[order].reshape(len(count), count[0], -1)  # (specimen, recording, feature)
+    features = np.asarray(data.features)[order]
+    each = features.reshape(len(count), count[0], -1)  # (specimen, recording, feature)
     of_recording = dict.fromkeys((*OPERATING_POINT, "efficiency", "temperature_c"), np.nan)
     facts = table.iloc[order[:: count[0]]].reset_index(drop=True).assign(**of_recording)
-    ordered = replace(data, features=np.asarray(data.features)[order], table=table.iloc[order].reset_index(drop=True))
+    ordered = replace(data, features=features, table=table.iloc[order].reset_index(drop=True))
     return LearningSet(
         each.swapaxes(1, 2).reshape(len(count), -1),
         facts,

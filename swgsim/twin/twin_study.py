@@ -16,6 +16,7 @@ from jaxtyping import Float
 from omegaconf import OmegaConf
 from threadpoolctl import threadpool_limits
 
+from swgsim.common.checks import require_integer
 from swgsim.common.compute import Engine
 from swgsim.common.seeds import generator
 from swgsim.common.version import code_version
@@ -86,6 +87,7 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
         "code": code_version("identification", "oracle", "twin"),
         "choices": json.dumps([config[each] for each in CHOICES], sort_keys=True),
     }
+    require_integer("the twin", "healthy", config["healthy"], low=0, high=1000)
     if plan.grid.days > 1 and (config["compared"] or config["healthy"]):
         raise ValueError(
             f"{plan.grid.days} days of every specimen, and oracle and healthy specimens know one session: add "

@@ -22,7 +22,7 @@ def code() -> str:
 
 
 def diagnosed(folder: Path) -> dict[str, Any]:
-    """The truth of a gear, and the diagnosis of it; no diagnosis of what is none of the faults."""
+    """The truth of a gear, and its diagnosis; ``report`` is None if another effect than one of the faults is hidden."""
     truth = json.loads((folder / "truth.json").read_text())
     if truth["effect"] not in (None, *FAULTS):
         return {"truth": truth, "report": None}
@@ -43,10 +43,11 @@ def errors(answers: Sequence[dict[str, Any]]) -> dict[str, Any]:
     """
     gears = [_gear(each) for each in answers if each["report"]]
     wrong = rate([not each["right"] for each in gears])
+    percent = [100 * wrong[name] if gears else None for name in ("value", "low", "high")]
     healthy = [each["verdict"] for each in gears if each["label"] == HEALTHY]
     return {
-        "value": None if wrong["value"] is None else 100 * wrong["value"],
-        "ci95": [None if wrong[end] is None else 100 * wrong[end] for end in ("low", "high")],
+        "value": percent[0],
+        "ci95": percent[1:],
         "count": len(gears),
         "healthy": len(healthy),
         "healthy_called_faulty": healthy.count(FAULTY),

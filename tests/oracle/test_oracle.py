@@ -140,6 +140,20 @@ def test_healthy_recordings_spread_as_the_model_says() -> None:
     assert single.max() < high
 
 
+@pytest.mark.parametrize("session_known", [True, False])
+def test_operating_points_together_have_the_distributions_of_each(session_known: bool) -> None:
+    points = [expected()[0]] * 2  # the same point twice is a unit of two recordings
+    together = known_gear_model(PLAN, GEAR, points, session_known)
+    alone = [known_gear_model(PLAN, GEAR, [each], session_known) for each in points]
+    np.testing.assert_allclose(together.mean, np.concatenate([each.mean for each in alone]))
+    size = len(alone[0].mean)
+    for number, each in enumerate(alone):
+        here = slice(number * size, (number + 1) * size)
+        np.testing.assert_allclose(together.covariance[here, here], each.covariance)
+    # Only biases that are not known are the same at all of them.
+    assert (np.abs(together.covariance[:size, size:]).max() > 0) != session_known
+
+
 def test_confidence_equals_accuracy_and_the_wrong_gear_does_worse() -> None:
     p = judge(PLAN, GEAR, expected(), samples(), session_known=True)
     np.testing.assert_allclose(p.sum(axis=1), 1, rtol=1e-12)

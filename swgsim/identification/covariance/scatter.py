@@ -17,8 +17,8 @@ from swgsim.identification.data.model import Model, Situation, predict
 
 # Standard deviations that a test bench would state (conf/condition/bench.yaml); repeats correct them. Where two devices
 # log the drive and the gauges, the gauges have a trigger of their own: it misses the other by 0.1 degree (an estimate,
-# half the jitter of the index). The sizes of the beats (data/beat.py) are estimates too; at sums of
-# two orders, which grow with the load, they are those at half of the rated torque.
+# half the jitter of the index). The sizes of the beats (data/beat.py) are estimates too. Those at sums of two orders
+# grow with the load: the stated ones are those of half the rated torque.
 STATED = {
     "load": 0.005,
     "speed": 0.001,
