@@ -7,14 +7,15 @@ from typing import Any
 import numpy as np
 
 from swgsim.blind.baselines import BASELINES
+from swgsim.blind.calibration import as_in_prior, calibration_error, reliability
 from swgsim.blind.intervals import median, rate
 from swgsim.blind.scored_case import RIGHT, ScoredCase
 from swgsim.blind.strata import PAIR, SINGLE, UNTESTABLE
 from swgsim.common.numbers import NORMAL
 
 WORST = 5
-# Answers of this probability and more count as sure; edges of the bins of probabilities.
-SURE, BINS = 0.9, (0.0, 0.5, 0.7, 0.8, 0.9, 0.95, 0.99, 1.0)
+# Answers of this probability and more count as sure.
+SURE = 0.9
 
 
 def score(cases: Sequence[ScoredCase]) -> dict[str, Any]:
@@ -41,6 +42,7 @@ def score(cases: Sequence[ScoredCase]) -> dict[str, Any]:
         "right_or_nearest": rate([case.right_first or case.nearest in case.case.names for case in known]),
         "both_of_a_pair": rate([case.right_in_set for case in known if case.case.stratum == PAIR]),
         "expected_calibration_error": calibration_error(answered),
+        "expected_calibration_error_as_in_prior": calibration_error(answered, as_in_prior(answered)),
         "right_of_sure": rate([case.right for case in answered if case.answer["probability"] >= SURE]),
         "reliability": reliability(answered),
         "mean_set_size": float(np.mean([float(case.set_size) for case in known if case.named] or [0.0])),
@@ -74,25 +76,6 @@ def score(cases: Sequence[ScoredCase]) -> dict[str, Any]:
         "causes": dict(Counter(case.cause for case in cases).most_common()),
         "worst": [account(case) for case in worst(cases)],
     }
-
-
-def reliability(cases: Sequence[ScoredCase]) -> list[dict[str, Any]]:
-    """Mean probability and share of right answers, by bins of the probability."""
-    stated = np.array([case.answer["probability"] for case in cases])
-    right = np.array([case.right for case in cases])
-    inside = np.clip(np.searchsorted(BINS, stated, side="right") - 1, 0, len(BINS) - 2)
-    return [
-        {"stated": float(stated[inside == bin_].mean()), "right": rate(right[inside == bin_].tolist())}
-        for bin_ in np.unique(inside)
-    ]
-
-
-def calibration_error(cases: Sequence[ScoredCase]) -> float | None:
-    """Expected calibration error: mean distance of probability and share of right answers, over all answers."""
-    bins = reliability(cases)
-    count = sum(each["right"]["count"] for each in bins)
-    off = sum(each["right"]["count"] * abs(each["stated"] - each["right"]["value"]) for each in bins)
-    return off / count if count else None
 
 
 def worst(cases: Sequence[ScoredCase]) -> list[ScoredCase]:

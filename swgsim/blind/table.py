@@ -25,6 +25,10 @@ OF_LOOP = {
     "absorbed_named_as_such": "untestable: of no size",
     "untestable_told": "... or not of its size",
 }
+OF_PROBABILITIES = {
+    "expected_calibration_error": "calibration error",
+    "expected_calibration_error_as_in_prior": "... of sets as in prior",
+}
 
 
 def table(found: Mapping[str, Any]) -> str:
@@ -36,8 +40,8 @@ def table(found: Mapping[str, Any]) -> str:
     lines += [f"{title:<26}{figure(found[key]):>24}" for key, title in OF_LOOP.items()]
     described = found["unknown_described"]
     lines += [f"{'unknown: ' + part:<26}{figure(described[part]):>24}" for part in described]
-    calibration = found["expected_calibration_error"]
-    lines.append(f"{'calibration error':<26}{'-' if calibration is None else f'{calibration:.3f}':>24}")
+    for key, title in OF_PROBABILITIES.items():
+        lines.append(f"{title:<26}{'-' if found[key] is None else f'{found[key]:.3f}':>24}")
     lines.append(f"mean set size {found['mean_set_size']:.2f}, {found['cases']} cases, {found['nulls']} nulls")
     lines += [f"{count:4d}  {cause}" for cause, count in found["causes"].items()]
     return "\n".join(lines)

@@ -18,6 +18,7 @@ from swgsim.blind import blind_study as job
 from swgsim.blind.altered import Alteration, Altered, StrayOrder, resized
 from swgsim.blind.baselines import Task
 from swgsim.blind.bench import Setting, in_question, unit_of, unseen
+from swgsim.blind.calibration import as_in_prior, calibration_error
 from swgsim.blind.drawing import drawn_inner
 from swgsim.blind.families import FAMILIES
 from swgsim.blind.intervals import median
@@ -26,7 +27,7 @@ from swgsim.blind.prediction import expected, unseen_error
 from swgsim.blind.score import score, worst
 from swgsim.blind.scored_case import RIGHT, ScoredCase
 from swgsim.blind.sealed import Sealed, as_json, from_json
-from swgsim.blind.strata import CYCLE, FULL, NULLS, SINGLE, UNTESTABLE, Plan, plans, searched
+from swgsim.blind.strata import CYCLE, FULL, NULLS, SINGLE, UNTESTABLE, WRITTEN, Plan, plans, searched
 from swgsim.blind.strength import sized, strengths
 from swgsim.chain.chain import Run, simulate_turns
 from swgsim.common.seeds import generator
@@ -457,6 +458,23 @@ def test_probabilities_are_compared_with_the_share_of_right_answers() -> None:
     assert found["expected_calibration_error"] == pytest.approx(0.1)
     assert (found["right_of_sure"]["value"], found["right_of_sure"]["count"]) == (0.8, 10)
     assert score([ScoredCase(HIDDEN, {"failure": "it broke"})])["expected_calibration_error"] is None
+
+
+def test_cases_count_as_often_as_the_prior_expects_them() -> None:
+    """Two healthy gears have the probability of one together; so has what is outside the library."""
+    healthy, outside = replace(HIDDEN, stratum=NULLS[0], effects=()), replace(HIDDEN, stratum=WRITTEN)
+    pair = replace(HIDDEN, effects=HIDDEN.effects * 2)
+    weights = as_in_prior([ScoredCase(each, SAID) for each in (healthy, healthy, HIDDEN, outside, pair)])
+    rate = -np.log(0.8)
+    expected = [0.4, 0.4, 0.8 * rate * 0.9, 0.8 * rate * 0.1, 0.8 * rate**2 / 2 * 0.9**2]
+    assert weights == pytest.approx(expected)
+
+
+def test_a_weighted_calibration_error_is_that_of_repeated_cases() -> None:
+    """A case of weight 3 counts like three of them."""
+    right, wrong = (ScoredCase(HIDDEN, {**SAID, **changes, "probability": 0.6}) for changes in ({}, WRONG))
+    weighted = calibration_error([right, wrong], np.array([3.0, 1.0]))
+    assert weighted == pytest.approx(calibration_error([right] * 3 + [wrong])) == pytest.approx(0.15)
 
 
 @pytest.mark.parametrize("order", [3, 5])
