@@ -13,7 +13,8 @@ ALONE := $(if $(SMALL),workers=1)
 STARTED := $(shell date +%s)
 GEARS := $(if $(SMALL),gears_small,gears)
 TRAINING := $(if $(SMALL),training_small,training)
-ON_GEARS := zero_shot zero_shot_forest transfer_network $(if $(SMALL),,transfer_rezero no_reference units units_rezero inputs_gears_rocket)
+ON_GEARS := zero_shot zero_shot_forest transfer_network $(if $(SMALL),,transfer_rezero inputs_gears_rocket)
+BESIDE := fast_twin $(if $(SMALL),,no_reference units units_rezero)
 ON_PAPER := zero_shot_disturbed
 comma := ,
 JUDGED := $(if $(SMALL),,'gears=[$(subst $() $(),$(comma),$(shell seq 20))]')
@@ -85,16 +86,17 @@ paper: $(READY)  ## data sets, runs and report of the paper's tables (SMALL=1: a
 paper-choices: $(READY)  ## the choices that the paper leaves open, fitted to its tables, report/paper_choices.html (SMALL=1: a minute)
 	OMP_NUM_THREADS=1 $(SWG) paper-choices $(if $(SMALL),$(FEW_TRIALS)) $(ALONE)
 
-# The fast twin is trained beside the others: a third of its time, and the end of a sweep, leave a core idle.
+# Some experiments run beside the others, because the fast twin and the end of a sweep leave a core idle.
 transfer: data  ## beyond the paper: networks, transfer to gears never seen, report/transfer.html (SMALL=1: two minutes)
 	@set -e; \
 	for grid in $(GEARS) $(TRAINING); do $(SWG) generate grid=$$grid condition=bench $(ALONE); done; \
-	$(SWG) train experiment=fast_twin grid=$(GEARS) $(QUICK) $(FEW_GEARS) $(ALONE) & fast=$$!; \
+	for name in $(BESIDE); do $(SWG) train experiment=$$name grid=$(GEARS) $(QUICK) $(FEW_GEARS) workers=1; done & beside=$$!; \
 	$(SWG) twin grid=$(GEARS) $(JUDGED) $(FEW_NODES) $(ALONE); \
 	for name in $(ON_PAPER); do $(SWG) train experiment=$$name grid=$(GRID) $(ALONE); done; \
 	for name in $(ON_GEARS); do $(SWG) train experiment=$$name grid=$(GEARS) $(QUICK) $(ALONE); done; \
 	$(SWG) train experiment=inputs_gears grid=$(GEARS) training=$(TRAINING)-bench $(QUICK) $(FEW_STEPS) $(ALONE); \
-	wait $$fast; \
+	$(if $(SMALL),,$(SWG) train experiment=inputs_gears features=residual protocol.sources=20;) \
+	wait $$beside; \
 	$(SWG) transfer-report grid=$(GEARS) paper_grid=$(GRID) started=$(STARTED)
 	@echo "open report/transfer.html; 'make ui' shows the runs"
 

@@ -56,7 +56,9 @@ def _record(config: Mapping[str, Any], outcome: Outcome) -> None:
         tables = {
             f"tables/{name}.parquet": pd.DataFrame(report[name]) for name in ("scores", "rungs") if name in report
         }
-        job.record(metrics(report), {f"figures/{n}.png": f for n, f in outcome.figures.items()}, tables)
+        job.record(
+            metrics(report), {f"figures/{name}.png": each.png for name, each in outcome.pictures.items()}, tables
+        )
 
 
 def metrics(report: Mapping[str, Any]) -> dict[str, float]:

@@ -4,7 +4,7 @@ import json
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -13,16 +13,13 @@ from learn.inputs.inputs import LearningSet
 from learn.jobs import identity, settings
 from learn.protocols.levels import Episode, NewGears, zero_shot_split
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 TRIED_SHOTS = 5  # most shots with which options are tried on development gears; if all are more, the fewest
 
 
 def results(
     config: Mapping[str, Any], data: LearningSet
-) -> tuple[dict[str, float], dict[str, "Figure"], dict[str, pd.DataFrame]]:
-    """Metrics, figures and tables of a resolved configuration of ``conf/train.yaml``.
+) -> tuple[dict[str, float], dict[str, bytes], dict[str, pd.DataFrame]]:
+    """Metrics, pictures (PNG) and tables of a resolved configuration of ``conf/train.yaml``.
 
     Raises
     ------

@@ -87,8 +87,8 @@ def run(config: Mapping[str, Any]) -> dict[str, float]:
         if config["rows"] == "unit":
             data = joint_rows(data)
         judge = zero_shot if config["adaptation"]["name"] == "none" else few_shot
-        metrics, figures, tables = judge.results(config, data)
-        record.record(metrics, figures, tables)
+        metrics, pictures, tables = judge.results(config, data)
+        record.record(metrics, pictures, tables)
     log.info("%s: test score %.2f %%", name, metrics["test_score"])
     return metrics
 

@@ -2,7 +2,7 @@
 
 import itertools
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pandas as pd
 
@@ -11,17 +11,15 @@ from learn.jobs import settings
 from learn.protocols.levels import Episode, NewGears, zero_shot_split
 from learn.protocols.splits import Split
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 
 def results(
     config: Mapping[str, Any], data: LearningSet
-) -> tuple[dict[str, float], dict[str, "Figure"], dict[str, pd.DataFrame]]:
-    """Metrics, figures and tables of a resolved configuration of ``conf/train.yaml``."""
+) -> tuple[dict[str, float], dict[str, bytes], dict[str, pd.DataFrame]]:
+    """Metrics, pictures (PNG) and tables of a resolved configuration of ``conf/train.yaml``."""
     from learn.evaluation.confusion import picture
     from learn.evaluation.evaluate import Evaluation, evaluate
     from learn.methods.choosing import CONFIGURED, Choice, Options, choose, trial_metrics
+    from swgsim.common.style import png
 
     protocol = settings.protocol(config["protocol"])
     make = settings.classifier(config["classifier"], data.layout)
@@ -51,4 +49,4 @@ def results(
     predictions = (
         {"tables/predictions.parquet": evaluation.predictions(data.table)} if isinstance(protocol, NewGears) else {}
     )
-    return metrics, {"figures/confusion.png": picture(evaluation, title)}, predictions
+    return metrics, {"figures/confusion.png": png(picture(evaluation, title))}, predictions

@@ -12,32 +12,29 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pandas as pd
 
 from learn.tracking.store import Store, StoreAway, lost
 from learn.tracking.sweeps import SWEEP
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 log = logging.getLogger(__name__)
 
 
 @dataclass
 class Results:
-    """Results of a job; the keys of figures and tables are their paths among the artifacts."""
+    """Results of a job; the keys of pictures (PNG) and tables are their paths among the artifacts."""
 
     metrics: Mapping[str, float] = field(default_factory=dict)
-    figures: Mapping[str, "Figure"] = field(default_factory=dict)
+    pictures: Mapping[str, bytes] = field(default_factory=dict)
     tables: Mapping[str, pd.DataFrame] = field(default_factory=dict)
 
     def record(
-        self, metrics: Mapping[str, float], figures: Mapping[str, "Figure"], tables: Mapping[str, pd.DataFrame]
+        self, metrics: Mapping[str, float], pictures: Mapping[str, bytes], tables: Mapping[str, pd.DataFrame]
     ) -> None:
         """Set all results; they are written when the job ends."""
-        self.metrics, self.figures, self.tables = metrics, figures, tables
+        self.metrics, self.pictures, self.tables = metrics, pictures, tables
 
     def write(self, store: Store, run_id: str) -> None:
         """Fill a run and finish it: metrics in one transaction, tables as Parquet."""
@@ -45,12 +42,13 @@ class Results:
 
         now = _now()
         store.client.log_batch(run_id, metrics=[Metric(name, value, now, 0) for name, value in self.metrics.items()])
-        for path, figure in self.figures.items():
-            store.client.log_figure(run_id, figure, path)
         with tempfile.TemporaryDirectory() as folder:
-            for path, table in self.tables.items():
+            for path, content in {**self.pictures, **self.tables}.items():
                 file = Path(folder) / Path(path).name
-                table.to_parquet(file)
+                if isinstance(content, bytes):
+                    file.write_bytes(content)
+                else:
+                    content.to_parquet(file)
                 store.client.log_artifact(run_id, str(file), str(Path(path).parent))
         store.client.set_terminated(run_id)
 

@@ -1,11 +1,11 @@
-"""Result of an identification of a gear or a robot joint: verdict, report and figures."""
+"""Result of an identification of a gear or a robot joint: verdict, report and pictures."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from swgsim.common.style import Picture
 
 NOTHING, FOUND, UNKNOWN = "nothing_missing", "effect_found", "unknown_effect"
 
@@ -18,12 +18,12 @@ class Outcome:
     ----------
     report : mapping
         Content of ``report.json``.
-    figures : mapping
-        Figures of the page by name.
+    pictures : mapping
+        Pictures of the page by name.
     digest : str
         SHA-256 of the recordings.
     """
 
     report: Mapping[str, Any]
-    figures: Mapping[str, "Figure"]
+    pictures: Mapping[str, "Picture"]
     digest: str

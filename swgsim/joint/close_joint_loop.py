@@ -42,7 +42,7 @@ def run(config: Mapping[str, Any], report_line: Callable[[str], None] = print, *
     for caution in answer.report["cautions"]:
         report_line(f"caution: {caution}")
     report_line(repr(answer))
-    return Outcome(answer.report, answer.figures, answer.digest)
+    return Outcome(answer.report, {name: drawn for name, (drawn, _) in answer.pictures.items()}, answer.digest)
 
 
 def _read(what: str, config: Mapping[str, Any]) -> JointRecordings:

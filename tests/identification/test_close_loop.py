@@ -167,7 +167,7 @@ def test_page_opens_with_the_sentence_and_folds_the_details(folders, sick):
     assert unescape(first[1]) == sick.report["sentence"]
     summary, details = page.split('<h2 id="details">')
     assert summary.count("data:image/png;base64,") == 2  # the residual, and the probabilities
-    assert page.count("data:image/png;base64,") == len(sick.figures) >= 5
+    assert page.count("data:image/png;base64,") == len(sick.pictures) >= 5
     assert not re.search(r'(src|href)="(?!data:|#)', page)
     for fact in (
         "Effect that was hidden",
@@ -187,7 +187,7 @@ def test_effects_are_given_back_as_they_were_found(folders, sick):
 
 
 def test_the_answer_is_kept_as_a_run(folders, sick, tmp_path):
-    sick = replace(sick, figures=dict(list(sick.figures.items())[:2]))
+    sick = replace(sick, pictures=dict(list(sick.pictures.items())[:2]))
     runs = {"name": "local", "folder": str(prepared(tmp_path))}
     record(choices(folders, "sick") | {"source": None, "tracking": runs}, sick)
     store = tracking.local_store(str(tmp_path), "loop")
@@ -199,8 +199,8 @@ def test_the_answer_is_kept_as_a_run(folders, sick, tmp_path):
     for when in ("before", "after"):
         assert kept.metrics[f"error_{when}_heldout"] == said["error"][when]["heldout"]
     assert kept.metrics["eccentric_wave_generator/r"] == said["effects"][0]["parameters"]["r"]["value"]
-    figures = {each.path for each in store.client.list_artifacts(run.info.run_id, "figures")}
-    assert figures == {f"figures/{name}.png" for name in sick.figures}
+    pictures = {each.path for each in store.client.list_artifacts(run.info.run_id, "figures")}
+    assert pictures == {f"figures/{name}.png" for name in sick.pictures}
     assert len(tracking.table_of(store, run.info.run_id, "tables/scores.parquet")) == len(said["scores"])
 
 

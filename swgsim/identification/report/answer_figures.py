@@ -31,7 +31,7 @@ CURVE_POINTS = 360
 MOST_BARS = 6
 
 
-def pictures(answer: Answer, report: Mapping[str, Any]) -> dict[str, tuple[style.Picture, Figure]]:
+def pictures(answer: Answer, report: Mapping[str, Any]) -> dict[str, style.Picture]:
     """All pictures by their names.
 
     Parameters
@@ -94,10 +94,7 @@ def pictures(answer: Answer, report: Mapping[str, Any]) -> dict[str, tuple[style
             "orange names moved by more than two standard deviations when the effect was added.",
             parameters(answer, report),
         )
-    return {
-        name: (style.Picture(title, caption, style.png(figure)), figure)
-        for name, (title, caption, figure) in drawn.items()
-    }
+    return {name: style.Picture(title, caption, style.png(figure)) for name, (title, caption, figure) in drawn.items()}
 
 
 def posterior(report: Mapping[str, Any]) -> Figure:

@@ -70,7 +70,7 @@ def _run(config: Mapping[str, Any]) -> Outcome:
     say(f"writing {config['out']}")
     found.save(config["out"])
     print("\n".join(lines(report)))
-    return Outcome(report, {name: each for name, (_, each) in found.pictures.items()}, digest(recordings))
+    return Outcome(report, found.pictures, digest(recordings))
 
 
 def library(config: Mapping[str, Any]) -> tuple[type[Effect], ...]:

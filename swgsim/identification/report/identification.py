@@ -70,7 +70,7 @@ class Identification:
         return over_angle(self.answer)
 
     @cached_property
-    def pictures(self) -> Mapping[str, tuple["Picture", "Figure"]]:
+    def pictures(self) -> Mapping[str, "Picture"]:
         """All pictures of the page by name."""
         from swgsim.identification.report import answer_figures  # with matplotlib, which takes a second
 
@@ -88,7 +88,7 @@ class Identification:
 
         found, folder = self.answer, Path(folder)
         interharmonics = (*found.known, *(line.effect for line in found.lines), *found.bare_lines)
-        html = page(self.report, {name: picture for name, (picture, _) in self.pictures.items()})
+        html = page(self.report, self.pictures)
         write_json(folder / "report.json", self.report)
         write_text(folder / "effects.yaml", as_text((*found.decision.after.model.effects, *interharmonics)))
         write_text(folder / "page.html", html)
