@@ -14,6 +14,11 @@ from swgsim.identification.covariance.scatter import DOUBT, Scatter
 # Bounds of the logarithm of a standard deviation relative to the known one: 7 and 5 times its doubt. They only keep the
 # search away from numbers that are too small or too large to compute with (estimates).
 RATIOS = (-8.0, 6.0)
+# The search ends where a step gains less than this share, or where no slope is larger [nat]: every standard deviation
+# then lies within 0.1 % of its maximum, which is known to some per cent at best.
+FLAT, SLOPE = 1e-9, 1e-3
+# Difference for the curvature, in the logarithm.
+STEP = 1e-3
 
 
 class Statistics(NamedTuple):
@@ -145,7 +150,7 @@ def _likeliest(statistics: Statistics, known: Scatter, contrasts: int) -> Scatte
 
     fitted = minimize(
         cost, np.zeros(kinds), jac=True, method="L-BFGS-B", bounds=[RATIOS] * kinds,
-        options={"ftol": 1e-14, "gtol": 1e-6, "maxiter": 500},
+        options={"ftol": FLAT, "gtol": SLOPE, "maxiter": 500},
     )  # fmt: skip
     sd = dict(zip(known.sd, (known_sd * np.exp(fitted.x)).tolist(), strict=True))
     return Scatter(sd, known.repeats + contrasts, _doubt(lambda x: cost(x)[1], fitted.x))
@@ -153,8 +158,7 @@ def _likeliest(statistics: Statistics, known: Scatter, contrasts: int) -> Scatte
 
 def _doubt(slope: Callable[[np.ndarray], np.ndarray], x: Float[np.ndarray, " kind"]) -> Float[np.ndarray, "kind kind"]:
     """Inverse of the curvature (Laplace), at least that of the prior."""
-    step = 1e-3
-    moved = step * np.eye(len(x))
-    curvature = np.array([(slope(x + by) - slope(x - by)) / (2 * step) for by in moved])
+    here = slope(x)
+    curvature = np.array([(slope(x + by) - here) / STEP for by in STEP * np.eye(len(x))])
     values, vectors = np.linalg.eigh((curvature + curvature.T) / 2)
     return (vectors / np.maximum(values, 1 / DOUBT**2)) @ vectors.T

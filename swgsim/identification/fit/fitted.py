@@ -242,7 +242,7 @@ class Fitted:
             made[block] = columns[block] @ directions[: columns.shape[1]]
         return made
 
-    @property
+    @cached_property
     def missed(self) -> Float[np.ndarray, "recording feature"]:
         """Residual in declared standard deviations."""
         return self.whole.whiten_in_place(self.from_start).reshape(self.measured.values.shape)

@@ -184,7 +184,7 @@ def _with_mode(kind: str, mode: np.ndarray, gear: Gear, to: float) -> Gear:
 def of_unit(
     gear: Gear, friction: float = SERIES, structure: float = 0.0, of_gauges: float = 1.0
 ) -> dict[str, Declared]:
-    """The parameters by which units differ from the nominal gear, with their spread in a series.
+    """The parameters by which units differ from the nominal gear, with their spread in a series, and the bench.
 
     Parameters
     ----------
@@ -203,14 +203,7 @@ def of_unit(
         "b0": _of_size("b0", "N m", t.b0, friction),
         "b1": _of_size("b1", "N m s/rad", t.b1, friction),
         "mu": _of_size("mu", "-", t.mu, friction),
-        # Inertias, flange and speed control belong to the test bench, of which a gear file says little.
-        "J_in": _of_size("J_in", "kg m^2", t.J_in, BENCH),
-        "J_out": _of_size("J_out", "kg m^2", t.J_out, BENCH),
-        "rotor share": _of_transmission("rotor_share", "-", SHARE_SD, 0.0, 1.0),
-        "load share": _of_transmission("load_share", "-", SHARE_SD, 0.0, 1.0),
-        "error lever": _of_transmission("error_lever", "-", SHARE_SD, 0.0, 1.0),
-        "control frequency": _of_size("control_frequency", "Hz", t.control_frequency, CONTROL),
-        "control damping": _of_size("control_damping", "-", t.control_damping, CONTROL),
+        **of_bench(gear),
         "w0": _of_gear(
             "m",
             STRAINED * gear.wave_generator.w0,
@@ -237,6 +230,20 @@ def of_unit(
         found[f"position of s{sensor}"] = _of_gauge("position", sensor, "rad", of_gauges * PLACED)
         found[f"grid angle of s{sensor}"] = _of_gauge("grid_angle", sensor, "rad", of_gauges * PLACED)
     return found | of_structure(structure, gear.wave_generator.presses_only)
+
+
+def of_bench(gear: Gear) -> dict[str, Declared]:
+    """Inertias, torque flanges and speed control of the test bench, of which a gear file says little."""
+    t = gear.transmission
+    return {
+        "J_in": _of_size("J_in", "kg m^2", t.J_in, BENCH),
+        "J_out": _of_size("J_out", "kg m^2", t.J_out, BENCH),
+        "rotor share": _of_transmission("rotor_share", "-", SHARE_SD, 0.0, 1.0),
+        "load share": _of_transmission("load_share", "-", SHARE_SD, 0.0, 1.0),
+        "error lever": _of_transmission("error_lever", "-", SHARE_SD, 0.0, 1.0),
+        "control frequency": _of_size("control_frequency", "Hz", t.control_frequency, CONTROL),
+        "control damping": _of_size("control_damping", "-", t.control_damping, CONTROL),
+    }
 
 
 def of_effects(model: Model, another_structure: bool = False) -> dict[str, Declared]:
