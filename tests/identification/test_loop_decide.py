@@ -19,7 +19,7 @@ from swgsim.identification.covariance.recording_covariance import RecordingCovar
 from swgsim.identification.data.features import ORDERS, Layout
 from swgsim.identification.decide.decision import CREDIBLE, decide
 from swgsim.identification.decide.evidence import ZEROS, expected_gain
-from swgsim.identification.decide.option import option, resembling
+from swgsim.identification.decide.option import causes_of, option, resembling
 from swgsim.identification.decide.prior import (
     BALANCED,
     FORM_ERRORS,
@@ -119,7 +119,7 @@ def test_evidence_of_an_effect_is_the_mean_over_the_form_errors(null, changes):
     assert found.zeros == 1
     assert logsumexp(found.evidences[0]) == pytest.approx(expected, abs=1e-4)
     weights = np.exp(by_error - logsumexp(by_error))
-    assert found.form_error == pytest.approx(weights @ FORM_ERRORS, rel=1e-3)
+    assert found.form_error**2 == pytest.approx(weights @ np.square(FORM_ERRORS), rel=1e-3)
 
 
 @pytest.mark.usefixtures("_chain")
@@ -410,6 +410,21 @@ def test_what_is_too_small_to_matter_is_seen_but_no_verdict(null, changes):
     assert "seen, but too small to matter: a dip" in said
     assert "probability" not in said
     assert found_effects(found) == []
+
+
+@pytest.mark.usefixtures("_chain")
+def test_what_is_described_changes_no_ratio(null, changes):
+    """An unknown cause may be described by another option than the most probable one."""
+    found, _ = answered(null, changes, {Dip: 30.0}, 13)
+    least, _ = found.decision.weighed[-1]
+    described = replace(found, decision=replace(found.decision, best=least))
+    assert options(described) == options(found)
+    assert described.decision.gain_of(Dip(1.0)) == found.decision.gain_of(Dip(1.0))
+
+
+def test_two_of_a_kind_are_other_causes_than_one_of_them():
+    assert causes_of([Dip(1.0), Dip(2.0)], []) != causes_of([Dip(1.0)], [])
+    assert causes_of([Dip(1.0), Bump(2.0)], []) == causes_of([Bump(1.0), Dip(1.0)], [])
 
 
 @pytest.mark.usefixtures("_chain")

@@ -11,7 +11,7 @@ from swgsim.common.seeds import generator
 from swgsim.effects.base import Effect
 from swgsim.effects.quantity import beyond_nothing, size_of
 from swgsim.identification.data.measured import Measured
-from swgsim.identification.decide.option import Option, kind_of
+from swgsim.identification.decide.option import Option, causes_of, kind_of
 from swgsim.identification.decide.search import Search
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import at_plausible_parameters, extended, fit
@@ -76,10 +76,10 @@ class Decision:
         return float(sum(p for each, p in self.weighed if kind_of(effect) in map(kind_of, each.effects)))
 
     def gain_of(self, effect: Effect) -> float:
-        """Log evidence of the best option over the best one without effects of this kind."""
+        """Log evidence of the most probable option over the best one without effects of this kind."""
         kind = kind_of(effect)
         others = [o.log_evidence for o, _ in self.weighed if kind not in map(kind_of, (*o.effects, *o.resembled))]
-        return self.best.log_evidence - max(others, default=-np.inf)
+        return self.answers[0][0].log_evidence - max(others, default=-np.inf)
 
     @cached_property
     def deviation(self) -> dict[str, float]:
@@ -139,7 +139,7 @@ def _answers(weighed: Sequence[tuple[Option, float]]) -> tuple[tuple[Option, flo
     """Options that agree in their effects and in whether something unknown is missing are one answer."""
     found: dict[object, tuple[Option, float]] = {}
     for each, probability in weighed:
-        answer = frozenset(map(kind_of, each.effects)), each.unknown
+        answer = causes_of(each.effects, ()), each.unknown
         first, total = found.get(answer, (each, 0.0))
         found[answer] = first, total + probability
     return tuple(sorted(found.values(), key=lambda each: -each[1]))

@@ -8,10 +8,10 @@ from swgsim.identification.decide.forms import Forms
 from swgsim.identification.decide.line_evidence import OpenLines, log_volume, with_effect_known
 from swgsim.identification.decide.prior import (
     BALANCED,
+    FORM_ERRORS,
     LINE_ERROR,
     LOG_SIZE_RANGE,
     TIMES_BALANCED,
-    form_errors,
 )
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.form_error import form_directions, parts
@@ -38,7 +38,7 @@ def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"]
     likeliest = ZEROS[int(of_zeros.argmax())]
     best = whole.with_columns(measured.further_zeros(likeliest)) if likeliest > 1 else whole
     forms = Forms.of([best.whiten(each) for each in form_directions(fitted)], best.whiten(fitted.from_start))
-    gains = [forms.gain([error] * len(fitted.added)) for error in form_errors(fitted.unit.structure)]
+    gains = [forms.gain([error] * len(fitted.added)) for error in FORM_ERRORS]
     return of_zeros[:, None] + gains - np.log(len(gains)), forms
 
 
@@ -65,12 +65,6 @@ def expected_gain(fitted: Fitted, change: Float[np.ndarray, " row"]) -> float:
         What the effect changes at its estimated size, which stands for the standard deviation of its prior.
     """
     whole = fitted.whole
-    white, r = whole.whiten(np.column_stack([change, parts(fitted, change)])), fitted.white
-    size = white[:, 0]
-    # The size is projected out of the residual and of the forms, which then are no size.
-    norm = float(np.sqrt(1 + size @ size))
-    along = float(size @ r) / norm
-    root = size / (norm * (1 + norm))  # (1 + size size')^-1/2 = 1 - root size'
-    forms = Forms.of([white[:, 1:] - np.outer(root, size @ white[:, 1:])], r - root * float(size @ r))
-    gains = [forms.gain([error]) for error in form_errors(fitted.unit.structure)]
-    return along**2 / 2 - np.log(norm * LOG_SIZE_RANGE) + float(logsumexp(gains))
+    size = whole.whiten(change[:, None])
+    forms = Forms.of([size, whole.whiten(parts(fitted, change))], fitted.white)
+    return float(logsumexp([forms.gain([1.0, error]) for error in FORM_ERRORS])) - float(np.log(LOG_SIZE_RANGE))

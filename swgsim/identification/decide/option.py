@@ -1,5 +1,6 @@
 """An option: what the model may lack, fitted with everything else, and its evidence."""
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
@@ -15,12 +16,11 @@ from swgsim.effects.quantity import Role, quantities
 from swgsim.identification.decide.evidence import ZEROS, log_evidences
 from swgsim.identification.decide.forms import Forms
 from swgsim.identification.decide.prior import (
+    FORM_ERRORS,
     LINE_ERROR,
     LOG_SIZE_RANGE,
     OTHER_FORMS,
-    form_errors,
     log_prior,
-    other_forms,
     prior_ratio,
 )
 from swgsim.identification.fit.fitted import Fitted
@@ -86,20 +86,20 @@ class Option:
     @property
     def form_errors(self) -> tuple[float, ...]:
         """Those that its effects may have."""
-        return (LINE_ERROR,) if self.lines_differ else form_errors(self.fitted.unit.structure)
+        return (LINE_ERROR,) if self.lines_differ else FORM_ERRORS
 
     @property
     def other_forms(self) -> tuple[float, ...]:
         """Those that what resembles its effects may have beyond these."""
-        return OTHER_FORMS[-1:] if self.lines_differ else other_forms(self.fitted.unit.structure)
+        return OTHER_FORMS[-1:] if self.lines_differ else OTHER_FORMS
 
     @property
     def form_error(self) -> float:
-        """Posterior mean of the form error of the effects, as a share; 0 without effects."""
+        """Root mean square of the form error of the effects, as a share; 0 without effects."""
         if self.forms.lines:
             return self.forms.lines.share(LINE_ERROR)
         weights = np.exp(logsumexp(self.evidences, axis=0) - self.log_evidence)
-        return float(weights @ np.array(self.form_errors)) if self.effects else 0.0
+        return float(np.sqrt(weights @ np.square(self.form_errors))) if self.effects else 0.0
 
     @property
     def fits_badly(self) -> bool:
@@ -128,8 +128,8 @@ class Option:
 
 
 def causes_of(effects: Sequence[Effect], regularities: Sequence[Described]) -> frozenset[object]:
-    """What identifies a set of causes: the kinds of effects with their choices, and the regularities."""
-    return frozenset(map(kind_of, effects)) | frozenset(each.atom for each in regularities)
+    """What identifies causes: the kinds of effects with their choices, how many of each, and the regularities."""
+    return frozenset(Counter(map(kind_of, effects)).items()) | frozenset(each.atom for each in regularities)
 
 
 def kind_of(effect: Effect) -> tuple[object, ...]:

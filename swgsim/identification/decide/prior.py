@@ -1,4 +1,4 @@
-"""The prior of the decision: one table, which holds every number that the decision has.
+"""The prior of the decision: one table of all its numbers.
 
 An option is a set of causes that the model may lack. All numbers are estimates, declared before any scored run. They
 change only for a reason from physics or from the practice of test benches.
@@ -44,22 +44,6 @@ EXACT_LINE, LEAST_ERROR, LINE_ERROR = 0.5, 0.1, 0.3
 # Sizes of effects and amplitudes of regularities are known to a factor only: their logarithm is uniform over so many
 # factors of e, a ratio of 3000.
 LOG_SIZE_RANGE = 8.0
-
-
-def form_errors(structure: float) -> tuple[float, ...]:
-    """Form errors of effects, on a gear whose structure differs from the truss by so much (standard deviation).
-
-    An effect acts by the structure, so that its form may differ by as much.
-
-    >>> form_errors(0.01), form_errors(0.5)
-    ((0.01, 0.02, 0.05, 0.1, 0.2), (0.01, 0.02, 0.05, 0.1, 0.2, 0.5))
-    """
-    return (*FORM_ERRORS, structure) if structure > FORM_ERRORS[-1] else FORM_ERRORS
-
-
-def other_forms(structure: float) -> tuple[float, ...]:
-    """Further form errors of what resembles an effect on such a gear."""
-    return tuple(each for each in OTHER_FORMS if each > structure)
 
 
 def log_prior(effects: int, resembled: int, regularities: int, kinds: int) -> float:
@@ -133,8 +117,8 @@ def prior_ratio(
 ) -> float:
     """Logarithm of the prior density of the parameters of an added effect over that of the fit, where it found them.
 
-    The fit has a normal prior about where each parameter began. A parameter that the recordings do not tell has the
-    ratio 1: its prior, whatever it is, integrates to 1. Variants of an effect share its prior.
+    The fit has a normal prior about where each parameter began. A position or a shape that the recordings do not tell
+    has the ratio 1: its prior, whatever it is, integrates to 1. Variants of an effect share its prior.
 
     Parameters
     ----------

@@ -155,11 +155,10 @@ class Search:
 
     def _promises(self, base: Option, log_evidence: float, *, effects: int = 0, regularities: int = 0) -> bool:
         """Whether an option with more causes may be nearly as probable as the best one, by its expected evidence."""
-        now = log_prior(len(base.effects), 0, len(base.regularities), len(self.kinds))
         then = log_prior(len(base.effects) + effects, 0, len(base.regularities) + regularities, len(self.kinds))
         if self._best.fits_badly:
             return bool(then > -np.inf)  # no estimate is worth much beside such a misfit
-        return bool(log_evidence + base.log_prior + then - now > self._best.log_posterior - LOG_POSTERIOR_MARGIN)
+        return bool(log_evidence + then > self._best.log_posterior - LOG_POSTERIOR_MARGIN)
 
     def _leading(self, start: Fitted) -> list[tuple[float, Score]]:
         """The best hypotheses of the leading effects that are not in the model, with the expected log evidence."""

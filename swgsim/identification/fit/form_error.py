@@ -13,8 +13,6 @@ from swgsim.identification.fit.fitted import Fitted
 LEAST_GAIN = 3.0
 # Typical share by which the parts of a real cause differ from the library's form (standard deviation).
 FORM_TOLERANCE = 0.2
-# Load below which a power of it is that of this one [N m].
-LEAST_LOAD = 1.0
 
 
 def signature(fitted: Fitted, number: int) -> Float[np.ndarray, " row"]:
@@ -42,24 +40,6 @@ def parts(fitted: Fitted, whole: Float[np.ndarray, " row"]) -> Float[np.ndarray,
     return np.stack([whole * mask for mask in masks], axis=1)
 
 
-def forms(fitted: Fitted, whole: Float[np.ndarray, " row"]) -> Float[np.ndarray, "row form"]:
-    """The parts of a signature; and in a gear of another structure, whose laws may be others too, what another power of
-    load and speed makes of it, its mean size being kept.
-    """
-    split = parts(fitted, whole)
-    return np.hstack([split, powers(fitted, whole)]) if fitted.unit.of_another_structure else split
-
-
-def powers(fitted: Fitted, whole: Float[np.ndarray, " row"]) -> Float[np.ndarray, "row law"]:
-    """What another power of the load, and of the speed, makes of a signature, its mean size being kept."""
-    points = [recording.point for recording in fitted.measured.recordings]
-    laws = [[max(abs(p.T_out), LEAST_LOAD), p.n_in_rpm] for p in points]
-    logs = np.repeat(np.log(laws), len(fitted.measured.layout), axis=0)
-    weights = whole**2 / fitted.errors.variance
-    mean = weights @ logs / max(float(weights.sum()), np.finfo(float).tiny)
-    return whole[:, None] * (logs - mean)
-
-
 def allowance(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
     """What an imperfect form of an effect leaves open; without it the form error would pass for another effect.
 
@@ -71,7 +51,7 @@ def allowance(fitted: Fitted, number: int) -> Float[np.ndarray, "row part"]:
     if not signed.any():
         return np.zeros((len(signed), 0))
     lines = layout.lines(signed.reshape(measured.values.shape))
-    columns = [forms(fitted, signed)]
+    columns = [parts(fitted, signed)]
     for turn in (1, 1j):
         for channel in range(lines.shape[1]):
             for order in np.flatnonzero(np.abs(lines[:, channel]).max(axis=0) > 0):

@@ -102,7 +102,7 @@ def of_line(line: Sideline) -> dict[str, Any]:
 def options(answer: Answer) -> list[dict[str, Any]]:
     """The most probable options: sets of effects and regularities, with their probabilities."""
     decision = answer.decision
-    best = decision.best.log_posterior
+    best = decision.weighed[0][0].log_posterior
     return [
         {
             "words": in_words(option),

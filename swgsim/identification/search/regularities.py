@@ -39,11 +39,6 @@ class Atom:
     pattern: str
     law: str
 
-    @property
-    def alone(self) -> bool:
-        """Whether it is in one channel only, as a disturbance of one instrument is."""
-        return len(PATTERNS[self.pattern]) == 1
-
 
 @dataclass(frozen=True)
 class Described:
