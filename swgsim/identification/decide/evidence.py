@@ -20,7 +20,7 @@ from swgsim.identification.fit.form_error import form_directions, parts
 ZEROS = (1.0, *TIMES_BALANCED)
 
 
-def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"], Forms]:
+def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"], Forms | OpenLines]:
     """Log evidence of a fit by the factor on the deviation of zeros and by the form error, and the forms of effects.
 
     The priors of zeros and form error are in it, and all parameters are integrated over their priors (Laplace). The
@@ -42,14 +42,13 @@ def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"]
     return of_zeros[:, None] + gains - np.log(len(gains)), forms
 
 
-def _with_open_lines(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"], Forms]:
+def _with_open_lines(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"], OpenLines]:
     """The same of a fit with one effect, whose lines differ one by one."""
     held, lines = with_effect_known(fitted), OpenLines.of(fitted)
-    forms = Forms.of([np.zeros((len(held.white), 0))], held.white, lines)
     volume = log_volume(fitted, held.whole.with_columns(lines.opened(LINE_ERROR)))
     evidences = np.full((len(ZEROS), 1), -np.inf)
-    evidences[0] = np.log(1 - BALANCED) + held.log_likelihood + forms.gain([LINE_ERROR]) + volume
-    return evidences, forms
+    evidences[0] = np.log(1 - BALANCED) + held.log_likelihood + lines.gain([LINE_ERROR]) + volume
+    return evidences, lines
 
 
 def expected_gain(fitted: Fitted, change: Float[np.ndarray, " row"]) -> float:

@@ -7,8 +7,6 @@ import numpy as np
 from jaxtyping import Float, Int
 from scipy.linalg import cholesky, solve_triangular
 
-from swgsim.identification.decide.line_evidence import OpenLines
-
 
 @dataclass(frozen=True, eq=False)
 class Forms:
@@ -24,32 +22,23 @@ class Forms:
         Number of the effect that each direction belongs to.
     misfit : float
         Sum of squares of the residual beyond its expectation.
-    lines : OpenLines, optional
-        Of an effect alone whose lines differ one by one.
     """
 
     products: Float[np.ndarray, "direction direction"]
     along: Float[np.ndarray, " direction"]
     effect: Int[np.ndarray, " direction"]
     misfit: float
-    lines: OpenLines | None = None
 
     @classmethod
-    def of(
-        cls,
-        white: Sequence[Float[np.ndarray, "row _"]],
-        residual: Float[np.ndarray, " row"],
-        lines: OpenLines | None = None,
-    ) -> "Forms":
+    def of(cls, white: Sequence[Float[np.ndarray, "row _"]], residual: Float[np.ndarray, " row"]) -> "Forms":
         """From the whitened directions of every effect, and the whitened residual."""
         every = np.hstack([np.zeros((len(residual), 0)), *white])
         effect = np.repeat(np.arange(len(white)), [each.shape[1] for each in white])
-        return cls(every.T @ every, every.T @ residual, effect, float(residual @ residual) - len(residual), lines)
+        return cls(every.T @ every, every.T @ residual, effect, float(residual @ residual) - len(residual))
 
     def gain(self, errors: Sequence[float]) -> float:
         """Gain of log-likelihood if the form of every effect is open by its form error."""
         scale = np.array(errors)[self.effect]
         L = cholesky(np.eye(len(scale)) + scale[:, None] * self.products * scale, lower=True)
         found = solve_triangular(L, scale * self.along, lower=True)
-        of_lines = self.lines.gain(errors[0]) if self.lines else 0.0
-        return float(found @ found) / 2 - float(np.log(np.diag(L)).sum()) + of_lines
+        return float(found @ found) / 2 - float(np.log(np.diag(L)).sum())

@@ -5,6 +5,7 @@ distribution. The evidence is the likelihood of that residual at the fitted para
 of these: their prior density, and their spread about the fit with the errors of lines open.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -30,11 +31,14 @@ class OpenLines:
         What the residual has along their directions.
     largest : float
         Largest lines of the effect, in standard deviations of the noise.
+    misfit : float
+        Sum of squares of the residual beyond its expectation.
     """
 
     errors: LineErrors
     along: Float[np.ndarray, " column"]
     largest: float
+    misfit: float
 
     @classmethod
     def of(cls, fitted: Fitted) -> "OpenLines":
@@ -43,10 +47,12 @@ class OpenLines:
         errors, directions = LineErrors.of(found, held.whole.whiten(found.columns))
         (number,) = fitted.numbers_added
         (largest,) = found.largest(signature(fitted, number)[None] @ found.weights).tolist()
-        return cls(errors, directions.T @ held.white, largest)
+        white = held.white
+        return cls(errors, directions.T @ white, largest, float(white @ white) - len(white))
 
-    def gain(self, error: float) -> float:
-        """Gain of log-likelihood if lines differ by up to a share of the largest one."""
+    def gain(self, errors: Sequence[float]) -> float:
+        """Gain of log-likelihood if lines of the one effect differ by up to a share of the largest one."""
+        (error,) = errors
         return float(self.errors.gain(self.along[None], np.array([self.largest * error]))[0])
 
     def opened(self, error: float) -> Float[np.ndarray, "row column"]:

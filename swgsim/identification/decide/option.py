@@ -15,6 +15,7 @@ from swgsim.effects.base import Effect
 from swgsim.effects.quantity import Role, quantities
 from swgsim.identification.decide.evidence import ZEROS, log_evidences
 from swgsim.identification.decide.forms import Forms
+from swgsim.identification.decide.line_evidence import OpenLines
 from swgsim.identification.decide.prior import (
     FORM_ERRORS,
     LINE_ERROR,
@@ -43,8 +44,8 @@ class Option:
     log_prior : float
     evidences : array (zeros, form_error)
         Log evidence by the factor on the deviation of zeros and by the form error, with the priors of both.
-    forms : Forms
-        Of all effects of the fit.
+    forms : Forms or OpenLines
+        Of all effects of the fit; of an effect alone whose lines differ one by one, those.
     resembled : tuple of Effect
         Effects of the fit that are not there: one unknown cause resembles them.
     """
@@ -54,7 +55,7 @@ class Option:
     regularities: tuple[Described, ...]
     log_prior: float
     evidences: Float[np.ndarray, "zeros form_error"]
-    forms: Forms
+    forms: Forms | OpenLines
     resembled: tuple[Effect, ...] = ()
 
     @property
@@ -81,7 +82,7 @@ class Option:
     @property
     def lines_differ(self) -> bool:
         """Whether the lines of its effect may differ one by one from the library's."""
-        return self.forms.lines is not None
+        return isinstance(self.forms, OpenLines)
 
     @property
     def form_errors(self) -> tuple[float, ...]:
@@ -96,8 +97,8 @@ class Option:
     @property
     def form_error(self) -> float:
         """Root mean square of the form error of the effects, as a share; 0 without effects."""
-        if self.forms.lines:
-            return self.forms.lines.share(LINE_ERROR)
+        if isinstance(self.forms, OpenLines):
+            return self.forms.share(LINE_ERROR)
         weights = np.exp(logsumexp(self.evidences, axis=0) - self.log_evidence)
         return float(np.sqrt(weights @ np.square(self.form_errors))) if self.effects else 0.0
 
@@ -121,8 +122,8 @@ class Option:
     def opened(self, zeros: int, form_error: int) -> Fitted:
         """The fit with a factor of zeros, and with the form of its effects open by a form error (numbers of both)."""
         error = self.form_errors[form_error]
-        if self.forms.lines:
-            return self.fitted.allowing_forms(self.forms.lines.opened(error))
+        if isinstance(self.forms, OpenLines):
+            return self.fitted.allowing_forms(self.forms.opened(error))
         directions = np.hstack([np.zeros((len(self.fitted.residual), 0)), *form_directions(self.fitted)])
         return self.fitted.with_zeros(ZEROS[zeros]).allowing_forms(error * directions)
 
@@ -174,7 +175,7 @@ def _of_fit(fitted: Fitted, regularities: Sequence[Described], kinds: int) -> Op
     """The option of a fit with its effects and regularities."""
     added = fitted.added
     evidences, forms = log_evidences(fitted)
-    if not forms.lines:
+    if isinstance(forms, Forms):
         deviation, position = fitted.deviation, fitted.calibrated.position
         evidences += sum(prior_ratio(fitted, number, deviation, position) for number in fitted.numbers_added)
     evidences -= len(regularities) * np.log(LOG_SIZE_RANGE)
