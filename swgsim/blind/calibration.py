@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from scipy.stats import poisson
 
 from swgsim.blind.intervals import rate
@@ -56,14 +56,14 @@ def as_in_prior(cases: Sequence[ScoredCase]) -> Float[np.ndarray, " case"]:
 
 
 def _hidden(case: ScoredCase) -> tuple[int, bool]:
-    """Number of hidden causes that can be found, and whether they are outside the library."""
+    """Number of hidden causes, untestable ones being none, and whether they are outside the library."""
     nothing = case.null or case.case.stratum == UNTESTABLE
     return 0 if nothing else len(case.case.effects), case.case.stratum in OUTSIDE_STRATA
 
 
 def _answers(
     cases: Sequence[ScoredCase],
-) -> tuple[Float[np.ndarray, " case"], Float[np.ndarray, " case"], Float[np.ndarray, " case"]]:
+) -> tuple[Float[np.ndarray, " case"], Float[np.ndarray, " case"], Int[np.ndarray, " case"]]:
     """Probability of every answer, whether it is right, and the number of its bin."""
     stated = np.array([case.answer["probability"] for case in cases])
     right = np.array([case.right for case in cases], float)
