@@ -42,8 +42,9 @@ class Results:
 
         now = _now()
         store.client.log_batch(run_id, metrics=[Metric(name, value, now, 0) for name, value in self.metrics.items()])
+        contents: dict[str, bytes | pd.DataFrame] = {**self.pictures, **self.tables}
         with tempfile.TemporaryDirectory() as folder:
-            for path, content in {**self.pictures, **self.tables}.items():
+            for path, content in contents.items():
                 file = Path(folder) / Path(path).name
                 if isinstance(content, bytes):
                     file.write_bytes(content)
