@@ -38,7 +38,8 @@ def calibration_error(cases: Sequence[ScoredCase], weights: Float[np.ndarray, " 
     if not cases:
         return None
     stated, right, bins = _answers(cases)
-    weights = np.ones(len(cases)) if weights is None else weights
+    if weights is None:
+        weights = np.ones(len(cases))
     off = [abs(float((weights * (stated - right))[bins == each].sum())) for each in np.unique(bins)]
     return float(sum(off) / weights.sum())
 

@@ -41,7 +41,8 @@ def table(found: Mapping[str, Any]) -> str:
     described = found["unknown_described"]
     lines += [f"{'unknown: ' + part:<26}{figure(described[part]):>24}" for part in described]
     for key, title in OF_PROBABILITIES.items():
-        lines.append(f"{title:<26}{'-' if found[key] is None else f'{found[key]:.3f}':>24}")
+        error = "-" if found[key] is None else f"{found[key]:.3f}"
+        lines.append(f"{title:<26}{error:>24}")
     lines.append(f"mean set size {found['mean_set_size']:.2f}, {found['cases']} cases, {found['nulls']} nulls")
     lines += [f"{count:4d}  {cause}" for cause, count in found["causes"].items()]
     return "\n".join(lines)
