@@ -28,6 +28,7 @@ from swgsim.identification.decide.prior import (
     OTHER_FORMS,
     TIMES_BALANCED,
     log_prior,
+    of_other_forms,
     prior_ratio,
     ratio_of_parameter,
 )
@@ -131,13 +132,25 @@ def test_evidence_of_what_resembles_an_effect_is_the_mean_over_all_form_errors(n
     assert [type(e) for e in of_dip.resembled] == [Dip]
     fitted = found.fitted
     B, D = form_directions(fitted)
-    forms = product(FORM_ERRORS, OTHER_FORMS)
-    by_error = [density(fitted, fitted.from_start, fitted.J, known * B, unlike * D) for known, unlike in forms]
-    of_dip_alone = logsumexp(by_error) - np.log(len(FORM_ERRORS) * (len(FORM_ERRORS) + len(OTHER_FORMS)))
-    of_dip_alone += np.log(1 - BALANCED) + ratio_of(fitted, 0) + ratio_of(fitted, 1)
-    similar = found.log_evidence + np.log(len(FORM_ERRORS) / (len(FORM_ERRORS) + len(OTHER_FORMS)))
+    alike, unlike = np.split(of_other_forms((*FORM_ERRORS, *OTHER_FORMS)), [len(FORM_ERRORS)])
+    by_error = [
+        density(fitted, fitted.from_start, fitted.J, known * B, other * D) + np.log(probability / len(FORM_ERRORS))
+        for known, (other, probability) in product(FORM_ERRORS, zip(OTHER_FORMS, unlike, strict=True))
+    ]
+    of_dip_alone = np.log(1 - BALANCED) + logsumexp(by_error) + ratio_of(fitted, 0) + ratio_of(fitted, 1)
+    similar = found.log_evidence + np.log(alike.sum())
     assert of_dip.log_evidence == pytest.approx(np.logaddexp(similar, of_dip_alone), abs=1e-4)
     assert of_both.log_prior - found.log_prior == pytest.approx(log_prior(0, 2, 0, 4) - log_prior(2, 0, 0, 4))
+
+
+@pytest.mark.usefixtures("_chain")
+def test_evidence_of_what_resembles_one_effect_is_that_of_all_shares_from_nothing_to_all_of_it(null, changes):
+    found = option(recorded(null, changes, {Bump: 5.0}, 5), (Bump(4.0),), (), len(KINDS))
+    (of_bump,), fitted, (D,) = resembling(found, len(KINDS)), found.fitted, form_directions(found.fitted)
+    shares = (*FORM_ERRORS, *OTHER_FORMS)
+    by_error = [density(fitted, fitted.from_start, fitted.J, each * D) for each in shares]
+    expected = np.log(1 - BALANCED) + logsumexp(by_error + np.log(of_other_forms(shares))) + ratio_of(fitted, 0)
+    assert logsumexp(of_bump.evidences[0]) == pytest.approx(expected, abs=1e-4)
 
 
 @pytest.mark.usefixtures("_chain")
@@ -155,7 +168,7 @@ def test_an_unknown_cause_with_the_lines_of_an_effect_is_called_unknown(null, ch
 @pytest.mark.usefixtures("_chain")
 def test_no_effect_is_surer_than_unknown_causes_that_look_just_like_it_are_rare(null, changes):
     found, _ = answered(null, changes, {Bump: 0.5}, 18)
-    alike = len(FORM_ERRORS) / (len(FORM_ERRORS) + len(OTHER_FORMS))
+    alike = len(FORM_ERRORS) * of_other_forms((*FORM_ERRORS, *OTHER_FORMS)).min()
     odds = alike * np.exp(log_prior(0, 1, 0, len(KINDS)) - log_prior(1, 0, 0, len(KINDS)))
     assert found.decision.probability < 1 / (1 + odds)
     assert found.decision.probability > 0.9
@@ -188,6 +201,23 @@ def test_a_size_is_integrated_over_its_logarithm_wherever_the_fit_began(null, ch
     integral = np.trapezoid(densities / (2 * LOG_SIZE_RANGE * np.abs(sizes)), sizes)
     expected = np.log(1 - BALANCED) + np.log(integral) + logsumexp(found.evidences[0]) + log_prior(1, 0, 0, len(KINDS))
     assert found.log_prior + logsumexp(found.evidences[0]) == pytest.approx(expected, abs=0.05)
+
+
+@pytest.mark.usefixtures("_chain")
+def test_an_amplitude_of_a_regularity_is_integrated_over_its_logarithm_and_all_phases(null):
+    """Numerically, of a wave that the recordings tell well."""
+    C = columns(STRAY, null)
+    held = holding(null, drawn(null.whole, np.random.default_rng(8)) + C @ [30.0, -40.0])
+    stray = next(each for each in describe(held) if each.atom == STRAY)
+    found = option(held, (), (stray,), len(KINDS))
+    turn = np.linspace(-0.3, 0.3, 61)
+    sizes, phases = np.meshgrid(stray.amplitude * np.exp(turn), stray.phase + turn)
+    x, r = held.whole.whiten(C), held.white
+    waves = np.stack([sizes * np.cos(phases), -sizes * np.sin(phases)], axis=-1)
+    gained = waves @ (x.T @ r) - np.einsum("...i,ij,...j", waves, x.T @ x, waves) / 2
+    likely = np.trapezoid(np.trapezoid(np.exp(gained - gained.max()), turn), turn) / (2 * np.pi * LOG_SIZE_RANGE)
+    expected = held.log_likelihood + np.log(1 - BALANCED) + gained.max() + np.log(likely)
+    assert logsumexp(found.evidences[0]) == pytest.approx(expected, abs=0.1)
 
 
 @pytest.mark.parametrize("width", [0.01, 0.05, np.inf])

@@ -22,6 +22,7 @@ from swgsim.identification.decide.prior import (
     LOG_SIZE_RANGE,
     OTHER_FORMS,
     log_prior,
+    of_other_forms,
     prior_ratio,
 )
 from swgsim.identification.fit.fitted import Fitted
@@ -178,7 +179,8 @@ def _of_fit(fitted: Fitted, regularities: Sequence[Described], kinds: int) -> Op
     if isinstance(forms, Forms):
         deviation, position = fitted.deviation, fitted.calibrated.position
         evidences += sum(prior_ratio(fitted, number, deviation, position) for number in fitted.numbers_added)
-    evidences -= len(regularities) * np.log(LOG_SIZE_RANGE)
+    # The normal prior of the fit has the density exp(-1/2) where it found the amplitude.
+    evidences += len(regularities) * (0.5 - np.log(LOG_SIZE_RANGE))
     prior = log_prior(len(added), 0, len(regularities), kinds)
     # A copy without what the fit has cached, which would fill the memory.
     return Option(replace(fitted), added, tuple(regularities), prior, evidences, forms)
@@ -187,7 +189,8 @@ def _of_fit(fitted: Fitted, regularities: Sequence[Described], kinds: int) -> Op
 def resembling(known: Option, kinds: int) -> list[Option]:
     """The options that one unknown cause resembles some of the effects of an option, or all of them.
 
-    The evidence is the mean over all form errors of what is unknown, those of effects among them.
+    The evidence is the mean over all form errors of what is unknown. Where these are no larger than those of effects,
+    all that an option has share one.
 
     Parameters
     ----------
@@ -196,22 +199,24 @@ def resembling(known: Option, kinds: int) -> list[Option]:
     kinds : int
         Number of effects in the library.
     """
-    of_effects, others = known.form_errors, known.other_forms
-    many, counts_for = len(known.effects), np.log(len(of_effects))
-    of_fit = logsumexp(known.evidences[:, 0]) + counts_for - known.forms.gain([of_effects[0]] * many)
-    # By what is unlike an effect, and how much; all other effects share a form error.
-    evidences = {}
-    for unlike in product((0.0, *others), repeat=many):
-        gains = [known.forms.gain([own or shared for own in unlike]) for shared in of_effects]
-        evidences[unlike] = of_fit + logsumexp(gains) - counts_for
+    alike, others, many = known.form_errors, known.other_forms, len(known.effects)
+    of_alike, of_others = np.split(of_other_forms((*alike, *others)), [len(alike)])
+    of_fit = logsumexp(known.evidences[:, 0]) + np.log(len(alike)) - known.forms.gain([alike[0]] * many)
+    # By what is unlike an effect, and how much; what is not shares a form error.
+    gains = {
+        unlike: [known.forms.gain([own or shared for own in unlike]) for shared in alike]
+        for unlike in product((0.0, *others), repeat=many)
+    }
+    log_other = dict(zip((0.0, *others), np.log([of_alike.sum(), *of_others]), strict=True))
     found = []
     for numbers in (each for n in range(1, many + 1) for each in combinations(range(many), n)):
-        of_these = [
-            evidence + (len(numbers) - np.count_nonzero(unlike)) * counts_for
-            for unlike, evidence in evidences.items()
+        # The form error that is shared is one of effects, if there are any.
+        log_shared = np.log(of_alike / of_alike.sum() if len(numbers) == many else np.full(len(alike), 1 / len(alike)))
+        evidence = of_fit + logsumexp([
+            gain + log_shared + sum(log_other[unlike[number]] for number in numbers)
+            for unlike, gain in gains.items()
             if set(np.flatnonzero(unlike)) <= set(numbers)
-        ]
-        evidence = logsumexp(of_these) - len(numbers) * np.log(len(of_effects) + len(others))
+        ])  # fmt: skip
         prior = log_prior(many - len(numbers), len(numbers), 0, kinds) - log_prior(many, 0, 0, kinds)
         found.append(
             replace(

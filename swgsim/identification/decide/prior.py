@@ -4,9 +4,10 @@ An option is a set of causes that the model may lack. All numbers are estimates,
 change only for a reason from physics or from the practice of test benches.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
+from jaxtyping import Float
 from scipy.special import gammaln
 
 from swgsim.effects.base import Effect
@@ -34,8 +35,9 @@ BALANCED, TIMES_BALANCED = 0.05, (2.0, 4.0, 8.0, 16.0)
 # A real effect never has exactly the form that the library gives it. The lines of its signature differ by one of these
 # shares (standard deviation), all being equally probable: from the mesh of the truss to the model of another author.
 FORM_ERRORS = (0.01, 0.02, 0.05, 0.1, 0.2)
-# What resembles an effect may look just like it, or have little more than channels, orders and law in common: its lines
-# differ by one of these shares, or by one of those above, all being equally probable.
+# What resembles an effect may look just like it, or have little more than channels, orders and law in common: the share
+# by which its lines differ is uniform from 0 to 1, so that it seldom looks just like it. These shares and those of
+# effects stand for it.
 OTHER_FORMS = (0.5, 1.0)
 # On a gear of another structure, lines differ one by one. A group of them is as in the library with the first
 # probability. Otherwise the logarithm of its error is uniform, from so many standard deviations of the noise to this
@@ -75,6 +77,16 @@ def log_prior(effects: int, resembled: int, regularities: int, kinds: int) -> fl
         found += np.log(rate * OUTSIDE_LIBRARY * (1 - RESEMBLING))
         found += _one_or_more(regularities, (ORDERS + 1) * len(PATTERNS) * len(LAWS))
     return float(found)
+
+
+def of_other_forms(shares: Sequence[float]) -> Float[np.ndarray, " share"]:
+    """Probabilities of the shares by which the lines of something unknown differ, each for all that are nearest to it.
+
+    >>> of_other_forms((0.1, 0.2, 0.5, 1.0)).round(2).tolist()
+    [0.15, 0.2, 0.4, 0.25]
+    """
+    between = (np.array(shares)[1:] + shares[:-1]) / 2
+    return np.diff([0.0, *between, 1.0])
 
 
 def _one_or_more(number: int, among: int) -> float:
