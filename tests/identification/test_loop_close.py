@@ -210,6 +210,15 @@ def test_two_effects_at_once_are_found_with_what_one_of_them_may_be_as_well(unit
     assert decision.after.log_likelihood - decision.before.log_likelihood > 6
 
 
+def test_two_cracks_are_two_causes(unit):
+    crack = next(each for each in FAULTS if type(each).name() == "tip_tooth_crack")
+    cracks = (crack, replace(crack, theta=3.5))
+    decision = decide(recorded(cracks, seed=3), unit, [type(crack)])
+    places = sorted(each.theta for each in decision.effects)
+    assert places == pytest.approx([each.theta for each in cracks], abs=2 * np.pi / SECTORS)
+    assert decision.probability > 0.9
+
+
 def _shown(measured: Measured, T_out: Callable[[Recording], np.ndarray]) -> Measured:
     """The same with another torque at the output, and a little noise of it."""
     rng = np.random.default_rng(9)
