@@ -32,8 +32,9 @@ ANOTHER = 0.5
 # Probability that bridges were balanced anew between two sessions. The zeros of gauges then lie so many times as far
 # off as declared.
 BALANCED, TIMES_BALANCED = 0.05, (2.0, 4.0, 8.0, 16.0)
-# A real effect never has exactly the form that the library gives it. The lines of its signature differ by one of these
-# shares (standard deviation), all being equally probable: from the mesh of the truss to the model of another author.
+# A real effect never has exactly the form that the library gives it. Each line of its signature, and each part of it in
+# a channel, at an order or at an operating point, differs by one of these shares (standard deviation), all being
+# equally probable: from the mesh of the truss to the model of another author.
 FORM_ERRORS = (0.01, 0.02, 0.05, 0.1, 0.2)
 # What resembles an effect may look just like it, or have little more than channels, orders and law in common: the share
 # by which its lines differ is uniform from 0 to 1, so that it seldom looks just like it. These shares and those of
