@@ -86,8 +86,7 @@ class Decision:
         """Standard deviation of each fitted parameter, by noise, all shapes and the form error."""
         fitted = self.after
         found = dict(fitted.deviation)
-        first = len(self.before.model.effects)
-        numbers = range(first, first + len(self.best.effects))
+        numbers = fitted.numbers_added[: len(self.best.effects)]
         if self.best.lines_differ:
             # Errors of its lines are known as far as the recordings tell them, so that size and place are as well.
             opened = self.best.opened(*self.best.likeliest)

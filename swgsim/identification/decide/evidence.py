@@ -44,7 +44,8 @@ def log_evidences(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"]
 
 def _with_open_lines(fitted: Fitted) -> tuple[Float[np.ndarray, "zeros form_error"], OpenLines]:
     """The same of a fit with one effect, whose lines differ one by one."""
-    held, lines = with_effect_known(fitted), OpenLines.of(fitted)
+    held = with_effect_known(fitted)
+    lines = OpenLines.of(fitted, held)
     volume = log_volume(fitted, held.whole.with_columns(lines.opened(LINE_ERROR)))
     evidences = np.full((len(ZEROS), 1), -np.inf)
     evidences[0] = np.log(1 - BALANCED) + held.log_likelihood + lines.gain([LINE_ERROR]) + volume

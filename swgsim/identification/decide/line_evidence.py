@@ -41,9 +41,9 @@ class OpenLines:
     misfit: float
 
     @classmethod
-    def of(cls, fitted: Fitted) -> "OpenLines":
-        """Of the effect of a fit."""
-        held, found = with_effect_known(fitted), groups(fitted.measured)
+    def of(cls, fitted: Fitted, held: Fitted) -> "OpenLines":
+        """Of the effect of a fit, given this with the effect known."""
+        found = groups(fitted.measured)
         errors, directions = LineErrors.of(found, held.whole.whiten(found.columns))
         (number,) = fitted.numbers_added
         (largest,) = found.largest(signature(fitted, number)[None] @ found.weights).tolist()
@@ -66,11 +66,19 @@ class OpenLines:
 
 
 def with_effect_known(fitted: Fitted) -> Fitted:
-    """The same fit, the parameters of added effects being known."""
-    kept = [n for n, name in enumerate(fitted.parameters) if name in fitted.declared]
-    J = fitted.calibrated.J[..., kept]
-    calibrated = replace(fitted.calibrated, position=fitted.position_of_unit, J=J)
-    return replace(fitted, parameters=fitted.declared, calibrated=calibrated)
+    """The same fit, the parameters of its one added effect being known."""
+    its = _of_effect(fitted)
+    others = {name: parameter for name, parameter in fitted.parameters.items() if name not in its}
+    position = {name: fitted.calibrated.position[name] for name in others}
+    J = fitted.calibrated.J[..., [n for n, name in enumerate(fitted.parameters) if name in others]]
+    return replace(fitted, parameters=others, calibrated=replace(fitted.calibrated, position=position, J=J))
+
+
+def _of_effect(fitted: Fitted) -> list[str]:
+    """The fitted parameters of the one added effect."""
+    (number,), (effect,) = fitted.numbers_added, fitted.added
+    its = {name_of(effect, number, each) for each in quantities(type(effect))}
+    return [name for name in fitted.parameters if name in its]
 
 
 def log_volume(fitted: Fitted, errors: Covariance) -> float:
@@ -82,9 +90,7 @@ def log_volume(fitted: Fitted, errors: Covariance) -> float:
     errors : Covariance
         Of the residual with these parameters known, the errors of lines being open.
     """
-    (number,), (effect,) = fitted.numbers_added, fitted.added
-    its = {name_of(effect, number, each) for each in quantities(type(effect))}
-    moved = [name for name in fitted.parameters if name in its]
+    (number,), moved = fitted.numbers_added, _of_effect(fitted)
     white = errors.whiten(fitted.J[:, [list(fitted.parameters).index(name) for name in moved]])
     covariance = np.linalg.inv(white.T @ white + np.eye(len(moved)))
     spreads = zip(moved, np.sqrt(np.diag(covariance)), strict=True)

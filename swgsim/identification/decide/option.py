@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
-from itertools import combinations, product
+from itertools import combinations
 
 import numpy as np
 from jaxtyping import Float
@@ -92,7 +92,7 @@ class Option:
 
     @property
     def other_forms(self) -> tuple[float, ...]:
-        """Those that what resembles its effects may have beyond these."""
+        """Those that what resembles its effects may have."""
         return OTHER_FORMS[-1:] if self.lines_differ else OTHER_FORMS
 
     @property
@@ -189,8 +189,7 @@ def _of_fit(fitted: Fitted, regularities: Sequence[Described], kinds: int) -> Op
 def resembling(known: Option, kinds: int) -> list[Option]:
     """The options that one unknown cause resembles some of the effects of an option, or all of them.
 
-    The evidence is the mean over all form errors of what is unknown. Where these are no larger than those of effects,
-    all that an option has share one.
+    The evidence is the mean over all form errors of the unknown cause, and over those that the effects beside it share.
 
     Parameters
     ----------
@@ -199,24 +198,17 @@ def resembling(known: Option, kinds: int) -> list[Option]:
     kinds : int
         Number of effects in the library.
     """
-    alike, others, many = known.form_errors, known.other_forms, len(known.effects)
-    of_alike, of_others = np.split(of_other_forms((*alike, *others)), [len(alike)])
-    of_fit = logsumexp(known.evidences[:, 0]) + np.log(len(alike)) - known.forms.gain([alike[0]] * many)
-    # By what is unlike an effect, and how much; what is not shares a form error.
-    gains = {
-        unlike: [known.forms.gain([own or shared for own in unlike]) for shared in alike]
-        for unlike in product((0.0, *others), repeat=many)
-    }
-    log_other = dict(zip((0.0, *others), np.log([of_alike.sum(), *of_others]), strict=True))
+    own, other, many = known.form_errors, known.other_forms, len(known.effects)
+    of_fit = logsumexp(known.evidences[:, 0]) + np.log(len(own)) - known.forms.gain([own[0]] * many)
+    log_other = np.log(of_other_forms(other))[:, None]
     found = []
     for numbers in (each for n in range(1, many + 1) for each in combinations(range(many), n)):
-        # The form error that is shared is one of effects, if there are any.
-        log_shared = np.log(of_alike / of_alike.sum() if len(numbers) == many else np.full(len(alike), 1 / len(alike)))
-        evidence = of_fit + logsumexp([
-            gain + log_shared + sum(log_other[unlike[number]] for number in numbers)
-            for unlike, gain in gains.items()
-            if set(np.flatnonzero(unlike)) <= set(numbers)
-        ])  # fmt: skip
+        shared = own if len(numbers) < many else own[:1]
+        gains = [
+            [known.forms.gain([unlike if n in numbers else error for n in range(many)]) for error in shared]
+            for unlike in other
+        ]
+        evidence = of_fit + logsumexp(gains + log_other) - np.log(len(shared))
         prior = log_prior(many - len(numbers), len(numbers), 0, kinds) - log_prior(many, 0, 0, kinds)
         found.append(
             replace(

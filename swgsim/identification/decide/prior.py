@@ -37,9 +37,8 @@ BALANCED, TIMES_BALANCED = 0.05, (2.0, 4.0, 8.0, 16.0)
 # equally probable: from the mesh of the truss to the model of another author.
 FORM_ERRORS = (0.01, 0.02, 0.05, 0.1, 0.2)
 # What resembles an effect may look just like it, or have little more than channels, orders and law in common: the share
-# by which its lines differ is uniform from 0 to 1, so that it seldom looks just like it. These shares and those of
-# effects stand for it.
-OTHER_FORMS = (0.5, 1.0)
+# by which its lines differ is uniform from 0 to 1, so that it seldom looks just like it. These shares stand for it.
+OTHER_FORMS = (*FORM_ERRORS, 0.35, 0.5, 0.7, 1.0)
 # On a gear of another structure, lines differ one by one. A group of them is as in the library with the first
 # probability. Otherwise the logarithm of its error is uniform, from so many standard deviations of the noise to this
 # share of the largest line of the effect; of what resembles an effect, to all of it.
