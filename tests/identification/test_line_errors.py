@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from linear_chain import KINDS, Bump, patch_chain, signatures_of
+from linear_chain import KINDS, Bump, Dip, patch_chain, signatures_of
 from loop_fixtures import fitted_to, holding
 from scipy.special import logsumexp
 from scipy.stats import norm
@@ -13,9 +13,11 @@ from swgsim.effects.cam_form import CamForm
 from swgsim.identification.data.features import ORDERS, Layout
 from swgsim.identification.decide import line_proposals
 from swgsim.identification.decide.line_errors import LineErrors, groups
+from swgsim.identification.decide.line_evidence import with_effect_known
 from swgsim.identification.decide.line_proposals import LineProposals
 from swgsim.identification.decide.option import option, resembling
 from swgsim.identification.decide.prior import EXACT_LINE, LEAST_ERROR
+from swgsim.identification.fit.priors import name_of
 from swgsim.identification.fit.unit import Unit
 from swgsim.identification.search.hypotheses import Hypothesis
 
@@ -182,3 +184,17 @@ def test_an_effect_whose_lines_differ_is_weighed_with_their_errors(monkeypatch):
     (unknown,) = resembling(opened, len(KINDS))
     assert unknown.unknown
     assert unknown.log_posterior < opened.log_posterior
+
+
+def test_a_declared_effect_stays_free_where_the_added_one_is_held(monkeypatch):
+    rng = np.random.default_rng(5)
+    null = fitted_to(LAYOUT, rng)
+    patch_chain(monkeypatch, null, signatures_of(null, rng))
+    model = null.unit.model.plus(Dip(1.0))
+    declared = replace(null, unit=Unit(model), calibrated=replace(null.calibrated, model=model))
+    fitted = option(declared, (Bump(5.0),), (), len(KINDS)).fitted
+    held = with_effect_known(fitted)
+    assert set(fitted.parameters) == {name_of(Dip(1.0), 0, "height"), name_of(Bump(5.0), 1, "height")}
+    assert list(held.parameters) == list(held.calibrated.position) == [name_of(Dip(1.0), 0, "height")]
+    its = list(fitted.parameters).index(*held.parameters)
+    np.testing.assert_array_equal(held.J, fitted.J[:, [its]])
