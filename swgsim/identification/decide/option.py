@@ -179,7 +179,7 @@ def _of_fit(fitted: Fitted, regularities: Sequence[Described], kinds: int) -> Op
     if isinstance(forms, Forms):
         deviation, position = fitted.deviation, fitted.calibrated.position
         evidences += sum(prior_ratio(fitted, number, deviation, position) for number in fitted.numbers_added)
-    # The normal prior of the fit has the density exp(-1/2) where it found the amplitude.
+    # Where the fit found the amplitude, its normal prior has exp(-1/2) of its largest density.
     evidences += len(regularities) * (0.5 - np.log(LOG_SIZE_RANGE))
     prior = log_prior(len(added), 0, len(regularities), kinds)
     # A copy without what the fit has cached, which would fill the memory.
