@@ -22,7 +22,7 @@ def code() -> str:
 
 
 def diagnosed(folder: Path) -> dict[str, Any]:
-    """The truth of a gear, and its diagnosis; ``report`` is None if its effect is none of the five faults."""
+    """The truth of a gear, and its diagnosis; ``report`` is None if its effect is not one of the five faults."""
     truth = json.loads((folder / "truth.json").read_text())
     if truth["effect"] not in (None, *FAULTS):
         return {"truth": truth, "report": None}

@@ -217,6 +217,8 @@ def test_two_cracks_are_two_causes(unit):
     places = sorted(each.theta for each in decision.effects)
     assert places == pytest.approx([each.theta for each in cracks], abs=2 * np.pi / SECTORS)
     assert decision.probability > 0.9
+    # One crack alone is another option, and was fitted as well.
+    assert {len(option.effects) for option, _ in decision.weighed if not option.unknown} >= {0, 1, 2}
 
 
 def _shown(measured: Measured, T_out: Callable[[Recording], np.ndarray]) -> Measured:

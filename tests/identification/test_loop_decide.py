@@ -28,9 +28,9 @@ from swgsim.identification.decide.prior import (
     OTHER_FORMS,
     TIMES_BALANCED,
     log_prior,
-    of_other_forms,
     prior_ratio,
     ratio_of_parameter,
+    uniform_weights,
 )
 from swgsim.identification.decide.search import Search
 from swgsim.identification.fit.form_error import all_show, form_directions, parts
@@ -132,7 +132,7 @@ def test_evidence_of_what_resembles_an_effect_is_the_mean_over_all_form_errors(n
     assert [type(e) for e in of_dip.resembled] == [Dip]
     fitted = found.fitted
     B, D = form_directions(fitted)
-    unlike = zip(OTHER_FORMS, of_other_forms(OTHER_FORMS), strict=True)
+    unlike = zip(OTHER_FORMS, uniform_weights(OTHER_FORMS), strict=True)
     by_error = [
         density(fitted, fitted.from_start, fitted.J, known * B, other * D) + np.log(probability / len(FORM_ERRORS))
         for known, (other, probability) in product(FORM_ERRORS, unlike)
@@ -147,7 +147,7 @@ def test_evidence_of_what_resembles_one_effect_is_that_of_all_shares_from_nothin
     found = option(recorded(null, changes, {Bump: 5.0}, 5), (Bump(4.0),), (), len(KINDS))
     (of_bump,), fitted, (D,) = resembling(found, len(KINDS)), found.fitted, form_directions(found.fitted)
     by_error = [density(fitted, fitted.from_start, fitted.J, each * D) for each in OTHER_FORMS]
-    expected = np.log(1 - BALANCED) + logsumexp(by_error + np.log(of_other_forms(OTHER_FORMS))) + ratio_of(fitted, 0)
+    expected = np.log(1 - BALANCED) + logsumexp(by_error + np.log(uniform_weights(OTHER_FORMS))) + ratio_of(fitted, 0)
     assert logsumexp(of_bump.evidences[0]) == pytest.approx(expected, abs=1e-4)
 
 
@@ -166,7 +166,7 @@ def test_an_unknown_cause_with_the_lines_of_an_effect_is_called_unknown(null, ch
 @pytest.mark.usefixtures("_chain")
 def test_no_effect_is_surer_than_unknown_causes_that_look_just_like_it_are_rare(null, changes):
     found, _ = answered(null, changes, {Bump: 0.5}, 18)
-    alike = len(FORM_ERRORS) * of_other_forms(OTHER_FORMS).min()
+    alike = len(FORM_ERRORS) * uniform_weights(OTHER_FORMS).min()
     odds = alike * np.exp(log_prior(0, 1, 0, len(KINDS)) - log_prior(1, 0, 0, len(KINDS)))
     assert found.decision.probability < 1 / (1 + odds)
     assert found.decision.probability > 0.9
@@ -331,7 +331,7 @@ def test_probabilities_are_true(monkeypatch):
     for _ in range(200):
         truth = dict(zip(kinds, states[rng.choice(len(states), p=prior / prior.sum())], strict=True))
         signal = drawn(toy.whole, rng)
-        forms = {"yes": rng.choice(FORM_ERRORS), "like": rng.choice(OTHER_FORMS, p=of_other_forms(OTHER_FORMS))}
+        forms = {"yes": rng.choice(FORM_ERRORS), "like": rng.choice(OTHER_FORMS, p=uniform_weights(OTHER_FORMS))}
         for kind in kinds:
             if truth[kind] == "no":
                 continue

@@ -22,8 +22,8 @@ from swgsim.identification.decide.prior import (
     LOG_SIZE_RANGE,
     OTHER_FORMS,
     log_prior,
-    of_other_forms,
     prior_ratio,
+    uniform_weights,
 )
 from swgsim.identification.fit.fitted import Fitted
 from swgsim.identification.fit.fitting import extended
@@ -92,7 +92,7 @@ class Option:
 
     @property
     def other_forms(self) -> tuple[float, ...]:
-        """Those that what resembles its effects may have."""
+        """Those that an unknown cause which resembles its effects may have."""
         return OTHER_FORMS[-1:] if self.lines_differ else OTHER_FORMS
 
     @property
@@ -189,7 +189,8 @@ def _of_fit(fitted: Fitted, regularities: Sequence[Described], kinds: int) -> Op
 def resembling(known: Option, kinds: int) -> list[Option]:
     """The options that one unknown cause resembles some of the effects of an option, or all of them.
 
-    The evidence is the mean over all form errors of the unknown cause, and over those that the effects beside it share.
+    The evidence is integrated over the form error of the unknown cause and over that of the known effects; both are
+    independent.
 
     Parameters
     ----------
@@ -200,7 +201,7 @@ def resembling(known: Option, kinds: int) -> list[Option]:
     """
     own, other, many = known.form_errors, known.other_forms, len(known.effects)
     of_fit = logsumexp(known.evidences[:, 0]) + np.log(len(own)) - known.forms.gain([own[0]] * many)
-    log_other = np.log(of_other_forms(other))[:, None]
+    log_other = np.log(uniform_weights(other))[:, None]
     found = []
     for numbers in (each for n in range(1, many + 1) for each in combinations(range(many), n)):
         shared = own if len(numbers) < many else own[:1]

@@ -36,8 +36,8 @@ BALANCED, TIMES_BALANCED = 0.05, (2.0, 4.0, 8.0, 16.0)
 # a channel, at an order or at an operating point, differs by one of these shares (standard deviation), all being
 # equally probable: from the mesh of the truss to the model of another author.
 FORM_ERRORS = (0.01, 0.02, 0.05, 0.1, 0.2)
-# What resembles an effect may look just like it, or have little more than channels, orders and law in common: the share
-# by which its lines differ is uniform from 0 to 1, so that it seldom looks just like it. These shares stand for it.
+# What resembles an effect may look just like it, or have little more than channels, orders and law in common: its form
+# error is uniform from 0 to 1. It is integrated over these values.
 OTHER_FORMS = (*FORM_ERRORS, 0.35, 0.5, 0.7, 1.0)
 # On a gear of another structure, lines differ one by one. A group of them is as in the library with the first
 # probability. Otherwise the logarithm of its error is uniform, from so many standard deviations of the noise to this
@@ -79,13 +79,13 @@ def log_prior(effects: int, resembled: int, regularities: int, kinds: int) -> fl
     return float(found)
 
 
-def of_other_forms(shares: Sequence[float]) -> Float[np.ndarray, " share"]:
-    """Probabilities of the shares by which the lines of something unknown differ, each for all that are nearest to it.
+def uniform_weights(values: Sequence[float]) -> Float[np.ndarray, " value"]:
+    """Weights with which increasing values stand for a uniform distribution from 0 to 1, each for all nearest to it.
 
-    >>> of_other_forms((0.1, 0.2, 0.5, 1.0)).round(2).tolist()
+    >>> uniform_weights((0.1, 0.2, 0.5, 1.0)).round(2).tolist()
     [0.15, 0.2, 0.4, 0.25]
     """
-    between = (np.array(shares)[1:] + shares[:-1]) / 2
+    between = (np.array(values)[1:] + values[:-1]) / 2
     return np.diff([0.0, *between, 1.0])
 
 
